@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/budget.hpp"
+
+#include <algorithm>
+#include <ctime>
+
+namespace tribench {
+namespace {
+
+// The clock is read once in so many node-rows (about a millisecond of evaluation).
+constexpr std::uint64_t kClockInterval = 2'000'000;
+
+}  // namespace
+
+double process_cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Budget::Budget(const BudgetLimits& limits)
+    : limits_(limits),
+      cpu_start_(process_cpu_seconds()),
+      out_of_time_(std::make_shared<std::atomic<bool>>(false)) {}
+
+std::uint64_t Budget::remaining() const {
+  return limits_.evaluations - std::min(spent_, limits_.evaluations);
+}
+
+bool Budget::check_clock() {
+  spent_at_next_clock_check_ = spent_ + kClockInterval;
+  if (process_cpu_seconds() - cpu_start_ > limits_.cpu_seconds) out_of_time_->store(true);
+  return !out_of_time();
+}
+
+bool Budget::spend(std::uint64_t node_rows) {
+  if (exhausted_ || node_rows > remaining() ||
+      (spent_ + node_rows >= spent_at_next_clock_check_ && !check_clock())) {
+    exhausted_ = true;
+    return false;
+  }
+  spent_ += node_rows;
+  return true;
+}
+
+Budget Budget::share(std::uint64_t node_rows) const {
+  Budget part = *this;
+  part.limits_.evaluations = std::min(node_rows, remaining());
+  part.spent_ = 0;
+  part.spent_at_next_clock_check_ = 0;
+  part.exhausted_ = false;
+  return part;
+}
+
+void Budget::settle(const Budget& part) {
+  spent_ += part.spent_;
+  if (part.out_of_time() || remaining() == 0) exhausted_ = true;
+}
+
+}  // namespace tribench

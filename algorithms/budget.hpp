@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+//
+// What a fit may spend: evaluations (node-rows: the reproducible track) and CPU seconds (the
+// safety net). A method asks before it evaluates and stops when told; it never reads a clock.
+//
+// Results depend only on the evaluations as long as the seconds do not run out; a record says
+// which of the two ended a fit.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+namespace tribench {
+
+struct BudgetLimits {
+  std::uint64_t evaluations = std::numeric_limits<std::uint64_t>::max();  // node-rows
+  double cpu_seconds = std::numeric_limits<double>::infinity();           // of the process
+};
+
+// Thread safety: one Budget per thread; shares of one budget may be spent in different threads.
+class Budget {
+ public:
+  explicit Budget(const BudgetLimits& limits);
+
+  // Takes `node_rows` from the budget. False, with nothing taken, once it would be overdrawn or
+  // the seconds have run out; from then on always false.
+  bool spend(std::uint64_t node_rows);
+  bool exhausted() const { return exhausted_; }
+  std::uint64_t spent() const { return spent_; }
+  std::uint64_t remaining() const;
+  // Whether the clock, rather than the evaluations, ended it: such a result is not reproducible.
+  bool out_of_time() const { return out_of_time_->load(std::memory_order_relaxed); }
+
+  // A part of what remains, to be spent independently (by an island, a structure), so that the
+  // outcome does not depend on which thread runs first. `settle` books what the part has spent.
+  // The seconds are common to all.
+  Budget share(std::uint64_t node_rows) const;
+  void settle(const Budget& part);
+
+ private:
+  bool check_clock();
+
+  BudgetLimits limits_;
+  std::uint64_t spent_ = 0;
+  std::uint64_t spent_at_next_clock_check_ = 0;
+  bool exhausted_ = false;
+  double cpu_start_ = 0;
+  std::shared_ptr<std::atomic<bool>> out_of_time_;
+};
+
+// CPU seconds of this process so far, all threads.
+double process_cpu_seconds();
+
+}  // namespace tribench

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+//
+// Formulas as text, in and out. The grammar (binding from loose to tight):
+//
+//   sum     = product { ("+" | "-") product }
+//   product = factor { ("*" | "/") factor }
+//   factor  = "-" factor | power
+//   power   = atom [ "^" factor ]                 (groups to the right, tighter than unary minus)
+//   atom    = number | name | function "(" sum ")" | "(" sum ")"
+//
+// A minus directly before a number that is not the base of a power is part of the number.
+// parse(print(f)) is f, node for node and bit for bit, for every tape whose constants are finite.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "algorithms/expression/expression.hpp"
+
+namespace tribench {
+
+inline constexpr int kMaxNesting = 1000;
+
+// Names of the variables: names[i] is column i. Throws Error (bad_input) that says at which
+// character what was expected; an unknown name is answered with the nearest known one.
+Expression parse(std::string_view text, std::span<const std::string> names);
+
+// As above; names that are not in `names` are added to it in order of appearance.
+Expression parse_collecting_names(std::string_view text, std::vector<std::string>& names);
+
+// Throws Error (failed) where a column has no name.
+std::string print(const Expression& formula, std::span<const std::string> names);
+
+// The shortest text that reads back as the same double.
+std::string print_number(double value);
+
+}  // namespace tribench

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+//
+// Fits the constants of a formula to data by Levenberg-Marquardt with exact derivatives.
+// The one place where constants are optimised: search, polish and baselines all come here.
+// Not a global optimiser: it converges to the minimum next to where it starts.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/expression.hpp"
+
+namespace tribench {
+
+enum class FitStatus {
+  converged,  // gradient, step or decrease below tolerance
+  max_iterations,
+  not_finite,  // the formula is not finite at the start
+  no_constants,
+};
+
+struct ConstantFitOptions {
+  int max_iterations = 30;
+  double gradient_tolerance = 1e-10;  // max norm of the scaled gradient
+  double step_tolerance = 1e-10;      // relative to the constants
+  double function_tolerance = 1e-12;  // relative decrease of the sum of squares
+  bool fit_exponents = false;         // constants that are the exponent of ^ move too
+};
+
+struct ConstantFitResult {
+  FitStatus status = FitStatus::no_constants;
+  double sum_squares = 0;  // at the constants returned
+  int iterations = 0;
+  std::uint64_t node_rows = 0;  // what the fit cost, Jacobians counted as evaluations of their cost
+};
+
+// Keeps its workspace between fits. One per thread.
+class ConstantFitter {
+ public:
+  ConstantFitter();
+  ~ConstantFitter();
+  ConstantFitter(ConstantFitter&&) noexcept;
+  ConstantFitter& operator=(ConstantFitter&&) noexcept;
+
+  // Moves the constants of `formula` to a local minimum of sum_r w_r (f(r) - target[r])^2; leaves
+  // the best constants seen, never worse ones than it was given. weights may be empty (all 1).
+  // All of target and weights must be finite.
+  ConstantFitResult fit(Expression& formula, const Inputs& inputs, std::span<const double> target,
+                        std::span<const double> weights = {},
+                        const ConstantFitOptions& options = {});
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> workspace_;
+};
+
+}  // namespace tribench

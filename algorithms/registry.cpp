@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/registry.hpp"
+
+#include <fmt/format.h>
+
+#include "foundation/error.hpp"
+
+namespace tribench {
+
+Registry::Registry() = default;
+
+const AlgorithmEntry& Registry::find(std::string_view name) const {
+  std::vector<std::string> names;
+  for (const AlgorithmEntry& entry : entries_) {
+    if (entry.name == name) return entry;
+    names.push_back(entry.name);
+  }
+  const std::string near = nearest_name(name, names);
+  throw_bad_input(fmt::format("there is no algorithm '{}'", name), {},
+                  near.empty() ? fmt::format("known: {}", fmt::join(names, ", "))
+                               : fmt::format("did you mean {}?", near));
+}
+
+std::unique_ptr<Regressor> Registry::make(
+    std::string_view name, const std::map<std::string, ParameterValue>& given) const {
+  const AlgorithmEntry& entry = find(name);
+  return entry.make(Parameters(entry.parameters, given), *this);
+}
+
+}  // namespace tribench

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// The one place that lists every algorithm.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "algorithms/regressor.hpp"
+
+namespace tribench {
+
+class Registry {
+ public:
+  Registry();
+
+  const std::vector<AlgorithmEntry>& entries() const { return entries_; }
+  // Throws Error (bad_input) with the nearest name.
+  const AlgorithmEntry& find(std::string_view name) const;
+  // The algorithm with the given parameters; throws as Parameters does.
+  std::unique_ptr<Regressor> make(std::string_view name,
+                                  const std::map<std::string, ParameterValue>& given = {}) const;
+
+ private:
+  std::vector<AlgorithmEntry> entries_;
+};
+
+}  // namespace tribench

@@ -1,0 +1,18 @@
+# Every library comes from the distribution; nothing is downloaded by the build.
+
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(NLopt 2.7 REQUIRED)
+find_package(fmt 9 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(tomlplusplus 3 REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(spdlog 1.10 REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)
+if(TRIBENCH_BUILD_TESTS)
+  find_package(GTest 1.12 REQUIRED)
+endif()
+if(TRIBENCH_BUILD_BENCH)
+  find_package(benchmark 1.7 REQUIRED)
+endif()

@@ -1,0 +1,66 @@
+# What every target shares: language level, warnings, floating-point contract, sanitizers.
+
+add_library(tribench_options INTERFACE)
+add_library(tribench::options ALIAS tribench_options)
+set_target_properties(tribench_options PROPERTIES EXPORT_NAME options)
+target_compile_features(tribench_options INTERFACE cxx_std_20)
+# -ffp-contract=off: a fused multiply-add where the compiler likes it would make results depend on
+# the instruction set; where we want one we write it.
+target_compile_options(tribench_options INTERFACE -ffp-contract=off)
+
+add_library(tribench_warnings INTERFACE)
+target_compile_options(tribench_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Wshadow
+  $<$<BOOL:${TRIBENCH_WARNINGS_AS_ERRORS}>:-Werror>)
+
+if(TRIBENCH_SANITIZE)
+  add_compile_options(-fsanitize=${TRIBENCH_SANITIZE} -fno-omit-frame-pointer -g)
+  add_link_options(-fsanitize=${TRIBENCH_SANITIZE})
+endif()
+if(TRIBENCH_COVERAGE)
+  add_compile_options(--coverage)
+  add_link_options(--coverage)
+endif()
+
+# tribench_room(NAME SOURCES ... LINKS ... PRIVATE_LINKS ...): a static library for one room, exported as tribench::NAME.
+function(tribench_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  add_library(tribench_${name} STATIC ${ROOM_SOURCES})
+  add_library(tribench::${name} ALIAS tribench_${name})
+  set_target_properties(tribench_${name} PROPERTIES
+    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
+  target_include_directories(tribench_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tribench>)
+  target_link_libraries(tribench_${name} PUBLIC tribench::options ${ROOM_LINKS}
+                        PRIVATE $<BUILD_INTERFACE:tribench_warnings> ${ROOM_PRIVATE_LINKS})
+  set_property(GLOBAL APPEND PROPERTY TRIBENCH_ROOMS tribench_${name})
+endfunction()
+
+# tribench_test(NAME SOURCES ... LINKS ... LABELS ... TIMEOUT s): one GoogleTest program; every
+# TEST in it is a ctest of its own.
+function(tribench_test name)
+  cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;LINKS;LABELS" ${ARGN})
+  add_executable(${name} ${TEST_SOURCES})
+  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${TEST_LINKS} GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE
+    TRIBENCH_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+    TRIBENCH_PROGRAM="$<TARGET_FILE:tribench_program>")
+  add_dependencies(${name} tribench_program)
+  if(NOT TEST_TIMEOUT)
+    set(TEST_TIMEOUT 120)
+  endif()
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
+endfunction()
+
+# tribench_bench(NAME SOURCES ... LINKS ...): one Google Benchmark program.
+function(tribench_bench name)
+  cmake_parse_arguments(BENCH "" "" "SOURCES;LINKS" ${ARGN})
+  add_executable(${name} ${BENCH_SOURCES})
+  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${BENCH_LINKS} benchmark::benchmark benchmark::benchmark_main)
+endfunction()

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+//
+// The one kind of error that leaves a room: what happened, where, and what to do about it.
+// For bad input and for failures of the outside world (a file, a process). Not for numerical
+// trouble, which is a status in a result, and not for bugs, which are assertions.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tribench {
+
+// Decides the program's exit status.
+enum class ErrorKind {
+  bad_input,  // the user can mend it: exit status 2
+  failed,     // the machine or a bug is at fault: exit status 3
+};
+
+class Error : public std::runtime_error {
+ public:
+  // what: one sentence with the values that are wrong. place: "file:line:column", a key or an
+  // option, may be empty. mend: what to do, may be empty.
+  Error(ErrorKind kind, std::string_view what, std::string_view place = {},
+        std::string_view mend = {});
+
+  ErrorKind kind() const { return kind_; }
+  const std::string& place() const { return place_; }
+  const std::string& mend() const { return mend_; }
+
+ private:
+  ErrorKind kind_;
+  std::string place_;
+  std::string mend_;
+};
+
+// Throws an Error of kind bad_input.
+[[noreturn]] void throw_bad_input(std::string_view what, std::string_view place = {},
+                                  std::string_view mend = {});
+
+// The candidate closest to `word` by edit distance, for "did you mean"; empty where none is near
+// (more than a third of the word's length, at least 2, would have to change).
+std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates);
+
+}  // namespace tribench

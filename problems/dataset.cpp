@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "problems/dataset.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr std::array<std::pair<Role, std::string_view>, 16> kRoleNames = {{
+    {Role::none, "none"},
+    {Role::time, "time"},
+    {Role::movement, "movement"},
+    {Role::position, "position"},
+    {Role::velocity, "velocity"},
+    {Role::velocity_sign, "velocity_sign"},
+    {Role::acceleration, "acceleration"},
+    {Role::gravity_torque, "gravity_torque"},
+    {Role::gravity_sign, "gravity_sign"},
+    {Role::motor_torque, "motor_torque"},
+    {Role::friction_torque, "friction_torque"},
+    {Role::external_torque, "external_torque"},
+    {Role::temperature, "temperature"},
+    {Role::motor_current, "motor_current"},
+    {Role::other_velocity, "other_velocity"},
+    {Role::other_acceleration, "other_acceleration"},
+}};
+
+}  // namespace
+
+std::string_view role_name(Role role) {
+  for (const auto& [known, name] : kRoleNames) {
+    if (known == role) return name;
+  }
+  return "none";
+}
+
+const std::vector<Role>& all_roles() {
+  static const std::vector<Role> kRoles = [] {
+    std::vector<Role> roles;
+    for (const auto& [role, name] : kRoleNames) roles.push_back(role);
+    return roles;
+  }();
+  return kRoles;
+}
+
+Role find_role(std::string_view name) {
+  std::vector<std::string> names;
+  for (const auto& [role, known] : kRoleNames) {
+    if (known == name) return role;
+    names.emplace_back(known);
+  }
+  const std::string near = nearest_name(name, names);
+  throw_bad_input(fmt::format("there is no role '{}'", name), {},
+                  near.empty() ? fmt::format("known: {}", fmt::join(names, ", "))
+                               : fmt::format("did you mean {}?", near));
+}
+
+const Channel* Dataset::find(std::string_view channel_name) const {
+  for (const Channel& channel : channels) {
+    if (channel.name == channel_name) return &channel;
+  }
+  return nullptr;
+}
+
+const Channel* Dataset::find(Role role) const {
+  for (const Channel& channel : channels) {
+    if (channel.role == role) return &channel;
+  }
+  return nullptr;
+}
+
+const Channel& Dataset::at(std::string_view channel_name) const {
+  if (const Channel* channel = find(channel_name)) return *channel;
+  std::vector<std::string> names;
+  for (const Channel& channel : channels) names.push_back(channel.name);
+  const std::string near = nearest_name(channel_name, names);
+  throw_bad_input(fmt::format("there is no column '{}'", channel_name), name,
+                  near.empty() ? fmt::format("columns: {}", fmt::join(names, ", "))
+                               : fmt::format("did you mean {}?", near));
+}
+
+}  // namespace tribench

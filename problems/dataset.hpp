@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+//
+// Measured or generated data: named channels with units and roles, cut into movements.
+// A movement (one recorded motion) is the unit of independence: splits, folds and bootstraps
+// never cut one.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tribench {
+
+// What a channel is physically.
+enum class Role {
+  none,
+  time,
+  movement,
+  position,
+  velocity,
+  velocity_sign,  // -1, 0, 1
+  acceleration,
+  gravity_torque,
+  gravity_sign,
+  motor_torque,
+  friction_torque,
+  external_torque,
+  temperature,
+  motor_current,
+  other_velocity,  // of another joint
+  other_acceleration,
+};
+
+std::string_view role_name(Role role);
+// Throws Error (bad_input) with the nearest name.
+Role find_role(std::string_view name);
+const std::vector<Role>& all_roles();
+
+struct Channel {
+  std::string name;
+  std::string unit;  // SI symbol, "-" for none
+  Role role = Role::none;
+  std::vector<double> values;
+};
+
+// All channels have the same number of rows. Rows of one movement stand together.
+struct Dataset {
+  std::string name;
+  std::vector<Channel> channels;
+  std::vector<int> movement;                // per row: index into movement_names
+  std::vector<std::string> movement_names;  // in the order of the file, which is the campaign's
+
+  std::size_t rows() const { return movement.size(); }
+  const Channel* find(std::string_view channel_name) const;
+  const Channel* find(Role role) const;  // the first with that role
+  // As `find`, but throws Error (bad_input) with the nearest name.
+  const Channel& at(std::string_view channel_name) const;
+};
+
+}  // namespace tribench

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+//
+// What is to be explained: data with units, a split by whole movements, an input box and, where it
+// is known, the true law. A method sees the training tables of the stages and nothing else.
+//
+// A staged problem (the paper's adaptation) has two stages: a second formula, with its own inputs,
+// is fitted to what the first leaves. The formula judged is the sum.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "problems/dataset.hpp"
+
+namespace tribench {
+
+struct Input {
+  std::string name;
+  std::string unit;
+  Role role = Role::none;
+  // The input box, which proofs and singularity checks range over.
+  double low = 0;
+  double high = 0;
+  // An input named sgn_X is the sign of X: this is X's place among the inputs.
+  std::optional<std::size_t> sign_of;
+};
+
+// Rows for fitting or judging; column j belongs to inputs[j] of the table's owner.
+struct Table {
+  std::vector<std::vector<double>> columns;
+  std::vector<double> target;
+  std::vector<int> movement;  // per row; equal numbers stand together
+  std::vector<double> truth;  // noise-free target where the law is known, else empty
+
+  std::size_t rows() const { return target.size(); }
+};
+
+struct Stage {
+  std::string name;                 // "fit", "adapt"
+  std::vector<std::size_t> inputs;  // places among the problem's inputs that this stage may use
+  Table train;                      // columns of ALL the problem's inputs, in the problem's order
+};
+
+struct Problem {
+  std::string name;     // "A/j2/no_load"
+  std::string summary;  // one line
+  std::string dataset;  // "A", "B", "emps", ...
+  int joint = 0;        // 0 where it makes no sense
+  bool load = false;
+  std::string target;  // "tau_f"
+  std::string target_unit;
+  std::vector<Input> inputs;
+  std::vector<Stage> stages;  // at least one
+  Table test;
+  // The true law as a formula over the inputs, where it is one (print form), else empty.
+  std::string true_law;
+
+  bool staged() const { return stages.size() > 1; }
+  std::vector<std::string> input_names() const;
+};
+
+// A place in the catalogue: cheap to list, built on demand.
+struct ProblemEntry {
+  std::string name;
+  std::string summary;
+  // Same seed, same data, bit for bit. Measured problems ignore the seed's noise but use it for
+  // the split. Throws Error where data are missing, naming where they were looked for.
+  std::function<Problem(std::uint64_t seed)> make;
+};
+
+}  // namespace tribench

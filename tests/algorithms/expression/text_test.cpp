@@ -1,0 +1,105 @@
+#include "algorithms/expression/text.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+
+#include "algorithms/expression/evaluate.hpp"
+#include "foundation/error.hpp"
+#include "foundation/random.hpp"
+
+namespace tribench {
+namespace {
+
+const std::vector<std::string> kNames = {"v", "g", "sgn_v"};
+
+double value(const char* text, double v = 2, double g = 3) {
+  Evaluator evaluator;
+  const std::vector<double> point = {v, g, v > 0 ? 1.0 : -1.0};
+  return evaluator.evaluate_at(parse(text, kNames), point);
+}
+
+TEST(Parse, BindsAsWritten) {
+  EXPECT_EQ(value("-v^2"), -4);
+  EXPECT_EQ(value("2^3^2"), 512);
+  EXPECT_EQ(value("v - g - 1"), -2);
+  EXPECT_EQ(value("12/v/g"), 2);
+  EXPECT_EQ(value("-2^2"), -4);
+  EXPECT_EQ(value("(-2)^2"), 4);
+  EXPECT_EQ(value("v^-1"), 0.5);
+  EXPECT_EQ(value("v*-g"), -6);
+  EXPECT_EQ(value("1.5e1 + .5"), 15.5);
+  EXPECT_EQ(value("sgn(-g)*abs(-v)"), -2);
+}
+
+// Random tapes over every operation, constants of every magnitude, either sign.
+Expression random_tape(RandomStream& random, int size) {
+  if (size <= 1) {
+    if (random.chance(0.5)) return Expression::variable(random.below(3));
+    return Expression::constant(random.sign() * std::exp(random.uniform(-60, 60)));
+  }
+  const Op op = static_cast<Op>(2 + random.below(kOpCount - 2));
+  if (arity(op) == 1) return Expression::unary(op, random_tape(random, size - 1));
+  const int left = 1 + static_cast<int>(random.below(static_cast<std::uint64_t>(size - 1)));
+  return Expression::binary(op, random_tape(random, left), random_tape(random, size - left));
+}
+
+TEST(Print, ReadsBackToTheSameTapeAndTheSameBits) {
+  RandomStream random(key_of("print"));
+  for (int i = 0; i < 20000; ++i) {
+    const Expression formula = random_tape(random, 1 + static_cast<int>(random.below(30)));
+    const std::string text = print(formula, kNames);
+    ASSERT_EQ(parse(text, kNames), formula) << text;
+  }
+}
+
+struct BadFormula {
+  const char* text;
+  const char* message;
+};
+
+TEST(Parse, SaysWhereTheMistakeIsAndHowToMendIt) {
+  const BadFormula cases[] = {
+      {"", "character 1: the formula ends"},
+      {"v +", "character 4: the formula ends"},
+      {"v g", "character 3: unexpected 'g'"},
+      {"(v", "character 3: a '(' is never closed"},
+      {"v)", "unexpected ')'"},
+      {"exp v", "the function exp needs an argument"},
+      {"expp(v)", "did you mean exp?"},
+      {"sgn_w*v", "did you mean sgn_v?"},
+      {"v**2", "write ^"},
+      {"1e999", "out of range"},
+      {"v + $", "'$' where a number"},
+  };
+  for (const BadFormula& bad : cases) {
+    try {
+      parse(bad.text, kNames);
+      FAIL() << bad.text;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(bad.message)) << bad.text;
+      EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+    }
+  }
+}
+
+TEST(Parse, RefusesEndlessNestingButAcceptsTheLimit) {
+  const auto nested = [](int levels) {
+    return std::string(static_cast<std::size_t>(levels), '(') + "v" +
+           std::string(static_cast<std::size_t>(levels), ')');
+  };
+  EXPECT_NO_THROW(parse(nested(kMaxNesting - 1), kNames));
+  EXPECT_THROW(parse(nested(kMaxNesting + 1), kNames), Error);
+  EXPECT_THROW(parse(std::string(100000, '-') + "v", kNames), Error);
+}
+
+TEST(Parse, CollectsNamesInOrderOfAppearance) {
+  std::vector<std::string> names;
+  parse_collecting_names("b + a*b", names);
+  EXPECT_EQ(names, (std::vector<std::string>{"b", "a"}));
+}
+
+}  // namespace
+}  // namespace tribench
