@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+//
+// One function per subcommand, each in a file of its own (<name>_command.cpp): it adds the
+// subcommand to the program and, where it is given, runs it and leaves the exit status.
+#pragma once
+
+#include <CLI/App.hpp>
+
+namespace tribench {
+
+// Exit statuses that every subcommand keeps to.
+enum class ExitStatus : int {
+  done = 0,
+  found = 1,  // what it was asked to look for: a regression, a singularity
+  bad_input = 2,
+  failed = 3,
+  undecided = 4,
+};
+
+void add_list_command(CLI::App& app, ExitStatus& status);
+
+}  // namespace tribench

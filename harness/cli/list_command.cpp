@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+//
+// tribench list: what there is, one name a line, or JSON.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "algorithms/expression/operator_set.hpp"
+#include "algorithms/registry.hpp"
+#include "harness/cli/commands.hpp"
+#include "problems/catalogue.hpp"
+
+namespace tribench {
+namespace {
+
+struct Listed {
+  std::string name;
+  std::string summary;
+};
+
+std::vector<Listed> listed_problems() {
+  std::vector<Listed> all;
+  const Catalogue catalogue;
+  for (const ProblemEntry& entry : catalogue.entries()) all.push_back({entry.name, entry.summary});
+  return all;
+}
+
+std::vector<Listed> listed_methods() {
+  std::vector<Listed> all;
+  const Registry registry;
+  for (const AlgorithmEntry& entry : registry.entries()) all.push_back({entry.name, entry.summary});
+  return all;
+}
+
+std::vector<Listed> listed_operators() {
+  std::vector<Listed> all;
+  for (const OperatorSet& set : operator_sets()) all.push_back({set.name(), set.summary()});
+  return all;
+}
+
+void print_list(const std::vector<Listed>& all, bool json) {
+  if (json) {
+    nlohmann::json array = nlohmann::json::array();
+    for (const Listed& item : all)
+      array.push_back({{"name", item.name}, {"summary", item.summary}});
+    fmt::print("{}\n", array.dump(2));
+    return;
+  }
+  std::size_t width = 0;
+  for (const Listed& item : all) width = std::max(width, item.name.size());
+  for (const Listed& item : all) fmt::print("{:<{}}  {}\n", item.name, width, item.summary);
+}
+
+void add_kind(CLI::App& list, const char* name, const char* summary,
+              std::function<std::vector<Listed>()> items) {
+  CLI::App* kind = list.add_subcommand(name, summary);
+  auto json = std::make_shared<bool>(false);
+  kind->add_flag("--json", *json, "an array of {name, summary}");
+  kind->callback([json, items = std::move(items)] { print_list(items(), *json); });
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& app, ExitStatus& /*status*/) {
+  CLI::App* list = app.add_subcommand("list", "What there is");
+  list->footer("Example: tribench list problems --json");
+  list->require_subcommand(1);
+  add_kind(*list, "problems", "Every problem of the catalogue", listed_problems);
+  add_kind(*list, "methods", "Every algorithm a grid can name", listed_methods);
+  add_kind(*list, "operators", "The operator sets", listed_operators);
+}
+
+}  // namespace tribench
