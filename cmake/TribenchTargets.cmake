@@ -37,17 +37,15 @@ function(tribench_room name)
   set_property(GLOBAL APPEND PROPERTY TRIBENCH_ROOMS tribench_${name})
 endfunction()
 
-# tribench_test(NAME SOURCES ... LINKS ... LABELS ... TIMEOUT s): one GoogleTest program; every
-# TEST in it is a ctest of its own.
+# tribench_test(NAME SOURCES ... LINKS ... LABELS ... TIMEOUT s): one GoogleTest program,
+# one ctest.
 function(tribench_test name)
   cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;LINKS;LABELS" ${ARGN})
   add_executable(${name} ${TEST_SOURCES})
   set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(${name} PRIVATE ${TEST_LINKS} GTest::gmock GTest::gtest_main)
-  target_compile_definitions(${name} PRIVATE
-    TRIBENCH_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-    TRIBENCH_PROGRAM="$<TARGET_FILE:tribench_program>")
+  target_link_libraries(${name} PRIVATE
+    ${TEST_LINKS} tribench_test_support GTest::gmock GTest::gtest_main)
   add_dependencies(${name} tribench_program)
   if(NOT TEST_TIMEOUT)
     set(TEST_TIMEOUT 120)

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#include "tests/support/paths.hpp"
+
+namespace tribench::testing {
+namespace {
+
+std::optional<std::filesystem::path> beside(const char* folder) {
+  const std::filesystem::path path = source_dir().parent_path() / "shared" / folder;
+  if (!std::filesystem::is_directory(path)) return std::nullopt;
+  return path;
+}
+
+}  // namespace
+
+std::filesystem::path source_dir() { return TRIBENCH_SOURCE_DIR; }
+std::filesystem::path program() { return TRIBENCH_PROGRAM; }
+std::optional<std::filesystem::path> shared_data() { return beside("data"); }
+std::optional<std::filesystem::path> shared_reference() { return beside("reference"); }
+
+}  // namespace tribench::testing

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+//
+// Where the tests find things. One small library knows the absolute paths, so that a test's object
+// file does not depend on where the checkout lies.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+namespace tribench::testing {
+
+std::filesystem::path source_dir();  // the checkout
+std::filesystem::path program();     // the built tribench
+
+// The measured data beside the checkout (../shared/data), if they are there. A test that needs
+// them: const auto data = shared_data(); if (!data) GTEST_SKIP() << kNoSharedData;
+std::optional<std::filesystem::path> shared_data();
+// The reference material beside the checkout (../shared/reference), if it is there.
+std::optional<std::filesystem::path> shared_reference();
+
+inline constexpr const char* kNoSharedData =
+    "no measured data: ../shared is not beside the checkout";
+
+}  // namespace tribench::testing
