@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "foundation/error.hpp"
+#include "problems/kuka/entries.hpp"
 
 namespace tribench {
 namespace {
@@ -30,7 +31,7 @@ std::string suggestion(std::string_view name, const std::vector<ProblemEntry>& e
 
 }  // namespace
 
-Catalogue::Catalogue(std::optional<std::filesystem::path> /*data*/) {}
+Catalogue::Catalogue(std::optional<std::filesystem::path> /*data*/) { kuka::add_entries(entries_); }
 
 const ProblemEntry& Catalogue::find(std::string_view name) const {
   for (const ProblemEntry& entry : entries_) {

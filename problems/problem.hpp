@@ -71,6 +71,9 @@ struct ProblemEntry {
   // Same seed, same data, bit for bit. Measured problems ignore the seed's noise but use it for
   // the split. Throws Error where data are missing, naming where they were looked for.
   std::function<Problem(std::uint64_t seed)> make;
+  // The recording behind the problem with every channel, training and test movements alike; empty
+  // where there is nothing beyond the problem's own tables.
+  std::function<Dataset(std::uint64_t seed)> data;
 };
 
 }  // namespace tribench

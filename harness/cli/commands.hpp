@@ -18,5 +18,6 @@ enum class ExitStatus : int {
 };
 
 void add_list_command(CLI::App& app, ExitStatus& status);
+void add_study_command(CLI::App& app, ExitStatus& status);
 
 }  // namespace tribench

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+//
+// tribench study: experiments of the program with itself, reproducible by one command each.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "harness/cli/commands.hpp"
+#include "harness/study/generator_study.hpp"
+
+namespace tribench {
+namespace {
+
+void print_figures(const std::vector<GeneratorFigure>& figures, int seeds) {
+  fmt::print("Generated datasets against their specification, {} seeds; a gate is 10 %.\n\n",
+             seeds);
+  fmt::print("| joint | figure | unit | expected | ours | spread | off | gate | paper |\n");
+  fmt::print("|--:|---|---|--:|--:|--:|--:|---|--:|\n");
+  for (const GeneratorFigure& figure : figures) {
+    fmt::print("| {} | {} | {} | {:.3f} | {:.3f} | {:.3f} | {:+.1f} % | {} | {} |\n", figure.joint,
+               figure.name, figure.unit, figure.expected, figure.mean, figure.spread,
+               100 * (figure.mean / figure.expected - 1), figure.within ? "yes" : "NO",
+               figure.paper);
+  }
+}
+
+void print_json(const std::vector<GeneratorFigure>& figures) {
+  nlohmann::ordered_json array = nlohmann::ordered_json::array();
+  for (const GeneratorFigure& figure : figures) {
+    array.push_back({{"name", figure.name},
+                     {"summary", fmt::format("joint {}, {}", figure.joint, figure.unit)},
+                     {"joint", figure.joint},
+                     {"unit", figure.unit},
+                     {"expected", figure.expected},
+                     {"mean", figure.mean},
+                     {"spread", figure.spread},
+                     {"within", figure.within},
+                     {"paper", figure.paper}});
+  }
+  fmt::print("{}\n", array.dump(2));
+}
+
+void add_generator_study(CLI::App& study, ExitStatus& status) {
+  CLI::App* command = study.add_subcommand(
+      "generator", "Datasets A and B: do simple exact fits give the specified errors?");
+  command->footer("Example: tribench study generator --seeds 10");
+  auto seeds = std::make_shared<int>(10);
+  auto json = std::make_shared<bool>(false);
+  command->add_option("--seeds", *seeds, "seeds 1 to N")->check(CLI::Range(1, 10000));
+  command->add_flag("--json", *json, "an array of figures");
+  command->callback([seeds, json, &status] {
+    const std::vector<GeneratorFigure> figures = run_generator_study(*seeds);
+    if (*json) {
+      print_json(figures);
+    } else {
+      print_figures(figures, *seeds);
+    }
+    const bool passed = std::all_of(figures.begin(), figures.end(),
+                                    [](const GeneratorFigure& figure) { return figure.within; });
+    if (!passed) status = ExitStatus::found;
+  });
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& app, ExitStatus& status) {
+  CLI::App* study = app.add_subcommand("study", "Experiments of the program with itself");
+  study->require_subcommand(1);
+  add_generator_study(*study, status);
+}
+
+}  // namespace tribench

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "problems/friction/law.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace tribench {
+namespace {
+
+double sign(double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0); }
+
+// Half the sum and half the difference of the two directions: with s = +-1,
+// s F(direction) = even s + odd.
+struct Pair {
+  double even;
+  double odd;
+};
+Pair halves(double positive, double negative) {
+  return {(positive + negative) / 2, (positive - negative) / 2};
+}
+
+}  // namespace
+
+double Branch::at(double speed_rad_s) const {
+  const double square = speed_rad_s * speed_rad_s;
+  return coulomb_nm + viscous * speed_rad_s - quartic_loss * square * square;
+}
+
+double FrictionLaw::averaged_at(double velocity_rad_s) const {
+  const double s = sign(velocity_rad_s);
+  return s * (s < 0 ? negative : positive).at(std::abs(velocity_rad_s));
+}
+
+double FrictionLaw::at(double velocity_rad_s, double gravity_nm) const {
+  const double s = sign(velocity_rad_s);
+  return averaged_at(velocity_rad_s) + s * load_coulomb * (std::abs(gravity_nm) - mean_load_nm) +
+         quadrant_gain * gravity_nm + quadrant_step_nm * std::tanh(gravity_nm / quadrant_width_nm);
+}
+
+std::string FrictionLaw::formula(bool with_load, double offset_nm) const {
+  const Pair f0 = halves(positive.coulomb_nm, negative.coulomb_nm);
+  const Pair f1 = halves(positive.viscous, negative.viscous);
+  const Pair f4 = halves(positive.quartic_loss, negative.quartic_loss);
+  const double level = with_load ? f0.even - load_coulomb * mean_load_nm : f0.even;
+  std::string text = fmt::format("{}*sgn_qd + {} + ({} + {}*sgn_qd)*qd - ({}*sgn_qd + {})*qd^4",
+                                 level, f0.odd + offset_nm, f1.even, f1.odd, f4.even, f4.odd);
+  if (with_load) {
+    text += fmt::format(" + {}*sgn_qd*sgn_g*g + {}*g + {}*tanh(g/{})", load_coulomb, quadrant_gain,
+                        quadrant_step_nm, quadrant_width_nm);
+  }
+  return text;
+}
+
+double ripple_at(std::span<const Harmonic> harmonics, double position_rad) {
+  double sum = 0;
+  for (const Harmonic& harmonic : harmonics) {
+    sum += harmonic.amplitude_nm * std::cos(harmonic.order * position_rad + harmonic.phase_rad);
+  }
+  return sum;
+}
+
+}  // namespace tribench

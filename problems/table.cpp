@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "problems/table.hpp"
+
+#include <algorithm>
+
+namespace tribench {
+namespace {
+
+constexpr std::string_view kSignPrefix = "sgn_";
+
+double sign(double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : x == 0 ? 0.0 : x); }
+
+}  // namespace
+
+std::vector<double> input_values(const Dataset& data, std::string_view name) {
+  if (const Channel* channel = data.find(name)) return channel->values;
+  if (name.starts_with(kSignPrefix)) {
+    if (const Channel* channel = data.find(name.substr(kSignPrefix.size()))) {
+      std::vector<double> signs;
+      signs.reserve(channel->values.size());
+      for (const double value : channel->values) signs.push_back(sign(value));
+      return signs;
+    }
+  }
+  return data.at(name).values;  // throws with the nearest name
+}
+
+void link_signs(std::vector<Input>& inputs) {
+  for (Input& input : inputs) {
+    input.sign_of.reset();
+    if (!input.name.starts_with(kSignPrefix)) continue;
+    const std::string of = input.name.substr(kSignPrefix.size());
+    for (std::size_t j = 0; j < inputs.size(); ++j) {
+      if (inputs[j].name == of) input.sign_of = j;
+    }
+  }
+}
+
+Table make_table(const KnownDataset& source, std::span<const Input> inputs, std::string_view target,
+                 std::span<const char> take) {
+  const Dataset& data = source.data;
+  std::vector<std::size_t> rows;
+  for (std::size_t r = 0; r < data.rows(); ++r) {
+    if (take[static_cast<std::size_t>(data.movement[r])] != 0) rows.push_back(r);
+  }
+  const auto gather = [&rows](const std::vector<double>& values) {
+    std::vector<double> taken;
+    taken.reserve(rows.size());
+    for (const std::size_t r : rows) taken.push_back(values[r]);
+    return taken;
+  };
+  Table table;
+  for (const Input& input : inputs) {
+    table.columns.push_back(gather(input_values(data, input.name)));
+  }
+  table.target = gather(data.at(target).values);
+  for (const std::size_t r : rows) table.movement.push_back(data.movement[r]);
+  if (!source.truth.empty()) table.truth = gather(source.truth);
+  return table;
+}
+
+KnownDataset select_rows(const KnownDataset& source, std::span<const std::size_t> rows) {
+  KnownDataset selected;
+  selected.data.name = source.data.name;
+  selected.data.movement_names = source.data.movement_names;
+  for (const Channel& channel : source.data.channels) {
+    Channel kept{channel.name, channel.unit, channel.role, {}};
+    kept.values.reserve(rows.size());
+    for (const std::size_t r : rows) kept.values.push_back(channel.values[r]);
+    selected.data.channels.push_back(std::move(kept));
+  }
+  for (const std::size_t r : rows) {
+    selected.data.movement.push_back(source.data.movement[r]);
+    if (!source.truth.empty()) selected.truth.push_back(source.truth[r]);
+  }
+  return selected;
+}
+
+KnownDataset thin(const KnownDataset& source, std::size_t per_movement,
+                  const RandomStream& random) {
+  const std::vector<int>& movement = source.data.movement;
+  std::vector<std::size_t> rows;
+  for (std::size_t first = 0; first < movement.size();) {
+    std::size_t end = first;
+    while (end < movement.size() && movement[end] == movement[first]) ++end;
+    const std::size_t count = end - first;
+    RandomStream draw = random.split(static_cast<std::uint64_t>(movement[first]));
+    for (std::size_t i = 0; i < std::min(per_movement, count); ++i) {
+      const std::size_t runs = std::min(per_movement, count);
+      const std::size_t low = count * i / runs;
+      const std::size_t high = count * (i + 1) / runs;
+      rows.push_back(first + low + draw.below(high - low));
+    }
+    first = end;
+  }
+  return select_rows(source, rows);
+}
+
+}  // namespace tribench

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+//
+// From a dataset with channels to the tables that methods and the judge see.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "foundation/random.hpp"
+#include "problems/dataset.hpp"
+#include "problems/problem.hpp"
+
+namespace tribench {
+
+// A dataset together with the noise-free value of its target, row by row; empty where unknown.
+struct KnownDataset {
+  Dataset data;
+  std::vector<double> truth;
+};
+
+// The values of input `name`: the channel of that name, or, for a missing sgn_X, the sign of
+// channel X (0 at 0). Throws Error (bad_input) with the nearest name.
+std::vector<double> input_values(const Dataset& data, std::string_view name);
+
+// Fills sign_of wherever an input is named sgn_X and X is among the inputs.
+void link_signs(std::vector<Input>& inputs);
+
+// Rows of the movements with take[movement] != 0, in the dataset's order; the movement numbers are
+// the dataset's.
+Table make_table(const KnownDataset& source, std::span<const Input> inputs, std::string_view target,
+                 std::span<const char> take);
+
+// The rows at the given places, which must increase.
+KnownDataset select_rows(const KnownDataset& source, std::span<const std::size_t> rows);
+
+// The same number of rows of every movement: each movement is cut into per_movement equal runs of
+// rows and one row is drawn from each. Movements with fewer rows are kept whole.
+KnownDataset thin(const KnownDataset& source, std::size_t per_movement, const RandomStream& random);
+
+}  // namespace tribench

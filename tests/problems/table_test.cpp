@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "problems/table.hpp"
+
+#include <gtest/gtest.h>
+
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+KnownDataset two_movements() {
+  KnownDataset known;
+  known.data.channels = {{"v", "rad/s", Role::velocity, {-1, 0, 2, 3}},
+                         {"y", "N m", Role::friction_torque, {10, 20, 30, 40}}};
+  known.data.movement = {0, 0, 1, 1};
+  known.data.movement_names = {"a", "b"};
+  known.truth = {1, 2, 3, 4};
+  return known;
+}
+
+TEST(Table, TakesWholeMovementsAndDerivesSigns) {
+  std::vector<Input> inputs = {{"sgn_v", "-", Role::velocity_sign, -1, 1, {}},
+                               {"v", "rad/s", Role::velocity, -3, 3, {}}};
+  link_signs(inputs);
+  EXPECT_EQ(inputs[0].sign_of, std::optional<std::size_t>(1));
+  EXPECT_FALSE(inputs[1].sign_of.has_value());
+  const std::vector<char> first = {1, 0};
+  const Table table = make_table(two_movements(), inputs, "y", first);
+  EXPECT_EQ(table.columns[0], (std::vector<double>{-1, 0}));
+  EXPECT_EQ(table.columns[1], (std::vector<double>{-1, 0}));
+  EXPECT_EQ(table.target, (std::vector<double>{10, 20}));
+  EXPECT_EQ(table.truth, (std::vector<double>{1, 2}));
+}
+
+TEST(Table, AnUnknownInputIsAnsweredWithTheNearestColumn) {
+  try {
+    input_values(two_movements().data, "sgn_w");
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("sgn_w"), std::string::npos);
+  }
+}
+
+TEST(Table, ThinningTakesTheSameNumberOfEveryMovementInOrder) {
+  KnownDataset known;
+  known.data.channels = {{"x", "-", Role::none, {}}};
+  known.data.movement_names = {"long", "short", "tiny"};
+  for (int i = 0; i < 113; ++i) {
+    known.data.channels[0].values.push_back(i);
+    known.data.movement.push_back(i < 80 ? 0 : (i < 110 ? 1 : 2));
+  }
+  const KnownDataset thinned = thin(known, 10, RandomStream(3));
+  ASSERT_EQ(thinned.data.rows(), 23U);  // the tiny movement is kept whole
+  for (std::size_t r = 1; r < thinned.data.rows(); ++r) {
+    EXPECT_LT(thinned.data.channels[0].values[r - 1], thinned.data.channels[0].values[r]);
+  }
+  EXPECT_EQ(thinned.data.movement[9], 0);
+  EXPECT_EQ(thinned.data.movement[10], 1);
+  EXPECT_EQ(thinned.data.movement[20], 2);
+}
+
+}  // namespace
+}  // namespace tribench
