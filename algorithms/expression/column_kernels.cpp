@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/expression/column_kernels.hpp"
+
+#include <cmath>
+#include <cstring>
+
+// One copy of a function per instruction set; the loader picks. The thread sanitizer's start-up
+// cannot run such a choice, and other compilers and machines get the plain copy.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+#define TRIBENCH_EACH_LEVEL \
+  __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define TRIBENCH_EACH_LEVEL
+#endif
+
+namespace tribench::columns {
+namespace {
+
+constexpr std::size_t kLanes = 8;
+using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
+
+// The lanes in one fixed order, then what did not fill a row of lanes.
+#define TRIBENCH_SUM_LANES(v) \
+  ((((v)[0] + (v)[4]) + ((v)[2] + (v)[6])) + (((v)[1] + (v)[5]) + ((v)[3] + (v)[7])))
+
+}  // namespace
+
+TRIBENCH_EACH_LEVEL void add(const double* a, const double* b, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] + b[i];
+}
+TRIBENCH_EACH_LEVEL void add(const double* a, double b, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] + b;
+}
+TRIBENCH_EACH_LEVEL void sub(const double* a, const double* b, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] - b[i];
+}
+TRIBENCH_EACH_LEVEL void sub(double a, const double* b, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = a - b[i];
+}
+TRIBENCH_EACH_LEVEL void mul(const double* a, const double* b, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] * b[i];
+}
+TRIBENCH_EACH_LEVEL void mul(const double* a, double b, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] * b;
+}
+TRIBENCH_EACH_LEVEL void div(const double* a, const double* b, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] / b[i];
+}
+TRIBENCH_EACH_LEVEL void div(double a, const double* b, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = a / b[i];
+}
+TRIBENCH_EACH_LEVEL void div(const double* a, double b, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] / b;
+}
+
+TRIBENCH_EACH_LEVEL void sqrt(const double* a, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = __builtin_sqrt(a[i]);
+}
+TRIBENCH_EACH_LEVEL void abs(const double* a, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = __builtin_fabs(a[i]);
+}
+TRIBENCH_EACH_LEVEL void sgn(const double* a, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = a[i];
+    const double sign = static_cast<double>(x > 0) - static_cast<double>(x < 0);
+    out[i] = x == x ? sign : x;
+  }
+}
+
+TRIBENCH_EACH_LEVEL void integer_power(const double* a, int exponent, double* out, std::size_t n) {
+  const unsigned magnitude = static_cast<unsigned>(exponent < 0 ? -exponent : exponent);
+  // Chunks small enough for registers, so that the loop over the exponent's bits stays outside.
+  constexpr std::size_t kChunk = 16;
+  for (std::size_t begin = 0; begin < n; begin += kChunk) {
+    const std::size_t size = n - begin < kChunk ? n - begin : kChunk;
+    double square[kChunk] = {};
+    double result[kChunk];
+    for (std::size_t i = 0; i < size; ++i) square[i] = a[begin + i];
+    for (std::size_t i = 0; i < kChunk; ++i) result[i] = 1;
+    for (unsigned left = magnitude; left > 0; left >>= 1U) {
+      if ((left & 1U) != 0) {
+        for (std::size_t i = 0; i < kChunk; ++i) result[i] *= square[i];
+      }
+      for (std::size_t i = 0; i < kChunk; ++i) square[i] *= square[i];
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      out[begin + i] = exponent < 0 ? 1 / result[i] : result[i];
+    }
+  }
+}
+
+TRIBENCH_EACH_LEVEL void one_minus_square(const double* a, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = 1 - a[i] * a[i];
+}
+
+void exp(const double* a, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = std::exp(a[i]);
+}
+void log(const double* a, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = std::log(a[i]);
+}
+void sin(const double* a, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = std::sin(a[i]);
+}
+void cos(const double* a, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = std::cos(a[i]);
+}
+void tanh(const double* a, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = std::tanh(a[i]);
+}
+void pow(const double* a, const double* b, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = std::pow(a[i], b[i]);
+}
+
+TRIBENCH_EACH_LEVEL double sum(const double* a, std::size_t n) {
+  Lanes total = {};
+  std::size_t i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    Lanes x;
+    std::memcpy(&x, a + i, sizeof x);
+    total += x;
+  }
+  double rest = 0;
+  for (; i < n; ++i) rest += a[i];
+  return TRIBENCH_SUM_LANES(total) + rest;
+}
+
+TRIBENCH_EACH_LEVEL double dot(const double* a, const double* b, std::size_t n) {
+  Lanes total = {};
+  std::size_t i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    Lanes x;
+    Lanes y;
+    std::memcpy(&x, a + i, sizeof x);
+    std::memcpy(&y, b + i, sizeof y);
+    total += x * y;
+  }
+  double rest = 0;
+  for (; i < n; ++i) rest += a[i] * b[i];
+  return TRIBENCH_SUM_LANES(total) + rest;
+}
+
+TRIBENCH_EACH_LEVEL void dot4(const double* a, const double* const b[4], std::size_t n,
+                              double sums[4]) {
+  Lanes total0 = {};
+  Lanes total1 = {};
+  Lanes total2 = {};
+  Lanes total3 = {};
+  std::size_t i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    Lanes x;
+    Lanes y;
+    std::memcpy(&x, a + i, sizeof x);
+    std::memcpy(&y, b[0] + i, sizeof y);
+    total0 += x * y;
+    std::memcpy(&y, b[1] + i, sizeof y);
+    total1 += x * y;
+    std::memcpy(&y, b[2] + i, sizeof y);
+    total2 += x * y;
+    std::memcpy(&y, b[3] + i, sizeof y);
+    total3 += x * y;
+  }
+  double rest[4] = {};
+  for (; i < n; ++i) {
+    for (int j = 0; j < 4; ++j) rest[j] += a[i] * b[j][i];
+  }
+  sums[0] = TRIBENCH_SUM_LANES(total0) + rest[0];
+  sums[1] = TRIBENCH_SUM_LANES(total1) + rest[1];
+  sums[2] = TRIBENCH_SUM_LANES(total2) + rest[2];
+  sums[3] = TRIBENCH_SUM_LANES(total3) + rest[3];
+}
+
+}  // namespace tribench::columns
