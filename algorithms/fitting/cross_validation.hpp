@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// Chooses among formulas of different size by cross-validation over whole movements, with the
+// constants fitted anew on each training part. For choosing from a front that a search has found;
+// the estimate is optimistic for the search itself, which saw all rows.
+//
+// Source: Hastie, Tibshirani & Friedman 2009, section 7.10. We differ from their one-standard-error
+// rule in that the error compared is the paired difference to the best formula, fold by fold, whose
+// standard error is far smaller than that of either.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/expression.hpp"
+
+namespace tribench {
+
+struct CrossValidation {
+  std::size_t chosen = 0;  // place among the formulas
+  std::vector<double>
+      mean_square;              // held-out mean squared error of each; infinite where not finite
+  std::uint64_t node_rows = 0;  // what it cost
+};
+
+// formulas: by increasing complexity, at least one. All values finite; movement[r] names the
+// movement of row r. Chosen is the simplest formula whose held-out error exceeds the smallest by
+// less than `tolerance` standard errors of the paired difference. With fewer than two movements the
+// last formula is chosen.
+CrossValidation cross_validate(std::span<const Expression> formulas, const Inputs& inputs,
+                               std::span<const double> target, std::span<const int> movement,
+                               int folds = 5, double tolerance = 1.0);
+
+}  // namespace tribench
