@@ -47,7 +47,8 @@ class FormulaBounds {
   // After `sharpen`: |computed - real| of the node, anywhere in the box.
   double rounding_error(std::size_t node) const { return errors_[node]; }
 
-  const Expression& formula() const { return formula_; }
+  // The columns that occur in the formula, ascending.
+  const std::vector<std::size_t>& used_columns() const { return used_; }
 
  private:
   using Values = std::vector<DecoratedInterval>;

@@ -173,17 +173,13 @@ class Prover {
     return true;
   }
 
-  // A box without doubles inside, on which a sign jumps: its corners are all the doubles there are.
-  bool passes_at_corners(const Cell& box, std::size_t failed) {
+  // A box without doubles inside, on which a sign jumps: its corners are all the doubles there
+  // are, and the search has evaluated them.
+  bool passes_at_corners(const Cell& box, std::size_t failed) const {
     if (bounds_.at(search_.culprit(failed)).decoration != Decoration::defined) return false;
-    Cell corner = box;
-    for (std::size_t c = 0; c < (1UL << box.size()); ++c) {
-      for (std::size_t j = 0; j < box.size(); ++j) {
-        corner[j] = Interval::point(((c >> j) & 1) != 0 ? box[j].high : box[j].low);
-      }
-      if (!passes_naturally(corner)) return false;
-    }
-    return true;
+    std::size_t active = 0;
+    for (const std::size_t j : bounds_.used_columns()) active += box[j].is_point() ? 0 : 1;
+    return active <= WitnessSearch::kMaxCornerInputs;
   }
 
   std::optional<Witness> look_for_witness(const Cell& box, int depth, std::size_t failed,
@@ -219,7 +215,7 @@ class Prover {
     std::optional<Split> best;
     double best_variation = -1;
     double best_width = -1;
-    for (std::size_t j = 0; j < box.size(); ++j) {
+    for (const std::size_t j : bounds_.used_columns()) {
       const double middle = midpoint(box[j]);
       if (box[j].is_point() || middle == box[j].low) continue;
       const double varied = variation(box, j, failed);

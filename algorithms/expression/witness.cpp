@@ -8,7 +8,6 @@ namespace tribench {
 namespace {
 
 constexpr int kBisectAttempts = 4;
-constexpr std::size_t kMaxCornerInputs = 4;
 
 double apply_to(Op op, double a) {
   switch (op) {

@@ -23,7 +23,9 @@ class WitnessSearch {
   // Starts on a new connected part of the box: remembered signs are forgotten.
   void enter(std::span<const Interval> cell);
 
-  // Corners, middle, and random points of the box.
+  // Middle and corners (of the first kMaxCornerInputs inputs whose range is no point), and random
+  // points of the box.
+  static constexpr std::size_t kMaxCornerInputs = 4;
   std::optional<Witness> probe_corners(std::span<const Interval> box);
   std::optional<Witness> probe_random(std::span<const Interval> box, int count);
   // One point; also compares the divisors' signs with those seen before in this cell.
