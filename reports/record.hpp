@@ -67,6 +67,39 @@ struct FrontRecord {
   std::string formula;
 };
 
+// A cell that the grid asks for; planned.csv lets a report say what is still missing.
+struct PlannedCell {
+  std::string cell;
+  std::string problem;
+  std::string method;
+  std::string operators;
+  std::uint64_t seed = 0;
+};
+
+// One point of a picture that belongs to a cell or, with an empty `cell`, to the problem itself
+// (its data, its true law). Reports draw what they are given and know no problem; the harness
+// samples the chosen formulas once per method and operator set (the seed with the median error)
+// on up to about 200 points a curve.
+//
+//   picture  what the report draws: "friction" (x: velocity in rad/s, y: friction torque),
+//            "error" (x: velocity, y: prediction minus measured, on test rows; thinned),
+//            "profile" (x: time in s, y: torque along the sinusoidal velocity profile), or any
+//            other name: drawn as lines over x
+//   curve    the line it belongs to within the picture: "g = -20 N m", "true law", "measured", ...
+//            a name that starts with "measured" is drawn as points, all others as lines
+struct CurveRecord {
+  std::string cell;
+  std::string problem;
+  std::string method;     // empty for the problem's own curves
+  std::string operators;  // empty for the problem's own curves
+  std::string picture;
+  std::string curve;
+  std::string x_name;  // axis titles with unit: "velocity in rad/s"
+  std::string y_name;
+  double x = kMissing;
+  double y = kMissing;
+};
+
 // Best training error so far against what was spent.
 struct TraceRecord {
   std::string cell;

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "reports/run_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <unordered_set>
+
+#include "foundation/error.hpp"
+#include "reports/record_csv.hpp"
+
+namespace tribench {
+namespace {
+
+namespace fs = std::filesystem;
+
+void add_complaints(RunFolder& run, std::string_view file, const CsvReading& reading) {
+  for (const std::string& complaint : reading.complaints) {
+    run.complaints.push_back(fmt::format("{}: {}", file, complaint));
+  }
+  if (reading.dropped > reading.complaints.size()) {
+    run.complaints.push_back(
+        fmt::format("{}: {} more rows dropped", file, reading.dropped - reading.complaints.size()));
+  }
+}
+
+void read_records(RunFolder& run) {
+  const fs::path file = run.path / "results.csv";
+  if (!fs::exists(file)) {
+    run.complaints.push_back(
+        "results.csv is missing: no cell has ended, or the run was not "
+        "closed; resume it or render it again");
+    return;
+  }
+  const CsvReading reading =
+      read_results(file, [&](Record&& record) { run.records.push_back(std::move(record)); });
+  add_complaints(run, "results.csv", reading);
+  std::sort(run.records.begin(), run.records.end(), comes_before);
+  const auto same = [](const Record& a, const Record& b) { return a.cell == b.cell; };
+  const auto end = std::unique(run.records.begin(), run.records.end(), same);
+  if (end != run.records.end()) {
+    run.complaints.push_back(
+        fmt::format("results.csv: {} cells stand there more than once; the "
+                    "first is used",
+                    run.records.end() - end));
+    run.records.erase(end, run.records.end());
+  }
+}
+
+void read_plan(RunFolder& run) {
+  const fs::path file = run.path / "planned.csv";
+  if (!fs::exists(file)) return;
+  std::unordered_set<std::string_view> done;
+  for (const Record& record : run.records) done.insert(record.cell);
+  add_complaints(run, "planned.csv", read_planned(file, [&](PlannedCell&& cell) {
+                   ++run.planned;
+                   if (!done.contains(cell.cell)) run.missing.push_back(std::move(cell));
+                 }));
+}
+
+void flatten(const std::string& prefix, const nlohmann::ordered_json& value,
+             std::vector<std::pair<std::string, std::string>>& out) {
+  if (value.is_object()) {
+    for (const auto& [key, item] : value.items()) {
+      flatten(prefix.empty() ? key : prefix + "." + key, item, out);
+    }
+  } else {
+    out.emplace_back(prefix, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+}
+
+void read_provenance(RunFolder& run) {
+  std::ifstream in(run.path / "provenance.json");
+  if (!in) {
+    run.complaints.push_back("provenance.json is missing: what made this run is not known");
+    return;
+  }
+  const auto json = nlohmann::ordered_json::parse(in, nullptr, false);
+  if (json.is_discarded()) {
+    run.complaints.push_back("provenance.json is damaged: what made this run is not known");
+    return;
+  }
+  flatten("", json, run.provenance);
+}
+
+// The value of `name` in [grid]; grid.toml is written by the program, so a line is enough.
+std::string grid_name(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  bool in_grid = false;
+  while (std::getline(in, line)) {
+    if (line.starts_with("[")) in_grid = line == "[grid]";
+    if (!in_grid || !line.starts_with("name")) continue;
+    const std::size_t open = line.find_first_of("\"'");
+    const std::size_t close = line.find_last_of("\"'");
+    if (open != std::string::npos && close > open) return line.substr(open + 1, close - open - 1);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::size_t RunFolder::failed() const {
+  return static_cast<std::size_t>(
+      std::count_if(records.begin(), records.end(), [](const Record& r) { return !is_ok(r); }));
+}
+
+std::string RunFolder::provenance_of(const std::string& key) const {
+  const auto found = std::find_if(provenance.begin(), provenance.end(),
+                                  [&](const auto& entry) { return entry.first == key; });
+  return found == provenance.end() ? std::string() : found->second;
+}
+
+RunFolder read_run_folder(const fs::path& folder) {
+  const bool any = fs::exists(folder / "results.csv") || fs::exists(folder / "cells.jsonl") ||
+                   fs::exists(folder / "grid.toml");
+  if (!any) {
+    throw_bad_input("holds neither results.csv nor cells.jsonl nor grid.toml", folder.string(),
+                    "name the folder that 'tribench run --out' wrote");
+  }
+  RunFolder run;
+  run.path = folder;
+  read_records(run);
+  read_plan(run);
+  read_provenance(run);
+  run.name = grid_name(folder / "grid.toml");
+  if (run.name.empty()) run.name = fs::absolute(folder).lexically_normal().filename().string();
+  return run;
+}
+
+}  // namespace tribench

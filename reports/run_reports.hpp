@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+//
+// Everything that people read about a run, from its folder alone. The harness writes results.csv,
+// front.csv, trace.csv, curves.csv and planned.csv (record_csv.hpp) and calls this; so does
+// `tribench report` for a run of long ago.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace tribench {
+
+// Reads the folder and writes leaderboard.md beside what it read. Returns the first screen of the
+// leaderboard, for the terminal. Throws Error (bad_input) where the folder holds no run.
+std::string write_run_reports(const std::filesystem::path& folder);
+
+}  // namespace tribench

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+//
+// The few distribution functions that the tests need.
+#pragma once
+
+namespace tribench {
+
+// P(Z <= z) and its inverse for the standard normal; p in (0, 1).
+double normal_cdf(double z);
+double normal_quantile(double p);
+
+// P(X > x) for chi-squared with `degrees` degrees of freedom; x >= 0, degrees > 0.
+// Series and continued fraction of the incomplete gamma function (Abramowitz, Stegun 6.5.29, 31).
+double chi_squared_tail(double x, double degrees);
+
+// P(range of k independent standard normals <= q): the studentized range with infinitely many
+// degrees of freedom, by Simpson's rule (absolute error below 1e-9 for k <= 100), and its inverse.
+double normal_range_cdf(double q, int k);
+double normal_range_quantile(double p, int k);
+
+}  // namespace tribench

@@ -1,0 +1,49 @@
+#include "reports/figures.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "reports/markdown.hpp"
+
+namespace tribench {
+namespace {
+
+TEST(Figure, KeepsThreeSignificantDigitsWithoutExponentWhereItCan) {
+  EXPECT_EQ(figure(0.037149), "0.0371");
+  EXPECT_EQ(figure(12.345), "12.3");
+  EXPECT_EQ(figure(9.9961), "10.0");
+  EXPECT_EQ(figure(1234.5), "1234");
+  EXPECT_EQ(figure(-0.5), "-0.500");
+  EXPECT_EQ(figure(1.234e-7), "1.23e-07");
+  EXPECT_EQ(figure(0), "0");
+  EXPECT_EQ(figure(std::nan("")), "-");
+  EXPECT_EQ(figure(std::numeric_limits<double>::infinity()), "inf");
+}
+
+TEST(Duration, PicksTheUnitPeopleSay) {
+  EXPECT_EQ(duration_figure(0.0214), "0.0214 s");
+  EXPECT_EQ(duration_figure(600), "10.0 min");
+  EXPECT_EQ(duration_figure(36000), "10.0 h");
+}
+
+TEST(MarkdownTable, PadsByCodePointsAndEscapesBars) {
+  MarkdownTable table({{"name"}, {"x", Align::right}});
+  table.add({"a|b", "1"});
+  table.add({"\xC2\xB5m", "22"});
+  EXPECT_EQ(table.text(),
+            "| name |   x |\n"
+            "| ---- | --: |\n"
+            "| a\\|b |   1 |\n"
+            "| \xC2\xB5m   |  22 |\n");
+}
+
+TEST(Shortened, NeverCutsACodePoint) {
+  EXPECT_EQ(shortened("abcdef", 6), "abcdef");
+  EXPECT_EQ(shortened("abcdefg", 6), "abc...");
+  EXPECT_EQ(shortened("\xC2\xB5\xC2\xB5\xC2\xB5\xC2\xB5\xC2\xB5", 4), "\xC2\xB5...");
+}
+
+}  // namespace
+}  // namespace tribench
