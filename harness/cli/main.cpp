@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   tribench::ExitStatus status = tribench::ExitStatus::done;
   tribench::add_list_command(app, status);
+  tribench::add_check_command(app, status);
   tribench::add_study_command(app, status);
   try {
     app.parse(argc, argv);
