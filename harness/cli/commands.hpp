@@ -18,6 +18,7 @@ enum class ExitStatus : int {
 };
 
 void add_check_command(CLI::App& app, ExitStatus& status);
+void add_generate_command(CLI::App& app, ExitStatus& status);
 void add_list_command(CLI::App& app, ExitStatus& status);
 void add_study_command(CLI::App& app, ExitStatus& status);
 
