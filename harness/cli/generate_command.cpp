@@ -43,7 +43,9 @@ void add_generate_command(CLI::App& app, ExitStatus& /*status*/) {
   auto options = std::make_shared<GenerateOptions>();
   command->add_option("PROBLEM", options->problem, "a name of `tribench list problems`")
       ->required();
-  command->add_option("--seed", options->seed, "same seed, same data")->capture_default_str();
+  command->add_option("--seed", options->seed, "same seed, same data")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command->add_option("--out", options->out, "the file to write")->required();
   command->add_option("--data", options->data, "the folder with the measured sets");
   command->callback([options] { generate(*options); });
