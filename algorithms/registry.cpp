@@ -3,11 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/pysr/pysr.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench {
 
-Registry::Registry() = default;
+Registry::Registry() { entries_.push_back(pysr_entry()); }
 
 const AlgorithmEntry& Registry::find(std::string_view name) const {
   std::vector<std::string> names;

@@ -85,8 +85,9 @@ Validator::Validator(const Options& options, const OperatorSet& operators,
     const Op op = find_operator(name, "argument_limits");
     const std::vector<std::string_view> limits = split(values, ',');
     if (static_cast<int>(limits.size()) != arity(op)) {
-      throw_bad_input(fmt::format("'{}' takes {} arguments, not {}", name, arity(op), limits.size()),
-                      "argument_limits");
+      throw_bad_input(
+          fmt::format("'{}' takes {} arguments, not {}", name, arity(op), limits.size()),
+          "argument_limits");
     }
     for (std::size_t k = 0; k < limits.size(); ++k) {
       argument_limit_[static_cast<std::size_t>(op)][k] =

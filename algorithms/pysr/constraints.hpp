@@ -5,8 +5,8 @@
 //
 // Texts of the constraints:
 //   argument limits   "^:-1,3; exp:9"          size of each argument, -1 for none
-//   nested limits     "exp>exp=0; exp>sqrt=1"  at most so many of the inner on a path below an outer
-//   operator sizes    "exp=2; ^=3"             what an operator counts; 1 where not named
+//   nested limits     "exp>exp=0; exp>sqrt=1"  at most so many of the inner on a path below an
+//   outer operator sizes    "exp=2; ^=3"             what an operator counts; 1 where not named
 //
 // Source: SymbolicRegression.jl, CheckConstraints.jl and Complexity.jl.
 #pragma once

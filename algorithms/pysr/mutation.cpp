@@ -38,8 +38,8 @@ bool is_whole_power(const Expression& formula, std::size_t i) {
 
 Child mutate_constant(const Expression& parent, const MutationSettings& settings,
                       RandomStream& random) {
-  const Place place = random_place(parent, random,
-                                   [&](std::size_t i) { return parent.node(i).is_constant(); });
+  const Place place =
+      random_place(parent, random, [&](std::size_t i) { return parent.node(i).is_constant(); });
   if (!place) return std::nullopt;
   Expression child = parent;
   child.set_constant(*place, parent.node(*place).value * constant_factor(settings, random));
@@ -59,13 +59,14 @@ Child mutate_operator(const Expression& parent, const Alphabet& alphabet, Random
   if (children.count == 1) {
     return with_replaced(parent, *place, join(op, subtree_nodes(parent, children.place[0])));
   }
-  return with_replaced(parent, *place, join(op, subtree_nodes(parent, children.place[0]),
-                                            subtree_nodes(parent, children.place[1])));
+  return with_replaced(
+      parent, *place,
+      join(op, subtree_nodes(parent, children.place[0]), subtree_nodes(parent, children.place[1])));
 }
 
 Child mutate_feature(const Expression& parent, const Alphabet& alphabet, RandomStream& random) {
-  const Place place = random_place(parent, random,
-                                   [&](std::size_t i) { return parent.node(i).is_variable(); });
+  const Place place =
+      random_place(parent, random, [&](std::size_t i) { return parent.node(i).is_variable(); });
   if (!place || alphabet.inputs < 2) return std::nullopt;
   const std::size_t shift = 1 + random.below(alphabet.inputs - 1);
   const Node leaf = Node::input((parent.node(*place).variable + shift) % alphabet.inputs);
@@ -95,7 +96,8 @@ Child rotate_tree(const Expression& parent, RandomStream& random) {
   }
   const std::size_t pivot = pivots[random.below(count)];
   const Children grandchildren = children_of(parent, pivot);
-  return with_rotation(parent, *node, pivot, grandchildren.place[random.below(grandchildren.count)]);
+  return with_rotation(parent, *node, pivot,
+                       grandchildren.place[random.below(grandchildren.count)]);
 }
 
 // op over the subtree that ends at `place`, in a random slot, and random leaves.

@@ -56,8 +56,8 @@ struct Options {
   int iterations = 100;      // epochs: each island runs `cycles` of them between migrations
   int populations = 31;      // islands
   int population_size = 27;  // members of an island
-  int cycles = 380;          // per epoch; one cycle is ceil(population_size / tournament_size) events
-  int patience = 0;          // epochs without a better description length before it stops; 0: never
+  int cycles = 380;  // per epoch; one cycle is ceil(population_size / tournament_size) events
+  int patience = 0;  // epochs without a better description length before it stops; 0: never
 
   // Size.
   int max_size = 30;
@@ -99,7 +99,7 @@ struct Options {
 
   // Data.
   Batching batching = Batching::automatic;
-  int batch_size = 0;  // 0: 128 below 5 000 rows, 256 below 50 000, 512 above
+  int batch_size = 0;   // 0: 128 below 5 000 rows, 256 below 50 000, 512 above
   int search_rows = 0;  // a fixed sample that the search sees; 0: all
 
   // Constraints, as texts; see constraints.hpp.

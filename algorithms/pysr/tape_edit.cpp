@@ -8,9 +8,7 @@ void append(std::vector<Node>& tape, std::span<const Node> nodes) {
   tape.insert(tape.end(), nodes.begin(), nodes.end());
 }
 
-Node operation(Op op, std::size_t length) {
-  return {0, static_cast<std::uint32_t>(length), 0, op};
-}
+Node operation(Op op, std::size_t length) { return {0, static_cast<std::uint32_t>(length), 0, op}; }
 
 // op over the children of `node`, with `child` replaced by other nodes.
 std::vector<Node> with_child(const Expression& formula, std::size_t node, std::size_t child,

@@ -49,8 +49,8 @@ std::size_t run_tournament(std::span<const Member> members, const SizeFrequencie
     }
     field[k] = {cost, order[k]};
   }
-  const auto rank = static_cast<std::ptrdiff_t>(
-      draw_rank(contestants, options.tournament_probability, random));
+  const auto rank =
+      static_cast<std::ptrdiff_t>(draw_rank(contestants, options.tournament_probability, random));
   std::nth_element(field.begin(), field.begin() + rank, field.end(),
                    [](const Contestant& a, const Contestant& b) {
                      return a.cost != b.cost ? a.cost < b.cost : a.member < b.member;
@@ -59,8 +59,8 @@ std::size_t run_tournament(std::span<const Member> members, const SizeFrequencie
 }
 
 std::size_t oldest_of(std::span<const Member> members) {
-  return static_cast<std::size_t>(
-      std::ranges::min_element(members, {}, &Member::birth) - members.begin());
+  return static_cast<std::size_t>(std::ranges::min_element(members, {}, &Member::birth) -
+                                  members.begin());
 }
 
 double acceptance(double cost_child, double cost_parent, int size_child, int size_parent,
@@ -70,8 +70,8 @@ double acceptance(double cost_child, double cost_parent, int size_child, int siz
     probability *= std::exp(-(cost_child - cost_parent) / (temperature * options.alpha));
   }
   if (options.use_frequency) {
-    probability *= frequency_or_floor(frequencies, size_parent) /
-                   frequency_or_floor(frequencies, size_child);
+    probability *=
+        frequency_or_floor(frequencies, size_parent) / frequency_or_floor(frequencies, size_child);
   }
   return probability;
 }

@@ -29,8 +29,7 @@ struct Dimension {
 Dimension parse_unit(std::string_view text);
 
 // The formula's dimension; none where an operation breaks the rules.
-std::optional<Dimension> dimension_of(const Expression& formula,
-                                      std::span<const Dimension> inputs);
+std::optional<Dimension> dimension_of(const Expression& formula, std::span<const Dimension> inputs);
 
 // Whether the formula has consistent units and ends in `target` (where given).
 bool units_agree(const Expression& formula, std::span<const Dimension> inputs,
