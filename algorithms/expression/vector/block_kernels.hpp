@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+//
+// The kernels of kernels.hpp as templates over the width that the including translation unit is
+// compiled for, and the table of them. Only kernels_<level>.cpp include this.
+#pragma once
+
+#include "algorithms/expression/vector/elementary_float.hpp"
+#include "algorithms/expression/vector/kernels.hpp"
+
+namespace tribench {
+namespace {
+
+// out[i] = f(i-th vector), two vectors a turn, the rest masked. `f` takes a loader.
+template <typename T, typename F>
+inline void for_rows(T* out, std::size_t n, F f) {
+  constexpr std::size_t kStep = kWidth<T>;
+  std::size_t i = 0;
+  for (; i + 2 * kStep <= n; i += 2 * kStep) {
+    const auto whole = [](const T* p) { return load<Vector<T>>(p); };
+    const Vector<T> first = f(whole, i);
+    const Vector<T> second = f(whole, i + kStep);
+    store(out + i, first);
+    store(out + i + kStep, second);
+  }
+  for (; i < n; i += kStep) {
+    if (n - i >= kStep) {
+      store(out + i, f([](const T* p) { return load<Vector<T>>(p); }, i));
+    } else {
+      const std::size_t rest = n - i;
+      store_part(out + i, f([rest](const T* p) { return load_part(p, rest); }, i), rest);
+    }
+  }
+}
+
+template <int Op, typename V>
+inline V basic(V a, V b) {
+  if constexpr (Op == 0) return a + b;
+  if constexpr (Op == 1) return a - b;
+  if constexpr (Op == 2) return a * b;
+  if constexpr (Op == 3) return a / b;
+}
+
+template <int Outer, typename V>
+inline V outer(V inner, V c) {
+  if constexpr (Outer == kOuterSubFrom) return c - inner;
+  if constexpr (Outer == kOuterDivInto) return c / inner;
+  if constexpr (Outer < kBasicOps) return basic<Outer>(inner, c);
+}
+
+template <typename T, int Op, int Form>
+void binary_kernel(T* out, const T* a, const T* b, const T*, std::size_t n) {
+  if constexpr (Form == kFormVV) {
+    for_rows(out, n, [=](auto read, std::size_t i) { return basic<Op>(read(a + i), read(b + i)); });
+  } else if constexpr (Form == kFormVS) {
+    const Vector<T> s = splat(*b);
+    for_rows(out, n, [=](auto read, std::size_t i) { return basic<Op>(read(a + i), s); });
+  } else {
+    const Vector<T> s = splat(*a);
+    for_rows(out, n, [=](auto read, std::size_t i) { return basic<Op>(s, read(b + i)); });
+  }
+}
+
+template <typename T, int Op, int Form, int Outer, bool ScalarC>
+void pair_kernel(T* out, const T* a, const T* b, const T* c, std::size_t n) {
+  const Vector<T> sa = Form == kFormSV ? splat(*a) : Vector<T>{};
+  const Vector<T> sb = Form == kFormVS ? splat(*b) : Vector<T>{};
+  const Vector<T> sc = ScalarC ? splat(*c) : Vector<T>{};
+  for_rows(out, n, [=](auto read, std::size_t i) {
+    Vector<T> x = sa;
+    Vector<T> y = sb;
+    Vector<T> z = sc;
+    if constexpr (Form != kFormSV) x = read(a + i);
+    if constexpr (Form != kFormVS) y = read(b + i);
+    if constexpr (!ScalarC) z = read(c + i);
+    return outer<Outer>(basic<Op>(x, y), z);
+  });
+}
+
+template <typename V>
+inline V signum(V x) {
+  const V zero{};
+  const V one = zero + 1;
+  V result = x > zero ? one : x;  // NaN stays
+  result = x < zero ? -one : result;
+  return x == zero ? zero : result;
+}
+
+template <int Function, typename V>
+inline V apply(V x) {
+  if constexpr (Function == 0) return -x;
+  if constexpr (Function == 1) return exp(x);
+  if constexpr (Function == 2) return log(x);
+  if constexpr (Function == 3) return sqrt(x);
+  if constexpr (Function == 4) return abs(x);
+  if constexpr (Function == 5) return signum(x);
+  if constexpr (Function == 6) return sin(x);
+  if constexpr (Function == 7) return cos(x);
+  if constexpr (Function == 8) return tanh(x);
+}
+
+template <typename T, int Function>
+void function_kernel(T* out, const T* a, const T*, const T*, std::size_t n) {
+  for_rows(out, n, [=](auto read, std::size_t i) { return apply<Function>(read(a + i)); });
+}
+
+template <typename T>
+void integer_power_kernel(T* out, const T* a, const T* b, const T*, std::size_t n) {
+  const int exponent = static_cast<int>(*b);
+  const bool inverted = exponent < 0;
+  const unsigned size =
+      inverted ? 0U - static_cast<unsigned>(exponent) : static_cast<unsigned>(exponent);
+  for_rows(out, n, [=](auto read, std::size_t i) {
+    Vector<T> square = read(a + i);
+    Vector<T> result = splat(T{1});
+    for (unsigned m = size; m != 0; m >>= 1) {
+      if ((m & 1U) != 0) result = result * square;
+      square = square * square;
+    }
+    return inverted ? splat(T{1}) / result : result;
+  });
+}
+
+template <typename T, int Form>
+void power_kernel(T* out, const T* a, const T* b, const T*, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const T x = Form == kFormSV ? *a : a[i];
+    const T y = Form == kFormVS ? *b : b[i];
+    if constexpr (sizeof(T) == sizeof(double)) {
+      out[i] = __builtin_pow(x, y);
+    } else {
+      out[i] = static_cast<T>(__builtin_pow(static_cast<double>(x), static_cast<double>(y)));
+    }
+  }
+}
+
+template <typename T>
+void copy_kernel(T* out, const T* a, const T*, const T*, std::size_t n) {
+  for_rows(out, n, [=](auto read, std::size_t i) { return read(a + i); });
+}
+
+template <typename T>
+void fill_kernel(T* out, const T* a, const T*, const T*, std::size_t n) {
+  const Vector<T> s = splat(*a);
+  for_rows(out, n, [=](auto, std::size_t) { return s; });
+}
+
+constexpr std::size_t kSums = 16;
+
+inline void add_errors(double* sums, const double* a, const double* b, std::size_t n) {
+  constexpr std::size_t kParts = kSums / kWidth<double>;
+  F64 total[kParts];
+  for (std::size_t p = 0; p < kParts; ++p) total[p] = load<F64>(sums + p * kWidth<double>);
+  std::size_t i = 0;
+  for (; i + kSums <= n; i += kSums) {
+    for (std::size_t p = 0; p < kParts; ++p) {
+      const std::size_t at = i + p * kWidth<double>;
+      const F64 error = load<F64>(a + at) - load<F64>(b + at);
+      total[p] = total[p] + error * error;
+    }
+  }
+  for (std::size_t p = 0; p < kParts; ++p) store(sums + p * kWidth<double>, total[p]);
+  for (std::size_t lane = 0; i < n; ++i, ++lane) {
+    const double error = a[i] - b[i];
+    sums[lane] = sums[lane] + error * error;
+  }
+}
+
+// Errors are taken in float, their squares summed in double.
+inline void add_errors(double* sums, const float* a, const float* b, std::size_t n) {
+  using Half = float __attribute__((vector_size(kLaneBytes / 2)));
+  constexpr std::size_t kParts = kSums / kWidth<double>;
+  F64 total[kParts];
+  for (std::size_t p = 0; p < kParts; ++p) total[p] = load<F64>(sums + p * kWidth<double>);
+  std::size_t i = 0;
+  for (; i + kSums <= n; i += kSums) {
+    for (std::size_t p = 0; p < kParts; ++p) {
+      const std::size_t at = i + p * kWidth<double>;
+      const F64 error = __builtin_convertvector(load<Half>(a + at) - load<Half>(b + at), F64);
+      total[p] = total[p] + error * error;
+    }
+  }
+  for (std::size_t p = 0; p < kParts; ++p) store(sums + p * kWidth<double>, total[p]);
+  for (std::size_t lane = 0; i < n; ++i, ++lane) {
+    const auto error = static_cast<double>(a[i] - b[i]);
+    sums[lane] = sums[lane] + error * error;
+  }
+}
+
+template <typename T>
+void add_squared_errors_kernel(double* sums, const T* a, const T* b, std::size_t n) {
+  add_errors(sums, a, b, n);
+}
+
+template <typename T, int Op, int Form, int Outer>
+constexpr void set_pair(KernelTable<T>& table) {
+  table.pair[Op][Form][Outer][0] = pair_kernel<T, Op, Form, Outer, false>;
+  table.pair[Op][Form][Outer][1] = pair_kernel<T, Op, Form, Outer, true>;
+}
+
+template <typename T, int Op, int Form>
+constexpr void set_binary(KernelTable<T>& table) {
+  // a + s and a * s are s + a and s * a.
+  constexpr bool kMirrored = Form == kFormSV && (Op == 0 || Op == 2);
+  if constexpr (!kMirrored) {
+    table.binary[Op][Form] = binary_kernel<T, Op, Form>;
+    set_pair<T, Op, Form, kOuterAdd>(table);
+    set_pair<T, Op, Form, kOuterSub>(table);
+    set_pair<T, Op, Form, kOuterMul>(table);
+    set_pair<T, Op, Form, kOuterDiv>(table);
+    set_pair<T, Op, Form, kOuterSubFrom>(table);
+    set_pair<T, Op, Form, kOuterDivInto>(table);
+  }
+}
+
+template <typename T, int Op>
+constexpr void set_forms(KernelTable<T>& table) {
+  set_binary<T, Op, kFormVV>(table);
+  set_binary<T, Op, kFormVS>(table);
+  set_binary<T, Op, kFormSV>(table);
+}
+
+template <typename T>
+constexpr KernelTable<T> make_kernel_table() {
+  KernelTable<T> table{};
+  set_forms<T, 0>(table);
+  set_forms<T, 1>(table);
+  set_forms<T, 2>(table);
+  set_forms<T, 3>(table);
+  table.function[0] = function_kernel<T, 0>;
+  table.function[1] = function_kernel<T, 1>;
+  table.function[2] = function_kernel<T, 2>;
+  table.function[3] = function_kernel<T, 3>;
+  table.function[4] = function_kernel<T, 4>;
+  table.function[5] = function_kernel<T, 5>;
+  table.function[6] = function_kernel<T, 6>;
+  table.function[7] = function_kernel<T, 7>;
+  table.function[8] = function_kernel<T, 8>;
+  table.integer_power = integer_power_kernel<T>;
+  table.power[kFormVV] = power_kernel<T, kFormVV>;
+  table.power[kFormVS] = power_kernel<T, kFormVS>;
+  table.power[kFormSV] = power_kernel<T, kFormSV>;
+  table.copy = copy_kernel<T>;
+  table.fill = fill_kernel<T>;
+  table.add_squared_errors = add_squared_errors_kernel<T>;
+  return table;
+}
+
+}  // namespace
+}  // namespace tribench

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+//
+// exp, log, sin, cos and tanh of a vector of floats: at most 2 ulp, special points and bits as in
+// elementary.hpp, whose methods these are with shorter polynomials. Angles beyond kLargeAngleF are
+// handed to the double versions.
+#pragma once
+
+#include "algorithms/expression/vector/elementary.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr float kRounderF = 0x1.8p23F;
+constexpr float kLog2EF = 0x1.715476p+0F;
+constexpr float kLn2HighF = 0x1.62e430p-1F;
+constexpr float kLn2LowF = -0x1.05c610p-29F;
+
+inline F32 exp_tail(F32 r) {
+  constexpr float kQ[] = {0x1.fffffcp-2F, 0x1.555492p-3F, 0x1.5558f4p-5F, 0x1.123a22p-7F,
+                          0x1.6a2378p-10F};
+  return polynomial(r, kQ);
+}
+
+inline F32 power_of_two(F32 rounded) {  // 2^n from n + kRounderF, -126 <= n <= 127
+  return from_bits((bits(rounded) << 23) + 0x3f800000);
+}
+
+inline F32 scale(F32 y, F32 n) {
+#if TRIBENCH_LANE_BYTES == 64
+  return _mm512_maskz_scalef_ps(0xffff, y, n);
+#else
+  const F32 half = fma(n, splat(0.5F), splat(kRounderF));
+  const F32 rest = n - (half - kRounderF);
+  return y * power_of_two(half) * power_of_two(rest + kRounderF);
+#endif
+}
+
+inline F32 exp(F32 x) {
+  const F32 y = max(-104.0F, min(89.0F, x));
+  const F32 n = fma(y, splat(kLog2EF), splat(kRounderF)) - kRounderF;
+  F32 r = fma(n, splat(-kLn2HighF), y);
+  r = fma(n, splat(-kLn2LowF), r);
+  return scale(1.0F + fma(r * r, exp_tail(r), r), n);
+}
+
+inline F32 log(F32 x) {
+  constexpr float kP[] = {0x1.555554p-2F, -0x1.000226p-2F, 0x1.99a008p-3F, -0x1.547246p-3F,
+                          0x1.22da1ep-3F, -0x1.0d853ep-3F, 0x1.055b82p-3F, -0x1.38b5f0p-4F};
+  constexpr float kSmallestNormal = 0x1p-126F;
+  constexpr float kInfinity = __builtin_inff();
+  const I32 usual = (x >= kSmallestNormal) & (x < kInfinity);
+  const bool unusual = any(~usual);
+  F32 normal = x;
+  F32 shift = splat(0.0F);
+  if (unusual) [[unlikely]] {
+    normal = x < kSmallestNormal ? x * 0x1p25F : x;
+    shift = x < kSmallestNormal ? splat(25.0F) : shift;
+  }
+  constexpr std::int32_t kHalfRoot = 0x3f3504f3;
+  const I32 moved = bits(normal) + (0x3f800000 - kHalfRoot);
+  const F32 k = __builtin_convertvector((moved >> 23) - 127, F32) - shift;
+  const F32 f = from_bits((moved & 0x007fffff) + kHalfRoot) - 1.0F;
+  const F32 f2 = f * f;
+  F32 small = fma(f2 * f, polynomial(f, kP), k * kLn2LowF);
+  small = fma(f2, splat(-0.5F), small);
+  F32 result = fma(k, splat(kLn2HighF), f + small);
+  if (unusual) [[unlikely]] {
+    result = x == kInfinity ? x : result;
+    result = x == 0.0F ? splat(-kInfinity) : result;
+    result = x >= 0.0F ? result : splat(__builtin_nanf(""));
+  }
+  return result;
+}
+
+// Beyond it the quotient x / pi no longer rounds to the right integer within a thousandth.
+constexpr float kLargeAngleF = 0x1p13F;
+
+template <typename F>
+inline F32 through_double(F f, F32 x) {
+  using Half = float __attribute__((vector_size(kLaneBytes / 2)));
+  Half low;
+  Half high;
+  __builtin_memcpy(&low, &x, sizeof low);
+  __builtin_memcpy(&high, reinterpret_cast<const char*>(&x) + sizeof low, sizeof high);
+  const Half first = __builtin_convertvector(f(__builtin_convertvector(low, F64)), Half);
+  const Half second = __builtin_convertvector(f(__builtin_convertvector(high, F64)), Half);
+  F32 result;
+  __builtin_memcpy(&result, &first, sizeof first);
+  __builtin_memcpy(reinterpret_cast<char*>(&result) + sizeof first, &second, sizeof second);
+  return result;
+}
+
+inline F32 sine_of_reduced(F32 r) {
+  constexpr float kS[] = {-0x1.555556p-3F, 0x1.11110cp-7F, -0x1.a017d6p-13F, 0x1.717010p-19F,
+                          -0x1.9a5e6cp-26F};
+  const F32 z = r * r;
+  return fma(z * r, polynomial(z, kS), r);
+}
+
+inline F32 sin(F32 x) {
+  const F32 rounded = fma(x, splat(0x1.45f306p-2F), splat(kRounderF));
+  const F32 n = rounded - kRounderF;
+  F32 r = fma(n, splat(-0x1.921fb6p+1F), x);
+  r = fma(n, splat(0x1.777a5cp-24F), r);
+  r = fma(n, splat(0x1.ee59dap-49F), r);
+  const F32 y = with_sign(sine_of_reduced(r), r);
+  const F32 result = from_bits(bits(y) ^ (bits(rounded) << 31));
+  if (!any_above(abs(x), kLargeAngleF)) [[likely]]
+    return result;
+  const F32 exact = through_double([](F64 v) { return sin(v); }, x);
+  return abs(x) <= kLargeAngleF ? result : exact;
+}
+
+inline F32 cos(F32 x) {
+  const F32 size = abs(x);
+  const F32 rounded = fma(size, splat(0x1.45f306p-2F), splat(-0.5F)) + kRounderF;
+  const F32 n = rounded - kRounderF;
+  const F32 q = fma(n, splat(2.0F), splat(1.0F));
+  F32 r = fma(q, splat(-0x1.921fb6p+0F), size);
+  r = fma(q, splat(0x1.777a5cp-25F), r);
+  r = fma(q, splat(0x1.ee59dap-50F), r);
+  const F32 result = from_bits(bits(sine_of_reduced(r)) ^ (~bits(rounded) << 31));
+  if (!any_above(size, kLargeAngleF)) [[likely]]
+    return result;
+  const F32 exact = through_double([](F64 v) { return cos(v); }, x);
+  return size <= kLargeAngleF ? result : exact;
+}
+
+inline F32 tanh(F32 x) {
+  const F32 y = min(20.0F, abs(x) * 2.0F);  // tanh is 1 from 9.1 on
+  const F32 rounded = fma(y, splat(kLog2EF), splat(kRounderF));
+  const F32 n = rounded - kRounderF;
+  F32 r = fma(n, splat(-kLn2HighF), y);
+  r = fma(n, splat(-kLn2LowF), r);
+  const F32 two_n = power_of_two(rounded);
+  const F32 curved = r * r * exp_tail(r);
+  const F32 p = r + curved;
+  const F32 p_rest = (r - p) + curved;
+  const F32 above = two_n - 1.0F;
+  const F32 scaled = two_n * p;
+  const F32 t = above + scaled;
+  const F32 t_rest = fma(two_n, p_rest, n > 0.0F ? (above - t) + scaled : splat(0.0F));
+  const F32 d = t + 2.0F;
+  const F32 d_rest = t > 2.0F ? 2.0F - (d - t) : t - (d - 2.0F);
+  const F32 inverse = 1.0F / d;
+  const F32 q = t * inverse;
+  const F32 miss = fma(-q, d, t) + fma(-q, d_rest + t_rest, t_rest);
+  return with_sign(fma(miss, inverse, q), x);
+}
+
+}  // namespace
+}  // namespace tribench
