@@ -4,6 +4,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "algorithms/expression/expression.hpp"
+#include "algorithms/expression/vector/kernels.hpp"
+#include "algorithms/expression/vector/level.hpp"
+
 // One copy of a function per instruction set; the loader picks. The thread sanitizer's start-up
 // cannot run such a choice, and other compilers and machines get the plain copy.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
@@ -23,6 +27,13 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 // The lanes in one fixed order, then what did not fill a row of lanes.
 #define TRIBENCH_SUM_LANES(v) \
   ((((v)[0] + (v)[4]) + ((v)[2] + (v)[6])) + (((v)[1] + (v)[5]) + ((v)[3] + (v)[7])))
+
+// The evaluator's own functions, so that values and derivatives meet bit for bit.
+void apply(Op function, const double* a, double* out, std::size_t n) {
+  static const KernelTable<double>& kernels = kernel_table<double>(vector_level());
+  kernels.function[static_cast<int>(function) - static_cast<int>(Op::neg)](out, a, nullptr, nullptr,
+                                                                           n);
+}
 
 }  // namespace
 
@@ -94,21 +105,11 @@ TRIBENCH_EACH_LEVEL void one_minus_square(const double* a, double* out, std::siz
   for (std::size_t i = 0; i < n; ++i) out[i] = 1 - a[i] * a[i];
 }
 
-void exp(const double* a, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = std::exp(a[i]);
-}
-void log(const double* a, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = std::log(a[i]);
-}
-void sin(const double* a, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = std::sin(a[i]);
-}
-void cos(const double* a, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = std::cos(a[i]);
-}
-void tanh(const double* a, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = std::tanh(a[i]);
-}
+void exp(const double* a, double* out, std::size_t n) { apply(Op::exp, a, out, n); }
+void log(const double* a, double* out, std::size_t n) { apply(Op::log, a, out, n); }
+void sin(const double* a, double* out, std::size_t n) { apply(Op::sin, a, out, n); }
+void cos(const double* a, double* out, std::size_t n) { apply(Op::cos, a, out, n); }
+void tanh(const double* a, double* out, std::size_t n) { apply(Op::tanh, a, out, n); }
 void pow(const double* a, const double* b, double* out, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) out[i] = std::pow(a[i], b[i]);
 }

@@ -175,12 +175,20 @@ inline Reduced reduce_large_angle(double magnitude, bool half_turn) {
   return {negative ? -angle : angle, static_cast<std::int64_t>(nearest & 3)};
 }
 
+// r + r^3 s(r^2), clamped to [-1, 1]; r^3 is rounded once.
+template <typename V, typename T, int N>
+inline V sine_series(V r, const T (&s)[N]) {
+  const V z = r * r;
+  const V z_rest = fma(r, r, -z);
+  const V cube = fma(r, z, z_rest * r);
+  return max(T{-1}, min(T{1}, fma(cube, polynomial(z, s), r)));
+}
+
 inline F64 sine_of_reduced(F64 r) {
   constexpr double kS[] = {-0x1.5555555555555p-3,  0x1.11111111110c0p-7,   -0x1.a01a01a0147a8p-13,
                            0x1.71de3a52802a6p-19,  -0x1.ae6454c7c515fp-26, 0x1.6123ca3e03861p-33,
                            -0x1.ae42df255ee5bp-41, 0x1.8822ee5060017p-49};
-  const F64 z = r * r;
-  return fma(z * r, polynomial(z, kS), r);
+  return sine_series(r, kS);
 }
 
 inline void reduce_large_lanes(F64 x, bool half_turn, F64& r, I64& turns) {
@@ -209,7 +217,7 @@ inline F64 sin(F64 x) {
     const I64 flip = (I64)(abs(x) > kLargeAngle) & bits(x) & INT64_MIN;
     r = from_bits(bits(r) ^ flip);
   }
-  const F64 y = with_sign(sine_of_reduced(r), r);  // the polynomial loses the sign of zero
+  const F64 y = x == 0.0 ? x : sine_of_reduced(r);  // the polynomial loses the sign of zero
   return from_bits(bits(y) ^ (turns << 63));
 }
 

@@ -92,9 +92,8 @@ inline F32 through_double(F f, F32 x) {
 
 inline F32 sine_of_reduced(F32 r) {
   constexpr float kS[] = {-0x1.555556p-3F, 0x1.11110cp-7F, -0x1.a017d6p-13F, 0x1.717010p-19F,
-                          -0x1.9a5e6cp-26F};
-  const F32 z = r * r;
-  return fma(z * r, polynomial(z, kS), r);
+                          -0x1.96p-26F};
+  return sine_series(r, kS);
 }
 
 inline F32 sin(F32 x) {
@@ -103,7 +102,7 @@ inline F32 sin(F32 x) {
   F32 r = fma(n, splat(-0x1.921fb6p+1F), x);
   r = fma(n, splat(0x1.777a5cp-24F), r);
   r = fma(n, splat(0x1.ee59dap-49F), r);
-  const F32 y = with_sign(sine_of_reduced(r), r);
+  const F32 y = x == 0.0F ? x : sine_of_reduced(r);
   const F32 result = from_bits(bits(y) ^ (bits(rounded) << 31));
   if (!any_above(abs(x), kLargeAngleF)) [[likely]]
     return result;

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+//
+// The vector functions against MPFR, and every vector level against the others.
+#include <gtest/gtest.h>
+#include <mpfr.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "algorithms/expression/expression.hpp"
+#include "algorithms/expression/vector/kernels.hpp"
+#include "algorithms/expression/vector/level.hpp"
+#include "foundation/random.hpp"
+
+namespace tribench {
+namespace {
+
+using MpfrFunction = int (*)(mpfr_t, const mpfr_t, mpfr_rnd_t);
+
+struct Function {
+  Op op;
+  MpfrFunction reference;
+  double low;  // where its results are neither overflowing nor trivial
+  double high;
+};
+
+const std::array kFunctionsTested = {
+    Function{Op::exp, mpfr_exp, -745, 709.7},   Function{Op::log, mpfr_log, 0, 1e3},
+    Function{Op::sin, mpfr_sin, -1e4, 1e4},     Function{Op::cos, mpfr_cos, -1e4, 1e4},
+    Function{Op::tanh, mpfr_tanh, -20.0, 20.0}, Function{Op::sqrt, mpfr_sqrt, 0, 1e6},
+};
+
+template <typename T>
+std::vector<T> apply(Op op, VectorLevel level, const std::vector<T>& x) {
+  std::vector<T> y(x.size());
+  const auto kernel =
+      kernel_table<T>(level).function[static_cast<int>(op) - static_cast<int>(Op::neg)];
+  kernel(y.data(), x.data(), nullptr, nullptr, x.size());
+  return y;
+}
+
+// Distance from the true value in units in the last place of the true value rounded to T.
+template <typename T>
+double ulp_error(MpfrFunction reference, T x, T y) {
+  mpfr_t exact;
+  mpfr_t argument;
+  mpfr_inits2(160, exact, argument, static_cast<mpfr_ptr>(nullptr));
+  mpfr_set_d(argument, static_cast<double>(x), MPFR_RNDN);
+  reference(exact, argument, MPFR_RNDN);
+  const T rounded = std::is_same_v<T, float> ? static_cast<T>(mpfr_get_flt(exact, MPFR_RNDN))
+                                             : static_cast<T>(mpfr_get_d(exact, MPFR_RNDN));
+  double error = 0;
+  if (std::isnan(rounded) || std::isnan(y)) {
+    error = std::isnan(rounded) == std::isnan(y) ? 0 : HUGE_VAL;
+  } else if (std::isinf(rounded) || std::isinf(y)) {
+    const T limit = std::numeric_limits<T>::max();
+    const bool next_to_it = std::abs(rounded) == limit || std::abs(y) == limit;
+    error = rounded == y ? 0 : (next_to_it ? 1 : HUGE_VAL);
+  } else {
+    const T above = std::nextafter(std::abs(rounded), std::numeric_limits<T>::infinity());
+    const T below = std::nextafter(std::abs(rounded), T{0});
+    T unit = std::isinf(above) ? std::abs(rounded) - below : above - std::abs(rounded);
+    mpfr_sub_d(exact, exact, static_cast<double>(y), MPFR_RNDN);
+    mpfr_div_d(exact, exact, static_cast<double>(unit), MPFR_RNDN);
+    error = std::abs(mpfr_get_d(exact, MPFR_RNDN));
+  }
+  mpfr_clears(exact, argument, static_cast<mpfr_ptr>(nullptr));
+  return error;
+}
+
+// Arguments of a function: its main range, all magnitudes and signs, and every special value.
+template <typename T>
+std::vector<T> arguments(const Function& function, int count) {
+  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+  RandomStream random(key_of(op_name(function.op)));
+  std::vector<T> x = {T{0},
+                      -T{0},
+                      std::numeric_limits<T>::infinity(),
+                      -std::numeric_limits<T>::infinity(),
+                      std::numeric_limits<T>::quiet_NaN(),
+                      std::numeric_limits<T>::denorm_min(),
+                      -std::numeric_limits<T>::denorm_min(),
+                      std::numeric_limits<T>::min(),
+                      std::numeric_limits<T>::max(),
+                      std::numeric_limits<T>::lowest(),
+                      T{1},
+                      T{-1},
+                      std::nextafter(T{1}, T{0}),
+                      std::nextafter(T{1}, T{2})};
+  for (int k = 1; k < 2000; ++k) {  // next to the zeros of sin and cos, and where n changes
+    x.push_back(static_cast<T>(k * 1.5707963267948966));
+    x.push_back(static_cast<T>((k - 1000) * 0.34657359027997264));
+  }
+  for (int i = 0; i < count; ++i) {
+    x.push_back(static_cast<T>(random.uniform(function.low, function.high)));
+    x.push_back(static_cast<T>(random.normal()));
+    x.push_back(static_cast<T>(1 + 0.3 * random.normal() * std::exp(-30 * random.uniform())));
+    x.push_back(std::bit_cast<T>(static_cast<Bits>(random.next())));
+  }
+  return x;
+}
+
+template <typename T>
+class ElementaryFunctions : public testing::Test {};
+using Scalars = testing::Types<double, float>;
+TYPED_TEST_SUITE(ElementaryFunctions, Scalars);
+
+TYPED_TEST(ElementaryFunctions, AreWithinTwoUnitsInTheLastPlaceOfTheTrueValue) {
+  for (const Function& function : kFunctionsTested) {
+    const std::vector<TypeParam> x = arguments<TypeParam>(function, 20000);
+    const std::vector<TypeParam> y = apply(function.op, vector_level(), x);
+    double worst = 0;
+    TypeParam where = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double error = ulp_error(function.reference, x[i], y[i]);
+      if (error > worst) {
+        worst = error;
+        where = x[i];
+      }
+    }
+    EXPECT_LE(worst, 2.0) << op_name(function.op) << " at " << std::hexfloat << where;
+    this->RecordProperty(std::string(op_name(function.op)) + "_worst_ulp", std::to_string(worst));
+  }
+}
+
+TYPED_TEST(ElementaryFunctions, GiveTheSameBitsOnEveryVectorLevel) {
+  for (const Function& function : kFunctionsTested) {
+    const std::vector<TypeParam> x = arguments<TypeParam>(function, 20000);
+    const std::vector<TypeParam> first = apply(function.op, VectorLevel::baseline, x);
+    for (const VectorLevel level : available_vector_levels()) {
+      const std::vector<TypeParam> y = apply(function.op, level, x);
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        ASSERT_TRUE(y[i] == first[i] || (std::isnan(y[i]) && std::isnan(first[i])))
+            << op_name(function.op) << ' ' << vector_level_name(level) << " at " << std::hexfloat
+            << x[i] << ": " << y[i] << ", not " << first[i];
+        ASSERT_EQ(std::signbit(y[i]) && !std::isnan(y[i]),
+                  std::signbit(first[i]) && !std::isnan(first[i]));
+      }
+    }
+  }
+}
+
+TYPED_TEST(ElementaryFunctions, KeepTheSignOfZeroAndTheExactPoints) {
+  using T = TypeParam;
+  for (const VectorLevel level : available_vector_levels()) {
+    for (const Op op : {Op::sin, Op::tanh, Op::sqrt}) {
+      const std::vector<T> y = apply(op, level, std::vector<T>{T{0}, -T{0}});
+      EXPECT_FALSE(std::signbit(y[0])) << op_name(op);
+      EXPECT_TRUE(std::signbit(y[1])) << op_name(op);
+    }
+    EXPECT_EQ(apply(Op::exp, level, std::vector<T>{0})[0], 1);
+    EXPECT_EQ(apply(Op::cos, level, std::vector<T>{0})[0], 1);
+    EXPECT_EQ(apply(Op::log, level, std::vector<T>{1})[0], 0);
+    EXPECT_FALSE(std::signbit(apply(Op::log, level, std::vector<T>{1})[0]));
+    EXPECT_EQ(apply(Op::tanh, level, std::vector<T>{30})[0], 1);
+    EXPECT_EQ(apply(Op::sgn, level, std::vector<T>{-3})[0], -1);
+  }
+}
+
+TYPED_TEST(ElementaryFunctions, StayWithinMinusOneAndOneWhereTheTrueValueDoes) {
+  using T = TypeParam;
+  for (const Op op : {Op::sin, Op::cos, Op::tanh}) {
+    std::vector<T> x;
+    for (int k = -2000; k < 2000; ++k) {
+      T near = static_cast<T>(k * 1.5707963267948966);
+      for (int step = 0; step < 8; ++step) {
+        x.push_back(near);
+        near = std::nextafter(near, std::numeric_limits<T>::infinity());
+      }
+    }
+    for (const T y : apply(op, vector_level(), x)) ASSERT_LE(std::abs(y), 1) << op_name(op);
+  }
+}
+
+}  // namespace
+}  // namespace tribench
