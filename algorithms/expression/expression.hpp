@@ -103,6 +103,17 @@ class Expression {
   std::vector<std::size_t> constant_positions() const;
   void set_constant(std::size_t position, double value) { nodes_[position].value = value; }
 
+  // Another operation of the same arity in place of node i, arguments unchanged.
+  void set_operation(std::size_t i, Op op) { nodes_[i].op = op; }
+  // Another leaf in place of the leaf i.
+  void set_leaf(std::size_t i, const Node& leaf) { nodes_[i] = leaf; }
+  // Makes room for a tape of this size and hands it out to be overwritten, lengths included; the
+  // memory is kept. For edits (edit.hpp), which know the lengths.
+  std::span<Node> reset(std::size_t size) {
+    nodes_.resize(size);
+    return nodes_;
+  }
+
   // The same formula and the same bits in every constant.
   bool operator==(const Expression&) const = default;
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+//
+// Edits of a formula, as search makes them by the million. Each writes the edited formula into
+// `out`, which keeps its memory: once it has grown to the largest formula, nothing is allocated.
+// Cost: one pass over the tape. `out` must not be one of the formulas read.
+//
+// Positions are those of the tape: a subtree is named by its last node, [begin(i), i].
+//
+//   splice(f, i, g.nodes(), child);          // f with its subtree i replaced by g
+//   insert_binary(f, i, Op::mul, leaf, Side::right, child);    // ... a ...  ->  ... a * leaf ...
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "algorithms/expression/expression.hpp"
+
+namespace tribench {
+
+enum class Side { left, right };
+
+// The nodes of the subtree that ends at i.
+inline std::span<const Node> subtree_nodes(const Expression& formula, std::size_t i) {
+  return formula.nodes().subspan(formula.begin(i), formula.node(i).length);
+}
+
+// Child c (0 or 1) of node i; a function has child 0 alone.
+inline std::size_t child_of(const Expression& formula, std::size_t i, int c) {
+  return c == arity(formula.node(i).op) - 1 ? formula.right_child(i) : formula.left_child(i);
+}
+
+// `base` with the subtree that ends at i replaced by `piece`, a whole formula in postfix order
+// with its lengths set (the nodes of a formula or of a subtree).
+void splice(const Expression& base, std::size_t i, std::span<const Node> piece, Expression& out);
+
+// Both children of a crossover: subtree i of a and subtree j of b change places.
+void swap_subtrees(const Expression& a, std::size_t i, const Expression& b, std::size_t j,
+                   Expression& out_a, Expression& out_b);
+
+// A function above subtree i: s -> op(s).
+void insert_unary(const Expression& base, std::size_t i, Op op, Expression& out);
+
+// A binary operation above subtree i: s -> s op piece, or piece op s where piece is on the left.
+void insert_binary(const Expression& base, std::size_t i, Op op, std::span<const Node> piece,
+                   Side side, Expression& out);
+
+// Node i gives way to its child c: op(s, t) -> s or t.
+void hoist_child(const Expression& base, std::size_t i, int c, Expression& out);
+
+// The operands of the binary node i change places.
+void swap_operands(const Expression& base, std::size_t i, Expression& out);
+
+// Rotation: child `pivot` of node i rises above it and hands it its own child `grandchild`; the
+// order of the leaves stays where both are binary and pivot != grandchild, as in
+//   (a + b) * c  ->  a + (b * c)        rotate(f, i, 0, 1)
+// The pivot must not be a leaf. Number of nodes and multiset of operations stay.
+// Source: Cranmer 2023 (PySR), mutation "rotate tree".
+void rotate(const Expression& base, std::size_t i, int pivot, int grandchild, Expression& out);
+
+}  // namespace tribench
