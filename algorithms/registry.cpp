@@ -3,12 +3,19 @@
 
 #include <fmt/format.h>
 
-#include "algorithms/pysr/pysr.hpp"
+#include "algorithms/model_based/branch_polynomial.hpp"
+#include "algorithms/model_based/placebos.hpp"
+#include "algorithms/model_based/random_search.hpp"
+#include "algorithms/model_based/static_friction.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench {
 
-Registry::Registry() { entries_.push_back(pysr_entry()); }
+Registry::Registry()
+    : entries_{
+          symmetric_entry(), asymmetric_entry(), branch_polynomial_entry(),
+          constant_entry(),  linear_entry(),     random_search_entry(),
+      } {}
 
 const AlgorithmEntry& Registry::find(std::string_view name) const {
   std::vector<std::string> names;

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/model_based/bounded_stribeck.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "algorithms/fitting/ipopt_minimizer.hpp"
+#include "algorithms/fitting/linear_least_squares.hpp"
+
+namespace tribench {
+namespace {
+
+// Grid over (vs, delta): vs evenly in its logarithm down to this share of the highest speed.
+constexpr double kLeastVelocityShare = 1e-3;
+constexpr std::size_t kVelocities = 24;
+constexpr std::size_t kExponents = 10;
+// Two branches that share a parameter are searched together, over pairs of a coarser grid.
+constexpr std::size_t kPairVelocities = 10;
+constexpr std::size_t kPairExponents = 5;
+// The best points of the grid, each refined so often on a grid of 5 x 5 that shrinks by half.
+constexpr std::size_t kRefined = 4;
+constexpr int kRefinements = 16;
+// A pass over the rows costs about as much as a formula of so many nodes.
+constexpr std::uint64_t kPassNodes = 15;
+
+struct Shape {
+  double log_velocity = 0;
+  double exponent = 1;
+};
+
+// A column of the linear problem as the search sees it: products with everything else.
+struct Candidate {
+  Shape shape;
+  std::vector<double> with_fixed;
+  double with_itself = 0;
+  double with_target = 0;
+};
+
+class ShapeSearch {
+ public:
+  ShapeSearch(const StribeckRows& rows, const StribeckModel& model, Budget& budget)
+      : rows_(rows), model_(model), budget_(budget) {
+    make_fixed_columns();
+    for (double v : rows.velocity) highest_ = std::max(highest_, std::abs(v));
+    if (highest_ == 0) highest_ = 1;
+  }
+
+  // The best shapes found, one a branch, and their linear parameters, written into `model`.
+  double run(StribeckModel& model);
+
+ private:
+  void make_fixed_columns();
+  Candidate make_candidate(std::size_t branch, const Shape& shape);
+  std::vector<Candidate> make_grid(std::size_t branch, std::size_t velocities,
+                                   std::size_t exponents);
+  double solve(std::span<const Candidate* const> chosen, std::vector<double>& solution) const;
+  void refine(std::vector<Candidate>& chosen, double& best);
+  void write(std::span<const Candidate> chosen, StribeckModel& model) const;
+  std::size_t branches() const { return model_.branches.size(); }
+  double low_log() const { return std::log(highest_ * kLeastVelocityShare); }
+  double high_log() const { return std::log(highest_); }
+
+  const StribeckRows& rows_;
+  const StribeckModel& model_;
+  Budget& budget_;
+  double highest_ = 0;
+  std::vector<std::vector<double>> fixed_;  // per branch sign and v; then offset and a
+  std::vector<double> fixed_products_;
+  std::vector<double> fixed_target_;
+  double target_squares_ = 0;
+  bool stopped_ = false;
+};
+
+double dot(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+void ShapeSearch::make_fixed_columns() {
+  const std::size_t n = rows_.size();
+  for (std::size_t branch = 0; branch < branches(); ++branch) {
+    fixed_.emplace_back(n, 0.0);
+    fixed_.emplace_back(n, 0.0);
+    for (std::size_t row = 0; row < n; ++row) {
+      if (rows_.branch[row] != branch) continue;
+      fixed_[2 * branch][row] = rows_.sign[row];
+      fixed_[2 * branch + 1][row] = rows_.velocity[row];
+    }
+  }
+  if (model_.has_offset) fixed_.emplace_back(n, 1.0);
+  if (model_.has_inertia) fixed_.push_back(rows_.acceleration);
+  for (const auto& a : fixed_) {
+    for (const auto& b : fixed_) fixed_products_.push_back(dot(a, b));
+    fixed_target_.push_back(dot(a, rows_.target));
+  }
+  target_squares_ = dot(rows_.target, rows_.target);
+}
+
+Candidate ShapeSearch::make_candidate(std::size_t branch, const Shape& shape) {
+  Candidate candidate{shape, std::vector<double>(fixed_.size(), 0.0)};
+  if (!budget_.spend(kPassNodes * rows_.size())) {
+    stopped_ = true;
+    return candidate;
+  }
+  const double velocity = std::exp(shape.log_velocity);
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    if (rows_.branch[row] != branch) continue;
+    const double value =
+        rows_.sign[row] * stribeck_decay(rows_.velocity[row], velocity, shape.exponent);
+    candidate.with_itself += value * value;
+    candidate.with_target += value * rows_.target[row];
+    for (std::size_t k = 0; k < fixed_.size(); ++k) {
+      candidate.with_fixed[k] += value * fixed_[k][row];
+    }
+  }
+  return candidate;
+}
+
+std::vector<Candidate> ShapeSearch::make_grid(std::size_t branch, std::size_t velocities,
+                                              std::size_t exponents) {
+  std::vector<Candidate> grid;
+  for (std::size_t i = 0; i < velocities; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(velocities - 1);
+    for (std::size_t j = 0; j < exponents; ++j) {
+      const double exponent = kLeastExponent + (kMostExponent - kLeastExponent) *
+                                                   static_cast<double>(j) /
+                                                   static_cast<double>(exponents - 1);
+      const Shape shape{low_log() + share * (high_log() - low_log()), exponent};
+      grid.push_back(make_candidate(branch, shape));
+      if (stopped_) {
+        grid.pop_back();
+        return grid;
+      }
+    }
+  }
+  return grid;
+}
+
+// Sum of squares at the best linear parameters: the fixed columns, then one decay a branch.
+double ShapeSearch::solve(std::span<const Candidate* const> chosen,
+                          std::vector<double>& solution) const {
+  const std::size_t fixed = fixed_.size();
+  const std::size_t n = fixed + chosen.size();
+  std::vector<double> a(n * n, 0.0);
+  std::vector<double> b(n);
+  std::vector<char> non_negative(n, 0);
+  for (std::size_t i = 0; i < fixed; ++i) {
+    for (std::size_t j = 0; j < fixed; ++j) a[i * n + j] = fixed_products_[i * fixed + j];
+    b[i] = fixed_target_[i];
+  }
+  for (std::size_t branch = 0; branch < chosen.size(); ++branch) {
+    const Candidate& candidate = *chosen[branch];
+    const std::size_t k = fixed + branch;
+    for (std::size_t i = 0; i < fixed; ++i) {
+      a[i * n + k] = candidate.with_fixed[i];
+      a[k * n + i] = candidate.with_fixed[i];
+    }
+    a[k * n + k] = candidate.with_itself;
+    b[k] = candidate.with_target;
+    non_negative[k] = 1;
+    non_negative[2 * branch] = 1;
+  }
+  solution.resize(n);
+  if (!solve_quadratic(a, b, non_negative, solution)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  double value = target_squares_;
+  for (std::size_t i = 0; i < n; ++i) {
+    double row = 0;
+    for (std::size_t j = 0; j < n; ++j) row += a[i * n + j] * solution[j];
+    value += solution[i] * (row - 2 * b[i]);
+  }
+  return value;
+}
+
+// Walks downhill from the chosen shapes, one branch after the other, on grids of 5 x 5 points.
+void ShapeSearch::refine(std::vector<Candidate>& chosen, double& best) {
+  double velocity_step = (high_log() - low_log()) / (kVelocities - 1);
+  double exponent_step = (kMostExponent - kLeastExponent) / (kExponents - 1);
+  std::vector<double> solution;
+  for (int round = 0; round < kRefinements && !stopped_; ++round) {
+    for (std::size_t branch = 0; branch < branches(); ++branch) {
+      const Shape centre = chosen[branch].shape;
+      for (int i = -2; i <= 2; ++i) {
+        for (int j = -2; j <= 2; ++j) {
+          const Shape shape{
+              std::clamp(centre.log_velocity + 0.5 * i * velocity_step, low_log(), high_log()),
+              std::clamp(centre.exponent + 0.5 * j * exponent_step, kLeastExponent, kMostExponent)};
+          const Candidate trial = make_candidate(branch, shape);
+          if (stopped_) return;
+          std::vector<const Candidate*> all;
+          for (const Candidate& candidate : chosen) all.push_back(&candidate);
+          all[branch] = &trial;
+          const double value = solve(all, solution);
+          if (!(value < best)) continue;
+          best = value;
+          chosen[branch] = trial;
+        }
+      }
+    }
+    velocity_step *= 0.5;
+    exponent_step *= 0.5;
+  }
+}
+
+void ShapeSearch::write(std::span<const Candidate> chosen, StribeckModel& model) const {
+  std::vector<const Candidate*> all;
+  for (const Candidate& candidate : chosen) all.push_back(&candidate);
+  std::vector<double> solution;
+  solve(all, solution);
+  for (std::size_t branch = 0; branch < branches(); ++branch) {
+    model.branches[branch] = {solution[2 * branch], solution[fixed_.size() + branch],
+                              std::min(std::exp(chosen[branch].shape.log_velocity), highest_),
+                              chosen[branch].shape.exponent, solution[2 * branch + 1]};
+  }
+  std::size_t next = 2 * branches();
+  if (model.has_offset) model.offset = solution[next++];
+  if (model.has_inertia) model.inertia = solution[next];
+}
+
+double ShapeSearch::run(StribeckModel& model) {
+  const bool pairs = branches() == 2;
+  std::vector<std::vector<Candidate>> grids;
+  for (std::size_t branch = 0; branch < branches(); ++branch) {
+    grids.push_back(make_grid(branch, pairs ? kPairVelocities : kVelocities,
+                              pairs ? kPairExponents : kExponents));
+    if (grids.back().empty()) return std::numeric_limits<double>::infinity();
+  }
+  struct Place {
+    double value;
+    std::size_t first;
+    std::size_t second;
+  };
+  std::vector<Place> places;
+  std::vector<double> solution;
+  for (std::size_t i = 0; i < grids[0].size(); ++i) {
+    for (std::size_t j = 0; j < (pairs ? grids[1].size() : 1); ++j) {
+      std::vector<const Candidate*> chosen = {&grids[0][i]};
+      if (pairs) chosen.push_back(&grids[1][j]);
+      places.push_back({solve(chosen, solution), i, j});
+    }
+  }
+  const std::size_t refined = std::min(kRefined, places.size());
+  std::ranges::partial_sort(places, places.begin() + static_cast<std::ptrdiff_t>(refined), {},
+                            &Place::value);
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < refined; ++k) {
+    std::vector<Candidate> chosen = {grids[0][places[k].first]};
+    if (pairs) chosen.push_back(grids[1][places[k].second]);
+    double value = places[k].value;
+    refine(chosen, value);
+    if (!(value < best)) continue;
+    best = value;
+    write(chosen, model);
+  }
+  return best;
+}
+
+// All parameters together under the physical constraints.
+void polish(const StribeckRows& rows, StribeckModel& model, Budget& budget, StribeckFit& fit) {
+  double highest = 0;
+  for (double v : rows.velocity) highest = std::max(highest, std::abs(v));
+  const double infinity = std::numeric_limits<double>::infinity();
+  Bounds bounds;
+  for (std::size_t i = 0; i < model.branches.size(); ++i) {
+    bounds.low.insert(bounds.low.end(),
+                      {0, 0, highest * kLeastVelocityShare, kLeastExponent, -infinity});
+    bounds.high.insert(bounds.high.end(), {infinity, infinity, highest, kMostExponent, infinity});
+  }
+  bounds.low.resize(model.parameter_count(), -infinity);
+  bounds.high.resize(model.parameter_count(), infinity);
+  bool stop = false;
+  StribeckModel trial = model;
+  const double scale = 1 / static_cast<double>(rows.size());
+  const Objective objective = [&](std::span<const double> x, std::span<double> gradient) {
+    if (!budget.spend(2 * kPassNodes * rows.size())) {
+      stop = true;
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    trial.set_parameters(x);
+    const double value = trial.sum_squares(rows, gradient);
+    for (double& g : gradient) g *= scale;
+    return value * scale;
+  };
+  MinimizeOptions options;
+  options.max_evaluations = 300;
+  options.stop = &stop;
+  const Minimum minimum = minimize_ipopt(objective, model.parameters(), bounds, {}, options);
+  fit.out_of_budget = fit.out_of_budget || stop;
+  trial.set_parameters(minimum.x);
+  const double value = trial.sum_squares(rows, {});
+  if (!(value < fit.sum_squares)) return;
+  fit.sum_squares = value;
+  model = trial;
+}
+
+// The rows of one branch, as a problem of its own.
+StribeckRows rows_of_branch(const StribeckRows& rows, std::size_t branch) {
+  StribeckRows part;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    if (rows.branch[row] != branch) continue;
+    part.velocity.push_back(rows.velocity[row]);
+    part.sign.push_back(rows.sign[row]);
+    part.target.push_back(rows.target[row]);
+    part.branch.push_back(0);
+  }
+  return part;
+}
+
+StribeckFit fit_together(const StribeckRows& rows, StribeckModel& model, Budget& budget) {
+  StribeckFit fit;
+  if (rows.size() == 0) return fit;
+  const double found = ShapeSearch(rows, model, budget).run(model);
+  fit.out_of_budget = budget.exhausted();
+  fit.sum_squares = model.sum_squares(rows, {});
+  if (std::isfinite(found) && !fit.out_of_budget) polish(rows, model, budget, fit);
+  return fit;
+}
+
+}  // namespace
+
+StribeckFit fit_bounded_stribeck(const StribeckRows& rows, StribeckModel& model, Budget& budget) {
+  const bool shares_parameters = model.has_offset || model.has_inertia;
+  if (model.branches.size() == 1 || shares_parameters) return fit_together(rows, model, budget);
+  // Without a common parameter each direction is a problem of its own.
+  StribeckFit fit;
+  for (std::size_t branch = 0; branch < model.branches.size(); ++branch) {
+    StribeckModel part;
+    part.branches.resize(1);
+    const StribeckFit one = fit_together(rows_of_branch(rows, branch), part, budget);
+    fit.sum_squares += one.sum_squares;
+    fit.out_of_budget = fit.out_of_budget || one.out_of_budget;
+    model.branches[branch] = part.branches[0];
+  }
+  return fit;
+}
+
+}  // namespace tribench

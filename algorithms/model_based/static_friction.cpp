@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/model_based/static_friction.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/expression/differentiate.hpp"
+#include "algorithms/finite_rows.hpp"
+#include "algorithms/fitting/linear_least_squares.hpp"
+#include "algorithms/model_based/bounded_stribeck.hpp"
+#include "algorithms/model_based/printed_stribeck.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr double kUnidentified = 1e6;  // condition number from which parameters mean nothing
+
+double sign_of(double x) { return static_cast<double>(x > 0) - static_cast<double>(x < 0); }
+
+StribeckRows make_rows(const FiniteRows& data, const FrictionInputs& inputs, bool asymmetric) {
+  StribeckRows rows;
+  rows.velocity = data.columns[inputs.velocity];
+  rows.target = data.target;
+  for (std::size_t row = 0; row < data.rows(); ++row) {
+    const double sign = inputs.velocity_sign ? data.columns[*inputs.velocity_sign][row]
+                                             : sign_of(rows.velocity[row]);
+    rows.sign.push_back(sign);
+    rows.branch.push_back(asymmetric && sign < 0 ? 1 : 0);
+  }
+  if (inputs.acceleration) rows.acceleration = data.columns[*inputs.acceleration];
+  return rows;
+}
+
+// How well the data determine the constants of the formula, as one number.
+double condition_of(const Expression& formula, const FiniteRows& data) {
+  std::vector<std::size_t> places;
+  for (std::size_t place : formula.constant_positions()) {
+    // 0.5 s + 0.5 of the asymmetric form is no parameter.
+    if (formula.node(place).value != 0.5) places.push_back(place);
+  }
+  Differentiator differentiator;
+  differentiator.prepare(formula, places);
+  std::vector<double> jacobian(places.size() * data.rows());
+  differentiator.jacobian(data.table(), {}, jacobian);
+  std::vector<const double*> columns;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    columns.push_back(jacobian.data() + k * data.rows());
+  }
+  if (!std::ranges::all_of(jacobian, [](double x) { return std::isfinite(x); })) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return solve_least_squares(columns, data.target).condition;
+}
+
+class StaticFriction : public Regressor {
+ public:
+  StaticFriction(const Parameters& parameters, bool asymmetric)
+      : asymmetric_(asymmetric),
+        as_printed_(parameters.text("form") == "as_printed"),
+        offset_(parameters.flag("offset")) {}
+
+  FitResult fit(FitContext& context) const override;
+
+ private:
+  bool asymmetric_;
+  bool as_printed_;
+  bool offset_;
+};
+
+FitResult StaticFriction::fit(FitContext& context) const {
+  const auto inputs = find_friction_inputs(context.data.inputs);
+  if (!inputs) {
+    return FitResult::unsupported("the static friction model needs an input with role velocity");
+  }
+  const FiniteRows data(context.data);
+  if (data.rows() == 0) return FitResult::unsupported("there is no row without missing values");
+  const StribeckRows rows = make_rows(data, *inputs, asymmetric_);
+  StribeckModel model;
+  model.branches.resize(asymmetric_ ? 2 : 1);
+  model.has_offset = offset_;
+  model.has_inertia = inputs->acceleration.has_value();
+  if (context.budget.remaining() == 0) return {{}, 0, StopReason::budget, "no budget"};
+  const StribeckFit fit = as_printed_
+                              ? fit_printed_stribeck(rows, model, context.budget, context.random)
+                              : fit_bounded_stribeck(rows, model, context.budget);
+  FitResult result;
+  result.reason = fit.out_of_budget ? StopReason::budget : StopReason::converged;
+  result.front = {model.formula(*inputs)};
+  if (context.progress != nullptr) {
+    context.progress->improved(fit.sum_squares / static_cast<double>(rows.size()),
+                               context.budget.spent());
+  }
+  const double condition = condition_of(result.front[0], data);
+  result.note = condition > kUnidentified
+                    ? fmt::format("parameters not identified: condition number {:.1e}", condition)
+                    : fmt::format("condition number {:.1e}", condition);
+  return result;
+}
+
+std::vector<ParameterSpec> specs() {
+  return {{"form",
+           "bounded: Fs >= Fc >= 0, 0 < vs <= max|v|, 0.5 <= delta <= 4, global optimum; "
+           "as_printed: SciPy's basin hopping without bounds, as the paper's",
+           std::string("bounded"),
+           -1e308,
+           1e308,
+           {"bounded", "as_printed"}},
+          {"offset", "adds a constant sensor offset", false}};
+}
+
+}  // namespace
+
+AlgorithmEntry symmetric_entry() {
+  return {"symmetric", "static friction model (Stribeck), the same in both directions", specs(),
+          true, [](const Parameters& parameters, const Registry&) -> std::unique_ptr<Regressor> {
+            return std::make_unique<StaticFriction>(parameters, false);
+          }};
+}
+
+AlgorithmEntry asymmetric_entry() {
+  return {"asymmetric", "static friction model (Stribeck), each direction with its own parameters",
+          specs(), true,
+          [](const Parameters& parameters, const Registry&) -> std::unique_ptr<Regressor> {
+            return std::make_unique<StaticFriction>(parameters, true);
+          }};
+}
+
+}  // namespace tribench

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/model_based/stribeck_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/expression/build.hpp"
+
+namespace tribench {
+
+double stribeck_decay(double velocity, double stribeck_velocity, double exponent) {
+  return std::exp(-std::pow(std::abs(velocity / stribeck_velocity), exponent));
+}
+
+std::vector<double> StribeckModel::parameters() const {
+  std::vector<double> values;
+  for (const StribeckBranch& b : branches) {
+    values.insert(values.end(),
+                  {b.coulomb, b.breakaway_excess, b.stribeck_velocity, b.exponent, b.viscous});
+  }
+  if (has_offset) values.push_back(offset);
+  if (has_inertia) values.push_back(inertia);
+  return values;
+}
+
+void StribeckModel::set_parameters(std::span<const double> values) {
+  std::size_t next = 0;
+  for (StribeckBranch& b : branches) {
+    b = {values[next], values[next + 1], values[next + 2], values[next + 3], values[next + 4]};
+    next += kBranchParameters;
+  }
+  if (has_offset) offset = values[next++];
+  if (has_inertia) inertia = values[next];
+}
+
+double StribeckModel::value_at(const StribeckRows& rows, std::size_t row) const {
+  const StribeckBranch& b = branches[rows.branch[row]];
+  const double v = rows.velocity[row];
+  const double decay = stribeck_decay(v, b.stribeck_velocity, b.exponent);
+  double value = rows.sign[row] * (b.coulomb + b.breakaway_excess * decay) + b.viscous * v;
+  if (has_offset) value += offset;
+  if (has_inertia) value += inertia * rows.acceleration[row];
+  return value;
+}
+
+double StribeckModel::sum_squares(const StribeckRows& rows, std::span<double> gradient) const {
+  std::ranges::fill(gradient, 0.0);
+  double sum = 0;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::size_t which = rows.branch[row];
+    const StribeckBranch& b = branches[which];
+    const double v = rows.velocity[row];
+    const double ratio = std::abs(v / b.stribeck_velocity);
+    const double power = std::pow(ratio, b.exponent);
+    const double decay = std::exp(-power);
+    double error = rows.sign[row] * (b.coulomb + b.breakaway_excess * decay) + b.viscous * v -
+                   rows.target[row];
+    if (has_offset) error += offset;
+    if (has_inertia) error += inertia * rows.acceleration[row];
+    sum += error * error;
+    if (gradient.empty()) continue;
+    // d exp(-u) = -exp(-u) du, u = |v / vs|^delta; u log|v / vs| tends to 0 with v.
+    const double twice = 2 * error;
+    const double slope = twice * rows.sign[row] * b.breakaway_excess * decay;
+    double* g = gradient.data() + which * kBranchParameters;
+    g[0] += twice * rows.sign[row];
+    g[1] += twice * rows.sign[row] * decay;
+    if (power > 0 && std::isfinite(power)) {
+      g[2] += slope * power * b.exponent / b.stribeck_velocity;
+      g[3] -= slope * power * std::log(ratio);
+    }
+    g[4] += twice * v;
+    std::size_t next = kBranchParameters * branches.size();
+    if (has_offset) gradient[next++] += twice;
+    if (has_inertia) gradient[next] += twice * rows.acceleration[row];
+  }
+  return sum;
+}
+
+namespace {
+
+using namespace build;
+
+// sgn(v) (Fc + (Fs - Fc) exp(-|v / vs|^delta)) + Fv v
+Expression branch_formula(const StribeckBranch& b, const FrictionInputs& inputs) {
+  const Expression velocity = input(inputs.velocity);
+  Expression level = constant(b.coulomb);
+  if (b.breakaway_excess != 0) {
+    const Expression ratio = function(Op::abs, velocity / constant(b.stribeck_velocity));
+    const Expression decay = function(Op::exp, -power(ratio, b.exponent));
+    level = level + constant(b.breakaway_excess) * decay;
+  }
+  return inputs.sign() * level + constant(b.viscous) * velocity;
+}
+
+}  // namespace
+
+Expression StribeckModel::formula(const FrictionInputs& inputs) const {
+  Expression result = branch_formula(branches[0], inputs);
+  if (branches.size() == 2) {
+    // (1 + s) / 2 and (1 - s) / 2 choose the direction; both branches are 0 at rest.
+    const Expression half_sign = constant(0.5) * inputs.sign();
+    result = result * (constant(0.5) + half_sign) +
+             branch_formula(branches[1], inputs) * (constant(0.5) - half_sign);
+  }
+  if (has_inertia) result = result + constant(inertia) * input(*inputs.acceleration);
+  if (has_offset) result = result + constant(offset);
+  return result;
+}
+
+}  // namespace tribench
