@@ -7,6 +7,7 @@
 #include "algorithms/model_based/placebos.hpp"
 #include "algorithms/model_based/random_search.hpp"
 #include "algorithms/model_based/static_friction.hpp"
+#include "algorithms/pysr/pysr.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench {
@@ -15,6 +16,7 @@ Registry::Registry()
     : entries_{
           symmetric_entry(), asymmetric_entry(), branch_polynomial_entry(),
           constant_entry(),  linear_entry(),     random_search_entry(),
+          pysr_entry(),
       } {}
 
 const AlgorithmEntry& Registry::find(std::string_view name) const {

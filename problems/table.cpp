@@ -2,6 +2,7 @@
 #include "problems/table.hpp"
 
 #include <algorithm>
+#include <string>
 
 namespace tribench {
 namespace {
@@ -94,6 +95,30 @@ KnownDataset thin(const KnownDataset& source, std::size_t per_movement,
     first = end;
   }
   return select_rows(source, rows);
+}
+
+Dataset dataset_of_tables(const Problem& problem) {
+  Dataset data;
+  data.name = problem.name;
+  for (const Input& input : problem.inputs) {
+    data.channels.push_back({input.name, input.unit, input.role, {}});
+  }
+  data.channels.push_back({problem.target, problem.target_unit, Role::none, {}});
+  const auto add = [&data](const Table& table, std::string_view part) {
+    for (std::size_t r = 0; r < table.rows(); ++r) {
+      if (r == 0 || table.movement[r] != table.movement[r - 1]) {
+        data.movement_names.push_back(std::string(part) + std::to_string(table.movement[r]));
+      }
+      data.movement.push_back(static_cast<int>(data.movement_names.size()) - 1);
+      for (std::size_t j = 0; j < table.columns.size(); ++j) {
+        data.channels[j].values.push_back(table.columns[j][r]);
+      }
+      data.channels.back().values.push_back(table.target[r]);
+    }
+  };
+  add(problem.stages.back().train, "train");
+  add(problem.test, "test");
+  return data;
 }
 
 }  // namespace tribench

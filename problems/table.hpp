@@ -38,4 +38,8 @@ KnownDataset select_rows(const KnownDataset& source, std::span<const std::size_t
 // rows and one row is drawn from each. Movements with fewer rows are kept whole.
 KnownDataset thin(const KnownDataset& source, std::size_t per_movement, const RandomStream& random);
 
+// The rows of the problem's tables as a recording: the last stage's training rows, then the test
+// rows, with the inputs and the target as channels. For problems without a recording of their own.
+Dataset dataset_of_tables(const Problem& problem);
+
 }  // namespace tribench

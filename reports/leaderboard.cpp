@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "reports/figures.hpp"
 #include "reports/markdown.hpp"
@@ -27,13 +28,22 @@ std::string counts_line(const RunFolder& run, const RunSummary& summary) {
   return text + fmt::format("; {} of CPU time in fits.\n", duration_figure(summary.fit_cpu_s));
 }
 
+// Provenance that belongs on the first screen, and how it is called there.
+constexpr std::pair<const char*, const char*> kMadeWith[] = {
+    {"code.version", "tribench"},     {"code.commit", "commit"},
+    {"code.dirty", "dirty"},          {"code.compiler", "compiler"},
+    {"sessions.0.machine.cpu", "on"}, {"sessions.0.started", "started"},
+    {"fingerprint", "results"},
+};
+
 std::string made_with(const RunFolder& run) {
   std::string text;
-  for (const char* key : {"version", "commit", "dirty", "compiler", "cpu", "started", "ended"}) {
+  for (const auto& [key, label] : kMadeWith) {
     const std::string value = run.provenance_of(key);
-    if (!value.empty()) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, value);
+    if (value.empty() || value == "false") continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", label, value);
   }
-  return text.empty() ? text : fmt::format("Made with: {}.\n", text);
+  return text.empty() ? text : fmt::format("Made with {}.\n", text);
 }
 
 // "3/10" with its share of trouble visible; "" where there is nothing to say.

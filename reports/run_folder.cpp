@@ -67,6 +67,10 @@ void flatten(const std::string& prefix, const nlohmann::ordered_json& value,
     for (const auto& [key, item] : value.items()) {
       flatten(prefix.empty() ? key : prefix + "." + key, item, out);
     }
+  } else if (value.is_array() && !value.empty()) {
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      flatten(fmt::format("{}.{}", prefix, i), value[i], out);
+    }
   } else {
     out.emplace_back(prefix, value.is_string() ? value.get<std::string>() : value.dump());
   }

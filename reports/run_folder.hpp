@@ -23,7 +23,7 @@ struct RunFolder {
   std::vector<Record> records;       // in the order of comes_before
   std::vector<PlannedCell> missing;  // planned, but without a record
   std::size_t planned = 0;           // cells the grid asks for; 0 where nobody said
-  // provenance.json, flattened: {"compiler.version", "12.2"}; in the file's order.
+  // provenance.json, flattened: {"sessions.0.machine.cpu", "..."}; in the file's order.
   std::vector<std::pair<std::string, std::string>> provenance;
   std::vector<std::string> complaints;  // what is missing or damaged, one sentence each
 

@@ -10,34 +10,11 @@
 #include "algorithms/expression/bounds.hpp"
 #include "algorithms/expression/text.hpp"
 #include "algorithms/expression/witness.hpp"
-#include "foundation/error.hpp"
 
 namespace tribench {
 namespace {
 
 using Cell = std::vector<Interval>;
-
-void check_box(const Expression& formula, const InputBox& box) {
-  if (formula.columns_used() > box.size()) {
-    throw_bad_input(fmt::format("the formula uses input {} but the box has only {}",
-                                formula.columns_used() - 1, box.size()),
-                    "box", "give a range for every input");
-  }
-  for (std::size_t j = 0; j < box.size(); ++j) {
-    if (box[j].sign_of) {
-      if (*box[j].sign_of >= box.size() || box[*box[j].sign_of].sign_of) {
-        throw_bad_input(fmt::format("input {} is the sign of {}, which is no input with a range", j,
-                                    *box[j].sign_of),
-                        "box");
-      }
-    } else if (!std::isfinite(box[j].low) || !std::isfinite(box[j].high) ||
-               box[j].low > box[j].high) {
-      throw_bad_input(
-          fmt::format("the range {}:{} of input {} is not one", box[j].low, box[j].high, j), "box",
-          "give two finite numbers, the lower first");
-    }
-  }
-}
 
 // Inputs whose sign the formula looks at.
 std::vector<bool> signed_inputs(const Expression& formula, const InputBox& box) {

@@ -28,18 +28,10 @@
 #include <vector>
 
 #include "algorithms/expression/expression.hpp"
+#include "algorithms/expression/input_box.hpp"
 #include "algorithms/expression/interval.hpp"
 
 namespace tribench {
-
-// The range of one input, in the order of the formula's columns.
-struct InputRange {
-  double low = 0;
-  double high = 0;
-  // This input is the sign of that one (-1, 0, 1); low and high then mean nothing.
-  std::optional<std::size_t> sign_of = {};
-};
-using InputBox = std::vector<InputRange>;
 
 enum class Verdict { proved_free, refuted, undecided };
 std::string_view verdict_name(Verdict verdict);

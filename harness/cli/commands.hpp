@@ -17,6 +17,8 @@ enum class ExitStatus : int {
   undecided = 4,
 };
 
+void add_check_command(CLI::App& app, ExitStatus& status);
+void add_generate_command(CLI::App& app, ExitStatus& status);
 void add_list_command(CLI::App& app, ExitStatus& status);
 void add_study_command(CLI::App& app, ExitStatus& status);
 

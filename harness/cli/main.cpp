@@ -27,7 +27,9 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string(tribench::version()));
   app.require_subcommand(1);
   tribench::ExitStatus status = tribench::ExitStatus::done;
+  tribench::add_generate_command(app, status);
   tribench::add_list_command(app, status);
+  tribench::add_check_command(app, status);
   tribench::add_study_command(app, status);
   try {
     app.parse(argc, argv);

@@ -23,7 +23,7 @@ TEST(RunFolder, ReadsAFinishedRunAndNamesTheMissingCell) {
   EXPECT_EQ(run.planned, 21U);
   ASSERT_EQ(run.missing.size(), 1U);
   EXPECT_EQ(run.missing[0].seed, 99U);
-  EXPECT_EQ(run.provenance_of("commit"), "abc1234");
+  EXPECT_EQ(run.provenance_of("code.commit"), "abc1234");
   EXPECT_TRUE(run.complaints.empty());
 }
 

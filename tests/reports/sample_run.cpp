@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "foundation/random.hpp"
@@ -109,9 +111,65 @@ void write_sample_run(const fs::path& folder, std::uint64_t seeds) {
   planned.push_back({"A/j4/no_load|pysr|paper|99", "A/j4/no_load", "pysr", "paper", 99});
   write_file(folder / "results.csv", results_csv(records));
   write_file(folder / "planned.csv", planned_csv(planned));
-  write_file(folder / "provenance.json",
-             R"({"version": "0.1.0", "commit": "abc1234", "compiler": "g++ 12.2"})");
+  write_file(
+      folder / "provenance.json",
+      R"({"code": {"version": "0.1.0", "commit": "abc1234", "dirty": false, "compiler": "g++ 12.2"},
+                 "sessions": [{"started": "2026-01-31T12:00:00Z", "machine": {"cpu": "some CPU"},
+                               "calibration": {"samples": [{"cpu_s": 0.02}, {"cpu_s": 0.0201}]}}]})");
   write_file(folder / "grid.toml", "[grid]\nname = \"sample\"\n");
+}
+
+nlohmann::json sample_loop() {
+  using nlohmann::json;
+  json loop = json::parse(R"json({
+    "verdict": "UNKNOWN", "alpha": {"lib": 0.003, "gen": 0.002, "flips": 1999}, "seed": 1,
+    "effects": [
+      {"family": "stribeck", "atom": "s*exp(-|v|/0.05)", "order": 1, "p_adj": 0.0005,
+       "cv_gain": 212.4, "cv_se": 20.1, "rms_contribution": 0.31, "vif": 1.2,
+       "params": [{"name": "Fs - Fc", "value": 1.2, "lo": 1.1, "hi": 1.3}],
+       "alias": [], "separate_by": []
+},
+      {"family": "power_quadrant_gain", "atom": "g", "order": 2, "p_adj": 0.001, "cv_gain": 80,
+       "cv_se": 12, "rms_contribution": 0.9, "vif": 3.1, "provisional": true,
+       "params": [{"name": "c1", "value": 0.08, "lo": 0.07, "hi": 0.09}],
+       "alias": [{"family": "payload", "corr": 0.95, "gain_diff": 1, "se": 2, "exact": false}],
+       "separate_by": ["R3"]}],
+    "leftover": {"p": 0.001, "inputs": ["position"]},
+    "untestable": [{"family": "inertia", "reason": "no acceleration in the data", "ask": "R4"}],
+    "events": [{"movement": 17, "t0": 1.2, "t1": 1.3, "peak": 4.1}],
+    "error": {"test_movements": 22, "mae_before": 0.81, "mae_after": 0.24,
+              "ci_diff": [0.49, 0.63], "ceiling": 0.2, "closed_fraction": 0.93},
+    "candidates": [{"family": "stribeck", "p_adj": 0.0005, "score": 14.2},
+                   {"family": "temperature", "p_adj": 0.31, "score": 2.2}],
+    "formula": "8.1*sgn_v + 14*v"
+})json");
+  json residual = {{"channel", "velocity"}, {"unit", "rad/s"}};
+  RandomStream random(8);
+  for (int i = 0; i < 200; ++i) {
+    const double v = -0.6 + 1.2 * i / 199.0;
+    const double effect = (v > 0 ? 1 : -1) * 1.2 * std::exp(-std::abs(v) / 0.05);
+    const double after = 0.2 * random.normal();
+    residual["x"].push_back(v);
+    residual["before"].push_back(effect + after);
+    residual["after"].push_back(after);
+    residual["effect"].push_back(effect);
+  }
+  json movements = json::array();
+  for (int m = 0; m < 30; ++m) {
+    movements.push_back({{"name", std::to_string(m)},
+                         {"test", m % 5 == 0},
+                         {"mae_before", 0.8 + 0.1 * random.normal()},
+                         {"mae_after", 0.24 + 0.03 * random.normal()}});
+  }
+  loop["pictures"] = {{"target", "friction torque"},
+                      {"unit", "N m"},
+                      {"base_formula", "8*sgn_v + 14*v"},
+                      {"residuals", {residual}},
+                      {"movements", movements},
+                      {"alias_map",
+                       {{"families", {"stribeck", "power_quadrant_gain", "payload"}},
+                        {"correlation", {{1, 0.1, 0.05}, {0.1, 1, 0.95}, {0.05, 0.95, 1}}}}}};
+  return loop;
 }
 
 std::string text_of(const fs::path& file) {

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/expression/input_box.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "algorithms/expression/text.hpp"
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr std::string_view kSign = "sgn_";
+constexpr std::string_view kExample = "write ranges as 'v=-2:2,g=-60:60'";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+double number_in(std::string_view text, std::string_view part) {
+  text = trimmed(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    throw_bad_input(fmt::format("'{}' in '{}' is not a finite number", text, part), "--box",
+                    kExample);
+  }
+  return value;
+}
+
+std::optional<std::size_t> place_of(const std::vector<std::string>& names, std::string_view name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+void add_range(std::string_view part, NamedBox& box) {
+  const std::size_t equals = part.find('=');
+  const std::size_t colon = part.find(':');
+  if (equals == std::string_view::npos || colon == std::string_view::npos || colon < equals) {
+    throw_bad_input(fmt::format("'{}' is not NAME=LOW:HIGH", part), "--box", kExample);
+  }
+  const std::string name(trimmed(part.substr(0, equals)));
+  if (name.empty() || place_of(box.names, name)) {
+    throw_bad_input(fmt::format("the name '{}' is empty or given twice", name), "--box", kExample);
+  }
+  InputRange range{number_in(part.substr(equals + 1, colon - equals - 1), part),
+                   number_in(part.substr(colon + 1), part)};
+  if (range.low > range.high) {
+    throw_bad_input(
+        fmt::format("the range of {} runs from {} down to {}", name, range.low, range.high),
+        "--box", "give the lower end first");
+  }
+  box.names.push_back(name);
+  box.ranges.push_back(range);
+}
+
+}  // namespace
+
+NamedBox parse_box(std::string_view text) {
+  NamedBox box;
+  while (!trimmed(text).empty()) {
+    const std::size_t comma = text.find(',');
+    add_range(trimmed(text.substr(0, comma)), box);
+    text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 1);
+  }
+  // A range given to a sign beside its input says nothing that the input does not.
+  for (std::size_t j = 0; j < box.names.size(); ++j) {
+    if (box.names[j].starts_with(kSign)) {
+      box.ranges[j].sign_of = place_of(box.names, box.names[j].substr(kSign.size()));
+    }
+  }
+  return box;
+}
+
+std::string print_box(const NamedBox& box) {
+  std::string text;
+  for (std::size_t j = 0; j < box.names.size(); ++j) {
+    if (box.ranges[j].sign_of) continue;
+    text += fmt::format("{}{}={}:{}", text.empty() ? "" : ",", box.names[j],
+                        print_number(box.ranges[j].low), print_number(box.ranges[j].high));
+  }
+  return text;
+}
+
+Expression parse_over(std::string_view formula, NamedBox& box) {
+  std::vector<std::string> names = box.names;
+  const Expression parsed = parse_collecting_names(formula, names);
+  for (std::size_t j = box.names.size(); j < names.size(); ++j) {
+    const std::string& name = names[j];
+    const auto base = name.starts_with(kSign)
+                          ? place_of(box.names, std::string_view(name).substr(kSign.size()))
+                          : std::nullopt;
+    if (!base) {
+      throw_bad_input(fmt::format("the formula's input '{}' has no range", name), "--box",
+                      fmt::format("add {}=LOW:HIGH; sgn_X needs the range of X", name));
+    }
+    box.names.push_back(name);
+    box.ranges.push_back({0, 0, base});
+  }
+  return parsed;
+}
+
+void check_box(const Expression& formula, const InputBox& box) {
+  if (formula.columns_used() > box.size()) {
+    throw_bad_input(fmt::format("the formula uses input {} but the box has only {}",
+                                formula.columns_used() - 1, box.size()),
+                    "box", "give a range for every input");
+  }
+  for (std::size_t j = 0; j < box.size(); ++j) {
+    if (box[j].sign_of) {
+      if (*box[j].sign_of >= box.size() || box[*box[j].sign_of].sign_of) {
+        throw_bad_input(fmt::format("input {} is the sign of {}, which is no input with a range", j,
+                                    *box[j].sign_of),
+                        "box");
+      }
+    } else if (!std::isfinite(box[j].low) || !std::isfinite(box[j].high) ||
+               box[j].low > box[j].high) {
+      throw_bad_input(
+          fmt::format("the range {}:{} of input {} is not one", box[j].low, box[j].high, j), "box",
+          "give two finite numbers, the lower first");
+    }
+  }
+}
+
+}  // namespace tribench

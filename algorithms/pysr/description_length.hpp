@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// How many nats it takes to tell the formula and then the data: what a noisy front is chosen by.
+//
+//   structure   k ln q, k nodes, q different symbols (all constants are one symbol), and ln|n| for
+//               every exponent
+//   parameters  ln|c_i| + ln(I_i) / 2 - ln(3) / 2 for every constant c_i that its Fisher
+//               information I_i = sum_r (df/dc_i)^2 / s^2 tells from 0 (|c_i| >= sqrt(12 / I_i))
+//   data        n / 2 (ln(2 pi s^2) + 1) with s^2 the mean squared error, the profile likelihood
+//               of Gaussian noise
+//
+// Source: Bartlett, Desmond, Ferreira 2023, "Exhaustive symbolic regression". We differ in the
+// noise: theirs is given, ours is each formula's own, corrected for the constants it fits,
+// s^2 = SSE / (n - p), and never below the rounding of the target. A formula with n <= p has no
+// description length.
+#pragma once
+
+#include <optional>
+
+#include "algorithms/expression/differentiate.hpp"
+#include "algorithms/pysr/rows.hpp"
+
+namespace tribench::pysr {
+
+// Nats; none where the formula or a derivative is not finite or n <= p. Keeps nothing between
+// calls but `workspace`.
+std::optional<double> description_length(const Expression& formula, const Rows& rows,
+                                         Differentiator& workspace);
+
+// The part that needs no derivatives, with ln(n) / 2 a constant: for telling whether a search
+// still makes headway. `zero_loss` is the mean square of the target.
+double coarse_description_length(const Expression& formula, double mean_square, double zero_loss,
+                                 std::size_t rows);
+
+}  // namespace tribench::pysr

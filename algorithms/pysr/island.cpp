@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/pysr/island.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "algorithms/pysr/simplify.hpp"
+#include "algorithms/pysr/tape_edit.hpp"
+
+namespace tribench::pysr {
+namespace {
+
+// A child is fitted in two stages: a few steps to see what it promises, the rest only where its
+// loss is within this factor of the best formula that is no larger.
+constexpr int kFirstSteps = 4;
+constexpr int kFurtherSteps = 12;
+constexpr double kPromising = 2.0;
+
+// Places and terms ranked by one growth, and how many of the best are fitted.
+constexpr std::size_t kGrowthSamples = 48;
+constexpr std::size_t kGrowthChildren = 2;
+
+// Success rates of the mutations: smoothing and floor of PySR 2 (pysr/mutations.py).
+constexpr double kSuccessSmoothing = 0.02;
+constexpr double kSuccessFloor = 0.05;
+
+}  // namespace
+
+Island::Island(const Shared& shared)
+    : shared_(shared),
+      scorer_(shared.validator, shared.norm, shared.options.parsimony, shared.fit_exponents),
+      grower_(shared.operators, shared.library),
+      best_seen_(shared.options.max_size) {
+  success_.fill(1);
+}
+
+void Island::populate(RandomStream random, Budget& budget) {
+  const Options& options = shared_.options;
+  const Alphabet alphabet{shared_.operators, shared_.rows.columns.size()};
+  const SizeFrequencies frequencies(options.max_size);
+  const EpochState state{frequencies, best_seen_, options.max_size};
+  const Step step{state, shared_.rows, 1};
+  while (static_cast<int>(members_.size()) < options.population_size) {
+    std::optional<Member> member;
+    for (int attempt = 0; attempt < options.attempts && !member; ++attempt) {
+      Expression formula = random_formula(options.initial_operators, alphabet, random);
+      if (!shared_.validator.admits(formula, options.max_size)) continue;
+      member = scored(std::move(formula), step, true, budget);
+      if (budget.exhausted()) return;
+    }
+    if (!member) member = scored(Expression::constant(0), step, true, budget);
+    if (!member) return;
+    member->birth = clock_++;
+    best_seen_.offer(*member);
+    members_.push_back(std::move(*member));
+  }
+}
+
+void Island::evolve(const EpochState& state, RandomStream random, Budget& budget) {
+  const Options& options = shared_.options;
+  best_seen_ = HallOfFame(options.max_size);
+  const std::size_t all = shared_.rows.size();
+  const bool batched = options.batching == Batching::on && options.batch_size > 0 &&
+                       static_cast<std::size_t>(options.batch_size) < all;
+  Rows batch;
+  if (batched) {
+    batch = draw_batch(shared_.rows, static_cast<std::size_t>(options.batch_size), random);
+  }
+  const int events = (options.population_size + options.tournament_size - 1) /
+                     std::max(options.tournament_size, 1);
+  for (int cycle = 0; cycle < options.cycles; ++cycle) {
+    // From 1 down to 0.
+    const double temperature =
+        options.annealing && options.cycles > 1
+            ? 1 - static_cast<double>(cycle) / static_cast<double>(options.cycles - 1)
+            : 1;
+    const Step step{state, batched ? batch : shared_.rows, temperature};
+    for (int e = 0; e < events; ++e) {
+      if (budget.exhausted() || members_.empty()) return;
+      event(step, random, budget);
+    }
+  }
+  if (batched) {
+    // What was best on the batch is not yet known on all rows.
+    const std::vector<Member> batch_best = best_seen_.members();
+    best_seen_ = HallOfFame(options.max_size);
+    for (const Member& member : batch_best) {
+      const auto loss = scorer_.mean_square(member.formula, shared_.rows, budget);
+      if (loss) best_seen_.offer(scorer_.member_of(member.formula, *loss));
+    }
+  }
+  tidy(state, random, budget);
+}
+
+void Island::event(const Step& step, RandomStream& random, Budget& budget) {
+  if (random.chance(shared_.options.crossover_probability)) {
+    crossover_event(step, random, budget);
+  } else {
+    mutation_event(step, random, budget);
+  }
+}
+
+void Island::mutation_event(const Step& step, RandomStream& random, Budget& budget) {
+  const Options& options = shared_.options;
+  const Member parent = members_[run_tournament(members_, step.state.frequencies, options, random)];
+  MutationWeights weights = conditioned(options.weights, parent.formula, parent.size,
+                                        step.state.max_size, shared_.rows.columns.size());
+  if (options.adaptive_weights) {
+    for (std::size_t k = 0; k < kMutationKinds; ++k) {
+      weights[k] *= std::max(success_[k], kSuccessFloor);
+    }
+  }
+  const MutationKind kind = draw_kind(weights, random);
+  const bool exempt = kind == MutationKind::do_nothing || kind == MutationKind::simplify ||
+                      kind == MutationKind::optimize;
+  if (kind == MutationKind::do_nothing) return replace_oldest(parent, step);
+  std::optional<Member> best;
+  for (Expression& child : propose(kind, parent, step, random, budget)) {
+    std::optional<Member> member = scored(std::move(child), step, exempt, budget);
+    if (budget.exhausted()) return;
+    if (!member) continue;
+    best_seen_.offer(*member);
+    if (!best || member->cost < best->cost) best = std::move(member);
+  }
+  const bool success =
+      best && (exempt || accepts(acceptance(best->cost, parent.cost, best->size, parent.size,
+                                            step.temperature, step.state.frequencies, options),
+                                 random));
+  learn(kind, success && best->cost < parent.cost);
+  if (success) {
+    accepted_[index_of(kind)] += 1;
+    replace_oldest(std::move(*best), step);
+  } else if (!options.skip_failures) {
+    replace_oldest(parent, step);
+  }
+}
+
+void Island::crossover_event(const Step& step, RandomStream& random, Budget& budget) {
+  const Options& options = shared_.options;
+  const SizeFrequencies& frequencies = step.state.frequencies;
+  const Member a = members_[run_tournament(members_, frequencies, options, random)];
+  const Member b = members_[run_tournament(members_, frequencies, options, random)];
+  for (int attempt = 0; attempt < options.attempts; ++attempt) {
+    auto [first, second] = cross(a.formula, b.formula, random);
+    if (!shared_.validator.admits(first, step.state.max_size) ||
+        !shared_.validator.admits(second, step.state.max_size)) {
+      continue;
+    }
+    for (Expression* child : {&first, &second}) {
+      std::optional<Member> member = scored(std::move(*child), step, false, budget);
+      if (budget.exhausted()) return;
+      if (member) replace_oldest(std::move(*member), step);
+    }
+    return;
+  }
+}
+
+std::vector<Expression> Island::structural(MutationKind kind, const Member& parent,
+                                           const Step& step, RandomStream& random) {
+  const Options& options = shared_.options;
+  const Alphabet alphabet{shared_.operators, shared_.rows.columns.size()};
+  const MutationSettings settings{step.temperature, options.perturbation_factor,
+                                  options.negate_probability, options.compat, step.state.max_size};
+  for (int attempt = 0; attempt < options.attempts; ++attempt) {
+    std::optional<Expression> child = mutate(kind, parent.formula, alphabet, settings, random);
+    if (!child) return {};
+    if (options.fit_children) *child = simplified(*child);
+    if (!shared_.validator.admits(*child, step.state.max_size)) continue;
+    // Another draw of the same kind rather than a structure that has been fitted before.
+    if (options.novelty && kind != MutationKind::mutate_constant &&
+        seen_.contains(structure_hash(*child))) {
+      continue;
+    }
+    return {std::move(*child)};
+  }
+  return {};
+}
+
+std::vector<Expression> Island::propose(MutationKind kind, const Member& parent, const Step& step,
+                                        RandomStream& random, Budget& budget) {
+  std::vector<Expression> children;
+  if (kind == MutationKind::grow || kind == MutationKind::prune) {
+    std::vector<Proposal> proposals = kind == MutationKind::grow
+                                          ? grower_.grow(parent.formula, step.rows, kGrowthSamples,
+                                                         2 * kGrowthChildren, random, budget)
+                                          : grower_.prune(parent.formula, step.rows, budget);
+    for (Proposal& proposal : proposals) {
+      Expression child = simplified(proposal.formula);
+      if (!shared_.validator.admits(child, step.state.max_size)) continue;
+      if (shared_.options.novelty && seen_.contains(structure_hash(child))) continue;
+      children.push_back(std::move(child));
+      if (children.size() == kGrowthChildren) break;
+    }
+    return children;
+  }
+  if (kind == MutationKind::simplify || kind == MutationKind::optimize) {
+    Expression child = kind == MutationKind::simplify ? simplified(parent.formula) : parent.formula;
+    if (kind == MutationKind::optimize) {
+      scorer_.fit(child, step.rows, shared_.options.optimize_iterations, budget);
+    }
+    if (shared_.validator.admits(child, step.state.max_size)) children.push_back(std::move(child));
+    return children;
+  }
+  return structural(kind, parent, step, random);
+}
+
+bool Island::is_new(const Expression& child) { return seen_.insert(structure_hash(child)).second; }
+
+std::optional<Member> Island::scored(Expression child, const Step& step, bool exempt,
+                                     Budget& budget) {
+  std::optional<double> loss;
+  if (shared_.options.fit_children) {
+    const bool first_time = is_new(child);
+    if (!first_time && !exempt && shared_.options.novelty) return std::nullopt;
+    loss = fitted_loss(child, step, budget);
+  } else {
+    loss = scorer_.mean_square(child, step.rows, budget);
+  }
+  if (!loss) return std::nullopt;
+  return scorer_.member_of(std::move(child), *loss);
+}
+
+std::optional<double> Island::fitted_loss(Expression& child, const Step& step, Budget& budget) {
+  std::optional<double> loss = scorer_.fit(child, step.rows, kFirstSteps, budget);
+  if (!loss) return std::nullopt;
+  if (shared_.options.linear_scaling) loss = scaled_loss(child, step, *loss, budget);
+  if (!loss) return std::nullopt;
+  const std::optional<double> best = step.state.hall.best_loss_up_to(shared_.validator.size(child));
+  if (best && *loss > kPromising * *best) return loss;
+  return scorer_.fit(child, step.rows, kFurtherSteps, budget);
+}
+
+std::optional<double> Island::scaled_loss(Expression& child, const Step& step, double loss,
+                                          Budget& budget) {
+  // A child far from its target may lack no more than a scale and an offset.
+  const std::optional<double> best = step.state.hall.best_loss_up_to(step.state.max_size);
+  if (best && loss <= kPromising * *best) return loss;
+  if (arity(child.node(child.root()).op) == 0) return loss;
+  Expression scaled = simplified(
+      Expression::binary(Op::add, Expression::binary(Op::mul, Expression::constant(0.9), child),
+                         Expression::constant(0.1)));
+  if (scaled.size() == child.size()) return loss;
+  if (!shared_.validator.admits(scaled, step.state.max_size)) return loss;
+  if (!is_new(scaled)) return loss;
+  const std::optional<double> scaled_loss = scorer_.fit(scaled, step.rows, kFirstSteps, budget);
+  if (budget.exhausted()) return std::nullopt;
+  if (!scaled_loss || *scaled_loss > 0.5 * loss) return loss;
+  child = std::move(scaled);
+  return scaled_loss;
+}
+
+void Island::replace_oldest(Member child, const Step&) {
+  child.birth = clock_++;
+  best_seen_.offer(child);
+  members_[oldest_of(members_)] = std::move(child);
+}
+
+void Island::optimise(Member& member, RandomStream& random, Budget& budget) {
+  const Options& options = shared_.options;
+  Expression best = member.formula;
+  std::optional<double> best_loss =
+      scorer_.fit(best, shared_.rows, options.optimize_iterations, budget);
+  for (int restart = 0; restart < options.optimize_restarts; ++restart) {
+    Expression trial = member.formula;
+    for (const std::size_t place : trial.constant_positions()) {
+      if (is_exponent(trial, place)) continue;
+      const double value = trial.node(place).value;
+      // A zero would never move under a relative perturbation (SymbolicRegression.jl #637).
+      trial.set_constant(place, value == 0 ? random.normal() : value * (1 + 0.5 * random.normal()));
+    }
+    const auto loss = scorer_.fit(trial, shared_.rows, options.optimize_iterations, budget);
+    if (loss && (!best_loss || *loss < *best_loss)) {
+      best_loss = loss;
+      best = std::move(trial);
+    }
+  }
+  if (!best_loss) return;
+  Member optimised = scorer_.member_of(std::move(best), *best_loss);
+  if (!(optimised.cost < member.cost)) return;
+  optimised.birth = clock_++;
+  member = std::move(optimised);
+}
+
+void Island::tidy(const EpochState& state, RandomStream& random, Budget& budget) {
+  const Options& options = shared_.options;
+  for (Member& member : members_) {
+    if (budget.exhausted()) return;
+    Expression simpler = simplified(member.formula);
+    const bool shorter =
+        simpler.size() < member.formula.size() && shared_.validator.admits(simpler, state.max_size);
+    const bool batched = options.batching == Batching::on;
+    if (shorter || batched) {
+      if (!shorter) simpler = member.formula;
+      const auto loss = scorer_.mean_square(simpler, shared_.rows, budget);
+      if (loss) {
+        const std::uint64_t birth = member.birth;
+        member = scorer_.member_of(std::move(simpler), *loss);
+        member.birth = birth;
+      }
+    }
+    if (random.chance(options.optimize_probability)) optimise(member, random, budget);
+    best_seen_.offer(member);
+  }
+}
+
+void Island::learn(MutationKind kind, bool success) {
+  double& rate = success_[index_of(kind)];
+  rate += kSuccessSmoothing * ((success ? 1.0 : 0.0) - rate);
+}
+
+}  // namespace tribench::pysr

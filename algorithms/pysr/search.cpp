@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/pysr/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "algorithms/expression/text.hpp"
+#include "algorithms/pysr/description_length.hpp"
+#include "algorithms/pysr/island.hpp"
+#include "algorithms/pysr/migration.hpp"
+#include "algorithms/pysr/refinement.hpp"
+#include "algorithms/pysr/simplify.hpp"
+
+namespace tribench::pysr {
+namespace {
+
+// Kept back for the polish of the front.
+constexpr std::uint64_t kPolishShare = 5;  // a fifth
+// A description length that falls by less than this many nats is no headway.
+constexpr double kHeadway = 1.0;
+
+// The size that is allowed once `elapsed` of the search is over.
+int allowed_size(const Options& options, double elapsed) {
+  if (options.warm_up <= 0 || elapsed > options.warm_up) return options.max_size;
+  return 3 + static_cast<int>(std::floor((options.max_size - 3) * elapsed / options.warm_up));
+}
+
+int automatic_batch(std::size_t rows) {
+  if (rows < 5'000) return 128;
+  return rows < 50'000 ? 256 : 512;
+}
+
+// Options with what depends on the data decided.
+Options settled(Options options, std::size_t rows) {
+  if (options.batching == Batching::automatic) {
+    options.batching = rows > 1000 ? Batching::on : Batching::off;
+  }
+  if (options.batch_size == 0) options.batch_size = automatic_batch(rows);
+  options.max_depth = std::min(options.max_depth, options.max_size);
+  return options;
+}
+
+class Search {
+ public:
+  Search(const Options& options, FitContext& context, const Rows& all, const Rows& sample)
+      : options_(options),
+        context_(context),
+        all_(all),
+        rows_(sample),
+        validator_(options, context.operators, context.data.inputs),
+        library_(make_term_library(rows_, context.operators)),
+        shared_{options_,
+                context.operators,
+                validator_,
+                rows_,
+                library_,
+                loss_norm(rows_, options.profile == Profile::native ? 0.0 : 0.01),
+                context.operators.allows(Op::pow)},
+        hall_(options.max_size),
+        frequencies_(options.max_size) {}
+
+  FitResult run();
+
+ private:
+  void start();
+  void run_epoch(int epoch);
+  void meet(int epoch);
+  void offer_guesses();
+  void report();
+  bool has_converged();
+  template <typename Work>
+  void on_all_islands(Work work);
+
+  Options options_;
+  FitContext& context_;
+  const Rows& all_;
+  const Rows& rows_;
+  Validator validator_;
+  TermLibrary library_;
+  Shared shared_;
+  std::vector<std::unique_ptr<Island>> islands_;
+  HallOfFame hall_;
+  SizeFrequencies frequencies_;
+  std::vector<Member> guesses_;
+  double best_reported_ = std::numeric_limits<double>::infinity();
+  double best_length_ = std::numeric_limits<double>::infinity();
+  int stale_epochs_ = 0;
+};
+
+// Every island works on its own share of what is left, so that no one's outcome depends on who
+// runs first.
+template <typename Work>
+void Search::on_all_islands(Work work) {
+  const auto count = static_cast<int>(islands_.size());
+  const std::uint64_t reserve = context_.budget.remaining() / kPolishShare;
+  const std::uint64_t each =
+      (context_.budget.remaining() - reserve) / static_cast<std::uint64_t>(count);
+  std::vector<Budget> shares(islands_.size(), context_.budget.share(each));
+#pragma omp parallel for schedule(dynamic) \
+    num_threads(std::max(context_.threads, 1)) if (context_.threads > 1)
+  for (int i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    work(k, *islands_[k], shares[k]);
+  }
+  for (const Budget& share : shares) context_.budget.settle(share);
+}
+
+void Search::start() {
+  for (int i = 0; i < options_.populations; ++i) {
+    islands_.push_back(std::make_unique<Island>(shared_));
+  }
+  const RandomStream stream = context_.random.split("populate");
+  on_all_islands([&](std::size_t i, Island& island, Budget& budget) {
+    island.populate(stream.split(i), budget);
+  });
+  for (const auto& island : islands_) hall_.offer(island->best_seen());
+  offer_guesses();
+}
+
+void Search::offer_guesses() {
+  Scorer scorer(validator_, shared_.norm, options_.parsimony, shared_.fit_exponents);
+  std::vector<std::string> names;
+  for (const Input& input : context_.data.inputs) names.push_back(input.name);
+  std::string_view rest = options_.guesses;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(';'), rest.size());
+    Expression guess = parse(rest.substr(0, end), names);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    const auto loss = scorer.fit(guess, rows_, 30, context_.budget);
+    if (!loss || !validator_.admits(guess, options_.max_size)) continue;
+    guesses_.push_back(scorer.member_of(std::move(guess), *loss));
+    hall_.offer(guesses_.back());
+  }
+}
+
+void Search::run_epoch(int epoch) {
+  const double elapsed = static_cast<double>(epoch) / options_.iterations;
+  const EpochState state{frequencies_, hall_, allowed_size(options_, elapsed)};
+  const RandomStream stream =
+      context_.random.split("evolve").split(static_cast<std::uint64_t>(epoch));
+  on_all_islands([&](std::size_t i, Island& island, Budget& budget) {
+    island.evolve(state, stream.split(i), budget);
+  });
+}
+
+void Search::meet(int epoch) {
+  std::vector<Member> peers;
+  for (const auto& island : islands_) {
+    for (const Member& member : island->members()) {
+      frequencies_.count(member.size);
+      hall_.offer(member);
+    }
+    hall_.offer(island->best_seen());
+    const std::vector<Member> best = best_members(island->members(), options_.top_n);
+    peers.insert(peers.end(), best.begin(), best.end());
+  }
+  const std::vector<Member> front = hall_.front();
+  const RandomStream stream =
+      context_.random.split("migrate").split(static_cast<std::uint64_t>(epoch));
+  for (std::size_t i = 0; i < islands_.size(); ++i) {
+    RandomStream random = stream.split(i);
+    Island& island = *islands_[i];
+    migrate(peers, island.members(), options_.replaced_by_peers, island.clock(), random);
+    migrate(front, island.members(), options_.replaced_by_front, island.clock(), random);
+    migrate(guesses_, island.members(), options_.replaced_by_guesses, island.clock(), random);
+  }
+  frequencies_.shrink_to(options_.frequency_window);
+  frequencies_.normalise();
+}
+
+void Search::report() {
+  if (context_.progress == nullptr) return;
+  const auto best = hall_.best_loss_up_to(options_.max_size);
+  if (!best || !(*best < best_reported_)) return;
+  best_reported_ = *best;
+  context_.progress->improved(*best, context_.budget.spent());
+}
+
+bool Search::has_converged() {
+  if (options_.patience == 0) return false;
+  double shortest = std::numeric_limits<double>::infinity();
+  const double zero = zero_loss(rows_);
+  for (const Member& member : hall_.front()) {
+    shortest = std::min(shortest,
+                        coarse_description_length(member.formula, member.loss, zero, rows_.size()));
+  }
+  stale_epochs_ = shortest < best_length_ - kHeadway ? 0 : stale_epochs_ + 1;
+  best_length_ = std::min(best_length_, shortest);
+  return stale_epochs_ >= options_.patience;
+}
+
+FitResult Search::run() {
+  start();
+  report();
+  for (int epoch = 0; epoch < options_.iterations; ++epoch) {
+    if (context_.budget.remaining() == 0 || context_.budget.out_of_time()) break;
+    const std::uint64_t before = context_.budget.spent();
+    run_epoch(epoch);
+    meet(epoch);
+    report();
+    // Nothing could be spent: what is left is the reserve.
+    if (context_.budget.spent() == before) break;
+    if (has_converged()) break;
+  }
+  const TermLibrary* library = &library_;
+  TermLibrary full_library;
+  if (&all_ != &rows_) {
+    full_library = make_term_library(all_, context_.operators);
+    library = &full_library;
+  }
+  Refinement refinement(options_, context_.operators, validator_, all_, *library,
+                        shared_.fit_exponents);
+  const std::vector<Candidate> front =
+      refinement.front_of(hall_.front(), context_.random.split("refine"), context_.budget);
+  FitResult result;
+  std::vector<FrontPoint> points;
+  for (const Candidate& candidate : front) {
+    result.front.push_back(candidate.formula);
+    points.push_back(candidate.point);
+  }
+  result.chosen = select(points, options_.selection);
+  result.reason = context_.budget.exhausted() ? StopReason::budget : StopReason::converged;
+  return result;
+}
+
+FitResult constant_result(const Rows& rows, StopReason reason, std::string note) {
+  double mean = 0;
+  for (const double value : rows.target) mean += value / static_cast<double>(rows.size());
+  return {{Expression::constant(mean)}, 0, reason, std::move(note)};
+}
+
+}  // namespace
+
+FitResult search(const Options& given, FitContext& context) {
+  const Rows all = complete_rows(context.data);
+  if (all.size() == 0) return FitResult::unsupported("no row has a finite target and inputs");
+  if (std::ranges::adjacent_find(all.target, std::ranges::not_equal_to{}) == all.target.end()) {
+    return {{Expression::constant(all.target[0])}, 0, StopReason::converged, "constant target"};
+  }
+  if (context.budget.remaining() == 0 || context.operators.operators().empty()) {
+    return constant_result(all, StopReason::budget, "no budget");
+  }
+  const Options options = settled(given, all.size());
+  const auto wanted = static_cast<std::size_t>(options.search_rows);
+  if (wanted == 0 || wanted >= all.size()) return Search(options, context, all, all).run();
+  RandomStream random = context.random.split("sample");
+  const Rows sample = draw_sample(all, wanted, random);
+  return Search(options, context, all, sample).run();
+}
+
+}  // namespace tribench::pysr

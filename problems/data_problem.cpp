@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "problems/data_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "foundation/error.hpp"
+#include "problems/channel_names.hpp"
+#include "problems/table.hpp"
+
+namespace tribench {
+namespace {
+
+double correlation(std::span<const double> a, std::span<const double> b) {
+  const auto n = static_cast<double>(a.size());
+  double mean_a = 0;
+  double mean_b = 0;
+  for (std::size_t r = 0; r < a.size(); ++r) {
+    mean_a += a[r] / n;
+    mean_b += b[r] / n;
+  }
+  double ab = 0;
+  double aa = 0;
+  double bb = 0;
+  for (std::size_t r = 0; r < a.size(); ++r) {
+    ab += (a[r] - mean_a) * (b[r] - mean_b);
+    aa += (a[r] - mean_a) * (a[r] - mean_a);
+    bb += (b[r] - mean_b) * (b[r] - mean_b);
+  }
+  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
+}
+
+std::vector<Input> make_inputs(const Dataset& data, const std::string& target,
+                               std::span<const std::string> names) {
+  if (names.empty()) throw_bad_input("no input is given", data.name, "name at least one column");
+  std::vector<Input> inputs;
+  for (const std::string& name : names) {
+    if (name == target) {
+      throw_bad_input(fmt::format("'{}' is the target and an input", name), data.name,
+                      "remove it from the inputs");
+    }
+    for (const Input& known : inputs) {
+      if (known.name == name) {
+        throw_bad_input(fmt::format("input '{}' is named twice", name), data.name, "name it once");
+      }
+    }
+    const std::vector<double> values = input_values(data, name);
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const NameReading reading = read_channel_name(name);
+    const Channel* channel = data.find(name);
+    inputs.push_back({name,
+                      channel != nullptr ? channel->unit : reading.unit,
+                      channel != nullptr ? channel->role : reading.role,
+                      *low,
+                      *high,
+                      {}});
+  }
+  link_signs(inputs);
+  return inputs;
+}
+
+Table whole_table(const Dataset& data, std::span<const Input> inputs, const std::string& target) {
+  const std::vector<char> all(data.movement_names.size(), 1);
+  return make_table({data, {}}, inputs, target, all);
+}
+
+}  // namespace
+
+void refuse_opposing_friction(const Dataset& data, std::string_view target) {
+  const Channel& friction = data.at(target);
+  const Channel* velocity = data.find(Role::velocity);
+  if (friction.role != Role::friction_torque || velocity == nullptr) return;
+  const double measured = correlation(friction.values, velocity->values);
+  if (measured >= 0) return;
+  throw_bad_input(
+      fmt::format("'{}' opposes '{}' (correlation {:.2f}); friction is positive with velocity here",
+                  friction.name, velocity->name, measured),
+      data.name, "give --flip-sign to change the sign of the torques");
+}
+
+void flip_torques(Dataset& data) {
+  for (Channel& channel : data.channels) {
+    if (channel.role == Role::gravity_sign || is_torque_like(channel.role)) {
+      for (double& value : channel.values) value = value == 0 ? value : -value;
+    }
+  }
+}
+
+Problem make_data_problem(const Dataset& train, const Dataset* test, const std::string& target,
+                          std::span<const std::string> inputs) {
+  const Channel& judged = train.at(target);
+  refuse_opposing_friction(train, target);
+  Problem problem;
+  problem.name = train.name;
+  problem.summary = fmt::format("{} from {}", target, fmt::join(inputs, ", "));
+  problem.dataset = train.name;
+  problem.target = target;
+  problem.target_unit = judged.unit;
+  problem.inputs = make_inputs(train, target, inputs);
+  std::vector<std::size_t> places(problem.inputs.size());
+  for (std::size_t j = 0; j < places.size(); ++j) places[j] = j;
+  problem.stages.push_back({"fit", std::move(places), whole_table(train, problem.inputs, target)});
+  if (test != nullptr) problem.test = whole_table(*test, problem.inputs, target);
+  problem.test.columns.resize(problem.inputs.size());
+  return problem;
+}
+
+}  // namespace tribench

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include "reports/loop_words.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "reports/figures.hpp"
+
+namespace tribench {
+namespace {
+
+using nlohmann::json;
+using Words = std::pair<std::string_view, std::string_view>;
+
+constexpr std::array<Words, 17> kFamilies = {{
+    {"asymmetry", "a difference between the two directions"},
+    {"stribeck", "the Stribeck effect (friction falls as motion starts)"},
+    {"nonlinear_viscous", "viscous friction that is not linear in velocity"},
+    {"load_coulomb", "Coulomb friction that grows with load"},
+    {"load_viscous", "viscous friction that grows with load"},
+    {"power_quadrant_gain",
+     "friction that differs between driving and back-driving, in "
+     "proportion to the load"},
+    {"power_quadrant_step", "friction that steps where the load changes sign"},
+    {"payload", "an error of payload or gravity model"},
+    {"output_ripple", "ripple once or a few times per turn of the link"},
+    {"gear_ripple", "ripple of the gear"},
+    {"temperature", "temperature"},
+    {"drift", "a drift through the campaign"},
+    {"hysteresis", "hysteresis after a reversal (presliding)"},
+    {"lag", "friction that lags behind velocity"},
+    {"inertia", "an error of inertia"},
+    {"coupling", "coupling to other joints"},
+    {"offset", "a constant offset"},
+}};
+
+constexpr std::array<Words, 9> kMovements = {{
+    {"R1", "repeat at least 5 settings twice, hours apart"},
+    {"R2", "drive both directions over the same stroke and posture"},
+    {"R3", "drive in two postures, or with a known payload"},
+    {"R4", "drive reversals and a multisine that covers velocity and acceleration"},
+    {"R5", "drive in random order with one cool-down"},
+    {"R6", "drive slow passes with 20 samples a gear ripple at least"},
+    {"R7", "move the other joints one at a time, in 20 separate stretches"},
+    {"R8", "hold still, approached from both sides"},
+    {"R9", "record 30 movements at least"},
+}};
+
+template <std::size_t N>
+std::string_view words_for(const std::array<Words, N>& words, std::string_view name) {
+  for (const auto& [key, text] : words) {
+    if (key == name) return text;
+  }
+  return {};
+}
+
+std::string alias_clause(const json& effect) {
+  std::vector<std::string> exact;
+  std::vector<std::string> near;
+  for (const json& alias : items_of(effect, "alias")) {
+    (flag_of(alias, "exact") ? exact : near).push_back(family_words(text_of(alias, "family")));
+  }
+  std::string text;
+  if (!exact.empty()) {
+    text +=
+        fmt::format(" In these data it cannot be told from {} at all.", fmt::join(exact, " or "));
+  }
+  if (!near.empty()) text += fmt::format(" It could also be {}.", fmt::join(near, " or "));
+  return text;
+}
+
+std::string request_clause(const json& effect) {
+  std::vector<std::string> requests;
+  for (const json& request : items_of(effect, "separate_by")) {
+    if (request.is_string()) requests.push_back(movement_words(request.get<std::string>()));
+  }
+  return requests.empty() ? std::string()
+                          : fmt::format(" To settle it: {}.", fmt::join(requests, "; "));
+}
+
+std::string unit_of(const json& loop) {
+  const std::string unit = text_of(member_of(loop, "pictures"), "unit");
+  return unit.empty() ? "N m" : unit;
+}
+
+}  // namespace
+
+double number_of(const json& object, const char* key) {
+  const auto found = object.is_object() ? object.find(key) : object.end();
+  if (!object.is_object() || found == object.end() || !found->is_number()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return found->get<double>();
+}
+
+double element_of(const json& array, std::size_t i) {
+  if (!array.is_array() || i >= array.size() || !array[i].is_number()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return array[i].get<double>();
+}
+
+std::string text_of(const json& object, const char* key) {
+  if (!object.is_object()) return {};
+  const auto found = object.find(key);
+  if (found == object.end() || found->is_null()) return {};
+  if (found->is_string()) return found->get<std::string>();
+  return found->is_number_float() ? figure(found->get<double>()) : found->dump();
+}
+
+json items_of(const json& object, const char* key) {
+  if (!object.is_object() || !object.contains(key) || !object[key].is_array()) return json::array();
+  return object[key];
+}
+
+json member_of(const json& object, const char* key) {
+  if (!object.is_object() || !object.contains(key) || !object[key].is_object()) {
+    return json::object();
+  }
+  return object[key];
+}
+
+bool flag_of(const json& object, const char* key) {
+  return object.is_object() && object.contains(key) && object[key].is_boolean() &&
+         object[key].get<bool>();
+}
+
+std::string family_words(std::string_view family) {
+  const std::string_view words = words_for(kFamilies, family);
+  return std::string(words.empty() ? family : words);
+}
+
+std::string movement_words(std::string_view request) {
+  const std::string_view words = words_for(kMovements, request);
+  return words.empty() ? std::string(request) : fmt::format("{} ({})", words, request);
+}
+
+std::string parameters_of(const json& effect) {
+  std::vector<std::string> parts;
+  for (const json& parameter : items_of(effect, "params")) {
+    parts.push_back(fmt::format(
+        "{} = {} ({} .. {})", text_of(parameter, "name"), figure(number_of(parameter, "value")),
+        figure(number_of(parameter, "lo")), figure(number_of(parameter, "hi"))));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string verdict_sentence(const json& loop) {
+  const std::string verdict = text_of(loop, "verdict");
+  const std::size_t count = items_of(loop, "effects").size();
+  if (verdict == "NONE") return "Nothing is missing: the residual shows no structure.";
+  if (verdict == "EFFECTS") {
+    return count == 1 ? "One effect was missing and has been added."
+                      : fmt::format("{} effects were missing and have been added.", count);
+  }
+  if (verdict == "UNKNOWN") {
+    return count == 0 ? "Something is missing that is none of the known effects."
+                      : fmt::format(
+                            "{} added, and something is still missing that is none of the "
+                            "known effects.",
+                            count == 1 ? "One effect was" : fmt::format("{} effects were", count));
+  }
+  return verdict.empty() ? "No verdict was reached." : fmt::format("Verdict: {}.", verdict);
+}
+
+std::string effect_sentence(const json& effect, const json& loop) {
+  const std::string family = text_of(effect, "family");
+  std::string text = fmt::format("**{}**, {}:", family, family_words(family));
+  const double rms = number_of(effect, "rms_contribution");
+  if (!std::isnan(rms)) text += fmt::format(" contributes {} {} rms", figure(rms), unit_of(loop));
+  const std::string parameters = parameters_of(effect);
+  if (!parameters.empty()) text += fmt::format(", with {} at 95 %", parameters);
+  const double p = number_of(effect, "p_adj");
+  if (!std::isnan(p)) text += fmt::format("; p = {} after correction for the search", figure(p, 2));
+  if (flag_of(effect, "provisional")) {
+    text += "; provisional, because it shares an input with what is still unexplained";
+  }
+  return text + '.' + alias_clause(effect) + request_clause(effect);
+}
+
+std::string leftover_sentence(const json& loop) {
+  const json leftover = member_of(loop, "leftover");
+  const json inputs = items_of(leftover, "inputs");
+  if (text_of(loop, "verdict") != "UNKNOWN" || inputs.empty()) return {};
+  std::vector<std::string> names;
+  for (const json& input : inputs) {
+    if (input.is_string()) names.push_back(input.get<std::string>());
+  }
+  return fmt::format("What is still unexplained depends on **{}** (p = {}).",
+                     fmt::join(names, " and "), figure(number_of(leftover, "p"), 2));
+}
+
+}  // namespace tribench

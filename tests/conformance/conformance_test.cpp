@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+//
+// What every registered method must keep to, whatever it is: the rules of regressor.hpp.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "algorithms/expression/text.hpp"
+#include "algorithms/registry.hpp"
+
+namespace tribench {
+namespace {
+
+// Velocity, its sign and a target, as a friction problem has them.
+struct Sample {
+  std::vector<Input> inputs;
+  std::vector<std::vector<double>> columns;
+  std::vector<const double*> pointers;
+  std::vector<double> target;
+  std::vector<int> movement;
+
+  TrainingData data() {
+    pointers.clear();
+    for (const auto& column : columns) pointers.push_back(column.data());
+    return {inputs, pointers, target, movement};
+  }
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const Input& input : inputs) names.push_back(input.name);
+    return names;
+  }
+};
+
+Sample friction_sample(std::size_t rows, double scale = 1) {
+  Sample sample;
+  sample.inputs = {{"v", "rad/s", Role::velocity, -2, 2, std::nullopt},
+                   {"sgn_v", "-", Role::velocity_sign, -1, 1, 0}};
+  sample.columns.resize(2);
+  RandomStream random(key_of("conformance"));
+  for (std::size_t r = 0; r < rows; ++r) {
+    const double v =
+        rows == 1 ? 0.5 : -2 + 4 * (static_cast<double>(r) + 0.5) / static_cast<double>(rows);
+    const double s = v > 0 ? 1 : -1;
+    sample.columns[0].push_back(v);
+    sample.columns[1].push_back(s);
+    sample.target.push_back(
+        scale * (6 * s + 3 * v + 2 * s * std::exp(-5 * std::abs(v)) + 0.05 * random.normal()));
+    sample.movement.push_back(static_cast<int>(r / 4));
+  }
+  return sample;
+}
+
+constexpr std::uint64_t kEvaluations = 20'000'000;
+
+struct Setting {
+  std::uint64_t evaluations = kEvaluations;
+  int threads = 1;
+  std::uint64_t key = 7;
+  std::string operators = "paper";
+};
+
+struct Outcome {
+  FitResult result;
+  std::uint64_t spent = 0;
+};
+
+Outcome run(const Registry& registry, const std::string& name, Sample& sample,
+            const Setting& setting = {}) {
+  const auto method = registry.make(name);
+  const TrainingData data = sample.data();
+  Budget budget({setting.evaluations, 20});
+  FitContext context{data,
+                     find_operator_set(setting.operators),
+                     budget,
+                     RandomStream(setting.key),
+                     setting.threads,
+                     nullptr};
+  Outcome outcome{method->fit(context), 0};
+  outcome.spent = budget.spent();
+  return outcome;
+}
+
+std::vector<std::string> texts(const FitResult& result, const Sample& sample) {
+  std::vector<std::string> texts;
+  for (const Expression& formula : result.front) texts.push_back(print(formula, sample.names()));
+  return texts;
+}
+
+// Legal: the place of the choice is in the front, the formulas read back as themselves.
+void expect_legal(const FitResult& result, const Sample& sample) {
+  if (result.reason == StopReason::unsupported) {
+    EXPECT_FALSE(result.note.empty()) << "unsupported without a reason";
+    return;
+  }
+  if (!result.front.empty()) {
+    EXPECT_LT(result.chosen, result.front.size());
+  }
+  for (const Expression& formula : result.front) {
+    EXPECT_LE(formula.columns_used(), sample.inputs.size());
+    EXPECT_EQ(parse(print(formula, sample.names()), sample.names()), formula);
+  }
+}
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  const Registry registry;
+  for (const AlgorithmEntry& entry : registry.entries()) names.push_back(entry.name);
+  return names;
+}
+
+class EveryMethod : public testing::TestWithParam<std::string> {
+ protected:
+  Registry registry_;
+};
+
+TEST_P(EveryMethod, GivesTheSameFrontForOneTwoAndEightThreads) {
+  Sample sample = friction_sample(80);
+  Setting setting;
+  setting.evaluations = 30'000'000;
+  const Outcome one = run(registry_, GetParam(), sample, setting);
+  for (const int threads : {2, 8}) {
+    setting.threads = threads;
+    const Outcome many = run(registry_, GetParam(), sample, setting);
+    EXPECT_EQ(texts(many.result, sample), texts(one.result, sample)) << threads << " threads";
+    EXPECT_EQ(many.result.chosen, one.result.chosen);
+    EXPECT_EQ(many.spent, one.spent) << threads << " threads";
+  }
+}
+
+TEST_P(EveryMethod, ReturnsAtOnceWithoutABudget) {
+  Sample sample = friction_sample(80);
+  Setting setting;
+  setting.evaluations = 0;
+  const double start = process_cpu_seconds();
+  const Outcome outcome = run(registry_, GetParam(), sample, setting);
+  EXPECT_LT(process_cpu_seconds() - start, 0.5);
+  EXPECT_EQ(outcome.spent, 0u);
+  expect_legal(outcome.result, sample);
+}
+
+TEST_P(EveryMethod, KeepsItsBudget) {
+  Sample sample = friction_sample(80);
+  for (const std::uint64_t evaluations : {1'000u, 100'000u, 3'000'000u}) {
+    Setting setting;
+    setting.evaluations = evaluations;
+    const Outcome outcome = run(registry_, GetParam(), sample, setting);
+    EXPECT_LE(outcome.spent, evaluations + evaluations / 100);
+    expect_legal(outcome.result, sample);
+  }
+}
+
+TEST_P(EveryMethod, AnswersDataWithNaN) {
+  Sample sample = friction_sample(80);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  sample.target[3] = nan;
+  sample.columns[0][10] = nan;
+  sample.target[11] = std::numeric_limits<double>::infinity();
+  expect_legal(run(registry_, GetParam(), sample).result, sample);
+  for (double& value : sample.target) value = nan;
+  expect_legal(run(registry_, GetParam(), sample).result, sample);
+}
+
+TEST_P(EveryMethod, AnswersAConstantTarget) {
+  Sample sample = friction_sample(80);
+  for (double& value : sample.target) value = 3.25;
+  expect_legal(run(registry_, GetParam(), sample).result, sample);
+}
+
+TEST_P(EveryMethod, AnswersASingleRow) {
+  Sample sample = friction_sample(1);
+  expect_legal(run(registry_, GetParam(), sample).result, sample);
+}
+
+TEST_P(EveryMethod, AnswersTargetsOfAnyScale) {
+  for (const double scale : {1e6, 1e-6}) {
+    Sample sample = friction_sample(80, scale);
+    const Outcome outcome = run(registry_, GetParam(), sample);
+    expect_legal(outcome.result, sample);
+    if (outcome.result.front.empty()) continue;
+    const Expression& chosen = outcome.result.front[outcome.result.chosen];
+    std::vector<double> values(80);
+    Evaluator().evaluate(chosen, sample.data().table(), values);
+    double error = 0;
+    double size = 0;
+    for (std::size_t r = 0; r < values.size(); ++r) {
+      error += std::abs(values[r] - sample.target[r]);
+      size += std::abs(sample.target[r]);
+    }
+    EXPECT_LE(error, size) << "worse than predicting 0 at scale " << scale;
+  }
+}
+
+TEST_P(EveryMethod, KeepsToItsOperatorSetAndRepeatsNoFormula) {
+  if (registry_.find(GetParam()).fixed_form) GTEST_SKIP() << "a fixed form has no operator set";
+  for (const std::string set : {"paper", "paper+div", "full"}) {
+    Sample sample = friction_sample(80);
+    Setting setting;
+    setting.operators = set;
+    setting.evaluations = 6'000'000;
+    const Outcome outcome = run(registry_, GetParam(), sample, setting);
+    for (const Expression& formula : outcome.result.front) {
+      EXPECT_TRUE(find_operator_set(set).admits(formula))
+          << set << ": " << print(formula, sample.names());
+    }
+    std::vector<std::string> formulas = texts(outcome.result, sample);
+    std::ranges::sort(formulas);
+    EXPECT_EQ(std::ranges::adjacent_find(formulas), formulas.end());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, EveryMethod, testing::ValuesIn(method_names()),
+                         [](const auto& info) {
+                           std::string name = info.param;
+                           for (char& c : name)
+                             c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace tribench

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/paths.hpp"
+
+namespace tribench {
+namespace {
+
+struct Answer {
+  int exit = -1;
+  std::string output;
+};
+
+Answer run_check(const std::string& arguments) {
+  const std::string command = testing::program().string() + " check " + arguments + " 2>&1";
+  FILE* pipe = popen(command.c_str(), "r");
+  Answer answer;
+  std::array<char, 4096> buffer{};
+  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
+    answer.output.append(buffer.data(), n);
+  }
+  const int status = pclose(pipe);
+  answer.exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return answer;
+}
+
+TEST(CheckCommand, exits_0_for_a_proof_1_for_a_refutation_and_2_for_bad_input) {
+  EXPECT_EQ(run_check("'1/(v^2 - 2*v + 2)' --box 'v=-2:2'").exit, 0);
+  EXPECT_EQ(run_check("'1/(v - 0.3)' --box 'v=-2:2'").exit, 1);
+  EXPECT_EQ(run_check("--box v=-2:2 -- '-1/v'").exit, 1);
+  EXPECT_EQ(run_check("'1/(v - ' --box 'v=-2:2'").exit, 2);
+  EXPECT_EQ(run_check("'1/x' --box 'v=-2:2'").exit, 2);
+  EXPECT_EQ(run_check("'v' --box 'v=2:-2'").exit, 2);
+  EXPECT_EQ(run_check("'v' --box 'v=0:inf'").exit, 2);
+  EXPECT_EQ(run_check("'v' --box 'v=0:1,v=0:2'").exit, 2);
+}
+
+TEST(CheckCommand, names_the_input_that_has_no_range_and_the_mend) {
+  const Answer answer = run_check("'v + load' --box 'v=-2:2'");
+  EXPECT_NE(answer.output.find("'load' has no range; add load=LOW:HIGH"), std::string::npos)
+      << answer.output;
+}
+
+TEST(CheckCommand, answers_in_json_with_a_witness) {
+  const Answer answer = run_check("'g/(v - 0.25)' --box 'v=-2:2,g=-60:60' --json");
+  EXPECT_EQ(answer.exit, 1);
+  const auto json = nlohmann::json::parse(answer.output);
+  EXPECT_EQ(json["verdict"], "refuted");
+  EXPECT_EQ(json["witness"]["v"], 0.25);
+  EXPECT_EQ(json["complexity"], 4);
+  EXPECT_EQ(json["nodes"], 5);
+  EXPECT_GE(json["boxes"].get<int>(), 1);
+  EXPECT_GE(json["seconds"].get<double>(), 0);
+}
+
+TEST(CheckCommand, gives_two_neighbours_for_a_pole_that_no_double_hits) {
+  const auto json = nlohmann::json::parse(run_check("'1/(v^2 - 2)' --box 'v=0:2' --json").output);
+  EXPECT_EQ(json["witness"]["between"][0]["v"], 1.414213562373095);
+  EXPECT_EQ(json["witness"]["between"][1]["v"], 1.4142135623730951);
+}
+
+TEST(CheckCommand, understands_the_sign_beside_its_input) {
+  EXPECT_EQ(run_check("'sqrt(v*sgn_v)' --box 'v=-2:2'").exit, 0);
+  EXPECT_EQ(run_check("'1/(sgn_v + 0.5)' --box 'v=-2:2'").exit, 0);
+  EXPECT_EQ(run_check("'1/sgn_v' --box 'v=-2:2'").exit, 1);
+}
+
+}  // namespace
+}  // namespace tribench

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "problems/data_problem.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "foundation/error.hpp"
+#include "problems/csv.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::HasSubstr;
+
+Dataset small() {
+  return parse_csv("velocity_rad_s,tau_g,tau_f,y\n-1,2,-5,1\n0,3,0,2\n2,-4,6,3\n", "small.csv")
+      .data;
+}
+
+std::string complaint(const Dataset& data, const std::string& target,
+                      const std::vector<std::string>& inputs) {
+  try {
+    make_data_problem(data, nullptr, target, inputs);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(DataProblem, TakesTheColumnsAskedForAndDerivesSigns) {
+  const Dataset data = small();
+  const std::vector<std::string> inputs = {"velocity_rad_s", "sgn_velocity_rad_s"};
+  const Problem problem = make_data_problem(data, &data, "tau_f", inputs);
+  EXPECT_EQ(problem.input_names(), inputs);
+  EXPECT_EQ(problem.inputs[1].sign_of, std::optional<std::size_t>(0));
+  EXPECT_EQ(problem.inputs[0].low, -1);
+  EXPECT_EQ(problem.inputs[0].high, 2);
+  EXPECT_EQ(problem.target_unit, "N m");
+  EXPECT_EQ(problem.stages.front().train.columns[1], (std::vector<double>{-1, 0, 1}));
+  EXPECT_EQ(problem.test.target, (std::vector<double>{-5, 0, 6}));
+  EXPECT_EQ(make_data_problem(data, nullptr, "tau_f", inputs).test.rows(), 0U);
+}
+
+TEST(DataProblem, RefusesFrictionThatOpposesVelocityUntilItIsFlipped) {
+  Dataset data = small();
+  flip_torques(data);
+  EXPECT_THAT(complaint(data, "tau_f", {"velocity_rad_s"}), HasSubstr("--flip-sign"));
+  // Another column has no such convention.
+  EXPECT_EQ(complaint(data, "y", {"velocity_rad_s"}), "no error");
+  flip_torques(data);
+  EXPECT_EQ(complaint(data, "tau_f", {"velocity_rad_s"}), "no error");
+  EXPECT_EQ(data.at("tau_g").values, small().at("tau_g").values);
+}
+
+TEST(DataProblem, ComplainsOfColumnsByName) {
+  EXPECT_THAT(complaint(small(), "tau_x", {"y"}), HasSubstr("did you mean tau_"));
+  EXPECT_THAT(complaint(small(), "tau_f", {"velocity_rads"}), HasSubstr("velocity_rad_s"));
+  EXPECT_THAT(complaint(small(), "tau_f", {"tau_f"}), HasSubstr("target and an input"));
+  EXPECT_THAT(complaint(small(), "tau_f", {"y", "y"}), HasSubstr("twice"));
+  EXPECT_THAT(complaint(small(), "tau_f", {}), HasSubstr("no input"));
+}
+
+}  // namespace
+}  // namespace tribench
