@@ -5,6 +5,7 @@
 
 #include "foundation/error.hpp"
 #include "problems/kuka/entries.hpp"
+#include "problems/kuka/planted_entries.hpp"
 
 namespace tribench {
 namespace {
@@ -31,7 +32,10 @@ std::string suggestion(std::string_view name, const std::vector<ProblemEntry>& e
 
 }  // namespace
 
-Catalogue::Catalogue(std::optional<std::filesystem::path> /*data*/) { kuka::add_entries(entries_); }
+Catalogue::Catalogue(std::optional<std::filesystem::path> /*data*/) {
+  kuka::add_entries(entries_);
+  kuka::add_planted_entries(entries_);
+}
 
 const ProblemEntry& Catalogue::find(std::string_view name) const {
   for (const ProblemEntry& entry : entries_) {

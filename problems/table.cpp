@@ -2,6 +2,7 @@
 #include "problems/table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace tribench {
@@ -58,6 +59,36 @@ Table make_table(const KnownDataset& source, std::span<const Input> inputs, std:
   for (const std::size_t r : rows) table.movement.push_back(data.movement[r]);
   if (!source.truth.empty()) table.truth = gather(source.truth);
   return table;
+}
+
+std::vector<char> draw_test_movements(const Dataset& data, double share, RandomStream random) {
+  const std::size_t count = data.movement_names.size();
+  // Order by mean velocity: a run of neighbours is a stratum.
+  std::vector<double> mean(count, 0);
+  std::vector<double> rows(count, 0);
+  const Channel* velocity = data.find(Role::velocity);
+  for (std::size_t r = 0; r < data.rows(); ++r) {
+    const auto m = static_cast<std::size_t>(data.movement[r]);
+    mean[m] += velocity == nullptr ? 0 : velocity->values[r];
+    rows[m] += 1;
+  }
+  std::vector<std::size_t> order(count);
+  for (std::size_t m = 0; m < count; ++m) {
+    order[m] = m;
+    if (rows[m] > 0) mean[m] /= rows[m];
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&mean](std::size_t a, std::size_t b) { return mean[a] < mean[b]; });
+  std::vector<char> test(count, 0);
+  if (count < 2) return test;
+  const auto wanted = std::clamp<std::size_t>(
+      static_cast<std::size_t>(std::lround(share * static_cast<double>(count))), 1, count - 1);
+  for (std::size_t i = 0; i < wanted; ++i) {
+    const std::size_t low = count * i / wanted;
+    const std::size_t high = count * (i + 1) / wanted;
+    test[order[low + random.below(high - low)]] = 1;
+  }
+  return test;
 }
 
 KnownDataset select_rows(const KnownDataset& source, std::span<const std::size_t> rows) {

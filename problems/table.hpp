@@ -31,6 +31,11 @@ void link_signs(std::vector<Input>& inputs);
 Table make_table(const KnownDataset& source, std::span<const Input> inputs, std::string_view target,
                  std::span<const char> take);
 
+// Marks a share of the movements (at least one, never all where there are two) for testing: drawn
+// from strata of direction and mean speed where there is a velocity, so that the test covers the
+// range that the training rows cover.
+std::vector<char> draw_test_movements(const Dataset& data, double share, RandomStream random);
+
 // The rows at the given places, which must increase.
 KnownDataset select_rows(const KnownDataset& source, std::span<const std::size_t> rows);
 
