@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/diagnosis/findings.hpp"
+#include "algorithms/diagnosis/held_out.hpp"
+#include "algorithms/diagnosis/search.hpp"
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr std::size_t kFewestRowsOfMovement = 5;
+
+std::vector<EffectFamily> chosen_families(const DiagnosisOptions& options) {
+  std::vector<EffectFamily> all = builtin_effects();
+  all.insert(all.end(), options.learned.begin(), options.learned.end());
+  if (options.families.empty()) return all;
+  std::vector<std::string> names;
+  for (const EffectFamily& family : all) names.push_back(family.name);
+  std::vector<EffectFamily> chosen;
+  for (const std::string& wanted : options.families) {
+    const auto found = std::ranges::find(all, wanted, &EffectFamily::name);
+    if (found == all.end()) {
+      const std::string near = nearest_name(wanted, names);
+      throw_bad_input(fmt::format("there is no effect '{}'", wanted), {},
+                      near.empty() ? std::string("see: tribench list effects")
+                                   : fmt::format("did you mean {}?", near));
+    }
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+// Rows of the movements in (or not in) `test`, without those masked and without movements that
+// are too short to say anything.
+std::vector<char> rows_of(const Observations& data, const std::vector<int>& test, bool in_test,
+                          const std::vector<char>& masked) {
+  std::vector<char> keep(data.rows(), 0);
+  std::vector<std::size_t> counts(data.movement_names.size() + 1, 0);
+  for (const int m : data.movement) {
+    const auto at = static_cast<std::size_t>(m);
+    if (at >= counts.size()) counts.resize(at + 1, 0);
+    ++counts[at];
+  }
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    const bool is_test = std::ranges::binary_search(test, data.movement[i]);
+    const bool long_enough =
+        counts[static_cast<std::size_t>(data.movement[i])] >= kFewestRowsOfMovement;
+    keep[i] = is_test == in_test && long_enough && (masked.empty() || masked[i] == 0) ? 1 : 0;
+  }
+  return keep;
+}
+
+// Residual of every row under the richest model there is (base and all effects, a small ridge),
+// fitted to the training rows: what is left is noise and events, so it says how long noise lasts.
+Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>& train_rows,
+                              const BaseModel& base, const std::vector<EffectFamily>& families,
+                              const DiagnosisOptions& options) {
+  constexpr double kRidge = 1e-4;
+  constexpr int kReweightings = 3;
+  std::vector<Expression> formulas = base.linear_terms;
+  const std::vector<double> ratios =
+      options.gear_ratios.empty() ? std::vector<double>{} : options.gear_ratios;
+  for (std::size_t f = 0; f < families.size(); ++f) {
+    std::vector<std::string> missing;
+    for (const Atom& atom : instantiate(families[f], f, data, ratios, missing)) {
+      formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
+    }
+  }
+  Eigen::VectorXd y = target_vector(data);
+  if (!base.formula.empty()) {
+    LoopModel model;
+    model.base.formula = base.formula;
+    y -= predict(model, data);
+  }
+  Eigen::MatrixXd x = evaluate_columns(formulas, data);
+  for (Eigen::Index j = 0; j < x.cols(); ++j) {
+    const double norm = x.col(j).norm();
+    x.col(j) = norm > 0 && std::isfinite(norm) ? Eigen::VectorXd(x.col(j) / norm)
+                                               : Eigen::VectorXd::Zero(x.rows());
+  }
+  Eigen::VectorXd weights(static_cast<Eigen::Index>(data.rows()));
+  for (Eigen::Index i = 0; i < weights.size(); ++i) {
+    weights[i] = train_rows[static_cast<std::size_t>(i)];
+  }
+  const Eigen::VectorXd wanted = weights;
+  Eigen::VectorXd residual = y;
+  for (int pass = 0; pass < kReweightings; ++pass) {
+    const Eigen::MatrixXd weighted = weights.asDiagonal() * x;
+    Eigen::MatrixXd normal = x.transpose() * weighted;
+    normal.diagonal().array() += kRidge * normal.trace() / static_cast<double>(normal.rows());
+    residual = y - x * normal.ldlt().solve(weighted.transpose() * y);
+    // Huber's weights keep bursts from bending the model.
+    const double sd = std::sqrt(residual.cwiseProduct(wanted).squaredNorm() /
+                                std::max(1.0, wanted.sum()));
+    for (Eigen::Index i = 0; i < weights.size(); ++i) {
+      const double size = std::abs(residual[i]);
+      weights[i] = wanted[i] * (size > 2 * sd ? 2 * sd / size : 1.0);
+    }
+  }
+  return residual;
+}
+
+Verdict verdict_of(const Diagnosis& diagnosis) {
+  if (!diagnosis.leftover.inputs.empty()) return Verdict::unknown;
+  return diagnosis.effects.empty() ? Verdict::none : Verdict::effects;
+}
+
+// A finding that is not physical is no finding: the verdict becomes UNKNOWN in its inputs.
+void apply_vetoes(Diagnosis& diagnosis, const Observations& train) {
+  for (std::size_t k = 0; k < diagnosis.effects.size(); ++k) {
+    EffectFinding& finding = diagnosis.effects[k];
+    const auto family =
+        std::ranges::find(diagnosis.families, finding.family, &EffectFamily::name);
+    const std::string objection = physical_objection(finding, *family);
+    if (objection.empty()) continue;
+    finding.provisional = true;
+    finding.notes.push_back("not physical: " + objection);
+    diagnosis.notes.push_back(
+        fmt::format("'{}' fits but is not physical ({}): something else is missing",
+                    finding.family, objection));
+    if (!diagnosis.leftover.inputs.empty()) continue;
+    std::vector<std::string> names;
+    for (const AtomTemplate& atom : family->atoms) {
+      for (const Atom& used : diagnosis.after.atoms) {
+        if (used.label.find(atom.columns[0]) == std::string::npos) continue;
+        for (const Node& node : used.columns[0].nodes()) {
+          if (!node.is_variable()) continue;
+          const std::string name = input_name(train, train.signals[node.variable].name);
+          const bool sign = train.signals[node.variable].role == Role::velocity_sign;
+          if (!sign && std::ranges::count(names, name) == 0) names.push_back(name);
+        }
+      }
+      if (!names.empty()) break;
+    }
+    diagnosis.leftover.inputs = names.empty() ? std::vector<std::string>{"velocity"} : names;
+  }
+}
+
+void mark_provisional(Diagnosis& diagnosis, const Observations& train) {
+  if (diagnosis.leftover.signals.empty()) return;
+  for (EffectFinding& finding : diagnosis.effects) {
+    for (const Atom& atom : diagnosis.after.atoms) {
+      if (diagnosis.families[atom.family].name != finding.family) continue;
+      for (const Expression& column : atom.columns) {
+        for (const Node& node : column.nodes()) {
+          if (!node.is_variable()) continue;
+          const std::string& name = train.signals[node.variable].name;
+          if (std::ranges::count(diagnosis.leftover.signals, name) > 0) finding.provisional = true;
+        }
+      }
+    }
+  }
+}
+
+void check_enough(const Observations& train, const BaseModel& base) {
+  const std::size_t parameters =
+      base.linear_terms.size() + base.formula.constant_positions().size();
+  if (train.rows() >= 3 * parameters + 10) return;
+  throw_bad_input(fmt::format("{} rows are too few to fit {} parameters of the base model",
+                              train.rows(), parameters),
+                  train.target_name, "record more movements (R9: at least 30)");
+}
+
+}  // namespace
+
+std::string_view verdict_name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::none:
+      return "NONE";
+    case Verdict::effects:
+      return "EFFECTS";
+    case Verdict::unknown:
+      return "UNKNOWN";
+  }
+  return "NONE";
+}
+
+Diagnosis diagnose(const Observations& data, const BaseModel& base,
+                   const DiagnosisOptions& options, std::uint64_t seed) {
+  const RandomStream random(seed);
+  Diagnosis out;
+  out.options = options;
+  out.seed = seed;
+  out.families = chosen_families(options);
+  out.test_movements = choose_test_movements(data, options.test_share, random.split("test"));
+  const std::vector<char> train_rows = rows_of(data, out.test_movements, false, {});
+  const Eigen::VectorXd rich = rich_residual(data, train_rows, base, out.families, options);
+  out.events = find_events(data, rich, out.masked);
+  const std::vector<char> kept = rows_of(data, out.test_movements, false, out.masked);
+  const Observations train = data.select(kept);
+  check_enough(train, base);
+  Eigen::VectorXd train_rich(static_cast<Eigen::Index>(train.rows()));
+  for (std::size_t i = 0, k = 0; i < data.rows(); ++i) {
+    if (kept[i] != 0) train_rich[static_cast<Eigen::Index>(k++)] = rich[static_cast<Eigen::Index>(i)];
+  }
+  const Clusters uncut = make_clusters(train.movement, 1, random);
+  const double lasting = correlation_time(train_rich, uncut.movements);
+  const Clusters clusters = make_clusters(train.movement, lasting, random.split("folds"));
+  Search search(train, base, out.families, options, clusters, random.split("search"));
+  search.run();
+  out.rows = train.rows();
+  out.stretches = clusters.stretches.size();
+  out.movements = clusters.movements.size();
+  out.noise = search.current().noise;
+  out.before = search.base().model;
+  out.after = search.current().model;
+  out.effects = effect_findings(search, train, out.families);
+  out.leftover = search.leftover;
+  out.leftover.curve = leftover_curve(search, train);
+  out.untestable = search.untestable;
+  out.aliased = search.aliased;
+  out.candidates = search.candidates;
+  out.notes = search.notes;
+  mark_provisional(out, train);
+  if (options.physical_vetoes) apply_vetoes(out, train);
+  out.verdict = verdict_of(out);
+  const Observations test = data.select(rows_of(data, out.test_movements, true, out.masked));
+  if (test.rows() > 0) {
+    out.error = judge(test, predict(out.before, test), predict(out.after, test),
+                      random.split("bootstrap"));
+    out.error.how = "held out";
+    out.error.confirmed = out.effects.empty() || out.error.difference_low > 0;
+  }
+  return out;
+}
+
+}  // namespace tribench

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+//
+// Residual -> missing effect -> refit -> verdict: the procedure of the specification, section 4,
+// from observations and a base model to findings. No files, no printing: loop_json.hpp writes it
+// down.
+//
+// A movement of the test set is never looked at before the verdict stands.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algorithms/diagnosis/loop_model.hpp"
+#include "foundation/random.hpp"
+
+namespace tribench {
+
+struct DiagnosisOptions {
+  double alpha_library = 0.003;
+  double alpha_leftover = 0.002;
+  std::size_t flips = 1999;
+  int max_additions = 6;
+  double test_share = 0.2;  // of the movements; 0: no movements are held out
+  // Empty: the usual ratios are scanned, and the scan is paid for in the statistics.
+  std::vector<double> gear_ratios;
+  bool physical_vetoes = true;
+  std::vector<EffectFamily> learned;  // families beside the built-in ones
+  std::vector<std::string> families;  // to be tested; empty: all
+};
+
+enum class Verdict { none, effects, unknown };
+std::string_view verdict_name(Verdict verdict);  // "NONE", "EFFECTS", "UNKNOWN"
+
+struct ParameterFinding {
+  std::string name;
+  double value = 0;
+  double low = 0;  // 95 %
+  double high = 0;
+};
+
+struct AliasFinding {
+  std::string family;
+  double correlation = 0;
+  double gain_difference = 0;
+  double error = 0;
+  bool exact = false;
+  std::string separate_by;
+};
+
+struct EffectFinding {
+  std::string family;
+  std::string phrase;
+  std::string atom;  // its columns as written in the library
+  int order = 0;     // 1 for the first found
+  double adjusted_p = 1;
+  double gain = 0;
+  double gain_error = 0;
+  std::vector<ParameterFinding> parameters;
+  double rms_contribution = 0;
+  double vif = 1;
+  std::vector<AliasFinding> aliases;
+  std::vector<std::string> separate_by;
+  bool few_movements = false;  // carried by few movements: ask for more of them
+  bool provisional = false;    // shares an input with the leftover
+  std::vector<std::string> notes;
+};
+
+struct CurvePoint {
+  double x = 0;
+  double y = 0;
+  double error = 0;
+};
+
+struct LeftoverFinding {
+  double p = 1;
+  std::vector<std::string> inputs;   // role names; empty where nothing is left
+  std::vector<std::string> signals;  // the same as signals
+  std::vector<std::string> proxies_removed;
+  std::vector<CurvePoint> curve;  // over the one input
+};
+
+struct UntestableFinding {
+  std::string family;
+  std::string reason;
+  double share = 0;
+  std::size_t clusters = 0;
+  std::string ask;
+};
+
+struct CoincidingFamilies {
+  std::string first;
+  std::string second;
+  double correlation = 0;
+  std::string separate_by;
+};
+
+struct EventFinding {
+  int movement = 0;
+  std::string movement_name;
+  double begin = 0;  // s, or row where there is no time
+  double end = 0;
+  double peak = 0;  // in the target's unit
+};
+
+struct CandidateFinding {
+  std::string family;
+  std::string atom;
+  double adjusted_p = 1;
+  double score = 0;
+  double gain = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct MovementError {
+  int movement = 0;
+  double before = 0;  // mean absolute error
+  double after = 0;
+  std::size_t rows = 0;
+};
+
+struct ErrorFinding {
+  std::size_t test_movements = 0;
+  std::string how;  // "held out", "each movement left out in turn", "none held out"
+  double mae_before = std::numeric_limits<double>::quiet_NaN();
+  double mae_after = std::numeric_limits<double>::quiet_NaN();
+  double rmse_before = std::numeric_limits<double>::quiet_NaN();
+  double rmse_after = std::numeric_limits<double>::quiet_NaN();
+  double max_before = std::numeric_limits<double>::quiet_NaN();
+  double max_after = std::numeric_limits<double>::quiet_NaN();
+  double difference_low = std::numeric_limits<double>::quiet_NaN();  // before - after, 95 %
+  double difference_high = std::numeric_limits<double>::quiet_NaN();
+  double ceiling = std::numeric_limits<double>::quiet_NaN();
+  double closed_fraction = std::numeric_limits<double>::quiet_NaN();
+  std::vector<MovementError> movements;
+  bool confirmed = true;  // the effects' improvement holds on the test movements
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::none;
+  DiagnosisOptions options;
+  std::uint64_t seed = 0;
+  Noise noise;
+  std::size_t rows = 0;
+  std::size_t stretches = 0;
+  std::size_t movements = 0;
+  std::vector<EffectFinding> effects;
+  LeftoverFinding leftover;
+  std::vector<UntestableFinding> untestable;
+  std::vector<CoincidingFamilies> aliased;
+  std::vector<EventFinding> events;
+  ErrorFinding error;
+  std::vector<CandidateFinding> candidates;  // of the first round
+  std::vector<std::string> notes;
+  LoopModel before;  // fitted to the training movements
+  LoopModel after;
+  std::vector<int> test_movements;
+  std::vector<char> masked;  // per row of the data: part of an event
+  std::vector<EffectFamily> families;
+};
+
+// Deterministic given the seed. Cost: some tens of milliseconds for 6 000 rows.
+// Throws Error (bad_input) where there are too few rows to fit the base.
+Diagnosis diagnose(const Observations& data, const BaseModel& base,
+                   const DiagnosisOptions& options, std::uint64_t seed);
+
+}  // namespace tribench

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/effect_library.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/expression/text.hpp"
+
+namespace tribench {
+namespace {
+
+double quantile(std::vector<double> values, double part) {
+  const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+// The mean over the movements' means would weigh a long movement less; the plain mean will do for
+// a reference that is subtracted.
+double mean(std::span<const double> values) {
+  double sum = 0;
+  for (const double x : values) sum += x;
+  return sum / static_cast<double>(values.size());
+}
+
+// The value of a shape in the data's units.
+double scaled(const ShapeTemplate& shape, double value, const Observations& data) {
+  if (shape.scale.empty()) return value;
+  const Signal* signal = data.find(shape.scale);
+  if (signal == nullptr) return value;
+  // A reference (T0) is a place on the axis, not a width.
+  if (shape.name == "T0") return mean(signal->values);
+  return value * signal_scale(data, shape.scale);
+}
+
+std::vector<std::string> variables_of(const AtomTemplate& atom) {
+  std::vector<std::string> names;
+  for (const std::string& column : atom.columns) parse_collecting_names(column, names);
+  std::erase_if(names, [&](const std::string& name) {
+    return std::ranges::count(atom.shapes, name, &ShapeTemplate::name) > 0;
+  });
+  return names;
+}
+
+Atom make_atom(const AtomTemplate& source, std::size_t family, const Observations& data,
+               std::span<const double> values) {
+  std::vector<std::string> names = data.names();
+  const std::size_t signals = names.size();
+  Atom atom;
+  atom.family = family;
+  atom.coefficients = source.coefficients;
+  for (std::size_t k = 0; k < source.shapes.size(); ++k) {
+    const ShapeTemplate& shape = source.shapes[k];
+    names.push_back(shape.name);
+    const bool fixed = !(shape.high > shape.low);
+    const double value = shape.name == "N" ? values[k] : scaled(shape, values[k], data);
+    atom.shapes.push_back({shape.name, value, fixed ? value : scaled(shape, shape.low, data),
+                           fixed ? value : scaled(shape, shape.high, data), {}});
+  }
+  for (std::size_t c = 0; c < source.columns.size(); ++c) {
+    const Expression parsed = parse(source.columns[c], names);
+    std::vector<Node> nodes(parsed.nodes().begin(), parsed.nodes().end());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (!nodes[i].is_variable() || nodes[i].variable < signals) continue;
+      const std::size_t k = nodes[i].variable - signals;
+      nodes[i] = Node::constant(atom.shapes[k].value);
+      atom.shapes[k].places.push_back({c, i});
+    }
+    atom.columns.emplace_back(std::move(nodes));
+  }
+  for (const std::string& column : source.columns) {
+    atom.label += (atom.label.empty() ? "" : ", ") + column;
+  }
+  return atom;
+}
+
+void expand(const AtomTemplate& source, std::size_t family, const Observations& data,
+            std::span<const double> gear_ratios, std::vector<double>& values,
+            std::vector<Atom>& out) {
+  if (values.size() == source.shapes.size()) {
+    out.push_back(make_atom(source, family, data, values));
+    return;
+  }
+  const ShapeTemplate& shape = source.shapes[values.size()];
+  const std::span<const double> grid =
+      shape.name == "N" ? gear_ratios : std::span<const double>(shape.grid);
+  for (const double value : grid) {
+    values.push_back(value);
+    expand(source, family, data, gear_ratios, values, out);
+    values.pop_back();
+  }
+}
+
+}  // namespace
+
+double signal_scale(const Observations& data, std::string_view name) {
+  const Signal* signal = data.find(name);
+  if (signal == nullptr || signal->values.empty()) return 1;
+  // A distance since reversal is measured against the range of the joint.
+  if (name == "d" && data.find("q") != nullptr) return signal_scale(data, "q");
+  if (name == "q" || name == "T" || name == "t") {
+    return quantile(signal->values, 0.99) - quantile(signal->values, 0.01);
+  }
+  std::vector<double> magnitudes = signal->values;
+  for (double& x : magnitudes) x = std::abs(x);
+  return quantile(std::move(magnitudes), 0.99);
+}
+
+void Atom::set_shape(std::size_t shape, double value) {
+  shapes[shape].value = value;
+  for (const Shape::Place& place : shapes[shape].places) {
+    columns[place.column].set_constant(place.node, value);
+  }
+}
+
+std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
+                              const Observations& data, std::span<const double> gear_ratios,
+                              std::vector<std::string>& missing) {
+  missing.clear();
+  std::vector<Atom> atoms;
+  const Signal* position = data.find("q");
+  if (family.angular && position != nullptr && position->unit == "m") {
+    missing = {"an angle: the position is in m"};
+    return atoms;
+  }
+  for (const AtomTemplate& source : family.atoms) {
+    std::vector<std::string> lacking;
+    for (const std::string& name : variables_of(source)) {
+      if (data.find(name) == nullptr) lacking.push_back(name);
+    }
+    if (lacking.empty()) {
+      std::vector<double> values;
+      expand(source, number, data, gear_ratios, values, atoms);
+    } else if (missing.empty() || lacking.size() < missing.size()) {
+      missing = lacking;
+    }
+  }
+  if (!atoms.empty()) missing.clear();
+  return atoms;
+}
+
+}  // namespace tribench

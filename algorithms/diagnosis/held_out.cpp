@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/held_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace tribench {
+namespace {
+
+constexpr double kEventSd = 4;
+constexpr std::size_t kEventRun = 4;
+constexpr std::size_t kEventMargin = 5;
+constexpr int kBootstraps = 2000;
+// Rows beyond this share are no events: the model is wrong.
+constexpr double kMostEvents = 0.05;
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), values.begin() + middle, values.end());
+  return values[static_cast<std::size_t>(middle)];
+}
+
+double robust_sd(const std::vector<double>& deviations) {
+  std::vector<double> magnitudes = deviations;
+  for (double& x : magnitudes) x = std::abs(x);
+  return 1.4826 * median(std::move(magnitudes));
+}
+
+// Speed and direction of a movement: the strata of the split.
+struct Kind {
+  int movement;
+  int direction;  // -1, 0 (both), 1
+  double speed;
+};
+
+std::vector<Kind> kinds(const Observations& data) {
+  const Signal* v = data.find("v");
+  std::vector<Kind> all;
+  std::size_t i = 0;
+  for (const int m : data.movements()) {
+    double sum = 0;
+    double magnitude = 0;
+    for (; i < data.rows() && data.movement[i] == m; ++i) {
+      sum += v == nullptr ? 0 : v->values[i];
+      magnitude += v == nullptr ? 0 : std::abs(v->values[i]);
+    }
+    const bool one_way = std::abs(sum) > 0.9 * magnitude;
+    all.push_back({m, !one_way ? 0 : sum > 0 ? 1 : -1, magnitude});
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<int> choose_test_movements(const Observations& data, double share,
+                                       RandomStream random) {
+  std::vector<Kind> all = kinds(data);
+  const auto wanted = static_cast<std::size_t>(
+      std::lround(share * static_cast<double>(all.size())));
+  if (share <= 0 || all.size() < 2) return {};
+  std::ranges::stable_sort(all, [](const Kind& a, const Kind& b) {
+    return a.direction != b.direction ? a.direction < b.direction : a.speed < b.speed;
+  });
+  // One out of every run of neighbours, so that each direction and speed is held out alike.
+  const std::size_t count = std::max<std::size_t>(1, wanted);
+  std::vector<int> chosen;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t begin = all.size() * k / count;
+    const std::size_t end = all.size() * (k + 1) / count;
+    chosen.push_back(all[begin + random.below(end - begin)].movement);
+  }
+  std::ranges::sort(chosen);
+  return chosen;
+}
+
+std::vector<EventFinding> find_events(const Observations& data, const Eigen::VectorXd& residual,
+                                      std::vector<char>& masked) {
+  masked.assign(data.rows(), 0);
+  std::vector<double> deviation(data.rows());
+  std::vector<RowRange> ranges;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (i == 0 || data.movement[i] != data.movement[i - 1]) ranges.push_back({i, i});
+    ranges.back().end = i + 1;
+  }
+  for (const RowRange& m : ranges) {
+    std::vector<double> part(residual.data() + m.begin, residual.data() + m.end);
+    const double middle = median(part);
+    for (std::size_t i = m.begin; i < m.end; ++i) {
+      deviation[i] = residual[static_cast<Eigen::Index>(i)] - middle;
+    }
+  }
+  const double pooled = robust_sd(deviation);
+  std::vector<EventFinding> events;
+  std::size_t flagged = 0;
+  for (const RowRange& m : ranges) {
+    const std::vector<double> own(deviation.begin() + static_cast<std::ptrdiff_t>(m.begin),
+                                  deviation.begin() + static_cast<std::ptrdiff_t>(m.end));
+    const double limit = kEventSd * std::max(pooled, robust_sd(own));
+    std::size_t i = m.begin;
+    while (i < m.end) {
+      std::size_t end = i;
+      const double side = deviation[i] > 0 ? 1 : -1;
+      double peak = 0;
+      while (end < m.end && side * deviation[end] > limit) {
+        peak = std::max(peak, std::abs(deviation[end]));
+        ++end;
+      }
+      if (end - i >= kEventRun && limit > 0) {
+        events.push_back({data.movement[i],
+                          data.movement_names.empty()
+                              ? std::to_string(data.movement[i])
+                              : data.movement_names[static_cast<std::size_t>(data.movement[i])],
+                          data.time[i], data.time[end - 1], peak});
+        flagged += end - i;
+        const std::size_t from = std::max(m.begin + kEventMargin, i) - kEventMargin;
+        for (std::size_t k = from; k < std::min(m.end, end + kEventMargin); ++k) masked[k] = 1;
+      }
+      i = std::max(end, i + 1);
+    }
+  }
+  if (static_cast<double>(flagged) > kMostEvents * static_cast<double>(data.rows())) {
+    events.clear();
+    masked.assign(data.rows(), 0);
+  }
+  return events;
+}
+
+ErrorFinding judge(const Observations& data, const Eigen::VectorXd& before,
+                   const Eigen::VectorXd& after, RandomStream random) {
+  ErrorFinding out;
+  if (data.rows() == 0) return out;
+  const Eigen::VectorXd error_before = (target_vector(data) - before).cwiseAbs();
+  const Eigen::VectorXd error_after = (target_vector(data) - after).cwiseAbs();
+  const auto n = static_cast<double>(data.rows());
+  out.mae_before = error_before.mean();
+  out.mae_after = error_after.mean();
+  out.rmse_before = error_before.norm() / std::sqrt(n);
+  out.rmse_after = error_after.norm() / std::sqrt(n);
+  out.max_before = error_before.maxCoeff();
+  out.max_after = error_after.maxCoeff();
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (i == 0 || data.movement[i] != data.movement[i - 1]) {
+      out.movements.push_back({data.movement[i], 0, 0, 0});
+    }
+    out.movements.back().before += error_before[static_cast<Eigen::Index>(i)];
+    out.movements.back().after += error_after[static_cast<Eigen::Index>(i)];
+    ++out.movements.back().rows;
+  }
+  for (MovementError& m : out.movements) {
+    m.before /= static_cast<double>(m.rows);
+    m.after /= static_cast<double>(m.rows);
+  }
+  out.test_movements = out.movements.size();
+  std::vector<double> means;
+  for (int b = 0; b < kBootstraps; ++b) {
+    double sum = 0;
+    for (std::size_t k = 0; k < out.movements.size(); ++k) {
+      const MovementError& m = out.movements[random.below(out.movements.size())];
+      sum += m.before - m.after;
+    }
+    means.push_back(sum / static_cast<double>(out.movements.size()));
+  }
+  std::ranges::sort(means);
+  out.difference_low = means[kBootstraps / 40];
+  out.difference_high = means[kBootstraps - 1 - kBootstraps / 40];
+  return out;
+}
+
+}  // namespace tribench

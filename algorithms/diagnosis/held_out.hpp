@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+//
+// The movements nobody touches: which they are, and what the models make of them. Also the bursts
+// (collisions, contacts, glitches) that are events, not friction. Internal to the room.
+#pragma once
+
+#include <vector>
+
+#include "algorithms/diagnosis/diagnosis.hpp"
+
+namespace tribench {
+
+// share of the movements, spread over directions and speeds; at least one, and none where fewer
+// than two movements would be left.
+std::vector<int> choose_test_movements(const Observations& data, double share,
+                                       RandomStream random);
+
+// Runs of at least four rows beyond four robust standard deviations of a residual in which no
+// repeatable structure is left, on one side, with five rows around them.
+// residual: of all rows, from a rich model fitted to the training movements.
+std::vector<EventFinding> find_events(const Observations& data, const Eigen::VectorXd& residual,
+                                      std::vector<char>& masked);
+
+// Errors of both models on `data` (the test movements), movement by movement, with a bootstrap
+// interval of the paired difference over movements.
+ErrorFinding judge(const Observations& data, const Eigen::VectorXd& before,
+                   const Eigen::VectorXd& after, RandomStream random);
+
+}  // namespace tribench

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+//
+// The parts of the search that doubt its own answer: all small subsets of families, and what is
+// left over that no family explains.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/diagnosis/search.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr double kSmootherRidge = 0.02;  // of the mean diagonal (specification, 3.8)
+constexpr std::size_t kLargestSubset = 3;
+
+// Every subset of 1 .. kLargestSubset of n things.
+std::vector<std::vector<std::size_t>> small_subsets(std::size_t n) {
+  std::vector<std::vector<std::size_t>> all;
+  for (std::size_t a = 0; a < n; ++a) {
+    all.push_back({a});
+    for (std::size_t b = a + 1; b < n; ++b) {
+      all.push_back({a, b});
+      for (std::size_t c = b + 1; c < n; ++c) all.push_back({a, b, c});
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+// One block of columns a family: the refined atoms of those found, the best atom of the others.
+void Search::check_exhaustively() {
+  if (found.size() > kLargestSubset) return;
+  struct FamilyBlock {
+    std::size_t family;
+    std::vector<Atom> atoms;
+    std::vector<Eigen::Index> columns;
+  };
+  const Round round = test_all(base_fit_);
+  std::vector<FamilyBlock> blocks;
+  Eigen::MatrixXd all = whitened(tangent(base_fit_.model, data_), clusters_, current_.noise);
+  const Eigen::Index base_columns = all.cols();
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    FamilyBlock block{f, {}, {}};
+    for (const Atom& atom : current_.model.atoms) {
+      if (atom.family == f) block.atoms.push_back(atom);
+    }
+    if (block.atoms.empty() && round.family_score[f] > 0) {
+      block.atoms.push_back(library_[best_atom(f, round, base_fit_).atom]);
+    }
+    if (block.atoms.empty()) continue;
+    for (const Atom& atom : block.atoms) {
+      const Eigen::MatrixXd z =
+          whitened(evaluate_columns(atom.columns, data_), clusters_, current_.noise);
+      for (Eigen::Index j = 0; j < z.cols(); ++j) block.columns.push_back(all.cols() + j);
+      all = beside(all, z);
+    }
+    blocks.push_back(std::move(block));
+  }
+  const Eigen::VectorXd y = whitened(target_vector(data_) - predict(base_fit_.model, data_),
+                                     clusters_, current_.noise);
+  const SubsetLosses subset_losses(all, y, clusters_, current_.noise);
+  const auto losses_of = [&](const std::vector<std::size_t>& subset) {
+    std::vector<Eigen::Index> chosen;
+    for (Eigen::Index j = 0; j < base_columns; ++j) chosen.push_back(j);
+    for (const std::size_t b : subset) {
+      chosen.insert(chosen.end(), blocks[b].columns.begin(), blocks[b].columns.end());
+    }
+    return subset_losses.losses(chosen);
+  };
+  std::vector<std::size_t> greedy;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    if (std::ranges::count(found, blocks[b].family, &Found::family) > 0) greedy.push_back(b);
+  }
+  const Eigen::VectorXd greedy_losses = losses_of(greedy);
+  std::vector<std::size_t> best = greedy;
+  Gain lead;
+  for (const std::vector<std::size_t>& subset : small_subsets(blocks.size())) {
+    // A larger set always finds a little more; only one of the same size is a rival.
+    if (subset.size() > greedy.size()) continue;
+    const Gain gain = paired_gain(greedy_losses, losses_of(subset));
+    if (gain.nats > lead.nats && gain.nats > gain.error) {
+      lead = gain;
+      best = subset;
+    }
+  }
+  if (best == greedy) return;
+  LoopModel model = base_fit_.model;
+  std::vector<Found> members;
+  for (const std::size_t b : best) {
+    for (const Atom& atom : blocks[b].atoms) model.add(atom);
+    const std::size_t f = blocks[b].family;
+    const auto known = std::ranges::find(found, f, &Found::family);
+    members.push_back(known != found.end() ? *known
+                                           : Found{f, round.family_p[f], lead, false, {}});
+  }
+  FittedModel other = fit(std::move(model), FitScope::everything);
+  for (const Found& member : members) {
+    LoopModel without = other.model;
+    remove_family(without, member.family);
+    const FittedModel rest = fit(std::move(without), FitScope::linear);
+    const Round rest_round = test_all(rest);
+    if (family_p_given_rest(member.family, rest, rest_round, other) > options_.alpha_library) {
+      return;
+    }
+  }
+  notes.push_back(fmt::format(
+      "the search over all subsets predicts better by {:.1f} nats than the stepwise choice: taken",
+      lead.nats));
+  found = std::move(members);
+  current_ = std::move(other);
+}
+
+void Search::test_leftover() {
+  const std::vector<Smoother> smoothers = make_smoothers(data_, random_.split("smoothers"));
+  std::vector<Eigen::MatrixXd> columns;
+  std::vector<BlockScores> blocks;
+  double largest = 0;
+  for (const Smoother& smoother : smoothers) {
+    columns.push_back(whitened(smoother.columns, clusters_, current_.noise));
+    const Eigen::VectorXd before = columns.back().colwise().squaredNorm();
+    blocks.push_back(score_block(project_off(columns.back(), current_.basis), before,
+                                 current_.residual, clusters_, kSmootherRidge));
+    largest = std::max(largest, blocks.back().test.score);
+  }
+  // Once so many flips have exceeded it the p-value cannot come below alpha any more.
+  const auto stop = static_cast<std::size_t>(
+      std::ceil(options_.alpha_leftover * static_cast<double>(options_.flips + 1)));
+  const std::vector<double> maxima = flip_maxima(blocks, flips_, largest, stop);
+  leftover.p = adjusted_p(largest, maxima);
+  if (leftover.p > options_.alpha_leftover) return;
+  // Where it lives: the smoother that predicts best; a product only if it beats every single input.
+  std::size_t winner = smoothers.size();
+  Gain best{-1e300, 0};
+  Eigen::VectorXd best_losses;
+  for (std::size_t k = 0; k < smoothers.size(); ++k) {
+    if (adjusted_p(blocks[k].test.score, maxima) > options_.alpha_leftover) continue;
+    const Eigen::MatrixXd x = beside(current_.x, columns[k]);
+    const Eigen::VectorXd losses = held_out_losses(x, current_.residual, clusters_, current_.noise,
+                                                   columns[k].cols(), kSmootherRidge);
+    const Gain gain = paired_gain(current_.losses, losses);
+    const bool product = smoothers[k].signals.size() > 1;
+    const bool clearly =
+        best_losses.size() == 0 || paired_gain(best_losses, losses).nats >
+                                       (product ? paired_gain(best_losses, losses).error : 0.0);
+    if (gain.nats > best.nats && clearly) {
+      best = gain;
+      best_losses = losses;
+      winner = k;
+    }
+  }
+  if (winner == smoothers.size()) return;
+  leftover.inputs = smoothers[winner].inputs;
+  leftover.signals = smoothers[winner].signals;
+  const std::size_t before = found.size();
+  drop_proxies(smoothers[winner]);
+  if (found.size() < before) {
+    // Without its proxies the leftover shows better where it lives.
+    const std::vector<std::string> proxies = leftover.proxies_removed;
+    test_leftover();
+    leftover.proxies_removed.insert(leftover.proxies_removed.begin(), proxies.begin(),
+                                    proxies.end());
+  }
+}
+
+void Search::drop_proxies(const Smoother& smoother) {
+  const std::vector<Found> before = found;
+  for (const Found& one : before) {
+    LoopModel without = current_.model;
+    remove_family(without, one.family);
+    FittedModel rest = fit(std::move(without), FitScope::linear);
+    rest.basis = orthonormal_basis(
+        beside(rest.x, whitened(smoother.columns, clusters_, rest.noise)));
+    rest.residual = project_off(rest.residual, rest.basis);
+    const Round round = test_all(rest);
+    if (family_p_given_rest(one.family, rest, round, current_) <= options_.alpha_library) continue;
+    leftover.proxies_removed.push_back(families_[one.family].name);
+    std::erase_if(found, [&](const Found& other) { return other.family == one.family; });
+  }
+  LoopModel model = current_.model;
+  for (const std::string& proxy : leftover.proxies_removed) {
+    for (std::size_t f = 0; f < families_.size(); ++f) {
+      if (families_[f].name == proxy) remove_family(model, f);
+    }
+  }
+  current_ = fit(std::move(model), FitScope::everything);
+}
+
+}  // namespace tribench

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+//
+// The model in the loop: a base (a formula with its own constants, or linear terms) plus the
+// columns of the effects added so far. Fits all of them together: linear coefficients by least
+// squares, the base's constants and the effects' shapes by Levenberg-Marquardt with the linear
+// part projected out.
+//
+// Source: Golub and Pereyra 1973 (variable projection), Kaufman 1975 (its Jacobian).
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "algorithms/diagnosis/clusters.hpp"
+#include "algorithms/diagnosis/effect_library.hpp"
+
+namespace tribench {
+
+struct BaseModel {
+  std::string name;                      // "coulomb_viscous", a method, "formula"
+  Expression formula;                    // over the signals; may be empty; its constants are fitted
+  std::vector<Expression> linear_terms;  // each with a coefficient
+};
+
+// {sgn_v, 1, v, |v|} and the rigid signals. Throws Error where there is no velocity.
+BaseModel coulomb_viscous_base(const Observations& data);
+// A formula over the signals' names (or the channels'), with the rigid signals beside it. Throws
+// Error (bad_input) that names what is unknown.
+BaseModel formula_base(const Observations& data, std::string_view text);
+void add_rigid_terms(BaseModel& base, const Observations& data);
+
+struct LoopModel {
+  BaseModel base;
+  std::vector<Atom> atoms;
+  // Of base.linear_terms, then of the atoms' columns, in order.
+  Eigen::VectorXd coefficients;
+
+  // Adds an atom with coefficients 0.
+  void add(Atom atom);
+  void remove(std::size_t atom);
+  std::size_t first_column(std::size_t atom) const;  // of its coefficients
+};
+
+// Values of formulas, one a column.
+Eigen::MatrixXd evaluate_columns(std::span<const Expression> formulas, const Observations& data);
+Eigen::VectorXd predict(const LoopModel& model, const Observations& data);
+Eigen::Map<const Eigen::VectorXd> target_vector(const Observations& data);
+
+// Every direction in which the fitted model can move: base constants, linear terms, atoms' columns
+// and their refined shapes. rows x directions.
+Eigen::MatrixXd tangent(const LoopModel& model, const Observations& data);
+
+enum class FitScope { linear, everything };
+
+// Fits to data.target, in the metric of `noise`. Leaves the model no worse than it was. A shape
+// that hits its bound stays there. Cost: a few dozen evaluations of the non-linear columns.
+void fit_model(LoopModel& model, const Observations& data, const Clusters& clusters,
+               const Noise& noise, FitScope scope);
+
+// The model as one formula over the signals.
+Expression formula_of(const LoopModel& model);
+
+}  // namespace tribench

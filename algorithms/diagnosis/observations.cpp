@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/observations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "algorithms/regressor.hpp"
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr std::array<std::pair<Role, std::string_view>, 10> kSignalNames = {{
+    {Role::velocity, "v"},
+    {Role::velocity_sign, "sgn_v"},
+    {Role::acceleration, "a"},
+    {Role::gravity_torque, "g"},
+    {Role::gravity_sign, "sgn_g"},
+    {Role::position, "q"},
+    {Role::temperature, "T"},
+    {Role::time, "t"},
+    {Role::other_velocity, "v2"},
+    {Role::other_acceleration, "a2"},
+}};
+
+std::string signal_name(Role role, std::string_view channel) {
+  for (const auto& [known, name] : kSignalNames) {
+    if (known == role) return std::string(name);
+  }
+  return std::string(channel);
+}
+
+double sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+
+void add_sign(Observations& data, std::string_view of, Role role) {
+  const std::string name = "sgn_" + std::string(of);
+  const Signal* source = data.find(of);
+  if (source == nullptr || data.find(name) != nullptr) return;
+  Signal signal{name, source->channel, "-", role, {}, source->values};
+  for (double& x : signal.values) x = sign(x);
+  data.signals.push_back(std::move(signal));
+}
+
+// Time through the campaign. Where it restarts with the movements, they follow one another in the
+// order of the file; without a time, a movement's number stands for it.
+void add_campaign_time(Observations& data) {
+  const auto found = std::ranges::find(data.signals, "t", &Signal::name);
+  if (found == data.signals.end()) {
+    Signal signal{"t", "", "movement", Role::time, "number of the movement in the file", {}};
+    for (const int m : data.movement) signal.values.push_back(m);
+    data.signals.push_back(std::move(signal));
+    return;
+  }
+  double offset = 0;
+  bool restarts = false;
+  for (std::size_t i = 1; i < data.rows(); ++i) {
+    const double before = found->values[i - 1];
+    if (data.movement[i] != data.movement[i - 1] && found->values[i] + offset < before) {
+      offset = before - found->values[i];
+      restarts = true;
+    }
+    found->values[i] += offset;
+  }
+  if (restarts) found->recipe = "time of the movements laid end to end";
+}
+
+// Path since the velocity last changed its sign; starts at 0 with every movement.
+void add_distance(Observations& data) {
+  if (data.find("d") != nullptr) return;
+  const Signal* v = data.find("v");
+  const Signal* q = data.find("q");
+  const Signal* t = data.find("t");
+  const bool timed = t != nullptr && t->recipe != "number of the movement in the file";
+  if (v == nullptr || (q == nullptr && !timed)) return;
+  Signal signal{"d", "", q != nullptr ? q->unit : v->unit + " s", Role::none, {}, {}};
+  signal.recipe = q != nullptr
+                      ? "d += abs(q - q_before); d = 0 where v changes its sign or a movement starts"
+                      : "d += abs(v)*dt; d = 0 where v changes its sign or a movement starts";
+  signal.values.assign(data.rows(), 0.0);
+  double direction = 0;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    const bool starts = i == 0 || data.movement[i] != data.movement[i - 1];
+    const double now = sign(v->values[i]);
+    if (!starts && (now == 0 || now == direction)) {
+      const double step = q != nullptr
+                              ? q->values[i] - q->values[i - 1]
+                              : v->values[i] * (t->values[i] - t->values[i - 1]);
+      signal.values[i] = signal.values[i - 1] + std::abs(step);
+    }
+    if (starts || now != 0) direction = now;
+  }
+  data.signals.push_back(std::move(signal));
+}
+
+void drop_constant_signals(Observations& data) {
+  std::erase_if(data.signals, [&](const Signal& signal) {
+    if (signal.values.empty()) return false;
+    const auto [low, high] = std::ranges::minmax(signal.values);
+    const double scale = std::max(std::abs(low), std::abs(high));
+    if (high - low > 1e-12 * scale) return false;
+    if (signal.recipe.empty() && signal.role != Role::velocity_sign) {
+      data.warnings.push_back(fmt::format("the channel '{}' is constant ({}) and left out",
+                                          signal.channel, low));
+    }
+    return signal.name != "sgn_v" && signal.name != "v";
+  });
+}
+
+void drop_rows_not_finite(Observations& data) {
+  std::vector<char> keep(data.rows(), 1);
+  std::size_t dropped = 0;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    bool finite = std::isfinite(data.target[i]);
+    for (const Signal& signal : data.signals) finite = finite && std::isfinite(signal.values[i]);
+    keep[i] = finite ? 1 : 0;
+    if (!finite) ++dropped;
+  }
+  if (dropped == 0) return;
+  data = data.select(keep);
+  data.warnings.push_back(fmt::format("{} rows hold a value that is not finite: dropped", dropped));
+}
+
+void complete(Observations& data) {
+  drop_rows_not_finite(data);
+  if (data.rows() == 0) {
+    throw_bad_input("no row has a finite value in every channel", data.target_name,
+                    "check the columns for gaps");
+  }
+  add_sign(data, "v", Role::velocity_sign);
+  add_sign(data, "g", Role::gravity_sign);
+}
+
+const Channel& needed_target(const Dataset& data) {
+  for (const Role role : {Role::friction_torque, Role::motor_torque, Role::motor_current}) {
+    if (const Channel* channel = data.find(role)) return *channel;
+  }
+  throw_bad_input("there is no friction or motor torque among the columns", data.name,
+                  "name it: --roles COLUMN=friction_torque or COLUMN=motor_torque");
+}
+
+void set_target(Observations& out, const Dataset& data, const ObservationOptions& options) {
+  const Channel& target = needed_target(data);
+  out.target = target.values;
+  out.target_name = target.name;
+  out.target_unit = target.unit;
+  const Channel* gravity = data.find(Role::gravity_torque);
+  if (target.role != Role::friction_torque) {
+    if (gravity != nullptr && gravity->unit == target.unit) {
+      for (std::size_t i = 0; i < out.target.size(); ++i) out.target[i] -= gravity->values[i];
+      out.target_name = fmt::format("{} - {}", target.name, gravity->name);
+    } else {
+      if (gravity != nullptr) out.rigid.push_back("g");
+      if (data.find(Role::acceleration) != nullptr) out.rigid.push_back("a");
+    }
+  }
+  if (options.flip_sign) {
+    for (double& y : out.target) y = -y;
+  }
+}
+
+void check_sign(const Observations& data) {
+  if (!data.rigid.empty()) return;  // inertia and gravity may dominate: no sign to be expected
+  const Signal* v = data.find("v");
+  const double r = correlation(data.target, v->values);
+  if (r < -0.1) {
+    throw_bad_input(fmt::format("friction opposes the velocity here (correlation {:.2f}); it is "
+                                "expected positive with velocity",
+                                r),
+                    data.target_name, "turn the target's sign with --flip-sign");
+  }
+}
+
+}  // namespace
+
+double correlation(std::span<const double> x, std::span<const double> y) {
+  const auto n = static_cast<double>(x.size());
+  double mean_x = 0;
+  double mean_y = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    mean_x += x[i] / n;
+    mean_y += y[i] / n;
+  }
+  double xx = 0;
+  double yy = 0;
+  double xy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mean_x) * (x[i] - mean_x);
+    yy += (y[i] - mean_y) * (y[i] - mean_y);
+    xy += (x[i] - mean_x) * (y[i] - mean_y);
+  }
+  return xx > 0 && yy > 0 ? xy / std::sqrt(xx * yy) : 0;
+}
+
+const Signal* Observations::find(std::string_view name) const {
+  const auto found = std::ranges::find(signals, name, &Signal::name);
+  return found == signals.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> Observations::names() const {
+  std::vector<std::string> names;
+  for (const Signal& signal : signals) names.push_back(signal.name);
+  return names;
+}
+
+std::vector<int> Observations::movements() const {
+  std::vector<int> numbers;
+  for (const int m : movement) {
+    if (numbers.empty() || numbers.back() != m) numbers.push_back(m);
+  }
+  return numbers;
+}
+
+Observations Observations::select(const std::vector<char>& keep) const {
+  const auto chosen = [&](const auto& values) {
+    std::decay_t<decltype(values)> out;
+    if (values.empty()) return out;
+    out.reserve(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (keep[i] != 0) out.push_back(values[i]);
+    }
+    return out;
+  };
+  Observations out;
+  out.target = chosen(target);
+  out.movement = chosen(movement);
+  out.time = chosen(time);
+  for (const Signal& signal : signals) {
+    Signal copy{signal.name, signal.channel, signal.unit, signal.role, signal.recipe, {}};
+    copy.values = chosen(signal.values);
+    out.signals.push_back(std::move(copy));
+  }
+  out.target_name = target_name;
+  out.target_unit = target_unit;
+  out.movement_names = movement_names;
+  out.rigid = rigid;
+  out.warnings = warnings;
+  return out;
+}
+
+SignalTable::SignalTable(const Observations& data) : rows_(data.rows()) {
+  for (const Signal& signal : data.signals) pointers_.push_back(signal.values.data());
+}
+
+Observations observe(const Dataset& data, const ObservationOptions& options) {
+  if (data.rows() == 0) throw_bad_input("the file has no rows", data.name);
+  if (data.find(Role::velocity) == nullptr) {
+    throw_bad_input("there is no velocity among the columns", data.name,
+                    "name it: --roles COLUMN=velocity");
+  }
+  Observations out;
+  set_target(out, data, options);
+  out.movement = data.movement;
+  out.movement_names = data.movement_names;
+  for (const Channel& channel : data.channels) {
+    if (channel.values.size() != data.rows()) continue;  // a text column: movement
+    const std::string name = signal_name(channel.role, channel.name);
+    const bool wanted = name != channel.name || channel.name.starts_with("distance_since_reversal");
+    const bool rigid = std::ranges::count(options.rigid, channel.name) > 0;
+    if ((!wanted && !rigid) || out.find(name) != nullptr) continue;
+    const bool distance = channel.name.starts_with("distance_since_reversal");
+    out.signals.push_back({distance ? "d" : name, channel.name, channel.unit, channel.role, {},
+                           channel.values});
+    if (rigid) out.rigid.push_back(name);
+  }
+  for (const std::string& name : options.rigid) data.at(name);
+  complete(out);
+  add_campaign_time(out);
+  add_distance(out);
+  out.time = out.find("t")->values;
+  drop_constant_signals(out);
+  check_sign(out);
+  return out;
+}
+
+Observations observe(const TrainingData& data) {
+  Observations out;
+  out.target.assign(data.target.begin(), data.target.end());
+  out.target_name = "target";
+  out.movement.assign(data.movement.begin(), data.movement.end());
+  if (out.movement.empty()) out.movement.assign(out.target.size(), 0);
+  for (std::size_t j = 0; j < data.inputs.size(); ++j) {
+    const Input& input = data.inputs[j];
+    const std::string name = signal_name(input.role, input.name);
+    if (out.find(name) != nullptr) continue;
+    out.signals.push_back({name, input.name, input.unit, input.role, {},
+                           {data.columns[j], data.columns[j] + data.rows()}});
+  }
+  complete(out);
+  for (std::size_t i = 0; i < out.rows(); ++i) out.time.push_back(static_cast<double>(i));
+  drop_constant_signals(out);
+  return out;
+}
+
+}  // namespace tribench

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+//
+// What the loop looks at: the channels of a data set under the short names in which effects are
+// written, with those that follow from others (signs, distance since reversal, campaign time)
+// computed here and nowhere else.
+//
+//   v sgn_v  velocity and its sign        T       temperature
+//   a        acceleration                 t       time through the campaign
+//   q        position                     v2 a2   the other joint's velocity and acceleration
+//   g sgn_g  gravity torque and its sign  d       distance since the last reversal
+//
+// NaN policy: rows in which a used channel or the target is not finite are dropped and counted in
+// the warnings. Bad input that no one can mend silently is an Error (bad_input).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "algorithms/expression/evaluate.hpp"
+#include "problems/dataset.hpp"
+#include "problems/problem.hpp"
+
+namespace tribench {
+
+struct TrainingData;
+
+struct Signal {
+  std::string name;     // as in formulas: "v", "sgn_v", "d", or the channel's own name
+  std::string channel;  // the column it comes from
+  std::string unit;
+  Role role = Role::none;
+  std::string recipe;  // how it is computed where it is no column of the data, else empty
+  std::vector<double> values;
+};
+
+// Rows of one movement stand together, in the order of the campaign.
+struct Observations {
+  std::vector<Signal> signals;
+  std::vector<double> target;  // friction, positive with velocity
+  std::string target_name;
+  std::string target_unit;
+  std::vector<int> movement;                // per row: index into movement_names
+  std::vector<std::string> movement_names;  // all of the data set's, used or not
+  std::vector<double> time;                 // per row, within the campaign or the row's number
+  std::vector<std::string> rigid;  // signals whose coefficient is fitted with the base (see below)
+  std::vector<std::string> warnings;
+
+  std::size_t rows() const { return target.size(); }
+  const Signal* find(std::string_view name) const;
+  std::vector<std::string> names() const;
+  // The rows for which keep[row] != 0.
+  Observations select(const std::vector<char>& keep) const;
+  // The numbers of the movements that occur, in order.
+  std::vector<int> movements() const;
+};
+
+// Pointers to the columns of the signals, for the evaluator. Valid as long as the observations.
+class SignalTable {
+ public:
+  explicit SignalTable(const Observations& data);
+  Inputs inputs() const { return {pointers_, rows_}; }
+
+ private:
+  std::vector<const double*> pointers_;
+  std::size_t rows_;
+};
+
+struct ObservationOptions {
+  bool flip_sign = false;  // the target opposes the velocity in the data
+  // Channels, beside those found, whose coefficients are fitted with the base and are no effects:
+  // the rigid-body part that nobody has subtracted.
+  std::vector<std::string> rigid;
+};
+
+// From a data set with roles. The target is friction_torque, or motor_torque (motor_current)
+// minus gravity_torque where the units agree. Where gravity has another unit than the target its
+// column becomes `rigid`, and so does the acceleration where a motor torque comes without gravity.
+// Throws Error (bad_input): no velocity, no target, friction against velocity, no usable rows.
+Observations observe(const Dataset& data, const ObservationOptions& options = {});
+
+// From a problem's table: the inputs' roles, the target as it stands. Nothing is thrown away but
+// rows that are not finite; an input named sgn_X is its own signal.
+Observations observe(const TrainingData& data);
+
+// Pearson's correlation of two columns; 0 where one of them is constant.
+double correlation(std::span<const double> x, std::span<const double> y);
+
+}  // namespace tribench

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/score_test.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace tribench {
+namespace {
+
+constexpr double kSmallestShare = 1e-3;  // of the sum of squares
+constexpr Eigen::Index kFlipsAtOnce = 250;
+
+// Lower Cholesky factor of the Gram matrix of zt with a ridge; columns have unit length before
+// projection, so the tiny floor is relative.
+Eigen::MatrixXd factor_of(const Eigen::MatrixXd& gram, double ridge) {
+  Eigen::MatrixXd loaded = gram;
+  const double mean = gram.trace() / static_cast<double>(gram.rows());
+  loaded.diagonal().array() += ridge * mean + 1e-10 * mean;
+  return loaded.llt().matrixL();
+}
+
+void count_clusters(BlockTest& test, const Eigen::VectorXd& h) {
+  const double sum = h.sum();
+  const double squares = h.squaredNorm();
+  test.effective_clusters = squares > 0 ? sum * sum / squares : 0;
+  const double threshold = 0.1 * sum / static_cast<double>(h.size());
+  test.carrying = static_cast<std::size_t>((h.array() > threshold).count());
+}
+
+// The matched null and the score, from the sums.
+void finish_scores(BlockScores& block) {
+  const Eigen::MatrixXd sums = block.whitened_sums.cast<double>();
+  block.test.statistic = sums.colwise().sum().squaredNorm();
+  // Moments of the flipped statistic |sum eps_c v_c|^2 over all flips.
+  const Eigen::VectorXd lengths = sums.rowwise().squaredNorm();
+  const double mean = lengths.sum();
+  const double variance =
+      2 * ((sums.transpose() * sums).squaredNorm() - lengths.squaredNorm());
+  block.gamma = MatchedGamma(mean, variance);
+  block.test.score = block.gamma.score(block.test.statistic);
+}
+
+}  // namespace
+
+Eigen::MatrixXf make_flips(std::size_t flips, std::size_t clusters, RandomStream random) {
+  Eigen::MatrixXf signs(static_cast<Eigen::Index>(flips), static_cast<Eigen::Index>(clusters));
+  std::uint64_t word = 0;
+  int left = 0;
+  for (Eigen::Index b = 0; b < signs.rows(); ++b) {
+    for (Eigen::Index c = 0; c < signs.cols(); ++c) {
+      if (left == 0) {
+        word = random.next();
+        left = 64;
+      }
+      signs(b, c) = (word & 1) != 0 ? 1.0F : -1.0F;
+      word >>= 1;
+      --left;
+    }
+  }
+  return signs;
+}
+
+Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& x) {
+  if (x.cols() == 0) return x;
+  Eigen::MatrixXd scaled = x;
+  for (Eigen::Index j = 0; j < x.cols(); ++j) {
+    const double norm = x.col(j).norm();
+    if (norm > 0) scaled.col(j) /= norm;
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
+  qr.setThreshold(1e-7);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(x.rows(), qr.rank());
+}
+
+Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd out(a.rows(), a.cols() + b.cols());
+  out << a, b;
+  return out;
+}
+
+Eigen::MatrixXd project_off(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis) {
+  if (basis.cols() == 0) return z;
+  return z - basis * (basis.transpose() * z);
+}
+
+BlockScores score_block(const Eigen::Ref<const Eigen::MatrixXd>& projected,
+                        const Eigen::Ref<const Eigen::VectorXd>& before,
+                        const Eigen::VectorXd& residual, const Clusters& clusters, double ridge) {
+  BlockScores out;
+  Eigen::MatrixXd zt = projected;
+  const Eigen::VectorXd after = zt.colwise().squaredNorm();
+  out.test.share = before.sum() > 0 ? std::sqrt(after.sum() / before.sum()) : 0;
+  Eigen::Index kept = 0;
+  for (Eigen::Index j = 0; j < zt.cols(); ++j) {
+    if (!(after[j] > kSmallestShare * before[j])) continue;
+    if (kept != j) zt.col(kept) = zt.col(j);
+    zt.col(kept) /= std::sqrt(before[j]);
+    ++kept;
+  }
+  if (kept == 0) return out;
+  zt.conservativeResize(Eigen::NoChange, kept);
+  out.test.testable = true;
+  const auto count = static_cast<Eigen::Index>(clusters.stretches.size());
+  Eigen::MatrixXd sums(count, kept);
+  Eigen::VectorXd h(count);
+  for (Eigen::Index c = 0; c < count; ++c) {
+    const RowRange& range = clusters.stretches[static_cast<std::size_t>(c)];
+    const auto begin = static_cast<Eigen::Index>(range.begin);
+    const auto size = static_cast<Eigen::Index>(range.size());
+    const auto rows = zt.middleRows(begin, size);
+    sums.row(c).noalias() = residual.segment(begin, size).transpose() * rows;
+    h[c] = rows.squaredNorm();
+  }
+  count_clusters(out.test, h);
+  const Eigen::MatrixXd factor = factor_of(zt.transpose() * zt, ridge);
+  const Eigen::MatrixXd rotated =
+      factor.triangularView<Eigen::Lower>().solve(sums.transpose()).transpose();
+  out.whitened_sums = rotated.cast<float>();
+  finish_scores(out);
+  return out;
+}
+
+std::vector<double> flip_maxima(std::span<BlockScores> blocks, const Eigen::MatrixXf& flips,
+                                double stop_above, std::size_t stop_count) {
+  std::vector<double> maxima;
+  maxima.reserve(static_cast<std::size_t>(flips.rows()));
+  std::size_t exceeding = 0;
+  for (BlockScores& block : blocks) {
+    if (!block.test.testable) continue;
+    const double mean = block.whitened_sums.cast<double>().rowwise().squaredNorm().sum();
+    block.gamma.tabulate(std::max(block.test.statistic, 12 * mean));
+  }
+  for (Eigen::Index first = 0; first < flips.rows(); first += kFlipsAtOnce) {
+    const Eigen::Index count = std::min(kFlipsAtOnce, flips.rows() - first);
+    Eigen::VectorXd largest = Eigen::VectorXd::Zero(count);
+    for (const BlockScores& block : blocks) {
+      if (!block.test.testable) continue;
+      const Eigen::MatrixXf sums = flips.middleRows(first, count) * block.whitened_sums;
+      const Eigen::VectorXf statistics = sums.rowwise().squaredNorm();
+      for (Eigen::Index b = 0; b < count; ++b) {
+        largest[b] = std::max(largest[b], block.gamma.fast_score(statistics[b]));
+      }
+    }
+    for (Eigen::Index b = 0; b < count; ++b) {
+      maxima.push_back(largest[b]);
+      if (stop_count > 0 && largest[b] >= stop_above) ++exceeding;
+    }
+    if (stop_count > 0 && exceeding >= stop_count) break;
+  }
+  return maxima;
+}
+
+double adjusted_p(double score, std::span<const double> maxima) {
+  const auto at_least =
+      std::ranges::count_if(maxima, [score](double largest) { return largest >= score; });
+  return (1.0 + static_cast<double>(at_least)) / (1.0 + static_cast<double>(maxima.size()));
+}
+
+}  // namespace tribench

@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/search.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+// A family excited in fewer clusters cannot reach a small p by sign flips (specification, 3.3).
+constexpr std::size_t kFewestClusters = 20;
+// The rescue rule for families carried by few clusters (specification, 6.4).
+constexpr double kFewClusters = 25;
+constexpr double kRescueP = 0.15;
+constexpr double kRescueGain = 12;
+constexpr std::size_t kAtomsTried = 3;  // of a family, best scores first
+constexpr std::size_t kMostAtoms = 2;   // of a family: more is a sign of something else
+constexpr double kNearAliasP = 0.05;
+constexpr double kExactCorrelation = 0.995;
+constexpr std::array<double, 7> kUsualGearRatios = {50, 80, 100, 101, 120, 121, 160};
+
+// Torque comes in steps: no residual is more certain than its quantisation allows.
+double quantisation_floor(const std::vector<double>& target) {
+  std::vector<double> sorted = target;
+  std::ranges::sort(sorted);
+  const double span = sorted.back() - sorted.front();
+  double smallest = span;
+  std::size_t distinct = 1;
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const double step = sorted[i] - sorted[i - 1];
+    if (step <= 1e-12 * span) continue;
+    smallest = std::min(smallest, step);
+    ++distinct;
+  }
+  const double negligible = 1e-9 * span;
+  if (distinct * 2 > sorted.size()) return negligible;
+  return std::max(negligible, smallest / std::sqrt(12.0));
+}
+
+// The largest canonical correlation of two column spaces.
+double canonical_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  const Eigen::MatrixXd qa = orthonormal_basis(a);
+  const Eigen::MatrixXd qb = orthonormal_basis(b);
+  if (qa.cols() == 0 || qb.cols() == 0) return 0;
+  const Eigen::MatrixXd cross = qa.transpose() * qb;
+  const Eigen::MatrixXd gram = cross.transpose() * cross;
+  return std::sqrt(std::min(1.0, gram.selfadjointView<Eigen::Lower>().operatorNorm()));
+}
+
+}  // namespace
+
+Search::Search(const Observations& train, const BaseModel& base,
+               const std::vector<EffectFamily>& families, const DiagnosisOptions& options,
+               const Clusters& clusters, RandomStream random)
+    : data_(train),
+      families_(families),
+      options_(options),
+      clusters_(clusters),
+      random_(random),
+      noise_floor_(quantisation_floor(train.target)) {
+  instantiate_library();
+  flips_ = make_flips(options.flips, clusters.stretches.size(), random.split("flips"));
+  LoopModel model;
+  model.base = base;
+  model.coefficients.setZero(static_cast<Eigen::Index>(base.linear_terms.size()));
+  base_fit_ = fit(std::move(model), FitScope::everything);
+  current_ = base_fit_;
+}
+
+void Search::instantiate_library() {
+  const std::span<const double> ratios = options_.gear_ratios.empty()
+                                             ? std::span<const double>(kUsualGearRatios)
+                                             : std::span<const double>(options_.gear_ratios);
+  std::vector<Expression> formulas;
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    std::vector<std::string> missing;
+    for (Atom& atom : instantiate(families_[f], f, data_, ratios, missing)) {
+      blocks_.push_back({formulas.size(), atom.columns.size()});
+      formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
+      library_.push_back(std::move(atom));
+    }
+    if (!missing.empty()) {
+      untestable.push_back({families_[f].name, fmt::format("no {}", fmt::join(missing, ", no ")), 0,
+                            0, families_[f].separate_by.empty() ? "" : families_[f].separate_by[0]});
+    }
+  }
+  columns_ = evaluate_columns(formulas, data_);
+  for (Eigen::Index j = 0; j < columns_.cols(); ++j) {
+    const double rms = columns_.col(j).norm() / std::sqrt(static_cast<double>(columns_.rows()));
+    if (rms > 0) columns_.col(j) /= rms;
+  }
+  usable_.assign(library_.size(), 1);
+  for (std::size_t k = 0; k < library_.size(); ++k) {
+    const auto block = columns_.middleCols(static_cast<Eigen::Index>(blocks_[k].first),
+                                           static_cast<Eigen::Index>(blocks_[k].count));
+    if (!block.allFinite()) usable_[k] = 0;
+  }
+}
+
+FittedModel Search::fit(LoopModel model, FitScope scope) const {
+  FittedModel out;
+  Noise noise;
+  noise.within_sd = 1;  // no correction in the first pass
+  for (int pass = 0; pass < 3; ++pass) {
+    const bool refine = pass == 1 && scope == FitScope::everything;
+    fit_model(model, data_, clusters_, noise, refine ? scope : FitScope::linear);
+    if (pass == 2) break;
+    const Eigen::VectorXd residual = target_vector(data_) - predict(model, data_);
+    const auto fitted = static_cast<std::size_t>(model.coefficients.size());
+    noise = estimate_noise(residual, clusters_, fitted, noise_floor_);
+  }
+  out.x = whitened(tangent(model, data_), clusters_, noise);
+  out.basis = orthonormal_basis(out.x);
+  const Eigen::VectorXd residual =
+      whitened(target_vector(data_) - predict(model, data_), clusters_, noise);
+  out.residual = project_off(residual, out.basis);
+  out.losses = held_out_losses(out.x, out.residual, clusters_, noise);
+  out.model = std::move(model);
+  out.noise = noise;
+  return out;
+}
+
+Round Search::test_all(const FittedModel& state) const {
+  Round round;
+  round.columns = whitened(columns_, clusters_, state.noise);
+  const Eigen::VectorXd before = round.columns.colwise().squaredNorm();
+  const Eigen::MatrixXd projected = project_off(round.columns, state.basis);
+  round.blocks.resize(library_.size());
+  for (std::size_t k = 0; k < library_.size(); ++k) {
+    if (usable_[k] == 0) continue;
+    const auto first = static_cast<Eigen::Index>(blocks_[k].first);
+    const auto count = static_cast<Eigen::Index>(blocks_[k].count);
+    round.blocks[k] = score_block(projected.middleCols(first, count), before.segment(first, count),
+                                  state.residual, clusters_, 0);
+    if (round.blocks[k].test.carrying < kFewestClusters) round.blocks[k].test.testable = false;
+  }
+  round.maxima = flip_maxima(round.blocks, flips_);
+  round.family_p.assign(families_.size(), 1);
+  round.family_score.assign(families_.size(), 0);
+  for (std::size_t k = 0; k < library_.size(); ++k) {
+    if (!round.blocks[k].test.testable) continue;
+    double& score = round.family_score[library_[k].family];
+    score = std::max(score, round.blocks[k].test.score);
+  }
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    if (round.family_score[f] > 0) {
+      round.family_p[f] = adjusted_p(round.family_score[f], round.maxima);
+    }
+  }
+  return round;
+}
+
+Candidate Search::best_atom(std::size_t family, const Round& round,
+                            const FittedModel& state) const {
+  std::vector<std::size_t> atoms;
+  for (std::size_t k = 0; k < library_.size(); ++k) {
+    if (library_[k].family == family && round.blocks[k].test.testable) atoms.push_back(k);
+  }
+  std::ranges::stable_sort(atoms, [&](std::size_t a, std::size_t b) {
+    return round.blocks[a].test.score > round.blocks[b].test.score;
+  });
+  if (atoms.size() > kAtomsTried) atoms.resize(kAtomsTried);
+  Candidate best;
+  best.family = family;
+  best.gain.nats = -1e300;
+  for (const std::size_t k : atoms) {
+    const Eigen::MatrixXd x =
+        beside(state.x, round.columns.middleCols(static_cast<Eigen::Index>(blocks_[k].first),
+                                                 static_cast<Eigen::Index>(blocks_[k].count)));
+    Eigen::VectorXd losses = held_out_losses(x, state.residual, clusters_, state.noise);
+    const Gain gain = paired_gain(state.losses, losses);
+    if (gain.nats > best.gain.nats) best = {family, k, gain, std::move(losses), false};
+  }
+  return best;
+}
+
+std::vector<Candidate> Search::admitted(const Round& round, const FittedModel& state,
+                                        const std::vector<std::size_t>& skip) const {
+  std::vector<Candidate> all;
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    if (std::ranges::count(skip, f) > 0 || !(round.family_score[f] > 0)) continue;
+    const bool significant = round.family_p[f] <= options_.alpha_library;
+    if (!significant && round.family_p[f] >= kRescueP) continue;
+    Candidate candidate = best_atom(f, round, state);
+    const BlockTest& test = round.blocks[candidate.atom].test;
+    if (!significant) {
+      candidate.rescued = test.effective_clusters < kFewClusters &&
+                          candidate.gain.nats > kRescueGain &&
+                          candidate.gain.nats > 2 * candidate.gain.error;
+      if (!candidate.rescued) continue;
+    }
+    all.push_back(std::move(candidate));
+  }
+  std::ranges::stable_sort(
+      all, [](const Candidate& a, const Candidate& b) { return a.gain.nats > b.gain.nats; });
+  return all;
+}
+
+void Search::list_untestable(const Round& round) {
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    double share = 0;
+    std::size_t carrying = 0;
+    bool present = false;
+    bool testable = false;
+    for (std::size_t k = 0; k < library_.size(); ++k) {
+      if (library_[k].family != f) continue;
+      present = true;
+      testable = testable || round.blocks[k].test.testable;
+      share = std::max(share, round.blocks[k].test.share);
+      carrying = std::max(carrying, round.blocks[k].test.carrying);
+    }
+    if (!present || testable) continue;
+    const bool collinear = share * share < 1e-3;
+    untestable.push_back(
+        {families_[f].name,
+         collinear ? std::string("these data show nothing of it that the base does not have already")
+                   : fmt::format("only {} stretches of movement carry it; {} are needed", carrying,
+                                 kFewestClusters),
+         share, carrying, families_[f].separate_by.empty() ? "" : families_[f].separate_by[0]});
+  }
+}
+
+void Search::list_coinciding(const Round& round) {
+  const Eigen::MatrixXd projected = project_off(round.columns, base_fit_.basis);
+  Eigen::MatrixXf unit = projected.cast<float>();
+  for (Eigen::Index j = 0; j < unit.cols(); ++j) {
+    const float norm = unit.col(j).norm();
+    if (norm > 0) unit.col(j) /= norm;
+  }
+  const Eigen::MatrixXf correlations = unit.transpose() * unit;
+  for (std::size_t a = 0; a < library_.size(); ++a) {
+    for (std::size_t b = a + 1; b < library_.size(); ++b) {
+      if (library_[a].family == library_[b].family || !round.blocks[a].test.testable ||
+          !round.blocks[b].test.testable) {
+        continue;
+      }
+      const auto cross = correlations.block(static_cast<Eigen::Index>(blocks_[a].first),
+                                            static_cast<Eigen::Index>(blocks_[b].first),
+                                            static_cast<Eigen::Index>(blocks_[a].count),
+                                            static_cast<Eigen::Index>(blocks_[b].count));
+      if (cross.cwiseAbs().maxCoeff() < 0.5F) continue;
+      const auto block = [&](std::size_t k) {
+        return projected.middleCols(static_cast<Eigen::Index>(blocks_[k].first),
+                                    static_cast<Eigen::Index>(blocks_[k].count));
+      };
+      if (blocks_[a].count == 1 && blocks_[b].count == 1 &&
+          std::abs(cross(0, 0)) < static_cast<float>(kExactCorrelation)) {
+        continue;
+      }
+      const double r = canonical_correlation(block(a), block(b));
+      if (r < kExactCorrelation) continue;
+      const EffectFamily& first = families_[library_[a].family];
+      const EffectFamily& second = families_[library_[b].family];
+      const bool known = std::ranges::any_of(aliased, [&](const CoincidingFamilies& pair) {
+        return pair.first == first.name && pair.second == second.name;
+      });
+      if (known) continue;
+      aliased.push_back({first.name, second.name, r,
+                         first.separate_by.empty() ? "" : first.separate_by[0]});
+    }
+  }
+}
+
+void Search::list_candidates(const Round& round) {
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    if (!(round.family_score[f] > 0)) continue;
+    CandidateFinding finding;
+    finding.family = families_[f].name;
+    finding.adjusted_p = round.family_p[f];
+    finding.score = round.family_score[f];
+    for (std::size_t k = 0; k < library_.size(); ++k) {
+      if (library_[k].family == f && round.blocks[k].test.testable &&
+          round.blocks[k].test.score == finding.score) {
+        finding.atom = library_[k].label;
+        break;
+      }
+    }
+    if (finding.adjusted_p < kNearAliasP) {
+      finding.gain = best_atom(f, round, base_fit_).gain.nats;
+    }
+    candidates.push_back(std::move(finding));
+  }
+  std::ranges::stable_sort(candidates, [](const auto& a, const auto& b) {
+    return a.score > b.score;
+  });
+}
+
+std::size_t Search::atoms_of(std::size_t family) const {
+  return static_cast<std::size_t>(
+      std::ranges::count(current_.model.atoms, family, &Atom::family));
+}
+
+void Search::remove_family(LoopModel& model, std::size_t family) const {
+  for (std::size_t k = model.atoms.size(); k-- > 0;) {
+    if (model.atoms[k].family == family) model.remove(k);
+  }
+}
+
+std::vector<AliasFinding> Search::aliases_of(const Candidate& winner, const Round& round) const {
+  std::vector<AliasFinding> aliases;
+  const auto columns = [&](std::size_t atom) {
+    return project_off(round.columns.middleCols(static_cast<Eigen::Index>(blocks_[atom].first),
+                                                static_cast<Eigen::Index>(blocks_[atom].count)),
+                       current_.basis);
+  };
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    if (f == winner.family || round.family_p[f] > kNearAliasP) continue;
+    const Candidate rival = best_atom(f, round, current_);
+    const double r = canonical_correlation(columns(winner.atom), columns(rival.atom));
+    const Gain lead = paired_gain(rival.losses, winner.losses);
+    const bool exact = r > kExactCorrelation;
+    if (!exact && lead.nats >= 2 * lead.error) continue;
+    aliases.push_back({families_[f].name, r, lead.nats, lead.error, exact,
+                       families_[winner.family].separate_by.empty()
+                           ? ""
+                           : families_[winner.family].separate_by[0]});
+  }
+  for (const KnownAlias& known : families_[winner.family].known_aliases) {
+    aliases.push_back({known.name, 1, 0, 0, true, known.separate_by});
+  }
+  return aliases;
+}
+
+bool Search::add_best(const Round& round) {
+  const std::vector<Candidate> all = admitted(round, current_, {});
+  if (all.empty()) return false;
+  const Candidate& winner = all.front();
+  if (!(winner.gain.nats > winner.gain.error)) return false;
+  const bool again = atoms_of(winner.family) > 0;
+  if (atoms_of(winner.family) >= kMostAtoms) {
+    notes.push_back(fmt::format(
+        "more than {} columns of '{}' are asked for: a sign of something that only looks like it",
+        kMostAtoms, families_[winner.family].name));
+    return false;
+  }
+  if (!again) {
+    found.push_back({winner.family, round.family_p[winner.family], winner.gain, winner.rescued,
+                     aliases_of(winner, round)});
+  }
+  LoopModel model = current_.model;
+  model.add(library_[winner.atom]);
+  current_ = fit(std::move(model), FitScope::everything);
+  return true;
+}
+
+double Search::family_p_given_rest(std::size_t family, const FittedModel& rest, const Round& round,
+                                   const FittedModel& with) const {
+  std::vector<Expression> formulas;
+  for (const Atom& atom : with.model.atoms) {
+    if (atom.family != family) continue;
+    formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
+  }
+  const Eigen::MatrixXd z = whitened(evaluate_columns(formulas, data_), clusters_, rest.noise);
+  const Eigen::VectorXd before = z.colwise().squaredNorm();
+  const BlockScores block =
+      score_block(project_off(z, rest.basis), before, rest.residual, clusters_, 0);
+  return block.test.testable ? adjusted_p(block.test.score, round.maxima) : 1;
+}
+
+bool Search::swap_or_drop(std::size_t family) {
+  LoopModel without = current_.model;
+  remove_family(without, family);
+  const FittedModel rest = fit(std::move(without), FitScope::linear);
+  const Round round = test_all(rest);
+  const auto entry = std::ranges::find(found, family, &Found::family);
+  const double p = family_p_given_rest(family, rest, round, current_);
+  if (p > (entry->few ? kRescueP : options_.alpha_library)) {
+    notes.push_back(fmt::format("'{}' is not significant given the rest: removed",
+                                families_[family].name));
+    found.erase(entry);
+    current_ = fit(rest.model, FitScope::everything);
+    return true;
+  }
+  std::vector<std::size_t> skip;
+  for (const Found& one : found) skip.push_back(one.family);
+  const std::vector<Candidate> rivals = admitted(round, rest, skip);
+  if (rivals.empty()) return false;
+  LoopModel swapped = rest.model;
+  swapped.add(library_[rivals.front().atom]);
+  FittedModel other = fit(std::move(swapped), FitScope::everything);
+  // Both in the coordinates of the present noise.
+  const Eigen::VectorXd y = whitened(target_vector(data_) - predict(other.model, data_), clusters_,
+                                     current_.noise);
+  const Eigen::MatrixXd x = whitened(tangent(other.model, data_), clusters_, current_.noise);
+  const Gain lead =
+      paired_gain(current_.losses, held_out_losses(x, y, clusters_, current_.noise));
+  if (!(lead.nats > lead.error)) return false;
+  const Candidate& rival = rivals.front();
+  notes.push_back(fmt::format("'{}' replaced by '{}', which predicts better by {:.1f} nats",
+                              families_[family].name, families_[rival.family].name, lead.nats));
+  *entry = {rival.family, round.family_p[rival.family], rival.gain, rival.rescued,
+            aliases_of(rival, round)};
+  current_ = std::move(other);
+  return true;
+}
+
+void Search::reconsider() {
+  if (found.size() < 2) return;
+  std::vector<std::size_t> families;
+  for (const Found& one : found) families.push_back(one.family);
+  for (const std::size_t family : families) {
+    if (found.size() < 2) return;
+    swap_or_drop(family);
+  }
+}
+
+void Search::run() {
+  const Eigen::VectorXd raw = target_vector(data_) - predict(base_fit_.model, data_);
+  const double scale = target_vector(data_).norm();
+  if (!(raw.norm() > 1e-9 * scale)) {
+    notes.push_back("the base model leaves no residual");
+    return;
+  }
+  Round round = test_all(base_fit_);
+  list_untestable(round);
+  list_coinciding(round);
+  list_candidates(round);
+  for (int addition = 0; addition < options_.max_additions; ++addition) {
+    if (!add_best(round)) break;
+    reconsider();
+    round = test_all(current_);
+  }
+  if (!found.empty()) check_exhaustively();
+  test_leftover();
+}
+
+}  // namespace tribench

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+//
+// The search for missing effects on training movements: rounds of tests, additions by
+// cross-validated gain, swaps, removals and the test for what is left over. Internal to the room.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "algorithms/diagnosis/cross_validation.hpp"
+#include "algorithms/diagnosis/diagnosis.hpp"
+#include "algorithms/diagnosis/loop_model.hpp"
+#include "algorithms/diagnosis/score_test.hpp"
+#include "algorithms/diagnosis/smoothers.hpp"
+
+namespace tribench {
+
+// A model fitted to the training movements, in the coordinates of its own noise.
+struct FittedModel {
+  LoopModel model;
+  Noise noise;
+  Eigen::MatrixXd x;         // whitened tangent
+  Eigen::MatrixXd basis;     // of x, orthonormal
+  Eigen::VectorXd residual;  // whitened, orthogonal to the basis
+  Eigen::VectorXd losses;    // held-out, by stretch
+};
+
+// The tests of all atoms against one fitted model.
+struct Round {
+  Eigen::MatrixXd columns;           // the library's, whitened with the model's noise
+  std::vector<BlockScores> blocks;   // per atom
+  std::vector<double> maxima;        // over all atoms, per flip
+  std::vector<double> family_p;      // adjusted; 1 where untestable
+  std::vector<double> family_score;
+};
+
+struct Candidate {
+  std::size_t family = 0;
+  std::size_t atom = 0;
+  Gain gain;
+  Eigen::VectorXd losses;
+  bool rescued = false;  // carried by few clusters, admitted by its gain
+};
+
+class Search {
+ public:
+  Search(const Observations& train, const BaseModel& base,
+         const std::vector<EffectFamily>& families, const DiagnosisOptions& options,
+         const Clusters& clusters, RandomStream random);
+
+  // Runs to the verdict; results below.
+  void run();
+
+  const FittedModel& base() const { return base_fit_; }
+  const FittedModel& current() const { return current_; }
+  const Clusters& clusters() const { return clusters_; }
+  const std::vector<Atom>& library() const { return library_; }
+
+  // What was found, family by family in the order picked.
+  struct Found {
+    std::size_t family;
+    double p;
+    Gain gain;
+    bool few;
+    std::vector<AliasFinding> aliases;
+  };
+  std::vector<Found> found;
+  LeftoverFinding leftover;
+  std::vector<UntestableFinding> untestable;
+  std::vector<CoincidingFamilies> aliased;
+  std::vector<CandidateFinding> candidates;
+  std::vector<std::string> notes;
+
+  FittedModel fit(LoopModel model, FitScope scope) const;
+  // Families whose p, gain or rescue admit them, best gain first. `skip` are left out.
+  std::vector<Candidate> admitted(const Round& round, const FittedModel& state,
+                                  const std::vector<std::size_t>& skip) const;
+  Round test_all(const FittedModel& state) const;
+
+ private:
+  void instantiate_library();
+  void list_untestable(const Round& round);
+  void list_coinciding(const Round& round);
+  void list_candidates(const Round& round);
+  bool add_best(const Round& round);
+  std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round) const;
+  Candidate best_atom(std::size_t family, const Round& round, const FittedModel& state) const;
+  void reconsider();
+  bool swap_or_drop(std::size_t family);
+  double family_p_given_rest(std::size_t family, const FittedModel& rest, const Round& round,
+                             const FittedModel& with) const;
+  void check_exhaustively();
+  void test_leftover();
+  void drop_proxies(const Smoother& smoother);
+  std::size_t atoms_of(std::size_t family) const;
+  void remove_family(LoopModel& model, std::size_t family) const;
+
+  const Observations& data_;
+  const std::vector<EffectFamily>& families_;
+  const DiagnosisOptions& options_;
+  const Clusters& clusters_;
+  RandomStream random_;
+  double noise_floor_ = 0;
+  std::vector<Atom> library_;
+  std::vector<char> usable_;  // per atom: testable given the base, in enough clusters
+  Eigen::MatrixXd columns_;   // the library's raw columns, unit rms
+  std::vector<Block> blocks_;  // per atom, in columns_
+  Eigen::MatrixXf flips_;
+  FittedModel base_fit_;
+  FittedModel current_;
+};
+
+}  // namespace tribench

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+//
+// Flexible bases in one or two signals: what finds structure that no effect of the library
+// explains, and says in which inputs it lives. Radial functions in one signal, random Fourier
+// features (Rahimi and Recht 2007) in two, each with and without the direction of motion.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "algorithms/diagnosis/observations.hpp"
+#include "foundation/random.hpp"
+
+namespace tribench {
+
+struct Smoother {
+  std::vector<std::string> signals;  // one or two
+  std::vector<std::string> inputs;   // their role names: "velocity", "position", ...
+  Eigen::MatrixXd columns;           // rows x features, then the same times the direction
+};
+
+// All smoothers that the data have the signals for.
+std::vector<Smoother> make_smoothers(const Observations& data, RandomStream random);
+
+// The name under which a signal is reported: its role's.
+std::string input_name(const Observations& data, std::string_view signal);
+
+}  // namespace tribench
