@@ -10,9 +10,14 @@ namespace {
 constexpr double kStribeckLimit = 0.15;
 
 EffectFamily asymmetry() {
-  EffectFamily f{"asymmetry", "E2", "Coulomb and viscous friction that differ by direction",
-                 "friction differs by direction", "Armstrong-Helouvry 1991", {}};
-  f.atoms = {{{"1"}, {"half_gap"}}, {{"abs(v)"}, {"viscous_half_gap"}},
+  EffectFamily f{"asymmetry",
+                 "E2",
+                 "Coulomb and viscous friction that differ by direction",
+                 "friction differs by direction",
+                 "Armstrong-Helouvry 1991",
+                 {}};
+  f.atoms = {{{"1"}, {"half_gap"}},
+             {{"abs(v)"}, {"viscous_half_gap"}},
              {{"1", "abs(v)"}, {"half_gap", "viscous_half_gap"}}};
   f.known_aliases = {{"sensor_offset",
                       "read the torque with the drive unpowered or the brake on, or turn the axis "
@@ -22,9 +27,12 @@ EffectFamily asymmetry() {
 }
 
 EffectFamily stribeck() {
-  EffectFamily f{"stribeck", "E1", "friction that falls from its breakaway level as speed grows",
+  EffectFamily f{"stribeck",
+                 "E1",
+                 "friction that falls from its breakaway level as speed grows",
                  "friction falls with speed near standstill",
-                 "Armstrong-Helouvry 1991; Canudas de Wit 1995", {}};
+                 "Armstrong-Helouvry 1991; Canudas de Wit 1995",
+                 {}};
   f.atoms = {{{"sgn_v*exp(-(abs(v)/vs)^delta)"},
               {"excess"},
               {{"vs", "v", {0.02, 0.045, 0.09, 0.14}, 0.004, kStribeckLimit},
@@ -35,24 +43,30 @@ EffectFamily stribeck() {
 }
 
 EffectFamily nonlinear_viscous() {
-  EffectFamily f{"nonlinear_viscous", "E3", "viscous friction that is not proportional to speed",
+  EffectFamily f{"nonlinear_viscous",
+                 "E3",
+                 "viscous friction that is not proportional to speed",
                  "viscous friction is not proportional to speed",
-                 "Wolf and Iskandar 2018 (polynomial); Bittencourt 2010", {}};
-  f.atoms = {{{"v*abs(v)"}, {"quadratic"}},
-             {{"v^3"}, {"cubic"}},
-             {{"sgn_v*(abs(v)/vr)^n"},
-              {"power"},
-              {{"vr", "v", {1}, 1, 1}, {"n", "", {0.5, 4}, 0.3, 6}}},
-             {{"sgn_v*(1 - exp(-abs(v)/v0))"},
-              {"saturating"},
-              {{"v0", "v", {0.22, 0.5}, kStribeckLimit, 3}}}};
+                 "Wolf and Iskandar 2018 (polynomial); Bittencourt 2010",
+                 {}};
+  f.atoms = {
+      {{"v*abs(v)"}, {"quadratic"}},
+      {{"v^3"}, {"cubic"}},
+      {{"sgn_v*(abs(v)/vr)^n"}, {"power"}, {{"vr", "v", {1}, 1, 1}, {"n", "", {0.5, 4}, 0.3, 6}}},
+      {{"sgn_v*(1 - exp(-abs(v)/v0))"},
+       {"saturating"},
+       {{"v0", "v", {0.22, 0.5}, kStribeckLimit, 3}}}};
   f.separate_by = {"R2"};
   return f;
 }
 
 EffectFamily load_coulomb() {
-  EffectFamily f{"load_coulomb", "E4", "Coulomb friction that grows with the load",
-                 "Coulomb friction grows with the load", "Bittencourt et al. 2010", {}};
+  EffectFamily f{"load_coulomb",
+                 "E4",
+                 "Coulomb friction that grows with the load",
+                 "Coulomb friction grows with the load",
+                 "Bittencourt et al. 2010",
+                 {}};
   f.atoms = {{{"sgn_v*abs(g)"}, {"mu"}}};
   f.sanity = {{"mu", 1, 0, 1e30, "friction that falls as the load grows"}};
   f.separate_by = {"R3"};
@@ -60,39 +74,53 @@ EffectFamily load_coulomb() {
 }
 
 EffectFamily load_viscous() {
-  EffectFamily f{"load_viscous", "E7", "viscous friction that grows with the load",
-                 "viscous friction grows with the load", "Bittencourt et al. 2010", {}};
+  EffectFamily f{"load_viscous",
+                 "E7",
+                 "viscous friction that grows with the load",
+                 "viscous friction grows with the load",
+                 "Bittencourt et al. 2010",
+                 {}};
   f.atoms = {{{"v*abs(g)"}, {"mu_v"}}};
   f.separate_by = {"R3"};
   return f;
 }
 
 EffectFamily power_quadrant_gain() {
-  EffectFamily f{"power_quadrant_gain", "E5",
+  EffectFamily f{"power_quadrant_gain",
+                 "E5",
                  "efficiency that differs between driving and back-driving, proportional to load",
                  "losses differ between driving and back-driving, in proportion to the load",
-                 "Tadese et al. 2021", {}};
+                 "Tadese et al. 2021",
+                 {}};
   f.atoms = {{{"g"}, {"gain"}}};
   f.sanity = {{"gain", 0, 0.2, 1e30, "a share of the load above 20 %"}};
   const std::string how =
-      "known payload and a link-side torque sensor, or a standstill hold approached from both sides";
+      "known payload and a link-side torque sensor, or a standstill hold approached from both "
+      "sides";
   f.known_aliases = {{"torque_constant", how}, {"mass_scale", how}};
   f.separate_by = {"R3", "R8"};
   return f;
 }
 
 EffectFamily power_quadrant_step() {
-  EffectFamily f{"power_quadrant_step", "E6",
+  EffectFamily f{"power_quadrant_step",
+                 "E6",
                  "a loss that jumps where driving turns into back-driving",
-                 "a loss jumps where driving turns into back-driving", "Tadese et al. 2021", {}};
+                 "a loss jumps where driving turns into back-driving",
+                 "Tadese et al. 2021",
+                 {}};
   f.atoms = {{{"tanh(g/g0)"}, {"step"}, {{"g0", "g", {0.012, 0.05, 0.15}, 0.003, 0.3}}}};
   f.separate_by = {"R3", "R8"};
   return f;
 }
 
 EffectFamily payload() {
-  EffectFamily f{"payload", "E14", "a mass or its lever that the declared gravity lacks",
-                 "the declared gravity torque lacks a mass", "rigid-body mechanics", {}};
+  EffectFamily f{"payload",
+                 "E14",
+                 "a mass or its lever that the declared gravity lacks",
+                 "the declared gravity torque lacks a mass",
+                 "rigid-body mechanics",
+                 {}};
   f.atoms = {{{"sin(q)", "cos(q)"}, {"sine", "cosine"}}};
   f.angular = true;
   f.known_aliases = {{"output_ripple (once a turn)", "a known payload (R3)"}};
@@ -101,8 +129,12 @@ EffectFamily payload() {
 }
 
 EffectFamily output_ripple() {
-  EffectFamily f{"output_ripple", "E8", "torque that repeats with the output's turn",
-                 "torque repeats with the joint's angle", "Tuttle 1992", {}};
+  EffectFamily f{"output_ripple",
+                 "E8",
+                 "torque that repeats with the output's turn",
+                 "torque repeats with the joint's angle",
+                 "Tuttle 1992",
+                 {}};
   for (int k = 2; k <= 8; ++k) {
     const std::string angle = std::to_string(k) + "*q)";
     f.atoms.push_back({{"cos(" + angle, "sin(" + angle}, {"cosine", "sine"}});
@@ -113,9 +145,12 @@ EffectFamily output_ripple() {
 }
 
 EffectFamily gear_ripple() {
-  EffectFamily f{"gear_ripple", "E9", "torque that repeats with the wave generator's turn",
+  EffectFamily f{"gear_ripple",
+                 "E9",
+                 "torque that repeats with the wave generator's turn",
                  "torque repeats with the motor's turn",
-                 "Taghirad and Belanger 1998; Ghorbel et al. 2001", {}};
+                 "Taghirad and Belanger 1998; Ghorbel et al. 2001",
+                 {}};
   for (const char* k : {"1", "2", "4"}) {
     const std::string angle = std::string(k) + "*N*q)";
     const ShapeTemplate ratio{"N", "", {}, 0, 0};  // the grid is the gear ratios
@@ -128,15 +163,17 @@ EffectFamily gear_ripple() {
 }
 
 EffectFamily temperature() {
-  EffectFamily f{"temperature", "E10", "friction that changes with temperature",
-                 "friction changes with temperature", "Bittencourt 2012; Wolf and Iskandar 2018",
+  EffectFamily f{"temperature",
+                 "E10",
+                 "friction that changes with temperature",
+                 "friction changes with temperature",
+                 "Bittencourt 2012; Wolf and Iskandar 2018",
                  {}};
   const ShapeTemplate reference{"T0", "T", {0}, 0, 0};  // the mean temperature
-  f.atoms = {{{"v*(T - T0)"}, {"viscous_slope"}, {reference}},
-             {{"sgn_v*(T - T0)"}, {"coulomb_slope"}, {reference}},
-             {{"v*exp(-(T - T0)/Tv)"},
-              {"viscous_decay"},
-              {reference, {"Tv", "T", {0.5, 1.0}, 0.2, 4}}}};
+  f.atoms = {
+      {{"v*(T - T0)"}, {"viscous_slope"}, {reference}},
+      {{"sgn_v*(T - T0)"}, {"coulomb_slope"}, {reference}},
+      {{"v*exp(-(T - T0)/Tv)"}, {"viscous_decay"}, {reference, {"Tv", "T", {0.5, 1.0}, 0.2, 4}}}};
   f.sanity = {{"viscous_slope", -1, 0, 1e30, "viscous friction that grows with temperature"},
               {"viscous_decay", 1, 0, 1e30, "viscous friction that grows with temperature"}};
   f.separate_by = {"R5"};
@@ -144,16 +181,24 @@ EffectFamily temperature() {
 }
 
 EffectFamily drift() {
-  EffectFamily f{"drift", "E11", "friction or a sensor that changes through the campaign",
-                 "friction changes through the campaign", "Bittencourt and Axelsson 2013", {}};
-  f.atoms = {{{"sgn_v*t"}, {"coulomb_rate"}}, {{"v*t"}, {"viscous_rate"}}, {{"t"}, {"offset_rate"}}};
+  EffectFamily f{"drift",
+                 "E11",
+                 "friction or a sensor that changes through the campaign",
+                 "friction changes through the campaign",
+                 "Bittencourt and Axelsson 2013",
+                 {}};
+  f.atoms = {
+      {{"sgn_v*t"}, {"coulomb_rate"}}, {{"v*t"}, {"viscous_rate"}}, {{"t"}, {"offset_rate"}}};
   f.separate_by = {"R1", "R5"};
   return f;
 }
 
 EffectFamily hysteresis() {
-  EffectFamily f{"hysteresis", "E12", "presliding: friction that builds up after a reversal",
-                 "friction builds up with the distance after a reversal", "Dahl 1968; LuGre 1995",
+  EffectFamily f{"hysteresis",
+                 "E12",
+                 "presliding: friction that builds up after a reversal",
+                 "friction builds up with the distance after a reversal",
+                 "Dahl 1968; LuGre 1995",
                  {}};
   f.atoms = {{{"sgn_v*exp(-d/lambda)"},
               {"presliding"},
@@ -163,18 +208,25 @@ EffectFamily hysteresis() {
 }
 
 EffectFamily lag() {
-  EffectFamily f{"lag", "E13", "friction that follows the velocity late",
-                 "friction follows the velocity late near standstill", "Hess and Soom 1990", {}};
-  f.atoms = {{{"sgn_v*exp(-abs(v)/vl)*sgn(v*a)"},
-              {"lag"},
-              {{"vl", "v", {0.07, 0.15, 0.3}, 0.02, 0.6}}}};
+  EffectFamily f{"lag",
+                 "E13",
+                 "friction that follows the velocity late",
+                 "friction follows the velocity late near standstill",
+                 "Hess and Soom 1990",
+                 {}};
+  f.atoms = {
+      {{"sgn_v*exp(-abs(v)/vl)*sgn(v*a)"}, {"lag"}, {{"vl", "v", {0.07, 0.15, 0.3}, 0.02, 0.6}}}};
   f.separate_by = {"R4"};
   return f;
 }
 
 EffectFamily inertia() {
-  EffectFamily f{"inertia", "E15", "an inertia that the declared rigid body lacks",
-                 "the declared inertia is off", "rigid-body mechanics", {}};
+  EffectFamily f{"inertia",
+                 "E15",
+                 "an inertia that the declared rigid body lacks",
+                 "the declared inertia is off",
+                 "rigid-body mechanics",
+                 {}};
   f.atoms = {{{"a"}, {"inertia"}}};
   f.known_aliases = {{"lag of viscous friction", "change the inertia with a payload (R3, R4)"}};
   f.separate_by = {"R4", "R3"};
@@ -182,9 +234,15 @@ EffectFamily inertia() {
 }
 
 EffectFamily coupling() {
-  EffectFamily f{"coupling", "E18", "torque from the motion of another joint",
-                 "another joint's motion reaches this one", "rigid-body mechanics", {}};
-  f.atoms = {{{"v2"}, {"viscous"}}, {{"a2"}, {"inertial"}}, {{"v*v2"}, {"coriolis"}},
+  EffectFamily f{"coupling",
+                 "E18",
+                 "torque from the motion of another joint",
+                 "another joint's motion reaches this one",
+                 "rigid-body mechanics",
+                 {}};
+  f.atoms = {{{"v2"}, {"viscous"}},
+             {{"a2"}, {"inertial"}},
+             {{"v*v2"}, {"coriolis"}},
              {{"v2^2"}, {"centrifugal"}}};
   f.separate_by = {"R7"};
   return f;
@@ -193,11 +251,22 @@ EffectFamily coupling() {
 }  // namespace
 
 const std::vector<EffectFamily>& builtin_effects() {
-  static const std::vector<EffectFamily> kEffects = {
-      asymmetry(),           stribeck(),      nonlinear_viscous(), load_coulomb(), load_viscous(),
-      power_quadrant_gain(), power_quadrant_step(), payload(),     output_ripple(), gear_ripple(),
-      temperature(),         drift(),         hysteresis(),        lag(),          inertia(),
-      coupling()};
+  static const std::vector<EffectFamily> kEffects = {asymmetry(),
+                                                     stribeck(),
+                                                     nonlinear_viscous(),
+                                                     load_coulomb(),
+                                                     load_viscous(),
+                                                     power_quadrant_gain(),
+                                                     power_quadrant_step(),
+                                                     payload(),
+                                                     output_ripple(),
+                                                     gear_ripple(),
+                                                     temperature(),
+                                                     drift(),
+                                                     hysteresis(),
+                                                     lag(),
+                                                     inertia(),
+                                                     coupling()};
   return kEffects;
 }
 
@@ -205,7 +274,8 @@ std::string experiment_text(std::string_view rule) {
   if (rule == "R1") return "repeat at least 5 settings twice, hours apart";
   if (rule == "R2") return "move both ways over the same stroke in the same posture";
   if (rule == "R3") return "use two postures or a known payload";
-  if (rule == "R4") return "run reversals and a two-tone movement that covers speed and acceleration";
+  if (rule == "R4")
+    return "run reversals and a two-tone movement that covers speed and acceleration";
   if (rule == "R5") return "take the movements in random order with one cool-down";
   if (rule == "R6") return "pass slowly, with at least 20 samples in a quarter of a motor turn";
   if (rule == "R7") return "move the other joints one at a time, in at least 20 stretches";

@@ -33,8 +33,8 @@ void cut(Clusters& clusters, std::size_t m, double rows_per_stretch) {
         1, static_cast<std::size_t>(static_cast<double>(range.size()) / rows_per_stretch));
   }
   for (std::size_t k = 0; k < pieces; ++k) {
-    clusters.stretches.push_back({range.begin + range.size() * k / pieces,
-                                  range.begin + range.size() * (k + 1) / pieces});
+    clusters.stretches.push_back(
+        {range.begin + range.size() * k / pieces, range.begin + range.size() * (k + 1) / pieces});
     clusters.movement_of.push_back(m);
   }
 }
@@ -74,7 +74,8 @@ double autocovariance(const Eigen::VectorXd& deviation, std::span<const RowRange
 Eigen::VectorXd deviations(const Eigen::VectorXd& residual, std::span<const RowRange> movements) {
   Eigen::VectorXd out = residual;
   for (const RowRange& m : movements) {
-    auto part = out.segment(static_cast<Eigen::Index>(m.begin), static_cast<Eigen::Index>(m.size()));
+    auto part =
+        out.segment(static_cast<Eigen::Index>(m.begin), static_cast<Eigen::Index>(m.size()));
     part.array() -= part.mean();
   }
   return out;
@@ -93,8 +94,8 @@ Clusters make_clusters(std::span<const int> movement, double correlation_time,
   return clusters;
 }
 
-Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters,
-                     std::size_t fitted, double floor_sd) {
+Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters, std::size_t fitted,
+                     double floor_sd) {
   Noise noise;
   const auto movements = static_cast<double>(clusters.movements.size());
   const auto n = static_cast<double>(residual.size());
@@ -103,18 +104,17 @@ Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters,
   const double dof = std::max(1.0, n - movements - static_cast<double>(fitted));
   noise.within_sd = std::max(std::sqrt(within / dof), floor_sd);
   if (within > 0) {
-    noise.rho = std::clamp(autocovariance(deviation, clusters.movements, 1) / within, 0.0,
-                           kLargestRho);
+    noise.rho =
+        std::clamp(autocovariance(deviation, clusters.movements, 1) / within, 0.0, kLargestRho);
   }
   noise.inflation = (1 + noise.rho) / (1 - noise.rho);
   const double variance = noise.within_sd * noise.within_sd;
   double means = 0;
   double expected = 0;
   for (const RowRange& m : clusters.movements) {
-    const double mean = residual
-                            .segment(static_cast<Eigen::Index>(m.begin),
-                                     static_cast<Eigen::Index>(m.size()))
-                            .mean();
+    const double mean =
+        residual.segment(static_cast<Eigen::Index>(m.begin), static_cast<Eigen::Index>(m.size()))
+            .mean();
     const auto rows = static_cast<double>(m.size());
     means += mean * mean;
     expected += variance * std::min(noise.inflation, rows) / rows;

@@ -36,8 +36,7 @@ struct Clusters {
 // Stretches hold at least 30 rows and 10 correlation times (in rows); a movement of up to 45 rows
 // is one stretch. Ten folds of movements, fewer where there are fewer movements; five folds of
 // neighbouring stretches where there is one movement.
-Clusters make_clusters(std::span<const int> movement, double correlation_time,
-                       RandomStream random);
+Clusters make_clusters(std::span<const int> movement, double correlation_time, RandomStream random);
 
 struct Noise {
   double within_sd = 0;   // sw
@@ -49,8 +48,8 @@ struct Noise {
 
 // From residuals; `fitted` parameters are taken off the degrees of freedom. floor_sd keeps the
 // noise of perfect data from vanishing.
-Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters,
-                     std::size_t fitted, double floor_sd);
+Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters, std::size_t fitted,
+                     double floor_sd);
 
 // theta of a movement of n rows: a column's mean over the movement, times theta, is taken off.
 double quasi_demeaning(const Noise& noise, std::size_t rows);

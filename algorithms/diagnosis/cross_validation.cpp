@@ -32,10 +32,8 @@ std::vector<Eigen::MatrixXd> fold_grams(const Eigen::MatrixXd& x, const Eigen::V
 
 Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& gram, Eigen::Index p,
                              Eigen::Index penalised = 0, double ridge = 0) {
-  const Eigen::VectorXd scale =
-      gram.diagonal().head(p).cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-  Eigen::MatrixXd normal =
-      scale.asDiagonal() * gram.topLeftCorner(p, p) * scale.asDiagonal();
+  const Eigen::VectorXd scale = gram.diagonal().head(p).cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  Eigen::MatrixXd normal = scale.asDiagonal() * gram.topLeftCorner(p, p) * scale.asDiagonal();
   normal.diagonal().array() += kRidge;
   normal.diagonal().tail(penalised).array() += ridge;
   const Eigen::VectorXd right = scale.cwiseProduct(gram.col(p).head(p));

@@ -32,8 +32,8 @@ class SubsetLosses {
  private:
   const Clusters& clusters_;
   double unit_;
-  Eigen::Index width_;                  // columns, y is the last
-  std::vector<Eigen::MatrixXd> grams_;  // per stretch
+  Eigen::Index width_;                   // columns, y is the last
+  std::vector<Eigen::MatrixXd> grams_;   // per stretch
   std::vector<Eigen::MatrixXd> others_;  // per fold: of all rows but its own
 };
 

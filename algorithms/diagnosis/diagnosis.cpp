@@ -97,8 +97,8 @@ Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>&
     normal.diagonal().array() += kRidge * normal.trace() / static_cast<double>(normal.rows());
     residual = y - x * normal.ldlt().solve(weighted.transpose() * y);
     // Huber's weights keep bursts from bending the model.
-    const double sd = std::sqrt(residual.cwiseProduct(wanted).squaredNorm() /
-                                std::max(1.0, wanted.sum()));
+    const double sd =
+        std::sqrt(residual.cwiseProduct(wanted).squaredNorm() / std::max(1.0, wanted.sum()));
     for (Eigen::Index i = 0; i < weights.size(); ++i) {
       const double size = std::abs(residual[i]);
       weights[i] = wanted[i] * (size > 2 * sd ? 2 * sd / size : 1.0);
@@ -116,15 +116,14 @@ Verdict verdict_of(const Diagnosis& diagnosis) {
 void apply_vetoes(Diagnosis& diagnosis, const Observations& train) {
   for (std::size_t k = 0; k < diagnosis.effects.size(); ++k) {
     EffectFinding& finding = diagnosis.effects[k];
-    const auto family =
-        std::ranges::find(diagnosis.families, finding.family, &EffectFamily::name);
+    const auto family = std::ranges::find(diagnosis.families, finding.family, &EffectFamily::name);
     const std::string objection = physical_objection(finding, *family);
     if (objection.empty()) continue;
     finding.provisional = true;
     finding.notes.push_back("not physical: " + objection);
     diagnosis.notes.push_back(
-        fmt::format("'{}' fits but is not physical ({}): something else is missing",
-                    finding.family, objection));
+        fmt::format("'{}' fits but is not physical ({}): something else is missing", finding.family,
+                    objection));
     if (!diagnosis.leftover.inputs.empty()) continue;
     std::vector<std::string> names;
     for (const AtomTemplate& atom : family->atoms) {
@@ -182,8 +181,8 @@ std::string_view verdict_name(Verdict verdict) {
   return "NONE";
 }
 
-Diagnosis diagnose(const Observations& data, const BaseModel& base,
-                   const DiagnosisOptions& options, std::uint64_t seed) {
+Diagnosis diagnose(const Observations& data, const BaseModel& base, const DiagnosisOptions& options,
+                   std::uint64_t seed) {
   const RandomStream random(seed);
   Diagnosis out;
   out.options = options;
@@ -198,7 +197,8 @@ Diagnosis diagnose(const Observations& data, const BaseModel& base,
   check_enough(train, base);
   Eigen::VectorXd train_rich(static_cast<Eigen::Index>(train.rows()));
   for (std::size_t i = 0, k = 0; i < data.rows(); ++i) {
-    if (kept[i] != 0) train_rich[static_cast<Eigen::Index>(k++)] = rich[static_cast<Eigen::Index>(i)];
+    if (kept[i] != 0)
+      train_rich[static_cast<Eigen::Index>(k++)] = rich[static_cast<Eigen::Index>(i)];
   }
   const Clusters uncut = make_clusters(train.movement, 1, random);
   const double lasting = correlation_time(train_rich, uncut.movements);
@@ -223,8 +223,8 @@ Diagnosis diagnose(const Observations& data, const BaseModel& base,
   out.verdict = verdict_of(out);
   const Observations test = data.select(rows_of(data, out.test_movements, true, out.masked));
   if (test.rows() > 0) {
-    out.error = judge(test, predict(out.before, test), predict(out.after, test),
-                      random.split("bootstrap"));
+    out.error =
+        judge(test, predict(out.before, test), predict(out.after, test), random.split("bootstrap"));
     out.error.how = "held out";
     out.error.confirmed = out.effects.empty() || out.error.difference_low > 0;
   }

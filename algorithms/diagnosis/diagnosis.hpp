@@ -162,7 +162,7 @@ struct Diagnosis {
 
 // Deterministic given the seed. Cost: some tens of milliseconds for 6 000 rows.
 // Throws Error (bad_input) where there are too few rows to fit the base.
-Diagnosis diagnose(const Observations& data, const BaseModel& base,
-                   const DiagnosisOptions& options, std::uint64_t seed);
+Diagnosis diagnose(const Observations& data, const BaseModel& base, const DiagnosisOptions& options,
+                   std::uint64_t seed);
 
 }  // namespace tribench

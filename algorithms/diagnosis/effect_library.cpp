@@ -56,8 +56,11 @@ Atom make_atom(const AtomTemplate& source, std::size_t family, const Observation
     names.push_back(shape.name);
     const bool fixed = !(shape.high > shape.low);
     const double value = shape.name == "N" ? values[k] : scaled(shape, values[k], data);
-    atom.shapes.push_back({shape.name, value, fixed ? value : scaled(shape, shape.low, data),
-                           fixed ? value : scaled(shape, shape.high, data), {}});
+    atom.shapes.push_back({shape.name,
+                           value,
+                           fixed ? value : scaled(shape, shape.low, data),
+                           fixed ? value : scaled(shape, shape.high, data),
+                           {}});
   }
   for (std::size_t c = 0; c < source.columns.size(); ++c) {
     const Expression parsed = parse(source.columns[c], names);

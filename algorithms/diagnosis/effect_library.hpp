@@ -61,7 +61,7 @@ struct EffectFamily {
   std::vector<Sanity> sanity = {};
   std::vector<KnownAlias> known_aliases = {};
   std::vector<std::string> separate_by = {};  // experiments: "R3", ...
-  bool angular = false;                       // makes sense for an angle only, not for a position in m
+  bool angular = false;     // makes sense for an angle only, not for a position in m
   std::string origin = {};  // of a learned effect: the movements it was found on, as text
 };
 

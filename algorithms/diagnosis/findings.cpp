@@ -24,8 +24,8 @@ Covariance covariance_of(const FittedModel& fit, const Clusters& clusters) {
   const Eigen::MatrixXd x = fit.x * norms.cwiseInverse().asDiagonal();
   Eigen::MatrixXd normal = x.transpose() * x;
   normal.diagonal().array() += 1e-10;
-  const Eigen::MatrixXd inverse = normal.ldlt().solve(
-      Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+  const Eigen::MatrixXd inverse =
+      normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
   const bool by_movement = clusters.movements.size() >= kEnoughMovements;
   const std::vector<RowRange>& groups = by_movement ? clusters.movements : clusters.stretches;
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(x.cols(), x.cols());
@@ -104,20 +104,18 @@ std::vector<EffectFinding> effect_findings(const Search& search, const Observati
     finding.aliases = one.aliases;
     finding.few_movements = one.few;
     finding.separate_by = family.separate_by;
-    Eigen::VectorXd contribution =
-        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(train.rows()));
+    Eigen::VectorXd contribution = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(train.rows()));
     for (std::size_t k = 0; k < fit.model.atoms.size(); ++k) {
       const Atom& atom = fit.model.atoms[k];
       if (atom.family != one.family) continue;
       finding.atom += (finding.atom.empty() ? "" : ", ") + atom.label;
-      contribution += evaluate_columns(atom.columns, train) *
-                      fit.model.coefficients.segment(
-                          static_cast<Eigen::Index>(fit.model.first_column(k)),
-                          static_cast<Eigen::Index>(atom.columns.size()));
+      contribution +=
+          evaluate_columns(atom.columns, train) *
+          fit.model.coefficients.segment(static_cast<Eigen::Index>(fit.model.first_column(k)),
+                                         static_cast<Eigen::Index>(atom.columns.size()));
       add_parameters(finding, fit, covariance, k);
     }
-    finding.rms_contribution =
-        contribution.norm() / std::sqrt(static_cast<double>(train.rows()));
+    finding.rms_contribution = contribution.norm() / std::sqrt(static_cast<double>(train.rows()));
     if (finding.vif > kLargeVif) {
       finding.notes.push_back("its parameters trade off against others': quote them together only");
     }
@@ -134,9 +132,11 @@ std::string physical_objection(const EffectFinding& finding, const EffectFamily&
     for (const ParameterFinding& p : finding.parameters) {
       if (p.name != sanity.coefficient || finding.gain > sanity.excused_nats) continue;
       // Against the whole interval: a value that is only perhaps unphysical stands.
-      const bool wrong_sign = sanity.sign != 0 && sanity.sign * p.low < 0 && sanity.sign * p.high < 0;
-      const bool too_large = sanity.largest > 0 && std::min(std::abs(p.low), std::abs(p.high)) >
-                                                       sanity.largest && p.low * p.high > 0;
+      const bool wrong_sign =
+          sanity.sign != 0 && sanity.sign * p.low < 0 && sanity.sign * p.high < 0;
+      const bool too_large = sanity.largest > 0 &&
+                             std::min(std::abs(p.low), std::abs(p.high)) > sanity.largest &&
+                             p.low * p.high > 0;
       if (wrong_sign || too_large) return sanity.why;
     }
   }

@@ -57,8 +57,8 @@ std::vector<Kind> kinds(const Observations& data) {
 std::vector<int> choose_test_movements(const Observations& data, double share,
                                        RandomStream random) {
   std::vector<Kind> all = kinds(data);
-  const auto wanted = static_cast<std::size_t>(
-      std::lround(share * static_cast<double>(all.size())));
+  const auto wanted =
+      static_cast<std::size_t>(std::lround(share * static_cast<double>(all.size())));
   if (share <= 0 || all.size() < 2) return {};
   std::ranges::stable_sort(all, [](const Kind& a, const Kind& b) {
     return a.direction != b.direction ? a.direction < b.direction : a.speed < b.speed;

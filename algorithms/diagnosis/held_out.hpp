@@ -12,8 +12,7 @@ namespace tribench {
 
 // share of the movements, spread over directions and speeds; at least one, and none where fewer
 // than two movements would be left.
-std::vector<int> choose_test_movements(const Observations& data, double share,
-                                       RandomStream random);
+std::vector<int> choose_test_movements(const Observations& data, double share, RandomStream random);
 
 // Runs of at least four rows beyond four robust standard deviations of a residual in which no
 // repeatable structure is left, on one side, with five rows around them.

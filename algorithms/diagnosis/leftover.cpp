@@ -59,8 +59,8 @@ void Search::check_exhaustively() {
     }
     blocks.push_back(std::move(block));
   }
-  const Eigen::VectorXd y = whitened(target_vector(data_) - predict(base_fit_.model, data_),
-                                     clusters_, current_.noise);
+  const Eigen::VectorXd y =
+      whitened(target_vector(data_) - predict(base_fit_.model, data_), clusters_, current_.noise);
   const SubsetLosses subset_losses(all, y, clusters_, current_.noise);
   const auto losses_of = [&](const std::vector<std::size_t>& subset) {
     std::vector<Eigen::Index> chosen;
@@ -93,8 +93,7 @@ void Search::check_exhaustively() {
     for (const Atom& atom : blocks[b].atoms) model.add(atom);
     const std::size_t f = blocks[b].family;
     const auto known = std::ranges::find(found, f, &Found::family);
-    members.push_back(known != found.end() ? *known
-                                           : Found{f, round.family_p[f], lead, false, {}});
+    members.push_back(known != found.end() ? *known : Found{f, round.family_p[f], lead, false, {}});
   }
   FittedModel other = fit(std::move(model), FitScope::everything);
   for (const Found& member : members) {
@@ -171,8 +170,8 @@ void Search::drop_proxies(const Smoother& smoother) {
     LoopModel without = current_.model;
     remove_family(without, one.family);
     FittedModel rest = fit(std::move(without), FitScope::linear);
-    rest.basis = orthonormal_basis(
-        beside(rest.x, whitened(smoother.columns, clusters_, rest.noise)));
+    rest.basis =
+        orthonormal_basis(beside(rest.x, whitened(smoother.columns, clusters_, rest.noise)));
     rest.residual = project_off(rest.residual, rest.basis);
     const Round round = test_all(rest);
     if (family_p_given_rest(one.family, rest, round, current_) <= options_.alpha_library) continue;

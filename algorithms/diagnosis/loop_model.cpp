@@ -114,7 +114,8 @@ LinearFit solve_linear(LoopModel& model, const Observations& data, const Cluster
   const SignalTable table(data);
   Eigen::VectorXd y = target_vector(data);
   if (!model.base.formula.empty()) y -= evaluate_one(model.base.formula, table);
-  const Eigen::MatrixXd x = whitened(evaluate_columns(linear_columns(model), data), clusters, noise);
+  const Eigen::MatrixXd x =
+      whitened(evaluate_columns(linear_columns(model), data), clusters, noise);
   const Eigen::VectorXd target = whitened(y, clusters, noise);
   LinearFit fit;
   if (x.cols() == 0) {
@@ -148,22 +149,19 @@ Eigen::MatrixXd projected_jacobian(LoopModel& model, const std::vector<Nonlinear
                            static_cast<Eigen::Index>(parameters.size()));
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const Eigen::VectorXd raw = derivative(model, parameters[j], table);
-    jacobian.col(static_cast<Eigen::Index>(j)) =
-        project_out(fit, whitened(raw, clusters, noise));
+    jacobian.col(static_cast<Eigen::Index>(j)) = project_out(fit, whitened(raw, clusters, noise));
   }
   return jacobian;
 }
 
 // A damped step; parameters that would leave their bounds stop at them. Returns its relative size.
 double take_step(LoopModel& model, const std::vector<Nonlinear>& parameters,
-                 const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
-                 double damping) {
+                 const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual, double damping) {
   Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
   const Eigen::VectorXd gradient = jacobian.transpose() * residual;
   const Eigen::VectorXd diagonal = normal.diagonal().cwiseMax(1e-300);
   normal.diagonal() += damping * diagonal;
-  const Eigen::VectorXd step =
-      Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(normal).solve(gradient);
+  const Eigen::VectorXd step = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(normal).solve(gradient);
   double largest = 0;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const double before = value_of(model, parameters[j]);

@@ -77,18 +77,17 @@ void add_distance(Observations& data) {
   const bool timed = t != nullptr && t->recipe != "number of the movement in the file";
   if (v == nullptr || (q == nullptr && !timed)) return;
   Signal signal{"d", "", q != nullptr ? q->unit : v->unit + " s", Role::none, {}, {}};
-  signal.recipe = q != nullptr
-                      ? "d += abs(q - q_before); d = 0 where v changes its sign or a movement starts"
-                      : "d += abs(v)*dt; d = 0 where v changes its sign or a movement starts";
+  signal.recipe =
+      q != nullptr ? "d += abs(q - q_before); d = 0 where v changes its sign or a movement starts"
+                   : "d += abs(v)*dt; d = 0 where v changes its sign or a movement starts";
   signal.values.assign(data.rows(), 0.0);
   double direction = 0;
   for (std::size_t i = 0; i < data.rows(); ++i) {
     const bool starts = i == 0 || data.movement[i] != data.movement[i - 1];
     const double now = sign(v->values[i]);
     if (!starts && (now == 0 || now == direction)) {
-      const double step = q != nullptr
-                              ? q->values[i] - q->values[i - 1]
-                              : v->values[i] * (t->values[i] - t->values[i - 1]);
+      const double step = q != nullptr ? q->values[i] - q->values[i - 1]
+                                       : v->values[i] * (t->values[i] - t->values[i - 1]);
       signal.values[i] = signal.values[i - 1] + std::abs(step);
     }
     if (starts || now != 0) direction = now;
@@ -103,8 +102,8 @@ void drop_constant_signals(Observations& data) {
     const double scale = std::max(std::abs(low), std::abs(high));
     if (high - low > 1e-12 * scale) return false;
     if (signal.recipe.empty() && signal.role != Role::velocity_sign) {
-      data.warnings.push_back(fmt::format("the channel '{}' is constant ({}) and left out",
-                                          signal.channel, low));
+      data.warnings.push_back(
+          fmt::format("the channel '{}' is constant ({}) and left out", signal.channel, low));
     }
     return signal.name != "sgn_v" && signal.name != "v";
   });
@@ -262,8 +261,8 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
     const bool rigid = std::ranges::count(options.rigid, channel.name) > 0;
     if ((!wanted && !rigid) || out.find(name) != nullptr) continue;
     const bool distance = channel.name.starts_with("distance_since_reversal");
-    out.signals.push_back({distance ? "d" : name, channel.name, channel.unit, channel.role, {},
-                           channel.values});
+    out.signals.push_back(
+        {distance ? "d" : name, channel.name, channel.unit, channel.role, {}, channel.values});
     if (rigid) out.rigid.push_back(name);
   }
   for (const std::string& name : options.rigid) data.at(name);
@@ -286,7 +285,11 @@ Observations observe(const TrainingData& data) {
     const Input& input = data.inputs[j];
     const std::string name = signal_name(input.role, input.name);
     if (out.find(name) != nullptr) continue;
-    out.signals.push_back({name, input.name, input.unit, input.role, {},
+    out.signals.push_back({name,
+                           input.name,
+                           input.unit,
+                           input.role,
+                           {},
                            {data.columns[j], data.columns[j] + data.rows()}});
   }
   complete(out);

@@ -36,8 +36,7 @@ void finish_scores(BlockScores& block) {
   // Moments of the flipped statistic |sum eps_c v_c|^2 over all flips.
   const Eigen::VectorXd lengths = sums.rowwise().squaredNorm();
   const double mean = lengths.sum();
-  const double variance =
-      2 * ((sums.transpose() * sums).squaredNorm() - lengths.squaredNorm());
+  const double variance = 2 * ((sums.transpose() * sums).squaredNorm() - lengths.squaredNorm());
   block.gamma = MatchedGamma(mean, variance);
   block.test.score = block.gamma.score(block.test.statistic);
 }

@@ -87,7 +87,8 @@ void Search::instantiate_library() {
     }
     if (!missing.empty()) {
       untestable.push_back({families_[f].name, fmt::format("no {}", fmt::join(missing, ", no ")), 0,
-                            0, families_[f].separate_by.empty() ? "" : families_[f].separate_by[0]});
+                            0,
+                            families_[f].separate_by.empty() ? "" : families_[f].separate_by[0]});
     }
   }
   columns_ = evaluate_columns(formulas, data_);
@@ -219,9 +220,10 @@ void Search::list_untestable(const Round& round) {
     const bool collinear = share * share < 1e-3;
     untestable.push_back(
         {families_[f].name,
-         collinear ? std::string("these data show nothing of it that the base does not have already")
-                   : fmt::format("only {} stretches of movement carry it; {} are needed", carrying,
-                                 kFewestClusters),
+         collinear
+             ? std::string("these data show nothing of it that the base does not have already")
+             : fmt::format("only {} stretches of movement carry it; {} are needed", carrying,
+                           kFewestClusters),
          share, carrying, families_[f].separate_by.empty() ? "" : families_[f].separate_by[0]});
   }
 }
@@ -240,10 +242,9 @@ void Search::list_coinciding(const Round& round) {
           !round.blocks[b].test.testable) {
         continue;
       }
-      const auto cross = correlations.block(static_cast<Eigen::Index>(blocks_[a].first),
-                                            static_cast<Eigen::Index>(blocks_[b].first),
-                                            static_cast<Eigen::Index>(blocks_[a].count),
-                                            static_cast<Eigen::Index>(blocks_[b].count));
+      const auto cross = correlations.block(
+          static_cast<Eigen::Index>(blocks_[a].first), static_cast<Eigen::Index>(blocks_[b].first),
+          static_cast<Eigen::Index>(blocks_[a].count), static_cast<Eigen::Index>(blocks_[b].count));
       if (cross.cwiseAbs().maxCoeff() < 0.5F) continue;
       const auto block = [&](std::size_t k) {
         return projected.middleCols(static_cast<Eigen::Index>(blocks_[k].first),
@@ -261,8 +262,8 @@ void Search::list_coinciding(const Round& round) {
         return pair.first == first.name && pair.second == second.name;
       });
       if (known) continue;
-      aliased.push_back({first.name, second.name, r,
-                         first.separate_by.empty() ? "" : first.separate_by[0]});
+      aliased.push_back(
+          {first.name, second.name, r, first.separate_by.empty() ? "" : first.separate_by[0]});
     }
   }
 }
@@ -286,14 +287,12 @@ void Search::list_candidates(const Round& round) {
     }
     candidates.push_back(std::move(finding));
   }
-  std::ranges::stable_sort(candidates, [](const auto& a, const auto& b) {
-    return a.score > b.score;
-  });
+  std::ranges::stable_sort(candidates,
+                           [](const auto& a, const auto& b) { return a.score > b.score; });
 }
 
 std::size_t Search::atoms_of(std::size_t family) const {
-  return static_cast<std::size_t>(
-      std::ranges::count(current_.model.atoms, family, &Atom::family));
+  return static_cast<std::size_t>(std::ranges::count(current_.model.atoms, family, &Atom::family));
 }
 
 void Search::remove_family(LoopModel& model, std::size_t family) const {
@@ -371,8 +370,8 @@ bool Search::swap_or_drop(std::size_t family) {
   const auto entry = std::ranges::find(found, family, &Found::family);
   const double p = family_p_given_rest(family, rest, round, current_);
   if (p > (entry->few ? kRescueP : options_.alpha_library)) {
-    notes.push_back(fmt::format("'{}' is not significant given the rest: removed",
-                                families_[family].name));
+    notes.push_back(
+        fmt::format("'{}' is not significant given the rest: removed", families_[family].name));
     found.erase(entry);
     current_ = fit(rest.model, FitScope::everything);
     return true;
@@ -385,11 +384,10 @@ bool Search::swap_or_drop(std::size_t family) {
   swapped.add(library_[rivals.front().atom]);
   FittedModel other = fit(std::move(swapped), FitScope::everything);
   // Both in the coordinates of the present noise.
-  const Eigen::VectorXd y = whitened(target_vector(data_) - predict(other.model, data_), clusters_,
-                                     current_.noise);
+  const Eigen::VectorXd y =
+      whitened(target_vector(data_) - predict(other.model, data_), clusters_, current_.noise);
   const Eigen::MatrixXd x = whitened(tangent(other.model, data_), clusters_, current_.noise);
-  const Gain lead =
-      paired_gain(current_.losses, held_out_losses(x, y, clusters_, current_.noise));
+  const Gain lead = paired_gain(current_.losses, held_out_losses(x, y, clusters_, current_.noise));
   if (!(lead.nats > lead.error)) return false;
   const Candidate& rival = rivals.front();
   notes.push_back(fmt::format("'{}' replaced by '{}', which predicts better by {:.1f} nats",

@@ -29,10 +29,10 @@ struct FittedModel {
 
 // The tests of all atoms against one fitted model.
 struct Round {
-  Eigen::MatrixXd columns;           // the library's, whitened with the model's noise
-  std::vector<BlockScores> blocks;   // per atom
-  std::vector<double> maxima;        // over all atoms, per flip
-  std::vector<double> family_p;      // adjusted; 1 where untestable
+  Eigen::MatrixXd columns;          // the library's, whitened with the model's noise
+  std::vector<BlockScores> blocks;  // per atom
+  std::vector<double> maxima;       // over all atoms, per flip
+  std::vector<double> family_p;     // adjusted; 1 where untestable
   std::vector<double> family_score;
 };
 
@@ -104,8 +104,8 @@ class Search {
   RandomStream random_;
   double noise_floor_ = 0;
   std::vector<Atom> library_;
-  std::vector<char> usable_;  // per atom: testable given the base, in enough clusters
-  Eigen::MatrixXd columns_;   // the library's raw columns, unit rms
+  std::vector<char> usable_;   // per atom: testable given the base, in enough clusters
+  Eigen::MatrixXd columns_;    // the library's raw columns, unit rms
   std::vector<Block> blocks_;  // per atom, in columns_
   Eigen::MatrixXf flips_;
   FittedModel base_fit_;

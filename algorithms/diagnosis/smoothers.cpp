@@ -15,14 +15,8 @@ struct OneSignal {
 };
 
 // Specification, section 3.8.
-constexpr std::array<OneSignal, 8> kSingles = {{{"v", 16},
-                                                {"q", 28},
-                                                {"g", 10},
-                                                {"T", 8},
-                                                {"t", 24},
-                                                {"d", 8},
-                                                {"a", 8},
-                                                {"v2", 8}}};
+constexpr std::array<OneSignal, 8> kSingles = {
+    {{"v", 16}, {"q", 28}, {"g", 10}, {"T", 8}, {"t", 24}, {"d", 8}, {"a", 8}, {"v2", 8}}};
 constexpr std::array<std::array<const char*, 2>, 5> kPairs = {
     {{"v", "q"}, {"q", "T"}, {"v", "T"}, {"v", "g"}, {"g", "T"}}};
 constexpr Eigen::Index kFourierFeatures = 30;

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/diagnosis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "foundation/error.hpp"
+#include "tests/algorithms/diagnosis/planted_data.hpp"
+
+namespace tribench {
+namespace {
+
+// Signs of planted effects are random: the vetoes, which know which sign is physical, stay out.
+DiagnosisOptions options_of_planted() {
+  DiagnosisOptions options;
+  options.physical_vetoes = false;
+  options.gear_ratios = {160};
+  return options;
+}
+
+Diagnosis diagnose_planted(const PlantedOptions& planted, std::uint64_t seed) {
+  const Observations data = observe(make_planted(planted, seed).data);
+  return diagnose(data, coulomb_viscous_base(data), options_of_planted(), seed);
+}
+
+std::vector<std::string> families(const Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const EffectFinding& effect : diagnosis.effects) names.push_back(effect.family);
+  return names;
+}
+
+TEST(Diagnosis, SaysNothingWhereNothingIsMissing) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const Diagnosis diagnosis = diagnose_planted({}, seed);
+    EXPECT_EQ(diagnosis.verdict, Verdict::none);
+    EXPECT_TRUE(diagnosis.effects.empty());
+    EXPECT_TRUE(diagnosis.events.empty());
+  }
+}
+
+class PlantedEffect : public testing::TestWithParam<const char*> {};
+
+TEST_P(PlantedEffect, IsNamedAndClosesTheLoopOnMovementsNobodyTouched) {
+  const Diagnosis diagnosis = diagnose_planted({.effects = {{GetParam(), 1.0}}}, 2);
+  EXPECT_EQ(diagnosis.verdict, Verdict::effects);
+  EXPECT_EQ(families(diagnosis), std::vector<std::string>{GetParam()});
+  EXPECT_LT(diagnosis.error.mae_after, diagnosis.error.mae_before);
+  EXPECT_GE(diagnosis.error.test_movements, 20U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, PlantedEffect,
+                         testing::Values("stribeck", "nonlinear_viscous", "load_coulomb",
+                                         "load_viscous", "power_quadrant_gain",
+                                         "power_quadrant_step", "payload", "output_ripple",
+                                         "gear_ripple", "temperature", "drift", "hysteresis", "lag",
+                                         "inertia", "coupling"));
+
+TEST(Diagnosis, RefinesShapesOffItsGrid) {
+  const Diagnosis diagnosis = diagnose_planted({.effects = {{"stribeck", 2.0}}}, 4);
+  ASSERT_EQ(diagnosis.effects.size(), 1U);
+  for (const ParameterFinding& p : diagnosis.effects[0].parameters) {
+    if (p.name == "vs") EXPECT_NEAR(p.value, 0.06, 0.006);
+    if (p.name == "delta") EXPECT_NEAR(p.value, 2, 0.5);
+  }
+}
+
+class OutsideTheLibrary
+    : public testing::TestWithParam<std::pair<const char*, std::vector<std::string>>> {};
+
+TEST_P(OutsideTheLibrary, IsUnknownAndLocated) {
+  const auto& [effect, inputs] = GetParam();
+  const Diagnosis diagnosis = diagnose_planted({.effects = {{effect, 1.0}}}, 3);
+  EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
+  EXPECT_EQ(diagnosis.leftover.inputs, inputs);
+}
+
+INSTANTIATE_TEST_SUITE_P(Leftovers, OutsideTheLibrary,
+                         testing::Values(std::pair{"v_bump", std::vector<std::string>{"velocity"}},
+                                         std::pair{"q_bump", std::vector<std::string>{"position"}},
+                                         std::pair{
+                                             "tq_interaction",
+                                             std::vector<std::string>{"position", "temperature"}}));
+
+TEST(Diagnosis, NamesTwoEffects) {
+  const Diagnosis diagnosis =
+      diagnose_planted({.effects = {{"load_coulomb", 1.0}, {"hysteresis", 1.0}}}, 5);
+  std::vector<std::string> names = families(diagnosis);
+  std::ranges::sort(names);
+  EXPECT_EQ(names, (std::vector<std::string>{"hysteresis", "load_coulomb"}));
+}
+
+TEST(Diagnosis, ListsWhatConstantVelocityCannotShow) {
+  const Diagnosis diagnosis = diagnose_planted({.only_constant_velocity = true}, 1);
+  EXPECT_EQ(diagnosis.verdict, Verdict::none);
+  std::vector<std::string> untestable;
+  for (const UntestableFinding& one : diagnosis.untestable) untestable.push_back(one.family);
+  for (const char* family : {"asymmetry", "inertia", "lag", "coupling"}) {
+    EXPECT_EQ(std::ranges::count(untestable, family), 1) << family;
+  }
+}
+
+TEST(Diagnosis, ListsCollisionsAsEventsAndNotAsFriction) {
+  const Diagnosis diagnosis = diagnose_planted({.collisions = 3, .collision_size = 16}, 6);
+  EXPECT_EQ(diagnosis.verdict, Verdict::none);
+  EXPECT_GE(diagnosis.events.size(), 2U);
+}
+
+TEST(Diagnosis, IsTheSameForTheSameSeed) {
+  const PlantedOptions planted{.effects = {{"load_coulomb", 0.5}}};
+  const Diagnosis one = diagnose_planted(planted, 8);
+  const Diagnosis two = diagnose_planted(planted, 8);
+  EXPECT_EQ(one.error.mae_after, two.error.mae_after);
+  EXPECT_EQ(one.leftover.p, two.leftover.p);
+  EXPECT_EQ(families(one), families(two));
+  EXPECT_EQ(formula_of(one.after), formula_of(two.after));
+}
+
+TEST(Diagnosis, SaysNothingAboutNoiseFreeDataOfItsBase) {
+  PlantedData planted = make_planted({}, 1);
+  for (Channel& channel : planted.data.channels) {
+    if (channel.role == Role::friction_torque) channel.values = planted.truth;
+  }
+  const Observations data = observe(planted.data);
+  EXPECT_EQ(diagnose(data, coulomb_viscous_base(data), options_of_planted(), 1).verdict,
+            Verdict::none);
+}
+
+TEST(Observations, FrictionAgainstTheVelocityIsRefusedWithTheMend) {
+  PlantedData planted = make_planted({}, 1);
+  for (Channel& channel : planted.data.channels) {
+    if (channel.role != Role::friction_torque) continue;
+    for (double& y : channel.values) y = -y;
+  }
+  try {
+    observe(planted.data);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.mend()).find("--flip-sign"), std::string::npos);
+  }
+  EXPECT_NO_THROW(observe(planted.data, {.flip_sign = true, .rigid = {}}));
+}
+
+TEST(Observations, RowsThatAreNotFiniteAreDroppedAndCounted) {
+  PlantedData planted = make_planted({}, 1);
+  planted.data.channels[1].values[7] = std::numeric_limits<double>::quiet_NaN();
+  const Observations data = observe(planted.data);
+  EXPECT_EQ(data.rows(), planted.data.rows() - 1);
+  ASSERT_FALSE(data.warnings.empty());
+  EXPECT_NE(data.warnings[0].find("1 rows"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tribench
