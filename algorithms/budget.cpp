@@ -27,6 +27,15 @@ std::uint64_t Budget::remaining() const {
   return limits_.evaluations - std::min(spent_, limits_.evaluations);
 }
 
+double Budget::remaining_seconds() const {
+  return std::max(0.0, limits_.cpu_seconds - (process_cpu_seconds() - cpu_start_));
+}
+
+void Budget::book(std::uint64_t node_rows) {
+  spent_ += node_rows;
+  if (remaining() == 0) exhausted_ = true;
+}
+
 bool Budget::check_clock() {
   spent_at_next_clock_check_ = spent_ + kClockInterval;
   if (process_cpu_seconds() - cpu_start_ > limits_.cpu_seconds) out_of_time_->store(true);

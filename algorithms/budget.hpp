@@ -30,6 +30,11 @@ class Budget {
   bool exhausted() const { return exhausted_; }
   std::uint64_t spent() const { return spent_; }
   std::uint64_t remaining() const;
+  // CPU seconds left; infinite without a limit. For a program run beside this one, which cannot
+  // ask; a method must not decide by it.
+  double remaining_seconds() const;
+  // Books what such a program says it has spent, overdrawn or not.
+  void book(std::uint64_t node_rows);
   // Whether the clock, rather than the evaluations, ended it: such a result is not reproducible.
   bool out_of_time() const { return out_of_time_->load(std::memory_order_relaxed); }
 

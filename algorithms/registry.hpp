@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "algorithms/regressor.hpp"
@@ -18,6 +19,8 @@ class Registry {
   Registry();
 
   const std::vector<AlgorithmEntry>& entries() const { return entries_; }
+  // One more algorithm: for a program of one's own that links the rooms. Names are unique.
+  void add(AlgorithmEntry entry) { entries_.push_back(std::move(entry)); }
   // Throws Error (bad_input) with the nearest name.
   const AlgorithmEntry& find(std::string_view name) const;
   // The algorithm with the given parameters; throws as Parameters does.

@@ -6,6 +6,8 @@
 
 #include <CLI/App.hpp>
 
+#include "algorithms/registry.hpp"
+
 namespace tribench {
 
 // Exit statuses that every subcommand keeps to.
@@ -19,6 +21,12 @@ enum class ExitStatus : int {
 
 void add_check_command(CLI::App& app, ExitStatus& status);
 void add_generate_command(CLI::App& app, ExitStatus& status);
+// The hidden word that makes the program a worker process.
+inline constexpr const char* kWorkerCommand = "worker";
+
+void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry);
+void add_merge_command(CLI::App& app, ExitStatus& status);
+void add_report_command(CLI::App& app, ExitStatus& status);
 void add_list_command(CLI::App& app, ExitStatus& status);
 void add_study_command(CLI::App& app, ExitStatus& status);
 

@@ -14,6 +14,7 @@ std::optional<std::filesystem::path> beside(const char* folder) {
 
 std::filesystem::path source_dir() { return TRIBENCH_SOURCE_DIR; }
 std::filesystem::path program() { return TRIBENCH_PROGRAM; }
+std::filesystem::path test_program() { return TRIBENCH_TEST_PROGRAM; }
 std::optional<std::filesystem::path> shared_data() { return beside("data"); }
 std::optional<std::filesystem::path> shared_reference() { return beside("reference"); }
 

@@ -9,8 +9,9 @@
 
 namespace tribench::testing {
 
-std::filesystem::path source_dir();  // the checkout
-std::filesystem::path program();     // the built tribench
+std::filesystem::path source_dir();    // the checkout
+std::filesystem::path program();       // the built tribench
+std::filesystem::path test_program();  // the same with the methods of support/test_methods.hpp
 
 // The measured data beside the checkout (../shared/data), if they are there. A test that needs
 // them: const auto data = shared_data(); if (!data) GTEST_SKIP() << kNoSharedData;

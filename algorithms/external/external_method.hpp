@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+//
+// A method in any language, run as a program: CSV and JSON in, formulas out (the protocol is
+// docs/external_methods.md). It is judged like a native method: what it says of its own errors is
+// a trace, never a result.
+//
+// The program runs in this process's group and under its limits of CPU and memory; whoever ends
+// the group ends the program too.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "algorithms/regressor.hpp"
+
+namespace tribench {
+
+// command: the words to run; the path of the request file is added as the last. Parameters are
+// handed on as they are. Unusable answers (no front, a formula that does not parse or leaves the
+// operator set, an exit status other than 0) throw Error (failed) from fit().
+std::unique_ptr<Regressor> make_external_method(std::vector<std::string> command,
+                                                std::map<std::string, ParameterValue> parameters);
+
+// The folder where process `pid` keeps the files of the program it runs; to be removed by whoever
+// ends that process by force.
+std::filesystem::path external_scratch_folder(pid_t pid);
+
+}  // namespace tribench

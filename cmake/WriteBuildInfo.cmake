@@ -1,0 +1,19 @@
+# Run at every build: writes which commit is being built, touching the file only when it changes.
+# Arguments: -DSOURCE_DIR= -DTEMPLATE= -DOUTPUT= and what the template names.
+find_package(Git QUIET)
+set(TRIBENCH_COMMIT "unknown")
+set(TRIBENCH_DIRTY "false")
+if(GIT_FOUND AND EXISTS "${SOURCE_DIR}/.git")
+  execute_process(COMMAND ${GIT_EXECUTABLE} rev-parse --short=12 HEAD
+    WORKING_DIRECTORY "${SOURCE_DIR}" OUTPUT_VARIABLE commit RESULT_VARIABLE failed
+    OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  if(NOT failed)
+    set(TRIBENCH_COMMIT "${commit}")
+    execute_process(COMMAND ${GIT_EXECUTABLE} status --porcelain --untracked-files=no
+      WORKING_DIRECTORY "${SOURCE_DIR}" OUTPUT_VARIABLE changes ERROR_QUIET)
+    if(NOT "${changes}" STREQUAL "")
+      set(TRIBENCH_DIRTY "true")
+    endif()
+  endif()
+endif()
+configure_file("${TEMPLATE}" "${OUTPUT}" @ONLY)

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "harness/grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "foundation/error.hpp"
+
+namespace tribench {
+
+bool glob_matches(std::string_view glob, std::string_view text) {
+  // Iterative, with one place to come back to: linear times the number of stars at worst.
+  std::size_t g = 0;
+  std::size_t t = 0;
+  std::size_t star = std::string_view::npos;
+  std::size_t resume = 0;
+  while (t < text.size()) {
+    if (g < glob.size() && (glob[g] == text[t] || glob[g] == '?')) {
+      ++g;
+      ++t;
+    } else if (g < glob.size() && glob[g] == '*') {
+      star = g++;
+      resume = t;
+    } else if (star != std::string_view::npos) {
+      g = star + 1;
+      t = ++resume;
+    } else {
+      return false;
+    }
+  }
+  return glob.find_first_not_of('*', g) == std::string_view::npos;
+}
+
+std::vector<Cell> Grid::cells() const {
+  std::vector<Cell> all;
+  for (const std::string& problem : problems) {
+    for (const Method& method : methods) {
+      std::vector<std::string> sets;
+      if (method.fixed_form) {
+        sets = {kFixedForm};
+      } else {
+        for (const OperatorSet& set : operators) {
+          const bool usable =
+              !method.is_external() || std::ranges::count(method.operators, set.name()) > 0;
+          if (usable) sets.push_back(set.name());
+        }
+      }
+      for (const std::string& set : sets) {
+        for (std::uint64_t i = 0; i < seed_count; ++i) {
+          all.push_back({problem, method.name, set, first_seed + i});
+        }
+      }
+    }
+  }
+  return all;
+}
+
+const Method& Grid::method(std::string_view method_name) const {
+  for (const Method& method : methods) {
+    if (method.name == method_name) return method;
+  }
+  throw Error(ErrorKind::failed, fmt::format("the grid has no method '{}'", method_name));
+}
+
+OperatorSet Grid::operator_set(std::string_view set_name) const {
+  if (set_name == kFixedForm) {
+    return {kFixedForm, "a fixed form", find_operator_set("full").operators()};
+  }
+  for (const OperatorSet& set : operators) {
+    if (set.name() == set_name) return set;
+  }
+  throw Error(ErrorKind::failed, fmt::format("the grid has no operator set '{}'", set_name));
+}
+
+bool Grid::quarantined(const std::string& cell_key) const {
+  return std::ranges::any_of(quarantine,
+                             [&](const std::string& glob) { return glob_matches(glob, cell_key); });
+}
+
+}  // namespace tribench

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+//
+// A grid: which problems, methods, operator sets and seeds to cross, and what each cell may spend.
+// Read from a TOML file (docs/grid.md, grids/grid.schema.json); unknown keys are refused with the
+// nearest name, globs are resolved at once, so that what is held here is what took effect.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "algorithms/expression/operator_set.hpp"
+#include "algorithms/registry.hpp"
+#include "harness/cell.hpp"
+#include "problems/catalogue.hpp"
+
+namespace tribench {
+
+// What one cell may spend. `evaluations` and `seconds` are told to the method, which stops by
+// itself; the others are enforced from outside and cost the cell.
+struct CellLimits {
+  std::uint64_t evaluations = 100'000'000;  // node-rows
+  double seconds = 60;                      // CPU seconds of the fit
+  double wall_seconds = 180;                // of the whole cell
+  double cpu_limit_seconds = 90;            // CPU seconds of the whole cell
+  double memory_mib = 2048;
+
+  bool operator==(const CellLimits&) const = default;
+};
+
+// How often a cell that failed is tried again, by the reason. A cell that failed in a worker that
+// had run other cells before is always tried once more in a fresh one, which is not counted here.
+struct RetryPolicy {
+  int crashed = 0;
+  int timeout = 0;
+  int cpu_limit = 0;
+  int out_of_memory = 0;
+  int error = 0;
+
+  bool operator==(const RetryPolicy&) const = default;
+};
+
+// A method as the grid runs it: an algorithm with its parameters, or a program.
+struct Method {
+  std::string name;
+  std::string algorithm;  // of the registry; empty for a program
+  std::map<std::string, ParameterValue> parameters;
+  bool fixed_form = false;
+
+  // Of a program only.
+  std::vector<std::string> command;
+  std::vector<std::string> operators;  // names of the operator sets it can use
+  std::optional<CellLimits> limits;    // in place of the grid's
+
+  bool is_external() const { return !command.empty(); }
+};
+
+struct Grid {
+  std::string name;
+  std::vector<std::string> problems;
+  std::vector<Method> methods;
+  std::vector<OperatorSet> operators;
+  std::uint64_t first_seed = 1;
+  std::uint64_t seed_count = 1;
+  std::vector<std::string> quarantine;  // globs over cell keys that are not run
+  CellLimits limits;
+  RetryPolicy retry;
+
+  // Every cell, in the order of the results: problem, method, operator set, seed.
+  std::vector<Cell> cells() const;
+  const Method& method(std::string_view method_name) const;
+  OperatorSet operator_set(std::string_view set_name) const;  // "-" is everything
+  CellLimits limits_of(const Method& method) const { return method.limits.value_or(limits); }
+  bool quarantined(const std::string& cell_key) const;
+};
+
+// Throws Error (bad_input) with file, line and the nearest name.
+Grid parse_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
+                const Catalogue& catalogue);
+Grid load_grid(const std::filesystem::path& file, const Registry& registry,
+               const Catalogue& catalogue);
+
+// The grid as it took effect, as TOML; parse_grid(print_grid(g)) gives the same cells and limits.
+std::string print_grid(const Grid& grid);
+
+// * any text, ? one character.
+bool glob_matches(std::string_view glob, std::string_view text);
+
+}  // namespace tribench

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: MIT
+//
+// Grids as TOML, in and out.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "foundation/error.hpp"
+#include "harness/grid.hpp"
+#include "harness/toml_table.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr double kMaxSeconds = 30.0 * 24 * 3600;
+
+// Runs `action`; what it throws gets the place in the file.
+template <typename Action>
+auto at_place(const std::string& place, Action action) {
+  try {
+    return action();
+  } catch (const Error& error) {
+    const std::string inner = error.place().empty() ? std::string() : error.place() + ": ";
+    std::string what = error.what();
+    // what() is composed of place, text and mend; take the text alone.
+    if (!inner.empty() && what.starts_with(inner)) what.erase(0, inner.size());
+    if (!error.mend().empty() && what.ends_with("; " + error.mend())) {
+      what.erase(what.size() - error.mend().size() - 2);
+    }
+    throw Error(error.kind(), what, place, error.mend());
+  }
+}
+
+CellLimits read_limits(const TomlTable& table, CellLimits limits) {
+  table.read("evaluations", limits.evaluations);
+  table.read("seconds", limits.seconds, 0, kMaxSeconds);
+  // The fit stops by itself; judging and slack come on top, unless the file says otherwise.
+  if (table.has("seconds")) {
+    limits.cpu_limit_seconds = 1.5 * limits.seconds + 30;
+    limits.wall_seconds = 3 * limits.seconds + 60;
+  }
+  table.read("wall_seconds", limits.wall_seconds, 0.01, kMaxSeconds);
+  table.read("cpu_limit_seconds", limits.cpu_limit_seconds, 0.01, kMaxSeconds);
+  table.read("memory_mib", limits.memory_mib, 16, 1 << 24);
+  return limits;
+}
+
+const std::vector<std::string>& limit_keys() {
+  static const std::vector<std::string> kKeys = {"evaluations", "seconds", "wall_seconds",
+                                                 "cpu_limit_seconds", "memory_mib"};
+  return kKeys;
+}
+
+RetryPolicy read_retry(const TomlTable& table) {
+  RetryPolicy retry;
+  table.read("crashed", retry.crashed, 0, 10);
+  table.read("timeout", retry.timeout, 0, 10);
+  table.read("cpu_limit", retry.cpu_limit, 0, 10);
+  table.read("out_of_memory", retry.out_of_memory, 0, 10);
+  table.read("error", retry.error, 0, 10);
+  return retry;
+}
+
+std::vector<OperatorSet> known_operator_sets(const TomlTable& file) {
+  std::vector<OperatorSet> sets = operator_sets();
+  for (const TomlTable& table :
+       file.array_of_tables("operator_set", {"name", "summary", "operators", "proved_free_only"})) {
+    table.require("name");
+    table.require("operators");
+    std::string name;
+    std::string summary;
+    std::vector<std::string> words;
+    bool proved_free_only = false;
+    table.read("name", name);
+    table.read("summary", summary);
+    table.read("operators", words);
+    table.read("proved_free_only", proved_free_only);
+    std::vector<std::string> known;
+    for (const Op op : find_operator_set("full").operators()) known.emplace_back(op_name(op));
+    known.emplace_back(op_name(Op::sgn));
+    std::vector<Op> operators;
+    for (const std::string& word : words) {
+      const auto found = std::ranges::find(known, word);
+      if (found == known.end()) {
+        throw_bad_input(fmt::format("there is no operation '{}'", word), table.place("operators"),
+                        fmt::format("known: {}", fmt::join(known, " ")));
+      }
+      for (int op = 0; op < kOpCount; ++op) {
+        if (op_name(static_cast<Op>(op)) == word && static_cast<Op>(op) != Op::neg) {
+          operators.push_back(static_cast<Op>(op));
+        }
+      }
+    }
+    sets.emplace_back(name, summary, operators, proved_free_only);
+  }
+  return sets;
+}
+
+// The names that the globs of a file pick, in the order of `known`; a glob that picks nothing is
+// refused with the nearest name.
+std::vector<std::string> pick(const TomlTable& table, std::string_view key,
+                              const std::vector<std::string>& known, std::string_view what) {
+  std::vector<std::string> globs;
+  table.require(key);
+  table.read(key, globs);
+  std::set<std::string> picked;
+  for (const std::string& glob : globs) {
+    bool found = false;
+    for (const std::string& name : known) {
+      if (!glob_matches(glob, name)) continue;
+      picked.insert(name);
+      found = true;
+    }
+    if (found) continue;
+    const std::string near = nearest_name(glob, known);
+    throw_bad_input(fmt::format("there is no {} '{}'", what, glob), table.place(key),
+                    near.empty() ? fmt::format("known: {}", fmt::join(known, ", "))
+                                 : fmt::format("did you mean {}?", near));
+  }
+  std::vector<std::string> ordered;
+  std::ranges::copy_if(known, std::back_inserter(ordered),
+                       [&](const std::string& name) { return picked.contains(name); });
+  return ordered;
+}
+
+Method read_method(const TomlTable& table, const Registry& registry) {
+  table.require("name");
+  Method method;
+  table.read("name", method.name);
+  method.algorithm = method.name;
+  table.read("algorithm", method.algorithm);
+  method.parameters = table.parameters("parameters");
+  const std::string place = table.has("parameters") ? table.place("parameters") : table.place();
+  at_place(place, [&] { return registry.make(method.algorithm, method.parameters); });
+  method.fixed_form = registry.find(method.algorithm).fixed_form;
+  return method;
+}
+
+Method read_external(const TomlTable& table, const std::vector<std::string>& set_names,
+                     const CellLimits& limits) {
+  table.require("name");
+  table.require("command");
+  Method method;
+  table.read("name", method.name);
+  table.read("command", method.command);
+  if (method.command.empty()) throw_bad_input("'command' is empty", table.place("command"));
+  method.parameters = table.parameters("parameters");
+  table.read("fixed_form", method.fixed_form);
+  method.operators = set_names;
+  if (table.has("operators"))
+    method.operators = pick(table, "operators", set_names, "operator set");
+  const CellLimits own = read_limits(table, limits);
+  if (own != limits) method.limits = own;
+  return method;
+}
+
+void check_names(const std::vector<Method>& methods, const std::string& file_name) {
+  std::set<std::string> seen;
+  for (const Method& method : methods) {
+    if (method.name.find_first_of("|\n") != std::string::npos || method.name.empty()) {
+      throw_bad_input(fmt::format("'{}' cannot name a method", method.name), file_name,
+                      "use letters, digits, _ - + .");
+    }
+    if (!seen.insert(method.name).second) {
+      throw_bad_input(fmt::format("two methods are called '{}'", method.name), file_name,
+                      "give one of them another name");
+    }
+  }
+}
+
+// The registry's algorithms under their own names, then what the file declares; a declaration
+// with an algorithm's name replaces it.
+std::vector<Method> known_methods(const TomlTable& file, const Registry& registry,
+                                  const std::vector<std::string>& set_names,
+                                  const CellLimits& limits, const std::string& file_name) {
+  std::vector<Method> declared;
+  for (const TomlTable& table :
+       file.array_of_tables("method", {"name", "algorithm", "parameters"})) {
+    declared.push_back(read_method(table, registry));
+  }
+  std::vector<std::string> keys = {"name", "command", "operators", "fixed_form", "parameters"};
+  keys.insert(keys.end(), limit_keys().begin(), limit_keys().end());
+  for (const TomlTable& table : file.array_of_tables("external", keys)) {
+    declared.push_back(read_external(table, set_names, limits));
+  }
+  check_names(declared, file_name);
+  std::vector<Method> all;
+  for (const AlgorithmEntry& entry : registry.entries()) {
+    const bool replaced = std::ranges::any_of(
+        declared, [&](const Method& method) { return method.name == entry.name; });
+    if (!replaced) all.push_back({entry.name, entry.name, {}, entry.fixed_form, {}, {}, {}});
+  }
+  all.insert(all.end(), declared.begin(), declared.end());
+  return all;
+}
+
+template <typename Items, typename NameOf>
+std::vector<std::string> names_of(const Items& items, NameOf name_of) {
+  std::vector<std::string> names;
+  for (const auto& item : items) names.push_back(name_of(item));
+  return names;
+}
+
+void read_axes(const TomlTable& file, const TomlTable& table, const Registry& registry,
+               const Catalogue& catalogue, const std::string& file_name, Grid& grid) {
+  grid.problems =
+      pick(table, "problems",
+           names_of(catalogue.entries(), [](const ProblemEntry& entry) { return entry.name; }),
+           "problem");
+  const std::vector<OperatorSet> sets = known_operator_sets(file);
+  const std::vector<std::string> set_names =
+      names_of(sets, [](const OperatorSet& set) { return set.name(); });
+  const std::vector<std::string> chosen_sets =
+      table.has("operators") ? pick(table, "operators", set_names, "operator set")
+                             : std::vector<std::string>{"paper"};
+  for (const OperatorSet& set : sets) {
+    if (std::ranges::count(chosen_sets, set.name()) > 0) grid.operators.push_back(set);
+  }
+  const std::vector<Method> known =
+      known_methods(file, registry, set_names, grid.limits, file_name);
+  const std::vector<std::string> chosen =
+      pick(table, "methods", names_of(known, [](const Method& method) { return method.name; }),
+           "method");
+  for (const Method& method : known) {
+    if (std::ranges::count(chosen, method.name) > 0) grid.methods.push_back(method);
+  }
+}
+
+toml::table parameters_table(const std::map<std::string, ParameterValue>& parameters) {
+  toml::table table;
+  for (const auto& [name, value] : parameters) {
+    std::visit([&table, &key = name](const auto& plain) { table.insert(key, plain); }, value);
+  }
+  return table;
+}
+
+toml::array text_array(const std::vector<std::string>& texts) {
+  toml::array array;
+  for (const std::string& text : texts) array.push_back(text);
+  return array;
+}
+
+void insert_limits(toml::table& table, const CellLimits& limits) {
+  table.insert("evaluations", static_cast<std::int64_t>(limits.evaluations));
+  table.insert("seconds", limits.seconds);
+  table.insert("wall_seconds", limits.wall_seconds);
+  table.insert("cpu_limit_seconds", limits.cpu_limit_seconds);
+  table.insert("memory_mib", limits.memory_mib);
+}
+
+toml::table method_table(const Method& method) {
+  toml::table table;
+  table.insert("name", method.name);
+  if (!method.parameters.empty()) {
+    table.insert("parameters", parameters_table(method.parameters));
+  }
+  if (!method.is_external()) {
+    table.insert("algorithm", method.algorithm);
+    return table;
+  }
+  table.insert("command", text_array(method.command));
+  table.insert("operators", text_array(method.operators));
+  table.insert("fixed_form", method.fixed_form);
+  if (method.limits) insert_limits(table, *method.limits);
+  return table;
+}
+
+toml::table operator_set_table(const OperatorSet& set) {
+  std::vector<std::string> words;
+  for (const Op op : set.operators()) words.emplace_back(op_name(op));
+  toml::table table;
+  table.insert("name", set.name());
+  table.insert("summary", set.summary());
+  table.insert("operators", text_array(words));
+  table.insert("proved_free_only", set.proved_free_only());
+  return table;
+}
+
+bool is_built_in(const OperatorSet& set) {
+  return std::ranges::any_of(
+      operator_sets(), [&](const OperatorSet& built_in) { return built_in.name() == set.name(); });
+}
+
+}  // namespace
+
+Grid parse_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
+                const Catalogue& catalogue) {
+  toml::table root;
+  try {
+    root = toml::parse(toml, file_name);
+  } catch (const toml::parse_error& error) {
+    throw_bad_input(
+        std::string(error.description()),
+        fmt::format("{}:{}:{}", file_name, error.source().begin.line, error.source().begin.column));
+  }
+  const TomlTable file(root, file_name, "",
+                       {"grid", "budget", "retry", "method", "external", "operator_set"});
+  file.require("grid");
+  const TomlTable table =
+      file.table("grid", {"name", "problems", "methods", "operators", "seeds", "quarantine"});
+  Grid grid;
+  grid.name = std::filesystem::path(file_name).stem().string();
+  table.read("name", grid.name);
+  const TomlTable seeds = table.table("seeds", {"first", "count"});
+  seeds.read("first", grid.first_seed);
+  seeds.read("count", grid.seed_count);
+  if (grid.seed_count == 0) throw_bad_input("'count' must be at least 1", seeds.place("count"));
+  table.read("quarantine", grid.quarantine);
+  grid.limits = read_limits(file.table("budget", limit_keys()), grid.limits);
+  grid.retry = read_retry(
+      file.table("retry", {"crashed", "timeout", "cpu_limit", "out_of_memory", "error"}));
+  read_axes(file, table, registry, catalogue, file_name, grid);
+  return grid;
+}
+
+Grid load_grid(const std::filesystem::path& file, const Registry& registry,
+               const Catalogue& catalogue) {
+  std::ifstream stream(file);
+  if (!stream) {
+    throw_bad_input("the grid file cannot be read", file.string(),
+                    "give the path of a TOML file, or a name from: tribench list grids");
+  }
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return parse_grid(text.str(), file.string(), registry, catalogue);
+}
+
+std::string print_grid(const Grid& grid) {
+  toml::table table;
+  table.insert("name", grid.name);
+  table.insert("problems", text_array(grid.problems));
+  table.insert("methods", text_array(names_of(grid.methods,
+                                              [](const Method& method) { return method.name; })));
+  table.insert(
+      "operators",
+      text_array(names_of(grid.operators, [](const OperatorSet& set) { return set.name(); })));
+  table.insert("seeds", toml::table{{"first", static_cast<std::int64_t>(grid.first_seed)},
+                                    {"count", static_cast<std::int64_t>(grid.seed_count)}});
+  table.insert("quarantine", text_array(grid.quarantine));
+  toml::table budget;
+  insert_limits(budget, grid.limits);
+  toml::table root{{"grid", table}, {"budget", budget}};
+  root.insert("retry", toml::table{{"crashed", grid.retry.crashed},
+                                   {"timeout", grid.retry.timeout},
+                                   {"cpu_limit", grid.retry.cpu_limit},
+                                   {"out_of_memory", grid.retry.out_of_memory},
+                                   {"error", grid.retry.error}});
+  toml::array methods;
+  toml::array externals;
+  toml::array sets;
+  for (const Method& method : grid.methods) {
+    (method.is_external() ? externals : methods).push_back(method_table(method));
+  }
+  for (const OperatorSet& set : grid.operators) {
+    if (!is_built_in(set)) sets.push_back(operator_set_table(set));
+  }
+  if (!methods.empty()) root.insert("method", methods);
+  if (!externals.empty()) root.insert("external", externals);
+  if (!sets.empty()) root.insert("operator_set", sets);
+  std::ostringstream text;
+  text << root << "\n";
+  return text.str();
+}
+
+}  // namespace tribench

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "harness/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "algorithms/expression/complexity.hpp"
+#include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/singularity.hpp"
+#include "algorithms/expression/text.hpp"
+#include "harness/metrics.hpp"
+
+namespace tribench {
+namespace {
+
+// Evaluates over whole tables; keeps its buffers.
+class TableEvaluator {
+ public:
+  std::span<const double> evaluate(const Expression& formula, const Table& table) {
+    columns_.clear();
+    for (const std::vector<double>& column : table.columns) columns_.push_back(column.data());
+    values_.resize(table.rows());
+    evaluator_.evaluate(formula, {columns_, table.rows()}, values_);
+    return values_;
+  }
+
+ private:
+  Evaluator evaluator_;
+  std::vector<const double*> columns_;
+  std::vector<double> values_;
+};
+
+// The rows that the judged formula was fitted to: the last stage's.
+const Table& fitted_rows(const Problem& problem) { return problem.stages.back().train; }
+
+// Shortest of a few rounds, each long enough for the clock: the time without disturbances.
+double measure_ns_per_row(const Expression& formula, const Table& table) {
+  using Clock = std::chrono::steady_clock;
+  constexpr int kRounds = 5;
+  constexpr double kRoundSeconds = 2e-4;
+  if (table.rows() == 0) return kMissing;
+  TableEvaluator evaluator;
+  double best = kMissing;
+  for (int round = 0; round < kRounds; ++round) {
+    const Clock::time_point start = Clock::now();
+    double elapsed = 0;
+    int repetitions = 0;
+    while (elapsed < kRoundSeconds) {
+      evaluator.evaluate(formula, table);
+      ++repetitions;
+      elapsed = std::chrono::duration<double>(Clock::now() - start).count();
+    }
+    const double ns = 1e9 * elapsed / repetitions / static_cast<double>(table.rows());
+    best = std::isnan(best) ? ns : std::min(best, ns);
+  }
+  return best;
+}
+
+// For a formula of the front that is not the cell's own: a tenth of the default effort.
+constexpr ProofLimits kFrontProof{200'000, 0};
+
+SingularityResult prove(const Problem& problem, const Expression& formula,
+                        const ProofLimits& limits = {}) {
+  InputBox box;
+  for (const Input& input : problem.inputs) box.push_back({input.low, input.high, input.sign_of});
+  return prove_free(formula, box, limits);
+}
+
+bool dominates(const FrontRecord& a, const FrontRecord& b) {
+  if (std::isnan(a.mae_train)) return false;
+  if (std::isnan(b.mae_train)) return true;
+  return a.mae_train <= b.mae_train && a.complexity <= b.complexity &&
+         (a.mae_train < b.mae_train || a.complexity < b.complexity);
+}
+
+}  // namespace
+
+void judge_formula(const Problem& problem, const StagedFormula& staged, Record& record) {
+  const Expression& formula = staged.formula;
+  TableEvaluator evaluator;
+  const Table& train = fitted_rows(problem);
+  const ErrorFigures on_train = compute_errors(evaluator.evaluate(formula, train), train.target);
+  record.mae_train = on_train.mae;
+  record.relative_error_train = on_train.relative;
+  const std::span<const double> values = evaluator.evaluate(formula, problem.test);
+  const ErrorFigures on_test = compute_errors(values, problem.test.target);
+  record.mae_test = on_test.mae;
+  record.rmse_test = on_test.rmse;
+  record.max_error_test = on_test.max_error;
+  record.r2_test = on_test.r2;
+  record.relative_error_test = on_test.relative;
+  if (!problem.test.truth.empty()) {
+    record.mae_truth = compute_errors(values, problem.test.truth).mae;
+  }
+  record.complexity = paper_complexity(formula);
+  record.nodes = node_count(formula);
+  if (!staged.adaptation.empty()) {
+    record.complexity_adaptation = paper_complexity(staged.adaptation);
+  }
+  const SingularityResult proof = prove(problem, formula);
+  record.singularity = verdict_name(proof.verdict);
+  if (proof.witness) record.witness = witness_json(*proof.witness, problem.input_names());
+  record.eval_ns_per_row = measure_ns_per_row(formula, problem.test);
+  record.formula = print(formula, problem.input_names());
+  record.status = "ok";
+  if (on_test.not_finite > 0) {
+    record.status = "failed";
+    record.reason = fmt::format("error (the formula has no finite value at {} of {} test rows)",
+                                on_test.not_finite, on_test.rows);
+  }
+}
+
+std::vector<FrontRecord> judge_front(const Problem& problem, const std::vector<Expression>& front,
+                                     std::size_t chosen, const std::string& cell) {
+  TableEvaluator evaluator;
+  const std::vector<std::string> names = problem.input_names();
+  std::vector<FrontRecord> all;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    FrontRecord entry;
+    entry.cell = cell;
+    entry.complexity = paper_complexity(front[i]);
+    entry.nodes = node_count(front[i]);
+    const Table& train = fitted_rows(problem);
+    entry.mae_train = compute_errors(evaluator.evaluate(front[i], train), train.target).mae;
+    entry.mae_test =
+        compute_errors(evaluator.evaluate(front[i], problem.test), problem.test.target).mae;
+    entry.chosen = i == chosen;
+    entry.formula = print(front[i], names);
+    all.push_back(std::move(entry));
+  }
+  std::vector<FrontRecord> kept;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool beaten = std::ranges::any_of(
+        all, [&](const FrontRecord& other) { return dominates(other, all[i]); });
+    if (beaten && !all[i].chosen) continue;
+    const ProofLimits limits = all[i].chosen ? ProofLimits() : kFrontProof;
+    all[i].singularity = verdict_name(prove(problem, front[i], limits).verdict);
+    kept.push_back(all[i]);
+  }
+  std::ranges::stable_sort(kept, {}, &FrontRecord::complexity);
+  return kept;
+}
+
+}  // namespace tribench

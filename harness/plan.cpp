@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "harness/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+// Node-rows a second of a whole fit, cautiously: the evaluator alone is several times faster.
+constexpr double kNodeRowsPerSecond = 3e8;
+// Starting values, fixed forms and judging: what a cell costs before its budget counts.
+constexpr double kBaseSeconds = 0.05;
+
+bool parse_number(std::string_view text, std::size_t& number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace
+
+Shard parse_shard(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  Shard shard;
+  if (slash == std::string_view::npos || !parse_number(text.substr(0, slash), shard.index) ||
+      !parse_number(text.substr(slash + 1), shard.count) || shard.index < 1 ||
+      shard.index > shard.count) {
+    throw_bad_input(fmt::format("'{}' is no shard", text), "--shard",
+                    "use K/N with K from 1 to N, as in 3/8");
+  }
+  return shard;
+}
+
+double predict_seconds(const Grid& grid, const Cell& cell, const MeasuredCosts& costs) {
+  const auto measured = costs.find(cell.method);
+  if (measured != costs.end()) return measured->second;
+  const Method& method = grid.method(cell.method);
+  const CellLimits limits = grid.limits_of(method);
+  if (method.is_external()) return limits.seconds;
+  if (method.fixed_form) return kBaseSeconds;
+  return kBaseSeconds +
+         std::min(limits.seconds, static_cast<double>(limits.evaluations) / kNodeRowsPerSecond);
+}
+
+std::vector<PlannedWork> plan_work(const Grid& grid, const Shard& shard,
+                                   const MeasuredCosts& costs) {
+  std::vector<PlannedWork> all;
+  for (Cell& cell : grid.cells()) {
+    const double predicted_s = predict_seconds(grid, cell, costs);
+    all.push_back({std::move(cell), predicted_s});
+  }
+  std::ranges::stable_sort(all, std::greater<>(), &PlannedWork::predicted_s);
+  std::vector<PlannedWork> part;
+  for (std::size_t i = shard.index - 1; i < all.size(); i += shard.count) {
+    part.push_back(std::move(all[i]));
+  }
+  return part;
+}
+
+}  // namespace tribench

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+//
+// What a run shows while it runs: on a terminal one line that is written over (counts, rate,
+// failures, time left), elsewhere a line now and then.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <mutex>
+
+namespace tribench {
+
+class ProgressLine {
+ public:
+  // predicted_s: what all the cells together are expected to cost; the time left follows from how
+  // fast the prediction is worked off.
+  ProgressLine(std::size_t cells, double predicted_s, bool quiet);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  // Safe from several threads.
+  void cell_ended(double predicted_s, bool failed);
+
+ private:
+  void show(bool last);
+
+  std::size_t cells_;
+  double predicted_s_;
+  bool quiet_;
+  bool is_terminal_;
+  std::size_t ended_ = 0;
+  std::size_t failed_ = 0;
+  double worked_off_s_ = 0;
+  double shown_at_s_ = 0;
+  std::chrono::steady_clock::time_point start_;
+  std::mutex mutex_;
+};
+
+}  // namespace tribench

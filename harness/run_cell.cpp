@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "harness/run_cell.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <fstream>
+#include <new>
+
+#include "algorithms/external/external_method.hpp"
+#include "foundation/error.hpp"
+#include "harness/judge.hpp"
+
+namespace tribench {
+namespace {
+
+// The anytime trace on a logarithmic grid of evaluations: of the improvements that fall between
+// two of its points only the last is kept, so a trace has some tens of lines at most.
+class Trace : public Progress {
+ public:
+  explicit Trace(std::string cell) : cell_(std::move(cell)), cpu_start_(process_cpu_seconds()) {}
+
+  void improved(double train_error, std::uint64_t evaluations) override {
+    if (!records_.empty() && !(train_error < records_.back().train_error)) return;
+    const TraceRecord record{cell_, before_ + evaluations, process_cpu_seconds() - cpu_start_,
+                             train_error};
+    const int bucket = bucket_of(record.evaluations);
+    if (!records_.empty() && bucket == bucket_of(records_.back().evaluations)) {
+      records_.back() = record;
+    } else {
+      records_.push_back(record);
+    }
+  }
+  // A stage has a target of its own: the trace kept is the last stage's.
+  void start_stage(std::uint64_t evaluations_so_far) {
+    before_ = evaluations_so_far;
+    records_.clear();
+  }
+  const std::vector<TraceRecord>& records() const { return records_; }
+
+ private:
+  static int bucket_of(std::uint64_t evaluations) {
+    constexpr double kPointsPerDecade = 10;
+    return static_cast<int>(kPointsPerDecade * std::log10(1.0 + static_cast<double>(evaluations)));
+  }
+
+  std::string cell_;
+  double cpu_start_;
+  std::uint64_t before_ = 0;
+  std::vector<TraceRecord> records_;
+};
+
+// CPU seconds of this process and of the programs it has waited for.
+double cpu_seconds_with_children() {
+  rusage use{};
+  getrusage(RUSAGE_CHILDREN, &use);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return process_cpu_seconds() + seconds(use.ru_utime) + seconds(use.ru_stime);
+}
+
+// Linux: writing 5 resets the high-water mark of the resident set (proc(5)).
+void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+double peak_memory_mib() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return std::strtod(line.c_str() + 6, nullptr) / 1024.0;
+  }
+  return kMissing;
+}
+
+// What one stage's method sees: its own inputs, and the target less what is already explained.
+class StageView {
+ public:
+  StageView(const Problem& problem, const Stage& stage, const Expression& so_far)
+      : target_(stage.train.target), movement_(stage.train.movement) {
+    for (const std::size_t place : stage.inputs) {
+      inputs_.push_back(problem.inputs[place]);
+      columns_.push_back(stage.train.columns[place].data());
+    }
+    relink_signs(problem, stage);
+    if (!so_far.empty()) subtract(stage.train, so_far);
+  }
+
+  TrainingData data() const { return {inputs_, columns_, target_, movement_}; }
+
+ private:
+  // Places among the problem's inputs become places among the stage's.
+  void relink_signs(const Problem& problem, const Stage& stage) {
+    for (std::size_t j = 0; j < inputs_.size(); ++j) {
+      const std::optional<std::size_t> whole = problem.inputs[stage.inputs[j]].sign_of;
+      inputs_[j].sign_of.reset();
+      for (std::size_t k = 0; whole && k < stage.inputs.size(); ++k) {
+        if (stage.inputs[k] == *whole) inputs_[j].sign_of = k;
+      }
+    }
+  }
+
+  void subtract(const Table& table, const Expression& so_far) {
+    std::vector<const double*> columns;
+    for (const std::vector<double>& column : table.columns) columns.push_back(column.data());
+    std::vector<double> values(table.rows());
+    Evaluator().evaluate(so_far, {columns, table.rows()}, values);
+    for (std::size_t r = 0; r < target_.size(); ++r) target_[r] -= values[r];
+  }
+
+  std::vector<Input> inputs_;
+  std::vector<const double*> columns_;
+  std::vector<double> target_;
+  const std::vector<int>& movement_;
+};
+
+// A formula over a stage's inputs as one over the problem's.
+Expression over_problem(const Expression& formula, const Stage& stage) {
+  std::vector<Node> nodes(formula.nodes().begin(), formula.nodes().end());
+  for (Node& node : nodes) {
+    if (node.is_variable()) node.variable = static_cast<std::uint16_t>(stage.inputs[node.variable]);
+  }
+  return Expression(std::move(nodes));
+}
+
+// What the stages have come to together.
+struct StagesResult {
+  StagedFormula chosen;
+  std::vector<Expression> front;  // of the last stage, added to what the first explain
+  std::size_t chosen_place = 0;
+  std::string failure;  // empty where every stage gave a formula
+  std::string note;
+};
+
+std::string why_no_formula(const FitResult& result) {
+  if (result.reason == StopReason::unsupported) return fmt::format("unsupported ({})", result.note);
+  return fmt::format("error (no formula: {})",
+                     result.note.empty() ? "the method returned an empty front" : result.note);
+}
+
+StagesResult fit_stages(const Problem& problem, const Regressor& method, const CellTask& task,
+                        Budget& budget, Trace& trace) {
+  StagesResult result;
+  Expression so_far;
+  const RandomStream random(key_of(task.cell.key()));
+  for (std::size_t s = 0; s < problem.stages.size(); ++s) {
+    const Stage& stage = problem.stages[s];
+    const StageView view(problem, stage, so_far);
+    const TrainingData data = view.data();
+    // What is left is shared equally among the stages to come.
+    Budget part = budget.share(budget.remaining() / (problem.stages.size() - s));
+    FitContext context{data, task.operators, part, random.split(s), task.threads, &trace};
+    trace.start_stage(budget.spent());
+    const FitResult fit = method.fit(context);
+    budget.settle(part);
+    if (!fit.note.empty()) result.note += (result.note.empty() ? "" : "; ") + fit.note;
+    if (fit.front.empty()) {
+      result.failure = why_no_formula(fit);
+      return result;
+    }
+    result.front.clear();
+    for (const Expression& formula : fit.front) {
+      const Expression whole = over_problem(formula, stage);
+      result.front.push_back(so_far.empty() ? whole : Expression::binary(Op::add, so_far, whole));
+    }
+    result.chosen_place = fit.chosen;
+    if (s > 0) result.chosen.adaptation = over_problem(fit.front.at(fit.chosen), stage);
+    so_far = result.front.at(fit.chosen);
+  }
+  result.chosen.formula = so_far;
+  return result;
+}
+
+void name_problem(const Problem& problem, Record& record) {
+  record.dataset = problem.dataset;
+  record.joint = problem.joint;
+  record.load = problem.load;
+}
+
+}  // namespace
+
+CellResult fit_and_judge(const Problem& problem, const Regressor& method, const CellTask& task) {
+  CellResult result;
+  Record& record = result.record;
+  record = empty_record(task.cell);
+  name_problem(problem, record);
+  Trace trace(record.cell);
+  reset_peak_memory();
+  const auto wall_start = std::chrono::steady_clock::now();
+  const double cpu_start = cpu_seconds_with_children();
+  Budget budget({task.limits.evaluations, task.limits.seconds});
+  StagesResult fit;
+  try {
+    fit = fit_stages(problem, method, task, budget, trace);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    fit.failure = fmt::format("error ({})", error.what());
+  }
+  record.fit_cpu_s = cpu_seconds_with_children() - cpu_start;
+  record.fit_wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
+  record.peak_memory_mib = peak_memory_mib();
+  record.evaluations = budget.spent();
+  record.note = fit.note;
+  result.trace = trace.records();
+  if (!fit.failure.empty()) {
+    record.status = "failed";
+    record.reason = fit.failure;
+    return result;
+  }
+  judge_formula(problem, fit.chosen, record);
+  result.front = judge_front(problem, fit.front, fit.chosen_place, record.cell);
+  if (budget.out_of_time()) {
+    record.note +=
+        std::string(record.note.empty() ? "" : "; ") + "ended by the clock: not reproducible";
+  }
+  return result;
+}
+
+const Problem& CellRunner::problem(const CellTask& task) {
+  const std::string key = fmt::format("{}|{}|{}", task.cell.problem, task.cell.seed, task.data);
+  if (key != problem_key_) {
+    problem_.reset();
+    const Catalogue catalogue(task.data.empty() ? std::nullopt
+                                                : std::optional<std::filesystem::path>(task.data));
+    problem_ = catalogue.find(task.cell.problem).make(task.cell.seed);
+    problem_key_ = key;
+  }
+  return *problem_;
+}
+
+CellResult CellRunner::run(const CellTask& task,
+                           const std::function<void(const Record&)>& on_problem) {
+  CellResult failed;
+  failed.record = empty_record(task.cell);
+  failed.record.status = "failed";
+  try {
+    const Problem& data = problem(task);
+    name_problem(data, failed.record);
+    on_problem(failed.record);
+    const std::unique_ptr<Regressor> method =
+        task.method.is_external()
+            ? make_external_method(task.method.command, task.method.parameters)
+            : registry_.make(task.method.algorithm, task.method.parameters);
+    return fit_and_judge(data, *method, task);
+  } catch (const Error& error) {
+    failed.record.reason = fmt::format("error ({})", error.what());
+  }
+  return failed;
+}
+
+}  // namespace tribench

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+//
+// Runs one cell in this process: makes the problem, drives the method through the problem's
+// stages, has the judge compute the figures. What a worker process does with each task, and what
+// `tribench fit` does with the user's own data.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "algorithms/registry.hpp"
+#include "algorithms/regressor.hpp"
+#include "harness/cell_task.hpp"
+#include "problems/problem.hpp"
+
+namespace tribench {
+
+// Fits every stage of the problem, each to what the stages before have left, and judges the sum.
+// Errors of the method become a failed record; std::bad_alloc is passed on.
+CellResult fit_and_judge(const Problem& problem, const Regressor& method, const CellTask& task);
+
+// Keeps the last problem made, because neighbouring cells often share it.
+class CellRunner {
+ public:
+  explicit CellRunner(const Registry& registry) : registry_(registry) {}
+
+  // `on_problem` hears the record with what is known before the fit starts, so that a cell that
+  // crashes can still be named in full.
+  CellResult run(const CellTask& task, const std::function<void(const Record&)>& on_problem);
+
+ private:
+  const Problem& problem(const CellTask& task);
+
+  const Registry& registry_;
+  std::optional<Problem> problem_;
+  std::string problem_key_;
+};
+
+}  // namespace tribench

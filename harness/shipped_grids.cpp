@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "harness/shipped_grids.hpp"
+
+#include <filesystem>
+
+namespace tribench {
+namespace embedded {
+std::string_view quick_grid();
+}  // namespace embedded
+
+namespace {
+
+// The comment that a grid file starts with, as one line up to the first full stop.
+std::string summary_of(std::string_view toml) {
+  std::string text;
+  while (toml.starts_with("#")) {
+    const std::size_t end = toml.find('\n');
+    text += std::string(toml.substr(1, end - 1));
+    toml.remove_prefix(end + 1);
+  }
+  text = text.substr(text.find_first_not_of(' '));
+  return text.substr(0, text.find('.'));
+}
+
+ShippedGrid shipped(std::string name, std::string_view toml) {
+  return {std::move(name), summary_of(toml), toml};
+}
+
+}  // namespace
+
+const std::vector<ShippedGrid>& shipped_grids() {
+  static const std::vector<ShippedGrid> kGrids = {shipped("quick", embedded::quick_grid())};
+  return kGrids;
+}
+
+Grid load_named_grid(const std::string& name_or_file, const Registry& registry,
+                     const Catalogue& catalogue) {
+  for (const ShippedGrid& grid : shipped_grids()) {
+    if (grid.name == name_or_file && !std::filesystem::exists(name_or_file)) {
+      return parse_grid(grid.toml, grid.name + ".toml", registry, catalogue);
+    }
+  }
+  return load_grid(name_or_file, registry, catalogue);
+}
+
+}  // namespace tribench

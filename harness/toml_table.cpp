@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "harness/toml_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+std::string place_of(const std::string& file, const toml::source_region& source) {
+  if (source.begin.line == 0) return file;
+  return fmt::format("{}:{}:{}", file, source.begin.line, source.begin.column);
+}
+
+ParameterValue parameter_value(const toml::node& node, const std::string& place) {
+  if (const auto flag = node.as_boolean()) return flag->get();
+  if (const auto integer = node.as_integer()) return integer->get();
+  if (const auto number = node.as_floating_point()) return number->get();
+  if (const auto text = node.as_string()) return text->get();
+  throw_bad_input("a parameter must be true or false, a number or a text", place);
+}
+
+}  // namespace
+
+TomlTable::TomlTable(const toml::table& table, std::string file_name, std::string where,
+                     const std::vector<std::string>& known_keys)
+    : table_(&table), file_name_(std::move(file_name)), where_(std::move(where)) {
+  for (const auto& [key, node] : *table_) {
+    const std::string name(key.str());
+    if (std::ranges::count(known_keys, name) > 0) continue;
+    const std::string near = nearest_name(name, known_keys);
+    throw_bad_input(fmt::format("unknown key '{}' in {}", name, where_.empty() ? "the file" : where_),
+                    place_of(file_name_, key.source()),
+                    near.empty() ? fmt::format("known: {}", fmt::join(known_keys, ", "))
+                                 : fmt::format("did you mean {}?", near));
+  }
+}
+
+std::string TomlTable::place(std::string_view key) const {
+  const toml::node* node = table_->get(key);
+  return place_of(file_name_, node != nullptr ? node->source() : table_->source());
+}
+
+std::string TomlTable::place() const { return place_of(file_name_, table_->source()); }
+
+void TomlTable::refuse(std::string_view key, std::string_view wanted) const {
+  throw_bad_input(fmt::format("'{}' in {} must be {}", key, where_, wanted), place(key));
+}
+
+void TomlTable::read(std::string_view key, std::string& value) const {
+  if (!has(key)) return;
+  const auto* text = table_->get(key)->as_string();
+  if (text == nullptr) refuse(key, "a text");
+  value = text->get();
+}
+
+void TomlTable::read(std::string_view key, bool& value) const {
+  if (!has(key)) return;
+  const auto* flag = table_->get(key)->as_boolean();
+  if (flag == nullptr) refuse(key, "true or false");
+  value = flag->get();
+}
+
+void TomlTable::read(std::string_view key, double& value, double low, double high) const {
+  if (!has(key)) return;
+  const std::optional<double> number = table_->get(key)->value<double>();
+  if (!number || !(*number >= low && *number <= high)) {
+    refuse(key, fmt::format("a number from {} to {}", low, high));
+  }
+  value = *number;
+}
+
+void TomlTable::read(std::string_view key, std::uint64_t& value) const {
+  if (!has(key)) return;
+  const toml::node& node = *table_->get(key);
+  // 1e8 is a whole number too, and how people write budgets.
+  const std::optional<double> number = node.value<double>();
+  const bool whole = number && *number >= 0 && *number < 9.2e18 &&
+                     *number == static_cast<double>(static_cast<std::uint64_t>(*number));
+  if (!whole) refuse(key, "a whole number, not negative");
+  value = node.is_integer() ? static_cast<std::uint64_t>(node.as_integer()->get())
+                            : static_cast<std::uint64_t>(*number);
+}
+
+void TomlTable::read(std::string_view key, int& value, int low, int high) const {
+  if (!has(key)) return;
+  const auto* number = table_->get(key)->as_integer();
+  if (number == nullptr || number->get() < low || number->get() > high) {
+    refuse(key, fmt::format("a whole number from {} to {}", low, high));
+  }
+  value = static_cast<int>(number->get());
+}
+
+void TomlTable::read(std::string_view key, std::vector<std::string>& value) const {
+  if (!has(key)) return;
+  const toml::array* array = table_->get(key)->as_array();
+  if (array == nullptr) refuse(key, "an array of texts");
+  value.clear();
+  for (const toml::node& node : *array) {
+    const auto* text = node.as_string();
+    if (text == nullptr) refuse(key, "an array of texts");
+    value.push_back(text->get());
+  }
+}
+
+void TomlTable::require(std::string_view key) const {
+  if (has(key)) return;
+  throw_bad_input(fmt::format("'{}' is missing in {}", key, where_.empty() ? "the file" : where_), place());
+}
+
+std::map<std::string, ParameterValue> TomlTable::parameters(std::string_view key) const {
+  std::map<std::string, ParameterValue> values;
+  if (!has(key)) return values;
+  const toml::table* inner = table_->get(key)->as_table();
+  if (inner == nullptr) refuse(key, "a table, as in { islands = 8 }");
+  for (const auto& [name, node] : *inner) {
+    values[std::string(name.str())] = parameter_value(node, place_of(file_name_, node.source()));
+  }
+  return values;
+}
+
+TomlTable TomlTable::table(std::string_view key, const std::vector<std::string>& known_keys) const {
+  const std::string name =
+      where_.empty() ? fmt::format("[{}]", key) : fmt::format("{} of {}", key, where_);
+  static const toml::table kEmpty;
+  if (!has(key)) return {kEmpty, file_name_, name, known_keys};
+  const toml::table* inner = table_->get(key)->as_table();
+  if (inner == nullptr) refuse(key, "a table");
+  return {*inner, file_name_, name, known_keys};
+}
+
+std::vector<TomlTable> TomlTable::array_of_tables(
+    std::string_view key, const std::vector<std::string>& known_keys) const {
+  std::vector<TomlTable> all;
+  if (!has(key)) return all;
+  const toml::array* array = table_->get(key)->as_array();
+  if (array == nullptr) refuse(key, fmt::format("written as [[{}]]", key));
+  for (const toml::node& node : *array) {
+    if (node.as_table() == nullptr) refuse(key, fmt::format("written as [[{}]]", key));
+    all.emplace_back(*node.as_table(), file_name_, fmt::format("[[{}]]", key), known_keys);
+  }
+  return all;
+}
+
+}  // namespace tribench

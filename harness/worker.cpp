@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "harness/worker.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <iostream>
+#include <new>
+#include <string>
+
+#include "algorithms/budget.hpp"
+#include "foundation/error.hpp"
+#include "harness/run_cell.hpp"
+
+namespace tribench {
+namespace {
+
+// The worker leads its process group: with it end the programs it has started.
+extern "C" void end_group(int /*signal*/) { ::kill(0, SIGKILL); }
+
+// Standard output is for answers alone: they get a descriptor of their own, and what a method or a
+// library prints goes to standard error.
+int take_over_output() {
+  const int answers = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 10);
+  if (answers < 0) throw Error(ErrorKind::failed, "the worker has no standard output");
+  ::dup2(STDERR_FILENO, STDOUT_FILENO);
+  return answers;
+}
+
+void send(int answers, const char* name, const std::string& json) {
+  const std::string line = fmt::format("{{\"{}\":{}}}\n", name, json);
+  std::string_view rest = line;
+  while (!rest.empty()) {
+    const ssize_t count = ::write(answers, rest.data(), rest.size());
+    if (count > 0) {
+      rest.remove_prefix(static_cast<std::size_t>(count));
+    } else if (errno != EINTR) {
+      ::_exit(1);  // nobody reads any more
+    }
+  }
+}
+
+// The kernel holds the limits even if whoever watches is slow: memory makes allocation fail, CPU
+// ends the process by SIGXCPU. Programs started from here inherit both. The CPU limit counts what
+// the process has used before this cell; it has a resolution of a second.
+void set_limits(const CellLimits& limits) {
+  rlimit memory{};
+  getrlimit(RLIMIT_DATA, &memory);
+  memory.rlim_cur = static_cast<rlim_t>(limits.memory_mib * 1024 * 1024);
+  setrlimit(RLIMIT_DATA, &memory);
+  rlimit cpu{};
+  getrlimit(RLIMIT_CPU, &cpu);
+  cpu.rlim_cur =
+      static_cast<rlim_t>(std::ceil(process_cpu_seconds() + limits.cpu_limit_seconds)) + 1;
+  setrlimit(RLIMIT_CPU, &cpu);
+  rlimit core{};  // a crash is expected here and needs no core file
+  setrlimit(RLIMIT_CORE, &core);
+}
+
+}  // namespace
+
+int run_worker(const Registry& registry) {
+  std::signal(SIGTERM, end_group);
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  const int answers = take_over_output();
+  CellRunner runner(registry);
+  for (std::string line; std::getline(std::cin, line);) {
+    try {
+      const CellTask task = parse_task(line);
+      set_limits(task.limits);
+      const CellResult result = runner.run(task, [answers](const Record& record) {
+        send(answers, "started", print_result({record, {}, {}}));
+      });
+      send(answers, "finished", print_result(result));
+    } catch (const std::bad_alloc&) {
+      send(answers, "out_of_memory", "true");
+      return 1;
+    }
+  }
+  return 0;
+}
+
+}  // namespace tribench

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+//
+// The same grid gives the same results, byte for byte, however it is run.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
+#include "foundation/child_process.hpp"
+#include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace tribench::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kGrid = R"([grid]
+name = "small"
+problems = ["A/j2/no_load", "A/j4/load", "B/j2/load"]
+methods = ["test_mean", "test_search", "test_sleep"]
+operators = ["paper", "paper+div"]
+seeds = { first = 1, count = 4 }
+
+[budget]
+evaluations = 2_000_000
+seconds = 20
+
+[[method]]
+name = "test_sleep"
+parameters = { seconds = 0.1 }
+)";
+constexpr std::size_t kCells = 3 * (1 + 2 + 1) * 4;
+
+class RunTest : public ::testing::Test {
+ protected:
+  void SetUp() override { write_text(folder_ / "grid.toml", kGrid); }
+
+  ProgramRun run(const std::string& out, std::vector<std::string> more = {}) {
+    std::vector<std::string> command = {test_program().string(), "run",
+                                        (folder_ / "grid.toml").string(), "--out",
+                                        (folder_ / out).string()};
+    command.insert(command.end(), more.begin(), more.end());
+    return run_to_end(command);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(RunTest, OneAndTwoThreadsGiveTheSameResults) {
+  ASSERT_EQ(run("one", {"--jobs", "1"}).status, 0);
+  ASSERT_EQ(run("two", {"--jobs", "2"}).status, 0);
+  EXPECT_EQ(column_of(folder_ / "one", "status").size(), kCells);
+  EXPECT_EQ(timeless_results(folder_ / "one"), timeless_results(folder_ / "two"));
+  EXPECT_EQ(read_text(folder_ / "one" / "front.csv"), read_text(folder_ / "two" / "front.csv"));
+}
+
+TEST_F(RunTest, TwoShardsMergedInAnyOrderGiveTheSameResults) {
+  ASSERT_EQ(run("whole").status, 0);
+  ASSERT_EQ(run("first", {"--shard", "1/2"}).status, 0);
+  ASSERT_EQ(run("second", {"--shard", "2/2"}).status, 0);
+  const ProgramRun merged =
+      run_to_end({test_program().string(), "merge", (folder_ / "second").string(),
+                  (folder_ / "first").string(), "--out", (folder_ / "merged").string()});
+  ASSERT_EQ(merged.status, 0) << merged.errors;
+  EXPECT_LT(column_of(folder_ / "first", "status").size(), kCells);
+  EXPECT_EQ(timeless_results(folder_ / "merged"), timeless_results(folder_ / "whole"));
+}
+
+TEST_F(RunTest, KilledHalfWayAndResumedGivesTheSameResults) {
+  ASSERT_EQ(run("whole").status, 0);
+  const std::string journal = (folder_ / "killed" / "cells.jsonl").string();
+  {
+    ChildProcess program(
+        ChildOptions{{test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
+                      (folder_ / "killed").string(), "--jobs", "2"},
+                     {},
+                     {},
+                     true});
+    // Half the lines of the whole run's journal.
+    const std::string whole = read_text(folder_ / "whole" / "cells.jsonl");
+    while (read_text(journal).size() < whole.size() / 2) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    ::kill(program.pid(), SIGKILL);
+    program.wait();
+  }
+  const std::string half = read_text(journal);
+  const ProgramRun refused = run("killed");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("--resume"));
+  const ProgramRun resumed = run("killed", {"--resume"});
+  ASSERT_EQ(resumed.status, 0) << resumed.errors;
+  EXPECT_TRUE(read_text(journal).starts_with(half.substr(0, half.rfind('\n') + 1)));
+  EXPECT_EQ(timeless_results(folder_ / "killed"), timeless_results(folder_ / "whole"));
+}
+
+TEST_F(RunTest, InterruptedItLeavesARunThatResumes) {
+  ChildProcess program(
+      ChildOptions{{test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
+                    (folder_ / "stopped").string(), "--jobs", "1"},
+                   {},
+                   {},
+                   true});
+  while (read_text(folder_ / "stopped" / "cells.jsonl").size() < 3000) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  ::kill(program.pid(), SIGINT);
+  const ChildExit exit = program.wait();
+  EXPECT_EQ(exit.signal, 0);
+  EXPECT_EQ(exit.status, 3);
+  const std::size_t before = column_of(folder_ / "stopped", "status").size();
+  EXPECT_GT(before, 0U);
+  EXPECT_LT(before, kCells);
+  ASSERT_EQ(run("stopped", {"--resume"}).status, 0);
+  EXPECT_EQ(column_of(folder_ / "stopped", "status").size(), kCells);
+}
+
+TEST_F(RunTest, ResumingAnotherGridIsRefusedWithTheDifference) {
+  ASSERT_EQ(run("run").status, 0);
+  std::string other = kGrid;
+  other.replace(other.find("2_000_000"), 9, "3_000_000");
+  write_text(folder_ / "grid.toml", other);
+  const ProgramRun refused = run("run", {"--resume"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("- evaluations = 2000000"));
+  EXPECT_THAT(refused.errors, HasSubstr("+ evaluations = 3000000"));
+}
+
+TEST_F(RunTest, AnOrphanedWorkerDoesNotOutliveItsRun) {
+  std::string hanging = kGrid;
+  hanging.replace(hanging.find("seconds = 0.1"), 13, "seconds = 987");
+  write_text(folder_ / "grid.toml", hanging);
+  pid_t worker = 0;
+  {
+    ChildProcess program(
+        ChildOptions{{test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
+                      (folder_ / "killed").string(), "--jobs", "1"},
+                     {},
+                     {},
+                     true});
+    const std::string children = "/proc/" + std::to_string(program.pid()) + "/task/" +
+                                 std::to_string(program.pid()) + "/children";
+    while (worker == 0) worker = static_cast<pid_t>(std::atoi(read_text(children).c_str()));
+    ::kill(program.pid(), SIGKILL);  // the program alone, not its group
+  }
+  for (int i = 0; i < 500 && ::kill(worker, 0) == 0; ++i) {
+    // A zombie that init has not fetched yet has ended too.
+    if (read_text("/proc/" + std::to_string(worker) + "/stat").find(") Z ") != std::string::npos) {
+      break;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  const std::string state = read_text("/proc/" + std::to_string(worker) + "/stat");
+  EXPECT_TRUE(state.empty() || state.find(") Z ") != std::string::npos) << state;
+}
+
+TEST_F(RunTest, DryRunListsTheCellsAndWritesTheGridThatTakesEffect) {
+  const ProgramRun listed = run("dry", {"--dry-run"});
+  EXPECT_EQ(listed.status, 0);
+  EXPECT_THAT(listed.output, HasSubstr("B/j2/load|test_search|paper+div|4"));
+  EXPECT_THAT(listed.output, HasSubstr("48 cells"));
+  EXPECT_THAT(read_text(folder_ / "dry" / "grid.toml"), HasSubstr("test_search"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "dry" / "cells.jsonl"));
+  // What it writes is a grid that gives the same cells.
+  std::filesystem::copy_file(folder_ / "dry" / "grid.toml", folder_ / "effective.toml");
+  const ProgramRun again = run_to_end(
+      {test_program().string(), "run", (folder_ / "effective.toml").string(), "--dry-run"});
+  EXPECT_EQ(again.output, listed.output) << again.errors;
+}
+
+TEST_F(RunTest, ReportRendersTheJournalAgain) {
+  ASSERT_EQ(run("run").status, 0);
+  const std::string before = read_text(folder_ / "run" / "results.csv");
+  const std::string board = read_text(folder_ / "run" / "leaderboard.md");
+  std::filesystem::remove(folder_ / "run" / "results.csv");
+  std::filesystem::remove(folder_ / "run" / "leaderboard.md");
+  ASSERT_EQ(run_to_end({test_program().string(), "report", (folder_ / "run").string()}).status, 0);
+  EXPECT_EQ(read_text(folder_ / "run" / "results.csv"), before);
+  EXPECT_EQ(read_text(folder_ / "run" / "leaderboard.md"), board);
+}
+
+}  // namespace
+}  // namespace tribench::testing

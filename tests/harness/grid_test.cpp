@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "harness/grid.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::unique_ptr<Regressor> make_nothing(const Parameters&, const Registry&) { return nullptr; }
+
+Registry small_registry() {
+  Registry registry;
+  registry.add({"grid_alpha",
+                "searches",
+                {{"islands", "how many", std::int64_t{4}, 1, 100, {}}},
+                false,
+                make_nothing});
+  registry.add({"grid_fixed", "a fixed form", {}, true, make_nothing});
+  return registry;
+}
+
+Grid parse(const std::string& toml) {
+  return parse_grid(toml, "g.toml", small_registry(), Catalogue());
+}
+
+std::string refusal(const std::string& toml) {
+  try {
+    parse(toml);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+    return error.what();
+  }
+  return "accepted";
+}
+
+constexpr const char* kAxes =
+    "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"grid_alpha\", \"grid_fixed\"]\n";
+
+TEST(Grid, CrossesProblemsMethodsSetsAndSeedsAndRunsFixedFormsOnce) {
+  const Grid grid = parse(R"([grid]
+problems = ["A/j?/no_load"]
+methods = ["grid_*"]
+operators = ["paper", "paper+div"]
+seeds = { first = 5, count = 2 }
+)");
+  std::vector<std::string> keys;
+  for (const Cell& cell : grid.cells()) keys.push_back(cell.key());
+  EXPECT_THAT(
+      keys,
+      ElementsAre("A/j2/no_load|grid_alpha|paper|5", "A/j2/no_load|grid_alpha|paper|6",
+                  "A/j2/no_load|grid_alpha|paper+div|5", "A/j2/no_load|grid_alpha|paper+div|6",
+                  "A/j2/no_load|grid_fixed|-|5", "A/j2/no_load|grid_fixed|-|6",
+                  "A/j4/no_load|grid_alpha|paper|5", "A/j4/no_load|grid_alpha|paper|6",
+                  "A/j4/no_load|grid_alpha|paper+div|5", "A/j4/no_load|grid_alpha|paper+div|6",
+                  "A/j4/no_load|grid_fixed|-|5", "A/j4/no_load|grid_fixed|-|6"));
+}
+
+TEST(Grid, RefusesUnknownKeysWithTheNearestNameAndTheLine) {
+  EXPECT_THAT(refusal(std::string(kAxes) + "sedes = 3\n"),
+              AllOf(HasSubstr("g.toml:4:1"), HasSubstr("unknown key 'sedes' in [grid]"),
+                    HasSubstr("did you mean seeds?")));
+  EXPECT_THAT(refusal(std::string(kAxes) + "[budget]\nevaluation = 3\n"),
+              AllOf(HasSubstr("g.toml:5:1"), HasSubstr("did you mean evaluations?")));
+  EXPECT_THAT(refusal(std::string(kAxes) + "[buget]\nseconds = 3\n"),
+              HasSubstr("did you mean budget?"));
+  EXPECT_THAT(refusal(std::string(kAxes) + "[[method]]\nname = \"x\"\nalgoritm = \"y\"\n"),
+              HasSubstr("did you mean algorithm?"));
+  EXPECT_THAT(refusal(std::string(kAxes) + "seeds = { frist = 1 }\n"),
+              HasSubstr("did you mean first?"));
+}
+
+TEST(Grid, RefusesUnknownNamesAndValuesOfAnotherKind) {
+  EXPECT_THAT(refusal("[grid]\nproblems = [\"A/j2/noload\"]\nmethods = [\"*\"]\n"),
+              AllOf(HasSubstr("g.toml:2"), HasSubstr("did you mean A/j2/no_load?")));
+  EXPECT_THAT(refusal("[grid]\nproblems = [\"A/*\"]\nmethods = [\"grid_alpa\"]\n"),
+              HasSubstr("did you mean grid_alpha?"));
+  EXPECT_THAT(refusal(std::string(kAxes) + "seeds = { first = -1 }\n"),
+              HasSubstr("must be a whole number, not negative"));
+  EXPECT_THAT(refusal(std::string(kAxes) + "seeds = { count = 0 }\n"), HasSubstr("at least 1"));
+  EXPECT_THAT(refusal(std::string(kAxes) + "[budget]\nmemory_mib = \"much\"\n"),
+              HasSubstr("must be a number"));
+  EXPECT_THAT(refusal("[grid\n"), HasSubstr("g.toml:1"));
+  EXPECT_THAT(refusal("[grid]\nmethods = [\"*\"]\n"), HasSubstr("'problems' is missing"));
+}
+
+TEST(Grid, ChecksParametersAgainstTheAlgorithm) {
+  EXPECT_THAT(refusal(std::string(kAxes) + "[[method]]\nname = \"a2\"\nalgorithm = \"grid_alpha\"\n"
+                                           "parameters = { island = 3 }\n"),
+              AllOf(HasSubstr("g.toml:7"), HasSubstr("did you mean islands?")));
+  EXPECT_THAT(refusal(std::string(kAxes) + "[[method]]\nname = \"a2\"\nalgorithm = \"grid_alpha\"\n"
+                                           "parameters = { islands = 300 }\n"),
+              HasSubstr("out of range"));
+}
+
+TEST(Grid, PrintedItReadsBackToTheSameGrid) {
+  const std::string toml = R"([grid]
+name = "all of it"
+problems = ["A/*"]
+methods = ["grid_alpha", "many", "theirs"]
+operators = ["paper", "mine"]
+seeds = { first = 3, count = 7 }
+quarantine = ["*|many|*"]
+[budget]
+evaluations = 1e7
+seconds = 4
+memory_mib = 300
+[retry]
+crashed = 2
+[[method]]
+name = "many"
+algorithm = "grid_alpha"
+parameters = { islands = 32 }
+[[external]]
+name = "theirs"
+command = ["python3", "theirs.py"]
+operators = ["paper"]
+wall_seconds = 9
+[[operator_set]]
+name = "mine"
+operators = ["+", "*", "tanh"]
+)";
+  const Grid grid = parse(toml);
+  const Grid again = parse(print_grid(grid));
+  EXPECT_EQ(print_grid(again), print_grid(grid));
+  EXPECT_EQ(again.cells(), grid.cells());
+  EXPECT_EQ(again.limits, grid.limits);
+  EXPECT_EQ(again.limits_of(again.method("theirs")).wall_seconds, 9);
+  EXPECT_EQ(again.limits_of(again.method("many")).memory_mib, 300);
+  EXPECT_TRUE(again.operator_set("mine").allows(Op::tanh));
+  EXPECT_FALSE(again.operator_set("mine").allows(Op::exp));
+  EXPECT_EQ(again.retry.crashed, 2);
+}
+
+TEST(Grid, ANewCellKeyIsANewStream) {
+  std::set<std::string> keys;
+  for (const Cell& cell : parse(std::string(kAxes) + "operators = [\"*\"]\n").cells()) {
+    EXPECT_TRUE(keys.insert(cell.key()).second) << cell.key();
+  }
+}
+
+TEST(GlobMatches, KnowsStarsAndQuestionMarks) {
+  EXPECT_TRUE(glob_matches("*", ""));
+  EXPECT_TRUE(glob_matches("A/*/load", "A/j2/load"));
+  EXPECT_TRUE(glob_matches("a*b*c", "aXbYbZc"));
+  EXPECT_FALSE(glob_matches("a?c", "ac"));
+  EXPECT_FALSE(glob_matches("A/*/load", "A/j2/no_loads"));
+}
+
+}  // namespace
+}  // namespace tribench

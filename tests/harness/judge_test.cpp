@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "harness/judge.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "algorithms/expression/text.hpp"
+#include "foundation/error.hpp"
+#include "harness/run_cell.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::HasSubstr;
+
+// y = 2 v + 1 without noise; a second stage in which 3 g is left on top.
+Problem two_stage_problem() {
+  Problem problem;
+  problem.name = "test/staged";
+  problem.dataset = "test";
+  problem.inputs = {{"v", "rad/s", Role::velocity, -2, 2, {}}, {"g", "N m", Role::none, -1, 1, {}}};
+  const auto table = [](double slope_of_g) {
+    Table t;
+    t.columns.resize(2);
+    for (int i = 0; i < 40; ++i) {
+      const double v = -2 + 0.1 * i;
+      const double g = i % 2 == 0 ? 0.5 : -0.25;
+      t.columns[0].push_back(v);
+      t.columns[1].push_back(g);
+      t.target.push_back(2 * v + 1 + slope_of_g * g);
+      t.movement.push_back(i / 10);
+    }
+    return t;
+  };
+  problem.stages = {{"fit", {0}, table(0)}, {"adapt", {1}, table(3)}};
+  problem.test = table(3);
+  problem.test.truth = problem.test.target;
+  return problem;
+}
+
+// Least squares a line over the first input that it sees: exact where a line is the truth.
+class LineMethod : public Regressor {
+ public:
+  FitResult fit(FitContext& context) const override {
+    const double* x = context.data.columns[0];
+    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (std::size_t r = 0; r < context.data.rows(); ++r) {
+      const double y = context.data.target[r];
+      n += 1;
+      sx += x[r];
+      sy += y;
+      sxx += x[r] * x[r];
+      sxy += x[r] * y;
+    }
+    const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
+    const std::string name = context.data.inputs[0].name;
+    FitResult result;
+    const std::vector<std::string> names = {name};
+    result.front.push_back(Expression::constant(sy / n));
+    result.front.push_back(parse(
+        print_number(slope) + " * " + name + " + " + print_number((sy - slope * sx) / n), names));
+    result.chosen = 1;
+    EXPECT_TRUE(context.budget.spend(100));
+    return result;
+  }
+};
+
+TEST(FitAndJudge, AddsTheStagesFormulasAndCountsTheAdaptationApart) {
+  const Problem problem = two_stage_problem();
+  CellTask task;
+  task.cell = {problem.name, "line", "paper", 1};
+  task.operators = find_operator_set("paper");
+  const CellResult result = fit_and_judge(problem, LineMethod(), task);
+  const Record& record = result.record;
+  EXPECT_EQ(record.status, "ok") << record.reason;
+  EXPECT_NEAR(record.mae_test, 0, 1e-12);
+  EXPECT_NEAR(record.mae_truth, 0, 1e-12);
+  EXPECT_NEAR(record.r2_test, 1, 1e-12);
+  // (2 v + 1) + (3 g + 0): two products, three sums, two variables.
+  EXPECT_EQ(record.complexity, 7);
+  EXPECT_EQ(record.complexity_adaptation, 3);
+  EXPECT_EQ(record.evaluations, 200U);
+  EXPECT_EQ(record.singularity, "proved_free");
+  ASSERT_EQ(result.front.size(), 2U);
+  EXPECT_TRUE(result.front.back().chosen);
+  // What is exported is what was judged.
+  const Expression formula = parse(record.formula, problem.input_names());
+  Record again;
+  judge_formula(problem, {formula, {}}, again);
+  EXPECT_EQ(again.mae_test, record.mae_test);
+}
+
+TEST(JudgeFormula, FailsAFormulaWithoutAValueAtATestRow) {
+  const Problem problem = two_stage_problem();
+  Record record;
+  judge_formula(problem, {parse("log(v)", problem.input_names()), {}}, record);
+  EXPECT_EQ(record.status, "failed");
+  EXPECT_THAT(record.reason, HasSubstr("no finite value at 2"));
+  EXPECT_TRUE(std::isnan(record.mae_test));
+  EXPECT_EQ(record.singularity, "refuted");
+  EXPECT_THAT(record.witness, HasSubstr("\"v\""));
+  EXPECT_EQ(record.formula, "log(v)");
+}
+
+TEST(JudgeFront, KeepsWhatNoOtherBeatsAndTheChosenOne) {
+  const Problem problem = two_stage_problem();
+  const std::vector<std::string> names = problem.input_names();
+  const std::vector<Expression> front = {
+      parse("2 * v + 1 + 3 * g", names),  // exact
+      parse("2 * v + 1", names),          // simpler, worse
+      parse("1.9 * v + g * v", names),    // beaten by the one above
+      parse("v * v * v", names),          // beaten, but chosen
+  };
+  const std::vector<FrontRecord> kept = judge_front(problem, front, 3, "cell");
+  ASSERT_EQ(kept.size(), 3U);
+  EXPECT_EQ(kept[0].formula, "2*v + 1");
+  EXPECT_TRUE(kept[1].chosen);
+  EXPECT_EQ(kept[2].formula, "2*v + 1 + 3*g");
+  for (const FrontRecord& entry : kept) EXPECT_EQ(entry.singularity, "proved_free");
+}
+
+}  // namespace
+}  // namespace tribench

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+//
+// Runs a program to its end and keeps what it printed; temporary folders that clean up.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tribench::testing {
+
+struct ProgramRun {
+  int status = 0;
+  int signal = 0;
+  std::string output;
+  std::string errors;
+};
+
+ProgramRun run_to_end(const std::vector<std::string>& command,
+                      const std::vector<std::string>& environment = {});
+
+// A folder of its own that is removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string read_text(const std::filesystem::path& file);
+void write_text(const std::filesystem::path& file, std::string_view text);
+
+// results.csv without the columns of time and memory: what must be equal byte for byte.
+std::string timeless_results(const std::filesystem::path& run_folder);
+
+// One column of results.csv by cell.
+std::map<std::string, std::string> column_of(const std::filesystem::path& run_folder,
+                                             std::string_view column);
+
+}  // namespace tribench::testing
