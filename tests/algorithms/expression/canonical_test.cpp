@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/expression/canonical.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "algorithms/expression/bounds.hpp"
+#include "algorithms/expression/complexity.hpp"
+#include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/simplify.hpp"
+#include "algorithms/expression/singularity.hpp"
+#include "algorithms/expression/text.hpp"
+#include "tests/algorithms/expression/proof_formulas.hpp"
+
+namespace tribench {
+namespace {
+
+const std::vector<std::string> kNames = {"v", "g", "t"};
+
+Expression formula_of(const std::string& text) { return parse(text, kNames); }
+std::string canonical_text(const std::string& text) {
+  return print(canonical_form(formula_of(text)), kNames);
+}
+
+TEST(Canonical, gives_equal_formulas_one_hash) {
+  const std::vector<std::pair<std::string, std::string>> equal = {
+      {"v + g", "g + v"},
+      {"v*g*t", "t*(g*v)"},
+      {"v - v", "0"},
+      {"2*v + 3*v", "5*v"},
+      {"v*v", "v^2"},
+      {"v^2*v", "v^3"},
+      {"(v*g)^2", "g^2*v^2"},
+      {"-(-v)", "v"},
+      {"v - (g - t)", "t - g + v"},
+      {"2*(v + 1)", "2 + v*2"},
+      {"(v - g)^2", "(g - v)^2"},
+      {"(v - g)*(t - v)", "(g - v)*(v - t)"},
+      {"sin(-v)", "-sin(v)"},
+      {"cos(g - v)", "cos(v - g)"},
+      {"abs(-2*v)", "2*abs(v)"},
+      {"abs(abs(v))", "abs(v)"},
+      {"sgn(v)*sgn(v)*sgn(v)", "sgn(v)"},
+      {"v/2", "0.5*v"},
+      {"v/g/t", "v/(t*g)"},
+      {"1/v^2", "v^-2"},
+      {"exp(1 + v)", "exp(v + 1)"},
+      {"3*4 + v", "v + 12"},
+      {"0*v + g", "g"},
+      {"v*(-g)", "-(v*g)"},
+      {"exp(-(v - g))", "exp(g - v)"},
+      {"1/v + 1/v", "2/v"},
+      {"2*v*(3*g)", "6*g*v"},
+      {"tanh(2 - v)*tanh(v - 2)", "-tanh(v - 2)^2"},
+  };
+  for (const auto& [a, b] : equal) {
+    EXPECT_EQ(canonical_hash(formula_of(a)), canonical_hash(formula_of(b)))
+        << a << " -> " << canonical_text(a) << "   " << b << " -> " << canonical_text(b);
+  }
+}
+
+TEST(Canonical, keeps_what_may_be_singular) {
+  const std::vector<std::pair<std::string, std::string>> different = {
+      {"v/v", "1"},       {"1/v - 1/v", "0"},       {"0/v", "0"},
+      {"0*log(v)", "0"},  {"log(v) - log(v)", "0"}, {"log(v)^0", "1"},
+      {"v^2/v", "v"},     {"sqrt(v)^2", "v"},       {"exp(log(v))", "v"},
+      {"1/(1/v)", "v"},   {"sqrt(v^2)", "v"},       {"exp(v) - exp(v)", "0"},
+      {"v - g", "g - v"}, {"v^3", "v^2"},           {"v/g", "g/v"},
+      {"1/0", "1"},
+  };
+  for (const auto& [a, b] : different) {
+    EXPECT_NE(canonical_hash(formula_of(a)).exact, canonical_hash(formula_of(b)).exact)
+        << a << " -> " << canonical_text(a) << "   " << b << " -> " << canonical_text(b);
+  }
+}
+
+TEST(Canonical, has_a_shape_that_forgets_constants) {
+  const auto shape = [](const std::string& text) { return canonical_hash(formula_of(text)).shape; };
+  EXPECT_EQ(shape("2*v + 3*g"), shape("0.5*g + 7*v"));
+  EXPECT_EQ(shape("exp(-3*v) + 1"), shape("exp(2.5*v) - 4"));
+  EXPECT_EQ(shape("2*v + 3*v + g"), shape("5*v + g"));
+  EXPECT_NE(shape("2*v + 3*g"), shape("2*v*g"));
+  EXPECT_NE(shape("v^2"), shape("v^3"));
+  EXPECT_NE(shape("2*v"), shape("2*v + 1"));
+}
+
+TEST(Canonical, prints_what_one_would_write) {
+  EXPECT_EQ(canonical_text("v + 2*v - g*3 + 1 - 4"), "3*v - 3*g - 3");
+  EXPECT_EQ(canonical_text("v*v*v/g/g"), "v^3/g^2");
+  EXPECT_EQ(canonical_text("-(v*g)"), "-(v*g)");
+  EXPECT_EQ(canonical_text("1/v"), "1/v");
+  EXPECT_EQ(canonical_text("v - v"), "0");
+}
+
+// Small whole numbers, so that sums are exact and 0/0 is met where it can be.
+TEST(Canonical, neither_hides_nor_makes_a_singularity_on_a_grid_of_whole_numbers) {
+  RandomStream random(key_of("canonical grid"));
+  Evaluator evaluator;
+  Canonicalizer canonicalizer;
+  int singular = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const Expression f = testing::random_formula(random, {.inputs = 2, .whole_constants = true});
+    const Expression c = canonicalizer.canonical(f);
+    for (double v = -2; v <= 2; ++v) {
+      for (double g = -1; g <= 2; ++g) {
+        const std::vector<double> point = {v, g};
+        const bool before = testing::is_finite_throughout(evaluator, f, point);
+        const bool after = testing::is_finite_throughout(evaluator, c, point);
+        const double a = evaluator.evaluate_at(f, point);
+        // Powers of powers overflow in an order of their own.
+        if (!before && std::abs(a) > 1e100 && testing::overflows(evaluator, f, point)) continue;
+        if (!after && testing::overflows(evaluator, c, point)) continue;
+        ASSERT_EQ(before, after) << print(f, kNames) << "\n"
+                                 << print(c, kNames) << "\n"
+                                 << v << " " << g;
+        singular += before ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_GT(singular, 1000);
+}
+
+TEST(Canonical, changes_values_by_rounding_only) {
+  RandomStream random(key_of("canonical values"));
+  Evaluator evaluator;
+  Canonicalizer canonicalizer;
+  int compared = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const Expression f = testing::random_formula(random, {.inputs = 3});
+    const Expression c = canonicalizer.canonical(f);
+    std::vector<double> point(3);
+    std::vector<Interval> box(3);
+    for (std::size_t j = 0; j < 3; ++j) {
+      point[j] = random.uniform(-3, 3);
+      box[j] = {point[j], std::nextafter(point[j], 10)};
+    }
+    FormulaBounds before(f);
+    FormulaBounds after(c);
+    if (f.columns_used() == 0 || !before.sharpen(box) || !after.sharpen(box)) continue;
+    const double a = evaluator.evaluate_at(f, point);
+    const double b = evaluator.evaluate_at(c, point);
+    // Folding constants rounds too: allow a few times the evaluations' own error bounds.
+    const double allowed = 4 * (before.rounding_error(f.root()) + after.rounding_error(c.root()));
+    ASSERT_LE(std::abs(a - b), allowed + 1e-14 * std::abs(a)) << print(f, kNames) << "\n"
+                                                              << print(c, kNames);
+    ++compared;
+  }
+  EXPECT_GT(compared, 8000);
+}
+
+TEST(Canonical, is_its_own_canonical_form) {
+  RandomStream random(key_of("canonical twice"));
+  Canonicalizer canonicalizer;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const Expression f = testing::random_formula(random, {.inputs = 3});
+    const Expression once = canonicalizer.canonical(f);
+    const CanonicalHash hash = canonicalizer.hash(f);
+    const bool keeps_zero =
+        std::any_of(once.nodes().begin(), once.nodes().end(),
+                    [](const Node& n) { return n.is_constant() && n.value == 0; });
+    if (keeps_zero && once.size() > 1) continue;  // 0 times what may be singular, in many guises
+    ASSERT_EQ(canonicalizer.hash(once).shape, hash.shape)
+        << print(f, kNames) << "\n"
+        << print(once, kNames) << "\n"
+        << print(canonicalizer.canonical(once), kNames);
+  }
+}
+
+TEST(Canonical, tells_different_random_formulas_apart) {
+  RandomStream random(key_of("canonical apart"));
+  Canonicalizer canonicalizer;
+  std::map<std::uint64_t, std::string> hashes;
+  std::set<std::string> texts;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const Expression f = testing::random_formula(random, {.inputs = 3});
+    const std::string text = print(canonicalizer.canonical(f), kNames);
+    texts.insert(text);
+    EXPECT_EQ(hashes.emplace(canonicalizer.hash(f).exact, text).first->second, text);
+  }
+  EXPECT_EQ(hashes.size(), texts.size());
+}
+
+TEST(Simplify, removes_what_the_box_proves_removable) {
+  const InputBox away = {{1, 2}, {-60, 60}, {0, 1}};
+  const InputBox across = {{-1, 2}, {-60, 60}, {0, 1}};
+  const auto text = [](const std::string& formula, const InputBox& box) {
+    return print(simplify(formula_of(formula), box), kNames);
+  };
+  EXPECT_EQ(text("v/v", away), "1");
+  EXPECT_EQ(text("v/v", across), "v/v");
+  EXPECT_EQ(text("v^3*g/v", away), "v^2*g");
+  EXPECT_EQ(text("log(v) - log(v)", away), "0");
+  EXPECT_EQ(text("log(v) - log(v)", across), "log(v)*0");
+  EXPECT_EQ(text("exp(v) - exp(v) + g", across), "g");
+  EXPECT_EQ(text("0/(1 + v^2) + 2*g + g", across), "3*g");
+}
+
+TEST(Simplify, never_grows_and_keeps_the_verdict) {
+  RandomStream random(key_of("simplify"));
+  const InputBox box = {{-2, 2}, {-1, 3}, {0.5, 1}};
+  int smaller = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Expression f = testing::random_formula(random, {.inputs = 3});
+    const Expression s = simplify(f, box);
+    ASSERT_LE(paper_complexity(s), paper_complexity(f));
+    ASSERT_EQ(prove_free(s, box).verdict, prove_free(f, box).verdict) << print(f, kNames);
+    smaller += s.size() < f.size() ? 1 : 0;
+  }
+  EXPECT_GT(smaller, 100);
+}
+
+}  // namespace
+}  // namespace tribench
