@@ -10,69 +10,102 @@
 namespace tribench {
 namespace {
 
-// out[i] = f(i-th vector), two vectors a turn, the rest masked. `f` takes a loader.
-template <typename T, typename F>
+// How quotients are formed: by the divider, or with two vectors in three by multiplications (the
+// same bits either way).
+enum class Division { hardware, mixed };
+
+struct ByDivider {
+  template <typename V>
+  static V divide(V a, V b) {
+    return a / b;
+  }
+};
+struct ByMultiplying {
+  template <typename V>
+  static V divide(V a, V b) {
+    return divide_by_multiplying(a, b);
+  }
+};
+
+template <typename T>
+struct ReadWhole {
+  Vector<T> operator()(const T* p) const { return load<Vector<T>>(p); }
+};
+template <typename T>
+struct ReadPart {
+  std::size_t count;
+  Vector<T> operator()(const T* p) const { return load_part(p, count); }
+};
+
+// out[i] = f(i-th vector), a few vectors a turn, the rest masked. f takes what reads an operand,
+// the row, and what divides.
+template <bool Mixed, typename T, typename F>
 inline void for_rows(T* out, std::size_t n, F f) {
   constexpr std::size_t kStep = kWidth<T>;
+  constexpr std::size_t kTurn = Mixed ? 3 : 2;
+  const ReadWhole<T> whole;
   std::size_t i = 0;
-  for (; i + 2 * kStep <= n; i += 2 * kStep) {
-    const auto whole = [](const T* p) { return load<Vector<T>>(p); };
-    const Vector<T> first = f(whole, i);
-    const Vector<T> second = f(whole, i + kStep);
-    store(out + i, first);
-    store(out + i + kStep, second);
-  }
-  for (; i < n; i += kStep) {
-    if (n - i >= kStep) {
-      store(out + i, f([](const T* p) { return load<Vector<T>>(p); }, i));
+  for (; i + kTurn * kStep <= n; i += kTurn * kStep) {
+    const Vector<T> first = f(whole, i, ByDivider{});
+    if constexpr (Mixed) {
+      const Vector<T> second = f(whole, i + kStep, ByMultiplying{});
+      const Vector<T> third = f(whole, i + 2 * kStep, ByMultiplying{});
+      store(out + i + kStep, second);
+      store(out + i + 2 * kStep, third);
     } else {
-      const std::size_t rest = n - i;
-      store_part(out + i, f([rest](const T* p) { return load_part(p, rest); }, i), rest);
+      const Vector<T> second = f(whole, i + kStep, ByDivider{});
+      store(out + i + kStep, second);
     }
+    store(out + i, first);
   }
+  for (; i + kStep <= n; i += kStep) store(out + i, f(whole, i, ByDivider{}));
+  if (i < n) store_part(out + i, f(ReadPart<T>{n - i}, i, ByDivider{}), n - i);
 }
 
-template <int Op, typename V>
+template <int Op, typename Divider, typename V>
 inline V basic(V a, V b) {
   if constexpr (Op == 0) return a + b;
   if constexpr (Op == 1) return a - b;
   if constexpr (Op == 2) return a * b;
-  if constexpr (Op == 3) return a / b;
+  if constexpr (Op == 3) return Divider::divide(a, b);
 }
 
-template <int Outer, typename V>
+template <int Outer, typename Divider, typename V>
 inline V outer(V inner, V c) {
   if constexpr (Outer == kOuterSubFrom) return c - inner;
-  if constexpr (Outer == kOuterDivInto) return c / inner;
-  if constexpr (Outer < kBasicOps) return basic<Outer>(inner, c);
+  if constexpr (Outer == kOuterDivInto) return Divider::divide(c, inner);
+  if constexpr (Outer < kBasicOps) return basic<Outer, Divider>(inner, c);
 }
 
-template <typename T, int Op, int Form>
+template <typename T, Division Quotients, int Op, int Form>
 void binary_kernel(T* out, const T* a, const T* b, const T*, std::size_t n) {
-  if constexpr (Form == kFormVV) {
-    for_rows(out, n, [=](auto read, std::size_t i) { return basic<Op>(read(a + i), read(b + i)); });
-  } else if constexpr (Form == kFormVS) {
-    const Vector<T> s = splat(*b);
-    for_rows(out, n, [=](auto read, std::size_t i) { return basic<Op>(read(a + i), s); });
-  } else {
-    const Vector<T> s = splat(*a);
-    for_rows(out, n, [=](auto read, std::size_t i) { return basic<Op>(s, read(b + i)); });
-  }
+  constexpr bool kMixed = Quotients == Division::mixed && Op == 3;
+  const Vector<T> sa = Form == kFormSV ? splat(*a) : Vector<T>{};
+  const Vector<T> sb = Form == kFormVS ? splat(*b) : Vector<T>{};
+  for_rows<kMixed>(out, n, [=](auto read, std::size_t i, auto divider) {
+    Vector<T> x = sa;
+    Vector<T> y = sb;
+    if constexpr (Form != kFormSV) x = read(a + i);
+    if constexpr (Form != kFormVS) y = read(b + i);
+    return basic<Op, decltype(divider)>(x, y);
+  });
 }
 
-template <typename T, int Op, int Form, int Outer, bool ScalarC>
+template <typename T, Division Quotients, int Op, int Form, int Outer, bool ScalarC>
 void pair_kernel(T* out, const T* a, const T* b, const T* c, std::size_t n) {
+  constexpr bool kDivides = Op == 3 || Outer == kOuterDiv || Outer == kOuterDivInto;
+  constexpr bool kMixed = Quotients == Division::mixed && kDivides;
   const Vector<T> sa = Form == kFormSV ? splat(*a) : Vector<T>{};
   const Vector<T> sb = Form == kFormVS ? splat(*b) : Vector<T>{};
   const Vector<T> sc = ScalarC ? splat(*c) : Vector<T>{};
-  for_rows(out, n, [=](auto read, std::size_t i) {
+  for_rows<kMixed>(out, n, [=](auto read, std::size_t i, auto divider) {
     Vector<T> x = sa;
     Vector<T> y = sb;
     Vector<T> z = sc;
     if constexpr (Form != kFormSV) x = read(a + i);
     if constexpr (Form != kFormVS) y = read(b + i);
     if constexpr (!ScalarC) z = read(c + i);
-    return outer<Outer>(basic<Op>(x, y), z);
+    return outer<Outer, decltype(divider)>(basic<Op, decltype(divider)>(x, y), z);
   });
 }
 
@@ -100,7 +133,8 @@ inline V apply(V x) {
 
 template <typename T, int Function>
 void function_kernel(T* out, const T* a, const T*, const T*, std::size_t n) {
-  for_rows(out, n, [=](auto read, std::size_t i) { return apply<Function>(read(a + i)); });
+  for_rows<false>(out, n,
+                  [=](auto read, std::size_t i, auto) { return apply<Function>(read(a + i)); });
 }
 
 template <typename T>
@@ -109,7 +143,7 @@ void integer_power_kernel(T* out, const T* a, const T* b, const T*, std::size_t 
   const bool inverted = exponent < 0;
   const unsigned size =
       inverted ? 0U - static_cast<unsigned>(exponent) : static_cast<unsigned>(exponent);
-  for_rows(out, n, [=](auto read, std::size_t i) {
+  for_rows<false>(out, n, [=](auto read, std::size_t i, auto) {
     Vector<T> square = read(a + i);
     Vector<T> result = splat(T{1});
     for (unsigned m = size; m != 0; m >>= 1) {
@@ -135,13 +169,13 @@ void power_kernel(T* out, const T* a, const T* b, const T*, std::size_t n) {
 
 template <typename T>
 void copy_kernel(T* out, const T* a, const T*, const T*, std::size_t n) {
-  for_rows(out, n, [=](auto read, std::size_t i) { return read(a + i); });
+  for_rows<false>(out, n, [=](auto read, std::size_t i, auto) { return read(a + i); });
 }
 
 template <typename T>
 void fill_kernel(T* out, const T* a, const T*, const T*, std::size_t n) {
   const Vector<T> s = splat(*a);
-  for_rows(out, n, [=](auto, std::size_t) { return s; });
+  for_rows<false>(out, n, [=](auto, std::size_t, auto) { return s; });
 }
 
 constexpr std::size_t kSums = 16;
@@ -191,41 +225,41 @@ void add_squared_errors_kernel(double* sums, const T* a, const T* b, std::size_t
   add_errors(sums, a, b, n);
 }
 
-template <typename T, int Op, int Form, int Outer>
+template <typename T, Division Quotients, int Op, int Form, int Outer>
 constexpr void set_pair(KernelTable<T>& table) {
-  table.pair[Op][Form][Outer][0] = pair_kernel<T, Op, Form, Outer, false>;
-  table.pair[Op][Form][Outer][1] = pair_kernel<T, Op, Form, Outer, true>;
+  table.pair[Op][Form][Outer][0] = pair_kernel<T, Quotients, Op, Form, Outer, false>;
+  table.pair[Op][Form][Outer][1] = pair_kernel<T, Quotients, Op, Form, Outer, true>;
 }
 
-template <typename T, int Op, int Form>
+template <typename T, Division Quotients, int Op, int Form>
 constexpr void set_binary(KernelTable<T>& table) {
   // a + s and a * s are s + a and s * a.
   constexpr bool kMirrored = Form == kFormSV && (Op == 0 || Op == 2);
   if constexpr (!kMirrored) {
-    table.binary[Op][Form] = binary_kernel<T, Op, Form>;
-    set_pair<T, Op, Form, kOuterAdd>(table);
-    set_pair<T, Op, Form, kOuterSub>(table);
-    set_pair<T, Op, Form, kOuterMul>(table);
-    set_pair<T, Op, Form, kOuterDiv>(table);
-    set_pair<T, Op, Form, kOuterSubFrom>(table);
-    set_pair<T, Op, Form, kOuterDivInto>(table);
+    table.binary[Op][Form] = binary_kernel<T, Quotients, Op, Form>;
+    set_pair<T, Quotients, Op, Form, kOuterAdd>(table);
+    set_pair<T, Quotients, Op, Form, kOuterSub>(table);
+    set_pair<T, Quotients, Op, Form, kOuterMul>(table);
+    set_pair<T, Quotients, Op, Form, kOuterDiv>(table);
+    set_pair<T, Quotients, Op, Form, kOuterSubFrom>(table);
+    set_pair<T, Quotients, Op, Form, kOuterDivInto>(table);
   }
 }
 
-template <typename T, int Op>
+template <typename T, Division Quotients, int Op>
 constexpr void set_forms(KernelTable<T>& table) {
-  set_binary<T, Op, kFormVV>(table);
-  set_binary<T, Op, kFormVS>(table);
-  set_binary<T, Op, kFormSV>(table);
+  set_binary<T, Quotients, Op, kFormVV>(table);
+  set_binary<T, Quotients, Op, kFormVS>(table);
+  set_binary<T, Quotients, Op, kFormSV>(table);
 }
 
-template <typename T>
+template <typename T, Division Quotients = Division::hardware>
 constexpr KernelTable<T> make_kernel_table() {
   KernelTable<T> table{};
-  set_forms<T, 0>(table);
-  set_forms<T, 1>(table);
-  set_forms<T, 2>(table);
-  set_forms<T, 3>(table);
+  set_forms<T, Quotients, 0>(table);
+  set_forms<T, Quotients, 1>(table);
+  set_forms<T, Quotients, 2>(table);
+  set_forms<T, Quotients, 3>(table);
   table.function[0] = function_kernel<T, 0>;
   table.function[1] = function_kernel<T, 1>;
   table.function[2] = function_kernel<T, 2>;

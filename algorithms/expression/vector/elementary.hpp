@@ -78,8 +78,7 @@ inline F64 log(F64 x) {
       0x1.0a62474679f82p-4, -0x1.ea06ccd86a2e1p-5, 0x1.ac76b0e58e76fp-6};
   constexpr double kSmallestNormal = 0x1p-1022;
   constexpr double kInfinity = __builtin_inf();
-  const I64 usual = (x >= kSmallestNormal) & (x < kInfinity);
-  const bool unusual = any(~usual);
+  const bool unusual = any_outside(x, kSmallestNormal, kInfinity);
   F64 normal = x;
   F64 shift = splat(0x1p52 + 1023);
   if (unusual) [[unlikely]] {

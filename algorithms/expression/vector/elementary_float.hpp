@@ -48,8 +48,7 @@ inline F32 log(F32 x) {
                           0x1.22da1ep-3F, -0x1.0d853ep-3F, 0x1.055b82p-3F, -0x1.38b5f0p-4F};
   constexpr float kSmallestNormal = 0x1p-126F;
   constexpr float kInfinity = __builtin_inff();
-  const I32 usual = (x >= kSmallestNormal) & (x < kInfinity);
-  const bool unusual = any(~usual);
+  const bool unusual = any_outside(x, kSmallestNormal, kInfinity);
   F32 normal = x;
   F32 shift = splat(0.0F);
   if (unusual) [[unlikely]] {

@@ -145,6 +145,46 @@ TYPED_TEST(ElementaryFunctions, GiveTheSameBitsOnEveryVectorLevel) {
   }
 }
 
+// Quotients next to the middle between two numbers of T, all magnitudes, significands of ones.
+template <typename T>
+void hard_quotients(int count, std::vector<T>& a, std::vector<T>& b) {
+  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+  RandomStream random(key_of("quotients"));
+  const T ulp = std::numeric_limits<T>::epsilon();
+  for (int i = 0; i < count; ++i) {
+    const T divisor = 1 + static_cast<T>(random.uniform());
+    const T quotient = 1 + static_cast<T>(random.uniform());
+    T dividend = std::fma(divisor, quotient, divisor * (ulp / 2));  // quotient + half an ulp
+    for (int step = static_cast<int>(random.below(3)); step > 0; --step) {
+      dividend = std::nextafter(dividend, T{0});
+    }
+    a.push_back(dividend);
+    b.push_back(divisor);
+    a.push_back(std::bit_cast<T>(static_cast<Bits>(random.next())));
+    b.push_back(std::bit_cast<T>(static_cast<Bits>(random.next())));
+    a.push_back(i % 2 == 0 ? dividend : T{1});
+    b.push_back(2 - static_cast<T>(random.below(3)) * ulp);
+    a.push_back(static_cast<T>(random.normal()));
+    b.push_back(static_cast<T>(random.normal()));
+  }
+}
+
+TYPED_TEST(ElementaryFunctions, DivideAsIeeeSaysOnEveryLevel) {
+  using T = TypeParam;
+  std::vector<T> a;
+  std::vector<T> b;
+  hard_quotients(250000, a, b);
+  std::vector<T> out(a.size());
+  for (const VectorLevel level : available_vector_levels()) {
+    kernel_table<T>(level).binary[3][kFormVV](out.data(), a.data(), b.data(), nullptr, a.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const T expected = a[i] / b[i];
+      ASSERT_TRUE(out[i] == expected || (std::isnan(out[i]) && std::isnan(expected)))
+          << std::hexfloat << a[i] << " / " << b[i] << ": " << out[i];
+    }
+  }
+}
+
 TYPED_TEST(ElementaryFunctions, KeepTheSignOfZeroAndTheExactPoints) {
   using T = TypeParam;
   for (const VectorLevel level : available_vector_levels()) {

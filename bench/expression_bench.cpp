@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+//
+// Evaluation in Operon's metric: 1000 random balanced trees of 1 to 64 nodes over nine inputs,
+// node evaluations a second = (sum of tree lengths, leaves included) * rows / seconds, everything
+// that a search pays for each tree included. bench/README.md says how to read the figures.
+//
+// Every case first checks its values against plain recursion.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/random_formula.hpp"
+#include "tests/algorithms/expression/reference.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr std::size_t kTrees = 1000;
+constexpr std::size_t kLargest = 64;
+constexpr std::size_t kInputs = 9;
+
+enum OperatorChoice : int { kArithmetic, kWithExp, kWithAll };
+
+std::vector<Op> operators_of(int choice) {
+  std::vector<Op> operators = {Op::add, Op::sub, Op::mul, Op::div};
+  if (choice >= kWithExp) operators.push_back(Op::exp);
+  if (choice == kWithAll) operators.insert(operators.end(), {Op::sqrt, Op::log, Op::sin});
+  return operators;
+}
+
+const char* name_of(int choice) {
+  constexpr const char* kNames[] = {"+-*/", "+-*/ exp", "+-*/ exp sqrt log sin"};
+  return kNames[choice];
+}
+
+struct Trees {
+  std::vector<Expression> formulas;
+  std::uint64_t nodes = 0;
+};
+
+const Trees& trees_of(int choice) {
+  static std::map<int, Trees> cache;
+  Trees& trees = cache[choice];
+  if (!trees.formulas.empty()) return trees;
+  RandomStream random(key_of("expression bench"));
+  const RandomFormulas formulas(operators_of(choice), kInputs);
+  for (std::size_t i = 0; i < kTrees; ++i) {
+    trees.formulas.push_back(formulas.balanced(1 + random.below(kLargest), random));
+    trees.nodes += trees.formulas.back().size();
+  }
+  return trees;
+}
+
+// Columns that start at cache lines.
+template <typename T>
+struct Table {
+  explicit Table(std::size_t rows) : stride((rows + 31) / 32 * 32) {
+    constexpr std::align_val_t kLine{64};
+    memory.reset(new (kLine) T[stride * kInputs]);
+    RandomStream random(key_of("expression bench rows"));
+    for (std::size_t j = 0; j < kInputs; ++j) {
+      T* column = memory.get() + j * stride;
+      for (std::size_t r = 0; r < rows; ++r) column[r] = static_cast<T>(random.uniform(-1, 1));
+      columns.push_back(column);
+    }
+    inputs = {columns, rows};
+  }
+  struct Free {
+    void operator()(T* p) const { ::operator delete[](p, std::align_val_t{64}); }
+  };
+  std::size_t stride;
+  std::unique_ptr<T[], Free> memory;
+  std::vector<const T*> columns;
+  BasicInputs<T> inputs;
+};
+
+template <typename T>
+void check(const Trees& trees, const Table<T>& table, BasicEvaluator<T>& evaluator) {
+  std::vector<T> out(table.inputs.rows);
+  for (std::size_t k = 0; k < trees.formulas.size(); k += 10) {
+    evaluator.evaluate(trees.formulas[k], table.inputs, out);
+    for (std::size_t r = 0; r < out.size(); r += 13) {
+      std::vector<T> point;
+      for (const T* column : table.columns) point.push_back(column[r]);
+      const Expression& formula = trees.formulas[k];
+      const T expected = reference::evaluate<T>(formula, formula.root(), point);
+      if (out[r] != expected && !(std::isnan(out[r]) && std::isnan(expected))) {
+        throw std::runtime_error("the evaluator and plain recursion disagree");
+      }
+    }
+  }
+}
+
+void report(benchmark::State& state, double nodes, std::size_t rows, const std::string& label) {
+  state.counters["node_rows/s"] = benchmark::Counter(
+      nodes * static_cast<double>(rows), benchmark::Counter::kIsIterationInvariantRate);
+  state.SetLabel(label);
+}
+
+template <typename T>
+void interpreter(benchmark::State& state) {
+  const Trees& trees = trees_of(static_cast<int>(state.range(0)));
+  const auto rows = static_cast<std::size_t>(state.range(1));
+  const auto& levels = available_vector_levels();
+  const VectorLevel level = state.range(2) < 0 ? vector_level()
+                            : static_cast<std::size_t>(state.range(2)) < levels.size()
+                                ? levels[static_cast<std::size_t>(state.range(2))]
+                                : levels.back();
+  const Table<T> table(rows);
+  BasicEvaluator<T> evaluator(level);
+  check(trees, table, evaluator);
+  std::vector<T> out(rows);
+  for (auto _ : state) {
+    for (const Expression& formula : trees.formulas) evaluator.evaluate(formula, table.inputs, out);
+    benchmark::DoNotOptimize(out.data());
+    benchmark::ClobberMemory();
+  }
+  report(state, static_cast<double>(trees.nodes), rows,
+         std::string(name_of(static_cast<int>(state.range(0)))) + ", " +
+             std::string(vector_level_name(level)));
+}
+
+void every_case(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"set", "rows", "level"});
+  for (const int choice : {kArithmetic, kWithExp, kWithAll}) {
+    for (const int rows : {200, 1000, 5000}) bench->Args({choice, rows, -1});
+  }
+}
+
+void lower_levels(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"set", "rows", "level"});
+  for (const int level : {0, 1}) {
+    for (const int choice : {kArithmetic, kWithAll}) bench->Args({choice, 1000, level});
+  }
+}
+
+BENCHMARK(interpreter<double>)->Apply(every_case)->Unit(benchmark::kMicrosecond);
+BENCHMARK(interpreter<float>)->Apply(every_case)->Unit(benchmark::kMicrosecond);
+BENCHMARK(interpreter<double>)->Apply(lower_levels)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace tribench
