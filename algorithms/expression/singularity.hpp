@@ -7,8 +7,9 @@
 //   result.verdict;                                     // proved_free, refuted, undecided
 //
 // Singular means: our evaluator, in double precision, yields a value that is not finite at a double
-// of the box, intermediate results included (overflow, 0/0, log of 0); or a denominator changes its
-// sign between two neighbouring doubles where it is continuous, a pole that no double hits.
+// of the box, intermediate results included (overflow, 0/0, log of 0); or a divisor, the operand of
+// a log, or a factor of one, changes its sign between two neighbouring doubles where it is
+// continuous: a pole that no double hits.
 // `proved_free` claims that neither happens, for the values that the evaluator computes and for the
 // real ones alike (but for the inside of a jump of sgn that no double hits). It is about the tape
 // as given: constants are the doubles they are.

@@ -64,6 +64,8 @@ void collect_zero_nodes(const Expression& formula, std::size_t node,
     case Op::neg:
     case Op::abs:
     case Op::sqrt:
+    case Op::sgn:
+    case Op::sin:
     case Op::tanh:
       collect_zero_nodes(formula, formula.only_child(node), nodes);
       return;
@@ -84,7 +86,9 @@ WitnessSearch::WitnessSearch(const Expression& formula)
   for (std::size_t i = 0; i < formula.size(); ++i) {
     const Node& node = formula.node(i);
     if (node.is_variable()) columns_.push_back(node.variable);
-    if (node.op == Op::div) collect_zero_nodes(formula, formula.right_child(i), zeros_);
+    if (node.op == Op::div || node.op == Op::log) {
+      collect_zero_nodes(formula, formula.right_child(i), zeros_);
+    }
     if (node.op == Op::pow && has_pole_exponent(formula, i)) {
       collect_zero_nodes(formula, formula.left_child(i), zeros_);
     }
@@ -130,14 +134,19 @@ double WitnessSearch::computed(std::size_t node, std::span<const double> point) 
   return evaluator_.evaluate_at(formula_.subtree(node), point);
 }
 
-std::optional<Witness> WitnessSearch::confirm(std::span<const double> point, std::size_t node) {
-  if (std::isfinite(computed(node, point))) return std::nullopt;
-  return Witness{{point.begin(), point.end()}, {}, node};
+// The trace is the C library's; what counts is the evaluator's.
+std::optional<Witness> WitnessSearch::confirm(std::span<const double> point) {
+  for (std::size_t i = 0; i < formula_.size(); ++i) {
+    if (!std::isfinite(computed(i, point))) {
+      return Witness{{point.begin(), point.end()}, {}, i};
+    }
+  }
+  return std::nullopt;
 }
 
 std::optional<Witness> WitnessSearch::probe(std::span<const double> point) {
   const std::size_t failed = trace(point);
-  if (failed < formula_.size()) return confirm(point, failed);
+  if (failed < formula_.size()) return confirm(point);
   return compare_signs(point);
 }
 
@@ -171,7 +180,7 @@ std::optional<Witness> WitnessSearch::bisect(std::size_t node, std::vector<doubl
     std::vector<double> corner = a;
     corner[axis] = b[axis];
     const std::size_t failed = trace(corner);
-    if (failed < formula_.size()) return confirm(corner, failed);
+    if (failed < formula_.size()) return confirm(corner);
     if ((computed(node, corner) < 0) != is_negative) return bisect_axis(node, a, b[axis], axis);
     a = std::move(corner);
   }
@@ -189,13 +198,15 @@ std::optional<Witness> WitnessSearch::bisect_axis(std::size_t node, std::vector<
     if (middle == side.low || middle == side.high) break;
     std::vector<double> at = a;
     at[axis] = middle;
-    const std::size_t failed = trace(at);
-    if (failed < formula_.size()) return confirm(at, failed);
-    ((computed(node, at) < 0) == is_negative ? a : other)[axis] = middle;
+    const double value = computed(node, at);
+    if (value == 0 || !std::isfinite(value)) return confirm(at);
+    ((value < 0) == is_negative ? a : other)[axis] = middle;
   }
   const double at_a = computed(node, a);
   const double at_b = computed(node, other);
-  if ((at_a < 0) == (at_b < 0) || at_a == 0 || at_b == 0) return std::nullopt;
+  if (at_a == 0) return confirm(a);
+  if (at_b == 0) return confirm(other);
+  if ((at_a < 0) == (at_b < 0)) return std::nullopt;
   if (!is_continuous_between(node, a, other)) return std::nullopt;
   if (a[axis] > other[axis]) std::swap(a, other);
   return Witness{std::move(a), std::move(other), node};

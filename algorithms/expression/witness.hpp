@@ -49,7 +49,7 @@ class WitnessSearch {
   };
 
   std::size_t trace(std::span<const double> point);  // fills values_; first node not finite
-  std::optional<Witness> confirm(std::span<const double> point, std::size_t node);
+  std::optional<Witness> confirm(std::span<const double> point);
   std::optional<Witness> compare_signs(std::span<const double> point);
   void descend_axis(Interval side, std::size_t axis, std::size_t failed, std::vector<double>& at);
   std::optional<Witness> bisect(std::size_t node, std::vector<double> a, std::vector<double> b);
@@ -64,7 +64,7 @@ class WitnessSearch {
   FormulaBounds bounds_;
   RandomStream random_;
   std::vector<std::size_t> columns_;  // that occur
-  std::vector<std::size_t> zeros_;    // nodes whose zeros are poles: divisors and their factors
+  std::vector<std::size_t> zeros_;    // nodes whose zeros are poles: of divisors and logarithms
   std::vector<Signs> signs_;          // per entry of zeros_
   std::vector<double> values_;
   std::vector<double> point_;
