@@ -8,16 +8,21 @@
 #include "algorithms/model_based/random_search.hpp"
 #include "algorithms/model_based/static_friction.hpp"
 #include "algorithms/pysr/pysr.hpp"
+#include "algorithms/udsr/udsr.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench {
 
-Registry::Registry()
-    : entries_{
-          symmetric_entry(), asymmetric_entry(), branch_polynomial_entry(),
-          constant_entry(),  linear_entry(),     random_search_entry(),
-          pysr_entry(),
-      } {}
+Registry::Registry() {
+  entries_.push_back(symmetric_entry());
+  entries_.push_back(asymmetric_entry());
+  entries_.push_back(branch_polynomial_entry());
+  entries_.push_back(constant_entry());
+  entries_.push_back(linear_entry());
+  entries_.push_back(random_search_entry());
+  entries_.push_back(pysr_entry());
+  entries_.push_back(udsr_entry());
+}
 
 const AlgorithmEntry& Registry::find(std::string_view name) const {
   std::vector<std::string> names;

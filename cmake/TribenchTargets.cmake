@@ -7,6 +7,8 @@ target_compile_features(tribench_options INTERFACE cxx_std_20)
 # -ffp-contract=off: a fused multiply-add where the compiler likes it would make results depend on
 # the instruction set; where we want one we write it.
 target_compile_options(tribench_options INTERFACE -ffp-contract=off)
+# Eigen would start threads of its own inside a cell that has been given one.
+target_compile_definitions(tribench_options INTERFACE EIGEN_DONT_PARALLELIZE)
 
 add_library(tribench_warnings INTERFACE)
 target_compile_options(tribench_warnings INTERFACE

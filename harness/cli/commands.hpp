@@ -28,6 +28,7 @@ void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry
 void add_merge_command(CLI::App& app, ExitStatus& status);
 void add_report_command(CLI::App& app, ExitStatus& status);
 void add_list_command(CLI::App& app, ExitStatus& status);
+void add_pretrain_command(CLI::App& app, ExitStatus& status);
 void add_study_command(CLI::App& app, ExitStatus& status);
 
 }  // namespace tribench

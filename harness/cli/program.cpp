@@ -32,6 +32,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   ExitStatus status = ExitStatus::done;
   add_run_command(app, status, registry);
   add_merge_command(app, status);
+  add_pretrain_command(app, status);
   add_report_command(app, status);
   add_check_command(app, status);
   add_generate_command(app, status);

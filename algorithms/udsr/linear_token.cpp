@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/udsr/linear_token.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace tribench::udsr {
+namespace {
+
+// Relative to the Gram matrix's unit diagonal: lets collinear monomials share a coefficient
+// instead of blowing up, and moves no well-determined coefficient in its tenth digit.
+constexpr double kRidge = 1e-11;
+
+void enumerate(std::span<const int> caps, int left, std::size_t at, Monomial& current,
+               std::vector<Monomial>& all) {
+  if (at == caps.size()) {
+    all.push_back(current);
+    return;
+  }
+  for (int e = 0; e <= std::min(left, caps[at]); ++e) {
+    current[at] = static_cast<std::uint8_t>(e);
+    enumerate(caps, left - e, at + 1, current, all);
+  }
+  current[at] = 0;
+}
+
+int degree_of(const Monomial& monomial) {
+  int degree = 0;
+  for (const std::uint8_t exponent : monomial) degree += exponent;
+  return degree;
+}
+
+Expression product_of(const Monomial& monomial) {
+  Expression product;
+  for (std::size_t i = 0; i < monomial.size(); ++i) {
+    if (monomial[i] == 0) continue;
+    Expression factor = Expression::variable(i);
+    if (monomial[i] > 1) {
+      factor = Expression::binary(Op::pow, factor, Expression::constant(monomial[i]));
+    }
+    product = product.empty() ? factor : Expression::binary(Op::mul, product, factor);
+  }
+  return product;
+}
+
+}  // namespace
+
+std::vector<Monomial> monomials(std::span<const int> caps, int degree) {
+  std::vector<Monomial> all;
+  Monomial current(caps.size(), 0);
+  enumerate(caps, degree, 0, current, all);
+  std::ranges::stable_sort(all, {}, degree_of);
+  return all;
+}
+
+Expression polynomial(std::span<const Monomial> terms, std::span<const double> coefficients) {
+  Expression sum;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    if (coefficients[k] == 0) continue;
+    const Expression product = product_of(terms[k]);
+    Expression term = Expression::constant(coefficients[k]);
+    if (!product.empty()) term = Expression::binary(Op::mul, term, product);
+    sum = sum.empty() ? term : Expression::binary(Op::add, sum, term);
+  }
+  return sum.empty() ? Expression::constant(0) : sum;
+}
+
+PolynomialRegression::PolynomialRegression(std::span<const double* const> columns, std::size_t rows,
+                                           std::span<const int> caps, int degree)
+    : terms_(monomials(caps, degree)) {
+  const auto n = static_cast<Eigen::Index>(rows);
+  design_.resize(n, static_cast<Eigen::Index>(terms_.size()));
+  scale_.resize(design_.cols());
+  for (Eigen::Index k = 0; k < design_.cols(); ++k) {
+    const Monomial& monomial = terms_[static_cast<std::size_t>(k)];
+    Eigen::VectorXd column = Eigen::VectorXd::Ones(n);
+    for (std::size_t i = 0; i < monomial.size(); ++i) {
+      const Eigen::Map<const Eigen::VectorXd> input(columns[i], n);
+      for (int e = 0; e < monomial[i]; ++e) column.array() *= input.array();
+    }
+    const double rms = std::sqrt(column.squaredNorm() / static_cast<double>(rows));
+    scale_[k] = rms > 0 && std::isfinite(rms) ? rms : 1.0;
+    design_.col(k) = column / scale_[k];
+  }
+  gram_ = design_.transpose() * design_;
+}
+
+PolynomialRegression::Normal PolynomialRegression::normal_equations(
+    const Eigen::VectorXd& target, const Eigen::VectorXd& weights) const {
+  Normal normal;
+  if (weights.size() == 0) {
+    normal = {gram_, design_.transpose() * target};
+  } else {
+    const Eigen::MatrixXd weighted = weights.asDiagonal() * design_;
+    normal.gram = weighted.transpose() * weighted;
+    normal.moment = weighted.transpose() * weights.cwiseProduct(target);
+  }
+  const double scale = normal.gram.diagonal().maxCoeff();
+  normal.gram.diagonal().array() += kRidge * (scale > 0 ? scale : 1.0);
+  return normal;
+}
+
+Eigen::VectorXd PolynomialRegression::solve(const Eigen::VectorXd& target,
+                                            const Eigen::VectorXd& weights) const {
+  const Normal normal = normal_equations(target, weights);
+  const Eigen::VectorXd solution = normal.gram.ldlt().solve(normal.moment);
+  return solution.cwiseQuotient(scale_);
+}
+
+std::vector<SparsePolynomial> PolynomialRegression::eliminate(
+    const Eigen::VectorXd& target, const Eigen::VectorXd& weights) const {
+  const Normal normal = normal_equations(target, weights);
+  const Eigen::Index count = design_.cols();
+  Eigen::MatrixXd inverse = normal.gram.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
+  Eigen::VectorXd solution = inverse * normal.moment;
+  std::vector<bool> kept(static_cast<std::size_t>(count), true);
+  std::vector<SparsePolynomial> path;
+  for (Eigen::Index left = count; left > 0; --left) {
+    path.push_back({solution.cwiseQuotient(scale_), static_cast<int>(left)});
+    Eigen::Index cheapest = -1;
+    double least = 0;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      if (!kept[static_cast<std::size_t>(k)]) continue;
+      const double increase = solution[k] * solution[k] / inverse(k, k);
+      if (cheapest < 0 || increase < least) {
+        cheapest = k;
+        least = increase;
+      }
+    }
+    // Partitioned inverse: the solution without the term, from the one with it.
+    const Eigen::VectorXd column = inverse.col(cheapest) / inverse(cheapest, cheapest);
+    solution -= column * solution[cheapest];
+    inverse -= column * inverse.row(cheapest).eval();
+    solution[cheapest] = 0;
+    inverse.row(cheapest).setZero();
+    inverse.col(cheapest).setZero();
+    kept[static_cast<std::size_t>(cheapest)] = false;
+  }
+  return path;
+}
+
+}  // namespace tribench::udsr

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/udsr/population.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "algorithms/expression/complexity.hpp"
+
+namespace tribench::udsr {
+namespace {
+
+std::string key_of_sequence(const Sequence& sequence) {
+  return std::string(sequence.begin(), sequence.end());
+}
+
+}  // namespace
+
+Scoreboard::Scoreboard(const ScoringProblem& problem, Budget& budget, Progress* progress,
+                       int threads)
+    : problem_(&problem),
+      budget_(&budget),
+      progress_(progress),
+      best_nrmse_(std::numeric_limits<double>::infinity()) {
+  for (int i = 0; i < std::max(1, threads); ++i) {
+    scorers_.push_back(std::make_unique<Scorer>(problem));
+  }
+}
+
+std::vector<double> Scoreboard::rewards(std::span<const Sequence> batch) {
+  std::vector<std::string> keys;
+  std::vector<std::size_t> fresh;  // places whose sequence has to be scored, in order
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    keys.push_back(key_of_sequence(batch[i]));
+    if (known_.contains(keys[i])) continue;
+    if (!budget_->spend(scoring_cost(*problem_, batch[i]))) break;
+    known_.emplace(keys[i], 0.0);
+    fresh.push_back(i);
+  }
+  std::vector<Scored> scores(fresh.size());
+#pragma omp parallel for schedule(dynamic, 4) \
+    num_threads(static_cast <int>(scorers_.size())) if (scorers_.size() > 1)
+  for (std::size_t k = 0; k < fresh.size(); ++k) {
+    scores[k] = scorers_[static_cast<std::size_t>(omp_get_thread_num())]->score(batch[fresh[k]]);
+  }
+  for (std::size_t k = 0; k < fresh.size(); ++k) {
+    known_[keys[fresh[k]]] = scores[k].reward;
+    book(batch[fresh[k]], scores[k]);
+  }
+  std::vector<double> rewards(batch.size(), 0.0);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const auto found = known_.find(keys[i]);
+    if (found != known_.end()) rewards[i] = found->second;
+  }
+  return rewards;
+}
+
+void Scoreboard::book(const Sequence& sequence, const Scored& scored) {
+  if (scored.reward <= 0) return;
+  offer(scored.formula, scored.nrmse);
+  if (best_.size() == kRemembered && scored.reward <= best_.back().reward) return;
+  const auto place =
+      std::ranges::find_if(best_, [&](const Entry& entry) { return entry.reward < scored.reward; });
+  // Equal rewards are, but for rounding, equal formulas written in another order.
+  if (place != best_.begin() && std::prev(place)->reward == scored.reward) return;
+  best_.insert(place, {scored.reward, sequence});
+  if (best_.size() > kRemembered) best_.pop_back();
+}
+
+void Scoreboard::offer(const Expression& formula, double nrmse) {
+  if (!std::isfinite(nrmse)) return;
+  FrontEntry& entry = front_
+                          .try_emplace(paper_complexity(formula),
+                                       std::numeric_limits<double>::infinity(), Expression())
+                          .first->second;
+  if (nrmse < entry.nrmse) entry = {nrmse, formula};
+  if (nrmse >= best_nrmse_) return;
+  best_nrmse_ = nrmse;
+  best_reward_ = 1 / (1 + nrmse);
+  if (progress_ != nullptr) {
+    progress_->improved(nrmse * nrmse * problem_->variance(), budget_->spent());
+  }
+}
+
+}  // namespace tribench::udsr

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/udsr/smoother.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+namespace tribench::udsr {
+namespace {
+
+Eigen::MatrixXd squared_distances(const Eigen::MatrixXd& points) {
+  const Eigen::VectorXd norms = points.rowwise().squaredNorm();
+  Eigen::MatrixXd distances = -2 * points * points.transpose();
+  distances.colwise() += norms;
+  distances.rowwise() += norms.transpose();
+  return distances.cwiseMax(0);
+}
+
+std::vector<std::size_t> drawn_rows(std::size_t rows, RandomStream& random) {
+  std::vector<std::size_t> order(rows);
+  std::iota(order.begin(), order.end(), 0);
+  if (rows > Smoother::kMaxRows) {
+    random.shuffle(std::span(order));
+    order.resize(Smoother::kMaxRows);
+    std::ranges::sort(order);
+  }
+  return order;
+}
+
+}  // namespace
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+Smoother::Smoother(const Inputs& inputs, std::span<const double> target, RandomStream random) {
+  const std::vector<std::size_t> rows = drawn_rows(inputs.rows, random);
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  const auto d = static_cast<Eigen::Index>(inputs.columns.size());
+  raw_.resize(n, d);
+  target_.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::size_t row = rows[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < d; ++j) {
+      raw_(i, j) = inputs.columns[static_cast<std::size_t>(j)][row];
+    }
+    target_[i] = target[row];
+  }
+  center_ = raw_.colwise().mean().transpose();
+  points_ = raw_.rowwise() - center_.transpose();
+  spread_ = (points_.colwise().squaredNorm() / static_cast<double>(n)).cwiseSqrt().transpose();
+  for (double& s : spread_) {
+    if (!(s > 0)) s = 1;
+  }
+  points_ = points_.array().rowwise() / spread_.transpose().array();
+  mean_ = target_.mean();
+
+  double best_length = 1;
+  double best_noise = 1e-3;
+  held_out_error_ = std::numeric_limits<double>::infinity();
+  for (const double length : {0.25, 0.5, 1.0, 2.0, 4.0}) {
+    for (const double noise : {1e-8, 1e-5, 1e-3, 1e-2, 1e-1}) {
+      const double before = held_out_error_;
+      train(length, noise);
+      if (held_out_error_ < before) {
+        best_length = length;
+        best_noise = noise;
+      } else {
+        held_out_error_ = before;
+      }
+    }
+  }
+  train(best_length, best_noise);
+}
+
+void Smoother::train(double length, double noise) {
+  length_ = length;
+  Eigen::MatrixXd kernel =
+      (squared_distances(points_).array() * (-0.5 / (length * length))).exp().matrix();
+  kernel.diagonal().array() += noise;
+  const Eigen::LLT<Eigen::MatrixXd> factor(kernel);
+  if (factor.info() != Eigen::Success) {
+    held_out_error_ = std::numeric_limits<double>::infinity();
+    return;
+  }
+  const Eigen::VectorXd centred = target_.array() - mean_;
+  weights_ = factor.solve(centred);
+  const Eigen::MatrixXd inverse =
+      factor.solve(Eigen::MatrixXd::Identity(kernel.rows(), kernel.cols()));
+  std::vector<double> errors;
+  for (Eigen::Index i = 0; i < weights_.size(); ++i) {
+    errors.push_back(std::abs(weights_[i] / inverse(i, i)));
+  }
+  held_out_error_ = median_of(std::move(errors));
+}
+
+double Smoother::predict(const Eigen::VectorXd& point) const {
+  const Eigen::VectorXd standardised = (point - center_).cwiseQuotient(spread_);
+  const Eigen::VectorXd distances =
+      (points_.rowwise() - standardised.transpose()).rowwise().squaredNorm();
+  const Eigen::ArrayXd kernel = (distances.array() * (-0.5 / (length_ * length_))).exp();
+  return mean_ + kernel.matrix().dot(weights_);
+}
+
+}  // namespace tribench::udsr

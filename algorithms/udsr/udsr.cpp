@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/udsr/udsr.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "algorithms/expression/complexity.hpp"
+#include "algorithms/fitting/constant_fit.hpp"
+#include "algorithms/fitting/cross_validation.hpp"
+#include "algorithms/registry.hpp"
+#include "algorithms/udsr/simplification.hpp"
+#include "algorithms/udsr/training.hpp"
+#include "algorithms/udsr/weights.hpp"
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+using udsr::Scoreboard;
+using udsr::Scorer;
+using udsr::ScoringProblem;
+
+// Deeper recursion would search for parts of parts of a smoother's guess.
+constexpr int kMaxRecursion = 2;
+// Of so many of the most rewarding sequences, versions with fewer terms are offered too.
+constexpr std::size_t kSparsified = 6;
+
+struct Settings {
+  udsr::TokenOptions tokens;
+  udsr::PriorOptions prior;
+  udsr::TrainingOptions training;
+  int degree = 3;
+  bool recursion = true;
+  std::string weights;       // "shipped", "none" or a file's name
+  std::string weights_text;  // the file's contents
+};
+
+struct Candidate {
+  Expression formula;
+  double nrmse = std::numeric_limits<double>::infinity();
+};
+
+std::vector<ParameterSpec> parameter_specs() {
+  return {
+      {"linear_token", "the linear token", true},
+      {"degree", "total degree of the linear token", std::int64_t{3}, 1, 6},
+      {"constants", "constants fitted inside formulas", true},
+      {"genetic", "genetic programming seeded by the policy", true},
+      {"generations", "of genetic programming a step", std::int64_t{20}, 1, 1000},
+      {"population", "of genetic programming", std::int64_t{100}, 2, 10000},
+      {"recursion", "recursive simplification", true},
+      {"weights", "pre-trained policy: shipped, none, or a file", std::string("shipped")},
+      {"policy",
+       "how the policy learns",
+       std::string("risk_seeking"),
+       0,
+       0,
+       {"none", "risk_seeking", "priority_queue", "ppo"}},
+      {"baseline",
+       "what a kept reward is compared with",
+       std::string("quantile"),
+       0,
+       0,
+       {"quantile", "moving_mean", "moving_quantile", "combined"}},
+      {"batch", "formulas sampled a step", std::int64_t{500}, 1, 100000},
+      {"steps", "most steps of training", std::int64_t{40}, 0, 100000},
+      {"patience", "steps without a better formula before stopping", std::int64_t{6}, 1, 100000},
+      {"epsilon", "share of a batch that trains the policy", 0.05, 1e-4, 1},
+      {"learning_rate", "of Adam", 5e-4, 0, 1},
+      {"entropy_weight", "of the policy's entropy in the loss", 0.03, 0, 10},
+      {"entropy_gamma", "discount of the entropy by position", 0.7, 0, 1},
+      {"max_length", "tokens of a formula", std::int64_t{30}, 4, 200},
+  };
+}
+
+udsr::PolicyUpdate policy_update(const std::string& name) {
+  if (name == "none") return udsr::PolicyUpdate::none;
+  if (name == "priority_queue") return udsr::PolicyUpdate::priority_queue;
+  return name == "ppo" ? udsr::PolicyUpdate::ppo : udsr::PolicyUpdate::risk_seeking;
+}
+
+udsr::Baseline baseline_of(const std::string& name) {
+  if (name == "moving_mean") return udsr::Baseline::moving_mean;
+  if (name == "moving_quantile") return udsr::Baseline::moving_quantile;
+  return name == "combined" ? udsr::Baseline::combined : udsr::Baseline::quantile;
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    throw_bad_input("the weight file cannot be opened", path,
+                    "make one with: tribench pretrain --out FILE");
+  }
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+Settings settings_from(const Parameters& parameters) {
+  Settings settings;
+  settings.tokens = {parameters.flag("constants"), parameters.flag("linear_token")};
+  settings.degree = static_cast<int>(parameters.integer("degree"));
+  settings.recursion = parameters.flag("recursion");
+  settings.prior.max_length = static_cast<int>(parameters.integer("max_length"));
+  udsr::TrainingOptions& training = settings.training;
+  training.genetic = parameters.flag("genetic");
+  training.gp.generations = static_cast<int>(parameters.integer("generations"));
+  training.gp.population = static_cast<int>(parameters.integer("population"));
+  training.update = policy_update(parameters.text("policy"));
+  training.baseline = baseline_of(parameters.text("baseline"));
+  training.batch = static_cast<int>(parameters.integer("batch"));
+  training.max_steps = static_cast<int>(parameters.integer("steps"));
+  training.patience = static_cast<int>(parameters.integer("patience"));
+  training.epsilon = parameters.number("epsilon");
+  training.learning_rate = parameters.number("learning_rate");
+  training.entropy_weight = parameters.number("entropy_weight");
+  training.entropy_gamma = parameters.number("entropy_gamma");
+  settings.weights = parameters.text("weights");
+  if (settings.weights == "shipped") {
+    settings.weights_text = embedded::udsr_weights();
+  } else if (settings.weights != "none") {
+    settings.weights_text = read_file(settings.weights);
+  }
+  return settings;
+}
+
+udsr::DataRange range_of(const ScoringProblem& problem) {
+  udsr::DataRange range;
+  const Inputs inputs = problem.inputs();
+  for (const double* column : inputs.columns) {
+    range.input_low.push_back(*std::min_element(column, column + inputs.rows));
+  }
+  const auto [low, high] = std::ranges::minmax(problem.target());
+  range.target_low = low;
+  range.target_high = high;
+  return range;
+}
+
+// Everything one search owns: the same for the whole problem and for a part of it.
+class Search {
+ public:
+  Search(const Settings& settings, const TrainingData& data, const OperatorSet& operators,
+         Budget& budget, Progress* progress, int threads)
+      : settings_(settings),
+        library_(operators, data.inputs.size(), settings.tokens),
+        problem_(data, library_, settings.degree),
+        budget_(budget),
+        scorer_(problem_),
+        progress_(progress),
+        threads_(threads) {}
+
+  std::size_t rows() const { return problem_.rows(); }
+  const ScoringProblem& problem() const { return problem_; }
+
+  // Trains a policy, then offers what it found and sparser versions of the best.
+  void run(const RandomStream& random) {
+    Scoreboard scoreboard(problem_, budget_, progress_, threads_);
+    udsr::Policy policy(library_, random.split("policy"));
+    if (!settings_.weights_text.empty()) {
+      udsr::read_weights(settings_.weights_text, settings_.weights, policy);
+    }
+    const udsr::Prior prior(library_, settings_.prior, range_of(problem_));
+    udsr::train(policy, prior, settings_.training, random.split("training"), scoreboard);
+    for (const auto& [complexity, entry] : scoreboard.front()) add(entry.formula, entry.nrmse);
+    const std::size_t sparsified = std::min(kSparsified, scoreboard.best().size());
+    for (std::size_t i = 0; i < sparsified; ++i) offer_sparser(scoreboard.best()[i].sequence);
+  }
+
+  // Fits the constants of a formula that came from elsewhere and adds it.
+  void offer(Expression formula) {
+    if (!budget_.spend(node_rows(formula, rows()))) return;
+    const ConstantFitResult fit = fitter_.fit(formula, problem_.inputs(), problem_.target());
+    budget_.spend(fit.node_rows);
+    const double error = scorer_.nrmse(formula);
+    add(std::move(formula), error);
+  }
+
+  // By increasing complexity, each more accurate than all before it; constants converged.
+  std::vector<Expression> front() {
+    std::map<int, Candidate> raw;
+    raw.swap(candidates_);
+    for (auto& [complexity, candidate] : raw) {
+      offer(candidate.formula);
+      add(std::move(candidate.formula), candidate.nrmse);
+    }
+    std::vector<Expression> front;
+    double best = std::numeric_limits<double>::infinity();
+    for (const auto& [complexity, candidate] : candidates_) {
+      if (candidate.nrmse >= best) continue;
+      best = candidate.nrmse;
+      front.push_back(candidate.formula);
+    }
+    return front;
+  }
+
+  std::size_t choose(const std::vector<Expression>& front) {
+    const CrossValidation validation =
+        cross_validate(front, problem_.inputs(), problem_.target(), problem_.movement());
+    budget_.spend(validation.node_rows);
+    return validation.chosen;
+  }
+
+ private:
+  void add(Expression formula, double nrmse) {
+    if (!std::isfinite(nrmse)) return;
+    Candidate& best = candidates_[paper_complexity(formula)];
+    if (nrmse < best.nrmse) best = {std::move(formula), nrmse};
+  }
+
+  void offer_sparser(const udsr::Sequence& sequence) {
+    for (Expression& formula : scorer_.sparser(sequence)) {
+      if (!budget_.spend(node_rows(formula, rows()))) return;
+      const double error = scorer_.nrmse(formula);
+      add(std::move(formula), error);
+    }
+  }
+
+  const Settings& settings_;
+  udsr::TokenLibrary library_;
+  ScoringProblem problem_;
+  Budget& budget_;
+  Scorer scorer_;
+  ConstantFitter fitter_;
+  Progress* progress_;
+  int threads_;
+  std::map<int, Candidate> candidates_;
+};
+
+class Udsr : public Regressor {
+ public:
+  explicit Udsr(Settings settings) : settings_(std::move(settings)) {}
+
+  FitResult fit(FitContext& context) const override {
+    Search search(settings_, context.data, context.operators, context.budget, context.progress,
+                  context.threads);
+    if (search.rows() == 0) return FitResult::unsupported("no training row is finite");
+    const std::vector<Expression> front = solve(search, context, context.data, context.random, 0);
+    FitResult result;
+    result.reason = context.budget.exhausted() ? StopReason::budget : StopReason::converged;
+    if (front.empty()) {
+      result.front.push_back(mean_of(search.problem().target()));
+      return result;
+    }
+    result.front = front;
+    result.chosen = context.budget.exhausted() ? front.size() - 1 : search.choose(front);
+    return result;
+  }
+
+ private:
+  static Expression mean_of(std::span<const double> target) {
+    double mean = 0;
+    for (const double y : target) mean += y / static_cast<double>(target.size());
+    return Expression::constant(mean);
+  }
+
+  // The unreduced search always runs; a reduction only adds formulas.
+  std::vector<Expression> solve(Search& search, FitContext& context, const TrainingData& data,
+                                const RandomStream& random, int depth) const {
+    search.run(random);
+    if (settings_.recursion && depth < kMaxRecursion && data.inputs.size() > 1 &&
+        !context.budget.exhausted()) {
+      reduce(search, context, data, random.split("reduction"), depth);
+    }
+    return search.front();
+  }
+
+  void reduce(Search& search, FitContext& context, const TrainingData& data,
+              const RandomStream& random, int depth) const {
+    const ScoringProblem& problem = search.problem();
+    const TrainingData finite = {data.inputs, problem.inputs().columns, problem.target(),
+                                 problem.movement()};
+    const udsr::Smoother smoother(finite.table(), finite.target, random.split("smoother"));
+    const std::optional<udsr::Reduction> reduction =
+        udsr::find_reduction(smoother, finite.inputs, context.operators, random.split("tests"));
+    if (!reduction) return;
+    const std::vector<udsr::Subproblem> parts = udsr::split(*reduction, smoother, finite);
+    std::vector<std::vector<Expression>> choices;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      choices.push_back(solve_part(parts[p], context, random.split(p), depth + 1));
+      if (choices.back().empty()) return;
+    }
+    for (const Expression& first : choices.front()) {
+      if (parts.size() == 1) {
+        search.offer(udsr::recombine(*reduction, parts, std::vector{first}));
+        continue;
+      }
+      for (const Expression& second : choices.back()) {
+        search.offer(udsr::recombine(*reduction, parts, std::vector{first, second}));
+      }
+    }
+  }
+
+  // The chosen and the most accurate formula of a part.
+  std::vector<Expression> solve_part(const udsr::Subproblem& part, FitContext& context,
+                                     const RandomStream& random, int depth) const {
+    std::vector<const double*> columns;
+    for (const auto& column : part.columns) columns.push_back(column.data());
+    // The smoother's values have no movements: each row stands for itself.
+    std::vector<int> movement(part.target.size());
+    std::iota(movement.begin(), movement.end(), 0);
+    const TrainingData data = {part.inputs, columns, part.target, movement};
+    // A part's error is not the problem's: it does not enter the trace.
+    Search search(settings_, data, context.operators, context.budget, nullptr, context.threads);
+    const std::vector<Expression> front = solve(search, context, data, random, depth);
+    if (front.empty() || context.budget.exhausted())
+      return front.empty() ? front : std::vector{front.back()};
+    const std::size_t chosen = search.choose(front);
+    if (chosen + 1 == front.size()) return {front.back()};
+    return {front[chosen], front.back()};
+  }
+
+  Settings settings_;
+};
+
+}  // namespace
+
+AlgorithmEntry udsr_entry() {
+  return {"udsr",
+          "unified deep symbolic regression: policy network, genetic programming, linear token, "
+          "recursive simplification, pre-training",
+          parameter_specs(), false,
+          [](const Parameters& parameters, const Registry&) -> std::unique_ptr<Regressor> {
+            return std::make_unique<Udsr>(settings_from(parameters));
+          }};
+}
+
+}  // namespace tribench

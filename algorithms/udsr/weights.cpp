@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/udsr/weights.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "foundation/error.hpp"
+
+namespace tribench::udsr {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr const char* kFormat = "tribench udsr policy";
+
+// The file's own blocks, in the layout of a policy over the file's tokens.
+struct Stored {
+  std::vector<std::string> tokens;
+  std::size_t operations = 0;
+  Eigen::VectorXd parameters;
+};
+
+std::string digest(const Json& tokens, const Json& parameters) {
+  return fmt::format("{:016x}", key_of(tokens.dump() + parameters.dump()));
+}
+
+std::optional<std::size_t> place_of(const std::vector<std::string>& names,
+                                    const std::string& name) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+Stored parse_stored(std::string_view text, std::string_view place) {
+  const Json file = Json::parse(text, nullptr, false);
+  const std::string mend = "make one with: tribench pretrain --out FILE";
+  if (file.is_discarded() || file.value("format", "") != kFormat) {
+    throw_bad_input("this is not a policy's weight file", place, mend);
+  }
+  if (file.value("version", 0) != kWeightsVersion) {
+    throw_bad_input(fmt::format("weight files of version {} are not read, only version {}",
+                                file.value("version", 0), kWeightsVersion),
+                    place, mend);
+  }
+  if (!file.contains("tokens") || !file.contains("parameters") || !file.contains("operations") ||
+      file.value("hash", "") != digest(file["tokens"], file["parameters"])) {
+    throw_bad_input("the weight file is damaged: its hash does not match", place, mend);
+  }
+  Stored stored;
+  stored.tokens = file["tokens"].get<std::vector<std::string>>();
+  stored.operations = file["operations"].get<std::size_t>();
+  const auto values = file["parameters"].get<std::vector<float>>();
+  stored.parameters.resize(static_cast<Eigen::Index>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    stored.parameters[static_cast<Eigen::Index>(i)] = static_cast<double>(values[i]);
+  }
+  return stored;
+}
+
+// Copies the blocks, column by column and row by row where both sides know the token.
+class Transfer {
+ public:
+  Transfer(const Stored& from, Policy& to)
+      : from_(from), to_(to), hidden_(Policy::kHidden), at_(to.layout()) {
+    const auto inputs = static_cast<Eigen::Index>(from.operations + from.tokens.size() + 2);
+    from_recurrent_ = 4 * hidden_ * inputs;
+    from_bias_ = from_recurrent_ + 4 * hidden_ * hidden_;
+    from_output_ = from_bias_ + 4 * hidden_;
+    from_output_bias_ = from_output_ + outputs() * hidden_;
+  }
+
+  bool fits() const { return from_.parameters.size() == from_output_bias_ + outputs(); }
+
+  void run() {
+    const TokenLibrary& library = to_.library();
+    to_.parameters().segment(at_.recurrent, 4 * hidden_ * hidden_ + 4 * hidden_) =
+        from_.parameters.segment(from_recurrent_, 4 * hidden_ * hidden_ + 4 * hidden_);
+    copy_input(static_cast<Eigen::Index>(from_.operations), to_.parent_column(-1));
+    copy_input(static_cast<Eigen::Index>(from_.operations + 1 + from_.tokens.size()),
+               to_.sibling_column(-1));
+    for (std::size_t i = 0; i < library.size(); ++i) {
+      const auto id = static_cast<TokenId>(i);
+      const auto found = place_of(from_.tokens, library[id].name);
+      if (!found) continue;
+      const auto source = static_cast<Eigen::Index>(*found);
+      if (library.is_operation(id)) copy_input(source, to_.parent_column(static_cast<int>(i)));
+      copy_input(static_cast<Eigen::Index>(from_.operations) + 1 + source,
+                 to_.sibling_column(static_cast<int>(i)));
+      copy_output(source, static_cast<Eigen::Index>(i));
+    }
+  }
+
+ private:
+  Eigen::Index outputs() const { return static_cast<Eigen::Index>(from_.tokens.size()); }
+
+  void copy_input(Eigen::Index from, Eigen::Index to) {
+    to_.parameters().segment(at_.input + 4 * hidden_ * to, 4 * hidden_) =
+        from_.parameters.segment(4 * hidden_ * from, 4 * hidden_);
+  }
+  void copy_output(Eigen::Index from, Eigen::Index to) {
+    for (Eigen::Index h = 0; h < hidden_; ++h) {
+      to_.parameters()[at_.output + h * to_.outputs() + to] =
+          from_.parameters[from_output_ + h * outputs() + from];
+    }
+    to_.parameters()[at_.output_bias + to] = from_.parameters[from_output_bias_ + from];
+  }
+
+  const Stored& from_;
+  Policy& to_;
+  Eigen::Index hidden_;
+  Policy::Layout at_;
+  Eigen::Index from_recurrent_ = 0;
+  Eigen::Index from_bias_ = 0;
+  Eigen::Index from_output_ = 0;
+  Eigen::Index from_output_bias_ = 0;
+};
+
+}  // namespace
+
+std::string write_weights(const Policy& policy, const WeightsProvenance& provenance) {
+  const TokenLibrary& library = policy.library();
+  Json tokens = Json::array();
+  for (std::size_t i = 0; i < library.size(); ++i) {
+    tokens.push_back(library[static_cast<TokenId>(i)].name);
+  }
+  Json parameters = Json::array();
+  for (const double value : policy.parameters()) parameters.push_back(static_cast<float>(value));
+  Json file;
+  file["format"] = kFormat;
+  file["version"] = kWeightsVersion;
+  file["provenance"] = {{"command", provenance.command},
+                        {"seed", provenance.seed},
+                        {"sequences", provenance.sequences},
+                        {"loss_per_token", provenance.loss_per_token}};
+  file["hash"] = digest(tokens, parameters);
+  file["operations"] = library.operations();
+  file["tokens"] = std::move(tokens);
+  file["parameters"] = std::move(parameters);
+  return file.dump() + "\n";
+}
+
+void read_weights(std::string_view text, std::string_view place, Policy& policy) {
+  const Stored stored = parse_stored(text, place);
+  Transfer transfer(stored, policy);
+  if (!transfer.fits()) {
+    throw_bad_input("the weight file does not have as many parameters as its tokens need", place,
+                    "make one with: tribench pretrain --out FILE");
+  }
+  transfer.run();
+}
+
+}  // namespace tribench::udsr

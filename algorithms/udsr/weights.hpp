@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+//
+// Pre-trained policies as files: versioned JSON with the names of the tokens, the parameters, a
+// hash over both and where they came from. A policy for fewer tokens takes the rows and columns
+// that it needs, by name.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "algorithms/udsr/policy.hpp"
+
+namespace tribench::udsr {
+
+inline constexpr int kWeightsVersion = 1;
+
+// Where a file's parameters came from, for the reader of the file.
+struct WeightsProvenance {
+  std::string command;
+  std::uint64_t seed = 0;
+  std::uint64_t sequences = 0;
+  double loss_per_token = 0;  // nats, on held-out sequences
+};
+
+std::string write_weights(const Policy& policy, const WeightsProvenance& provenance);
+
+// Fills `policy` from a file's text. place: the file's name, for errors. Throws Error (bad_input)
+// where the text is not such a file, its version is another, or its hash does not match.
+void read_weights(std::string_view text, std::string_view place, Policy& policy);
+
+}  // namespace tribench::udsr
+
+namespace tribench::embedded {
+
+// The weights shipped with the program: weights.json, made by `tribench pretrain` with its
+// defaults.
+std::string_view udsr_weights();
+
+}  // namespace tribench::embedded

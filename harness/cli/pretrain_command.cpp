@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+//
+// tribench pretrain: trains uDSR's policy on formulas and friction laws and writes its weights.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "algorithms/udsr/pretraining.hpp"
+#include "foundation/error.hpp"
+#include "harness/cli/commands.hpp"
+
+namespace tribench {
+namespace {
+
+struct Arguments {
+  udsr::PretrainingOptions options;
+  std::string out;
+  bool json = false;
+};
+
+void show_progress(double done) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  fmt::print(stderr, "\rpre-training {:3.0f} %", 100 * done);
+  if (done >= 1) fmt::print(stderr, "\n");
+}
+
+void run(const Arguments& arguments) {
+  std::ofstream file(arguments.out, std::ios::binary);
+  if (!file)
+    throw_bad_input("the file cannot be written", arguments.out, "name another with --out");
+  const udsr::TokenLibrary library = udsr::pretraining_library();
+  udsr::Policy policy(library, RandomStream(arguments.options.seed));
+  const udsr::WeightsProvenance provenance =
+      udsr::pretrain(policy, arguments.options, show_progress);
+  file << udsr::write_weights(policy, provenance);
+  file.close();
+  if (!file) throw Error(ErrorKind::failed, "the file could not be written whole", arguments.out);
+  if (arguments.json) {
+    fmt::print("{}\n", nlohmann::json({{"file", arguments.out},
+                                       {"sequences", provenance.sequences},
+                                       {"loss_per_token", provenance.loss_per_token}})
+                           .dump());
+  } else {
+    fmt::print("{}: trained on {} formulas, {:.3f} nats a token on held-out ones\n", arguments.out,
+               provenance.sequences, provenance.loss_per_token);
+  }
+}
+
+}  // namespace
+
+void add_pretrain_command(CLI::App& app, ExitStatus& /*status*/) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("pretrain", "Train uDSR's policy before it sees any data");
+  command->footer("Example: tribench pretrain --sequences 50000 --out weights.json");
+  command->add_option("--out", arguments->out, "the weight file to write")->required();
+  command->add_option("--seed", arguments->options.seed, "of the corpus and the first weights")
+      ->capture_default_str();
+  command->add_option("--sequences", arguments->options.sequences, "formulas in the corpus")
+      ->check(CLI::Range(100, 10'000'000))
+      ->capture_default_str();
+  command->add_option("--epochs", arguments->options.epochs, "passes over the corpus")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "what was done, as JSON");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace tribench

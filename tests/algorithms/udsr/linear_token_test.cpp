@@ -1,0 +1,119 @@
+#include "algorithms/udsr/linear_token.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "algorithms/expression/text.hpp"
+#include "algorithms/udsr/scoring.hpp"
+#include "tests/algorithms/udsr/tokens.hpp"
+
+namespace tribench::udsr {
+namespace {
+
+TEST(Monomials, CountsAreThoseOfThePublishedToken) {
+  for (const auto& [inputs, count] : {std::pair{1, 4}, {2, 10}, {3, 20}, {4, 35}, {5, 56}}) {
+    const std::vector<int> caps(static_cast<std::size_t>(inputs), 3);
+    EXPECT_EQ(monomials(caps, 3).size(), static_cast<std::size_t>(count));
+  }
+  const std::vector<int> with_sign = {3, 1};
+  EXPECT_EQ(monomials(with_sign, 3).size(), 7U);  // 1 v s v^2 vs v^3 v^2 s
+}
+
+// A problem over v in [0.2, 2] and w in [-1, 1] with a given law.
+class LinearTokenTest : public testing::Test {
+ protected:
+  void make(const char* law) {
+    const std::vector<std::string> names = {"v", "w"};
+    const Expression truth = parse(law, names);
+    RandomStream random(11);
+    Evaluator evaluator;
+    v.clear();
+    w.clear();
+    y.clear();
+    for (int i = 0; i < 120; ++i) {
+      v.push_back(random.uniform(0.2, 2));
+      w.push_back(random.uniform(-1, 1));
+      const std::vector<double> point = {v.back(), w.back()};
+      y.push_back(evaluator.evaluate_at(truth, point));
+    }
+    pose(3);
+  }
+  void pose(int degree) {
+    columns = {v.data(), w.data()};
+    problem.emplace(TrainingData{inputs, columns, y, {}}, library, degree);
+  }
+  double error_of(std::initializer_list<std::string_view> names) {
+    const Scored scored = Scorer(*problem).score(sequence_of(library, names));
+    return scored.reward > 0 ? scored.nrmse : INFINITY;
+  }
+
+  TokenLibrary library{find_operator_set("full"), 2, {.constants = true, .linear = true}};
+  std::vector<Input> inputs = {{"v", "rad/s", Role::velocity, 0.2, 2, std::nullopt},
+                               {"w", "-", Role::none, -1, 1, std::nullopt}};
+  std::vector<double> v, w, y;
+  std::vector<const double*> columns;
+  std::optional<ScoringProblem> problem;
+};
+
+TEST_F(LinearTokenTest, RecoversAPolynomialExactly) {
+  make("1.5 - 2*v + 0.25*v^2*w - w^3");
+  EXPECT_LT(error_of({"linear"}), 1e-8);
+}
+
+TEST_F(LinearTokenTest, RecoversThroughEveryInvertibleFunction) {
+  make("log(1 + v^2 + 0.5*w^2)");
+  EXPECT_LT(error_of({"log", "linear"}), 1e-8);
+  make("exp(0.3*v - w)");
+  EXPECT_LT(error_of({"exp", "linear"}), 1e-8);
+  make("sqrt(2 + v*w + v^3)");
+  EXPECT_LT(error_of({"sqrt", "linear"}), 1e-8);
+  make("tanh(0.2*v + 0.3*w)");
+  EXPECT_LT(error_of({"tanh", "linear"}), 1e-8);
+}
+
+TEST_F(LinearTokenTest, RecoversOnEitherSideOfEveryOperation) {
+  make("(1 + v*w)*exp(v) + sin(w)");
+  EXPECT_LT(error_of({"+", "*", "linear", "exp", "x1", "sin", "x2"}), 1e-8);
+  make("exp(w) - (2 - v^3)/v");
+  EXPECT_LT(error_of({"-", "exp", "x2", "/", "linear", "x1"}), 1e-8);
+  make("v/(3 + w^2) - w");
+  EXPECT_LT(error_of({"-", "/", "x1", "linear", "x2"}), 1e-8);
+}
+
+TEST_F(LinearTokenTest, MinimisesTheFormulasOwnErrorAndNotThatOfTheInvertedTarget) {
+  // Noise of equal size in y is of very unequal size in log y.
+  make("exp(2*v - 1)");
+  RandomStream noise(5);
+  for (double& value : y) value = std::max(0.01, value + 0.5 * noise.normal());
+  pose(1);
+  Eigen::VectorXd log_y(static_cast<Eigen::Index>(y.size()));
+  for (std::size_t i = 0; i < y.size(); ++i) log_y[static_cast<Eigen::Index>(i)] = std::log(y[i]);
+  const Eigen::VectorXd plain = problem->linear().solve(log_y, {});
+  const std::span<const double> coefficients(plain.data(), static_cast<std::size_t>(plain.size()));
+  const Expression inverted_fit =
+      Expression::unary(Op::exp, polynomial(problem->linear().terms(), coefficients));
+  EXPECT_LT(error_of({"exp", "linear"}), 0.9 * Scorer(*problem).nrmse(inverted_fit));
+}
+
+TEST_F(LinearTokenTest, CannotBeInvertedWhereTheTargetLeavesTheRange) {
+  make("v - 1");  // negative for half of the rows
+  EXPECT_EQ(error_of({"exp", "linear"}), INFINITY);
+}
+
+TEST_F(LinearTokenTest, EliminationEndsAtTheTermsThatMadeTheData) {
+  make("3*v - 2*v*w");
+  const Eigen::Map<const Eigen::VectorXd> target(y.data(), static_cast<Eigen::Index>(y.size()));
+  const std::vector<SparsePolynomial> path = problem->linear().eliminate(target, {});
+  ASSERT_EQ(path.size(), 10U);
+  EXPECT_EQ(path[8].terms, 2);
+  for (std::size_t k = 0; k < 10; ++k) {
+    const Monomial& monomial = problem->linear().terms()[k];
+    const double expected = monomial == Monomial{1, 0} ? 3 : monomial == Monomial{1, 1} ? -2 : 0;
+    EXPECT_NEAR(path[8].coefficients[static_cast<Eigen::Index>(k)], expected, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace tribench::udsr

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "algorithms/registry.hpp"
+
+namespace tribench {
+namespace {
+
+// The form of the paper's own formula: (3.66 v + 8.52 s - 0.44) times an exponential.
+struct FrictionCurve {
+  std::vector<double> v, s, y, truth;
+  std::vector<int> movement;
+  std::vector<const double*> columns;
+  std::vector<Input> inputs = {{"v", "rad/s", Role::velocity, -1.9, 1.9, std::nullopt},
+                               {"sgn_v", "-", Role::velocity_sign, -1, 1, 0}};
+
+  FrictionCurve() {
+    RandomStream random(41);
+    for (int i = 0; i < 100; ++i) {
+      const double x = -1.9 + 3.8 * i / 99.0;
+      v.push_back(x);
+      s.push_back(x > 0 ? 1 : -1);
+      truth.push_back((3.66 * x + 8.52 * s.back() - 0.44) *
+                      std::exp(-0.78 * x * x + 1.26 * std::abs(x) + 0.02 * x - 0.02 * s.back()));
+      y.push_back(truth.back() + 0.05 * random.normal());
+      movement.push_back(i);
+    }
+    columns = {v.data(), s.data()};
+  }
+  TrainingData data() const { return {inputs, columns, y, movement}; }
+};
+
+using Given = std::map<std::string, ParameterValue>;
+
+const Given kSmall = {
+    {"steps", std::int64_t{2}}, {"batch", std::int64_t{60}}, {"generations", std::int64_t{3}}};
+
+FitResult fit(const FrictionCurve& curve, const Given& parameters, int threads = 1,
+              std::uint64_t evaluations = 40'000'000) {
+  const Registry registry;
+  const TrainingData data = curve.data();
+  Budget budget({evaluations, INFINITY});
+  FitContext context{data, find_operator_set("paper"), budget, RandomStream(7), threads};
+  return registry.make("udsr", parameters)->fit(context);
+}
+
+double truth_error(const FrictionCurve& curve, const Expression& formula) {
+  std::vector<double> values(curve.y.size());
+  Evaluator().evaluate(formula, curve.data().table(), values);
+  double sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) sum += std::abs(values[i] - curve.truth[i]);
+  return sum / static_cast<double>(values.size());
+}
+
+TEST(Udsr, FindsAFrictionCurveToWithinItsNoise) {
+  const FrictionCurve curve;
+  const FitResult result = fit(curve, {{"steps", std::int64_t{3}}});
+  ASSERT_FALSE(result.front.empty());
+  EXPECT_LT(truth_error(curve, result.front[result.chosen]), 0.05);
+  for (const Expression& formula : result.front) {
+    EXPECT_TRUE(find_operator_set("paper").admits(formula));
+  }
+}
+
+TEST(Udsr, GivesTheSameFrontForAnyNumberOfThreads) {
+  const FrictionCurve curve;
+  const FitResult one = fit(curve, kSmall, 1, 5'000'000);
+  const FitResult three = fit(curve, kSmall, 3, 5'000'000);
+  EXPECT_EQ(one.front, three.front);
+  EXPECT_EQ(one.chosen, three.chosen);
+}
+
+TEST(Udsr, EveryPartCanBeSwitchedAndMatters) {
+  const FrictionCurve curve;
+  const FitResult standard = fit(curve, kSmall);
+  const std::vector<std::pair<std::string, ParameterValue>> changes = {
+      {"linear_token", false},          {"genetic", false},
+      {"weights", std::string("none")}, {"policy", std::string("priority_queue")},
+      {"policy", std::string("ppo")},   {"policy", std::string("none")},
+      {"degree", std::int64_t{2}},      {"constants", false},
+      {"max_length", std::int64_t{12}}};
+  for (const auto& [name, value] : changes) {
+    Given parameters = kSmall;
+    parameters[name] = value;
+    const FitResult changed = fit(curve, parameters);
+    ASSERT_FALSE(changed.front.empty()) << name;
+    EXPECT_NE(changed.front, standard.front) << name;
+  }
+}
+
+}  // namespace
+}  // namespace tribench
