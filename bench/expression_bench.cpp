@@ -18,6 +18,7 @@
 #include <tuple>
 #include <vector>
 
+#include "algorithms/expression/compile.hpp"
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/random_formula.hpp"
 #include "tests/algorithms/expression/reference.hpp"
@@ -29,17 +30,18 @@ constexpr std::size_t kTrees = 1000;
 constexpr std::size_t kLargest = 64;
 constexpr std::size_t kInputs = 9;
 
-enum OperatorChoice : int { kArithmetic, kWithExp, kWithAll };
+enum OperatorChoice : int { kProducts, kArithmetic, kWithExp, kWithAll };
 
 std::vector<Op> operators_of(int choice) {
-  std::vector<Op> operators = {Op::add, Op::sub, Op::mul, Op::div};
+  std::vector<Op> operators = {Op::add, Op::sub, Op::mul};
+  if (choice >= kArithmetic) operators.push_back(Op::div);
   if (choice >= kWithExp) operators.push_back(Op::exp);
   if (choice == kWithAll) operators.insert(operators.end(), {Op::sqrt, Op::log, Op::sin});
   return operators;
 }
 
 const char* name_of(int choice) {
-  constexpr const char* kNames[] = {"+-*/", "+-*/ exp", "+-*/ exp sqrt log sin"};
+  constexpr const char* kNames[] = {"+-*", "+-*/", "+-*/ exp", "+-*/ exp sqrt log sin"};
   return kNames[choice];
 }
 
@@ -101,9 +103,17 @@ void check(const Trees& trees, const Table<T>& table, BasicEvaluator<T>& evaluat
   }
 }
 
+template <typename T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  for (std::size_t r = 0; r < a.size(); ++r) {
+    if (a[r] != b[r] && !(std::isnan(a[r]) && std::isnan(b[r]))) return false;
+  }
+  return true;
+}
+
 void report(benchmark::State& state, double nodes, std::size_t rows, const std::string& label) {
-  state.counters["node_rows/s"] = benchmark::Counter(
-      nodes * static_cast<double>(rows), benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["node_rows/s"] = benchmark::Counter(nodes * static_cast<double>(rows),
+                                                     benchmark::Counter::kIsIterationInvariantRate);
   state.SetLabel(label);
 }
 
@@ -130,10 +140,73 @@ void interpreter(benchmark::State& state) {
              std::string(vector_level_name(level)));
 }
 
+// Formulas evaluated again and again: kTurns times each, with constants handed in every time.
+constexpr int kTurns = 8;
+constexpr std::size_t kCompiled = 200;
+
+template <typename T>
+void compiled(benchmark::State& state) {
+  const Trees& trees = trees_of(static_cast<int>(state.range(0)));
+  const auto rows = static_cast<std::size_t>(state.range(1));
+  const Table<T> table(rows);
+  BasicEvaluator<T> evaluator;
+  std::vector<BasicCompiledFormula<T>> codes;
+  std::vector<std::vector<T>> constants;
+  std::vector<T> out(rows);
+  std::vector<T> expected(rows);
+  double nodes = 0;
+  for (std::size_t k = 0; k < kCompiled; ++k) {
+    const Expression& formula = trees.formulas[k];
+    auto code = BasicCompiledFormula<T>::compile(formula);
+    if (!code) return state.SkipWithError("no code is generated on this machine");
+    std::vector<T> values;
+    for (const std::size_t i : formula.constant_positions()) {
+      values.push_back(static_cast<T>(formula.node(i).value));
+    }
+    code->evaluate(values, table.inputs, out);
+    evaluator.evaluate(formula, table.inputs, expected);
+    if (!same_bits(out, expected)) throw std::runtime_error("code and interpreter disagree");
+    codes.push_back(std::move(*code));
+    constants.push_back(std::move(values));
+    nodes += static_cast<double>(formula.size());
+  }
+  for (auto _ : state) {
+    for (std::size_t k = 0; k < kCompiled; ++k) {
+      for (int turn = 0; turn < kTurns; ++turn) codes[k].evaluate(constants[k], table.inputs, out);
+    }
+    benchmark::DoNotOptimize(out.data());
+    benchmark::ClobberMemory();
+  }
+  report(state, nodes * kTurns, rows, name_of(static_cast<int>(state.range(0))));
+}
+
+// Seconds to compile one formula of 64 nodes (63 where only binary operators are allowed).
+void compiling(benchmark::State& state) {
+  RandomStream random(key_of("compiling"));
+  const RandomFormulas formulas(operators_of(static_cast<int>(state.range(0))), kInputs);
+  std::vector<Expression> candidates;
+  for (int k = 0; k < 50; ++k) candidates.push_back(formulas.balanced(64, random));
+  std::size_t next = 0;
+  for (auto _ : state) {
+    auto code = CompiledFormula::compile(candidates[next]);
+    if (!code) return state.SkipWithError("no code is generated on this machine");
+    benchmark::DoNotOptimize(code->constants());
+    next = (next + 1) % candidates.size();
+  }
+  state.SetLabel(name_of(static_cast<int>(state.range(0))));
+}
+
 void every_case(benchmark::internal::Benchmark* bench) {
   bench->ArgNames({"set", "rows", "level"});
   for (const int choice : {kArithmetic, kWithExp, kWithAll}) {
     for (const int rows : {200, 1000, 5000}) bench->Args({choice, rows, -1});
+  }
+}
+
+void compiled_cases(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"set", "rows"});
+  for (const int choice : {kProducts, kArithmetic, kWithExp, kWithAll}) {
+    for (const int rows : {200, 1000, 5000}) bench->Args({choice, rows});
   }
 }
 
@@ -147,6 +220,12 @@ void lower_levels(benchmark::internal::Benchmark* bench) {
 BENCHMARK(interpreter<double>)->Apply(every_case)->Unit(benchmark::kMicrosecond);
 BENCHMARK(interpreter<float>)->Apply(every_case)->Unit(benchmark::kMicrosecond);
 BENCHMARK(interpreter<double>)->Apply(lower_levels)->Unit(benchmark::kMicrosecond);
+BENCHMARK(compiled<double>)->Apply(compiled_cases)->Unit(benchmark::kMicrosecond);
+BENCHMARK(compiled<float>)->Apply(compiled_cases)->Unit(benchmark::kMicrosecond);
+BENCHMARK(compiling)
+    ->ArgName("set")
+    ->DenseRange(kProducts, kWithAll)
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace tribench

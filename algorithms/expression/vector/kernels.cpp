@@ -17,9 +17,6 @@ extern const KernelTable<double> kKernelsAvx512MixedF64;
 extern const KernelTable<float> kKernelsAvx512MixedF32;
 #endif
 
-namespace {
-
-// Intel's takes 16 cycles for eight doubles (up to Sapphire Rapids at least), AMD's 5 to 10.
 bool divider_is_slow() {
 #if defined(__x86_64__)
   return __builtin_cpu_is("intel");
@@ -27,8 +24,6 @@ bool divider_is_slow() {
   return false;
 #endif
 }
-
-}  // namespace
 
 template <>
 const KernelTable<double>& kernel_table<double>(VectorLevel level) {

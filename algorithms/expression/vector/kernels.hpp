@@ -57,4 +57,8 @@ template <typename T>
 const KernelTable<T>& kernel_table(VectorLevel level);
 bool kernels_are_built(VectorLevel level);
 
+// Whether quotients are better formed partly by multiplications (the same bits): Intel's divider
+// takes 16 cycles for eight doubles (up to Sapphire Rapids at least), AMD's 5 to 10.
+bool divider_is_slow();
+
 }  // namespace tribench

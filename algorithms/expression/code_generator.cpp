@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/expression/code_generator.hpp"
+
+#if defined(__x86_64__)
+#define XBYAK_NO_OP_NAMES
+#include <xbyak/xbyak.h>
+#endif
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <deque>
+#include <utility>
+
+#include "algorithms/expression/vector/kernels.hpp"
+
+namespace tribench::compile {
+
+#if defined(__x86_64__)
+namespace {
+
+using Xbyak::Address;
+using Xbyak::Operand;
+using Xbyak::Reg64;
+using Xbyak::Xmm;
+
+constexpr std::size_t kPointers = 9;     // registers for operands
+constexpr std::size_t kCallerSaved = 3;  // the first of them
+constexpr int kSpares = 5;               // vector registers kept from the register stack, AVX-512
+
+// What stands behind the plan's scalars.
+enum Extra : std::size_t { kSignBit, kAbsBits, kOne, kShift, kTopBit, kSignificand, kUnit };
+
+template <typename T>
+class Generator : public Xbyak::CodeGenerator, public CodeMemory {
+ public:
+  Generator(const Expression& formula, const Plan& plan, VectorLevel level, std::size_t code_bytes)
+      : CodeGenerator(code_bytes, Xbyak::DontSetProtectRWE),
+        formula_(formula),
+        plan_(plan),
+        wide_(level == VectorLevel::avx512),
+        multiplies_(wide_ && divider_is_slow()) {}
+
+  // Two registers less than there are at AVX2: one for scalars, one for what a power needs.
+  int stack_registers() const { return wide_ ? 32 - kSpares : 15; }
+
+  Loop loop(std::size_t root) {
+    root_ = root;
+    align(32);
+    const auto entry = reinterpret_cast<std::uintptr_t>(getCurr());
+    used_.clear();
+    collect(root);
+    std::sort(used_.begin(), used_.end());
+    used_.erase(std::unique(used_.begin(), used_.end()), used_.end());
+    const std::size_t saved = std::min(used_.size(), kPointers);
+    for (std::size_t k = kCallerSaved; k < saved; ++k) push(pointer(k));
+    for (std::size_t k = 0; k < saved; ++k) {
+      mov(pointer(k), ptr[rdi + 8 * static_cast<int>(used_[k])]);
+    }
+    if (multiplies_) broadcast(spare(4), extra(kOne));
+    xor_(eax, eax);
+    Xbyak::Label next;
+    align(16);
+    L(next);
+    emit(root, 0);
+    vmovups(ptr[rdx + rax], vector(0));
+    add(rax, wide_ ? 64 : 32);
+    cmp(rax, rcx);
+    jb(next, T_NEAR);
+    for (std::size_t k = saved; k > kCallerSaved; --k) pop(pointer(k - 1));
+    vzeroupper();
+    ret();
+    emit_slow_divisions();
+    return reinterpret_cast<Loop>(entry);
+  }
+
+ private:
+  static constexpr bool kDouble = sizeof(T) == 8;
+
+  struct SlowDivision {
+    Xbyak::Label begin;
+    Xbyak::Label done;
+    int result;
+    int a;
+    int b;
+  };
+
+  Reg64 pointer(std::size_t k) const {
+    const std::array<Reg64, kPointers> registers = {r8, r9, r10, rbx, rbp, r12, r13, r14, r15};
+    return registers[k];
+  }
+  Xmm vector(int index) const {
+    if (wide_) return Xbyak::Zmm(index);
+    return Xbyak::Ymm(index);
+  }
+  Xmm spare(int k) const { return vector((wide_ ? 31 : 15) - k); }
+  std::size_t extra(Extra which) const { return plan_.scalars.size() + which; }
+  std::size_t left(std::size_t i) const { return formula_.left_child(i); }
+  std::size_t right(std::size_t i) const { return formula_.right_child(i); }
+
+  // Whether the value is there before the region runs. Its root is what it computes.
+  bool is_leaf(std::size_t i) const {
+    const Place place = plan_.nodes[i].place;
+    return place == Place::column || place == Place::scalar ||
+           (place == Place::buffer && i != root_);
+  }
+  bool is_scalar(std::size_t i) const { return plan_.nodes[i].place == Place::scalar; }
+
+  // The operands that the region reads, so that each has its pointer in a register.
+  void collect(std::size_t i) {
+    if (is_scalar(i)) return;
+    if (is_leaf(i)) {
+      used_.push_back(plan_.nodes[i].index);
+      return;
+    }
+    collect(right(i));
+    if (arity(formula_.node(i).op) == 2) collect(left(i));
+  }
+
+  // The rows of an operand; one scratch register serves those that have none of their own.
+  Address rows_of(std::size_t i) {
+    const std::uint32_t operand = plan_.nodes[i].index;
+    const auto at = static_cast<std::size_t>(std::lower_bound(used_.begin(), used_.end(), operand) -
+                                             used_.begin());
+    if (at < kPointers) return ptr[pointer(at) + rax];
+    mov(r11, ptr[rdi + 8 * static_cast<int>(operand)]);
+    return ptr[r11 + rax];
+  }
+  int offset(std::size_t scalar) const { return static_cast<int>(scalar * sizeof(T)); }
+  void broadcast(const Xmm& to, std::size_t scalar) {
+    const Address at = ptr[rsi + offset(scalar)];
+    if constexpr (kDouble) {
+      wide_ ? vbroadcastsd(Xbyak::Zmm(to.getIdx()), at) : vbroadcastsd(Xbyak::Ymm(to.getIdx()), at);
+    } else {
+      vbroadcastss(to, at);
+    }
+  }
+  // Calls f with a scalar as an operand: in memory where an instruction can spread it.
+  template <typename F>
+  void with_scalar(std::size_t scalar, F f) {
+    if (wide_) {
+      f(ptr_b[rsi + offset(scalar)]);
+    } else {
+      broadcast(spare(0), scalar);
+      f(spare(0));
+    }
+  }
+  template <typename F>
+  void with_leaf(std::size_t i, F f) {
+    if (is_scalar(i)) {
+      with_scalar(plan_.nodes[i].index, f);
+    } else {
+      f(rows_of(i));
+    }
+  }
+
+  void arithmetic(Op op, const Xmm& to, const Xmm& a, const Operand& b) {
+    switch (op) {
+      case Op::add:
+        return kDouble ? vaddpd(to, a, b) : vaddps(to, a, b);
+      case Op::sub:
+        return kDouble ? vsubpd(to, a, b) : vsubps(to, a, b);
+      case Op::mul:
+        return kDouble ? vmulpd(to, a, b) : vmulps(to, a, b);
+      default:
+        return kDouble ? vdivpd(to, a, b) : vdivps(to, a, b);
+    }
+  }
+
+  // The value of node i into vector r; registers from r on are free.
+  void emit(std::size_t i, int r) {
+    if (is_leaf(i)) {
+      if (is_scalar(i)) {
+        broadcast(vector(r), plan_.nodes[i].index);
+      } else {
+        vmovups(vector(r), rows_of(i));
+      }
+      return;
+    }
+    const Op op = formula_.node(i).op;
+    if (op == Op::pow) return emit_power(i, r);
+    if (arity(op) == 2) return emit_binary(op, i, r);
+    emit(right(i), r);
+    if (op == Op::sqrt) {
+      kDouble ? vsqrtpd(vector(r), vector(r)) : vsqrtps(vector(r), vector(r));
+    } else if (op == Op::neg) {
+      with_scalar(extra(kSignBit), [&](const Operand& bits) {
+        kDouble ? vxorpd(vector(r), vector(r), bits) : vxorps(vector(r), vector(r), bits);
+      });
+    } else {
+      with_scalar(extra(kAbsBits), [&](const Operand& bits) {
+        kDouble ? vandpd(vector(r), vector(r), bits) : vandps(vector(r), vector(r), bits);
+      });
+    }
+  }
+
+  void emit_binary(Op op, std::size_t i, int r) {
+    const std::size_t a = left(i);
+    const std::size_t b = right(i);
+    const bool multiplies = op == Op::div && multiplies_;
+    if (is_leaf(b) && !multiplies) {
+      emit(a, r);
+      return with_leaf(b, [&](const Operand& x) { arithmetic(op, vector(r), vector(r), x); });
+    }
+    if (is_leaf(a) && (op == Op::add || op == Op::mul)) {
+      emit(b, r);
+      return with_leaf(a, [&](const Operand& x) { arithmetic(op, vector(r), vector(r), x); });
+    }
+    // The side that needs more registers first; a leaf last.
+    const bool left_first = plan_.nodes[a].registers >= plan_.nodes[b].registers && !is_leaf(a);
+    emit(left_first ? a : b, r);
+    emit(left_first ? b : a, r + 1);
+    const int in_a = left_first ? r : r + 1;
+    const int in_b = left_first ? r + 1 : r;
+    if (multiplies && divisions_++ % 3 != 0) return emit_quotient(r, in_a, in_b);
+    arithmetic(op, vector(r), vector(in_a), vector(in_b));
+  }
+
+  // As the block kernel: squares of the base, multiplied together where the exponent has a bit.
+  void emit_power(std::size_t i, int r) {
+    const int exponent = static_cast<int>(formula_.node(right(i)).value);
+    const auto size = static_cast<unsigned>(exponent < 0 ? -exponent : exponent);
+    if (size == 0) return broadcast(vector(r), extra(kOne));
+    emit(left(i), r);
+    int result = r;
+    bool started = false;
+    for (unsigned m = size; m != 0; m >>= 1) {
+      if ((m & 1U) != 0 && started) {
+        arithmetic(Op::mul, vector(r + 1), vector(r + 1), vector(r));
+      } else if ((m & 1U) != 0 && m != 1) {
+        vmovaps(vector(r + 1), vector(r));
+        result = r + 1;
+        started = true;
+      }
+      if (m != 1) arithmetic(Op::mul, vector(r), vector(r), vector(r));
+    }
+    if (exponent < 0) {
+      broadcast(spare(0), extra(kOne));
+      arithmetic(Op::div, vector(r), spare(0), vector(result));
+    } else if (result != r) {
+      vmovaps(vector(r), vector(result));
+    }
+  }
+
+  void fused(const Xmm& to, const Xmm& a, const Xmm& b) {  // to = a b + to
+    kDouble ? vfmadd231pd(to, a, b) : vfmadd231ps(to, a, b);
+  }
+  void fused_into_factor(const Xmm& to, const Xmm& a, const Xmm& b) {  // to = a to + b
+    kDouble ? vfmadd213pd(to, a, b) : vfmadd213ps(to, a, b);
+  }
+  void fused_negated(const Xmm& to, const Xmm& a, const Xmm& b) {  // to = to - a b
+    kDouble ? vfnmadd231pd(to, a, b) : vfnmadd231ps(to, a, b);
+  }
+
+  // divide_by_multiplying of vector/lanes.hpp.
+  void emit_quotient(int result, int in_a, int in_b) {
+    const Xmm a = vector(in_a);
+    const Xmm b = vector(in_b);
+    const Xmm t = spare(0);
+    const Xmm e = spare(1);
+    const Xmm y = spare(2);
+    const Xmm q = spare(3);
+    const Xmm one = spare(4);
+    slow_.emplace_back();
+    slow_.back().result = result;
+    slow_.back().a = in_a;
+    slow_.back().b = in_b;
+    jump_if_unusual(a, b, t, e, slow_.back().begin);
+    kDouble ? vrcp14pd(y, b) : vrcp14ps(y, b);
+    vmovaps(e, one);
+    fused_negated(e, b, y);
+    if constexpr (kDouble) {
+      vmovaps(t, e);
+      fused(t, e, e);
+      fused_into_factor(y, t, y);
+      vmovaps(e, one);
+      fused_negated(e, b, y);
+    }
+    fused_into_factor(y, e, y);
+    vmovaps(e, one);
+    fused_negated(e, b, y);
+    fused_into_factor(y, e, y);
+    arithmetic(Op::mul, q, a, y);
+    vmovaps(t, a);
+    fused_negated(t, b, q);
+    fused_into_factor(t, y, q);
+    vmovaps(vector(result), t);
+    L(slow_.back().done);
+  }
+
+  void jump_if_unusual(const Xmm& a, const Xmm& b, const Xmm& t, const Xmm& e,
+                       Xbyak::Label& where) {
+    const auto scalar = [&](Extra which) { return ptr_b[rsi + offset(extra(which))]; };
+    if constexpr (kDouble) {
+      vpaddq(t, a, scalar(kShift));
+      vpaddq(e, b, scalar(kShift));
+      vpandq(t, t, e);
+      vptestnmq(k1, t, scalar(kTopBit));
+      vpaddq(e, b, scalar(kUnit));
+      vptestnmq(k2, e, scalar(kSignificand));
+      kortestb(k1, k2);
+    } else {
+      vpaddd(t, a, scalar(kShift));
+      vpaddd(e, b, scalar(kShift));
+      vpandd(t, t, e);
+      vptestnmd(k1, t, scalar(kTopBit));
+      vpaddd(e, b, scalar(kUnit));
+      vptestnmd(k2, e, scalar(kSignificand));
+      kortestw(k1, k2);
+    }
+    jnz(where, T_NEAR);
+  }
+
+  void emit_slow_divisions() {
+    for (SlowDivision& division : slow_) {
+      L(division.begin);
+      arithmetic(Op::div, vector(division.result), vector(division.a), vector(division.b));
+      jmp(division.done, T_NEAR);
+    }
+    slow_.clear();
+  }
+
+  const Expression& formula_;
+  const Plan& plan_;
+  bool wide_;
+  bool multiplies_;
+  std::size_t root_ = 0;
+  unsigned divisions_ = 0;
+  std::vector<std::uint32_t> used_;
+  std::deque<SlowDivision> slow_;
+};
+
+// More than the code of any formula of this shape takes.
+std::size_t code_bytes(const Expression& formula, const Plan& plan) {
+  std::size_t bytes = 1024 + 256 * plan.steps.size();
+  for (const Node& node : formula.nodes()) {
+    bytes += node.op == Op::div || node.op == Op::pow ? 320 : 24;
+  }
+  return (bytes + 4095) / 4096 * 4096;
+}
+
+}  // namespace
+
+template <>
+std::span<const double> extra_scalars<double>() {
+  static constexpr auto kBits = [](std::uint64_t bits) { return std::bit_cast<double>(bits); };
+  static constexpr std::array kExtras = {-0.0,
+                                         kBits(0x7fffffffffffffff),
+                                         1.0,
+                                         kBits(std::uint64_t{512} << 52),
+                                         kBits(std::uint64_t{1} << 62),
+                                         kBits(0x000fffffffffffff),
+                                         kBits(1)};
+  return kExtras;
+}
+template <>
+std::span<const float> extra_scalars<float>() {
+  static constexpr auto kBits = [](std::uint32_t bits) { return std::bit_cast<float>(bits); };
+  static constexpr std::array kExtras = {
+      -0.0F,           kBits(0x7fffffff), 1.0F,    kBits(64U << 23),
+      kBits(1U << 30), kBits(0x007fffff), kBits(1)};
+  return kExtras;
+}
+
+template <typename T>
+Loops generate_loops(const Expression& formula, const Plan& plan, VectorLevel level) {
+  Loops loops;
+  if (level == VectorLevel::baseline) return loops;
+  try {
+    auto code = std::make_unique<Generator<T>>(formula, plan, level, code_bytes(formula, plan));
+    for (const Step& step : plan.steps) {
+      const bool is_region = step.kind == Step::Kind::region;
+      if (is_region && plan.nodes[step.node].registers > code->stack_registers()) return {};
+      loops.of_step.push_back(is_region ? code->loop(step.node) : nullptr);
+    }
+    code->setProtectModeRE();
+    loops.memory = std::move(code);
+    return loops;
+  } catch (const Xbyak::Error&) {  // no memory may be made executable here, or too long
+    return {};
+  }
+}
+
+#else
+
+template <typename T>
+Loops generate_loops(const Expression&, const Plan&, VectorLevel) {
+  return {};
+}
+
+#endif
+
+template Loops generate_loops<double>(const Expression&, const Plan&, VectorLevel);
+template Loops generate_loops<float>(const Expression&, const Plan&, VectorLevel);
+
+}  // namespace tribench::compile
