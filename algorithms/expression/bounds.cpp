@@ -108,7 +108,9 @@ bool FormulaBounds::sharpen(std::span<const Interval> box) {
   choose_active(box);
   if (active_.empty()) {
     std::fill(errors_.begin(), errors_.end(), 0.0);
-    return bound(box);
+    const bool all = bound(box);
+    real_root_ = values_.back().range;
+    return all;
   }
   pass_points(box);
   for (std::size_t i = 0; i < formula_.size(); ++i) {
@@ -119,6 +121,7 @@ bool FormulaBounds::sharpen(std::span<const Interval> box) {
     }
     bound_error(i);
     bound_gradient(i);
+    real_root_ = values_[i].range;
     if (arity(formula_.node(i).op) > 0) refine(i, box);
   }
   failed_ = formula_.size();
@@ -290,7 +293,6 @@ bool FormulaBounds::meet_corners(std::size_t i, Interval& range) const {
 }
 
 void FormulaBounds::refine(std::size_t i, std::span<const Interval> box) {
-  if (!(errors_[i] < kInfinity)) return;
   Interval range = Interval::entire();
   if (centre_failed_ > i) {
     range = centre_[i].range;
@@ -301,6 +303,8 @@ void FormulaBounds::refine(std::size_t i, std::span<const Interval> box) {
     }
   }
   meet_corners(i, range);
+  if (i == formula_.root()) real_root_ = intersect(real_root_, range);
+  if (!(errors_[i] < kInfinity)) return;
   range = {add_down(range.low, -errors_[i]), add_up(range.high, errors_[i])};
   values_[i].range = intersect(values_[i].range, range);
 }

@@ -47,6 +47,11 @@ class FormulaBounds {
   // After `sharpen`: |computed - real| of the node, anywhere in the box.
   double rounding_error(std::size_t node) const { return errors_[node]; }
 
+  // After `sharpen`: the range of the formula's real value alone, without the rounding errors of its
+  // evaluation.
+  const Interval& real_root() const { return real_root_; }
+
+  const Expression& formula() const { return formula_; }
   // The columns that occur in the formula, ascending.
   const std::vector<std::size_t>& used_columns() const { return used_; }
 
@@ -78,6 +83,7 @@ class FormulaBounds {
   std::vector<std::size_t> used_;    // columns that occur, ascending
   std::vector<std::size_t> active_;  // those whose range is not a point
   Values values_;
+  Interval real_root_;
   std::size_t failed_ = 0;
   std::vector<double> errors_;
   std::vector<Interval> gradients_;  // node-major, one per active column

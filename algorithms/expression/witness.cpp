@@ -47,8 +47,8 @@ double apply_to(Op op, double a, double b) {
   }
 }
 
-// Adds `node` and the nodes whose zeros are zeros of it: the factors of a product, the base of a
-// positive power, the numerator of a quotient.
+// Adds `node` and the nodes whose zeros are zeros (or poles) of it: the factors of a product, the
+// base of a constant power, the numerator of a quotient.
 void collect_zero_nodes(const Expression& formula, std::size_t node,
                         std::vector<std::size_t>& nodes) {
   nodes.push_back(node);
@@ -57,7 +57,12 @@ void collect_zero_nodes(const Expression& formula, std::size_t node,
       collect_zero_nodes(formula, formula.left_child(node), nodes);
       collect_zero_nodes(formula, formula.right_child(node), nodes);
       return;
-    case Op::pow:
+    case Op::pow: {
+      const Node& exponent = formula.node(formula.right_child(node));
+      if (!exponent.is_constant() || exponent.value == 0) return;
+      collect_zero_nodes(formula, formula.left_child(node), nodes);
+      return;
+    }
     case Op::div:
       collect_zero_nodes(formula, formula.left_child(node), nodes);
       return;

@@ -1,26 +1,39 @@
 // SPDX-License-Identifier: MIT
 //
-// tribench check: proves or refutes that a formula has a finite value everywhere in a box.
+// tribench check: proves or refutes that a formula has a finite value everywhere in a box, or a
+// property of a friction law; writes and verifies certificates.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
+#include "algorithms/expression/certificate.hpp"
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/expression/input_box.hpp"
-#include "algorithms/expression/singularity.hpp"
+#include "algorithms/expression/property.hpp"
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
 
 namespace tribench {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct CheckOptions {
   std::string formula;
   std::string box;
+  std::string property = "finite";
+  std::string velocity;
+  double limit = kInfinity;
+  double from = 0;
+  std::string certificate;
+  std::string verify;
   bool json = false;
 };
 
@@ -29,57 +42,140 @@ ExitStatus status_of(Verdict verdict) {
   return verdict == Verdict::refuted ? ExitStatus::found : ExitStatus::undecided;
 }
 
-nlohmann::json ranges_json(const std::vector<Interval>& ranges, const NamedBox& box) {
-  nlohmann::json json = nlohmann::json::object();
+Property property_of(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Property property : {Property::finite, Property::bounded, Property::dissipative,
+                                  Property::monotone, Property::odd}) {
+    if (property_name(property) == name) return property;
+    names.emplace_back(property_name(property));
+  }
+  throw_bad_input(fmt::format("there is no property '{}'", name), "--property",
+                  fmt::format("known: {}", fmt::join(names, ", ")));
+}
+
+// The input named, else v or qd, else the first.
+std::size_t velocity_of(const CheckOptions& options, const NamedBox& box) {
+  const auto place = [&box](const std::string& name) {
+    return static_cast<std::size_t>(std::find(box.names.begin(), box.names.end(), name) -
+                                    box.names.begin());
+  };
+  if (!options.velocity.empty()) {
+    const std::size_t named = place(options.velocity);
+    if (named < box.names.size()) return named;
+    throw_bad_input(fmt::format("'{}' is not an input", options.velocity), "--velocity",
+                    fmt::format("known: {}", fmt::join(box.names, ", ")));
+  }
+  for (const char* usual : {"v", "qd", "velocity"}) {
+    if (place(usual) < box.names.size()) return place(usual);
+  }
+  return 0;
+}
+
+// A property's proof is "proved"; that of finiteness keeps the name it has in records.
+std::string_view verdict_text(Verdict verdict, Property property) {
+  if (verdict == Verdict::proved_free && property != Property::finite) return "proved";
+  return verdict_name(verdict);
+}
+
+Json ranges_json(const std::vector<Interval>& ranges, const NamedBox& box) {
+  Json json = Json::object();
   for (std::size_t j = 0; j < ranges.size(); ++j) {
     json[box.names[j]] = {ranges[j].low, ranges[j].high};
   }
   return json;
 }
 
-void print_json(const Expression& formula, const NamedBox& box, const SingularityResult& result,
-                double seconds) {
-  nlohmann::ordered_json json = {{"verdict", verdict_name(result.verdict)},
-                                 {"witness", nullptr},
-                                 {"boxes", result.boxes},
-                                 {"seconds", seconds},
-                                 {"complexity", paper_complexity(formula)},
-                                 {"nodes", node_count(formula)}};
-  if (result.witness) {
-    json["witness"] = nlohmann::json::parse(witness_json(*result.witness, box.names));
-  }
+void print_json(const Expression& formula, const NamedBox& box, Property property,
+                const PropertyResult& result, double seconds) {
+  Json json = {{"verdict", verdict_text(result.verdict, property)},
+               {"witness", nullptr},
+               {"boxes", result.boxes},
+               {"seconds", seconds},
+               {"complexity", paper_complexity(formula)},
+               {"nodes", node_count(formula)},
+               {"property", property_name(property)}};
+  if (result.witness) json["witness"] = Json::parse(witness_json(*result.witness, box.names));
   if (result.verdict == Verdict::undecided) {
     json["undecided_box"] = ranges_json(result.undecided_box, box);
   }
   fmt::print("{}\n", json.dump(2));
 }
 
-void print_text(const NamedBox& box, const SingularityResult& result, double seconds) {
-  const std::string where = print_box(box);
+void print_text(const NamedBox& box, Property property, const PropertyResult& result,
+                double seconds) {
+  const std::string_view verdict = verdict_text(result.verdict, property);
   switch (result.verdict) {
     case Verdict::proved_free:
-      fmt::print("proved_free: finite everywhere on {}", where);
+      fmt::print("{}: {} everywhere on {}", verdict, property_name(property), print_box(box));
       break;
     case Verdict::refuted:
-      fmt::print("refuted: singular at {}", witness_json(*result.witness, box.names));
+      fmt::print("{}: not {} at {}", verdict, property_name(property),
+                 witness_json(*result.witness, box.names));
       break;
     default:
-      fmt::print("undecided on {}; smallest box left: {}", where,
-                 ranges_json(result.undecided_box, box).dump());
+      fmt::print("{}: {} on {}; smallest box left: {}", verdict, property_name(property),
+                 print_box(box), ranges_json(result.undecided_box, box).dump());
   }
   fmt::print("  ({} boxes, {:.3g} s)\n", result.boxes, seconds);
 }
 
+void save_certificate(const Expression& formula, const NamedBox& box, const std::string& path) {
+  const auto certificate = write_certificate(formula, box);
+  if (!certificate) {
+    throw Error(
+        ErrorKind::failed,
+        fmt::format("proved, but the certificate would have more than {} pieces", kMaxPieces),
+        "--certificate", "shrink the box or do without");
+  }
+  std::ofstream file(path);
+  file << *certificate << '\n';
+  if (!file.flush()) throw Error(ErrorKind::failed, "cannot be written", path);
+}
+
+ExitStatus verify(const CheckOptions& options) {
+  std::ifstream file(options.verify);
+  if (!file) throw_bad_input("cannot be read", options.verify, "name a certificate's file");
+  std::ostringstream text;
+  text << file.rdbuf();
+  const CertificateCheck check = check_certificate(text.str());
+  if (options.json) {
+    const Json json = {{"accepted", check.accepted},
+                       {"reason", check.reason},
+                       {"formula", check.formula},
+                       {"box", check.box},
+                       {"pieces", check.pieces}};
+    fmt::print("{}\n", json.dump(2));
+  } else if (check.accepted) {
+    fmt::print("accepted: {} is finite everywhere on {}  ({} pieces)\n", check.formula, check.box,
+               check.pieces);
+  } else {
+    fmt::print("rejected: {}\n", check.reason);
+  }
+  return check.accepted ? ExitStatus::done : ExitStatus::found;
+}
+
 ExitStatus run_check(const CheckOptions& options) {
+  if (!options.verify.empty()) return verify(options);
+  if (options.formula.empty()) {
+    throw_bad_input("a formula is needed", "check", "give one, or --verify FILE");
+  }
   NamedBox box = parse_box(options.box);
   const Expression formula = parse_over(options.formula, box);
+  PropertyQuestion question;
+  question.property = property_of(options.property);
+  question.limit = options.limit;
+  question.from = options.from;
+  if (question.property != Property::finite) question.velocity = velocity_of(options, box);
   const auto start = std::chrono::steady_clock::now();
-  const SingularityResult result = prove_free(formula, box.ranges);
+  const PropertyResult result = prove_property(formula, box.ranges, question);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   if (options.json) {
-    print_json(formula, box, result, seconds.count());
+    print_json(formula, box, question.property, result, seconds.count());
   } else {
-    print_text(box, result, seconds.count());
+    print_text(box, question.property, result, seconds.count());
+  }
+  if (!options.certificate.empty() && result.verdict == Verdict::proved_free) {
+    save_certificate(formula, box, options.certificate);
   }
   return status_of(result.verdict);
 }
@@ -90,13 +186,25 @@ void add_check_command(CLI::App& app, ExitStatus& status) {
   CLI::App* check =
       app.add_subcommand("check", "Proves or refutes that a formula is finite everywhere in a box");
   check->footer(
-      "Example: tribench check 'v/(v^2 - 2*v + 2)' --box 'v=-2:2'\n"
+      "Examples: tribench check 'v/(v^2 - 2*v + 2)' --box 'v=-2:2' --certificate proof.json\n"
+      "          tribench check --verify proof.json\n"
+      "          tribench check '3*sgn_v + 2*v' --box 'v=-2:2' --property dissipative\n"
       "A formula that begins with a minus stands behind --.\n"
-      "Exit status: 0 proved, 1 refuted, 4 undecided, 2 bad input.");
+      "Exit status: 0 proved (or accepted), 1 refuted (or rejected), 4 undecided, 2 bad input.");
   auto options = std::make_shared<CheckOptions>();
-  check->add_option("formula", options->formula, "The formula; sgn_X is the sign of X")->required();
-  check->add_option("--box", options->box, "Ranges of the inputs: 'v=-2:2,g=-60:60'")->required();
-  check->add_flag("--json", options->json, "{verdict, witness, boxes, seconds, complexity, nodes}");
+  check->add_option("formula", options->formula, "The formula; sgn_X is the sign of X");
+  check->add_option("--box", options->box, "Ranges of the inputs: 'v=-2:2,g=-60:60'");
+  check->add_option("--property", options->property,
+                    "finite, bounded (|f| <= --limit), dissipative (f*v >= 0), monotone (f grows "
+                    "with v for |v| >= --from), odd (f(-v) = -f(v))");
+  check->add_option("--velocity", options->velocity, "The input that is the velocity (v)");
+  check->add_option("--limit", options->limit, "For bounded, in the formula's unit");
+  check->add_option("--from", options->from, "For monotone, in the velocity's unit (0)");
+  check->add_option("--certificate", options->certificate,
+                    "Writes a proof of finiteness that --verify checks");
+  check->add_option("--verify", options->verify, "Checks a certificate by itself");
+  check->add_flag("--json", options->json,
+                  "{verdict, witness, boxes, seconds, complexity, nodes, property}");
   check->callback([options, &status] { status = run_check(*options); });
 }
 

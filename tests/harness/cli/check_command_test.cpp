@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -68,6 +71,37 @@ TEST(CheckCommand, understands_the_sign_beside_its_input) {
   EXPECT_EQ(run_check("'sqrt(v*sgn_v)' --box 'v=-2:2'").exit, 0);
   EXPECT_EQ(run_check("'1/(sgn_v + 0.5)' --box 'v=-2:2'").exit, 0);
   EXPECT_EQ(run_check("'1/sgn_v' --box 'v=-2:2'").exit, 1);
+}
+
+TEST(CheckCommand, decides_properties_of_friction_laws) {
+  EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property dissipative").exit, 0);
+  EXPECT_EQ(run_check("'3*sgn_v - 2*v' --box v=-2:2 --property dissipative").exit, 1);
+  EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property odd").exit, 0);
+  EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property bounded --limit 6.9").exit, 1);
+  EXPECT_EQ(run_check("'sgn_w*exp(-w*sgn_w) + w' --box w=-2:2 --velocity w --from 0.1"
+                      " --property monotone")
+                .exit,
+            0);
+  EXPECT_EQ(run_check("'v' --box v=-2:2 --property smooth").exit, 2);
+  const auto json =
+      nlohmann::json::parse(run_check("'v' --box v=-2:2 --property odd --json").output);
+  EXPECT_EQ(json["verdict"], "proved");
+}
+
+TEST(CheckCommand, writes_a_certificate_that_it_verifies_and_rejects_once_tampered_with) {
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("tribench_certificate_" + std::to_string(getpid()) + ".json");
+  EXPECT_EQ(run_check("'v/(v^2 - 2*v + 2)' --box v=-2:2 --certificate " + path.string()).exit, 0);
+  const Answer accepted = run_check("--json --verify " + path.string());
+  EXPECT_EQ(accepted.exit, 0);
+  EXPECT_EQ(nlohmann::json::parse(accepted.output)["accepted"], true);
+  std::ifstream in(path);
+  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  text.replace(text.find("- 2*v"), 5, "- 3*v");
+  std::ofstream(path) << text;
+  EXPECT_EQ(run_check("--verify " + path.string()).exit, 1);
+  std::filesystem::remove(path);
+  EXPECT_EQ(run_check("--verify " + path.string()).exit, 2);
 }
 
 }  // namespace

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+//
+// A proof that can be checked by someone who does not trust the prover: the box cut into pieces, on
+// each of which plain interval arithmetic shows that every node of the formula is finite. The
+// checker (certificate_check.cpp) shares no interval code with the prover: it rounds by the
+// processor's rounding modes, knows no derivative and no mean-value form, and covers the box by
+// construction. What it trusts: the parser, the processor's rounding of + - * / sqrt, the C
+// library's exp log sin cos tanh pow to 8 ulp, and the evaluator's kernels likewise.
+//
+// JSON: {"format", "formula", "box", "entries": [...], "digest"}. The entries walk the cells of the
+// sign cases (an input whose sign matters: < 0, 0, > 0; the first input outermost) in order; in a
+// cell, depth first, {"cut": ["v", 0.5]} halves the current piece at v = 0.5, lower half first, and
+// {"piece": {"v": [low, high], ...}, "bounds": [low, high]} closes one.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "algorithms/expression/expression.hpp"
+#include "algorithms/expression/input_box.hpp"
+
+namespace tribench {
+
+// The certificate's text, or nothing where max_pieces do not suffice: a proof by sharper bounds
+// than the checker's may need more. Write one only for a formula that is proved free.
+inline constexpr std::size_t kMaxPieces = 100'000;
+std::optional<std::string> write_certificate(const Expression& formula, const NamedBox& box,
+                                             std::size_t max_pieces = kMaxPieces);
+
+struct CertificateCheck {
+  bool accepted = false;
+  std::string reason;  // why not
+  std::string formula;
+  std::string box;
+  std::size_t pieces = 0;
+};
+// Never throws on a bad certificate: what cannot be read is rejected, with the reason.
+CertificateCheck check_certificate(std::string_view text);
+
+// What the two sides share: how the box falls into cells, and the bounds on one piece.
+struct PieceRange {
+  double low = 0;
+  double high = 0;
+  bool operator==(const PieceRange&) const = default;
+};
+using Piece = std::vector<PieceRange>;  // per input of the box
+std::vector<Piece> certificate_cells(const Expression& formula, const InputBox& box);
+// The formula's range on the piece by natural interval extension; nothing where a node may not be
+// finite.
+std::optional<PieceRange> piece_bounds(const Expression& formula, const Piece& piece);
+// Over the certificate's content without its digest.
+std::string certificate_digest(std::string_view content);
+
+}  // namespace tribench

@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: MIT
+//
+// The checker. Compiled with -frounding-math; everything between UpwardRounding's constructor and
+// destructor rounds upward, and a lower bound is the negative of an upper one.
+#include <algorithm>
+#include <array>
+#include <cfenv>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/expression/certificate.hpp"
+#include "algorithms/expression/text.hpp"
+
+namespace tribench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Range = PieceRange;
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kKernelSlack = 8 * std::numeric_limits<double>::epsilon();
+constexpr double kTiny = std::numeric_limits<double>::denorm_min();
+
+class UpwardRounding {
+ public:
+  UpwardRounding() : before_(std::fegetround()) { std::fesetround(FE_UPWARD); }
+  ~UpwardRounding() { std::fesetround(before_); }
+  UpwardRounding(const UpwardRounding&) = delete;
+  UpwardRounding& operator=(const UpwardRounding&) = delete;
+
+ private:
+  int before_;
+};
+
+bool is_finite(const Range& x) { return x.low > -kInf && x.high < kInf; }
+constexpr Range kNowhere{-kInf, kInf};
+
+Range add(const Range& a, const Range& b) { return {-(-a.low - b.low), a.high + b.high}; }
+Range minus(const Range& a) { return {-a.high, -a.low}; }
+
+Range multiply(const Range& a, const Range& b) {
+  return {-std::max({-a.low * b.low, -a.low * b.high, -a.high * b.low, -a.high * b.high}),
+          std::max({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high})};
+}
+
+Range divide(const Range& a, const Range& b) {
+  if (b.low <= 0 && b.high >= 0) return kNowhere;
+  return {-std::max({-a.low / b.low, -a.low / b.high, -a.high / b.low, -a.high / b.high}),
+          std::max({a.low / b.low, a.low / b.high, a.high / b.low, a.high / b.high})};
+}
+
+Range absolute(const Range& a) {
+  if (a.low >= 0) return a;
+  if (a.high <= 0) return minus(a);
+  return {0, std::max(-a.low, a.high)};
+}
+
+Range square_root(const Range& a) {
+  if (a.low < 0) return kNowhere;
+  const double low = std::sqrt(a.low);
+  const bool is_exact = std::fma(low, low, -a.low) == 0 && (a.low == 0 || a.low > 1e-290);
+  return {is_exact ? low : std::max(std::nextafter(low, -kInf), 0.0), std::sqrt(a.high)};
+}
+
+// A library function at one point in round-to-nearest, moved outward by the kernels' slack.
+template <typename F>
+Range kernel(F f, double x) {
+  std::fesetround(FE_TONEAREST);
+  const volatile double nearest = f(x);  // volatile: what follows stays behind the change of mode
+  std::fesetround(FE_UPWARD);
+  const double y = nearest;
+  const double reach = std::abs(y) * kKernelSlack + kTiny;
+  return {-(reach - y), y + reach};
+}
+
+template <typename F>
+Range increasing(F f, const Range& a) {
+  return {kernel(f, a.low).low, kernel(f, a.high).high};
+}
+
+Range exponential(const Range& a) {
+  Range y = increasing([](double x) { return std::exp(x); }, a);
+  y.low = y.low < 1e-307 ? 0 : y.low;  // kernels may flush what is below the normal range
+  if (a.low >= 0) y.low = std::max(y.low, 1.0);
+  if (a.high <= 0) y.high = std::min(y.high, 1.0);
+  return y;
+}
+
+Range logarithm(const Range& a) {
+  if (!(a.low > 0)) return kNowhere;
+  Range y = increasing([](double x) { return std::log(x); }, a);
+  if (a.low >= 1) y.low = std::max(y.low, 0.0);
+  if (a.high <= 1) y.high = std::min(y.high, 0.0);
+  return y;
+}
+
+Range hyperbolic_tangent(const Range& a) {
+  const Range y = increasing([](double x) { return std::tanh(x); }, a);
+  return {std::max(y.low, a.low >= 0 ? 0.0 : -1.0), std::min(y.high, a.high <= 0 ? 0.0 : 1.0)};
+}
+
+// Lipschitz around the middle: crude, but short; exact at the ends of [-1, 1].
+template <typename F>
+Range wave(F f, const Range& a) {
+  const double middle = a.low / 2 + a.high / 2;
+  const double reach = std::max(a.high - middle, middle - a.low) + 1e-15 * (1 + std::abs(middle));
+  if (!(reach < 2)) return {-1, 1};
+  const Range y = add(kernel(f, middle), {-reach, reach});
+  return {std::max(y.low, -1.0), std::min(y.high, 1.0)};
+}
+
+Range sign(const Range& a) {
+  const auto of = [](double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0); };
+  return {of(a.low), of(a.high)};
+}
+
+Range whole_power(const Range& a, int n) {
+  if (n < 0) return divide({1, 1}, whole_power(a, -n));
+  const bool is_even = n % 2 == 0;
+  const Range base = is_even ? absolute(a) : a;
+  const auto upper =
+      [n](double x) {  // x^n rounded up for x >= 0, by squaring as the evaluator does
+        double result = 1;
+        double square = x;
+        for (int rest = n; rest > 0; rest >>= 1) {
+          if ((rest & 1) != 0) result *= square;
+          square *= square;
+        }
+        return result;
+      };
+  const auto lower = [n](double x) {  // x^n rounded down: the negative squares, rounded up
+    double result = 1;
+    double square = x;
+    for (int rest = n; rest > 0; rest >>= 1) {
+      if ((rest & 1) != 0) result = -(-result * square);
+      square = -(-square * square);
+    }
+    return result;
+  };
+  return {base.low >= 0 ? lower(base.low) : -upper(-base.low),
+          base.high >= 0 ? upper(base.high) : -lower(-base.high)};
+}
+
+Range power(const Range& a, const Range& b) {
+  if (b.low == b.high && b.low == std::floor(b.low) && std::abs(b.low) <= 64) {
+    return whole_power(a, static_cast<int>(b.low));
+  }
+  if (a.low < 0 || (a.low == 0 && b.low <= 0)) return kNowhere;
+  Range all{kInf, -kInf};
+  for (const double x : {a.low, a.high}) {
+    for (const double y : {b.low, b.high}) {
+      const Range corner = kernel([y](double t) { return std::pow(t, y); }, x);
+      all = {std::min(all.low, corner.low), std::max(all.high, corner.high)};
+    }
+  }
+  return {std::max(all.low, 0.0), all.high};
+}
+
+Range apply(Op op, const Range& a) {
+  switch (op) {
+    case Op::neg:
+      return minus(a);
+    case Op::exp:
+      return exponential(a);
+    case Op::log:
+      return logarithm(a);
+    case Op::sqrt:
+      return square_root(a);
+    case Op::abs:
+      return absolute(a);
+    case Op::sgn:
+      return sign(a);
+    case Op::sin:
+      return wave([](double x) { return std::sin(x); }, a);
+    case Op::cos:
+      return wave([](double x) { return std::cos(x); }, a);
+    default:
+      return hyperbolic_tangent(a);
+  }
+}
+
+Range apply(Op op, const Range& a, const Range& b) {
+  switch (op) {
+    case Op::add:
+      return add(a, b);
+    case Op::sub:
+      return add(a, minus(b));
+    case Op::mul:
+      return multiply(a, b);
+    case Op::div:
+      return divide(a, b);
+    default:
+      return power(a, b);
+  }
+}
+
+// Reads the entries of a certificate against the cells they must cover.
+class Reader {
+ public:
+  Reader(const Expression& formula, const NamedBox& box, const Json& entries)
+      : formula_(formula), box_(box), entries_(entries) {}
+
+  // Empty where the entries prove the claim.
+  std::string run() {
+    for (const Piece& cell : certificate_cells(formula_, box_.ranges)) {
+      if (std::string reason = cover(cell, 0); !reason.empty()) return reason;
+    }
+    return next_ == entries_.size() ? "" : "entries are left over";
+  }
+  std::size_t pieces() const { return pieces_; }
+
+ private:
+  std::string cover(const Piece& piece, int depth) {
+    if (next_ >= entries_.size()) return "the entries end before the box is covered";
+    const Json& entry = entries_[next_++];
+    const std::string place = " (entry " + std::to_string(next_) + ")";
+    if (!entry.contains("cut")) return close(piece, entry, place);
+    const auto name = std::find(box_.names.begin(), box_.names.end(), entry["cut"].at(0));
+    const double at = entry["cut"].at(1);
+    const auto axis = static_cast<std::size_t>(name - box_.names.begin());
+    if (name == box_.names.end() || depth > 5000 || !(piece[axis].low < at) ||
+        !(at < piece[axis].high)) {
+      return "a cut does not lie inside its piece" + place;
+    }
+    Piece lower = piece;
+    Piece upper = piece;
+    lower[axis].high = at;
+    upper[axis].low = at;
+    if (std::string reason = cover(lower, depth + 1); !reason.empty()) return reason;
+    return cover(upper, depth + 1);
+  }
+
+  std::string close(const Piece& piece, const Json& entry, const std::string& place) {
+    ++pieces_;
+    if (entry.at("piece").size() != piece.size()) return "a piece lacks an input" + place;
+    for (std::size_t j = 0; j < piece.size(); ++j) {
+      const Json& side = entry.at("piece").at(box_.names[j]);
+      if (!(Range{side.at(0), side.at(1)} == piece[j])) {
+        return "a piece is not the one that its cuts lead to" + place;
+      }
+    }
+    const auto bounds = piece_bounds(formula_, piece);
+    if (!bounds) return "the formula may not be finite on a piece" + place;
+    const Range claimed{entry.at("bounds").at(0), entry.at("bounds").at(1)};
+    if (!(claimed.low <= bounds->low && bounds->high <= claimed.high && is_finite(claimed))) {
+      return "the formula may leave the bounds claimed on a piece" + place;
+    }
+    return "";
+  }
+
+  const Expression& formula_;
+  const NamedBox& box_;
+  const Json& entries_;
+  std::size_t next_ = 0;
+  std::size_t pieces_ = 0;
+};
+
+void check_content(Json json, CertificateCheck& check) {
+  const std::string digest = json.at("digest");
+  json.erase("digest");
+  if (json.at("format") != "tribench certificate 1") {
+    check.reason = "the format is not known";
+    return;
+  }
+  check.formula = json.at("formula");
+  check.box = json.at("box");
+  if (json.size() != 4 || certificate_digest(json.dump()) != digest) {
+    check.reason = "the digest does not fit the content";
+    return;
+  }
+  NamedBox box = parse_box(check.box);
+  const Expression formula = parse_over(check.formula, box);
+  check_box(formula, box.ranges);
+  Reader reader(formula, box, json.at("entries"));
+  check.reason = reader.run();
+  check.pieces = reader.pieces();
+  check.accepted = check.reason.empty();
+}
+
+}  // namespace
+
+std::vector<Piece> certificate_cells(const Expression& formula, const InputBox& box) {
+  std::vector<bool> looks_at_sign(box.size(), false);
+  for (std::size_t i = 0; i < formula.size(); ++i) {
+    const Node& node = formula.node(i);
+    if (!node.is_variable()) continue;
+    if (box[node.variable].sign_of) looks_at_sign[*box[node.variable].sign_of] = true;
+    const Op above = i + 1 < formula.size() ? formula.node(i + 1).op : Op::constant;
+    if (above == Op::abs || above == Op::sgn) looks_at_sign[node.variable] = true;
+  }
+  std::vector<Piece> cells = {Piece(box.size())};
+  for (std::size_t j = 0; j < box.size(); ++j) {
+    if (box[j].sign_of) continue;
+    std::vector<Range> parts = {{box[j].low, box[j].high}};
+    if (looks_at_sign[j]) {
+      parts = {{box[j].low, std::min(box[j].high, -kTiny)},
+               {std::max(box[j].low, 0.0), std::min(box[j].high, 0.0)},
+               {std::max(box[j].low, kTiny), box[j].high}};
+    }
+    std::vector<Piece> finer;
+    for (const Piece& cell : cells) {
+      for (const Range& part : parts) {
+        if (part.low > part.high) continue;
+        finer.push_back(cell);
+        finer.back()[j] = part;
+        for (std::size_t s = 0; s < box.size(); ++s) {
+          if (box[s].sign_of == j) finer.back()[s] = sign(part);
+        }
+      }
+    }
+    cells = std::move(finer);
+  }
+  return cells;
+}
+
+std::optional<PieceRange> piece_bounds(const Expression& formula, const Piece& piece) {
+  const UpwardRounding upward;
+  std::vector<Range> stack;
+  for (const Node& node : formula.nodes()) {
+    if (node.is_variable()) {
+      stack.push_back(piece[node.variable]);
+    } else if (node.is_constant()) {
+      stack.push_back({node.value, node.value});
+    } else if (arity(node.op) == 1) {
+      stack.back() = apply(node.op, stack.back());
+    } else {
+      const Range right = stack.back();
+      stack.pop_back();
+      stack.back() = apply(node.op, stack.back(), right);
+    }
+    if (!is_finite(stack.back())) return std::nullopt;
+  }
+  return stack.back();
+}
+
+std::string certificate_digest(std::string_view content) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a: against accidents, not against forgers
+  for (const char c : content) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  std::string text(16, '0');
+  for (std::size_t i = 16; i-- > 0; hash >>= 4) text[i] = "0123456789abcdef"[hash & 15];
+  return text;
+}
+
+CertificateCheck check_certificate(std::string_view text) {
+  CertificateCheck check;
+  try {
+    check_content(Json::parse(text), check);
+  } catch (const std::exception& error) {
+    check.reason = std::string("the certificate cannot be read: ") + error.what();
+  }
+  return check;
+}
+
+}  // namespace tribench

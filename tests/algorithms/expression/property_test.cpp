@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/expression/property.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/text.hpp"
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+const std::vector<std::string> kNames = {"v", "sgn_v", "g", "sgn_g"};
+const InputBox kBox = {{-2, 2}, {-1, 1, 0}, {-60, 60}, {-1, 1, 2}};
+
+const Verdict kProved = Verdict::proved_free;
+const Verdict kRefuted = Verdict::refuted;
+
+struct Known {
+  std::string formula;
+  Verdict verdict;
+};
+
+double f(const std::string& formula, const std::vector<double>& point) {
+  return Evaluator().evaluate_at(parse(formula, kNames), point);
+}
+
+PropertyResult ask(const std::string& formula, PropertyQuestion question) {
+  return prove_property(parse(formula, kNames), kBox, question);
+}
+
+void expect_all(const std::vector<Known>& table, const PropertyQuestion& question) {
+  for (const Known& known : table) {
+    SCOPED_TRACE(known.formula);
+    const PropertyResult result = ask(known.formula, question);
+    EXPECT_EQ(verdict_name(result.verdict), verdict_name(known.verdict)) << result.boxes;
+    EXPECT_EQ(result.witness.has_value(), result.verdict == Verdict::refuted);
+  }
+}
+
+TEST(Dissipative, is_decided_for_friction_laws) {
+  const std::vector<Known> table = {
+      {"3*sgn_v + 2*v", kProved},
+      {"2*v", kProved},
+      {"v^3", kProved},
+      {"10*v + v^2", kProved},
+      {"v + v^2", kRefuted},
+      {"sgn_v*(8 + 4*exp(-abs(v/0.1)^2)) + 14.4*v", kProved},
+      {"tanh(50*v)*(5 + 0.1*abs(g))", kProved},
+      {"(5 + 0.01*g)*sgn_v + 2*v", kProved},
+      {"(5 + 0.1*g)*sgn_v + 2*v", kRefuted},
+      {"3*sgn_v + 2*v - 0.5", kProved},
+      {"3*sgn_v + 2*v - 3.5", kRefuted},
+      {"-v", kRefuted},
+      {"3*sgn_v - 2*v", kRefuted},
+      {"3*sgn_v - 1.4*v", kProved},
+      {"v/(v^2 + 0.01)", kProved},
+      {"0", kProved},
+      {"1/v", kRefuted},  // not finite
+  };
+  expect_all(table, {.property = Property::dissipative});
+}
+
+TEST(Dissipative, is_refuted_by_a_point_where_friction_drives) {
+  const PropertyResult result = ask("3*sgn_v - 2*v", {.property = Property::dissipative});
+  ASSERT_TRUE(result.witness);
+  EXPECT_LT(f("3*sgn_v - 2*v", result.witness->point) * result.witness->point[0], 0);
+}
+
+TEST(Bounded, is_decided_against_a_limit) {
+  expect_all({{"3*sgn_v + 2*v", kProved}, {"3*sgn_v + 2*v + 0.001*g", kRefuted}},
+             {.property = Property::bounded, .limit = 7});
+  expect_all({{"g*v", kProved}, {"g/v", kRefuted}}, {.property = Property::bounded});
+  expect_all({{"v*exp(-v^2)", kProved}}, {.property = Property::bounded, .limit = 0.42889});
+  expect_all({{"v*exp(-v^2)", kRefuted}}, {.property = Property::bounded, .limit = 0.42887});
+}
+
+TEST(Monotone, looks_beyond_the_stribeck_range_only) {
+  const std::string stribeck = "sgn_v*(5 + 3*exp(-(v/0.1)^2)) + 2*v";
+  expect_all({{stribeck, kRefuted},
+              {"2*v + 3*sgn_v", kProved},
+              {"v^3", kProved},
+              {"tanh(5*v)", kProved},
+              {"v^2", kRefuted},
+              {"sgn_v*v^2", kProved},
+              {"sin(v)", kRefuted},
+              {"v + 0.01*g*v", kProved},
+              {"v + 0.02*g*v", kRefuted}},
+             {.property = Property::monotone});
+  expect_all({{stribeck, kProved}}, {.property = Property::monotone, .from = 0.25});
+  expect_all({{stribeck, kRefuted}}, {.property = Property::monotone, .from = 0.15});
+}
+
+TEST(Monotone, is_refuted_by_two_points_between_which_friction_falls) {
+  const std::string formula = "sgn_v*(5 + 3*exp(-(v/0.1)^2)) + 2*v";
+  const PropertyResult result = ask(formula, {.property = Property::monotone});
+  ASSERT_TRUE(result.witness);
+  const auto& [slow, fast, node] = *result.witness;
+  EXPECT_LT(slow[0], fast[0]);
+  EXPECT_EQ(slow[1], fast[1]);
+  EXPECT_GT(f(formula, slow), f(formula, fast));
+}
+
+TEST(Odd, is_decided_by_form_or_by_a_point) {
+  expect_all({{"3*sgn_v + 2*v", kProved},
+              {"v^3 - 2*v", kProved},
+              {"v*exp(-v^2)", kProved},
+              {"sgn_v*(8 + 4*exp(-abs(v/0.1)^2)) + 14.4*v", kProved},
+              {"tanh(3*v)*g", kProved},
+              {"v/(1 + abs(v))", kProved},
+              {"sin(v)*cos(v)", kProved},
+              {"sgn_v*sqrt(v*sgn_v)", kProved},
+              {"3*sgn_v + 2*v + 0.001", kRefuted},
+              {"v^2", kRefuted},
+              {"exp(v)", kRefuted},
+              {"v + g", kRefuted},
+              {"(8.452 - 0.215*sgn_v)*(1.842*v + sgn_v)", kRefuted}},
+             {.property = Property::odd});
+}
+
+TEST(Properties, refuse_a_question_that_makes_no_sense) {
+  EXPECT_THROW(ask("v", {.property = Property::dissipative, .velocity = 1}), Error);
+  EXPECT_THROW(ask("v", {.property = Property::monotone, .from = -1}), Error);
+  EXPECT_THROW(prove_property(parse("v", kNames), {{0, 1}}, {.property = Property::odd}), Error);
+}
+
+}  // namespace
+}  // namespace tribench
