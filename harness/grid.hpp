@@ -23,7 +23,7 @@ namespace tribench {
 // What one cell may spend. `evaluations` and `seconds` are told to the method, which stops by
 // itself; the others are enforced from outside and cost the cell.
 struct CellLimits {
-  std::uint64_t evaluations = 100'000'000;  // node-rows
+  std::uint64_t evaluations = 20'000'000'000;  // node-rows
   double seconds = 60;                      // CPU seconds of the fit
   double wall_seconds = 180;                // of the whole cell
   double cpu_limit_seconds = 90;            // CPU seconds of the whole cell

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "foundation/error.hpp"
+#include "problems/benchmark/entries.hpp"
 #include "problems/kuka/entries.hpp"
 #include "problems/kuka/planted_entries.hpp"
 
@@ -32,9 +33,10 @@ std::string suggestion(std::string_view name, const std::vector<ProblemEntry>& e
 
 }  // namespace
 
-Catalogue::Catalogue(std::optional<std::filesystem::path> /*data*/) {
+Catalogue::Catalogue(std::optional<std::filesystem::path> data) {
   kuka::add_entries(entries_);
   kuka::add_planted_entries(entries_);
+  benchmark::add_entries(entries_, data);
 }
 
 const ProblemEntry& Catalogue::find(std::string_view name) const {
