@@ -5,16 +5,14 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "algorithms/expression/random_formula.hpp"
 #include "algorithms/expression/text.hpp"
+#include "tests/algorithms/expression/agreement.hpp"
 
 namespace tribench {
 namespace {
@@ -27,12 +25,6 @@ std::vector<std::string> names() {
   return result;
 }
 const std::vector<std::string> kNames = names();
-
-template <typename T>
-bool same(T a, T b) {
-  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
-  return (std::isnan(a) && std::isnan(b)) || std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
-}
 
 template <typename T>
 struct Table {

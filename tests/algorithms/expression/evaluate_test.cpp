@@ -6,14 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <type_traits>
 
 #include "algorithms/expression/random_formula.hpp"
 #include "algorithms/expression/text.hpp"
+#include "tests/algorithms/expression/agreement.hpp"
 #include "tests/algorithms/expression/reference.hpp"
 
 namespace tribench {
@@ -21,12 +20,6 @@ namespace {
 
 constexpr std::size_t kVariables = 3;
 const std::vector<std::string> kNames = {"v", "g", "s"};
-
-template <typename T>
-bool same(T a, T b) {  // the same bits; any NaN is any other
-  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
-  return (std::isnan(a) && std::isnan(b)) || std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
-}
 
 template <typename T>
 struct Table {
@@ -213,46 +206,6 @@ TYPED_TEST(Evaluate, ReportsAnErrorSumThatIsNotFinite) {
       evaluator.sum_squared_errors(parse("log(v)", kNames), table.inputs(), target);
   EXPECT_EQ(sum.status, ErrorSumStatus::not_finite);
   EXPECT_LT(sum.rows, 600U);
-}
-
-// The share of 10^6 random formulas that runs by day; the slow test draws the rest.
-void compare_with_the_c_library(std::uint64_t seed, int formulas) {
-  constexpr std::size_t kRows = 16;
-  Table<double> table(kRows, seed);
-  RandomStream random(seed);
-  std::vector<Evaluator> evaluators;
-  for (const VectorLevel level : available_vector_levels()) evaluators.emplace_back(level);
-  std::vector<double> out(kRows);
-  std::vector<double> other(kRows);
-  long decided = 0;
-  long total = 0;
-  for (int trial = 0; trial < formulas; ++trial) {
-    const Expression formula = draw(random, 24);
-    evaluators.back().evaluate(formula, table.inputs(), out);
-    for (std::size_t k = 0; k + 1 < evaluators.size(); ++k) {
-      evaluators[k].evaluate(formula, table.inputs(), other);
-      for (std::size_t r = 0; r < kRows; ++r) {
-        ASSERT_TRUE(same(out[r], other[r])) << print(formula, kNames) << " row " << r;
-      }
-    }
-    for (std::size_t r = 0; r < kRows; ++r) {
-      const reference::Bounded expected =
-          reference::evaluate_bounded(formula, formula.root(), table.point(r));
-      ++total;
-      if (std::isinf(expected.slack)) continue;  // a few ulp may cross a pole or a domain's end
-      ++decided;
-      ASSERT_EQ(std::isfinite(out[r]), std::isfinite(expected.value))
-          << print(formula, kNames) << " row " << r << ": " << out[r] << ", not " << expected.value;
-      if (!std::isfinite(expected.value)) continue;
-      ASSERT_LE(std::abs(out[r] - expected.value), expected.slack)
-          << print(formula, kNames) << " row " << r << ": " << out[r] << ", not " << expected.value;
-    }
-  }
-  EXPECT_GT(decided, total / 2);
-}
-
-TEST(EvaluateAgainstTheCLibrary, IsWithinFourUlpAnOperationOnRandomFormulas) {
-  compare_with_the_c_library(key_of("by day"), 20000);
 }
 
 }  // namespace
