@@ -7,6 +7,7 @@
 #include "algorithms/model_based/placebos.hpp"
 #include "algorithms/model_based/random_search.hpp"
 #include "algorithms/model_based/static_friction.hpp"
+#include "algorithms/parfam/parfam.hpp"
 #include "algorithms/pysr/pysr.hpp"
 #include "algorithms/udsr/udsr.hpp"
 #include "foundation/error.hpp"
@@ -21,6 +22,7 @@ Registry::Registry() {
   entries_.push_back(linear_entry());
   entries_.push_back(random_search_entry());
   entries_.push_back(pysr_entry());
+  entries_.push_back(parfam_entry());
   entries_.push_back(udsr_entry());
 }
 

@@ -114,6 +114,30 @@ void pow(const double* a, const double* b, double* out, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) out[i] = std::pow(a[i], b[i]);
 }
 
+TRIBENCH_EACH_LEVEL void combine(const double* const* columns, const double* coefficients,
+                                 std::size_t count, double* out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) out[i] = 0;
+  std::size_t j = 0;
+  for (; j + 4 <= count; j += 4) {
+    const double* a = columns[j];
+    const double* b = columns[j + 1];
+    const double* c = columns[j + 2];
+    const double* d = columns[j + 3];
+    const double ca = coefficients[j];
+    const double cb = coefficients[j + 1];
+    const double cc = coefficients[j + 2];
+    const double cd = coefficients[j + 3];
+    for (std::size_t i = 0; i < n; ++i) {
+      out[i] += (ca * a[i] + cb * b[i]) + (cc * c[i] + cd * d[i]);
+    }
+  }
+  for (; j < count; ++j) {
+    const double* a = columns[j];
+    const double ca = coefficients[j];
+    for (std::size_t i = 0; i < n; ++i) out[i] += ca * a[i];
+  }
+}
+
 TRIBENCH_EACH_LEVEL double sum(const double* a, std::size_t n) {
   Lanes total = {};
   std::size_t i = 0;
@@ -170,6 +194,30 @@ TRIBENCH_EACH_LEVEL void dot4(const double* a, const double* const b[4], std::si
   sums[1] = TRIBENCH_SUM_LANES(total1) + rest[1];
   sums[2] = TRIBENCH_SUM_LANES(total2) + rest[2];
   sums[3] = TRIBENCH_SUM_LANES(total3) + rest[3];
+}
+
+void gram(const double* const* columns, std::size_t count, std::size_t n, double* products) {
+  // Rows in tiles, so that all columns of a tile stay in cache.
+  constexpr std::size_t kTile = 512;
+  for (std::size_t i = 0; i < count * count; ++i) products[i] = 0;
+  for (std::size_t row = 0; row < n; row += kTile) {
+    const std::size_t rows = n - row < kTile ? n - row : kTile;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = i; j < count; j += 4) {
+        const std::size_t last = count - 1;
+        const double* four[4];
+        for (std::size_t k = 0; k < 4; ++k) {
+          four[k] = columns[j + k < last ? j + k : last] + row;
+        }
+        double sums[4];
+        dot4(columns[i] + row, four, rows, sums);
+        for (std::size_t k = 0; k < 4 && j + k < count; ++k) products[i * count + j + k] += sums[k];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < i; ++j) products[i * count + j] = products[j * count + i];
+  }
 }
 
 }  // namespace tribench::columns

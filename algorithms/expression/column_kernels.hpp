@@ -38,9 +38,16 @@ void cos(const double* a, double* out, std::size_t n);
 void tanh(const double* a, double* out, std::size_t n);
 void pow(const double* a, const double* b, double* out, std::size_t n);
 
+// out[i] = sum_j coefficients[j] columns[j][i]; 0 where count is 0.
+void combine(const double* const* columns, const double* coefficients, std::size_t count,
+             double* out, std::size_t n);
+
 double sum(const double* a, std::size_t n);
 double dot(const double* a, const double* b, std::size_t n);
 // sums[j] = sum_i a[i] b[j][i] for j < 4: one reading of a serves four columns.
 void dot4(const double* a, const double* const b[4], std::size_t n, double sums[4]);
+
+// products[i * count + j] = sum_r columns[i][r] columns[j][r], both triangles.
+void gram(const double* const* columns, std::size_t count, std::size_t n, double* products);
 
 }  // namespace tribench::columns

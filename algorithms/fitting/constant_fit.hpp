@@ -11,22 +11,20 @@
 
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/expression.hpp"
+#include "algorithms/fitting/levenberg_marquardt.hpp"
 
 namespace tribench {
 
-enum class FitStatus {
-  converged,  // gradient, step or decrease below tolerance
-  max_iterations,
-  not_finite,  // the formula is not finite at the start
-  no_constants,
-};
-
 struct ConstantFitOptions {
   int max_iterations = 30;
-  double gradient_tolerance = 1e-10;  // max norm of the scaled gradient
+  double gradient_tolerance = 1e-10;  // cosine between the residual and a column of J
   double step_tolerance = 1e-10;      // relative to the constants
   double function_tolerance = 1e-12;  // relative decrease of the sum of squares
   bool fit_exponents = false;         // constants that are the exponent of ^ move too
+  // Bounds on the constants that are fitted, in the order of the tape; empty for none. The
+  // constants given must keep to them.
+  std::span<const double> low = {};
+  std::span<const double> high = {};
 };
 
 struct ConstantFitResult {

@@ -127,6 +127,21 @@ TEST(ConstantFit, LeavesExponentsAloneUnlessTold) {
   EXPECT_LT(result.sum_squares, 1e-15);
 }
 
+TEST(ConstantFit, KeepsToBoundsAndFindsTheMinimumOnThem) {
+  Curve curve = curve_of("3*s + 2*v");
+  Expression formula = parse("1*s + 1*v", kNames);
+  const std::vector<double> low = {-10, -10};
+  const std::vector<double> high = {10, 1.5};
+  const ConstantFitResult result = ConstantFitter().fit(
+      formula, curve.inputs(), curve.y, {}, {.max_iterations = 50, .low = low, .high = high});
+  EXPECT_EQ(result.status, FitStatus::converged);
+  EXPECT_EQ(formula.node(formula.constant_positions()[1]).value, 1.5);
+  // With the slope held, the best level takes the mean of what is left: 3 + 0.5 mean |v|.
+  double mean = 0;
+  for (double v : curve.v) mean += std::abs(v) / 90;
+  EXPECT_NEAR(formula.node(formula.constant_positions()[0]).value, 3 + 0.5 * mean, 1e-8);
+}
+
 TEST(ConstantFit, WeightsOfZeroTakeRowsOut) {
   Curve curve = curve_of("3*s + 2*v");
   curve.y[7] = 1000;

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/parfam/family.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tribench::parfam {
+namespace {
+
+// All multisets of `size` base functions, in the order of the list.
+void multisets(const std::vector<Op>& base, std::size_t from, int size, std::vector<Op>& current,
+               std::vector<std::vector<Op>>& result) {
+  if (size == 0) {
+    result.push_back(current);
+    return;
+  }
+  for (std::size_t i = from; i < base.size(); ++i) {
+    current.push_back(base[i]);
+    multisets(base, i, size - 1, current, result);
+    current.pop_back();
+  }
+}
+
+}  // namespace
+
+std::string describe(const Family& family) {
+  if (family.functions.empty()) {
+    return family.degree_out_denominator == 0
+               ? fmt::format("polynomial of degree {}", family.degree_out)
+               : fmt::format("rational function of degrees {}/{}", family.degree_out,
+                             family.degree_out_denominator);
+  }
+  std::string names;
+  for (Op op : family.functions) {
+    names += (names.empty() ? "" : ", ") + std::string(op_name(op));
+  }
+  return fmt::format("{} of degrees {}/{} in degrees {}/{}", names, family.degree_in,
+                     family.degree_in_denominator, family.degree_out,
+                     family.degree_out_denominator);
+}
+
+GridLimits small_grid() { return {}; }
+
+GridLimits big_grid() { return {2, 2, 4, 3, 1, {Op::sqrt, Op::cos, Op::exp}, true}; }
+
+std::vector<Family> published_grid(const GridLimits& limits) {
+  std::vector<Family> grid;
+  grid.push_back({0, 0, limits.degree_out, 0, {}, false});
+  for (int den = 1; den <= limits.degree_out_denominator; ++den) {
+    for (int num = 1; num <= limits.degree_out; ++num) grid.push_back({0, 0, num, den, {}, false});
+  }
+  for (int count = 1; count <= limits.functions; ++count) {
+    std::vector<std::vector<Op>> choices;
+    std::vector<Op> current;
+    multisets(limits.base_functions, 0, count, current, choices);
+    for (int out_den = 0; out_den <= limits.degree_out_denominator; ++out_den) {
+      for (int out = 1; out <= limits.degree_out; ++out) {
+        for (int in_den = 0; in_den <= limits.degree_in_denominator; ++in_den) {
+          for (int in = 1; in <= limits.degree_in; ++in) {
+            for (const auto& functions : choices) {
+              for (int enforce = 0; enforce <= (limits.both_enforce ? 1 : 0); ++enforce) {
+                grid.push_back({in, in_den, out, out_den, functions, enforce != 0});
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+  return grid;
+}
+
+std::size_t Structure::inner_parameters() const {
+  std::size_t count = 0;
+  for (const auto& list : numerators) count += list.size();
+  for (const auto& list : denominators) count += list.size();
+  return count;
+}
+
+Structure make_structure(const Family& family, std::span<const int> caps) {
+  Structure structure;
+  structure.inputs = caps.size();
+  structure.functions = family.functions;
+  const auto denominator = [](int degree, std::span<const int> with_caps) {
+    return degree == 0 ? std::vector<Monomial>() : monomials_up_to(degree, with_caps);
+  };
+  std::vector<int> out_caps(caps.begin(), caps.end());
+  for (std::size_t i = 0; i < family.functions.size(); ++i) {
+    structure.numerators.push_back(monomials_up_to(family.degree_in, caps));
+    structure.denominators.push_back(denominator(family.degree_in_denominator, caps));
+    out_caps.push_back(1);
+  }
+  structure.out_numerator = monomials_up_to(family.degree_out, out_caps);
+  structure.out_denominator = denominator(family.degree_out_denominator, out_caps);
+  if (family.enforce_function && !family.functions.empty()) {
+    std::erase_if(structure.out_numerator, [&](const Monomial& monomial) {
+      return std::all_of(monomial.begin() + static_cast<std::ptrdiff_t>(caps.size()),
+                         monomial.end(), [](int e) { return e == 0; });
+    });
+  }
+  return structure;
+}
+
+}  // namespace tribench::parfam
