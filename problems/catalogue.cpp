@@ -7,6 +7,7 @@
 #include "problems/benchmark/entries.hpp"
 #include "problems/kuka/entries.hpp"
 #include "problems/kuka/planted_entries.hpp"
+#include "problems/measured/entries.hpp"
 
 namespace tribench {
 namespace {
@@ -37,6 +38,7 @@ Catalogue::Catalogue(std::optional<std::filesystem::path> data) {
   kuka::add_entries(entries_);
   kuka::add_planted_entries(entries_);
   benchmark::add_entries(entries_, data);
+  measured::add_entries(entries_, data);
 }
 
 const ProblemEntry& Catalogue::find(std::string_view name) const {

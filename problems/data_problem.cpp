@@ -13,23 +13,33 @@
 namespace tribench {
 namespace {
 
-double correlation(std::span<const double> a, std::span<const double> b) {
-  const auto n = static_cast<double>(a.size());
-  double mean_a = 0;
-  double mean_b = 0;
-  for (std::size_t r = 0; r < a.size(); ++r) {
-    mean_a += a[r] / n;
-    mean_b += b[r] / n;
+// A direction counts where it reaches a tenth of the other's speed: noise at standstill is none.
+bool has_both_directions(std::span<const double> velocity) {
+  const auto [low, high] = std::minmax_element(velocity.begin(), velocity.end());
+  if (low == velocity.end()) return false;
+  return std::min(-*low, *high) > 0.1 * std::max(-*low, *high);
+}
+
+// Correlation; about 0 instead of the means where the velocity has one direction, since friction
+// may well fall with speed.
+double agreement(std::span<const double> friction, std::span<const double> velocity) {
+  const auto n = static_cast<double>(friction.size());
+  const bool centred = has_both_directions(velocity);
+  double mean_f = 0;
+  double mean_v = 0;
+  for (std::size_t r = 0; centred && r < friction.size(); ++r) {
+    mean_f += friction[r] / n;
+    mean_v += velocity[r] / n;
   }
-  double ab = 0;
-  double aa = 0;
-  double bb = 0;
-  for (std::size_t r = 0; r < a.size(); ++r) {
-    ab += (a[r] - mean_a) * (b[r] - mean_b);
-    aa += (a[r] - mean_a) * (a[r] - mean_a);
-    bb += (b[r] - mean_b) * (b[r] - mean_b);
+  double fv = 0;
+  double ff = 0;
+  double vv = 0;
+  for (std::size_t r = 0; r < friction.size(); ++r) {
+    fv += (friction[r] - mean_f) * (velocity[r] - mean_v);
+    ff += (friction[r] - mean_f) * (friction[r] - mean_f);
+    vv += (velocity[r] - mean_v) * (velocity[r] - mean_v);
   }
-  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
+  return ff > 0 && vv > 0 ? fv / std::sqrt(ff * vv) : 0;
 }
 
 std::vector<Input> make_inputs(const Dataset& data, const std::string& target,
@@ -72,7 +82,7 @@ void refuse_opposing_friction(const Dataset& data, std::string_view target) {
   const Channel& friction = data.at(target);
   const Channel* velocity = data.find(Role::velocity);
   if (friction.role != Role::friction_torque || velocity == nullptr) return;
-  const double measured = correlation(friction.values, velocity->values);
+  const double measured = agreement(friction.values, velocity->values);
   if (measured >= 0) return;
   throw_bad_input(
       fmt::format("'{}' opposes '{}' (correlation {:.2f}); friction is positive with velocity here",

@@ -20,6 +20,7 @@ enum class ExitStatus : int {
 };
 
 void add_check_command(CLI::App& app, ExitStatus& status);
+void add_data_command(CLI::App& app, ExitStatus& status);
 void add_generate_command(CLI::App& app, ExitStatus& status);
 // The hidden word that makes the program a worker process.
 inline constexpr const char* kWorkerCommand = "worker";

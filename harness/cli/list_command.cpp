@@ -15,6 +15,7 @@
 #include "algorithms/registry.hpp"
 #include "harness/cli/commands.hpp"
 #include "problems/catalogue.hpp"
+#include "problems/measured/manifest.hpp"
 
 namespace tribench {
 namespace {
@@ -41,6 +42,12 @@ std::vector<Listed> listed_methods() {
 std::vector<Listed> listed_operators() {
   std::vector<Listed> all;
   for (const OperatorSet& set : operator_sets()) all.push_back({set.name(), set.summary()});
+  return all;
+}
+
+std::vector<Listed> listed_data() {
+  std::vector<Listed> all;
+  for (const measured::Manifest& set : measured::manifests()) all.push_back({set.name, set.title});
   return all;
 }
 
@@ -74,6 +81,7 @@ void add_list_command(CLI::App& app, ExitStatus& /*status*/) {
   add_kind(*list, "problems", "Every problem of the catalogue", listed_problems);
   add_kind(*list, "methods", "Every algorithm a grid can name", listed_methods);
   add_kind(*list, "operators", "The operator sets", listed_operators);
+  add_kind(*list, "data", "The measured sets", listed_data);
 }
 
 }  // namespace tribench

@@ -35,6 +35,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_pretrain_command(app, status);
   add_report_command(app, status);
   add_check_command(app, status);
+  add_data_command(app, status);
   add_generate_command(app, status);
   add_list_command(app, status);
   add_study_command(app, status);

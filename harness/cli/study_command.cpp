@@ -10,6 +10,7 @@
 
 #include "harness/cli/commands.hpp"
 #include "harness/study/generator_study.hpp"
+#include "harness/study/reference_study.hpp"
 
 namespace tribench {
 namespace {
@@ -64,12 +65,54 @@ void add_generator_study(CLI::App& study, ExitStatus& status) {
   });
 }
 
+void print_references(const std::vector<ReferenceFigure>& figures, bool json) {
+  nlohmann::ordered_json array = nlohmann::ordered_json::array();
+  if (!json) {
+    fmt::print("Published errors of measured sets, 100 |y - f| / |y|; a gate is 0.1.\n\n");
+    fmt::print("| problem | model | terms | rows | published | ours | gate |\n");
+    fmt::print("|---|---|---|--:|--:|--:|---|\n");
+  }
+  for (const ReferenceFigure& figure : figures) {
+    array.push_back({{"name", figure.problem + " " + figure.model},
+                     {"summary", figure.summary},
+                     {"rows", figure.rows},
+                     {"published_percent", figure.published},
+                     {"percent", figure.ours},
+                     {"within", figure.within}});
+    if (!json) {
+      fmt::print("| {} | {} | {} | {} | {:.4f} | {:.4f} | {} |\n", figure.problem, figure.model,
+                 figure.summary, figure.rows, figure.published, figure.ours,
+                 figure.within ? "yes" : "NO");
+    }
+  }
+  if (json) fmt::print("{}\n", array.dump(2));
+}
+
+void add_reference_study(CLI::App& study, ExitStatus& status) {
+  CLI::App* command = study.add_subcommand(
+      "references", "Measured sets: do the published models give the published errors?");
+  command->footer("Example: tribench study references --data ../shared/data");
+  auto data = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("--data", *data, "the folder with the measured sets");
+  command->add_flag("--json", *json, "an array of figures");
+  command->callback([data, json, &status] {
+    const std::vector<ReferenceFigure> figures = run_reference_study(
+        data->empty() ? std::nullopt : std::optional<std::filesystem::path>(*data));
+    print_references(figures, *json);
+    for (const ReferenceFigure& figure : figures) {
+      if (!figure.within) status = ExitStatus::found;
+    }
+  });
+}
+
 }  // namespace
 
 void add_study_command(CLI::App& app, ExitStatus& status) {
   CLI::App* study = app.add_subcommand("study", "Experiments of the program with itself");
   study->require_subcommand(1);
   add_generator_study(*study, status);
+  add_reference_study(*study, status);
 }
 
 }  // namespace tribench

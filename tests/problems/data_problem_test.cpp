@@ -52,6 +52,13 @@ TEST(DataProblem, RefusesFrictionThatOpposesVelocityUntilItIsFlipped) {
   EXPECT_EQ(data.at("tau_g").values, small().at("tau_g").values);
 }
 
+TEST(DataProblem, FrictionThatFallsWithSpeedInOneDirectionDoesNotOpposeIt) {
+  const Dataset data = parse_csv("velocity_rad_s,tau_f\n1,9\n2,8\n3,7\n", "one.csv").data;
+  EXPECT_EQ(complaint(data, "tau_f", {"velocity_rad_s"}), "no error");
+  const Dataset wrong = parse_csv("velocity_rad_s,tau_f\n1,-7\n2,-8\n3,-6\n", "one.csv").data;
+  EXPECT_THAT(complaint(wrong, "tau_f", {"velocity_rad_s"}), HasSubstr("opposes"));
+}
+
 TEST(DataProblem, ComplainsOfColumnsByName) {
   EXPECT_THAT(complaint(small(), "tau_x", {"y"}), HasSubstr("did you mean tau_"));
   EXPECT_THAT(complaint(small(), "tau_f", {"velocity_rads"}), HasSubstr("velocity_rad_s"));

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "problems/measured/entries.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "foundation/error.hpp"
+#include "foundation/random.hpp"
+#include "problems/data_problem.hpp"
+#include "problems/measured/data_folder.hpp"
+#include "problems/measured/recording.hpp"
+#include "problems/table.hpp"
+
+namespace tribench::measured {
+namespace {
+
+namespace fs = std::filesystem;
+using DataFolder = std::optional<fs::path>;
+
+fs::path verified_file(const Manifest& manifest, const std::string& name, const DataFolder& data) {
+  const DataFolder folder = find_data_folder(data);
+  if (!folder) {
+    throw_bad_input(fmt::format("the measured set '{}' is not here", manifest.name), {},
+                    "give its folder by --data DIR, $TRIBENCH_DATA or ./data; see: tribench data "
+                    "list");
+  }
+  const fs::path path = *folder / manifest.name / name;
+  const auto file = std::find_if(manifest.files.begin(), manifest.files.end(),
+                                 [&name](const File& known) { return known.name == name; });
+  if (file == manifest.files.end()) {
+    throw Error(ErrorKind::failed, fmt::format("the manifest has no file '{}'", name),
+                manifest.name);
+  }
+  std::error_code code;
+  if (!fs::is_regular_file(path, code)) {
+    throw_bad_input("the file is not there", path.string(),
+                    fmt::format("get it from {}", manifest.source));
+  }
+  if (const std::string hash = sha256_of(path); hash != file->sha256) {
+    throw_bad_input(fmt::format("the file has changed (SHA-256 {})", hash), path.string(),
+                    fmt::format("get it again from {}", manifest.source));
+  }
+  return path;
+}
+
+Dataset thinned(const Dataset& data, const ProblemPlan& plan) {
+  if (plan.rows_per_movement == 0) return data;
+  return thin({data, {}}, plan.rows_per_movement, RandomStream(key_of(plan.name))).data;
+}
+
+void widen_box(std::vector<Input>& inputs, const std::vector<Input>& others) {
+  for (std::size_t j = 0; j < inputs.size(); ++j) {
+    inputs[j].low = std::min(inputs[j].low, others[j].low);
+    inputs[j].high = std::max(inputs[j].high, others[j].high);
+  }
+}
+
+}  // namespace
+
+Problem make_measured_problem(const Manifest& manifest, const ProblemPlan& plan,
+                              const DataFolder& data, std::uint64_t seed) {
+  const Dataset recording =
+      thinned(read_recording(plan, verified_file(manifest, plan.file, data)), plan);
+  Problem problem = make_data_problem(recording, nullptr, plan.target, plan.inputs);
+  problem.name = plan.name;
+  problem.summary = plan.summary;
+  problem.dataset = manifest.name;
+  problem.joint = plan.joint;
+  problem.load = plan.load;
+  if (plan.test_file.empty()) {
+    const std::vector<char> test = draw_test_movements(
+        recording, plan.test_share, RandomStream(key_of(plan.name)).split(seed).split("split"));
+    std::vector<char> train(test);
+    for (char& mark : train) mark = mark == 0 ? 1 : 0;
+    problem.stages.front().train = make_table({recording, {}}, problem.inputs, plan.target, train);
+    problem.test = make_table({recording, {}}, problem.inputs, plan.target, test);
+    return problem;
+  }
+  const Dataset other =
+      thinned(read_recording(plan, verified_file(manifest, plan.test_file, data)), plan);
+  const Problem tested = make_data_problem(other, nullptr, plan.target, plan.inputs);
+  widen_box(problem.inputs, tested.inputs);
+  problem.test = tested.stages.front().train;
+  return problem;
+}
+
+void add_entries(std::vector<ProblemEntry>& entries, const DataFolder& data) {
+  for (const Manifest& manifest : manifests()) {
+    for (const ProblemPlan& plan : manifest.problems) {
+      entries.push_back({plan.name, plan.summary,
+                         [&manifest, &plan, data](std::uint64_t seed) {
+                           return make_measured_problem(manifest, plan, data, seed);
+                         },
+                         [&manifest, &plan, data](std::uint64_t) {
+                           return read_recording(plan, verified_file(manifest, plan.file, data));
+                         }});
+    }
+  }
+}
+
+}  // namespace tribench::measured
