@@ -66,7 +66,7 @@ ColumnKind kind_of(const CsvCells& cells, std::size_t column, const NameReading&
 
 // A role given by hand takes it away from columns that only sound like it; of several that sound
 // alike the first keeps it.
-void settle_roles(const CsvCells& cells, std::vector<Column>& columns, CsvReading& reading) {
+void settle_roles(const CsvCells& cells, std::vector<Column>& columns, DataFile& reading) {
   std::map<Role, std::size_t> owner;
   for (const bool given : {true, false}) {
     for (std::size_t j = 0; j < columns.size(); ++j) {
@@ -85,7 +85,7 @@ void settle_roles(const CsvCells& cells, std::vector<Column>& columns, CsvReadin
 }
 
 std::vector<Column> read_columns(const CsvCells& cells, const CsvOptions& options,
-                                 CsvReading& reading) {
+                                 DataFile& reading) {
   std::vector<Column> columns;
   for (const std::string& name : cells.header) {
     Column column;
@@ -184,8 +184,7 @@ void check_torque_units(const Dataset& data, std::string_view file) {
 }
 
 void fill_rows(const CsvCells& cells, const std::vector<Column>& columns, std::string_view file,
-               const CsvOptions& options, CsvReading& reading,
-               std::vector<std::size_t>& kept_lines) {
+               const CsvOptions& options, DataFile& reading, std::vector<std::size_t>& kept_lines) {
   const auto movement = std::find_if(columns.begin(), columns.end(), [](const Column& column) {
     return column.kind == ColumnKind::movement;
   });
@@ -221,10 +220,10 @@ void fill_rows(const CsvCells& cells, const std::vector<Column>& columns, std::s
 
 }  // namespace
 
-CsvReading parse_csv(std::string_view text, std::string_view file, const CsvOptions& options) {
+DataFile parse_csv(std::string_view text, std::string_view file, const CsvOptions& options) {
   const CsvCells cells = split_csv(text, file);
   check_roles_name_columns(cells, options, file);
-  CsvReading reading;
+  DataFile reading;
   const std::vector<Column> columns = read_columns(cells, options, reading);
   reading.data.name = stem_of(file);
   for (std::size_t j = 0; j < columns.size(); ++j) {
@@ -249,7 +248,7 @@ CsvReading parse_csv(std::string_view text, std::string_view file, const CsvOpti
   return reading;
 }
 
-CsvReading read_csv(const std::filesystem::path& file, const CsvOptions& options) {
+DataFile read_csv(const std::filesystem::path& file, const CsvOptions& options) {
   std::error_code code;
   if (std::filesystem::is_directory(file, code)) {
     throw_bad_input("this is a folder", file.string(), "give a CSV file");
@@ -263,8 +262,8 @@ CsvReading read_csv(const std::filesystem::path& file, const CsvOptions& options
 
 namespace {
 
-void check_same_channels(const CsvReading& all, const CsvReading& next, std::string_view file) {
-  const auto names = [](const CsvReading& reading) {
+void check_same_channels(const DataFile& all, const DataFile& next, std::string_view file) {
+  const auto names = [](const DataFile& reading) {
     std::vector<std::string> list;
     for (const Channel& channel : reading.data.channels) list.push_back(channel.name);
     for (const TextColumn& column : reading.texts) list.push_back(column.name + " (text)");
@@ -276,7 +275,7 @@ void check_same_channels(const CsvReading& all, const CsvReading& next, std::str
                   file, "give files with the same columns in the same order");
 }
 
-void append(CsvReading& all, CsvReading next, std::string_view file) {
+void append(DataFile& all, DataFile next, std::string_view file) {
   check_same_channels(all, next, file);
   const auto first = static_cast<int>(all.data.movement_names.size());
   for (std::string& name : next.data.movement_names) {
@@ -303,9 +302,9 @@ void append(CsvReading& all, CsvReading next, std::string_view file) {
 
 }  // namespace
 
-CsvReading read_csv_files(std::span<const std::filesystem::path> files, const CsvOptions& options) {
+DataFile read_csv_files(std::span<const std::filesystem::path> files, const CsvOptions& options) {
   if (files.empty()) throw_bad_input("no data file is given", {}, "name one CSV file or more");
-  CsvReading all = read_csv(files.front(), options);
+  DataFile all = read_csv(files.front(), options);
   for (const std::filesystem::path& file : files.subspan(1)) {
     append(all, read_csv(file, options), file.string());
   }

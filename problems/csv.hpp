@@ -40,22 +40,22 @@ struct TextColumn {
   std::vector<std::string> values;  // per row of the dataset
 };
 
-struct CsvReading {
+struct DataFile {
   Dataset data;
   std::vector<TextColumn> texts;
   std::size_t dropped_rows = 0;
   std::vector<std::string> warnings;  // one sentence each
 };
 
-CsvReading read_csv(const std::filesystem::path& file, const CsvOptions& options = {});
+DataFile read_csv(const std::filesystem::path& file, const CsvOptions& options = {});
 
 // The same from memory; `file` names it in messages.
-CsvReading parse_csv(std::string_view text, std::string_view file, const CsvOptions& options = {});
+DataFile parse_csv(std::string_view text, std::string_view file, const CsvOptions& options = {});
 
 // Several files as one campaign, in the order given; all must have the same channels. Movements
 // that share a name in different files are told apart by the file's name.
-CsvReading read_csv_files(std::span<const std::filesystem::path> files,
-                          const CsvOptions& options = {});
+DataFile read_csv_files(std::span<const std::filesystem::path> files,
+                        const CsvOptions& options = {});
 
 // Comma-separated, numbers as the shortest text that reads back to the same double, a `movement`
 // column first. Throws Error (failed) where the file cannot be written.

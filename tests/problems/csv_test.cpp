@@ -27,7 +27,7 @@ std::string complaint(std::string_view text, const CsvOptions& options = {}) {
 }
 
 TEST(Csv, ReadsRolesUnitsAndMovements) {
-  const CsvReading reading = parse_csv(
+  const DataFile reading = parse_csv(
       "movement,time_s,velocity_rad_s,friction_torque_Nm\n"
       "up slow,0,0.25,9.5\n"
       "up slow,0.1,0.25,9.75\n"
@@ -80,7 +80,7 @@ TEST(Csv, AMissingValueIsNamedWithLineColumnAndMend) {
 TEST(Csv, DroppedRowsAreCounted) {
   CsvOptions options;
   options.drop_missing = true;
-  const CsvReading reading =
+  const DataFile reading =
       parse_csv("movement,v,y\na,1,2\na,,3\na,nan,4\n,1,1\nb,5,6\n\nb,7,8\n", "data.csv", options);
   EXPECT_EQ(reading.dropped_rows, 4U);
   EXPECT_EQ(reading.data.at("v").values, (std::vector<double>{1, 5, 7}));
@@ -115,7 +115,7 @@ TEST(Csv, MovementsStandTogetherAndTimeRunsForward) {
 TEST(Csv, GivenRolesWinAndUnknownColumnsAreAnsweredWithTheNearest) {
   CsvOptions options;
   options.roles = {{"speed", Role::velocity}, {"run", Role::movement}};
-  const CsvReading reading =
+  const DataFile reading =
       parse_csv("run,speed,velocity_rad_s\n7,1,2\n8,1,2\n", "data.csv", options);
   EXPECT_EQ(reading.data.at("speed").role, Role::velocity);
   EXPECT_EQ(reading.data.at("velocity_rad_s").role, Role::none);
@@ -131,7 +131,7 @@ TEST(Csv, TorqueLikeColumnsShareOneUnit) {
 }
 
 TEST(Csv, ColumnsOfTextAreKeptApart) {
-  const CsvReading reading = parse_csv("trajectory,v\nslow,1\n\"fa;st\",2\n", "data.csv");
+  const DataFile reading = parse_csv("trajectory,v\nslow,1\n\"fa;st\",2\n", "data.csv");
   ASSERT_EQ(reading.texts.size(), 1U);
   EXPECT_EQ(reading.texts[0].values, (std::vector<std::string>{"slow", "fa;st"}));
   EXPECT_EQ(reading.data.channels.size(), 1U);
@@ -166,7 +166,7 @@ void expect_answer(std::string_view text) {
     CsvOptions options;
     options.drop_missing = drop;
     try {
-      const CsvReading reading = parse_csv(text, "fuzz.csv", options);
+      const DataFile reading = parse_csv(text, "fuzz.csv", options);
       ASSERT_GT(reading.data.rows(), 0U);
       for (const Channel& channel : reading.data.channels) {
         ASSERT_EQ(channel.values.size(), reading.data.rows());
