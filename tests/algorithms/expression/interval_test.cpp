@@ -256,5 +256,31 @@ TEST(Interval, holds_what_the_evaluator_computes_at_every_point) {
   }
 }
 
+TEST(Interval, holds_what_the_evaluator_computes_from_two_operands) {
+  RandomStream random(key_of("interval kernels of two"));
+  constexpr std::size_t kPoints = 200000;
+  std::vector<double> a(kPoints);
+  std::vector<double> b(kPoints);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    a[i] = random_number(random);
+    b[i] = i % 3 == 0 ? static_cast<double>(random.below(13)) - 6 : random_number(random);
+  }
+  const std::array<const double*, 2> columns = {a.data(), b.data()};
+  std::vector<double> values(kPoints);
+  Evaluator evaluator;
+  for (const Op op : {Op::add, Op::sub, Op::mul, Op::div, Op::pow}) {
+    const Expression formula =
+        Expression::binary(op, Expression::variable(0), Expression::variable(1));
+    evaluator.evaluate(formula, {columns, kPoints}, values);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const DecoratedInterval bounds = apply(op, {Interval::point(a[i])}, {Interval::point(b[i])});
+      if (bounds.decoration == Decoration::trivial) continue;
+      ASSERT_TRUE(bounds.range.contains(values[i]))
+          << a[i] << " " << op_name(op) << " " << b[i] << " = " << values[i] << " outside ["
+          << bounds.range.low << ", " << bounds.range.high << "]";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tribench

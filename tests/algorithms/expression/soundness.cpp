@@ -132,7 +132,8 @@ void expect_witness(const Expression& formula, const Witness& witness) {
   if (witness.neighbour.empty()) {
     ASSERT_FALSE(std::isfinite(value)) << print(formula, kNames);
   } else {
-    ASSERT_LT(value * evaluator.evaluate_at(node, witness.neighbour), 0) << print(formula, kNames);
+    ASSERT_EQ(sign_of(value) * sign_of(evaluator.evaluate_at(node, witness.neighbour)), -1)
+        << print(formula, kNames);
   }
 }
 

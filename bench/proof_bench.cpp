@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+//
+// What a verdict costs: random formulas with division over the box of a joint with load, one after
+// another. Counters: median, 99th percentile and worst CPU time of one formula in milliseconds and
+// the share of formulas decided. Checks every proof at sampled points and every witness with the
+// evaluator. Also the cost of the canonical hash, a node.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <vector>
+
+#include "algorithms/expression/canonical.hpp"
+#include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/operator_set.hpp"
+#include "algorithms/expression/random_formula.hpp"
+#include "algorithms/expression/singularity.hpp"
+#include "foundation/random.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr std::size_t kFormulas = 2000;
+const InputBox kBox = {{-2, 2}, {-1, 1, 0}, {-60, 60}, {-1, 1, 2}};  // v, sgn_v, g, sgn_g
+
+std::vector<Expression> formulas_with_division(std::size_t nodes) {
+  RandomStream random = RandomStream(key_of("proof bench")).split(nodes);
+  const RandomFormulas formulas(find_operator_set("paper+div"), kBox.size(), {.constant_scale = 3});
+  std::vector<Expression> all;
+  while (all.size() < kFormulas) {
+    Expression formula = formulas.grown(nodes, random);
+    const bool divides = std::any_of(formula.nodes().begin(), formula.nodes().end(),
+                                     [](const Node& node) { return node.op == Op::div; });
+    if (divides) all.push_back(std::move(formula));
+  }
+  return all;
+}
+
+double cpu_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+// Whether the result bears a look: a witness is none, or a proof fails at a point.
+bool is_right(const Expression& formula, const SingularityResult& result, RandomStream& random) {
+  Evaluator evaluator;
+  if (result.verdict == Verdict::refuted) {
+    const Expression node = formula.subtree(result.witness->node);
+    const double value = evaluator.evaluate_at(node, result.witness->point);
+    if (result.witness->neighbour.empty()) return !std::isfinite(value);
+    const double beside = evaluator.evaluate_at(node, result.witness->neighbour);
+    return (value < 0 && beside > 0) || (value > 0 && beside < 0);
+  }
+  for (int i = 0; i < 20 && result.verdict == Verdict::proved_free; ++i) {
+    std::vector<double> point = {random.uniform(-2, 2), 0, random.uniform(-60, 60), 0};
+    point[1] = point[0] > 0 ? 1 : -1;
+    point[3] = point[2] > 0 ? 1 : -1;
+    if (!std::isfinite(evaluator.evaluate_at(formula, point))) return false;
+  }
+  return true;
+}
+
+void prove(benchmark::State& state) {
+  const std::vector<Expression> formulas =
+      formulas_with_division(static_cast<std::size_t>(state.range(0)));
+  RandomStream random(key_of("proof bench points"));
+  std::vector<double> times;
+  std::size_t proved = 0;
+  std::size_t refuted = 0;
+  for (auto _ : state) {
+    times.clear();
+    proved = refuted = 0;
+    for (const Expression& formula : formulas) {
+      const double start = cpu_ms();
+      const SingularityResult result = prove_free(formula, kBox);
+      times.push_back(cpu_ms() - start);
+      proved += result.verdict == Verdict::proved_free ? 1 : 0;
+      refuted += result.verdict == Verdict::refuted ? 1 : 0;
+      if (!is_right(formula, result, random)) state.SkipWithError("a verdict is wrong");
+    }
+  }
+  std::sort(times.begin(), times.end());
+  const auto total = static_cast<double>(times.size());
+  state.counters["median_ms"] = times[times.size() / 2];
+  state.counters["p99_ms"] = times[times.size() * 99 / 100];
+  state.counters["worst_ms"] = times.back();
+  state.counters["proved_%"] = 100 * static_cast<double>(proved) / total;
+  state.counters["refuted_%"] = 100 * static_cast<double>(refuted) / total;
+  state.counters["decided_%"] = 100 * static_cast<double>(proved + refuted) / total;
+}
+BENCHMARK(prove)->Arg(7)->Arg(15)->Arg(31)->Arg(63)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+void hash(benchmark::State& state) {
+  const std::vector<Expression> formulas =
+      formulas_with_division(static_cast<std::size_t>(state.range(0)));
+  Canonicalizer canonicalizer;
+  std::size_t nodes = 0;
+  for (auto _ : state) {
+    for (const Expression& formula : formulas) {
+      benchmark::DoNotOptimize(canonicalizer.hash(formula).exact);
+      nodes += formula.size();
+    }
+  }
+  for (const Expression& formula : formulas) {
+    if (canonicalizer.hash(formula).shape != Canonicalizer().hash(formula).shape) {
+      state.SkipWithError("a hash depends on the workspace's past");
+    }
+  }
+  state.counters["per_node"] = benchmark::Counter(
+      static_cast<double>(nodes), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(hash)->Arg(15)->Arg(31)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace tribench
