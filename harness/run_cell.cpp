@@ -155,6 +155,12 @@ StagesResult fit_stages(const Problem& problem, const Regressor& method, const C
     const FitResult fit = method.fit(context);
     budget.settle(part);
     if (!fit.note.empty()) result.note += (result.note.empty() ? "" : "; ") + fit.note;
+    // A method that has nothing for a later stage's inputs leaves what the first have found: the
+    // paper's model-based baselines have no adaptation.
+    if (s > 0 && fit.front.empty() && fit.reason == StopReason::unsupported) {
+      result.note += "; stage '" + stage.name + "' left out";
+      continue;
+    }
     if (fit.front.empty()) {
       result.failure = why_no_formula(fit);
       return result;

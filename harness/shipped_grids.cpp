@@ -6,6 +6,8 @@
 namespace tribench {
 namespace embedded {
 std::string_view quick_grid();
+std::string_view paper_grid();
+std::string_view measured_grid();
 }  // namespace embedded
 
 namespace {
@@ -29,7 +31,9 @@ ShippedGrid shipped(std::string name, std::string_view toml) {
 }  // namespace
 
 const std::vector<ShippedGrid>& shipped_grids() {
-  static const std::vector<ShippedGrid> kGrids = {shipped("quick", embedded::quick_grid())};
+  static const std::vector<ShippedGrid> kGrids = {shipped("quick", embedded::quick_grid()),
+                                                  shipped("paper", embedded::paper_grid()),
+                                                  shipped("measured", embedded::measured_grid())};
   return kGrids;
 }
 

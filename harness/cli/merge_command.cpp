@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/cli/commands.hpp"
+#include "harness/curves.hpp"
 #include "harness/provenance.hpp"
 #include "harness/run_files.hpp"
 #include "reports/record_csv.hpp"
@@ -39,6 +40,7 @@ void merge(const MergeArguments& arguments) {
                                std::filesystem::copy_options::overwrite_existing);
   }
   write_result_files(out, merged.results);
+  write_curves(out, merged.results, Catalogue());
   write_merged_provenance(out, folders, merged);
   fmt::print("{}\n{} cells from {} folders; see {}\n", write_run_reports(out),
              merged.results.size(), folders.size(), (out / "leaderboard.md").string());
@@ -50,6 +52,7 @@ void report(const std::filesystem::path& folder) {
     const JournalContents journal = read_journal(folder / "cells.jsonl");
     print_damage(journal);
     write_result_files(folder, journal.results);
+    write_curves(folder, journal.results, Catalogue());
   }
   fmt::print("{}\n", write_run_reports(folder));
 }

@@ -15,6 +15,7 @@
 
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/curves.hpp"
 #include "harness/grid.hpp"
 #include "harness/machine.hpp"
 #include "harness/plan.hpp"
@@ -116,6 +117,7 @@ void run_to_the_end(const Grid& grid, RunOptions options, const std::string& com
   session.ended = utc_now();
   const JournalContents journal = read_journal(options.out / "cells.jsonl");
   write_result_files(options.out, journal.results);
+  write_curves(options.out, journal.results, catalogue_of(options.data));
   write_provenance(options.out, identity, session, journal.results);
   print_end(session.tally, options.out, write_run_reports(options.out));
   if (session.tally.stopped) status = ExitStatus::failed;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/commands.hpp"
+#include "harness/study/external_torque_study.hpp"
 #include "harness/study/generator_study.hpp"
 #include "harness/study/reference_study.hpp"
 
@@ -106,6 +107,59 @@ void add_reference_study(CLI::App& study, ExitStatus& status) {
   });
 }
 
+void print_torques(const std::vector<ExternalTorqueFigure>& figures) {
+  fmt::print("External torque in B with load, estimated with each friction model of the run.\n");
+  fmt::print(
+      "MAE in N m: median over the seeds and range; outside: rows whose load is beyond what "
+      "the adaptation has seen.\n\n");
+  fmt::print(
+      "| joint | model | fitted as | operators | seeds | MAE | range | outside | MAE there |\n");
+  fmt::print("|--:|---|---|---|--:|--:|---|--:|--:|\n");
+  for (const ExternalTorqueFigure& figure : figures) {
+    fmt::print("| {} | {} | {} | {} | {} | {:.3f} | {:.3f} to {:.3f} | {:.1f} % | {} |\n",
+               figure.joint, figure.model, figure.problem, figure.operators, figure.seeds,
+               figure.mae_nm, figure.low_nm, figure.high_nm, 100 * figure.outside_share,
+               figure.outside_share > 0 ? fmt::format("{:.3f}", figure.mae_outside_nm) : "-");
+  }
+}
+
+void print_torques_json(const std::vector<ExternalTorqueFigure>& figures) {
+  nlohmann::ordered_json array = nlohmann::ordered_json::array();
+  for (const ExternalTorqueFigure& figure : figures) {
+    array.push_back(
+        {{"name", figure.model},
+         {"summary", fmt::format("joint {}, fitted as {}", figure.joint, figure.problem)},
+         {"joint", figure.joint},
+         {"problem", figure.problem},
+         {"operators", figure.operators},
+         {"seeds", figure.seeds},
+         {"mae_nm", figure.mae_nm},
+         {"low_nm", figure.low_nm},
+         {"high_nm", figure.high_nm},
+         {"outside_share", figure.outside_share},
+         {"mae_outside_nm", figure.mae_outside_nm}});
+  }
+  fmt::print("{}\n", array.dump(2));
+}
+
+void add_external_torque_study(CLI::App& study) {
+  CLI::App* command = study.add_subcommand(
+      "external-torque", "How well the friction models of a run estimate the external torque");
+  command->footer("Example: tribench study external-torque run-paper");
+  auto run = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("DIR", *run, "folder of a run with cells of B/jN/load")->required();
+  command->add_flag("--json", *json, "an array of figures");
+  command->callback([run, json] {
+    const std::vector<ExternalTorqueFigure> figures = run_external_torque_study(*run);
+    if (*json) {
+      print_torques_json(figures);
+    } else {
+      print_torques(figures);
+    }
+  });
+}
+
 }  // namespace
 
 void add_study_command(CLI::App& app, ExitStatus& status) {
@@ -113,6 +167,7 @@ void add_study_command(CLI::App& app, ExitStatus& status) {
   study->require_subcommand(1);
   add_generator_study(*study, status);
   add_reference_study(*study, status);
+  add_external_torque_study(*study);
 }
 
 }  // namespace tribench

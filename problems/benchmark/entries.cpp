@@ -108,10 +108,10 @@ Problem make_peer(const PeerLaw& law, std::string name, Table train) {
   Problem problem;
   problem.name = std::move(name);
   problem.summary = law.formula;
-  problem.dataset = "peer";
+  problem.dataset = std::string("peer");
   problem.load = law.load;
-  problem.target = "y";
-  problem.target_unit = "N m";
+  problem.target = std::string("y");
+  problem.target_unit = std::string("N m");
   problem.inputs = {{"v", "rad/s", Role::velocity, -kFastest, kFastest, {}},
                     {"sgn_v", "-", Role::velocity_sign, -1, 1, {}}};
   if (law.load) {

@@ -109,6 +109,21 @@ Problem make_load_problem(const std::string& name, int number, std::uint64_t see
   return problem;
 }
 
+// Raw A with every channel; the truth has no ripple, as for A/jN/load.
+Problem make_channels_problem(const std::string& name, int number, std::uint64_t seed) {
+  const Joint joint = make_joint(number, seed);
+  const KnownDataset raw = make_a_raw(joint, seed, kTestRows);
+  Problem problem = blank(name, "A", number, true);
+  problem.inputs = load_inputs(joint.gravity_amplitude_nm);
+  problem.inputs.push_back({"q", "rad", Role::position, -kStrokeEnd_rad, kStrokeEnd_rad, {}});
+  problem.inputs.push_back({"time_s", "s", Role::time, 0, raw.data.at("time_s").values.back(), {}});
+  problem.stages.push_back(
+      {"fit", {0, 1, 2, 3, 4, 5}, load_training(joint, seed, raw, problem.inputs)});
+  problem.test = make_table(raw, problem.inputs, "tau_f", test_movements(joint, seed));
+  problem.true_law = joint.law.formula(true);
+  return problem;
+}
+
 Problem make_b_problem(const std::string& name, int number, bool load, bool adapted,
                        std::uint64_t seed) {
   const Joint joint = make_joint(number, seed);
@@ -120,16 +135,15 @@ Problem make_b_problem(const std::string& name, int number, bool load, bool adap
       {"fit",
        {0, 1, 2, 3},
        load_training(joint, seed, make_a_raw(joint, seed, kTestRows), problem.inputs)});
-  // One more unloaded movement than the test uses: the adaptation's own.
-  std::vector<char> first(kTestMovementsB + 1, 0);
-  first.front() = 1;
+  const std::vector<char> one = {1};
   if (adapted) {
-    const KnownDataset one = make_b(joint, seed, 0, 1, kAdaptRows);
-    problem.stages.push_back({"adapt", {1, 2, 3}, make_table(one, problem.inputs, "tau_f", first)});
+    const KnownDataset movement = make_adaptation_movement(joint, seed);
+    problem.stages.push_back(
+        {"adapt", {1, 2, 3}, make_table(movement, problem.inputs, "tau_f", one)});
   }
-  const KnownDataset test =
-      make_b(joint, seed, load ? kPayload_kg : 0, kTestMovementsB + 1, kTestRowsB);
-  problem.test = make_table(test, problem.inputs, "tau_f", complement(first));
+  const KnownDataset test = make_b_test(joint, seed, load);
+  const std::vector<char> all(test.data.movement_names.size(), 1);
+  problem.test = make_table(test, problem.inputs, "tau_f", all);
   return problem;
 }
 
@@ -166,6 +180,13 @@ void add_a(std::vector<ProblemEntry>& entries, int joint) {
         return make_load_problem(name, joint, seed);
       },
       [joint](std::uint64_t seed) { return campaign_rows(make_joint(joint, seed), seed); });
+  add_entry(
+      entries, fmt::format("A/j{}/channels", joint),
+      fmt::format("joint {}: raw friction, every channel as an input", joint),
+      [joint](const std::string& name, std::uint64_t seed) {
+        return make_channels_problem(name, joint, seed);
+      },
+      [joint](std::uint64_t seed) { return campaign_rows(make_joint(joint, seed), seed); });
 }
 
 void add_b(std::vector<ProblemEntry>& entries, int joint, bool load, bool adapted) {
@@ -180,13 +201,27 @@ void add_b(std::vector<ProblemEntry>& entries, int joint, bool load, bool adapte
         return make_b_problem(name, joint, load, adapted, seed);
       },
       [joint, load](std::uint64_t seed) {
-        return make_b(make_joint(joint, seed), seed, load ? kPayload_kg : 0, kTestMovementsB + 1,
-                      kTestRowsB)
-            .data;
+        return make_b_test(make_joint(joint, seed), seed, load).data;
       });
 }
 
 }  // namespace
+
+KnownDataset make_adaptation_movement(const Joint& joint, std::uint64_t seed) {
+  return make_b(joint, seed, 0, 1, kAdaptRows);
+}
+
+// The first unloaded movement is the adaptation's, and is left out here.
+KnownDataset make_b_test(const Joint& joint, std::uint64_t seed, bool load) {
+  const KnownDataset all =
+      make_b(joint, seed, load ? kPayload_kg : 0, kTestMovementsB + 1, kTestRowsB);
+  std::vector<std::size_t> rows;
+  for (std::size_t r = kTestRowsB; r < all.data.rows(); ++r) rows.push_back(r);
+  KnownDataset test = select_rows(all, rows);
+  test.data.movement_names.erase(test.data.movement_names.begin());
+  for (int& movement : test.data.movement) --movement;
+  return test;
+}
 
 void add_entries(std::vector<ProblemEntry>& entries) {
   for (const int joint : {2, 4}) add_a(entries, joint);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "problems/kuka/campaign.hpp"
 #include "problems/kuka/entries.hpp"
 
 namespace tribench::kuka {
@@ -28,7 +27,7 @@ ExternalTorqueTrial make_external_torque_trial(const Joint& joint, std::uint64_t
   ExternalTorqueTrial trial;
   trial.largest_fitted_gravity_nm =
       largest_magnitude(make_adaptation_movement(joint, seed).data.at("g").values);
-  const Dataset data = make_loaded_test(joint, seed).data;
+  const Dataset data = make_b_test(joint, seed, true).data;
   const std::vector<double>& velocity = data.at("qd").values;
   const std::vector<double>& arm = data.at("g_arm").values;
   const std::vector<double>& motor = data.at("tau_m").values;

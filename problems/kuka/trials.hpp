@@ -27,8 +27,8 @@ struct ExternalTorqueTrial {
 // The rows are those of the test of B/jN/load with the same seed.
 ExternalTorqueTrial make_external_torque_trial(const Joint& joint, std::uint64_t seed);
 
-// qd = 0.6 sin(2 pi t / 10 s) for one period from q = -(stroke's middle), with the load that goes
-// with it; one row each 10 ms, noise-free: target and truth are A's law. Columns as for A with
+// qd = 0.6 sin(2 pi t / 10 s) for one period, q = -0.955 cos(2 pi t / 10 s), with A's gravity
+// torque; one row each 10 ms, noise-free: target and truth are A's law. Columns as for A with
 // load; times in s.
 struct VelocityProfile {
   std::vector<double> time_s;

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "harness/curves.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+namespace tribench {
+namespace {
+
+Record record(const std::string& problem, std::uint64_t seed, double mae,
+              const std::string& formula) {
+  Record made;
+  made.cell = problem + "|m|paper|" + std::to_string(seed);
+  made.problem = problem;
+  made.method = "m";
+  made.operators = "paper";
+  made.seed = seed;
+  made.status = "ok";
+  made.mae_test = mae;
+  made.formula = formula;
+  return made;
+}
+
+std::map<std::string, int> counts(const std::vector<CurveRecord>& points) {
+  std::map<std::string, int> all;
+  for (const CurveRecord& point : points) {
+    all[point.picture + "/" + (point.method.empty() ? "-" : point.method)] += 1;
+    EXPECT_TRUE(std::isfinite(point.y));
+  }
+  return all;
+}
+
+TEST(Curves, DrawTheSeedWithTheMedianErrorBesideTheLawAndTheRows) {
+  const std::vector<Record> records = {record("A/j2/no_load", 1, 0.3, "1*qd"),
+                                       record("A/j2/no_load", 2, 0.1, "10*sgn_qd"),
+                                       record("A/j2/no_load", 3, 0.2, "20*qd")};
+  const std::vector<CurveRecord> points = sample_curves(records, Catalogue());
+  const auto all = counts(points);
+  EXPECT_EQ(all.at("friction/m"), 42);
+  EXPECT_EQ(all.at("error/m"), 10);
+  EXPECT_EQ(all.at("profile/m"), 101);
+  EXPECT_EQ(all.at("profile/-"), 101);
+  EXPECT_EQ(all.at("friction/-"), 42 + 10);  // the law and the measured rows
+  for (const CurveRecord& point : points) {
+    if (point.method != "m") continue;
+    EXPECT_EQ(point.cell, "A/j2/no_load|m|paper|3");
+    if (point.picture == "friction") {
+      EXPECT_NEAR(point.y, 20 * point.x, 1e-12);
+    }
+  }
+}
+
+TEST(Curves, LeaveOutWhatIsNotFinite) {
+  const auto all = counts(sample_curves({record("A/j4/load", 1, 0.3, "log(qd)")}, Catalogue()));
+  EXPECT_EQ(all.at("friction/m"), 3 * 21);  // three loads, the positive half
+}
+
+TEST(Curves, AProblemWhoseDataAreNotHereHasNone) {
+  EXPECT_TRUE(sample_curves({record("emps/estimation", 1, 0.3, "velocity_m_s")},
+                            Catalogue(std::filesystem::path(::testing::TempDir())))
+                  .empty());
+  EXPECT_TRUE(sample_curves({}, Catalogue()).empty());
+}
+
+}  // namespace
+}  // namespace tribench
