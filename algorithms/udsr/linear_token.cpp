@@ -108,36 +108,4 @@ Eigen::VectorXd PolynomialRegression::solve(const Eigen::VectorXd& target,
   return solution.cwiseQuotient(scale_);
 }
 
-std::vector<SparsePolynomial> PolynomialRegression::eliminate(
-    const Eigen::VectorXd& target, const Eigen::VectorXd& weights) const {
-  const Normal normal = normal_equations(target, weights);
-  const Eigen::Index count = design_.cols();
-  Eigen::MatrixXd inverse = normal.gram.ldlt().solve(Eigen::MatrixXd::Identity(count, count));
-  Eigen::VectorXd solution = inverse * normal.moment;
-  std::vector<bool> kept(static_cast<std::size_t>(count), true);
-  std::vector<SparsePolynomial> path;
-  for (Eigen::Index left = count; left > 0; --left) {
-    path.push_back({solution.cwiseQuotient(scale_), static_cast<int>(left)});
-    Eigen::Index cheapest = -1;
-    double least = 0;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      if (!kept[static_cast<std::size_t>(k)]) continue;
-      const double increase = solution[k] * solution[k] / inverse(k, k);
-      if (cheapest < 0 || increase < least) {
-        cheapest = k;
-        least = increase;
-      }
-    }
-    // Partitioned inverse: the solution without the term, from the one with it.
-    const Eigen::VectorXd column = inverse.col(cheapest) / inverse(cheapest, cheapest);
-    solution -= column * solution[cheapest];
-    inverse -= column * inverse.row(cheapest).eval();
-    solution[cheapest] = 0;
-    inverse.row(cheapest).setZero();
-    inverse.col(cheapest).setZero();
-    kept[static_cast<std::size_t>(cheapest)] = false;
-  }
-  return path;
-}
-
 }  // namespace tribench::udsr

@@ -28,12 +28,6 @@ std::vector<Monomial> monomials(std::span<const int> caps, int degree);
 // sum_k coefficients[k] * monomials[k] as a formula; terms with coefficient 0 are left out.
 Expression polynomial(std::span<const Monomial> terms, std::span<const double> coefficients);
 
-// A polynomial with a subset of the monomials.
-struct SparsePolynomial {
-  Eigen::VectorXd coefficients;  // one per monomial; 0 where dropped
-  int terms = 0;
-};
-
 class PolynomialRegression {
  public:
   // columns[i]: the rows of input i.
@@ -46,11 +40,6 @@ class PolynomialRegression {
   // Minimises sum_r weights[r]^2 (polynomial(r) - target[r])^2; weights may be empty (all one).
   // Cost: O(rows * terms) without weights, O(rows * terms^2) with them.
   Eigen::VectorXd solve(const Eigen::VectorXd& target, const Eigen::VectorXd& weights) const;
-
-  // The same, and then with ever fewer terms: backward elimination of the term that costs least,
-  // down to one. [0] has all terms.
-  std::vector<SparsePolynomial> eliminate(const Eigen::VectorXd& target,
-                                          const Eigen::VectorXd& weights) const;
 
  private:
   struct Normal {

@@ -226,23 +226,4 @@ Scored Scorer::score(const Sequence& sequence) {
   return {1 / (1 + error), error, std::move(formula)};
 }
 
-std::vector<Expression> Scorer::sparser(const Sequence& sequence) {
-  const TokenLibrary& library = problem_->library();
-  const std::size_t linear_at = position_of(library, sequence, TokenKind::linear);
-  if (linear_at == sequence.size()) return {};
-  const InvertedTarget inverted = invert(sequence, linear_at);
-  if (!inverted.valid) return {};
-  std::vector<Expression> formulas;
-  for (const SparsePolynomial& sparse :
-       problem_->linear().eliminate(inverted.target, inverted.weights)) {
-    if (!sparse.coefficients.allFinite()) continue;
-    formulas.push_back(to_expression(
-        library, sequence,
-        polynomial(
-            problem_->linear().terms(),
-            {sparse.coefficients.data(), static_cast<std::size_t>(sparse.coefficients.size())})));
-  }
-  return formulas;
-}
-
 }  // namespace tribench::udsr

@@ -63,9 +63,6 @@ class Scorer {
   explicit Scorer(const ScoringProblem& problem) : problem_(&problem) {}
 
   Scored score(const Sequence& sequence);
-  // Versions of the sequence's formula with ever fewer terms in its linear token; empty where it
-  // has none or cannot be inverted.
-  std::vector<Expression> sparser(const Sequence& sequence);
   // Normalised root mean square error; infinite where a value is not finite.
   double nrmse(const Expression& formula);
 

@@ -15,6 +15,7 @@
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/registry.hpp"
+#include "algorithms/udsr/pruning.hpp"
 #include "algorithms/udsr/simplification.hpp"
 #include "algorithms/udsr/training.hpp"
 #include "algorithms/udsr/weights.hpp"
@@ -30,7 +31,10 @@ using udsr::ScoringProblem;
 // Deeper recursion would search for parts of parts of a smoother's guess.
 constexpr int kMaxRecursion = 2;
 // Of so many of the most rewarding sequences, versions with fewer terms are offered too.
-constexpr std::size_t kSparsified = 6;
+constexpr std::size_t kSparsified = 8;
+constexpr std::size_t kFewestConstants = 2;
+// Below this normalised error all formulas are exact, and the simplest is the one.
+constexpr double kExact = 1e-9;
 
 struct Settings {
   udsr::TokenOptions tokens;
@@ -70,8 +74,8 @@ std::vector<ParameterSpec> parameter_specs() {
        0,
        {"quantile", "moving_mean", "moving_quantile", "combined"}},
       {"batch", "formulas sampled a step", std::int64_t{500}, 1, 100000},
-      {"steps", "most steps of training", std::int64_t{40}, 0, 100000},
-      {"patience", "steps without a better formula before stopping", std::int64_t{6}, 1, 100000},
+      {"steps", "most steps of training", std::int64_t{200}, 0, 100000},
+      {"patience", "steps without a better formula before stopping", std::int64_t{10}, 1, 100000},
       {"epsilon", "share of a batch that trains the policy", 0.05, 1e-4, 1},
       {"learning_rate", "of Adam", 5e-4, 0, 1},
       {"entropy_weight", "of the policy's entropy in the loss", 0.03, 0, 10},
@@ -151,6 +155,7 @@ class Search {
         problem_(data, library_, settings.degree),
         budget_(budget),
         scorer_(problem_),
+        pruner_(problem_),
         progress_(progress),
         threads_(threads) {}
 
@@ -198,26 +203,48 @@ class Search {
     return front;
   }
 
+  // The simpler of two choices: the information criterion guards against a search that has tried
+  // many formulas on independent rows, cross-validation against rows that are not independent.
   std::size_t choose(const std::vector<Expression>& front) {
     const CrossValidation validation =
         cross_validate(front, problem_.inputs(), problem_.target(), problem_.movement());
     budget_.spend(validation.node_rows);
-    return validation.chosen;
+    return std::min(validation.chosen, most_informative(front));
   }
 
  private:
+  // Least Bayesian information criterion, n ln(RSS / n) + p ln n (Schwarz 1978).
+  std::size_t most_informative(const std::vector<Expression>& front) {
+    const auto n = static_cast<double>(rows());
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < front.size(); ++k) {
+      const auto constants = static_cast<double>(front[k].constant_positions().size());
+      const double criterion =
+          2 * n * std::log(scorer_.nrmse(front[k]) + kExact) + constants * std::log(n);
+      if (criterion >= least) continue;
+      least = criterion;
+      best = k;
+    }
+    return best;
+  }
+
   void add(Expression formula, double nrmse) {
     if (!std::isfinite(nrmse)) return;
     Candidate& best = candidates_[paper_complexity(formula)];
     if (nrmse < best.nrmse) best = {std::move(formula), nrmse};
   }
 
+  // With constants before every term, then with ever fewer terms.
   void offer_sparser(const udsr::Sequence& sequence) {
-    for (Expression& formula : scorer_.sparser(sequence)) {
-      if (!budget_.spend(node_rows(formula, rows()))) return;
-      const double error = scorer_.nrmse(formula);
-      add(std::move(formula), error);
+    const udsr::Scored scored = scorer_.score(sequence);
+    if (scored.reward <= 0 || !budget_.spend(scoring_cost(problem_, sequence))) return;
+    std::uint64_t cost = 0;
+    for (udsr::Pruner::Step& step :
+         pruner_.path(udsr::with_scales(scored.formula), kFewestConstants, cost)) {
+      add(std::move(step.formula), step.nrmse);
     }
+    budget_.spend(cost);
   }
 
   const Settings& settings_;
@@ -225,6 +252,7 @@ class Search {
   ScoringProblem problem_;
   Budget& budget_;
   Scorer scorer_;
+  udsr::Pruner pruner_;
   ConstantFitter fitter_;
   Progress* progress_;
   int threads_;

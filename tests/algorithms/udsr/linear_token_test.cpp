@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "algorithms/expression/text.hpp"
+#include "algorithms/udsr/pruning.hpp"
 #include "algorithms/udsr/scoring.hpp"
 #include "tests/algorithms/udsr/tokens.hpp"
 
@@ -102,17 +103,49 @@ TEST_F(LinearTokenTest, CannotBeInvertedWhereTheTargetLeavesTheRange) {
   EXPECT_EQ(error_of({"exp", "linear"}), INFINITY);
 }
 
-TEST_F(LinearTokenTest, EliminationEndsAtTheTermsThatMadeTheData) {
+TEST_F(LinearTokenTest, PruningEndsAtTheTermsThatMadeTheData) {
   make("3*v - 2*v*w");
-  const Eigen::Map<const Eigen::VectorXd> target(y.data(), static_cast<Eigen::Index>(y.size()));
-  const std::vector<SparsePolynomial> path = problem->linear().eliminate(target, {});
-  ASSERT_EQ(path.size(), 10U);
-  EXPECT_EQ(path[8].terms, 2);
-  for (std::size_t k = 0; k < 10; ++k) {
-    const Monomial& monomial = problem->linear().terms()[k];
-    const double expected = monomial == Monomial{1, 0} ? 3 : monomial == Monomial{1, 1} ? -2 : 0;
-    EXPECT_NEAR(path[8].coefficients[static_cast<Eigen::Index>(k)], expected, 1e-6);
+  const Scored full = Scorer(*problem).score(sequence_of(library, {"linear"}));
+  std::uint64_t cost = 0;
+  const std::vector<Pruner::Step> path = Pruner(*problem).path(full.formula, 1, cost);
+  ASSERT_GE(path.size(), 2U);
+  const Pruner::Step& two = path[path.size() - 2];
+  EXPECT_LT(two.nrmse, 1e-9);
+  EXPECT_GT(path.back().nrmse, 0.1);
+  const std::vector<std::string> names = {"v", "w"};
+  EXPECT_EQ(two.formula.constant_positions().size(), 2U) << print(two.formula, names);
+  EXPECT_GT(cost, 0U);
+}
+
+TEST_F(LinearTokenTest, PruningMovesTheScalesInsideFunctions) {
+  make("(1 + 2*v)*exp(0.7*w - 0.3*v^2)");
+  // The sequence has no place for 0.7 and 0.3.
+  const Scored scored = Scorer(*problem).score(
+      sequence_of(library, {"*", "linear", "exp", "-", "x2", "*", "x1", "x1"}));
+  ASSERT_GT(scored.nrmse, 1e-4);
+  std::uint64_t cost = 0;
+  double best = 1;
+  for (const Pruner::Step& step : Pruner(*problem).path(with_scales(scored.formula), 4, cost)) {
+    if (step.formula.constant_positions().size() <= 6) best = std::min(best, step.nrmse);
   }
+  EXPECT_LT(best, 1e-6);
+}
+
+TEST(WithScales, ScalesTermsOnceAndChangesNoValue) {
+  const std::vector<std::string> names = {"v", "w"};
+  EXPECT_EQ(print(with_scales(parse("v + exp(v*w - w^2)", names)), names),
+            "v*1 + exp(v*w*1 - w^2*1)*1");
+  EXPECT_EQ(print(with_scales(parse("2*v + sqrt(3*w)*4", names)), names), "2*v + sqrt(3*w)*4");
+}
+
+TEST(WithoutTerm, KeepsWhatIsLeftOfADifference) {
+  const std::vector<std::string> names = {"v", "w"};
+  const auto without = [&](const char* text, std::size_t place) {
+    return print(without_term(parse(text, names), place), names);
+  };
+  EXPECT_EQ(without("2*v + 3*w", 2), "3*w");
+  EXPECT_EQ(without("2*v - 3*w", 5), "2*v");
+  EXPECT_EQ(without("2*v - 3*w", 2), "-1*(3*w)");
 }
 
 }  // namespace
