@@ -16,6 +16,9 @@ namespace {
 // Mean squares below this share of the target's are rounding.
 constexpr double kRounding = 1e-28;
 
+// Nats that a node costs in the evidence.
+constexpr double kNodePrice = 1.0;
+
 double structure_length(const Expression& formula) {
   std::set<std::pair<Op, int>> symbols;
   double length = 0;
@@ -63,12 +66,22 @@ std::optional<double> description_length(const Expression& formula, const Rows& 
          data_length(square, zero / static_cast<double>(n), static_cast<double>(n));
 }
 
-double coarse_description_length(const Expression& formula, double mean_square, double zero_loss,
-                                 std::size_t rows) {
-  const auto n = static_cast<double>(rows);
-  const auto constants = static_cast<double>(formula.constant_positions().size());
-  return structure_length(formula) + 0.5 * constants * std::log(n) +
-         data_length(mean_square, zero_loss, n);
+double evidence_price(const Expression& formula, std::size_t rows) {
+  std::size_t constants = 0;
+  std::size_t nodes = 0;
+  for (std::size_t i = 0; i < formula.size(); ++i) {
+    if (is_exponent(formula, i)) continue;
+    ++nodes;
+    if (formula.node(i).is_constant()) ++constants;
+  }
+  return 0.5 * static_cast<double>(constants) * std::log(static_cast<double>(rows)) +
+         kNodePrice * static_cast<double>(nodes);
+}
+
+double evidence_against(const Expression& formula, double mean_square, double zero_loss,
+                        std::size_t rows) {
+  return data_length(mean_square, zero_loss, static_cast<double>(rows)) +
+         evidence_price(formula, rows);
 }
 
 }  // namespace tribench::pysr

@@ -27,9 +27,18 @@ namespace tribench::pysr {
 std::optional<double> description_length(const Expression& formula, const Rows& rows,
                                          Differentiator& workspace);
 
-// The part that needs no derivatives, with ln(n) / 2 a constant: for telling whether a search
-// still makes headway. `zero_loss` is the mean square of the target.
-double coarse_description_length(const Expression& formula, double mean_square, double zero_loss,
-                                 std::size_t rows);
+// The evidence for a formula, as nats against it: n / 2 ln(s^2) + p / 2 ln n + k, with p constants
+// and k nodes. The Bayesian information criterion (Schwarz 1978) with a prior that halves, and a
+// little more, with every node. Needs no derivatives. `zero_loss` is the mean square of the target,
+// which sets what counts as rounding.
+//
+// Against the description length it charges a constant ln(n) / 2 whatever its size and units, and
+// a node 1 instead of ln q: the latter is the price of a formula typed by chance, which is more
+// than what the formulas of mechanics carry.
+double evidence_against(const Expression& formula, double mean_square, double zero_loss,
+                        std::size_t rows);
+
+// The part of it that does not depend on the loss: p / 2 ln n + k.
+double evidence_price(const Expression& formula, std::size_t rows);
 
 }  // namespace tribench::pysr

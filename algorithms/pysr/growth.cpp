@@ -15,6 +15,12 @@ namespace {
 // A direction that keeps less than this share of its square outside J is no new one.
 constexpr double kDependent = 1e-8;
 
+// Two decreases closer than this are of directions that are the same outside J.
+constexpr double kSameDecrease = 1e-6;
+
+// No share of the residual larger than this is believed of a first-order estimate.
+constexpr double kAllExplained = 0.99;
+
 bool is_sum(Op op) { return op == Op::add || op == Op::sub || op == Op::neg; }
 bool is_product(Op op) { return op == Op::mul || op == Op::div || op == Op::neg; }
 
@@ -99,21 +105,46 @@ void Grower::orthonormalise(std::size_t rows) {
   }
 }
 
-Grower::Candidate Grower::rate(const Expression&, std::size_t probe, std::size_t term,
-                               bool multiplicative, std::size_t rows) {
+void Grower::load_probe(std::size_t probe, bool multiplicative, std::size_t rows) {
+  // With u = slope * t the products q'u, e'u and u'u are products of q * slope, e * slope and
+  // slope^2 with t and t^2: formed once for all terms.
   const std::span<const double> slope =
       column(constants_ + 2 * probe + (multiplicative ? 0 : 1), rows);
-  direction_.resize(rows);
-  columns::mul(slope.data(), library_->terms[term].values.data(), direction_.data(), rows);
-  const double before = square_of(direction_);
+  const std::size_t count = basis_size_ + 2;
+  loaded_.resize((count + 3) / 4 * 4 * rows);
   for (std::size_t b = 0; b < basis_size_; ++b) {
-    remove_projection(direction_, std::span(basis_).subspan(b * rows, rows));
+    columns::mul(slope.data(), basis_.data() + b * rows, loaded_.data() + b * rows, rows);
   }
-  const double after = square_of(direction_);
-  if (!std::isfinite(after) || !(after > kDependent * before))
-    return {probe, term, multiplicative, 0, 0};
-  const double along = columns::dot(direction_.data(), residual_.data(), rows);
-  return {probe, term, multiplicative, along / after, along * along / after};
+  columns::mul(slope.data(), residual_.data(), loaded_.data() + basis_size_ * rows, rows);
+  columns::mul(slope.data(), slope.data(), loaded_.data() + (basis_size_ + 1) * rows, rows);
+}
+
+Grower::Candidate Grower::rate(std::size_t probe, std::size_t term, bool multiplicative,
+                               std::size_t rows) const {
+  const Term& t = library_->terms[term];
+  const double before =
+      columns::dot(loaded_.data() + (basis_size_ + 1) * rows, t.squares.data(), rows);
+  double after = before;
+  double along = 0;
+  for (std::size_t first = 0; first <= basis_size_; first += 4) {
+    const double* block[4];
+    double sums[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+      block[k] = loaded_.data() + std::min(first + k, basis_size_) * rows;
+    }
+    columns::dot4(t.values.data(), block, rows, sums);
+    for (std::size_t k = 0; k < 4 && first + k <= basis_size_; ++k) {
+      if (first + k == basis_size_) {
+        along = sums[k];
+      } else {
+        after -= sums[k] * sums[k];
+      }
+    }
+  }
+  if (!std::isfinite(after) || !(after > kDependent * before)) {
+    return {probe, term, multiplicative, 0, 0, 0};
+  }
+  return {probe, term, multiplicative, along / after, along * along / after, 0};
 }
 
 void Grower::build(const Expression& formula, const Candidate& candidate,
@@ -150,31 +181,74 @@ std::vector<Proposal> Grower::grow(const Expression& formula, const Rows& rows, 
   }
   if (!differentiate(formula, probes, rows, budget)) return proposals;
   orthonormalise(rows.size());
-  std::vector<Candidate> candidates;
-  const auto consider = [&](std::size_t probe, std::size_t term, bool multiplicative) {
-    if (multiplicative ? (!probes[probe].multiplicative || term == 0) : !probes[probe].additive)
-      return;
-    const Candidate candidate = rate(formula, probe, term, multiplicative, rows.size());
-    if (candidate.decrease > 0) candidates.push_back(candidate);
-  };
-  const std::size_t terms = library_->terms.size();
-  if (samples == 0 || samples >= 2 * probes.size() * terms) {
-    for (std::size_t i = 0; i < 2 * probes.size() * terms; ++i) {
-      consider(i / 2 / terms, i / 2 % terms, i % 2 != 0);
-    }
-  } else {
-    for (std::size_t i = 0; i < samples; ++i) {
-      const std::size_t probe = random.below(probes.size());
-      const std::size_t term = random.below(terms);
-      consider(probe, term, random.chance(0.5));
-    }
-  }
-  std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate::decrease);
-  for (const Candidate& candidate : candidates) {
+  for (const Candidate& candidate :
+       distinct(formula, ranked(probes, samples, rows.size(), random), probes)) {
     if (proposals.size() >= count) break;
     build(formula, candidate, probes, proposals);
   }
   return proposals;
+}
+
+std::vector<Grower::Candidate> Grower::ranked(std::span<const Probe> probes, std::size_t samples,
+                                              std::size_t rows, RandomStream& random) {
+  std::vector<Candidate> candidates;
+  const std::size_t terms = library_->terms.size();
+  // Each term has the same chance at each place.
+  const double share =
+      samples == 0 ? 1
+                   : static_cast<double>(samples) / static_cast<double>(2 * probes.size() * terms);
+  for (std::size_t probe = 0; probe < probes.size(); ++probe) {
+    for (const bool multiplicative : {false, true}) {
+      if (multiplicative ? !probes[probe].multiplicative : !probes[probe].additive) continue;
+      bool loaded = false;
+      for (std::size_t term = multiplicative ? 1 : 0; term < terms; ++term) {
+        if (share < 1 && !random.chance(share)) continue;
+        if (!loaded) load_probe(probe, multiplicative, rows);
+        loaded = true;
+        const Candidate candidate = rate(probe, term, multiplicative, rows);
+        if (candidate.decrease > 0) candidates.push_back(candidate);
+      }
+    }
+  }
+  return candidates;
+}
+
+std::vector<Grower::Candidate> Grower::distinct(const Expression& formula,
+                                                std::vector<Candidate> candidates,
+                                                std::span<const Probe> probes) const {
+  std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate::decrease);
+  const auto n = static_cast<double>(residual_.size());
+  const double before = square_of(residual_);
+  std::vector<Candidate> kept;
+  double last = 0;
+  for (Candidate& candidate : candidates) {
+    candidate.gain = -0.5 * n * std::log1p(-std::min(candidate.decrease / before, kAllExplained)) -
+                     price_of(formula, candidate, probes);
+    // What explains the same is the same to first order; the cheapest stands for all.
+    if (kept.empty() || candidate.decrease < (1 - kSameDecrease) * last) {
+      kept.push_back(candidate);
+      last = candidate.decrease;
+    } else if (candidate.gain > kept.back().gain) {
+      kept.back() = candidate;
+    }
+  }
+  std::ranges::stable_sort(kept, std::ranges::greater{}, &Candidate::gain);
+  return kept;
+}
+
+double Grower::price_of(const Expression& formula, const Candidate& candidate,
+                        std::span<const Probe> probes) const {
+  const Expression& term = library_->terms[candidate.term].formula;
+  // 1 + c t costs a node and a constant more than c t; a product, a node.
+  double nodes = static_cast<double>(term.size()) + (candidate.multiplicative ? 5 : 3);
+  double constants = 1 + (candidate.multiplicative ? 1 : 0);
+  if (candidate.term == 0) nodes = 2;
+  // A constant grown by a constant, or multiplied, merges with it.
+  if (formula.node(probes[candidate.probe].place).is_constant() && candidate.multiplicative) {
+    constants -= 1;
+  }
+  for (const Node& node : term.nodes()) constants += node.is_constant() ? 1 : 0;
+  return nodes + 0.5 * constants * std::log(static_cast<double>(residual_.size()));
 }
 
 std::vector<Proposal> Grower::prune(const Expression& formula, const Rows& rows, Budget& budget) {

@@ -31,6 +31,7 @@ namespace tribench::pysr {
 struct Term {
   Expression formula;
   std::vector<double> values;
+  std::vector<double> squares;  // of the values
 };
 
 struct TermLibrary {
@@ -70,15 +71,22 @@ class Grower {
     std::size_t term;
     bool multiplicative;
     double coefficient;
-    double decrease;
+    double decrease;  // of the sum of squares, to first order
+    double gain;      // evidence, to first order
   };
 
   std::vector<Probe> probes_of(const Expression& formula) const;
   bool differentiate(const Expression& formula, std::span<const Probe> probes, const Rows& rows,
                      Budget& budget);
   void orthonormalise(std::size_t rows);
-  Candidate rate(const Expression& formula, std::size_t probe, std::size_t term,
-                 bool multiplicative, std::size_t rows);
+  void load_probe(std::size_t probe, bool multiplicative, std::size_t rows);
+  Candidate rate(std::size_t probe, std::size_t term, bool multiplicative, std::size_t rows) const;
+  std::vector<Candidate> ranked(std::span<const Probe> probes, std::size_t samples,
+                                std::size_t rows, RandomStream& random);
+  std::vector<Candidate> distinct(const Expression& formula, std::vector<Candidate> candidates,
+                                  std::span<const Probe> probes) const;
+  double price_of(const Expression& formula, const Candidate& candidate,
+                  std::span<const Probe> probes) const;
   void build(const Expression& formula, const Candidate& candidate, std::span<const Probe> probes,
              std::vector<Proposal>& proposals) const;
   std::span<double> column(std::size_t k, std::size_t rows) {
@@ -93,7 +101,7 @@ class Grower {
   std::vector<double> basis_;     // orthonormal columns that span J
   std::size_t basis_size_ = 0;
   std::vector<double> residual_;  // target - f, less its projection on J
-  std::vector<double> direction_;
+  std::vector<double> loaded_;    // columns of the probe at hand; see load_probe
 };
 
 }  // namespace tribench::pysr

@@ -29,7 +29,7 @@ constexpr double kSuccessFloor = 0.05;
 
 Island::Island(const Shared& shared)
     : shared_(shared),
-      scorer_(shared.validator, shared.norm, shared.options.parsimony, shared.fit_exponents),
+      scorer_(shared.validator, shared.rule),
       grower_(shared.operators, shared.library),
       best_seen_(shared.options.max_size) {
   success_.fill(1);
@@ -37,6 +37,7 @@ Island::Island(const Shared& shared)
 
 void Island::populate(RandomStream random, Budget& budget) {
   const Options& options = shared_.options;
+  if (options.constructions > 0) construct(random, budget);
   const Alphabet alphabet{shared_.operators, shared_.rows.columns.size()};
   const SizeFrequencies frequencies(options.max_size);
   const EpochState state{frequencies, best_seen_, options.max_size};
@@ -54,6 +55,32 @@ void Island::populate(RandomStream random, Budget& budget) {
     member->birth = clock_++;
     best_seen_.offer(*member);
     members_.push_back(std::move(*member));
+  }
+}
+
+void Island::construct(RandomStream& random, Budget& budget) {
+  const Options& options = shared_.options;
+  Climber climber(options, shared_.operators, shared_.validator, shared_.rows, shared_.library,
+                  shared_.rule);
+  climber.on_fitted([this](const Fitted& fitted) {
+    best_seen_.offer(scorer_.member_of(fitted.formula, fitted.loss));
+  });
+  std::vector<Fitted> built;
+  for (int i = 0; i < options.constructions && !budget.exhausted(); ++i) {
+    std::optional<Fitted> formula = climber.construct(random, budget);
+    if (formula) built.push_back(std::move(*formula));
+  }
+  std::ranges::stable_sort(built, {}, &Fitted::against);
+  const ClimbEffort effort{12, 3, 4, 2, 6};
+  for (std::size_t i = 0; i < built.size() && !budget.exhausted(); ++i) {
+    if (static_cast<int>(i) < options.climbs) {
+      built[i] = climber.climb(std::move(built[i]), effort, random, budget);
+    }
+    if (static_cast<int>(members_.size()) >= options.population_size) break;
+    Member member = scorer_.member_of(std::move(built[i].formula), built[i].loss);
+    member.birth = clock_++;
+    is_new(member.formula);
+    members_.push_back(std::move(member));
   }
 }
 

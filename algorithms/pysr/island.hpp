@@ -8,6 +8,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "algorithms/pysr/climber.hpp"
 #include "algorithms/pysr/growth.hpp"
 #include "algorithms/pysr/hall_of_fame.hpp"
 #include "algorithms/pysr/mutation.hpp"
@@ -23,8 +24,7 @@ struct Shared {
   const Validator& validator;
   const Rows& rows;  // what the search sees
   const TermLibrary& library;
-  double norm = 1;
-  bool fit_exponents = false;
+  ScoreRule rule;
 };
 
 // What changes from epoch to epoch, the same for all islands.
@@ -38,7 +38,8 @@ class Island {
  public:
   explicit Island(const Shared& shared);
 
-  // Fills the population with random members. Stops early when the budget ends.
+  // Fills the population with random members, or with what constructions passed on their way.
+  // Stops early when the budget ends.
   void populate(RandomStream random, Budget& budget);
 
   // One epoch: `cycles` cycles of tournaments, then simplification and fits of the members.
@@ -59,6 +60,7 @@ class Island {
     double temperature;
   };
 
+  void construct(RandomStream& random, Budget& budget);
   void event(const Step& step, RandomStream& random, Budget& budget);
   void mutation_event(const Step& step, RandomStream& random, Budget& budget);
   void crossover_event(const Step& step, RandomStream& random, Budget& budget);

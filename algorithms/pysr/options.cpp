@@ -17,7 +17,8 @@ Profile profile_of(const std::string& name) {
 Selection selection_of(const std::string& name) {
   if (name == "best") return Selection::best;
   if (name == "accuracy") return Selection::accuracy;
-  return name == "score" ? Selection::score : Selection::mdl;
+  if (name == "mdl") return Selection::mdl;
+  return name == "score" ? Selection::score : Selection::evidence;
 }
 
 Batching batching_of(const std::string& name, Batching otherwise) {
@@ -86,7 +87,9 @@ Options profile_options(Profile profile) {
   options.weights = published_weights(profile);
   if (profile != Profile::native) {
     options.selection = Selection::best;
-    options.fit_children = options.novelty = options.linear_scaling = options.refine = false;
+    options.fit_children = options.novelty = options.linear_scaling = options.refine =
+        options.evidence_cost = false;
+    options.constructions = options.climbs = 0;
     if (profile == Profile::v1) {
       options.crossover_probability = 0.0259;
       options.annealing = false;
@@ -100,7 +103,7 @@ Options profile_options(Profile profile) {
   options.iterations = 40;
   options.populations = 4;
   options.cycles = 20;
-  options.patience = 5;
+  options.patience = 2;
   options.max_size = 40;
   options.adaptive_parsimony = 20;
   options.replaced_by_peers = 0.02;
@@ -173,14 +176,19 @@ std::vector<ParameterSpec> parameter_specs() {
       share("unit_penalty", "added to the loss of inconsistent units", 1e12),
       {"guesses", "formulas to start from, separated by ';'", std::string()},
       {"selection",
-       "choice from the front: mdl, best, accuracy, score; profile: mdl for native",
+       "choice from the front; profile: evidence for native, best for v1 and v2",
        std::string("profile"),
        0,
        0,
-       {"profile", "mdl", "best", "accuracy", "score"}},
+       {"profile", "evidence", "mdl", "best", "accuracy", "score"}},
       on_off("fit_children", "fit the constants of every child"),
       on_off("novelty", "fit no structure twice on an island"),
       on_off("linear_scaling", "give a child the scale and offset it lacks"),
+      whole("constructions", "greedy starts of an island; 0: random members", 10'000),
+      whole("climbs", "of them, those brought to where no exchange helps", 10'000),
+      on_off("evidence_cost", "charge constants and nodes as the evidence does"),
+      {"safe", "only formulas proved free of singularities on the input box enter the front",
+       false},
       on_off("refine", "grow and prune the front by description length at the end"),
   };
 }
@@ -225,6 +233,10 @@ Options options_from(const Parameters& parameters) {
   set(options.fit_children, parameters, "fit_children");
   set(options.novelty, parameters, "novelty");
   set(options.linear_scaling, parameters, "linear_scaling");
+  set(options.constructions, parameters, "constructions");
+  set(options.climbs, parameters, "climbs");
+  set(options.evidence_cost, parameters, "evidence_cost");
+  options.safe = parameters.flag("safe");
   set(options.refine, parameters, "refine");
   return options;
 }

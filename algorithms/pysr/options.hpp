@@ -19,7 +19,7 @@
 namespace tribench::pysr {
 
 enum class Profile { native, v1, v2 };
-enum class Selection { mdl, best, accuracy, score };
+enum class Selection { evidence, mdl, best, accuracy, score };
 enum class Batching { off, on, automatic };
 enum class Units { off, soft, hard };
 
@@ -114,12 +114,16 @@ struct Options {
 
   // Start and choice.
   std::string guesses;  // formulas, separated by ';'
-  Selection selection = Selection::mdl;
+  Selection selection = Selection::evidence;
 
   // Ours.
   bool fit_children = true;    // every child's constants are fitted before it is judged
   bool novelty = true;         // no structure is fitted twice on an island
   bool linear_scaling = true;  // a + b f where that is what a child lacks
+  int constructions = 40;      // an island's greedy starts, instead of random members
+  int climbs = 6;              // of them, the best, brought to where no exchange helps
+  bool evidence_cost = true;   // a cost charges constants and nodes as the evidence does
+  bool safe = false;           // only formulas proved free of singularities enter the front
   bool refine = true;          // the front is grown and pruned by description length at the end
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "algorithms/expression/column_kernels.hpp"
+#include "algorithms/pysr/description_length.hpp"
 
 namespace tribench::pysr {
 namespace {
@@ -42,7 +43,7 @@ std::optional<double> Scorer::fit(Expression& formula, const Rows& rows, int ite
   const std::uint64_t affordable = budget.remaining() / std::max<std::uint64_t>(pass, 1);
   ConstantFitOptions options;
   options.max_iterations = iterations;
-  options.fit_exponents = fit_exponents_;
+  options.fit_exponents = rule_.fit_exponents;
   if (affordable < kStepCost * static_cast<std::uint64_t>(iterations + 1)) {
     options.max_iterations = static_cast<int>(affordable / kStepCost) - 1;
   }
@@ -57,7 +58,11 @@ Member Scorer::member_of(Expression formula, double mean_square) const {
   Member member;
   member.size = validator_->size(formula);
   member.loss = mean_square + validator_->unit_penalty(formula);
-  member.cost = member.loss / norm_ + parsimony_ * member.size;
+  member.cost = member.loss / rule_.norm + rule_.parsimony * member.size;
+  if (rule_.evidence_rows > 0) {
+    const double price = evidence_price(formula, rule_.evidence_rows);
+    member.cost *= std::exp(2 * price / static_cast<double>(rule_.evidence_rows));
+  }
   member.formula = std::move(formula);
   return member;
 }

@@ -23,11 +23,20 @@ double zero_loss(const Rows& rows);
 // The original's floor is 0.01; ours is 0 (the problem's own scale), unless the loss is 0 too.
 double loss_norm(const Rows& rows, double floor);
 
+// How a loss becomes a cost.
+struct ScoreRule {
+  double norm = 1;       // what losses are divided by
+  double parsimony = 0;  // the published price of a node
+  // Ours, where above 0: the number of rows. The loss then grows by the factor that makes up for
+  // the evidence its constants and nodes cost: exp(2 (p / 2 ln n + k) / n).
+  std::size_t evidence_rows = 0;
+  bool fit_exponents = false;
+};
+
 // Keeps its workspace between calls. One per thread.
 class Scorer {
  public:
-  Scorer(const Validator& validator, double norm, double parsimony, bool fit_exponents)
-      : validator_(&validator), norm_(norm), parsimony_(parsimony), fit_exponents_(fit_exponents) {}
+  Scorer(const Validator& validator, const ScoreRule& rule) : validator_(&validator), rule_(rule) {}
 
   // Mean squared error; none where the formula is not finite on every row, or where the budget has
   // run out (budget.exhausted() tells).
@@ -42,9 +51,7 @@ class Scorer {
 
  private:
   const Validator* validator_;
-  double norm_;
-  double parsimony_;
-  bool fit_exponents_;
+  ScoreRule rule_;
   Evaluator evaluator_;
   ConstantFitter fitter_;
   std::vector<double> values_;

@@ -8,6 +8,8 @@
 #include <memory>
 #include <numeric>
 
+#include "algorithms/expression/input_box.hpp"
+#include "algorithms/expression/singularity.hpp"
 #include "algorithms/expression/text.hpp"
 #include "algorithms/pysr/description_length.hpp"
 #include "algorithms/pysr/island.hpp"
@@ -44,6 +46,22 @@ Options settled(Options options, std::size_t rows) {
   return options;
 }
 
+ScoreRule rule_of(const Options& options, const Rows& rows, const OperatorSet& operators) {
+  const bool native = options.profile == Profile::native;
+  return {loss_norm(rows, native ? 0.0 : 0.01), options.parsimony,
+          options.evidence_cost ? rows.size() : 0, operators.allows(Op::pow)};
+}
+
+// The box of the inputs; a sign whose input is not among them ranges on its own.
+InputBox box_of(std::span<const Input> inputs) {
+  InputBox box;
+  for (const Input& input : inputs) {
+    const bool has_owner = input.sign_of && *input.sign_of < inputs.size();
+    box.push_back({input.low, input.high, has_owner ? input.sign_of : std::nullopt});
+  }
+  return box;
+}
+
 class Search {
  public:
   Search(const Options& options, FitContext& context, const Rows& all, const Rows& sample)
@@ -53,13 +71,8 @@ class Search {
         rows_(sample),
         validator_(options, context.operators, context.data.inputs),
         library_(make_term_library(rows_, context.operators)),
-        shared_{options_,
-                context.operators,
-                validator_,
-                rows_,
-                library_,
-                loss_norm(rows_, options.profile == Profile::native ? 0.0 : 0.01),
-                context.operators.allows(Op::pow)},
+        shared_{options_, context.operators, validator_,
+                rows_,    library_,          rule_of(options, rows_, context.operators)},
         hall_(options.max_size),
         frequencies_(options.max_size) {}
 
@@ -72,6 +85,7 @@ class Search {
   void offer_guesses();
   void report();
   bool has_converged();
+  FitResult result_of(const std::vector<Candidate>& front, const InputBox& box) const;
   template <typename Work>
   void on_all_islands(Work work);
 
@@ -122,7 +136,7 @@ void Search::start() {
 }
 
 void Search::offer_guesses() {
-  Scorer scorer(validator_, shared_.norm, options_.parsimony, shared_.fit_exponents);
+  Scorer scorer(validator_, shared_.rule);
   std::vector<std::string> names;
   for (const Input& input : context_.data.inputs) names.push_back(input.name);
   std::string_view rest = options_.guesses;
@@ -185,8 +199,8 @@ bool Search::has_converged() {
   double shortest = std::numeric_limits<double>::infinity();
   const double zero = zero_loss(rows_);
   for (const Member& member : hall_.front()) {
-    shortest = std::min(shortest,
-                        coarse_description_length(member.formula, member.loss, zero, rows_.size()));
+    shortest =
+        std::min(shortest, evidence_against(member.formula, member.loss, zero, rows_.size()));
   }
   stale_epochs_ = shortest < best_length_ - kHeadway ? 0 : stale_epochs_ + 1;
   best_length_ = std::min(best_length_, shortest);
@@ -212,17 +226,41 @@ FitResult Search::run() {
     full_library = make_term_library(all_, context_.operators);
     library = &full_library;
   }
-  Refinement refinement(options_, context_.operators, validator_, all_, *library,
-                        shared_.fit_exponents);
+  Climber climber(options_, context_.operators, validator_, all_, *library, shared_.rule);
+  const InputBox box = box_of(context_.data.inputs);
+  std::function<bool(const Expression&)> admitted;
+  if (options_.safe || context_.operators.proved_free_only()) {
+    admitted = [&box](const Expression& formula) {
+      return prove_free(formula, box).verdict == Verdict::proved_free;
+    };
+  }
   const std::vector<Candidate> front =
-      refinement.front_of(hall_.front(), context_.random.split("refine"), context_.budget);
+      refined_front(climber, options_, all_, hall_.front(), admitted,
+                    context_.random.split("refine"), context_.budget);
+  return result_of(front, box);
+}
+
+FitResult Search::result_of(const std::vector<Candidate>& front, const InputBox& box) const {
   FitResult result;
   std::vector<FrontPoint> points;
+  std::vector<std::size_t> places;
   for (const Candidate& candidate : front) {
+    places.push_back(result.front.size());
     result.front.push_back(candidate.formula);
     points.push_back(candidate.point);
   }
-  result.chosen = select(points, options_.selection);
+  // The formula the method stands for must not be wrong between the training points: the next
+  // choice takes the place of one that is refuted.
+  while (!points.empty()) {
+    const std::size_t choice = select(points, options_.selection);
+    result.chosen = places[choice];
+    if (!options_.refine || points.size() == 1 ||
+        prove_free(result.front[result.chosen], box).verdict != Verdict::refuted) {
+      break;
+    }
+    points.erase(points.begin() + static_cast<std::ptrdiff_t>(choice));
+    places.erase(places.begin() + static_cast<std::ptrdiff_t>(choice));
+  }
   result.reason = context_.budget.exhausted() ? StopReason::budget : StopReason::converged;
   return result;
 }

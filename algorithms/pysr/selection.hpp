@@ -14,6 +14,7 @@ namespace tribench::pysr {
 struct FrontPoint {
   double loss = 0;
   int size = 0;
+  double evidence_against = 0;    // nats; see description_length.hpp
   double description_length = 0;  // nats
 };
 
@@ -22,11 +23,12 @@ struct FrontPoint {
 std::vector<double> front_scores(std::span<const FrontPoint> front);
 
 // The place of the choice; 0 for an empty front.
+//   evidence  the least evidence against it
 //   mdl       the smallest description length
 //   accuracy  the smallest loss
 //   score     the highest score
 //   best      the highest score among losses up to 1.5 times the smallest
-// Source: PySR, pysr/sr.py, idx_model_selection; mdl is ours.
+// Source: PySR, pysr/sr.py, idx_model_selection; evidence and mdl are ours.
 std::size_t select(std::span<const FrontPoint> front, Selection rule);
 
 }  // namespace tribench::pysr

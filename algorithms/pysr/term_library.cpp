@@ -102,7 +102,9 @@ class Builder {
           columns::dot(values.data(), library_.terms[i].values.data(), values.size());
       if (along * along >= (1 - kProportional) * square * squares_[i]) return;
     }
-    library_.terms.push_back({formula, std::move(values)});
+    std::vector<double> squares(values.size());
+    columns::mul(values.data(), values.data(), squares.data(), values.size());
+    library_.terms.push_back({formula, std::move(values), std::move(squares)});
     squares_.push_back(square);
     degrees_.push_back(degree);
   }

@@ -185,7 +185,7 @@ TEST(PublishedBehaviour, TheHallOfFameKeepsTheBestOfEachSizeAndTheFrontWhatIsStr
 
 TEST(PublishedBehaviour, SelectionFollowsTheRulesOnAHandMadeFront) {
   const std::vector<FrontPoint> front = {
-      {10.0, 1, 50}, {1.0, 3, 20}, {0.9, 4, 19}, {0.5, 6, 15}, {0.45, 9, 22}};
+      {10.0, 1, 60, 50}, {1.0, 3, 30, 20}, {0.9, 4, 14, 19}, {0.5, 6, 15, 15}, {0.45, 9, 22, 22}};
   const std::vector<double> scores = front_scores(front);
   EXPECT_DOUBLE_EQ(scores[0], 0);
   EXPECT_NEAR(scores[1], std::log(10.0) / 2, 1e-12);
@@ -194,6 +194,7 @@ TEST(PublishedBehaviour, SelectionFollowsTheRulesOnAHandMadeFront) {
   EXPECT_EQ(select(front, Selection::best), 3u);  // 0.5 and 0.45 are within 1.5 times the best
   EXPECT_EQ(select(front, Selection::accuracy), 4u);
   EXPECT_EQ(select(front, Selection::mdl), 3u);
+  EXPECT_EQ(select(front, Selection::evidence), 2u);
 }
 
 TEST(PublishedBehaviour, TheProfilesHaveThePublishedDefaults) {
