@@ -10,6 +10,7 @@
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/linear_least_squares.hpp"
 #include "algorithms/model_based/bounded_stribeck.hpp"
+#include "algorithms/model_based/coulomb_viscous.hpp"
 #include "algorithms/model_based/printed_stribeck.hpp"
 
 namespace tribench {
@@ -58,16 +59,27 @@ class StaticFriction : public Regressor {
  public:
   StaticFriction(const Parameters& parameters, bool asymmetric)
       : asymmetric_(asymmetric),
-        as_printed_(parameters.text("form") == "as_printed"),
+        form_(parameters.text("form")),
         offset_(parameters.flag("offset")) {}
 
   FitResult fit(FitContext& context) const override;
 
  private:
+  StribeckFit fit_form(const StribeckRows& rows, StribeckModel& model, FitContext& context) const;
+
   bool asymmetric_;
-  bool as_printed_;
+  std::string form_;
   bool offset_;
 };
+
+StribeckFit StaticFriction::fit_form(const StribeckRows& rows, StribeckModel& model,
+                                     FitContext& context) const {
+  if (form_ == "as_printed") {
+    return fit_printed_stribeck(rows, model, context.budget, context.random);
+  }
+  if (form_ == "coulomb_viscous") return fit_coulomb_viscous(rows, model, context.budget);
+  return fit_bounded_stribeck(rows, model, context.budget);
+}
 
 FitResult StaticFriction::fit(FitContext& context) const {
   const auto inputs = find_friction_inputs(context.data.inputs);
@@ -82,9 +94,7 @@ FitResult StaticFriction::fit(FitContext& context) const {
   model.has_offset = offset_;
   model.has_inertia = inputs->acceleration.has_value();
   if (context.budget.remaining() == 0) return {{}, 0, StopReason::budget, "no budget"};
-  const StribeckFit fit = as_printed_
-                              ? fit_printed_stribeck(rows, model, context.budget, context.random)
-                              : fit_bounded_stribeck(rows, model, context.budget);
+  const StribeckFit fit = fit_form(rows, model, context);
   FitResult result;
   result.reason = fit.out_of_budget ? StopReason::budget : StopReason::converged;
   result.front = {model.formula(*inputs)};
@@ -102,11 +112,12 @@ FitResult StaticFriction::fit(FitContext& context) const {
 std::vector<ParameterSpec> specs() {
   return {{"form",
            "bounded: Fs >= Fc >= 0, 0 < vs <= max|v|, 0.5 <= delta <= 4, global optimum; "
-           "as_printed: SciPy's basin hopping without bounds, as the paper's",
+           "as_printed: SciPy's basin hopping without bounds, as the paper's; "
+           "coulomb_viscous: no Stribeck term, exact least squares",
            std::string("bounded"),
            -1e308,
            1e308,
-           {"bounded", "as_printed"}},
+           {"bounded", "as_printed", "coulomb_viscous"}},
           {"offset", "adds a constant sensor offset", false}};
 }
 

@@ -7,7 +7,8 @@
 //
 // Forms: `bounded` (Fs >= Fc >= 0, 0 < vs <= max |v|, 0.5 <= delta <= 4), solved to global
 // optimality; `as_printed`, the unbounded basin hopping of the paper, which degenerates as the
-// paper's did. The term M a is there where the problem has an input with the role acceleration.
+// paper's did; `coulomb_viscous`, without the Stribeck term. The term M a is there where the
+// problem has an input with the role acceleration.
 //
 // Source: Scholl et al. 2025, eq. for static friction, after Canudas de Wit et al. 1995.
 #pragma once

@@ -41,6 +41,56 @@ TEST(StaticFriction, AsPrintedDegeneratesToCoulombAndViscous) {
   EXPECT_NE(result.note.find("not identified"), std::string::npos) << result.note;
 }
 
+// Table 8.2 of the specification: the least-squares lines of the averaged data.
+TEST(StaticFriction, CoulombViscousIsTheExactLine) {
+  const FitOptions linear{.parameters = {{"form", std::string("coulomb_viscous")}}};
+  EXPECT_NEAR(error_of(averaged(2), "symmetric", linear), 0.764, 0.05);
+  EXPECT_NEAR(error_of(averaged(2), "asymmetric", linear), 0.113, 0.015);
+  EXPECT_NEAR(error_of(averaged(4), "asymmetric", linear), 0.089, 0.02);
+}
+
+TEST(StaticFriction, CoulombViscousHoldsTheCoulombLevelAtZero) {
+  Problem problem = averaged(2);
+  Table& train = problem.stages.front().train;
+  for (std::size_t r = 0; r < train.rows(); ++r) {
+    train.target[r] = 2 * train.columns[0][r] - 0.5 * train.columns[1][r];
+  }
+  const Training training(problem);
+  const FitResult result = run_fit(training.data(), "symmetric",
+                                   {.parameters = {{"form", std::string("coulomb_viscous")}}});
+  // Only viscous friction is left, and it is positive at every speed.
+  const std::vector<double> point = {0.1, 1};
+  const std::vector<double> twice = {0.2, 1};
+  Evaluator evaluator;
+  const double once = evaluator.evaluate_at(result.front.at(0), point);
+  EXPECT_GT(once, 0);
+  EXPECT_NEAR(evaluator.evaluate_at(result.front.at(0), twice), 2 * once, 1e-12);
+}
+
+// Janot et al. 2019, fitted on the whole estimation file.
+TEST(StaticFriction, CoulombViscousGivesThePublishedErrorsOfEmps) {
+  const auto data = testing::shared_data();
+  if (!data) GTEST_SKIP() << testing::kNoSharedData;
+  const Problem problem = Catalogue(data).find("emps/pulses").make(1);
+  const Training training(problem);
+  const auto percent = [&](const std::string& algorithm, bool offset) {
+    const FitResult result =
+        run_fit(training.data(), algorithm,
+                {.parameters = {{"form", std::string("coulomb_viscous")}, {"offset", offset}}});
+    std::vector<double> values(training.data().rows());
+    Evaluator().evaluate(result.front.at(0), training.data().table(), values);
+    double miss = 0;
+    double size = 0;
+    for (std::size_t r = 0; r < values.size(); ++r) {
+      miss += std::pow(values[r] - training.table->target[r], 2);
+      size += std::pow(training.table->target[r], 2);
+    }
+    return 100 * std::sqrt(miss / size);
+  };
+  EXPECT_NEAR(percent("symmetric", true), 4.0834, 0.1);
+  EXPECT_NEAR(percent("asymmetric", false), 3.1117, 0.1);
+}
+
 TEST(StaticFriction, BoundedReachesTheStribeckOptimumOfTheAveragedData) {
   EXPECT_NEAR(error_of(averaged(2), "asymmetric", {}), 0.037, 0.006);
   EXPECT_NEAR(error_of(averaged(4), "asymmetric", {}), 0.057, 0.009);
