@@ -94,6 +94,34 @@ double posture_factor(double position_rad, double time_s, double phase_rad) {
          (1 - 0.08 * std::cos(0.17 * time_s));
 }
 
+// The rows of one movement of B.
+void record_dwells(const Joint& joint, double payload_kg, double start_s,
+                   std::size_t samples_per_movement, RandomStream random, Recorder& recorder) {
+  const double payload_nm = kStandardGravity * payload_kg * joint.payload_lever_m;
+  const double scale = joint.noise_scale_b;
+  const DwellMotion motion = make_dwell_motion(random);
+  const double phase = random.uniform(0, 2 * kPi);
+  const double offset = scale * joint.movement_noise_nm * random.normal();
+  for (std::size_t i = 0; i < samples_per_movement; ++i) {
+    const double part =
+        (static_cast<double>(i) + random.uniform()) / static_cast<double>(samples_per_movement);
+    const auto k = static_cast<std::size_t>(part * static_cast<double>(motion.position_rad.size()));
+    const double time_s = static_cast<double>(k) / kSampleRate_hz;
+    const double q = motion.position_rad[k];
+    const double v = motion.velocity_rad_s[k];
+    const double posture = posture_factor(q, time_s, phase);
+    const double arm = joint.gravity_amplitude_nm * posture;
+    const double external = payload_nm * posture;
+    const double g = arm + external;
+    const double truth = joint.law.at(v, g) + joint.shift_at(v, g);
+    const double noise = ripple_at(joint.ripple, q) + joint.sample_noise_nm * random.normal();
+    const double friction = truth + offset + scale * noise;
+    recorder.add(std::array{start_s + time_s, q, v, sign(v), g, sign(g), arm, external,
+                            g + friction, friction},
+                 truth);
+  }
+}
+
 }  // namespace
 
 std::vector<Setting> campaign_order(const Joint& joint, std::uint64_t seed) {
@@ -187,35 +215,10 @@ KnownDataset make_b(const Joint& joint, std::uint64_t seed, double payload_kg, i
   recorder.declare("tau_f", "N m", Role::friction_torque);
   const RandomStream campaign =
       stream_of(joint, seed).split("B").split(key_of(fmt::format("{} kg", payload_kg)));
-  const double payload_nm = kStandardGravity * payload_kg * joint.payload_lever_m;
-  const double scale = joint.noise_scale_b;
   for (int m = 0; m < movements; ++m) {
     recorder.start_movement(movement_name(static_cast<std::size_t>(m)));
-    RandomStream random = campaign.split(static_cast<std::uint64_t>(m));
-    const DwellMotion motion = make_dwell_motion(random);
-    const double phase = random.uniform(0, 2 * kPi);
-    const double offset = scale * joint.movement_noise_nm * random.normal();
-    const double start_s = m * (kDurationB_s + kPauseBetweenMovements_s);
-    for (std::size_t i = 0; i < samples_per_movement; ++i) {
-      const double part =
-          (static_cast<double>(i) + random.uniform()) / static_cast<double>(samples_per_movement);
-      const auto k =
-          static_cast<std::size_t>(part * static_cast<double>(motion.position_rad.size()));
-      const double time_s = static_cast<double>(k) / kSampleRate_hz;
-      const double q = motion.position_rad[k];
-      const double v = motion.velocity_rad_s[k];
-      const double posture = posture_factor(q, time_s, phase);
-      const double arm = joint.gravity_amplitude_nm * posture;
-      const double external = payload_nm * posture;
-      const double g = arm + external;
-      const double truth = joint.law.at(v, g) + joint.shift_at(v, g);
-      const double friction =
-          truth + offset +
-          scale * (ripple_at(joint.ripple, q) + joint.sample_noise_nm * random.normal());
-      recorder.add(std::array{start_s + time_s, q, v, sign(v), g, sign(g), arm, external,
-                              g + friction, friction},
-                   truth);
-    }
+    record_dwells(joint, payload_kg, m * (kDurationB_s + kPauseBetweenMovements_s),
+                  samples_per_movement, campaign.split(static_cast<std::uint64_t>(m)), recorder);
   }
   return recorder.take();
 }

@@ -166,6 +166,7 @@ struct Thermal {
     const double after_pause = before_pause * missing(pause_s());
     return kWarmest_degc - (range - after_pause) * missing(moving_s - pause_start_s());
   }
+  double whole_s() const { return total_s + pause_s(); }
   double campaign_s(double moving_s) const {
     return moving_s < pause_start_s() ? moving_s : moving_s + pause_s();
   }
@@ -185,6 +186,34 @@ Dataset blank_dataset() {
   return data;
 }
 
+// The rows of one movement that starts after `start_s` seconds of motion.
+void record(const Motion& motion, double start_s, const Thermal& thermal, RandomStream draw,
+            LoopCampaign& campaign) {
+  const std::vector<double> instants = instants_of(motion, draw);
+  const std::vector<double> distances = distances_of(motion, instants);
+  const int movement = static_cast<int>(campaign.data.movement_names.size()) - 1;
+  for (std::size_t i = 0; i < instants.size(); ++i) {
+    const State state = at(motion, instants[i]);
+    const State other = at(motion.other, instants[i]);
+    const double time_s = thermal.campaign_s(start_s + instants[i]);
+    const std::array row = {
+        time_s,
+        state.position,
+        state.velocity,
+        state.acceleration,
+        motion.posture.gravity_nm * std::sin(state.position + motion.posture.phase_rad),
+        thermal.temperature_after(start_s + instants[i]),
+        other.velocity,
+        other.acceleration};
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      campaign.data.channels[j].values.push_back(row[j]);
+    }
+    campaign.data.movement.push_back(movement);
+    campaign.distance_rad.push_back(distances[i]);
+    campaign.campaign_part.push_back(time_s / thermal.whole_s());
+  }
+}
+
 }  // namespace
 
 LoopCampaign make_loop_campaign(int constant_velocity, int trajectories,
@@ -195,38 +224,14 @@ LoopCampaign make_loop_campaign(int constant_velocity, int trajectories,
   for (const Motion& motion : motions) {
     thermal.total_s += motion.duration_s + kPauseBetweenMovements_s;
   }
-  const double whole_s = thermal.total_s + thermal.pause_s();
 
   LoopCampaign campaign{blank_dataset(), {}, {}};
   double start_s = 0;
   for (std::size_t m = 0; m < motions.size(); ++m) {
-    const Motion& motion = motions[m];
     campaign.data.movement_names.push_back(
-        fmt::format("{}{:03}", motion.is_crossing() ? 'A' : 'D', m + 1));
-    RandomStream draw = random.split("instants").split(m);
-    const std::vector<double> instants = instants_of(motion, draw);
-    const std::vector<double> distances = distances_of(motion, instants);
-    for (std::size_t i = 0; i < instants.size(); ++i) {
-      const State state = at(motion, instants[i]);
-      const State other = at(motion.other, instants[i]);
-      const double time_s = thermal.campaign_s(start_s + instants[i]);
-      const std::array row = {
-          time_s,
-          state.position,
-          state.velocity,
-          state.acceleration,
-          motion.posture.gravity_nm * std::sin(state.position + motion.posture.phase_rad),
-          thermal.temperature_after(start_s + instants[i]),
-          other.velocity,
-          other.acceleration};
-      for (std::size_t j = 0; j < row.size(); ++j) {
-        campaign.data.channels[j].values.push_back(row[j]);
-      }
-      campaign.data.movement.push_back(static_cast<int>(m));
-      campaign.distance_rad.push_back(distances[i]);
-      campaign.campaign_part.push_back(time_s / whole_s);
-    }
-    start_s += motion.duration_s + kPauseBetweenMovements_s;
+        fmt::format("{}{:03}", motions[m].is_crossing() ? 'A' : 'D', m + 1));
+    record(motions[m], start_s, thermal, random.split("instants").split(m), campaign);
+    start_s += motions[m].duration_s + kPauseBetweenMovements_s;
   }
   return campaign;
 }
