@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Fits the constants of a formula to data by Levenberg-Marquardt with exact derivatives.
+// Fits the constants of a formula to data by Levenberg-Marquardt with exact derivatives; those that
+// enter linearly are solved for exactly at every step (variable projection).
 // The one place where constants are optimised: search, polish and baselines all come here.
-// Not a global optimiser: it converges to the minimum next to where it starts.
+// Not a global optimiser: it converges to a minimum near where it starts.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ struct ConstantFitOptions {
   int max_iterations = 30;
   double gradient_tolerance = 1e-10;  // cosine between the residual and a column of J
   double step_tolerance = 1e-10;      // relative to the constants
-  double function_tolerance = 1e-12;  // relative decrease of the sum of squares
+  double function_tolerance = 1e-8;   // relative decrease of the sum of squares
   bool fit_exponents = false;         // constants that are the exponent of ^ move too
   // Bounds on the constants that are fitted, in the order of the tape; empty for none. The
   // constants given must keep to them.

@@ -9,10 +9,10 @@
 namespace tribench {
 namespace {
 
-constexpr double kFirstDamping = 1e-2;
+constexpr double kFirstDamping = 1e-1;
 constexpr double kLeastDamping = 1e-12;
 constexpr double kMostDamping = 1e16;  // beyond it no step can change a double
-constexpr double kGoodModel = 0.9;     // gain ratio from which the damping falls fast
+constexpr double kGoodModel = 0.95;    // gain ratio from which the damping falls fast
 constexpr double kFastFall = 0.05;
 constexpr double kSlowestFall = 1.0 / 3.0;  // Nielsen 1999
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "algorithms/expression/column_kernels.hpp"
+#include "algorithms/fitting/cholesky.hpp"
 
 namespace tribench::parfam {
 namespace {
@@ -13,51 +14,6 @@ namespace {
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 // A column whose part that is new is smaller than this share of its square adds nothing but noise.
 constexpr double kDependent = 1e-11;
-
-// Cholesky factor of the leading p x p part of a scaled Gram matrix; dependent columns are left
-// out: their row of the factor is 0 and kept[k] is 0.
-void factor_gram(std::span<const double> gram, std::size_t stride, std::size_t p,
-                 std::vector<double>& factor, std::vector<char>& kept) {
-  factor.assign(p * p, 0.0);
-  kept.assign(p, 1);
-  for (std::size_t j = 0; j < p; ++j) {
-    for (std::size_t i = 0; i <= j; ++i) {
-      if (i < j && kept[i] == 0) continue;
-      double entry = gram[j * stride + i];
-      for (std::size_t k = 0; k < i; ++k) entry -= factor[j * p + k] * factor[i * p + k];
-      if (i < j) {
-        factor[j * p + i] = entry / factor[i * p + i];
-      } else if (entry > kDependent * gram[j * stride + j]) {
-        factor[j * p + j] = std::sqrt(entry);
-      } else {
-        kept[j] = 0;
-        std::fill_n(factor.begin() + static_cast<std::ptrdiff_t>(j * p), j, 0.0);
-      }
-    }
-  }
-}
-
-// L x = b in place, over the kept columns.
-void solve_lower(std::span<const double> factor, std::span<const char> kept, std::span<double> b) {
-  const std::size_t p = kept.size();
-  for (std::size_t i = 0; i < p; ++i) {
-    if (kept[i] == 0) {
-      b[i] = 0;
-      continue;
-    }
-    for (std::size_t k = 0; k < i; ++k) b[i] -= factor[i * p + k] * b[k];
-    b[i] /= factor[i * p + i];
-  }
-}
-
-void solve_upper(std::span<const double> factor, std::span<const char> kept, std::span<double> b) {
-  const std::size_t p = kept.size();
-  for (std::size_t i = p; i-- > 0;) {
-    if (kept[i] == 0) continue;
-    for (std::size_t k = i + 1; k < p; ++k) b[i] -= factor[k * p + i] * b[k];
-    b[i] /= factor[i * p + i];
-  }
-}
 
 // D from its polynomial q.
 void denominator_from(Denominators kind, const std::vector<double>& q, std::vector<double>& d) {
@@ -208,13 +164,17 @@ bool Projection::solve_linear() {
   gram_.resize(stride * stride);
   columns::gram(basis_.data(), stride, rows_, gram_.data());
   if (!std::ranges::all_of(gram_, [](double x) { return std::isfinite(x); })) return false;
-  factor_gram(gram_, stride, p, factor_, kept_);
-  for (std::size_t k = 0; k < p; ++k) coefficients_[k] = gram_[k * stride + p];
-  solve_lower(factor_, kept_, coefficients_);
-  solve_upper(factor_, kept_, coefficients_);
+  factor_.resize(p * p);
+  kept_.resize(p);
   for (std::size_t k = 0; k < p; ++k) {
-    if (kept_[k] == 0) coefficients_[k] = 0;
+    std::copy_n(gram_.begin() + static_cast<std::ptrdiff_t>(k * stride), p,
+                factor_.begin() + static_cast<std::ptrdiff_t>(k * p));
   }
+  cholesky_factor_semidefinite(factor_, p, kDependent, kept_);
+  for (std::size_t k = 0; k < p; ++k) {
+    coefficients_[k] = kept_[k] != 0 ? gram_[k * stride + p] : 0;
+  }
+  cholesky_solve(factor_, p, coefficients_);
   return true;
 }
 
@@ -322,7 +282,9 @@ void Projection::normal_equations(NormalEquations& sums) {
   // Take out what the linear coefficients can follow: J^T J - (L^-1 B^T J)^T (L^-1 B^T J).
   cross_products(jacobian, std::span(basis_).first(p), rows_, cross_);
   for (std::size_t k = 0; k < q; ++k) {
-    solve_lower(factor_, kept_, std::span(cross_).subspan(k * p, p));
+    const std::span<double> row = std::span(cross_).subspan(k * p, p);
+    for (std::size_t i = 0; i < p; ++i) row[i] = kept_[i] != 0 ? row[i] : 0;
+    cholesky_solve_lower(factor_, p, row);
   }
   for (std::size_t k = 0; k < q; ++k) {
     for (std::size_t l = 0; l <= k; ++l) {
