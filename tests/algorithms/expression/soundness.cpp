@@ -76,6 +76,13 @@ std::vector<double> newton(RandomStream& random, const InputBox& box, const Expr
   return point;
 }
 
+// A few doubles further along each input.
+void step_aside(RandomStream& random, std::vector<double>& point) {
+  for (double& x : point) {
+    for (auto n = random.below(4); n > 0; --n) x = std::nextafter(x, random.sign() * 1e300);
+  }
+}
+
 // Corners and the doubles beside them, tiny numbers, roots of what is divided by or rooted, and the
 // doubles around those.
 void add_adversarial(RandomStream& random, const Expression& formula, const InputBox& box,
@@ -87,7 +94,8 @@ void add_adversarial(RandomStream& random, const Expression& formula, const Inpu
       critical.push_back(formula.subtree(i - 1));
     if (op == Op::pow) critical.push_back(formula.subtree(formula.left_child(i)));
   }
-  for (int i = 0; i < count; ++i) {
+  constexpr int kNeighbours = 8;
+  for (int i = 0; i < count / kNeighbours; ++i) {
     std::vector<double> point = random_point(random, box);
     if (i % 4 == 0) {
       for (std::size_t j = 0; j < box.size(); ++j) {
@@ -99,12 +107,10 @@ void add_adversarial(RandomStream& random, const Expression& formula, const Inpu
     } else {
       point = newton(random, box, critical[random.below(critical.size())]);
     }
-    for (std::size_t j = 0; j < box.size(); ++j) {
-      for (auto n = random.below(4); n > 0; --n) {
-        point[j] = std::nextafter(point[j], random.sign() * 1e300);
-      }
+    for (int neighbour = 0; neighbour < kNeighbours; ++neighbour) {
+      points.add(point);
+      step_aside(random, point);
     }
-    points.add(std::move(point));
   }
 }
 
