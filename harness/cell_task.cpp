@@ -104,6 +104,10 @@ json record_json(const Record& r) {
           {"eval_ns_per_row", number(r.eval_ns_per_row)},
           {"singularity", r.singularity},
           {"witness", r.witness},
+          {"grid_check", r.grid_check},
+          {"dissipative", r.dissipative},
+          {"monotone", r.monotone},
+          {"odd", r.odd},
           {"formula", r.formula},
           {"note", r.note}};
 }
@@ -138,6 +142,10 @@ Record parse_record(const json& object) {
   r.eval_ns_per_row = number(object, "eval_ns_per_row");
   r.singularity = object.at("singularity");
   r.witness = object.at("witness");
+  r.grid_check = object.at("grid_check");
+  r.dissipative = object.at("dissipative");
+  r.monotone = object.at("monotone");
+  r.odd = object.at("odd");
   r.formula = object.at("formula");
   r.note = object.at("note");
   return r;

@@ -9,6 +9,8 @@
 
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/grid_check.hpp"
+#include "algorithms/expression/property.hpp"
 #include "algorithms/expression/singularity.hpp"
 #include "algorithms/expression/text.hpp"
 #include "harness/metrics.hpp"
@@ -62,11 +64,50 @@ double measure_ns_per_row(const Expression& formula, const Table& table) {
 // For a formula of the front that is not the cell's own: a tenth of the default effort.
 constexpr ProofLimits kFrontProof{200'000, 0};
 
-SingularityResult prove(const Problem& problem, const Expression& formula,
-                        const ProofLimits& limits = {}) {
+InputBox box_of(const Problem& problem) {
   InputBox box;
   for (const Input& input : problem.inputs) box.push_back({input.low, input.high, input.sign_of});
-  return prove_free(formula, box, limits);
+  return box;
+}
+
+SingularityResult prove(const Problem& problem, const Expression& formula,
+                        const ProofLimits& limits = {}) {
+  return prove_free(formula, box_of(problem), limits);
+}
+
+// Physics is asked of finite formulas alone, and beyond the Stribeck range for the slope.
+constexpr ProofLimits kPhysicsProof{200'000, 0};
+constexpr double kStribeckShare = 0.25;  // of the largest speed
+
+std::string verdict_on(Property property, const Expression& formula, const InputBox& box,
+                       std::size_t velocity) {
+  const double fastest = std::max(std::abs(box[velocity].low), std::abs(box[velocity].high));
+  const bool both_ways = box[velocity].low < 0 && box[velocity].high > 0;
+  if (property == Property::odd && !both_ways) return "";
+  PropertyQuestion question;
+  question.property = property;
+  question.velocity = velocity;
+  question.from = kStribeckShare * fastest;
+  const Verdict verdict = prove_property(formula, box, question, kPhysicsProof).verdict;
+  return verdict == Verdict::proved_free ? "proved" : std::string(verdict_name(verdict));
+}
+
+void judge_singularity(const Problem& problem, const Expression& formula, Record& record) {
+  const InputBox box = box_of(problem);
+  const SingularityResult proof = prove_free(formula, box);
+  record.singularity = verdict_name(proof.verdict);
+  if (proof.witness) record.witness = witness_json(*proof.witness, problem.input_names());
+  if (proof.verdict == Verdict::refuted) {
+    record.grid_check = is_finite_on_grid(formula, box) ? "missed" : "seen";
+  }
+  if (proof.verdict != Verdict::proved_free) return;
+  for (std::size_t j = 0; j < problem.inputs.size(); ++j) {
+    if (problem.inputs[j].role != Role::velocity) continue;
+    record.dissipative = verdict_on(Property::dissipative, formula, box, j);
+    record.monotone = verdict_on(Property::monotone, formula, box, j);
+    record.odd = verdict_on(Property::odd, formula, box, j);
+    return;
+  }
 }
 
 bool dominates(const FrontRecord& a, const FrontRecord& b) {
@@ -100,9 +141,7 @@ void judge_formula(const Problem& problem, const StagedFormula& staged, Record& 
   if (!staged.adaptation.empty()) {
     record.complexity_adaptation = paper_complexity(staged.adaptation);
   }
-  const SingularityResult proof = prove(problem, formula);
-  record.singularity = verdict_name(proof.verdict);
-  if (proof.witness) record.witness = witness_json(*proof.witness, problem.input_names());
+  judge_singularity(problem, formula, record);
   record.eval_ns_per_row = measure_ns_per_row(formula, problem.test);
   record.formula = print(formula, problem.input_names());
   record.status = "ok";

@@ -9,6 +9,7 @@
 
 #include "reports/figures.hpp"
 #include "reports/markdown.hpp"
+#include "reports/proofs.hpp"
 
 namespace tribench {
 namespace {
@@ -196,6 +197,7 @@ std::string leaderboard_head(const RunFolder& run, const RunSummary& summary,
 std::string leaderboard(const RunFolder& run, const RunSummary& summary,
                         const std::string& changed) {
   std::string text = leaderboard_head(run, summary, changed);
+  text += proofs_section(run.records);
   text +=
       "\n## How to read the tables\n\n"
       "Errors are mean absolute errors on test movements, medians over seeds, in the target's unit "

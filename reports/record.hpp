@@ -51,6 +51,15 @@ struct Record {
 
   std::string singularity;  // proved_free, refuted, undecided
   std::string witness;      // JSON object, or empty
+  // Of a refuted formula: whether 2001 points on a grid over the box would have shown it, "seen" or
+  // "missed".
+  std::string grid_check;
+  // Physics, of a formula that is proved free and has a velocity among its inputs: proved, refuted
+  // or undecided. Dissipative: f v >= 0; monotone: f grows with v beyond a quarter of the largest
+  // speed; odd: f(-v) = -f(v).
+  std::string dissipative;
+  std::string monotone;
+  std::string odd;
   std::string formula;
   std::string note;
 };

@@ -56,6 +56,10 @@ constexpr Column<Record> kResultColumns[] = {
     {"relative_error_train", &R::relative_error_train},
     {"relative_error_test", &R::relative_error_test},
     {"complexity_adaptation", &R::complexity_adaptation},
+    {"grid_check", &R::grid_check},
+    {"dissipative", &R::dissipative},
+    {"monotone", &R::monotone},
+    {"odd", &R::odd},
     {"note", &R::note},
 };
 
