@@ -11,6 +11,7 @@
 #include "harness/cli/commands.hpp"
 #include "harness/study/external_torque_study.hpp"
 #include "harness/study/generator_study.hpp"
+#include "harness/study/paper_study.hpp"
 #include "harness/study/reference_study.hpp"
 
 namespace tribench {
@@ -160,6 +161,48 @@ void add_external_torque_study(CLI::App& study) {
   });
 }
 
+void print_paper_json(const std::vector<PaperProblem>& problems) {
+  nlohmann::ordered_json array = nlohmann::ordered_json::array();
+  for (const PaperProblem& problem : problems) {
+    for (const PaperRow& row : problem.rows) {
+      array.push_back({{"name", problem.name + " " + row.method + " " + row.operators},
+                       {"summary", fmt::format("Table {}", problem.table)},
+                       {"problem", problem.name},
+                       {"method", row.method},
+                       {"operators", row.operators},
+                       {"mae_nm", row.mae_nm},  // NaN is null
+                       {"low_nm", row.low_nm},
+                       {"high_nm", row.high_nm},
+                       {"complexity", row.complexity},
+                       {"paper_mae_nm", row.paper_mae_nm},
+                       {"paper_complexity", row.paper_complexity},
+                       {"ceiling_nm", problem.ceiling_nm},
+                       {"seeds", row.seeds},
+                       {"failed", row.failed},
+                       {"singular", row.singular}});
+    }
+  }
+  fmt::print("{}\n", array.dump(2));
+}
+
+void add_paper_study(CLI::App& study) {
+  CLI::App* command =
+      study.add_subcommand("paper", "A run of the grid 'paper' beside the paper's three tables");
+  command->footer("Example: tribench run paper --out run-paper && tribench study paper run-paper");
+  auto run = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("DIR", *run, "folder of a run with cells of A and B")->required();
+  command->add_flag("--json", *json, "an array of figures");
+  command->callback([run, json] {
+    const std::vector<PaperProblem> problems = run_paper_study(*run);
+    if (*json) {
+      print_paper_json(problems);
+    } else {
+      fmt::print("{}", paper_study_markdown(problems));
+    }
+  });
+}
+
 }  // namespace
 
 void add_study_command(CLI::App& app, ExitStatus& status) {
@@ -168,6 +211,7 @@ void add_study_command(CLI::App& app, ExitStatus& status) {
   add_generator_study(*study, status);
   add_reference_study(*study, status);
   add_external_torque_study(*study);
+  add_paper_study(*study);
 }
 
 }  // namespace tribench
