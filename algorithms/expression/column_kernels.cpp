@@ -28,77 +28,61 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 #define TRIBENCH_SUM_LANES(v) \
   ((((v)[0] + (v)[4]) + ((v)[2] + (v)[6])) + (((v)[1] + (v)[5]) + ((v)[3] + (v)[7])))
 
-// The evaluator's own functions, so that values and derivatives meet bit for bit.
+// The evaluator's own kernels, so that values and derivatives meet bit for bit.
+const KernelTable<double>& kernels() {
+  static const KernelTable<double>& table = kernel_table<double>(vector_level());
+  return table;
+}
+
 void apply(Op function, const double* a, double* out, std::size_t n) {
-  static const KernelTable<double>& kernels = kernel_table<double>(vector_level());
-  kernels.function[static_cast<int>(function) - static_cast<int>(Op::neg)](out, a, nullptr, nullptr,
-                                                                           n);
+  kernels().function[static_cast<int>(function) - static_cast<int>(Op::neg)](out, a, nullptr,
+                                                                             nullptr, n);
+}
+
+void combine(Op operation, OperandForm form, const double* a, const double* b, double* out,
+             std::size_t n) {
+  kernels().binary[static_cast<int>(operation) - static_cast<int>(Op::add)][form](out, a, b,
+                                                                                  nullptr, n);
 }
 
 }  // namespace
 
-TRIBENCH_EACH_LEVEL void add(const double* a, const double* b, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] + b[i];
+void add(const double* a, const double* b, double* out, std::size_t n) {
+  combine(Op::add, kFormVV, a, b, out, n);
 }
-TRIBENCH_EACH_LEVEL void add(const double* a, double b, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] + b;
+void add(const double* a, double b, double* out, std::size_t n) {
+  combine(Op::add, kFormVS, a, &b, out, n);
 }
-TRIBENCH_EACH_LEVEL void sub(const double* a, const double* b, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] - b[i];
+void sub(const double* a, const double* b, double* out, std::size_t n) {
+  combine(Op::sub, kFormVV, a, b, out, n);
 }
-TRIBENCH_EACH_LEVEL void sub(double a, const double* b, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = a - b[i];
+void sub(double a, const double* b, double* out, std::size_t n) {
+  combine(Op::sub, kFormSV, &a, b, out, n);
 }
-TRIBENCH_EACH_LEVEL void mul(const double* a, const double* b, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] * b[i];
+void mul(const double* a, const double* b, double* out, std::size_t n) {
+  combine(Op::mul, kFormVV, a, b, out, n);
 }
-TRIBENCH_EACH_LEVEL void mul(const double* a, double b, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] * b;
+void mul(const double* a, double b, double* out, std::size_t n) {
+  combine(Op::mul, kFormVS, a, &b, out, n);
 }
-TRIBENCH_EACH_LEVEL void div(const double* a, const double* b, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] / b[i];
+void div(const double* a, const double* b, double* out, std::size_t n) {
+  combine(Op::div, kFormVV, a, b, out, n);
 }
-TRIBENCH_EACH_LEVEL void div(double a, const double* b, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = a / b[i];
+void div(double a, const double* b, double* out, std::size_t n) {
+  combine(Op::div, kFormSV, &a, b, out, n);
 }
-TRIBENCH_EACH_LEVEL void div(const double* a, double b, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] / b;
-}
-
-TRIBENCH_EACH_LEVEL void sqrt(const double* a, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = __builtin_sqrt(a[i]);
-}
-TRIBENCH_EACH_LEVEL void abs(const double* a, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = __builtin_fabs(a[i]);
-}
-TRIBENCH_EACH_LEVEL void sgn(const double* a, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = a[i];
-    const double sign = static_cast<double>(x > 0) - static_cast<double>(x < 0);
-    out[i] = x == x ? sign : x;
-  }
+void div(const double* a, double b, double* out, std::size_t n) {
+  combine(Op::div, kFormVS, a, &b, out, n);
 }
 
-TRIBENCH_EACH_LEVEL void integer_power(const double* a, int exponent, double* out, std::size_t n) {
-  const unsigned magnitude = static_cast<unsigned>(exponent < 0 ? -exponent : exponent);
-  // Chunks small enough for registers, so that the loop over the exponent's bits stays outside.
-  constexpr std::size_t kChunk = 16;
-  for (std::size_t begin = 0; begin < n; begin += kChunk) {
-    const std::size_t size = n - begin < kChunk ? n - begin : kChunk;
-    double square[kChunk] = {};
-    double result[kChunk];
-    for (std::size_t i = 0; i < size; ++i) square[i] = a[begin + i];
-    for (std::size_t i = 0; i < kChunk; ++i) result[i] = 1;
-    for (unsigned left = magnitude; left > 0; left >>= 1U) {
-      if ((left & 1U) != 0) {
-        for (std::size_t i = 0; i < kChunk; ++i) result[i] *= square[i];
-      }
-      for (std::size_t i = 0; i < kChunk; ++i) square[i] *= square[i];
-    }
-    for (std::size_t i = 0; i < size; ++i) {
-      out[begin + i] = exponent < 0 ? 1 / result[i] : result[i];
-    }
-  }
+void sqrt(const double* a, double* out, std::size_t n) { apply(Op::sqrt, a, out, n); }
+void abs(const double* a, double* out, std::size_t n) { apply(Op::abs, a, out, n); }
+void sgn(const double* a, double* out, std::size_t n) { apply(Op::sgn, a, out, n); }
+
+void integer_power(const double* a, int exponent, double* out, std::size_t n) {
+  if (exponent == 2) return combine(Op::mul, kFormVV, a, a, out, n);
+  const double size = exponent;
+  kernels().integer_power(out, a, &size, nullptr, n);
 }
 
 TRIBENCH_EACH_LEVEL void one_minus_square(const double* a, double* out, std::size_t n) {
