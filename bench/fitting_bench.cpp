@@ -9,48 +9,106 @@
 #include "algorithms/expression/differentiate.hpp"
 #include "algorithms/expression/text.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
+#include "algorithms/fitting/ipopt_minimizer.hpp"
+#include "algorithms/fitting/nlopt_minimizer.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench {
 namespace {
 
-// The paper's ParFam formula (joint 2) fitted from random starts to 90 rows of itself with noise.
-void fit_parfam_formula(benchmark::State& state) {
-  const std::vector<std::string> names = {"v", "s"};
-  const Expression truth =
-      parse("(3.66*v + 8.52*s - 0.44)*exp(-0.78*v^2 + 1.26*v*s + 0.02*v)", names);
-  std::vector<double> v(90);
-  std::vector<double> s(90);
-  std::vector<double> y(90);
-  for (int i = 0; i < 90; ++i) {
-    s[i] = i < 45 ? -1 : 1;
-    v[i] = s[i] * (0.015 + 0.665 * (i % 45) / 44.0);
+// The paper's ParFam formula (joint 2) with 90 rows of itself and noise, to be fitted from random
+// starts: Levenberg-Marquardt, NLopt's L-BFGS and Ipopt from the same ones.
+struct ParFamCurve {
+  std::vector<std::string> names = {"v", "s"};
+  Expression truth = parse("(3.66*v + 8.52*s - 0.44)*exp(-0.78*v^2 + 1.26*v*s + 0.02*v)", names);
+  std::vector<std::size_t> places = truth.constant_positions();
+  std::vector<double> v = std::vector<double>(90);
+  std::vector<double> s = std::vector<double>(90);
+  std::vector<double> y = std::vector<double>(90);
+  std::vector<const double*> columns = {v.data(), s.data()};
+  Inputs inputs{columns, 90};
+  RandomStream random{1};
+
+  ParFamCurve() {
+    std::erase_if(places, [&](std::size_t place) { return truth.node(place).value == 2; });
+    for (std::size_t i = 0; i < 90; ++i) {
+      s[i] = i < 45 ? -1 : 1;
+      v[i] = s[i] * (0.015 + 0.665 * static_cast<double>(i % 45) / 44.0);
+    }
+    Evaluator().evaluate(truth, inputs, y);
+    for (double& value : y) value += kNoise * random.normal();
   }
-  const std::vector<const double*> columns = {v.data(), s.data()};
-  const Inputs inputs{columns, 90};
-  Evaluator().evaluate(truth, inputs, y);
-  RandomStream random(1);
-  for (double& value : y) value += 0.05 * random.normal();
+  std::vector<double> start() {
+    std::vector<double> x(places.size());
+    for (double& value : x) value = random.normal();
+    return x;
+  }
+  static constexpr double kNoise = 0.05;
+  // A minimum counts where it leaves little more than the noise.
+  static bool is_reached(double sum_squares) { return sum_squares < 90 * kNoise * kNoise * 1.5; }
+};
+
+void report(benchmark::State& state, std::int64_t starts, std::int64_t reached) {
+  if (starts > 100 && reached < starts / 3) state.SkipWithError("too few starts reach the truth");
+  state.counters["reached"] = static_cast<double>(reached) / static_cast<double>(starts);
+}
+
+void fit_parfam_formula(benchmark::State& state) {
+  ParFamCurve curve;
   ConstantFitter fitter;
   std::int64_t starts = 0;
   std::int64_t iterations = 0;
   std::int64_t reached = 0;
   for (auto _ : state) {
-    Expression formula = truth;
-    for (std::size_t place : truth.constant_positions()) {
-      if (truth.node(place).value != 2) formula.set_constant(place, random.normal());
+    Expression formula = curve.truth;
+    const std::vector<double> start = curve.start();
+    for (std::size_t k = 0; k < start.size(); ++k) {
+      formula.set_constant(curve.places[k], start[k]);
     }
-    const ConstantFitResult result = fitter.fit(formula, inputs, y, {}, {.max_iterations = 100});
+    const ConstantFitResult result =
+        fitter.fit(formula, curve.inputs, curve.y, {}, {.max_iterations = 100});
     starts += 1;
     iterations += result.iterations;
-    if (result.sum_squares < 90 * 0.05 * 0.05 * 1.5) reached += 1;
+    if (ParFamCurve::is_reached(result.sum_squares)) reached += 1;
   }
-  if (starts > 100 && reached < starts / 2) state.SkipWithError("too few starts reach the truth");
   state.counters["iterations_per_start"] =
       static_cast<double>(iterations) / static_cast<double>(starts);
-  state.counters["reached"] = static_cast<double>(reached) / static_cast<double>(starts);
+  report(state, starts, reached);
 }
 BENCHMARK(fit_parfam_formula)->Unit(benchmark::kMicrosecond);
+
+void fit_parfam_formula_generally(benchmark::State& state) {
+  ParFamCurve curve;
+  Differentiator differentiator;
+  differentiator.prepare(curve.truth, curve.places);
+  NormalEquations sums;
+  const Objective objective = [&](std::span<const double> x, std::span<double> gradient) {
+    differentiator.set_constants(x);
+    differentiator.normal_equations(curve.inputs, curve.y, {}, sums);
+    for (std::size_t k = 0; k < gradient.size(); ++k) gradient[k] = 2 * sums.gradient[k];
+    return sums.sum_squares;
+  };
+  std::int64_t starts = 0;
+  std::int64_t reached = 0;
+  std::uint64_t evaluations = 0;
+  for (auto _ : state) {
+    const std::vector<double> start = curve.start();
+    const Minimum minimum = state.range(0) == 0
+                                ? minimize_nlopt(NloptMethod::lbfgs, objective, start)
+                                : minimize_ipopt(objective, start);
+    starts += 1;
+    evaluations += minimum.evaluations;
+    if (ParFamCurve::is_reached(minimum.value)) reached += 1;
+  }
+  state.counters["evaluations_per_start"] =
+      static_cast<double>(evaluations) / static_cast<double>(starts);
+  report(state, starts, reached);
+}
+BENCHMARK(fit_parfam_formula_generally)
+    ->ArgName("nlopt_0_ipopt_1")
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMicrosecond);
 
 // Balanced: the larger half of the remaining length goes to either side alike.
 void grow(RandomStream& random, std::size_t length, std::span<const Op> operators,
