@@ -13,6 +13,7 @@
 #include "harness/study/generator_study.hpp"
 #include "harness/study/paper_study.hpp"
 #include "harness/study/reference_study.hpp"
+#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {
@@ -192,12 +193,15 @@ void add_paper_study(CLI::App& study) {
   auto run = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
   command->add_option("DIR", *run, "folder of a run with cells of A and B")->required();
+  auto out = std::make_shared<std::string>();
   command->add_flag("--json", *json, "an array of figures");
-  command->callback([run, json] {
+  command->add_option("--out", *out, "write the page to this file instead");
+  command->callback([run, json, out] {
     const std::vector<PaperProblem> problems = run_paper_study(*run);
+    if (!out->empty()) write_file(*out, paper_study_markdown(problems));
     if (*json) {
       print_paper_json(problems);
-    } else {
+    } else if (out->empty()) {
       fmt::print("{}", paper_study_markdown(problems));
     }
   });

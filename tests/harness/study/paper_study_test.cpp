@@ -59,20 +59,21 @@ TEST(PaperStudy, SetsMedianSpreadAndThePapersFigureSideBySide) {
       study_of({record("A/j2/load", "pysr", 1, 1.1), record("A/j2/load", "pysr", 2, 1.0),
                 record("A/j2/load", "pysr", 3, 1.5), record("A/j2/load", "udsr", 1, kMissing),
                 record("A/j2/load", "asymmetric_as_printed", 1, 3.8),
+                record("A/j2/load", "symmetric_as_printed", 1, 3.9),
                 record("B/j2/load", "parfam", 1, 0.7), record("A/j2/no_load", "constant", 1, 9)});
   ASSERT_EQ(problems.size(), 3U);
   EXPECT_EQ(problems[0].name, "A/j2/no_load");
   EXPECT_EQ(problems[1].name, "A/j2/load");
   EXPECT_EQ(problems[2].table, 3);
   const PaperProblem& load = problems[1];
-  ASSERT_EQ(load.rows.size(), 3U);
+  ASSERT_EQ(load.rows.size(), 4U);
   EXPECT_EQ(load.rows[0].method, "pysr");
   EXPECT_EQ(load.rows[0].mae_nm, 1.1);
   EXPECT_EQ(load.rows[0].low_nm, 1.0);
   EXPECT_EQ(load.rows[0].high_nm, 1.5);
   EXPECT_EQ(load.rows[0].paper_mae_nm, 1.294);
   EXPECT_EQ(load.rows[1].paper_mae_nm, 4.073);
-  EXPECT_EQ(load.rows[2].failed, 1U);
+  EXPECT_EQ(load.rows[3].failed, 1U);
   EXPECT_EQ(problems[2].rows[0].complexity, 4);
   const std::string text = paper_study_markdown(problems);
   EXPECT_THAT(text, HasSubstr("| pysr | paper | 1.100 | 1.000 to 1.500 | 15 | 1.294 | 13 |"));
