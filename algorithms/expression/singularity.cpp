@@ -243,6 +243,15 @@ std::string point_json(std::span<const double> point, std::span<const std::strin
   return text + "}";
 }
 
+// Equal in every input or the next double; two points of another kind refute a property.
+bool are_neighbours(const Witness& witness) {
+  for (std::size_t j = 0; j < witness.point.size(); ++j) {
+    const double a = witness.point[j];
+    if (witness.neighbour[j] != a && witness.neighbour[j] != next_up(a)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string_view verdict_name(Verdict verdict) {
@@ -258,8 +267,8 @@ std::string_view verdict_name(Verdict verdict) {
 
 std::string witness_json(const Witness& witness, std::span<const std::string> names) {
   if (witness.neighbour.empty()) return point_json(witness.point, names);
-  return fmt::format("{{\"between\": [{}, {}]}}", point_json(witness.point, names),
-                     point_json(witness.neighbour, names));
+  return fmt::format("{{\"{}\": [{}, {}]}}", are_neighbours(witness) ? "between" : "points",
+                     point_json(witness.point, names), point_json(witness.neighbour, names));
 }
 
 std::vector<std::vector<Interval>> sign_cells(const Expression& formula, const InputBox& box) {

@@ -44,7 +44,8 @@ struct Witness {
   std::vector<double> neighbour;  // empty, or the second point
   std::size_t node = 0;           // place in the tape
 };
-// {"v": 0.3, "g": 1} or {"between": [{...}, {...}]}
+// {"v": 0.3, "g": 1} or {"between": [{...}, {...}]}; {"points": [...]} for two points that are no
+// neighbours, which refute a property.
 std::string witness_json(const Witness& witness, std::span<const std::string> names);
 
 struct ProofLimits {

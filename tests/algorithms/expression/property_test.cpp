@@ -103,6 +103,7 @@ TEST(Monotone, is_refuted_by_two_points_between_which_friction_falls) {
   EXPECT_LT(slow[0], fast[0]);
   EXPECT_EQ(slow[1], fast[1]);
   EXPECT_GT(f(formula, slow), f(formula, fast));
+  EXPECT_TRUE(witness_json(*result.witness, kNames).starts_with("{\"points\": [{\"v\": "));
 }
 
 TEST(Odd, is_decided_by_form_or_by_a_point) {
