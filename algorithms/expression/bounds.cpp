@@ -122,33 +122,31 @@ bool FormulaBounds::sharpen(std::span<const Interval> box) {
     bound_error(i);
     bound_gradient(i);
     real_root_ = values_[i].range;
-    if (arity(formula_.node(i).op) > 0) refine(i, box);
+    if (arity(formula_.node(i).op) == 0) continue;
+    refine(i, box);
+    errors_[i] += rounding_of(i) * kInflate;
   }
   failed_ = formula_.size();
   return true;
 }
 
+// |f(a) - f(a')| for the real operand a and the computed one a'.
 double FormulaBounds::unary_error(std::size_t i) const {
   const Interval& a = values_[i - 1].range;
-  const double magnitude = values_[i].range.magnitude();
   const double ea = errors_[i - 1];
   switch (formula_.node(i).op) {
-    case Op::neg:
-    case Op::abs:
-      return ea;
     case Op::exp:
-      return times(magnitude, ea) + kKernelError * magnitude + kFlushed;
+      return times(values_[i].range.magnitude(), ea);
     case Op::log:
-      return ea / a.low + kKernelError * magnitude + kTiny;
+      return ea / a.low;
     case Op::sqrt: {
       const double root = std::sqrt(a.low);
-      const double moved = root > 0 ? std::min(ea / root, std::sqrt(ea)) : std::sqrt(ea);
-      return moved + kRoundoff * magnitude + kTiny;
+      return root > 0 ? std::min(ea / root, std::sqrt(ea)) : std::sqrt(ea);
     }
     case Op::sgn:
       return ea == 0 || values_[i].range.is_point() ? 0 : 2;
-    default:  // sin, cos, tanh: slopes of at most 1; the second term is the reduced argument's
-      return ea + kKernelError * magnitude + 0x1p-58 * (1 + a.magnitude());
+    default:  // neg, abs, sin, cos, tanh: slopes of at most 1
+      return ea;
   }
 }
 
@@ -162,39 +160,84 @@ double FormulaBounds::binary_error(std::size_t i) const {
   switch (formula_.node(i).op) {
     case Op::add:
     case Op::sub:
-      return ea + eb + kRoundoff * magnitude;
+      return ea + eb;
     case Op::mul:
-      return times(a.magnitude(), eb) + times(b.magnitude(), ea) + kRoundoff * magnitude + kTiny;
+      return times(a.magnitude(), eb) + times(b.magnitude(), ea);
     case Op::div:
-      return (ea + times(magnitude, eb)) / b.mignitude() + kRoundoff * magnitude + kTiny;
+      return (ea + times(magnitude, eb)) / b.mignitude();
     default:
       break;
   }
-  double moved = 0;
   if (b.is_point() && is_integer_power(b.low) && b.low >= 1) {
     const int n = static_cast<int>(b.low);
     const double slope = n * integer_power({Interval::point(a.magnitude())}, n - 1).range.high;
-    return times(slope, ea) + times(eb, kInfinity) + 2 * n * kRoundoff * magnitude + kTiny;
+    return times(slope, ea) + times(eb, kInfinity);
   }
+  double moved = 0;
   if (ea > 0) moved += b.magnitude() * magnitude / a.mignitude() * ea;
   if (eb > 0) {
     const double logs = std::max(std::abs(std::log(a.low)), std::abs(std::log(a.high)));
     moved += (logs + 1e-9) * magnitude * eb;
   }
-  const double relative = kKernelError + 2 * std::min(b.magnitude(), 1100.0) * kRoundoff;
-  return moved + relative * magnitude + kTiny;
+  return moved;
 }
 
+// What the operation itself errs by, given its result's range.
+double FormulaBounds::rounding_of(std::size_t i) const {
+  const double magnitude = values_[i].range.magnitude();
+  switch (formula_.node(i).op) {
+    case Op::neg:
+    case Op::abs:
+    case Op::sgn:
+      return 0;
+    case Op::add:
+    case Op::sub:
+      return same_operands_[i] ? 0 : kRoundoff * magnitude;  // x + x and x - x are exact
+    case Op::mul:
+      return scales_exactly(i) ? 0 : kRoundoff * magnitude + kTiny;
+    case Op::div:
+    case Op::sqrt:
+      return kRoundoff * magnitude + kTiny;
+    case Op::exp:
+      return kKernelError * magnitude + kFlushed;
+    case Op::log:
+      return kKernelError * magnitude + kTiny;
+    case Op::pow: {
+      const double exponent = std::min(values_[i - 1].range.magnitude(), 1100.0);
+      return (kKernelError + 2 * exponent * kRoundoff) * magnitude + kTiny;
+    }
+    default:  // sin, cos, tanh; the second term is the reduced argument's
+      return kKernelError * magnitude + 0x1p-58 * (1 + values_[i - 1].range.magnitude());
+  }
+}
+
+// Whether one factor is +-2^k, k >= 0, everywhere.
+bool FormulaBounds::scales_exactly(std::size_t i) const {
+  for (const std::size_t factor : {formula_.left_child(i), i - 1}) {
+    const Interval& x = values_[factor].range;
+    int exponent = 0;
+    const double mantissa = std::frexp(x.low, &exponent);
+    if (x.is_point() && std::abs(mantissa) == 0.5 && exponent >= 1) return true;
+  }
+  return false;
+}
+
+// The error that the operands bring, and how far the range of the real value is to be widened for
+// it to hold the computed one. An operation that is rounded correctly needs no more than the
+// former: rounding is monotone and the ends of a range are doubles.
 void FormulaBounds::bound_error(std::size_t i) {
   const Op op = formula_.node(i).op;
-  double error = 0;
+  double moved = 0;
   if (arity(op) == 1) {
-    error = unary_error(i);
+    moved = unary_error(i);
   } else if (arity(op) == 2) {
     const bool is_exact = same_operands_[i] && (op == Op::sub || op == Op::div);
-    error = is_exact ? 0 : binary_error(i);
+    moved = is_exact ? 0 : binary_error(i);
   }
-  errors_[i] = std::isnan(error) ? kInfinity : error * kInflate;
+  errors_[i] = std::isnan(moved) ? kInfinity : moved * kInflate;
+  const bool is_rounded_correctly =
+      op <= Op::div || op == Op::sqrt || op == Op::neg || op == Op::abs || op == Op::sgn;
+  widening_ = errors_[i] + (is_rounded_correctly ? 0 : rounding_of(i) * kInflate);
 }
 
 Interval FormulaBounds::unary_slope(std::size_t i) const {
@@ -304,8 +347,8 @@ void FormulaBounds::refine(std::size_t i, std::span<const Interval> box) {
   }
   meet_corners(i, range);
   if (i == formula_.root()) real_root_ = intersect(real_root_, range);
-  if (!(errors_[i] < kInfinity)) return;
-  range = {add_down(range.low, -errors_[i]), add_up(range.high, errors_[i])};
+  if (!(widening_ < kInfinity)) return;
+  range = {add_down(range.low, -widening_), add_up(range.high, widening_)};
   values_[i].range = intersect(values_[i].range, range);
 }
 

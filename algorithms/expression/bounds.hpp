@@ -47,8 +47,8 @@ class FormulaBounds {
   // After `sharpen`: |computed - real| of the node, anywhere in the box.
   double rounding_error(std::size_t node) const { return errors_[node]; }
 
-  // After `sharpen`: the range of the formula's real value alone, without the rounding errors of its
-  // evaluation.
+  // After `sharpen`: the range of the formula's real value alone, without the rounding errors of
+  // its evaluation.
   const Interval& real_root() const { return real_root_; }
 
   const Expression& formula() const { return formula_; }
@@ -68,6 +68,8 @@ class FormulaBounds {
   void bound_error(std::size_t i);
   double unary_error(std::size_t i) const;
   double binary_error(std::size_t i) const;
+  double rounding_of(std::size_t i) const;
+  bool scales_exactly(std::size_t i) const;
   void bound_gradient(std::size_t i);
   Interval unary_slope(std::size_t i) const;
   void power_gradient(std::size_t i);
@@ -86,6 +88,7 @@ class FormulaBounds {
   Interval real_root_;
   std::size_t failed_ = 0;
   std::vector<double> errors_;
+  double widening_ = 0;              // of the node at hand
   std::vector<Interval> gradients_;  // node-major, one per active column
   std::vector<Interval> point_box_;  // the box's centre
   std::vector<Interval> corner_box_;

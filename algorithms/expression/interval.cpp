@@ -113,6 +113,14 @@ double midpoint(const Interval& x) {
   return beside < high ? beside : low;
 }
 
+double split_point(const Interval& x) {
+  constexpr double kFar = 0x1p40;
+  constexpr double kStep = 0x1p-32;
+  if (x.low > 0 && x.high / kFar > x.low) return x.high * kStep;
+  if (x.high < 0 && x.low / kFar < x.high) return x.low * kStep;
+  return midpoint(x);
+}
+
 Interval hull(const Interval& a, const Interval& b) {
   return {std::min(a.low, b.low), std::max(a.high, b.high)};
 }

@@ -48,6 +48,9 @@ struct Interval {
 
 // A double near the middle, inside [low, high], never an end point where there is one between.
 double midpoint(const Interval& x);
+// Where to halve a range: the middle, or closer to 0 where the ends are of one sign and more than
+// 40 binary orders of magnitude apart.
+double split_point(const Interval& x);
 Interval hull(const Interval& a, const Interval& b);
 // The common part; `a` where the two do not meet (which rounding can only bring about by a bug).
 Interval intersect(const Interval& a, const Interval& b);

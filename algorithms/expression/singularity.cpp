@@ -193,7 +193,7 @@ class Prover {
     double best_variation = -1;
     double best_width = -1;
     for (const std::size_t j : bounds_.used_columns()) {
-      const double middle = midpoint(box[j]);
+      const double middle = split_point(box[j]);
       if (box[j].is_point() || middle == box[j].low) continue;
       const double varied = variation(box, j, failed);
       const double width = (box[j].high - box[j].low) / (1e-300 + box[j].magnitude());
