@@ -203,6 +203,41 @@ TEST(BoundsTest, notices_a_bound_that_is_not_rounded_outward) {
   EXPECT_GT(escapes, 1000);
 }
 
+// (v - r)^2 (v - q) (1 + v/3) expanded: near r it is all cancellation, and what is computed is
+// rounding errors of products and sums alike.
+Expression expanded_polynomial(RandomStream& random, double root) {
+  std::vector<double> coefficients = {1};
+  for (const double r : {root, root, random.normal(), -3.0}) {
+    coefficients.push_back(0);
+    for (std::size_t k = coefficients.size(); k-- > 0;) {
+      coefficients[k] = (k > 0 ? coefficients[k - 1] : 0) - r * coefficients[k];
+    }
+  }
+  const Expression v = Expression::variable(0);
+  Expression sum = Expression::constant(coefficients[0]);
+  for (std::size_t k = 1; k < coefficients.size(); ++k) {
+    Expression term = Expression::constant(coefficients[k]);
+    for (std::size_t n = 0; n < k; ++n) term = Expression::binary(Op::mul, term, v);
+    sum = Expression::binary(Op::add, sum, term);
+  }
+  return sum;
+}
+
+TEST(Bounds, contain_what_is_computed_where_all_is_cancellation) {
+  RandomStream random(key_of("cancellation"));
+  for (int trial = 0; trial < 4000; ++trial) {
+    const double root = 3 * random.normal();
+    const Expression formula = expanded_polynomial(random, root);
+    const double at = root * (1 + 1e-9 * random.normal());
+    const double width = std::abs(root) * std::exp2(random.uniform(-48, -28));
+    const Box box = {{at, at + width}, {0, 0}, {0, 0}};
+    FormulaBounds bounds(formula);
+    ASSERT_TRUE(bounds.sharpen(box));
+    ASSERT_EQ(count_escapes(formula, sample_box(random, box), bounds.root().range), 0)
+        << print(formula, kNames) << " near " << root;
+  }
+}
+
 TEST(BoundsTest, notices_a_mean_value_form_that_forgets_rounding_errors) {
   RandomStream random(key_of("broken mean value"));
   const Expression formula = parse("v*v - 2*v + 1", kNames);
