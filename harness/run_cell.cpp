@@ -154,14 +154,14 @@ StagesResult fit_stages(const Problem& problem, const Regressor& method, const C
     trace.start_stage(budget.spent());
     const FitResult fit = method.fit(context);
     budget.settle(part);
-    if (!fit.note.empty()) result.note += (result.note.empty() ? "" : "; ") + fit.note;
-    // A method that has nothing for a later stage's inputs leaves what the first have found: the
-    // paper's model-based baselines have no adaptation.
-    if (s > 0 && fit.front.empty() && fit.reason == StopReason::unsupported) {
-      result.note += "; stage '" + stage.name + "' left out";
-      continue;
+    if (!fit.note.empty()) {
+      if (!result.note.empty()) result.note += "; ";
+      if (fit.reason == StopReason::unsupported) result.note += fmt::format("no {}: ", stage.name);
+      result.note += fit.note;
     }
     if (fit.front.empty()) {
+      // A baseline that cannot fit what is left stands as it was, as in the paper's tables.
+      if (s > 0 && fit.reason == StopReason::unsupported) continue;
       result.failure = why_no_formula(fit);
       return result;
     }

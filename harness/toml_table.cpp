@@ -33,10 +33,11 @@ TomlTable::TomlTable(const toml::table& table, std::string file_name, std::strin
     const std::string name(key.str());
     if (std::ranges::count(known_keys, name) > 0) continue;
     const std::string near = nearest_name(name, known_keys);
-    throw_bad_input(fmt::format("unknown key '{}' in {}", name, where_.empty() ? "the file" : where_),
-                    place_of(file_name_, key.source()),
-                    near.empty() ? fmt::format("known: {}", fmt::join(known_keys, ", "))
-                                 : fmt::format("did you mean {}?", near));
+    throw_bad_input(
+        fmt::format("unknown key '{}' in {}", name, where_.empty() ? "the file" : where_),
+        place_of(file_name_, key.source()),
+        near.empty() ? fmt::format("known: {}", fmt::join(known_keys, ", "))
+                     : fmt::format("did you mean {}?", near));
   }
 }
 
@@ -109,7 +110,8 @@ void TomlTable::read(std::string_view key, std::vector<std::string>& value) cons
 
 void TomlTable::require(std::string_view key) const {
   if (has(key)) return;
-  throw_bad_input(fmt::format("'{}' is missing in {}", key, where_.empty() ? "the file" : where_), place());
+  throw_bad_input(fmt::format("'{}' is missing in {}", key, where_.empty() ? "the file" : where_),
+                  place());
 }
 
 std::map<std::string, ParameterValue> TomlTable::parameters(std::string_view key) const {

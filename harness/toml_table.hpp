@@ -18,7 +18,8 @@ namespace tribench {
 
 class TomlTable {
  public:
-  // Does not own the table. `where` is how messages call it ("[grid]"); empty for the whole file. Throws Error (bad_input) for unknown keys.
+  // Does not own the table. `where` is how messages call it ("[grid]"); empty for the whole file.
+  // Throws Error (bad_input) for unknown keys.
   TomlTable(const toml::table& table, std::string file_name, std::string where,
             const std::vector<std::string>& known_keys);
 

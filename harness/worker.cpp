@@ -8,13 +8,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cmath>
 #include <csignal>
 #include <iostream>
 #include <new>
 #include <string>
 
-#include "algorithms/budget.hpp"
 #include "foundation/error.hpp"
 #include "harness/run_cell.hpp"
 
@@ -46,19 +44,14 @@ void send(int answers, const char* name, const std::string& json) {
   }
 }
 
-// The kernel holds the limits even if whoever watches is slow: memory makes allocation fail, CPU
-// ends the process by SIGXCPU. Programs started from here inherit both. The CPU limit counts what
-// the process has used before this cell; it has a resolution of a second.
+// The kernel holds the memory limit: allocation fails. Programs started from here inherit it. CPU
+// and wall time are watched from outside: a kernel limit on CPU would make the process's CPU clock
+// tick in steps of milliseconds, and every time measured with it.
 void set_limits(const CellLimits& limits) {
   rlimit memory{};
   getrlimit(RLIMIT_DATA, &memory);
   memory.rlim_cur = static_cast<rlim_t>(limits.memory_mib * 1024 * 1024);
   setrlimit(RLIMIT_DATA, &memory);
-  rlimit cpu{};
-  getrlimit(RLIMIT_CPU, &cpu);
-  cpu.rlim_cur =
-      static_cast<rlim_t>(std::ceil(process_cpu_seconds() + limits.cpu_limit_seconds)) + 1;
-  setrlimit(RLIMIT_CPU, &cpu);
   rlimit core{};  // a crash is expected here and needs no core file
   setrlimit(RLIMIT_CORE, &core);
 }

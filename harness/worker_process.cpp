@@ -5,7 +5,6 @@
 #include <sched.h>
 
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <utility>
 
@@ -117,7 +116,7 @@ CellEnd WorkerProcess::end_of_process() {
   const ChildExit exit = process_->wait();
   last_end_ =
       exit.signal != 0 ? signal_name(exit.signal) : fmt::format("exit status {}", exit.status);
-  return exit.signal == SIGXCPU ? CellEnd::cpu_limit : CellEnd::crashed;
+  return CellEnd::crashed;
 }
 
 CellOutcome WorkerProcess::wait_for_answer(const CellTask& task, const std::atomic<bool>& stop) {

@@ -26,6 +26,7 @@ void add_generate_command(CLI::App& app, ExitStatus& status);
 inline constexpr const char* kWorkerCommand = "worker";
 
 void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry);
+void add_fit_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_merge_command(CLI::App& app, ExitStatus& status);
 void add_report_command(CLI::App& app, ExitStatus& status);
 void add_list_command(CLI::App& app, ExitStatus& status);

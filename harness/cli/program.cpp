@@ -31,6 +31,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   app.require_subcommand(1);
   ExitStatus status = ExitStatus::done;
   add_run_command(app, status, registry);
+  add_fit_command(app, status, registry);
   add_merge_command(app, status);
   add_pretrain_command(app, status);
   add_report_command(app, status);

@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -86,8 +89,13 @@ void print_dry_run(const Grid& grid, const std::vector<PlannedWork>& work, int j
   }
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  return fmt::format("{}", fmt::join(words, " "));
+// As it was typed, words separated by blanks.
+std::string own_command_line() {
+  std::ifstream stream("/proc/self/cmdline", std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (!text.empty()) text.pop_back();
+  std::ranges::replace(text, '\0', ' ');
+  return text;
 }
 
 void print_end(const RunTally& tally, const std::filesystem::path& out, const std::string& board) {
@@ -105,14 +113,13 @@ void print_end(const RunTally& tally, const std::filesystem::path& out, const st
   }
 }
 
-void run_to_the_end(const Grid& grid, RunOptions options, const std::string& command_line,
-                    ExitStatus& status) {
+void run_to_the_end(const Grid& grid, const RunOptions& options, ExitStatus& status) {
   const RunIdentity identity{print_grid(grid), code_identity(), data_identity(grid, options.data)};
   // A full disk or a limit on file sizes is an error of write(), not a reason to die.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
-  RunSession session{utc_now(), {}, command_line, options, {}};
+  RunSession session{utc_now(), {}, own_command_line(), options, {}};
   session.tally = run_grid(grid, options, identity, stop_requested);
   session.ended = utc_now();
   const JournalContents journal = read_journal(options.out / "cells.jsonl");
@@ -123,8 +130,7 @@ void run_to_the_end(const Grid& grid, RunOptions options, const std::string& com
   if (session.tally.stopped) status = ExitStatus::failed;
 }
 
-void run(const RunArguments& arguments, const std::string& command_line, const Registry& registry,
-         ExitStatus& status) {
+void run(const RunArguments& arguments, const Registry& registry, ExitStatus& status) {
   RunOptions options;
   options.data = data_folder(arguments.data);
   options.shard = parse_shard(arguments.shard);
@@ -145,7 +151,7 @@ void run(const RunArguments& arguments, const std::string& command_line, const R
     return;
   }
   options.out = arguments.out.empty() ? fmt::format("run-{}", grid.name) : arguments.out;
-  run_to_the_end(grid, options, command_line, status);
+  run_to_the_end(grid, options, status);
 }
 
 }  // namespace
@@ -171,9 +177,7 @@ void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry
                     "for times to compare: one core is left free, workers are pinned");
   command->add_flag("--quiet", arguments->quiet, "no progress line");
   command->add_flag("--json", arguments->json, "with --dry-run: as JSON");
-  command->callback([&app, arguments, &registry, &status] {
-    run(*arguments, joined(app.remaining(true)), registry, status);
-  });
+  command->callback([arguments, &registry, &status] { run(*arguments, registry, status); });
 }
 
 }  // namespace tribench
