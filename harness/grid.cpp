@@ -32,6 +32,14 @@ bool glob_matches(std::string_view glob, std::string_view text) {
   return glob.find_first_not_of('*', g) == std::string_view::npos;
 }
 
+OperatorSet fixed_form_operators() {
+  std::vector<Op> all;
+  for (int op = 0; op < kOpCount; ++op) {
+    if (arity(static_cast<Op>(op)) > 0) all.push_back(static_cast<Op>(op));
+  }
+  return {kFixedForm, "every operation", all};
+}
+
 std::vector<Cell> Grid::cells() const {
   std::vector<Cell> all;
   for (const std::string& problem : problems) {
@@ -65,7 +73,7 @@ const Method& Grid::method(std::string_view method_name) const {
 
 OperatorSet Grid::operator_set(std::string_view set_name) const {
   if (set_name == kFixedForm) {
-    return {kFixedForm, "a fixed form", find_operator_set("full").operators()};
+    return fixed_form_operators();
   }
   for (const OperatorSet& set : operators) {
     if (set.name() == set_name) return set;

@@ -59,6 +59,9 @@ struct Method {
   bool is_external() const { return !command.empty(); }
 };
 
+// What a fixed form may use: every operation, under the name "-".
+OperatorSet fixed_form_operators();
+
 struct Grid {
   std::string name;
   std::vector<std::string> problems;

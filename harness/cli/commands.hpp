@@ -19,18 +19,18 @@ enum class ExitStatus : int {
   undecided = 4,
 };
 
-void add_check_command(CLI::App& app, ExitStatus& status);
-void add_data_command(CLI::App& app, ExitStatus& status);
-void add_generate_command(CLI::App& app, ExitStatus& status);
 // The hidden word that makes the program a worker process.
 inline constexpr const char* kWorkerCommand = "worker";
 
-void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry);
+void add_check_command(CLI::App& app, ExitStatus& status);
+void add_data_command(CLI::App& app, ExitStatus& status);
 void add_fit_command(CLI::App& app, ExitStatus& status, const Registry& registry);
+void add_generate_command(CLI::App& app, ExitStatus& status);
+void add_list_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_merge_command(CLI::App& app, ExitStatus& status);
-void add_report_command(CLI::App& app, ExitStatus& status);
-void add_list_command(CLI::App& app, ExitStatus& status);
 void add_pretrain_command(CLI::App& app, ExitStatus& status);
+void add_report_command(CLI::App& app, ExitStatus& status);
+void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_study_command(CLI::App& app, ExitStatus& status);
 
 }  // namespace tribench

@@ -87,8 +87,8 @@ CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fix
   CellTask task;
   task.cell = {problem.name, arguments.method, fixed_form ? kFixedForm : arguments.operators,
                arguments.seed};
-  task.operators = fixed_form ? OperatorSet(kFixedForm, {}, find_operator_set("full").operators())
-                              : find_operator_set(arguments.operators);
+  task.operators = find_operator_set(arguments.operators);
+  if (fixed_form) task.operators = fixed_form_operators();
   task.limits.evaluations = arguments.evaluations;
   task.limits.seconds = arguments.seconds;
   task.threads = usable_processors();

@@ -14,6 +14,7 @@
 #include "algorithms/expression/operator_set.hpp"
 #include "algorithms/registry.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/shipped_grids.hpp"
 #include "problems/catalogue.hpp"
 #include "problems/measured/manifest.hpp"
 
@@ -32,9 +33,8 @@ std::vector<Listed> listed_problems() {
   return all;
 }
 
-std::vector<Listed> listed_methods() {
+std::vector<Listed> listed_methods(const Registry& registry) {
   std::vector<Listed> all;
-  const Registry registry;
   for (const AlgorithmEntry& entry : registry.entries()) all.push_back({entry.name, entry.summary});
   return all;
 }
@@ -48,6 +48,12 @@ std::vector<Listed> listed_operators() {
 std::vector<Listed> listed_data() {
   std::vector<Listed> all;
   for (const measured::Manifest& set : measured::manifests()) all.push_back({set.name, set.title});
+  return all;
+}
+
+std::vector<Listed> listed_grids() {
+  std::vector<Listed> all;
+  for (const ShippedGrid& grid : shipped_grids()) all.push_back({grid.name, grid.summary});
   return all;
 }
 
@@ -74,14 +80,16 @@ void add_kind(CLI::App& list, const char* name, const char* summary,
 
 }  // namespace
 
-void add_list_command(CLI::App& app, ExitStatus& /*status*/) {
+void add_list_command(CLI::App& app, ExitStatus& /*status*/, const Registry& registry) {
   CLI::App* list = app.add_subcommand("list", "What there is");
   list->footer("Example: tribench list problems --json");
   list->require_subcommand(1);
   add_kind(*list, "problems", "Every problem of the catalogue", listed_problems);
-  add_kind(*list, "methods", "Every algorithm a grid can name", listed_methods);
+  add_kind(*list, "methods", "Every algorithm a grid can name",
+           [&registry] { return listed_methods(registry); });
   add_kind(*list, "operators", "The operator sets", listed_operators);
   add_kind(*list, "data", "The measured sets", listed_data);
+  add_kind(*list, "grids", "The grids that come with the program", listed_grids);
 }
 
 }  // namespace tribench

@@ -38,7 +38,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_check_command(app, status);
   add_data_command(app, status);
   add_generate_command(app, status);
-  add_list_command(app, status);
+  add_list_command(app, status, registry);
   add_study_command(app, status);
   try {
     app.parse(argc, argv);

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+//
+// Data travels one way between the rooms; an #include that runs back fails here.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/support/paths.hpp"
+
+namespace tribench::testing {
+namespace {
+
+using Rooms = std::set<std::string>;
+
+// What a room may include besides itself. A method's room is "method:<folder>".
+const std::map<std::string, Rooms>& allowed() {
+  static const std::map<std::string, Rooms> kAllowed = {
+      {"foundation", {}},
+      {"problems", {"foundation"}},
+      {"expression", {"foundation"}},
+      {"interface", {"foundation", "problems", "expression", "fitting"}},
+      {"fitting", {"foundation", "problems", "expression", "interface"}},
+      {"method", {"foundation", "problems", "expression", "interface", "fitting", "registry"}},
+      {"registry", {"foundation", "problems", "expression", "interface", "fitting", "method"}},
+      {"reports", {"foundation"}},
+      {"harness",
+       {"foundation", "problems", "expression", "interface", "fitting", "method", "registry",
+        "reports"}},
+  };
+  return kAllowed;
+}
+
+// The room of a file, by its path from the root; empty for what is no room (tests, bench).
+std::string room_of(const std::string& path) {
+  const std::string top = path.substr(0, path.find('/'));
+  if (top != "algorithms") return allowed().contains(top) ? top : std::string();
+  const std::string rest = path.substr(top.size() + 1);
+  const std::size_t slash = rest.find('/');
+  if (slash == std::string::npos) return rest.starts_with("registry") ? "registry" : "interface";
+  const std::string folder = rest.substr(0, slash);
+  if (folder == "expression" || folder == "fitting") return folder;
+  return "method:" + folder;
+}
+
+std::string kind_of(const std::string& room) { return room.substr(0, room.find(':')); }
+
+// Why `from` may not include `to`; empty where it may.
+std::string objection(const std::string& from, const std::string& to) {
+  const std::string from_room = room_of(from);
+  const std::string to_room = room_of(to);
+  if (from_room.empty() || to_room.empty() || from_room == to_room) return {};
+  if (allowed().at(kind_of(from_room)).contains(kind_of(to_room))) return {};
+  return from + " includes " + to + ": " + from_room + " must not know " + to_room;
+}
+
+std::vector<std::string> included_files(const std::filesystem::path& file) {
+  static const std::regex kInclude(R"re(^\s*#\s*include\s*"([^"]+)")re");
+  std::vector<std::string> files;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    std::smatch match;
+    if (std::regex_search(line, match, kInclude)) files.push_back(match[1]);
+  }
+  return files;
+}
+
+TEST(IncludeDirection, NoIncludeRunsBack) {
+  const std::filesystem::path root = source_dir();
+  std::size_t files = 0;
+  for (const char* top : {"foundation", "problems", "algorithms", "reports", "harness"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / top)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension != ".hpp" && extension != ".cpp") continue;
+      ++files;
+      const std::string from = std::filesystem::relative(entry.path(), root).generic_string();
+      for (const std::string& to : included_files(entry.path())) {
+        EXPECT_EQ(objection(from, to), "");
+        EXPECT_TRUE(std::filesystem::exists(root / to))
+            << from << " includes " << to << ", which is not a path from the root";
+      }
+    }
+  }
+  EXPECT_GT(files, 100U) << "the rooms were not found";
+}
+
+TEST(IncludeDirection, TheRuleItselfCatchesAnArrowThatRunsBack) {
+  EXPECT_NE(objection("foundation/error.cpp", "problems/problem.hpp"), "");
+  EXPECT_NE(objection("problems/table.hpp", "algorithms/regressor.hpp"), "");
+  EXPECT_NE(objection("algorithms/expression/print.cpp", "algorithms/regressor.hpp"), "");
+  EXPECT_NE(objection("algorithms/pysr/pysr.cpp", "algorithms/model_based/placebos.hpp"), "");
+  EXPECT_NE(objection("algorithms/regressor.hpp", "algorithms/registry.hpp"), "");
+  EXPECT_NE(objection("reports/csv.cpp", "problems/problem.hpp"), "");
+  EXPECT_NE(objection("algorithms/pysr/pysr.cpp", "harness/judge.hpp"), "");
+  EXPECT_EQ(objection("harness/judge.cpp", "reports/record.hpp"), "");
+  EXPECT_EQ(objection("algorithms/pysr/pysr.cpp", "algorithms/fitting/constant_fit.hpp"), "");
+  EXPECT_EQ(objection("algorithms/registry.cpp", "algorithms/pysr/pysr.hpp"), "");
+}
+
+}  // namespace
+}  // namespace tribench::testing
