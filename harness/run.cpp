@@ -70,9 +70,9 @@ std::vector<int> available_processors() {
 // The loop over cells and what its threads share.
 class GridRun {
  public:
-  GridRun(const Grid& grid, const RunOptions& options, Journal& journal, RunTally& summary,
+  GridRun(const Grid& grid, const RunOptions& options, Journal& journal, RunTally& tally,
           const std::atomic<bool>& stop)
-      : grid_(grid), options_(options), journal_(journal), summary_(summary), stop_(stop) {}
+      : grid_(grid), options_(options), journal_(journal), tally_(tally), stop_(stop) {}
 
   void run(const std::vector<PlannedWork>& work) {
     double predicted_s = 0;
@@ -98,7 +98,7 @@ class GridRun {
         if (thread == 0) calibrate_if_due();
       }
       const std::lock_guard lock(mutex_);
-      summary_.workers += static_cast<std::size_t>(worker.started());
+      tally_.workers += static_cast<std::size_t>(worker.started());
     }
     sample_calibration();
     if (failure_) std::rethrow_exception(failure_);
@@ -144,29 +144,29 @@ class GridRun {
       }
       worker.renew();
       const std::lock_guard lock(mutex_);
-      ++summary_.retries;
+      ++tally_.retries;
     }
   }
 
   void count(const Record& record, bool failed) {
     const std::lock_guard lock(mutex_);
-    ++summary_.ran;
-    if (failed) ++summary_.failed;
+    ++tally_.ran;
+    if (failed) ++tally_.failed;
     if (record.fit_cpu_s > 0 && record.fit_wall_s > kLeastMeasuredWall) {
-      summary_.fit_cpu_s += record.fit_cpu_s;
-      summary_.fit_wall_s += record.fit_wall_s;
-      if (record.fit_cpu_s < kContendedUtilisation * record.fit_wall_s) ++summary_.contended;
+      tally_.fit_cpu_s += record.fit_cpu_s;
+      tally_.fit_wall_s += record.fit_wall_s;
+      if (record.fit_cpu_s < kContendedUtilisation * record.fit_wall_s) ++tally_.contended;
     }
   }
 
   void sample_calibration() {
     CalibrationSample sample = calibrate();
     sample.at_s = seconds_since(start_);
-    summary_.calibration.push_back(sample);
+    tally_.calibration.push_back(sample);
   }
 
   void calibrate_if_due() {
-    if (seconds_since(start_) - summary_.calibration.back().at_s > kSecondsBetweenCalibrations) {
+    if (seconds_since(start_) - tally_.calibration.back().at_s > kSecondsBetweenCalibrations) {
       sample_calibration();
     }
   }
@@ -174,7 +174,7 @@ class GridRun {
   const Grid& grid_;
   const RunOptions& options_;
   Journal& journal_;
-  RunTally& summary_;
+  RunTally& tally_;
   const std::atomic<bool>& stop_;
   Clock::time_point start_ = Clock::now();
   int threads_per_cell_ = 1;
@@ -195,7 +195,7 @@ void hash_table(const Table& table, std::uint64_t& hash) {
 }
 
 Journal open_journal(const RunOptions& options, const RunIdentity& identity,
-                     std::set<std::string>& done, RunTally& summary) {
+                     std::set<std::string>& done, RunTally& tally) {
   const std::filesystem::path file = options.out / "cells.jsonl";
   if (!options.resume || !std::filesystem::exists(file)) return Journal::create(file, identity);
   const JournalContents contents = read_journal(file);
@@ -206,9 +206,9 @@ Journal open_journal(const RunOptions& options, const RunIdentity& identity,
   }
   for (const CellResult& result : contents.results) {
     done.insert(result.record.cell);
-    if (result.record.status != "ok") ++summary.failed;
+    if (result.record.status != "ok") ++tally.failed;
   }
-  summary.journal_damage = contents.damage;
+  tally.journal_damage = contents.damage;
   return Journal::resume(file, contents);
 }
 
@@ -235,18 +235,22 @@ RunTally run_grid(const Grid& grid, const RunOptions& options, const RunIdentity
     throw Error(ErrorKind::failed, fmt::format("cannot make the folder: {}", error.message()),
                 options.out.string(), "choose a folder that can be written to by --out");
   }
-  RunTally summary;
+  RunTally tally;
   std::set<std::string> done;
-  Journal journal = open_journal(options, identity, done, summary);
+  Journal journal = open_journal(options, identity, done, tally);
   write_plan_files(options.out, grid);
   std::vector<PlannedWork> work = plan_work(grid, options.shard, options.costs);
-  summary.cells = work.size();
+  if (!options.only.empty()) {
+    std::erase_if(work,
+                  [&](const PlannedWork& item) { return !options.only.contains(item.cell.key()); });
+  }
+  tally.cells = work.size();
   std::erase_if(work, [&](const PlannedWork& item) { return done.contains(item.cell.key()); });
-  summary.found = summary.cells - work.size();
-  GridRun(grid, options, journal, summary, stop).run(work);
-  summary.stopped = stop.load();
-  summary.wall_s = seconds_since(start);
-  return summary;
+  tally.found = tally.cells - work.size();
+  GridRun(grid, options, journal, tally, stop).run(work);
+  tally.stopped = stop.load();
+  tally.wall_s = seconds_since(start);
+  return tally;
 }
 
 }  // namespace tribench

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstddef>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct RunOptions {
   bool pin = false;    // each worker to a processor of its own
   bool quiet = false;  // no progress line
   std::vector<std::string> worker_command;
+  std::set<std::string> only;  // keys of the cells to run; empty: all of the shard
   MeasuredCosts costs;
 };
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 
 #include "foundation/error.hpp"
@@ -36,6 +37,37 @@ void write_result_files(const std::filesystem::path& folder, std::vector<CellRes
   write_file(folder / "results.csv", results_csv(std::move(records)));
   write_file(folder / "front.csv", front_csv(front));
   write_file(folder / "trace.csv", trace_csv(trace));
+}
+
+bool is_harmful(const Record& record) {
+  return record.reason == "timeout" || record.reason == "cpu_limit" ||
+         record.reason == "out_of_memory" || record.reason.starts_with("crashed");
+}
+
+void write_quarantine_file(const std::filesystem::path& folder,
+                           const std::vector<CellResult>& results) {
+  std::vector<std::string> cells;
+  for (const CellResult& result : results) {
+    if (is_harmful(result.record)) cells.push_back(result.record.cell);
+  }
+  std::ranges::sort(cells);
+  const std::filesystem::path file = folder / "quarantine.txt";
+  if (cells.empty()) {
+    std::filesystem::remove(file);
+  } else {
+    write_file(file, fmt::format("{}\n", fmt::join(cells, "\n")));
+  }
+}
+
+std::vector<std::string> read_quarantine_file(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw_bad_input("the quarantine list cannot be read", file.string());
+  std::vector<std::string> globs;
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (!line.empty() && line.front() != '#') globs.push_back(line);
+  }
+  return globs;
 }
 
 JournalContents merge_journals(const std::vector<std::filesystem::path>& folders,

@@ -21,6 +21,19 @@ void write_plan_files(const std::filesystem::path& folder, const Grid& grid);
 // order the cells ended in.
 void write_result_files(const std::filesystem::path& folder, std::vector<CellResult> results);
 
+// Whether a cell failed by what it did to its process, so that running it again costs as much
+// again: a crash or a limit.
+bool is_harmful(const Record& record);
+
+// Writes quarantine.txt, the keys of such cells, one a line, for `run --quarantine`; removes it
+// where there are none.
+void write_quarantine_file(const std::filesystem::path& folder,
+                           const std::vector<CellResult>& results);
+
+// The globs of such a file; blank lines and those that start with # are left out. Throws Error
+// (bad_input) where it cannot be read.
+std::vector<std::string> read_quarantine_file(const std::filesystem::path& file);
+
 // Joins the journals of runs of the same grid, code and data into `out`, where no run may be yet.
 // Throws Error (bad_input) where they differ, with the difference, or where a cell has two
 // different results.

@@ -32,5 +32,6 @@ void add_pretrain_command(CLI::App& app, ExitStatus& status);
 void add_report_command(CLI::App& app, ExitStatus& status);
 void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_study_command(CLI::App& app, ExitStatus& status);
+void add_submit_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 
 }  // namespace tribench

@@ -40,6 +40,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_generate_command(app, status);
   add_list_command(app, status, registry);
   add_study_command(app, status);
+  add_submit_command(app, status, registry);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
@@ -26,6 +27,8 @@
 #include "harness/run.hpp"
 #include "harness/run_files.hpp"
 #include "harness/shipped_grids.hpp"
+#include "harness/verify.hpp"
+#include "problems/measured/data_folder.hpp"
 #include "reports/record_csv.hpp"
 #include "reports/run_reports.hpp"
 
@@ -52,17 +55,14 @@ struct RunArguments {
   bool timing = false;
   bool quiet = false;
   bool json = false;
+  std::string quarantine;
+  std::string verify;
+  std::size_t sample = 10;
 };
 
-// --data, else the environment, else ./data where there is one.
-std::string data_folder(const std::string& given) {
-  if (!given.empty()) return given;
-  if (const char* from_environment = std::getenv("TRIBENCH_DATA")) return from_environment;
-  return std::filesystem::is_directory("data") ? "data" : "";
-}
-
-Catalogue catalogue_of(const std::string& data) {
-  return Catalogue(data.empty() ? std::nullopt : std::optional<std::filesystem::path>(data));
+Catalogue catalogue_of(const RunOptions& options) {
+  return Catalogue(options.data.empty() ? std::nullopt
+                                        : std::optional<std::filesystem::path>(options.data));
 }
 
 void print_dry_run(const Grid& grid, const std::vector<PlannedWork>& work, int jobs, bool json) {
@@ -124,15 +124,18 @@ void run_to_the_end(const Grid& grid, const RunOptions& options, ExitStatus& sta
   session.ended = utc_now();
   const JournalContents journal = read_journal(options.out / "cells.jsonl");
   write_result_files(options.out, journal.results);
-  write_curves(options.out, journal.results, catalogue_of(options.data));
+  write_curves(options.out, journal.results, catalogue_of(options));
+  write_quarantine_file(options.out, journal.results);
   write_provenance(options.out, identity, session, journal.results);
   print_end(session.tally, options.out, write_run_reports(options.out));
   if (session.tally.stopped) status = ExitStatus::failed;
 }
 
-void run(const RunArguments& arguments, const Registry& registry, ExitStatus& status) {
+RunOptions options_of(const RunArguments& arguments) {
   RunOptions options;
-  options.data = data_folder(arguments.data);
+  const auto data = measured::find_data_folder(
+      arguments.data.empty() ? std::nullopt : std::optional<std::filesystem::path>(arguments.data));
+  if (data) options.data = data->string();
   options.shard = parse_shard(arguments.shard);
   options.resume = arguments.resume;
   options.quiet = arguments.quiet;
@@ -142,7 +145,60 @@ void run(const RunArguments& arguments, const Registry& registry, ExitStatus& st
                  : arguments.timing ? std::max(1, processors - 1)
                                     : processors;
   options.worker_command = {"/proc/self/exe", kWorkerCommand};
-  const Grid grid = load_named_grid(arguments.grid, registry, catalogue_of(options.data));
+  return options;
+}
+
+// A folder of its own that is removed at the end.
+class ScratchRun {
+ public:
+  ScratchRun() {
+    std::string name = (std::filesystem::temp_directory_path() / "tribench-verify-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw Error(ErrorKind::failed, "cannot make a temporary folder", name);
+    }
+    path_ = name;
+  }
+  ~ScratchRun() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchRun(const ScratchRun&) = delete;
+  ScratchRun& operator=(const ScratchRun&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void verify(const RunArguments& arguments, const Registry& registry, ExitStatus& status) {
+  const std::filesystem::path folder = arguments.verify;
+  RunOptions options = options_of(arguments);
+  const JournalContents journal = read_journal(folder / "cells.jsonl");
+  const Grid grid = load_grid(folder / "grid.toml", registry, catalogue_of(options));
+  const ScratchRun scratch;
+  options.out = scratch.path() / "run";
+  const VerifyResult verdict = verify_run(grid, journal, arguments.sample, options, stop_requested);
+  if (journal.identity.code != code_identity()) {
+    fmt::print("made by {}, verified by {}\n", journal.identity.code, code_identity());
+  }
+  for (const std::string& difference : verdict.different) fmt::print("{}\n", difference);
+  fmt::print("{} cells run again, {} differ; {} cells of the run promise nothing (clock, limits)\n",
+             verdict.compared, verdict.different.size(), verdict.not_reproducible);
+  if (!verdict.different.empty()) status = ExitStatus::found;
+}
+
+void run(const RunArguments& arguments, const Registry& registry, ExitStatus& status) {
+  if (!arguments.verify.empty()) {
+    verify(arguments, registry, status);
+    return;
+  }
+  RunOptions options = options_of(arguments);
+  Grid grid = load_named_grid(arguments.grid, registry, catalogue_of(options));
+  if (!arguments.quarantine.empty()) {
+    for (std::string& glob : read_quarantine_file(arguments.quarantine)) {
+      grid.quarantine.push_back(std::move(glob));
+    }
+  }
   if (arguments.dry_run) {
     print_dry_run(grid, plan_work(grid, options.shard), options.jobs, arguments.json);
     if (arguments.out.empty()) return;
@@ -175,6 +231,12 @@ void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry
                     "only list the cells and what they are predicted to cost");
   command->add_flag("--timing", arguments->timing,
                     "for times to compare: one core is left free, workers are pinned");
+  command->add_option("--quarantine", arguments->quarantine,
+                      "a file of cells (globs, one a line) that are not run");
+  command->add_option("--verify", arguments->verify,
+                      "run some cells of this finished run again and compare them bit for bit");
+  command->add_option("--sample", arguments->sample, "with --verify: how many cells")
+      ->capture_default_str();
   command->add_flag("--quiet", arguments->quiet, "no progress line");
   command->add_flag("--json", arguments->json, "with --dry-run: as JSON");
   command->callback([arguments, &registry, &status] { run(*arguments, registry, status); });

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "harness/slurm.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+#include <vector>
+
+#include "foundation/child_process.hpp"
+#include "foundation/error.hpp"
+#include "harness/run_files.hpp"
+#include "reports/record_csv.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr double kElementSeconds = 300;  // half a second an element is Slurm's own: well below 1 %
+constexpr int kProgramMemoryMib = 256;   // the run itself, beside its workers
+
+struct CommandResult {
+  ChildExit exit;
+  std::string output;
+  std::string errors;
+};
+
+CommandResult run_command(const std::vector<std::string>& command) {
+  ChildProcess child(ChildOptions{command, {}, {}, true});
+  child.close_input();
+  CommandResult result;
+  for (bool ended = false; !ended;) {
+    const ChildOutput output = child.read(1.0);
+    result.output += output.output;
+    result.errors += output.errors;
+    ended = output.ended;
+  }
+  result.exit = child.wait();
+  return result;
+}
+
+// In single quotes for the shell.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      result += "'\\''";
+    } else {
+      result += c;
+    }
+  }
+  return result + "'";
+}
+
+std::string header(const std::string& name, const SlurmOptions& options, int minutes,
+                   int memory_mib, int processors, const std::string& log) {
+  std::string text = fmt::format(
+      "#!/bin/bash\n#SBATCH --job-name=tribench-{}\n#SBATCH --output={}\n"
+      "#SBATCH --open-mode=append\n#SBATCH --time={}\n#SBATCH --mem={}M\n"
+      "#SBATCH --cpus-per-task={}\n#SBATCH --requeue\n",
+      name, log, minutes, memory_mib, processors);
+  if (!options.partition.empty())
+    text += fmt::format("#SBATCH --partition={}\n", options.partition);
+  return text + "set -eu\n";
+}
+
+std::string without_blanks(std::string name) {
+  std::ranges::replace_if(
+      name, [](char c) { return c <= ' ' || c == '/'; }, '-');
+  return name;
+}
+
+std::string submit(const std::vector<std::string>& command) {
+  CommandResult result;
+  try {
+    result = run_command(command);
+  } catch (const Error&) {
+    throw_bad_input("sbatch is not installed here", "--slurm",
+                    "submit from a machine of the cluster, or run shards by --shard K/N");
+  }
+  if (!result.exit.ok()) {
+    throw Error(ErrorKind::failed, fmt::format("sbatch refused the job: {}", result.errors));
+  }
+  // --parsable prints "id" or "id;cluster".
+  const std::size_t end = result.output.find_first_of(";\n");
+  return result.output.substr(0, end);
+}
+
+std::size_t elements_left(const std::string& job) {
+  const CommandResult result = run_command({"squeue", "-h", "-r", "-o", "%i", "-j", job});
+  if (!result.exit.ok()) return 0;  // Slurm has forgotten the job: it has ended
+  return static_cast<std::size_t>(std::ranges::count(result.output, '\n'));
+}
+
+}  // namespace
+
+SlurmPlan plan_slurm(const Grid& grid, const SlurmOptions& options, const MeasuredCosts& costs) {
+  const std::vector<PlannedWork> work = plan_work(grid, {}, costs);
+  double total_s = 0;
+  for (const PlannedWork& item : work) total_s += item.predicted_s;
+  SlurmPlan plan;
+  const double wanted = std::ceil(total_s / options.jobs / kElementSeconds);
+  plan.shards = options.shards > 0 ? options.shards : static_cast<std::size_t>(wanted);
+  plan.shards =
+      std::clamp<std::size_t>(plan.shards, 1, std::min(options.largest_array, work.size()));
+  double longest_s = 0;
+  for (const PlannedWork& item : plan_work(grid, {1, plan.shards}, costs)) {
+    longest_s += item.predicted_s;
+  }
+  plan.predicted_element_s = longest_s / options.jobs;
+  // Predictions err: four times, and one cell at its limit. What does not fit is missing after the
+  // merge, and a second submission runs it.
+  plan.minutes = 5 + static_cast<int>(
+                         std::ceil((4 * plan.predicted_element_s + grid.limits.wall_seconds) / 60));
+  plan.memory_mib =
+      kProgramMemoryMib + options.jobs * static_cast<int>(std::ceil(grid.limits.memory_mib));
+  const std::string folder = options.out.string();
+  const std::string name = without_blanks(grid.name);
+  const std::string data = options.data.empty() ? "" : " --data " + quoted(options.data);
+  plan.array_script = header(name, options, plan.minutes, plan.memory_mib, options.jobs,
+                             folder + "/log/element-%a.log") +
+                      fmt::format(
+                          "exec {0} run {1} --out {2}/shard-$SLURM_ARRAY_TASK_ID "
+                          "--shard $SLURM_ARRAY_TASK_ID/{3} --jobs {4} --resume --quiet{5}\n",
+                          quoted(options.program.string()), quoted(folder + "/grid.toml"),
+                          quoted(folder), plan.shards, options.jobs, data);
+  plan.merge_script = header(name + "-merge", options, 60, 2048, 1, folder + "/log/merge.log") +
+                      fmt::format("rm -f {0}/cells.jsonl\nexec {1} merge {0}/shard-* --out {0}\n",
+                                  quoted(folder), quoted(options.program.string()));
+  return plan;
+}
+
+SlurmJobs submit_slurm(const Grid& grid, const SlurmPlan& plan, const SlurmOptions& options) {
+  std::filesystem::create_directories(options.out / "log");
+  write_plan_files(options.out, grid);
+  write_file(options.out / "array.sh", plan.array_script);
+  write_file(options.out / "merge.sh", plan.merge_script);
+  SlurmJobs jobs;
+  jobs.array = submit({"sbatch", "--parsable", fmt::format("--array=1-{}", plan.shards),
+                       (options.out / "array.sh").string()});
+  // After any end of the elements: what failed shows as missing in the merged leaderboard.
+  jobs.merge = submit({"sbatch", "--parsable", "--dependency=afterany:" + jobs.array,
+                       (options.out / "merge.sh").string()});
+  return jobs;
+}
+
+bool follow_slurm(const SlurmJobs& jobs, const std::atomic<bool>& stop) {
+  const bool is_terminal = ::isatty(STDERR_FILENO) == 1;
+  std::size_t shown = 0;
+  while (!stop.load()) {
+    const std::size_t left = elements_left(jobs.array) + elements_left(jobs.merge);
+    if (left == 0) return true;
+    if (is_terminal) {
+      fmt::print(stderr, "\r\033[K{} elements left", left);
+    } else if (left != shown) {
+      fmt::print(stderr, "{} elements left\n", left);
+    }
+    shown = left;
+    for (int tenth = 0; tenth < 20 && !stop.load(); ++tenth) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+  }
+  return false;
+}
+
+}  // namespace tribench

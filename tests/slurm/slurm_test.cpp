@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+//
+// A real Slurm of one node on loopback, started and stopped by the test: an array completes, an
+// element killed half way is requeued and resumes, and the merged results are those of a local run.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace tribench::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kGrid = R"([grid]
+name = "cluster"
+problems = ["A/j2/no_load", "A/j4/no_load"]
+methods = ["test_sleep", "test_search", "test_crash"]
+operators = ["paper"]
+seeds = { first = 1, count = 10 }
+
+[budget]
+evaluations = 1_000_000
+seconds = 10
+memory_mib = 400
+
+[[method]]
+name = "test_sleep"
+parameters = { seconds = 0.3 }
+)";
+
+bool is_installed(const char* program) {
+  return run_to_end({"bash", "-c", std::string("command -v ") + program}).status == 0;
+}
+
+class SlurmTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* program : {"sbatch", "slurmctld", "slurmd", "munged"}) {
+      if (!is_installed(program)) {
+        GTEST_SKIP() << program << " is not installed (./tribench test installs it)";
+      }
+    }
+    if (::geteuid() != 0) GTEST_SKIP() << "a Slurm of the test's own needs root";
+    const ProgramRun started = run_to_end({script(), "start", folder_.path().string()});
+    is_started_ = true;
+    ASSERT_EQ(started.status, 0) << started.errors;
+    write_text(folder_ / "grid.toml", kGrid);
+  }
+  void TearDown() override {
+    if (is_started_) run_to_end({script(), "stop", folder_.path().string()});
+  }
+
+  static std::string script() { return (source_dir() / "tests/slurm/cluster.sh").string(); }
+  ProgramRun slurm(const std::vector<std::string>& command) {
+    return run_to_end(command, {"SLURM_CONF=" + (folder_ / "slurm.conf").string()});
+  }
+  ProgramRun submit(const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> command = {test_program().string(),
+                                        "submit",
+                                        (folder_ / "grid.toml").string(),
+                                        "--slurm",
+                                        "--out",
+                                        (folder_ / out).string(),
+                                        "--shards",
+                                        "3"};
+    command.insert(command.end(), more.begin(), more.end());
+    return slurm(command);
+  }
+  void run_locally() {
+    const ProgramRun local =
+        run_to_end({test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
+                    (folder_ / "local").string(), "--jobs", "2"});
+    ASSERT_EQ(local.status, 0) << local.errors;
+  }
+  std::string log_of(const std::string& out) {
+    return run_to_end({"bash", "-c", "tail -n 5 " + (folder_ / out).string() + "/log/*"}).output;
+  }
+
+  TemporaryFolder folder_;
+  bool is_started_ = false;
+};
+
+TEST_F(SlurmTest, AnArrayAndItsMergeGiveTheResultsOfALocalRun) {
+  const ProgramRun submitted = submit("cluster", {});
+  ASSERT_EQ(submitted.status, 0) << submitted.errors << log_of("cluster");
+  EXPECT_THAT(submitted.output, HasSubstr("60 cells in 3 elements"));
+  run_locally();
+  EXPECT_EQ(timeless_results(folder_ / "cluster"), timeless_results(folder_ / "local"));
+  EXPECT_EQ(column_of(folder_ / "cluster", "status").size(), 60U);
+}
+
+TEST_F(SlurmTest, AnElementKilledHalfWayIsRequeuedAndResumes) {
+  const ProgramRun submitted = submit("cluster", {"--detach"});
+  ASSERT_EQ(submitted.status, 0) << submitted.errors;
+  const std::size_t at = submitted.output.find("array ") + 6;
+  const std::string array = submitted.output.substr(at, submitted.output.find(',', at) - at);
+  const std::string journal = (folder_ / "cluster/shard-1/cells.jsonl").string();
+  const auto lines = [&] {
+    const std::string text = read_text(journal);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  const auto wait_for = [](const auto& condition) {
+    for (int i = 0; i < 1500; ++i) {
+      if (condition()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
+  };
+  ASSERT_TRUE(wait_for([&] { return lines() >= 4; })) << log_of("cluster");
+  ASSERT_EQ(slurm({"scontrol", "requeue", array + "_1"}).status, 0);
+  const std::string before = read_text(journal);
+  EXPECT_LT(std::count(before.begin(), before.end(), '\n'), 21)
+      << "the element had ended before it was killed";
+  // Slurm holds a requeued job back for a while; a test need not wait for that.
+  ASSERT_TRUE(wait_for([&] {
+    slurm({"scontrol", "update", "JobId=" + array + "_1", "StartTime=now"});
+    return std::filesystem::exists(folder_ / "cluster/results.csv");
+  })) << log_of("cluster");
+  EXPECT_TRUE(read_text(journal).starts_with(before.substr(0, before.rfind('\n') + 1)))
+      << "the second life of the element did not go on where the first ended";
+  run_locally();
+  EXPECT_EQ(timeless_results(folder_ / "cluster"), timeless_results(folder_ / "local"));
+}
+
+}  // namespace
+}  // namespace tribench::testing
