@@ -21,7 +21,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kProtocol = 1;
-constexpr std::size_t kMaxOutputBytes = 1U << 26;  // a program that prints without end is stopped
+constexpr std::size_t kMaxOutputBytes = 1U << 24;  // a program that prints without end is stopped
 constexpr std::size_t kQuotedCharacters = 200;
 
 [[noreturn]] void throw_unusable(std::string_view what) { throw Error(ErrorKind::failed, what); }
@@ -99,8 +99,11 @@ json request_json(const FitContext& context,
                   const std::map<std::string, ParameterValue>& parameters) {
   json inputs = json::array();
   for (const Input& input : context.data.inputs) {
-    inputs.push_back(
-        {{"name", input.name}, {"unit", input.unit}, {"low", input.low}, {"high", input.high}});
+    inputs.push_back({{"name", input.name},
+                      {"unit", input.unit},
+                      {"role", role_name(input.role)},
+                      {"low", input.low},
+                      {"high", input.high}});
   }
   json operators = json::array();
   for (const Op op : context.operators.operators()) operators.push_back(op_name(op));
@@ -126,11 +129,13 @@ class AnswerReader {
 
   void take(std::string_view text) {
     pending_ += text;
+    std::size_t start = 0;
     for (std::size_t end = pending_.find('\n'); end != std::string::npos;
-         end = pending_.find('\n')) {
-      take_line(pending_.substr(0, end));
-      pending_.erase(0, end + 1);
+         end = pending_.find('\n', start)) {
+      take_line(pending_.substr(start, end - start));
+      start = end + 1;
     }
+    pending_.erase(0, start);
   }
 
   // After the last byte. Throws where there was no usable answer.
@@ -152,7 +157,8 @@ class AnswerReader {
  private:
   // Lines that are no JSON object are the program's own chatter.
   void take_line(const std::string& line) {
-    const json object = json::parse(line, nullptr, false);
+    const json object =
+        line.starts_with('{') ? json::parse(line, nullptr, false) : json(json::value_t::discarded);
     if (!object.is_object()) {
       if (other_output_.empty()) other_output_ = excerpt(line);
       return;

@@ -4,7 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <chrono>
+#include <thread>
 
 #include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
@@ -48,12 +49,12 @@ class ExternalTest : public ::testing::Test {
 };
 
 TEST_F(ExternalTest, AProgramsFormulasAreJudgedAndItsTraceIsKept) {
-  run("\"good\"", shell_method("good", R"(cd "$(dirname "$1")"
+  run("\"good\"", shell_method("good", R"sh(cd "$(dirname "$1")"
 grep -q '"operator_set": "paper"' "$1" || exit 4
 head -1 train.csv | grep -q '^qd,sgn_qd,target,movement$' || exit 5
 echo starting up
 echo '{"improved": {"train_error": 2.5, "evaluations": 1000}}'
-echo '{"front": ["1 + sgn_qd", "13*sgn_qd"], "chosen": 1, "evaluations": 4321, "note": "hello"}')"));
+echo '{"front": ["1 + sgn_qd", "13*sgn_qd"], "chosen": 1, "evaluations": 4321, "note": "hello"}')sh"));
   EXPECT_EQ(reason("good"), "");
   EXPECT_EQ(figure("good", "formula"), "13*sgn_qd");
   EXPECT_EQ(figure("good", "evaluations"), "4321");
@@ -83,8 +84,11 @@ TEST_F(ExternalTest, WhatAProgramGetsWrongCostsItsOwnCell) {
   EXPECT_EQ(reason("endless"), "timeout");
   EXPECT_EQ(figure("linear", "status", "-"), "ok");
   // What the endless one had started has ended with it.
-  const std::string pid = read_text(pid_file);
-  EXPECT_FALSE(std::filesystem::exists("/proc/" + pid.substr(0, pid.find('\n'))));
+  const int pid = std::stoi(read_text(pid_file));
+  for (int i = 0; i < 500 && is_running(pid); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_FALSE(is_running(pid));
 }
 
 TEST_F(ExternalTest, TheTemplateRunsAsItStands) {

@@ -99,6 +99,21 @@ quarantine = ["*|test_hang|*"]
   EXPECT_EQ(reasons.at("test_mean"), "");
 }
 
+TEST_F(MisbehavingMethodsTest, WhatCrashedIsListedForTheNextRunsQuarantine) {
+  const std::string grid = R"([grid]
+problems = ["A/j2/no_load"]
+methods = ["test_mean", "test_crash", "test_throw"]
+)";
+  run(grid);
+  const std::filesystem::path list = folder_ / "run" / "quarantine.txt";
+  EXPECT_EQ(read_text(list), "A/j2/no_load|test_crash|-|1\n");
+  ASSERT_EQ(run_to_end({test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
+                        (folder_ / "next").string(), "--quarantine", list.string()})
+                .status,
+            0);
+  EXPECT_EQ(column_of(folder_ / "next", "reason").at("A/j2/no_load|test_crash|-|1"), "quarantined");
+}
+
 TEST_F(MisbehavingMethodsTest, AFullDiskIsSaidAndLosesNothing) {
   write_text(folder_ / "grid.toml", R"([grid]
 problems = ["A/j2/no_load"]

@@ -146,15 +146,10 @@ TEST_F(RunTest, AnOrphanedWorkerDoesNotOutliveItsRun) {
     while (worker == 0) worker = static_cast<pid_t>(std::atoi(read_text(children).c_str()));
     ::kill(program.pid(), SIGKILL);  // the program alone, not its group
   }
-  for (int i = 0; i < 500 && ::kill(worker, 0) == 0; ++i) {
-    // A zombie that init has not fetched yet has ended too.
-    if (read_text("/proc/" + std::to_string(worker) + "/stat").find(") Z ") != std::string::npos) {
-      break;
-    }
+  for (int i = 0; i < 500 && is_running(worker); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  const std::string state = read_text("/proc/" + std::to_string(worker) + "/stat");
-  EXPECT_TRUE(state.empty() || state.find(") Z ") != std::string::npos) << state;
+  EXPECT_FALSE(is_running(worker));
 }
 
 TEST_F(RunTest, DryRunListsTheCellsAndWritesTheGridThatTakesEffect) {
@@ -169,6 +164,28 @@ TEST_F(RunTest, DryRunListsTheCellsAndWritesTheGridThatTakesEffect) {
   const ProgramRun again = run_to_end(
       {test_program().string(), "run", (folder_ / "effective.toml").string(), "--dry-run"});
   EXPECT_EQ(again.output, listed.output) << again.errors;
+}
+
+TEST_F(RunTest, VerifyRunsASampleAgainAndFindsResultsThatDoNotComeOutAgain) {
+  ASSERT_EQ(run("run").status, 0);
+  const auto verify = [&] {
+    return run_to_end({test_program().string(), "run", "--verify", (folder_ / "run").string(),
+                       "--sample", "48", "--quiet"});
+  };
+  const ProgramRun good = verify();
+  EXPECT_EQ(good.status, 0) << good.errors;
+  EXPECT_THAT(good.output, HasSubstr("48 cells run again, 0 differ"));
+  // A journal made with half the budget under a grid file that says the whole.
+  std::string other = kGrid;
+  other.replace(other.find("2_000_000"), 9, "1_000_000");
+  write_text(folder_ / "grid.toml", other);
+  ASSERT_EQ(run("other").status, 0);
+  std::filesystem::copy_file(folder_ / "run" / "grid.toml", folder_ / "other" / "grid.toml",
+                             std::filesystem::copy_options::overwrite_existing);
+  const ProgramRun bad = run_to_end({test_program().string(), "run", "--verify",
+                                     (folder_ / "other").string(), "--sample", "48", "--quiet"});
+  EXPECT_EQ(bad.status, 1) << bad.errors;
+  EXPECT_THAT(bad.output, HasSubstr("test_search"));
 }
 
 TEST_F(RunTest, ReportRendersTheJournalAgain) {

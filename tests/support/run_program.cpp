@@ -69,6 +69,11 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
   std::ofstream(file, std::ios::binary) << text;
 }
 
+bool is_running(int pid) {
+  const std::string stat = read_text("/proc/" + std::to_string(pid) + "/stat");
+  return !stat.empty() && stat.find(") Z ") == std::string::npos;
+}
+
 std::string timeless_results(const std::filesystem::path& run_folder) {
   static constexpr std::array kTimes = {"fit_cpu_s", "fit_wall_s", "peak_memory_mib",
                                         "eval_ns_per_row"};

@@ -38,6 +38,9 @@ class TemporaryFolder {
 std::string read_text(const std::filesystem::path& file);
 void write_text(const std::filesystem::path& file, std::string_view text);
 
+// Whether the process is there and not merely waiting to be fetched by its parent.
+bool is_running(int pid);
+
 // results.csv without the columns of time and memory: what must be equal byte for byte.
 std::string timeless_results(const std::filesystem::path& run_folder);
 
