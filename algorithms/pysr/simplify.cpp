@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "algorithms/expression/evaluate.hpp"
+#include "algorithms/pysr/factor.hpp"
 #include "algorithms/pysr/tape_edit.hpp"
 
 namespace tribench::pysr {
@@ -63,6 +64,8 @@ bool merge_constants(Op op, Tape& a, Tape& b) {
   return false;
 }
 
+Tape simplified_tape(std::span<const Node> tape);
+
 Tape joined(Op op, Tape a, Tape b) {
   if (op == Op::sub) {
     if (is_value(b, 0)) return a;
@@ -86,27 +89,19 @@ Tape joined(Op op, Tape a, Tape b) {
   }
   if (op == Op::pow && is_value(b, 1)) return a;
   if ((op == Op::add || op == Op::mul) && merge_constants(op, a, b)) return a;
+  // A rewritten whole is smaller, so that simplifying it in turn ends.
+  if (op == Op::add || op == Op::sub) {
+    if (auto factored = factored_sum(op, a, b)) return simplified_tape(*factored);
+  }
+  if (op == Op::mul) {
+    if (auto merged = merged_exponentials(a, b)) return simplified_tape(*merged);
+  }
   return join(op, a, b);
 }
 
-std::uint64_t mixed(std::uint64_t x) {
-  // The finaliser of splitmix64 (Steele, Lea, Flood 2014).
-  x ^= x >> 30;
-  x *= 0xbf58476d1ce4e5b9ULL;
-  x ^= x >> 27;
-  x *= 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
-
-std::uint64_t combined(Op op, std::uint64_t a, std::uint64_t b) {
-  return mixed(a + 0x9e3779b97f4a7c15ULL * (static_cast<std::uint64_t>(op) + 1) + mixed(b + 17));
-}
-
-}  // namespace
-
-Expression simplified(const Expression& formula) {
+Tape simplified_tape(std::span<const Node> tape) {
   std::vector<Tape> stack;
-  for (const Node& node : formula.nodes()) {
+  for (const Node& node : tape) {
     if (arity(node.op) == 0) {
       stack.push_back({node});
       continue;
@@ -131,7 +126,26 @@ Expression simplified(const Expression& formula) {
     }
     stack.push_back(std::move(result));
   }
-  return Expression(std::move(stack.back()));
+  return std::move(stack.back());
+}
+
+std::uint64_t mixed(std::uint64_t x) {
+  // The finaliser of splitmix64 (Steele, Lea, Flood 2014).
+  x ^= x >> 30;
+  x *= 0xbf58476d1ce4e5b9ULL;
+  x ^= x >> 27;
+  x *= 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+
+std::uint64_t combined(Op op, std::uint64_t a, std::uint64_t b) {
+  return mixed(a + 0x9e3779b97f4a7c15ULL * (static_cast<std::uint64_t>(op) + 1) + mixed(b + 17));
+}
+
+}  // namespace
+
+Expression simplified(const Expression& formula) {
+  return Expression(simplified_tape(formula.nodes()));
 }
 
 std::uint64_t structure_hash(const Expression& formula) {

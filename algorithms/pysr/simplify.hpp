@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // The simplification that runs inside the search, where it is done millions of times: constants
-// are folded, constants met through one + or * are merged, and what a 0 or a 1 makes pointless
-// is dropped. Values change by rounding alone, and no domain shrinks or grows except where a
-// factor 0 removes what it multiplies.
+// are folded, constants met through one + or * are merged, what a 0 or a 1 makes pointless is
+// dropped, common factors of summands are taken out and exponentials multiplied into one. Values
+// change by rounding alone, and no domain shrinks or grows except where a factor 0 removes what it
+// multiplies.
 #pragma once
 
 #include <cstdint>

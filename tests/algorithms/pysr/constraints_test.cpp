@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
+#include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/text.hpp"
 #include "algorithms/pysr/mutation.hpp"
 #include "algorithms/pysr/simplify.hpp"
@@ -132,6 +135,38 @@ TEST(Simplification, DropsWhatIsPointlessAndMergesConstants) {
   EXPECT_EQ(simple("(v + 2) + 3"), "v + 5");
   EXPECT_EQ(simple("exp(0) * v"), "v");
   EXPECT_EQ(simple("2 * 3 + v"), "6 + v");
+}
+
+TEST(Simplification, TakesOutCommonFactorsAndMultipliesExponentialsIntoOne) {
+  const auto simple = [](const char* text) { return print(simplified(formula(text)), kNames); };
+  EXPECT_EQ(simple("2 * v + 3 * v"), "v*5");
+  EXPECT_EQ(simple("2 * v^2 + v * m + 3 * v"), "v*(2*v + m + 3)");
+  EXPECT_EQ(simple("2 * exp(v) * exp(m)"), "2*exp(v + m)");
+  EXPECT_EQ(simple("v + v * m"), "v + v*m");  // v * (1 + m) would not be smaller
+}
+
+TEST(Simplification, ChangesValuesByRoundingAlone) {
+  const OperatorSet& operators = find_operator_set("paper+div");
+  const Alphabet alphabet{operators, 3};
+  RandomStream random(key_of("simplify"));
+  Evaluator evaluator;
+  int compared = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const Expression before = random_formula_of_size(3 + i % 30, alphabet, random);
+    const Expression after = simplified(before);
+    EXPECT_LE(after.size(), before.size() + 1);
+    const std::array<double, 3> point = {random.uniform(0.5, 2), random.uniform(0.5, 2),
+                                         random.uniform(0.5, 2)};
+    const double value = evaluator.evaluate_at(before, point);
+    if (!std::isfinite(value) || std::abs(value) > 1e6) continue;
+    // Cancellation magnifies rounding; a real change would be far larger in nearly every case.
+    if (std::abs(evaluator.evaluate_at(after, point) - value) <= 1e-9 * (1 + std::abs(value))) {
+      ++compared;
+    } else {
+      ADD_FAILURE() << print(before, kNames) << " became " << print(after, kNames);
+    }
+  }
+  EXPECT_GT(compared, 10'000);
 }
 
 TEST(Simplification, HashesStructuresWithoutTheirConstants) {
