@@ -36,19 +36,25 @@ std::vector<Candidate> refined_front(Climber& climber, const Options& options, c
                                      const std::function<bool(const Expression&)>& admitted,
                                      RandomStream random, Budget& budget) {
   std::vector<Candidate> candidates;
-  climber.on_fitted([&](const Fitted& fitted) {
+  const auto enter = [&](const Fitted& fitted) {
     Candidate candidate{fitted.formula, {}};
     candidate.point.loss = fitted.loss;
     candidate.point.evidence_against = fitted.against;
     candidate.point.size = paper_complexity(fitted.formula);
     candidates.push_back(std::move(candidate));
-  });
+  };
+  climber.on_fitted(enter);
   const ClimbEffort effort;
+  const double zero = zero_loss(rows);
   std::vector<Fitted> starts;
   for (const Member& member : members) {
     std::optional<Fitted> polished = climber.fitted(member.formula, effort.fit_steps, budget);
     if (polished) starts.push_back(std::move(*polished));
-    if (budget.exhausted()) break;
+    // What the search has found is not lost when the budget ends before the polish.
+    if (!polished && budget.exhausted()) {
+      enter({member.formula, member.loss,
+             evidence_against(member.formula, member.loss, zero, rows.size())});
+    }
   }
   if (options.refine) {
     std::ranges::stable_sort(starts, {}, &Fitted::against);
