@@ -167,6 +167,21 @@ void check_time(const Dataset& data, std::span<const std::size_t> lines, std::st
   }
 }
 
+// A current beside torques in another unit is what the torques were computed from: it loses the
+// role that only its name gave it.
+void demote_current(const CsvOptions& options, DataFile& reading) {
+  for (Channel& current : reading.data.channels) {
+    if (current.role != Role::motor_current || options.roles.contains(current.name)) continue;
+    for (const Channel& other : reading.data.channels) {
+      if (!is_torque_like(other.role) || other.unit == "-" || other.unit == current.unit) continue;
+      current.role = Role::none;
+      reading.warnings.push_back(fmt::format("column '{}' is read without a role: '{}' is in {}",
+                                             current.name, other.name, other.unit));
+      break;
+    }
+  }
+}
+
 void check_torque_units(const Dataset& data, std::string_view file) {
   const Channel* first = nullptr;
   for (const Channel& channel : data.channels) {
@@ -244,6 +259,7 @@ DataFile parse_csv(std::string_view text, std::string_view file, const CsvOption
                     "remove the column that is empty");
   }
   check_time(reading.data, lines, file);
+  demote_current(options, reading);
   check_torque_units(reading.data, file);
   return reading;
 }

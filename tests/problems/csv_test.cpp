@@ -127,6 +127,14 @@ TEST(Csv, GivenRolesWinAndUnknownColumnsAreAnsweredWithTheNearest) {
 
 TEST(Csv, TorqueLikeColumnsShareOneUnit) {
   EXPECT_THAT(complaint("v,motor_torque_Nm,gravity_torque_A\n1,2,3\n"), HasSubstr("N m"));
+  // A current beside a torque is what the torque was computed from, unless a role is given.
+  const std::string_view both = "v,motor_current_A,motor_torque_Nm\n1,2,3\n";
+  const DataFile reading = parse_csv(both, "d.csv");
+  EXPECT_EQ(reading.data.at("motor_current_A").role, Role::none);
+  EXPECT_EQ(reading.warnings.size(), 1U);
+  CsvOptions options;
+  options.roles = {{"motor_current_A", Role::motor_current}};
+  EXPECT_THAT(complaint(both, options), HasSubstr("one unit"));
   EXPECT_EQ(parse_csv("v,motor_torque_V,gravity_torque_V\n1,2,3\n", "d.csv").data.rows(), 1U);
 }
 

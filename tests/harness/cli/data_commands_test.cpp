@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+//
+// generate, data and study, as a user calls them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "problems/csv.hpp"
+#include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace tribench::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+ProgramRun run_tribench(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), program().string());
+  return run_to_end(arguments);
+}
+
+TEST(GenerateCommand, WritesWhatReadsBackAndTheSameForTheSameSeed) {
+  const TemporaryFolder folder;
+  const std::string one = (folder / "one.csv").string();
+  const std::string two = (folder / "two.csv").string();
+  ASSERT_EQ(run_tribench({"generate", "undeclared/stribeck/1", "--seed", "3", "--out", one}).status,
+            0);
+  ASSERT_EQ(run_tribench({"generate", "undeclared/stribeck/1", "--seed", "3", "--out", two}).status,
+            0);
+  EXPECT_EQ(read_text(one), read_text(two));
+  const Dataset data = read_csv(one).data;
+  EXPECT_EQ(data.movement_names.size(), 108U);
+  for (const Role role :
+       {Role::time, Role::position, Role::velocity, Role::acceleration, Role::gravity_torque,
+        Role::temperature, Role::other_velocity, Role::other_acceleration, Role::friction_torque}) {
+    EXPECT_NE(data.find(role), nullptr) << role_name(role);
+  }
+}
+
+TEST(GenerateCommand, RefusesWhatItDoesNotKnow) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "x.csv").string();
+  EXPECT_EQ(run_tribench({"generate", "A/j3/load", "--out", out}).status, 2);
+  EXPECT_EQ(run_tribench({"generate", "A/j2/load", "--seed", "-1", "--out", out}).status, 2);
+  EXPECT_EQ(run_tribench({"generate", "A/j2/load"}).status, 2);
+}
+
+TEST(GenerateCommand, ProblemsWithoutARecordingGiveTheirTables) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "n.csv").string();
+  ASSERT_EQ(run_tribench({"generate", "nguyen/1", "--out", out}).status, 0);
+  EXPECT_GE(read_csv(out).data.rows(), 20U);
+}
+
+TEST(DataCommand, ListsWithoutDataAndFindsAChangedFile) {
+  const TemporaryFolder folder;
+  const auto list = run_tribench({"data", "list", "--json"});
+  EXPECT_EQ(list.status, 0);
+  EXPECT_EQ(nlohmann::json::parse(list.output).size(), 6U);
+  std::filesystem::create_directories(folder / "emps");
+  write_text(folder / "emps/emps_estimation.csv", "not it");
+  const auto check = run_tribench({"data", "check", "--data", folder.path().string()});
+  EXPECT_EQ(check.status, 1);
+  EXPECT_THAT(check.output, HasSubstr("changed  emps/emps_estimation.csv"));
+  EXPECT_THAT(check.output, HasSubstr("missing  emps/emps_validation_pulses.csv"));
+  EXPECT_EQ(run_tribench({"data", "check", "--data", (folder / "none").string()}).status, 2);
+  EXPECT_EQ(run_tribench({"data", "add", "emps", "--from", folder.path().string(), "--data",
+                          (folder / "to").string()})
+                .status,
+            2);
+}
+
+TEST(StudyCommand, GeneratorAnswersInJson) {
+  const auto study = run_tribench({"study", "generator", "--seeds", "1", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(study.output).size(), 26U);
+  EXPECT_EQ(run_tribench({"study", "generator", "--seeds", "0"}).status, 2);
+}
+
+}  // namespace
+}  // namespace tribench::testing
