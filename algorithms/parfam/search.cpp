@@ -33,10 +33,20 @@ struct ScaledRows {
   std::size_t rows() const { return target.size(); }
 };
 
-ScaledRows scale_rows(const FiniteRows& data) {
+// Friction is about linear in a load and in temperature. Higher powers of them follow what else
+// repeats with position on the training rows, and mislead where a payload goes beyond these.
+constexpr int kLoadPotence = 2;
+
+bool is_load(Role role) {
+  return role == Role::gravity_torque || role == Role::external_torque ||
+         role == Role::motor_torque || role == Role::temperature;
+}
+
+ScaledRows scale_rows(const FiniteRows& data, std::span<const Input> inputs) {
   ScaledRows scaled;
   scaled.target = data.target;
-  for (const auto& column : data.columns) {
+  for (std::size_t j = 0; j < data.columns.size(); ++j) {
+    const std::vector<double>& column = data.columns[j];
     double largest = 0;
     bool three_valued = true;
     for (double value : column) {
@@ -47,7 +57,9 @@ ScaledRows scale_rows(const FiniteRows& data) {
     scaled.columns.push_back(column);
     for (double& value : scaled.columns.back()) value /= scaled.scales.back();
     // The square of a sign is 1, or a second indicator of standstill: not worth a monomial.
-    scaled.caps.push_back(three_valued ? 1 : kMaximalPotence + 2);
+    scaled.caps.push_back(three_valued              ? 1
+                          : is_load(inputs[j].role) ? kLoadPotence
+                                                    : kMaximalPotence + 2);
   }
   for (const auto& column : scaled.columns) scaled.pointers.push_back(column.data());
   return scaled;
@@ -83,7 +95,7 @@ class Search {
       : context_(context),
         options_(options),
         data_(context.data),
-        all_(scale_rows(data_)),
+        all_(scale_rows(data_, context.data.inputs)),
         sample_(sample_rows(all_, options.sample_rows)),
         front_(data_, context) {}
 
