@@ -86,10 +86,9 @@ inline F64 log(F64 x) {
     shift = x < kSmallestNormal ? splat(0x1p52 + 1023 + 54) : shift;
   }
   // x = 2^k (1 + f), 1 + f in [sqrt(1/2), sqrt(2)).
-  constexpr std::int64_t kHalfRoot = 0x3fe6a09e667f3bcd;
-  const I64 moved = bits(normal) + (0x3ff0000000000000 - kHalfRoot);
-  const I64 exponent = (I64)((U64)moved >> 52);
-  const F64 k = from_bits(exponent | 0x4330000000000000) - shift;
+  constexpr std::uint64_t kHalfRoot = 0x3fe6a09e667f3bcd;
+  const U64 moved = bits(normal) + (0x3ff0000000000000 - kHalfRoot);
+  const F64 k = from_bits((moved >> 52) | 0x4330000000000000) - shift;
   const F64 f = from_bits((moved & 0x000fffffffffffff) + kHalfRoot) - 1.0;
   const F64 f2 = f * f;
   F64 small = fma(f2 * f, polynomial(f, kP), k * kLn2Low);
@@ -110,8 +109,8 @@ __extension__ using Wide = unsigned __int128;
 __extension__ using SignedWide = __int128;
 
 struct Reduced {
-  double rest;         // in [-pi/2, pi/2]
-  std::int64_t turns;  // |x| = turns pi + rest (sin), (turns + 1/2) pi + rest (cos)
+  double rest;          // in [-pi/2, pi/2]
+  std::uint64_t turns;  // |x| = turns pi + rest (sin), (turns + 1/2) pi + rest (cos)
 };
 
 // Payne and Hanek 1983: only the bits of 1/pi that decide the fraction of x / pi are multiplied.
@@ -171,7 +170,7 @@ inline Reduced reduce_large_angle(double magnitude, bool half_turn) {
   constexpr double kPi = 0x1.921fb54442d18p+1;
   constexpr double kPiLow = 0x1.1a62633145c07p-53;
   const double angle = head * kPi + (tail * kPi + head * kPiLow);
-  return {negative ? -angle : angle, static_cast<std::int64_t>(nearest & 3)};
+  return {negative ? -angle : angle, static_cast<std::uint64_t>(nearest & 3)};
 }
 
 // r + r^3 s(r^2), clamped to [-1, 1]; r^3 is rounded once.
@@ -190,7 +189,7 @@ inline F64 sine_of_reduced(F64 r) {
   return sine_series(r, kS);
 }
 
-inline void reduce_large_lanes(F64 x, bool half_turn, F64& r, I64& turns) {
+inline void reduce_large_lanes(F64 x, bool half_turn, F64& r, U64& turns) {
   for (std::size_t i = 0; i < kWidth<double>; ++i) {
     const double magnitude = x[i] < 0 ? -x[i] : x[i];
     if (!(magnitude > kLargeAngle)) continue;
@@ -207,13 +206,13 @@ inline void reduce_large_lanes(F64 x, bool half_turn, F64& r, I64& turns) {
 inline F64 sin(F64 x) {
   const F64 rounded = fma(x, splat(0x1.45f306dc9c883p-2), splat(kRounder));
   const F64 n = rounded - kRounder;
-  I64 turns = bits(rounded);
+  U64 turns = bits(rounded);
   F64 r = fma(n, splat(-0x1.921fb54442d18p+1), x);
   r = fma(n, splat(-0x1.1a62633145c07p-53), r);
   r = fma(n, splat(0x1.f1976b7ed8fbcp-109), r);
   if (any_above(abs(x), kLargeAngle)) [[unlikely]] {
     reduce_large_lanes(x, false, r, turns);
-    const I64 flip = (I64)(abs(x) > kLargeAngle) & bits(x) & INT64_MIN;
+    const U64 flip = (U64)(abs(x) > kLargeAngle) & bits(x) & kSignBit64;
     r = from_bits(bits(r) ^ flip);
   }
   const F64 y = x == 0.0 ? x : sine_of_reduced(r);  // the polynomial loses the sign of zero
@@ -225,7 +224,7 @@ inline F64 cos(F64 x) {
   const F64 rounded = fma(size, splat(0x1.45f306dc9c883p-2), splat(-0.5)) + kRounder;
   const F64 n = rounded - kRounder;
   const F64 q = fma(n, splat(2.0), splat(1.0));  // x = q pi/2 + r
-  I64 turns = bits(rounded);
+  U64 turns = bits(rounded);
   F64 r = fma(q, splat(-0x1.921fb54442d18p+0), size);
   r = fma(q, splat(-0x1.1a62633145c07p-54), r);
   r = fma(q, splat(0x1.f1976b7ed8fbcp-110), r);

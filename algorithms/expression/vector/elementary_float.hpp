@@ -55,9 +55,9 @@ inline F32 log(F32 x) {
     normal = x < kSmallestNormal ? x * 0x1p25F : x;
     shift = x < kSmallestNormal ? splat(25.0F) : shift;
   }
-  constexpr std::int32_t kHalfRoot = 0x3f3504f3;
-  const I32 moved = bits(normal) + (0x3f800000 - kHalfRoot);
-  const F32 k = __builtin_convertvector((moved >> 23) - 127, F32) - shift;
+  constexpr std::uint32_t kHalfRoot = 0x3f3504f3;
+  const U32 moved = bits(normal) + (0x3f800000 - kHalfRoot);
+  const F32 k = __builtin_convertvector((I32)(moved >> 23) - 127, F32) - shift;
   const F32 f = from_bits((moved & 0x007fffff) + kHalfRoot) - 1.0F;
   const F32 f2 = f * f;
   F32 small = fma(f2 * f, polynomial(f, kP), k * kLn2LowF);

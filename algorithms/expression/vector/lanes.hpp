@@ -30,14 +30,10 @@ struct Lanes;
 template <>
 struct Lanes<double> {
   using V = F64;
-  using I = I64;
-  using U = U64;
 };
 template <>
 struct Lanes<float> {
   using V = F32;
-  using I = I32;
-  using U = U32;
 };
 template <typename T>
 using Vector = typename Lanes<T>::V;
@@ -48,10 +44,14 @@ constexpr std::size_t kWidth = kLaneBytes / sizeof(T);
 inline F64 splat(double x) { return x - F64{}; }
 inline F32 splat(float x) { return x - F32{}; }
 
-inline I64 bits(F64 x) { return reinterpret_cast<I64&>(x); }
-inline I32 bits(F32 x) { return reinterpret_cast<I32&>(x); }
-inline F64 from_bits(I64 x) { return reinterpret_cast<F64&>(x); }
-inline F32 from_bits(I32 x) { return reinterpret_cast<F32&>(x); }
+// Unsigned: sums of bit patterns wrap around.
+inline U64 bits(F64 x) { return reinterpret_cast<U64&>(x); }
+inline U32 bits(F32 x) { return reinterpret_cast<U32&>(x); }
+inline F64 from_bits(U64 x) { return reinterpret_cast<F64&>(x); }
+inline F32 from_bits(U32 x) { return reinterpret_cast<F32&>(x); }
+
+constexpr std::uint64_t kSignBit64 = std::uint64_t{1} << 63;
+constexpr std::uint32_t kSignBit32 = std::uint32_t{1} << 31;
 
 template <typename V>
 inline V load(const void* p) {
@@ -64,15 +64,13 @@ inline void store(void* p, V v) {
   __builtin_memcpy(p, &v, sizeof v);
 }
 
-inline F64 sign_bits(F64 x) { return from_bits(bits(x) & INT64_MIN); }
-inline F32 sign_bits(F32 x) { return from_bits(bits(x) & INT32_MIN); }
-inline F64 abs(F64 x) { return from_bits(bits(x) & INT64_MAX); }
-inline F32 abs(F32 x) { return from_bits(bits(x) & INT32_MAX); }
+inline F64 abs(F64 x) { return from_bits(bits(x) & ~kSignBit64); }
+inline F32 abs(F32 x) { return from_bits(bits(x) & ~kSignBit32); }
 inline F64 with_sign(F64 magnitude, F64 sign) {
-  return from_bits(bits(magnitude) | (bits(sign) & INT64_MIN));
+  return from_bits(bits(magnitude) | (bits(sign) & kSignBit64));
 }
 inline F32 with_sign(F32 magnitude, F32 sign) {
-  return from_bits(bits(magnitude) | (bits(sign) & INT32_MIN));
+  return from_bits(bits(magnitude) | (bits(sign) & kSignBit32));
 }
 
 #if TRIBENCH_LANE_BYTES == 64
@@ -130,7 +128,7 @@ inline V quotient_from_reciprocal(V a, V b, V y) {  // y within an ulp of 1 / b
 }
 
 inline F64 divide_by_multiplying(F64 a, F64 b) {
-  constexpr std::int64_t kShift = std::int64_t{512} << 52;  // to the top bit of the exponent
+  constexpr std::uint64_t kShift = std::uint64_t{512} << 52;  // to the top bit of the exponent
   const auto usual = (__m512i)((bits(a) + kShift) & (bits(b) + kShift));
   const __mmask8 good =
       _mm512_mask_test_epi64_mask(_mm512_test_epi64_mask(usual, (__m512i)(I64{} + (1L << 62))),
@@ -145,7 +143,7 @@ inline F64 divide_by_multiplying(F64 a, F64 b) {
 }
 
 inline F32 divide_by_multiplying(F32 a, F32 b) {
-  constexpr std::int32_t kShift = 64 << 23;
+  constexpr std::uint32_t kShift = 64U << 23;
   const auto usual = (__m512i)((bits(a) + kShift) & (bits(b) + kShift));
   const __mmask16 good =
       _mm512_mask_test_epi32_mask(_mm512_test_epi32_mask(usual, (__m512i)(I32{} + (1 << 30))),
