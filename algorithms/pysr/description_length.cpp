@@ -16,9 +16,6 @@ namespace {
 // Mean squares below this share of the target's are rounding.
 constexpr double kRounding = 1e-28;
 
-// Nats that a node costs in the evidence.
-constexpr double kNodePrice = 1.0;
-
 double structure_length(const Expression& formula) {
   std::set<std::pair<Op, int>> symbols;
   double length = 0;

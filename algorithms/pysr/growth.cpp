@@ -6,6 +6,7 @@
 
 #include "algorithms/expression/column_kernels.hpp"
 #include "algorithms/fitting/cholesky.hpp"
+#include "algorithms/pysr/description_length.hpp"
 #include "algorithms/pysr/simplify.hpp"
 #include "algorithms/pysr/tape_edit.hpp"
 
@@ -248,7 +249,7 @@ double Grower::price_of(const Expression& formula, const Candidate& candidate,
     constants -= 1;
   }
   for (const Node& node : term.nodes()) constants += node.is_constant() ? 1 : 0;
-  return nodes + 0.5 * constants * std::log(static_cast<double>(residual_.size()));
+  return kNodePrice * nodes + 0.5 * constants * std::log(static_cast<double>(residual_.size()));
 }
 
 std::vector<Proposal> Grower::prune(const Expression& formula, const Rows& rows, Budget& budget) {

@@ -23,7 +23,8 @@ enum class Selection { evidence, mdl, best, accuracy, score };
 enum class Batching { off, on, automatic };
 enum class Units { off, soft, hard };
 
-// In the order of the published table of weights; ours are the last two.
+// In the order of the published table of weights (backsolve, which is off there, is not among them);
+// ours are the last two.
 enum class MutationKind : std::uint8_t {
   rotate_tree,
   add_node,
@@ -37,11 +38,10 @@ enum class MutationKind : std::uint8_t {
   simplify,
   randomize,
   optimize,
-  backsolve,
   grow,   // the best of many terms, by its projection on the residual
   prune,  // the constant whose loss costs least is removed
 };
-inline constexpr std::size_t kMutationKinds = 15;
+inline constexpr std::size_t kMutationKinds = 14;
 using MutationWeights = std::array<double, kMutationKinds>;
 
 constexpr std::size_t index_of(MutationKind kind) { return static_cast<std::size_t>(kind); }

@@ -28,7 +28,7 @@ struct ScoreRule {
   double norm = 1;       // what losses are divided by
   double parsimony = 0;  // the published price of a node
   // Ours, where above 0: the number of rows. The loss then grows by the factor that makes up for
-  // the evidence its constants and nodes cost: exp(2 (p / 2 ln n + k) / n).
+  // the evidence its constants and nodes cost: exp(2 (p / 2 ln n + k / 2) / n).
   std::size_t evidence_rows = 0;
   bool fit_exponents = false;
 };
