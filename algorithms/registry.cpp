@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "algorithms/diagnosis/closed_loop.hpp"
 #include "algorithms/model_based/branch_polynomial.hpp"
 #include "algorithms/model_based/placebos.hpp"
 #include "algorithms/model_based/random_search.hpp"
@@ -21,6 +22,7 @@ Registry::Registry() {
   entries_.push_back(constant_entry());
   entries_.push_back(linear_entry());
   entries_.push_back(random_search_entry());
+  entries_.push_back(closed_loop_entry());
   entries_.push_back(pysr_entry());
   entries_.push_back(parfam_entry());
   entries_.push_back(udsr_entry());

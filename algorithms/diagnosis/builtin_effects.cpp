@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/effect_library.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 // Grids are fractions of the signal's scale. Time scales of a fall with speed up to 0.15 of the
@@ -284,4 +284,4 @@ std::string experiment_text(std::string_view rule) {
   return std::string(rule);
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

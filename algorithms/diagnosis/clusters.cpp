@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 constexpr std::size_t kLongMovement = 45;
@@ -164,4 +164,4 @@ double correlation_time(const Eigen::VectorXd& residual, std::span<const RowRang
   return std::max({1.0, first > 0 ? -1 / std::log(first) : 0.0, sum});
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

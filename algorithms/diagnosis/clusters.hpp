@@ -16,7 +16,7 @@
 
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 
 struct RowRange {
   std::size_t begin = 0;
@@ -60,4 +60,4 @@ Eigen::MatrixXd whitened(const Eigen::MatrixXd& columns, const Clusters& cluster
 // 0.05, pooled over the movements.
 double correlation_time(const Eigen::VectorXd& residual, std::span<const RowRange> movements);
 
-}  // namespace tribench
+}  // namespace tribench::loop

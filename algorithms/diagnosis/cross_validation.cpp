@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 // Keeps a fold that lacks a column's excitation solvable; relative to unit diagonals.
@@ -115,4 +115,4 @@ Gain paired_gain(const Eigen::VectorXd& losses_before, const Eigen::VectorXd& lo
   return gain;
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

@@ -12,7 +12,7 @@
 
 #include "algorithms/diagnosis/clusters.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 
 // Per cluster: sum of squared held-out errors / (2 sw^2 inflation), in nats. x: rows x columns,
 // y: rows, both whitened. Columns that depend on others are harmless.
@@ -45,4 +45,4 @@ struct Gain {
 // What the second model gains over the first.
 Gain paired_gain(const Eigen::VectorXd& losses_before, const Eigen::VectorXd& losses_after);
 
-}  // namespace tribench
+}  // namespace tribench::loop

@@ -12,10 +12,12 @@
 #include "algorithms/diagnosis/search.hpp"
 #include "foundation/error.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 constexpr std::size_t kFewestRowsOfMovement = 5;
+constexpr std::size_t kFewMovements = 10;
+constexpr std::size_t kPiecesOfOneMovement = 5;
 
 std::vector<EffectFamily> chosen_families(const DiagnosisOptions& options) {
   std::vector<EffectFamily> all = builtin_effects();
@@ -181,28 +183,32 @@ std::string_view verdict_name(Verdict verdict) {
   return "NONE";
 }
 
-Diagnosis diagnose(const Observations& data, const BaseModel& base, const DiagnosisOptions& options,
-                   std::uint64_t seed) {
-  const RandomStream random(seed);
+namespace {
+
+// The procedure on the rows of the training movements; nothing is held out here.
+Diagnosis diagnose_training(const Observations& data, const std::vector<int>& test,
+                            const BaseMaker& make_base, const DiagnosisOptions& options,
+                            RandomStream random) {
   Diagnosis out;
   out.options = options;
-  out.seed = seed;
   out.families = chosen_families(options);
-  out.test_movements = choose_test_movements(data, options.test_share, random.split("test"));
-  const std::vector<char> train_rows = rows_of(data, out.test_movements, false, {});
+  out.test_movements = test;
+  const std::vector<char> train_rows = rows_of(data, test, false, {});
+  const BaseModel base = make_base(data.select(train_rows));
   const Eigen::VectorXd rich = rich_residual(data, train_rows, base, out.families, options);
   out.events = find_events(data, rich, out.masked);
-  const std::vector<char> kept = rows_of(data, out.test_movements, false, out.masked);
+  const std::vector<char> kept = rows_of(data, test, false, out.masked);
   const Observations train = data.select(kept);
   check_enough(train, base);
   Eigen::VectorXd train_rich(static_cast<Eigen::Index>(train.rows()));
-  for (std::size_t i = 0, k = 0; i < data.rows(); ++i) {
-    if (kept[i] != 0)
-      train_rich[static_cast<Eigen::Index>(k++)] = rich[static_cast<Eigen::Index>(i)];
+  Eigen::Index next = 0;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (kept[i] != 0) train_rich[next++] = rich[static_cast<Eigen::Index>(i)];
   }
   const Clusters uncut = make_clusters(train.movement, 1, random);
-  const double lasting = correlation_time(train_rich, uncut.movements);
-  const Clusters clusters = make_clusters(train.movement, lasting, random.split("folds"));
+  out.correlation_rows = correlation_time(train_rich, uncut.movements);
+  const Clusters clusters =
+      make_clusters(train.movement, out.correlation_rows, random.split("folds"));
   Search search(train, base, out.families, options, clusters, random.split("search"));
   search.run();
   out.rows = train.rows();
@@ -216,19 +222,106 @@ Diagnosis diagnose(const Observations& data, const BaseModel& base, const Diagno
   out.leftover.curve = leftover_curve(search, train);
   out.untestable = search.untestable;
   out.aliased = search.aliased;
+  out.alias_map = search.alias_map;
   out.candidates = search.candidates;
   out.notes = search.notes;
   mark_provisional(out, train);
   if (options.physical_vetoes) apply_vetoes(out, train);
   out.verdict = verdict_of(out);
-  const Observations test = data.select(rows_of(data, out.test_movements, true, out.masked));
-  if (test.rows() > 0) {
-    out.error =
-        judge(test, predict(out.before, test), predict(out.after, test), random.split("bootstrap"));
+  return out;
+}
+
+// Pieces of each movement, as independent of one another as rows ten correlation times apart.
+std::vector<int> pieces(const Observations& data, double correlation_rows) {
+  const Clusters clusters = make_clusters(data.movement, correlation_rows, RandomStream(0));
+  std::vector<int> unit(data.rows());
+  for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
+    for (std::size_t i = clusters.stretches[c].begin; i < clusters.stretches[c].end; ++i) {
+      unit[i] = static_cast<int>(c);
+    }
+  }
+  return unit;
+}
+
+// Few movements: the whole procedure again for each, without it, and all of them judged together.
+ErrorFinding judge_in_turn(const Observations& data, const BaseMaker& base, const Diagnosis& whole,
+                           RandomStream random) {
+  const std::vector<char> usable = rows_of(data, {}, false, whole.masked);
+  Eigen::VectorXd before(static_cast<Eigen::Index>(data.rows()));
+  Eigen::VectorXd after(static_cast<Eigen::Index>(data.rows()));
+  for (const int m : data.movements()) {
+    const Diagnosis without = diagnose_training(data, {m}, base, whole.options,
+                                                random.split(static_cast<std::uint64_t>(m)));
+    const std::vector<char> rows = rows_of(data, {m}, true, {});
+    const Observations left_out = data.select(rows);
+    const Eigen::VectorXd one = predict(without.before, left_out);
+    const Eigen::VectorXd other = predict(without.after, left_out);
+    Eigen::Index next = 0;
+    for (std::size_t i = 0; i < data.rows(); ++i) {
+      if (rows[i] == 0) continue;
+      before[static_cast<Eigen::Index>(i)] = one[next];
+      after[static_cast<Eigen::Index>(i)] = other[next++];
+    }
+  }
+  const Observations judged = data.select(usable);
+  std::vector<Eigen::Index> places;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (usable[i] != 0) places.push_back(static_cast<Eigen::Index>(i));
+  }
+  return judge(judged, before(places), after(places), pieces(judged, whole.correlation_rows),
+               random.split("bootstrap"));
+}
+
+// One recording: five pieces of it stand for movements.
+Observations cut_in_pieces(const Observations& data) {
+  Observations out = data;
+  out.movement_names.clear();
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    out.movement[i] = static_cast<int>(i * kPiecesOfOneMovement / data.rows());
+  }
+  for (std::size_t k = 0; k < kPiecesOfOneMovement; ++k) {
+    out.movement_names.push_back(fmt::format("piece {}", k + 1));
+  }
+  return out;
+}
+
+}  // namespace
+
+Diagnosis diagnose(const Observations& data, const BaseMaker& base, const DiagnosisOptions& options,
+                   std::uint64_t seed) {
+  const RandomStream random(seed);
+  const std::size_t movements = data.movements().size();
+  const bool hold_out = options.test_share > 0;
+  if (hold_out && movements < kFewMovements) {
+    const bool single = movements == 1;
+    const Observations cut = single ? cut_in_pieces(data) : data;
+    Diagnosis out = diagnose_training(cut, {}, base, options, random);
+    out.seed = seed;
+    out.error = judge_in_turn(cut, base, out, random.split("in turn"));
+    out.error.how =
+        single ? "pieces of the one movement left out in turn" : "each movement left out in turn";
+    out.error.confirmed = out.effects.empty() || out.error.difference_low > 0;
+    out.notes.push_back(
+        single ? std::string("there is one movement: nothing that differs between movements "
+                             "(temperature, drift, repeatability) can be tested")
+               : fmt::format("there are {} movements: what differs between movements (temperature, "
+                             "drift, repeatability) can hardly be tested; 30 are wanted",
+                             movements));
+    return out;
+  }
+  const std::vector<int> test =
+      choose_test_movements(data, options.test_share, random.split("test"));
+  Diagnosis out = diagnose_training(data, test, base, options, random);
+  out.seed = seed;
+  out.error.how = "none held out";
+  const Observations held_out = data.select(rows_of(data, test, true, out.masked));
+  if (held_out.rows() > 0) {
+    out.error = judge(held_out, predict(out.before, held_out), predict(out.after, held_out),
+                      held_out.movement, random.split("bootstrap"));
     out.error.how = "held out";
     out.error.confirmed = out.effects.empty() || out.error.difference_low > 0;
   }
   return out;
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

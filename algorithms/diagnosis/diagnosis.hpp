@@ -16,7 +16,7 @@
 #include "algorithms/diagnosis/loop_model.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 
 struct DiagnosisOptions {
   double alpha_library = 0.003;
@@ -97,6 +97,12 @@ struct CoincidingFamilies {
   std::string separate_by;
 };
 
+// Largest correlation of any two columns of two families, given the base; 1 on the diagonal.
+struct AliasMap {
+  std::vector<std::string> families;
+  Eigen::MatrixXd correlation;
+};
+
 struct EventFinding {
   int movement = 0;
   std::string movement_name;
@@ -145,10 +151,12 @@ struct Diagnosis {
   std::size_t rows = 0;
   std::size_t stretches = 0;
   std::size_t movements = 0;
+  double correlation_rows = 1;  // how many rows the noise lasts
   std::vector<EffectFinding> effects;
   LeftoverFinding leftover;
   std::vector<UntestableFinding> untestable;
   std::vector<CoincidingFamilies> aliased;
+  AliasMap alias_map;
   std::vector<EventFinding> events;
   ErrorFinding error;
   std::vector<CandidateFinding> candidates;  // of the first round
@@ -160,9 +168,12 @@ struct Diagnosis {
   std::vector<EffectFamily> families;
 };
 
+// With ten movements or more a fifth of them is held out. With fewer, all take part in the verdict
+// and the whole procedure is repeated with each movement left out in turn to judge it; a single
+// movement is cut into five pieces for that.
 // Deterministic given the seed. Cost: some tens of milliseconds for 6 000 rows.
 // Throws Error (bad_input) where there are too few rows to fit the base.
-Diagnosis diagnose(const Observations& data, const BaseModel& base, const DiagnosisOptions& options,
+Diagnosis diagnose(const Observations& data, const BaseMaker& base, const DiagnosisOptions& options,
                    std::uint64_t seed);
 
-}  // namespace tribench
+}  // namespace tribench::loop

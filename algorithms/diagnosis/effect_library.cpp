@@ -8,7 +8,7 @@
 
 #include "algorithms/expression/text.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 double quantile(std::vector<double> values, double part) {
@@ -144,4 +144,4 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
   return atoms;
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

@@ -20,7 +20,7 @@
 #include "algorithms/diagnosis/observations.hpp"
 #include "algorithms/expression/expression.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 
 struct ShapeTemplate {
   std::string name;
@@ -109,4 +109,4 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
 // The scale of a signal: 99 % quantile of |x|; span (1 % to 99 %) of q, T, t and d.
 double signal_scale(const Observations& data, std::string_view name);
 
-}  // namespace tribench
+}  // namespace tribench::loop

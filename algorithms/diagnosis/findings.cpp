@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 constexpr double kNormalQuantile = 1.959964;
@@ -172,4 +172,4 @@ std::vector<CurvePoint> leftover_curve(const Search& search, const Observations&
   return curve;
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

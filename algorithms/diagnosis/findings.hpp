@@ -6,7 +6,7 @@
 
 #include "algorithms/diagnosis/search.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 
 // Parameters of every effect with 95 % intervals from the cluster-robust covariance, their size,
 // their collinearity; in the order picked.
@@ -19,4 +19,4 @@ std::string physical_objection(const EffectFinding& finding, const EffectFamily&
 // The residual over the leftover's one input: means of 40 bins with their standard errors.
 std::vector<CurvePoint> leftover_curve(const Search& search, const Observations& train);
 
-}  // namespace tribench
+}  // namespace tribench::loop

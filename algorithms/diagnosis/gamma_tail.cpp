@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 constexpr int kMaxTerms = 2000;
@@ -87,4 +87,4 @@ double MatchedGamma::fast_score(double statistic) const {
   return table_[knot] + part * (table_[knot + 1] - table_[knot]);
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace tribench {
+namespace tribench::loop {
 
 // log Q(a, x) = log( Gamma(a, x) / Gamma(a) ), the regularised upper incomplete gamma function.
 // a > 0; x >= 0 (0 gives 0). Relative error of the logarithm below 1e-10.
@@ -35,4 +35,4 @@ class MatchedGamma {
   std::vector<double> table_;
 };
 
-}  // namespace tribench
+}  // namespace tribench::loop

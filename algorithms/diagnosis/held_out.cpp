@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 constexpr double kEventSd = 4;
@@ -48,6 +48,23 @@ std::vector<Kind> kinds(const Observations& data) {
     }
     const bool one_way = std::abs(sum) > 0.9 * magnitude;
     all.push_back({m, !one_way ? 0 : sum > 0 ? 1 : -1, magnitude});
+  }
+  return all;
+}
+
+// Mean errors of runs of rows with equal numbers.
+std::vector<MovementError> mean_errors(std::span<const int> run, const Eigen::VectorXd& before,
+                                       const Eigen::VectorXd& after) {
+  std::vector<MovementError> all;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    if (i == 0 || run[i] != run[i - 1]) all.push_back({run[i], 0, 0, 0});
+    all.back().before += before[static_cast<Eigen::Index>(i)];
+    all.back().after += after[static_cast<Eigen::Index>(i)];
+    ++all.back().rows;
+  }
+  for (MovementError& one : all) {
+    one.before /= static_cast<double>(one.rows);
+    one.after /= static_cast<double>(one.rows);
   }
   return all;
 }
@@ -128,7 +145,7 @@ std::vector<EventFinding> find_events(const Observations& data, const Eigen::Vec
 }
 
 ErrorFinding judge(const Observations& data, const Eigen::VectorXd& before,
-                   const Eigen::VectorXd& after, RandomStream random) {
+                   const Eigen::VectorXd& after, std::span<const int> unit, RandomStream random) {
   ErrorFinding out;
   if (data.rows() == 0) return out;
   const Eigen::VectorXd error_before = (target_vector(data) - before).cwiseAbs();
@@ -140,27 +157,17 @@ ErrorFinding judge(const Observations& data, const Eigen::VectorXd& before,
   out.rmse_after = error_after.norm() / std::sqrt(n);
   out.max_before = error_before.maxCoeff();
   out.max_after = error_after.maxCoeff();
-  for (std::size_t i = 0; i < data.rows(); ++i) {
-    if (i == 0 || data.movement[i] != data.movement[i - 1]) {
-      out.movements.push_back({data.movement[i], 0, 0, 0});
-    }
-    out.movements.back().before += error_before[static_cast<Eigen::Index>(i)];
-    out.movements.back().after += error_after[static_cast<Eigen::Index>(i)];
-    ++out.movements.back().rows;
-  }
-  for (MovementError& m : out.movements) {
-    m.before /= static_cast<double>(m.rows);
-    m.after /= static_cast<double>(m.rows);
-  }
+  out.movements = mean_errors(data.movement, error_before, error_after);
   out.test_movements = out.movements.size();
+  const std::vector<MovementError> units = mean_errors(unit, error_before, error_after);
   std::vector<double> means;
   for (int b = 0; b < kBootstraps; ++b) {
     double sum = 0;
-    for (std::size_t k = 0; k < out.movements.size(); ++k) {
-      const MovementError& m = out.movements[random.below(out.movements.size())];
-      sum += m.before - m.after;
+    for (std::size_t k = 0; k < units.size(); ++k) {
+      const MovementError& drawn = units[random.below(units.size())];
+      sum += drawn.before - drawn.after;
     }
-    means.push_back(sum / static_cast<double>(out.movements.size()));
+    means.push_back(sum / static_cast<double>(units.size()));
   }
   std::ranges::sort(means);
   out.difference_low = means[kBootstraps / 40];
@@ -168,4 +175,4 @@ ErrorFinding judge(const Observations& data, const Eigen::VectorXd& before,
   return out;
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

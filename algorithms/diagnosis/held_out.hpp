@@ -4,11 +4,12 @@
 // (collisions, contacts, glitches) that are events, not friction. Internal to the room.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "algorithms/diagnosis/diagnosis.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 
 // share of the movements, spread over directions and speeds; at least one, and none where fewer
 // than two movements would be left.
@@ -21,8 +22,9 @@ std::vector<EventFinding> find_events(const Observations& data, const Eigen::Vec
                                       std::vector<char>& masked);
 
 // Errors of both models on `data` (the test movements), movement by movement, with a bootstrap
-// interval of the paired difference over movements.
+// interval of the paired difference. unit: per row, what the bootstrap draws (movements, or pieces
+// of them where they are few); equal numbers stand together.
 ErrorFinding judge(const Observations& data, const Eigen::VectorXd& before,
-                   const Eigen::VectorXd& after, RandomStream random);
+                   const Eigen::VectorXd& after, std::span<const int> unit, RandomStream random);
 
-}  // namespace tribench
+}  // namespace tribench::loop

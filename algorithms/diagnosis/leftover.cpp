@@ -9,7 +9,7 @@
 
 #include "algorithms/diagnosis/search.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 constexpr double kSmootherRidge = 0.02;  // of the mean diagonal (specification, 3.8)
@@ -187,4 +187,4 @@ void Search::drop_proxies(const Smoother& smoother) {
   current_ = fit(std::move(model), FitScope::everything);
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

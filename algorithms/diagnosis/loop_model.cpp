@@ -8,7 +8,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 constexpr int kMaxIterations = 30;
@@ -322,4 +322,4 @@ Expression formula_of(const LoopModel& model) {
   return sum.empty() ? Expression::constant(0) : sum;
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

@@ -9,19 +9,23 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "algorithms/diagnosis/clusters.hpp"
 #include "algorithms/diagnosis/effect_library.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 
 struct BaseModel {
   std::string name;                      // "coulomb_viscous", a method, "formula"
   Expression formula;                    // over the signals; may be empty; its constants are fitted
   std::vector<Expression> linear_terms;  // each with a coefficient
 };
+
+// Makes the base from training movements; the loop calls it on nothing else.
+using BaseMaker = std::function<BaseModel(const Observations&)>;
 
 // {sgn_v, 1, v, |v|} and the rigid signals. Throws Error where there is no velocity.
 BaseModel coulomb_viscous_base(const Observations& data);
@@ -61,4 +65,4 @@ void fit_model(LoopModel& model, const Observations& data, const Clusters& clust
 // The model as one formula over the signals.
 Expression formula_of(const LoopModel& model);
 
-}  // namespace tribench
+}  // namespace tribench::loop

@@ -11,7 +11,7 @@
 #include "algorithms/regressor.hpp"
 #include "foundation/error.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 constexpr std::array<std::pair<Role, std::string_view>, 10> kSignalNames = {{
@@ -141,7 +141,7 @@ const Channel& needed_target(const Dataset& data) {
                   "name it: --roles COLUMN=friction_torque or COLUMN=motor_torque");
 }
 
-void set_target(Observations& out, const Dataset& data, const ObservationOptions& options) {
+void set_target(Observations& out, const Dataset& data) {
   const Channel& target = needed_target(data);
   out.target = target.values;
   out.target_name = target.name;
@@ -155,9 +155,6 @@ void set_target(Observations& out, const Dataset& data, const ObservationOptions
       if (gravity != nullptr) out.rigid.push_back("g");
       if (data.find(Role::acceleration) != nullptr) out.rigid.push_back("a");
     }
-  }
-  if (options.flip_sign) {
-    for (double& y : out.target) y = -y;
   }
 }
 
@@ -251,7 +248,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
                     "name it: --roles COLUMN=velocity");
   }
   Observations out;
-  set_target(out, data, options);
+  set_target(out, data);
   out.movement = data.movement;
   out.movement_names = data.movement_names;
   for (const Channel& channel : data.channels) {
@@ -298,4 +295,4 @@ Observations observe(const TrainingData& data) {
   return out;
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

@@ -24,8 +24,11 @@
 #include "problems/problem.hpp"
 
 namespace tribench {
-
 struct TrainingData;
+}
+
+// The room's words are common ones (Atom, Noise, Search): they have a namespace of their own.
+namespace tribench::loop {
 
 struct Signal {
   std::string name;     // as in formulas: "v", "sgn_v", "d", or the channel's own name
@@ -69,7 +72,6 @@ class SignalTable {
 };
 
 struct ObservationOptions {
-  bool flip_sign = false;  // the target opposes the velocity in the data
   // Channels, beside those found, whose coefficients are fitted with the base and are no effects:
   // the rigid-body part that nobody has subtracted.
   std::vector<std::string> rigid;
@@ -88,4 +90,4 @@ Observations observe(const TrainingData& data);
 // Pearson's correlation of two columns; 0 where one of them is constant.
 double correlation(std::span<const double> x, std::span<const double> y);
 
-}  // namespace tribench
+}  // namespace tribench::loop

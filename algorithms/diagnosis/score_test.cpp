@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 constexpr double kSmallestShare = 1e-3;  // of the sum of squares
@@ -157,4 +157,4 @@ double adjusted_p(double score, std::span<const double> maxima) {
   return (1.0 + static_cast<double>(at_least)) / (1.0 + static_cast<double>(maxima.size()));
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

@@ -21,7 +21,7 @@
 #include "algorithms/diagnosis/gamma_tail.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 
 // flips x clusters, entries +-1: the same for all candidates and rounds of one diagnosis.
 Eigen::MatrixXf make_flips(std::size_t flips, std::size_t clusters, RandomStream random);
@@ -73,4 +73,4 @@ std::vector<double> flip_maxima(std::span<BlockScores> blocks, const Eigen::Matr
 // (1 + number of maxima >= score) / (1 + number of maxima)
 double adjusted_p(double score, std::span<const double> maxima);
 
-}  // namespace tribench
+}  // namespace tribench::loop

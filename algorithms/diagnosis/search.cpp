@@ -10,7 +10,7 @@
 
 #include "foundation/error.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 // A family excited in fewer clusters cannot reach a small p by sign flips (specification, 3.3).
@@ -236,6 +236,7 @@ void Search::list_coinciding(const Round& round) {
     if (norm > 0) unit.col(j) /= norm;
   }
   const Eigen::MatrixXf correlations = unit.transpose() * unit;
+  map_aliases(correlations, round);
   for (std::size_t a = 0; a < library_.size(); ++a) {
     for (std::size_t b = a + 1; b < library_.size(); ++b) {
       if (library_[a].family == library_[b].family || !round.blocks[a].test.testable ||
@@ -264,6 +265,35 @@ void Search::list_coinciding(const Round& round) {
       if (known) continue;
       aliased.push_back(
           {first.name, second.name, r, first.separate_by.empty() ? "" : first.separate_by[0]});
+    }
+  }
+}
+
+void Search::map_aliases(const Eigen::MatrixXf& correlations, const Round& round) {
+  std::vector<std::size_t> place(families_.size(), families_.size());
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    if (!(round.family_score[f] > 0)) continue;
+    place[f] = alias_map.families.size();
+    alias_map.families.push_back(families_[f].name);
+  }
+  const auto count = static_cast<Eigen::Index>(alias_map.families.size());
+  alias_map.correlation = Eigen::MatrixXd::Identity(count, count);
+  for (std::size_t a = 0; a < library_.size(); ++a) {
+    for (std::size_t b = 0; b < library_.size(); ++b) {
+      const std::size_t i = place[library_[a].family];
+      const std::size_t j = place[library_[b].family];
+      if (i == j || i == families_.size() || j == families_.size()) continue;
+      if (!round.blocks[a].test.testable || !round.blocks[b].test.testable) continue;
+      const double r = correlations
+                           .block(static_cast<Eigen::Index>(blocks_[a].first),
+                                  static_cast<Eigen::Index>(blocks_[b].first),
+                                  static_cast<Eigen::Index>(blocks_[a].count),
+                                  static_cast<Eigen::Index>(blocks_[b].count))
+                           .cwiseAbs()
+                           .maxCoeff();
+      double& entry =
+          alias_map.correlation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      entry = std::max(entry, r);
     }
   }
 }
@@ -428,4 +458,4 @@ void Search::run() {
   test_leftover();
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

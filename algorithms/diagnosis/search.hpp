@@ -15,7 +15,7 @@
 #include "algorithms/diagnosis/score_test.hpp"
 #include "algorithms/diagnosis/smoothers.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 
 // A model fitted to the training movements, in the coordinates of its own noise.
 struct FittedModel {
@@ -70,6 +70,7 @@ class Search {
   LeftoverFinding leftover;
   std::vector<UntestableFinding> untestable;
   std::vector<CoincidingFamilies> aliased;
+  AliasMap alias_map;
   std::vector<CandidateFinding> candidates;
   std::vector<std::string> notes;
 
@@ -83,6 +84,7 @@ class Search {
   void instantiate_library();
   void list_untestable(const Round& round);
   void list_coinciding(const Round& round);
+  void map_aliases(const Eigen::MatrixXf& correlations, const Round& round);
   void list_candidates(const Round& round);
   bool add_best(const Round& round);
   std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round) const;
@@ -112,4 +114,4 @@ class Search {
   FittedModel current_;
 };
 
-}  // namespace tribench
+}  // namespace tribench::loop

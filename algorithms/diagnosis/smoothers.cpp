@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 struct OneSignal {
@@ -101,4 +101,4 @@ std::vector<Smoother> make_smoothers(const Observations& data, RandomStream rand
   return all;
 }
 
-}  // namespace tribench
+}  // namespace tribench::loop

@@ -12,7 +12,7 @@
 #include "algorithms/diagnosis/observations.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 
 struct Smoother {
   std::vector<std::string> signals;  // one or two
@@ -26,4 +26,4 @@ std::vector<Smoother> make_smoothers(const Observations& data, RandomStream rand
 // The name under which a signal is reported: its role's.
 std::string input_name(const Observations& data, std::string_view signal);
 
-}  // namespace tribench
+}  // namespace tribench::loop

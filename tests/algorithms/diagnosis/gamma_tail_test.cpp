@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 // For integer a: Q(a, x) = e^-x sum_{k<a} x^k / k!, summed in logarithms.
@@ -66,4 +66,4 @@ TEST(MatchedGamma, SaysNothingWhereTheStatisticCannotVary) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::loop

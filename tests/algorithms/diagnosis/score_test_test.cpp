@@ -8,7 +8,7 @@
 
 #include "algorithms/diagnosis/cross_validation.hpp"
 
-namespace tribench {
+namespace tribench::loop {
 namespace {
 
 constexpr std::size_t kMovements = 60;
@@ -138,4 +138,4 @@ TEST(HeldOutLosses, OfSubsetsAreThoseOfTheirColumns) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::loop

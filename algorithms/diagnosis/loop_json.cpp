@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/loop_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/diagnosis/loop_pictures.hpp"
+#include "algorithms/expression/text.hpp"
+
+namespace tribench::loop {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A figure that does not exist is null.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json parameter_json(const ParameterFinding& p) {
+  return {
+      {"name", p.name}, {"value", number(p.value)}, {"lo", number(p.low)}, {"hi", number(p.high)}};
+}
+
+Json alias_json(const AliasFinding& alias) {
+  return {{"family", alias.family},
+          {"corr", number(alias.correlation)},
+          {"gain_diff", number(alias.gain_difference)},
+          {"se", number(alias.error)},
+          {"exact", alias.exact},
+          {"separate_by", alias.separate_by}};
+}
+
+Json effect_json(const EffectFinding& effect) {
+  Json json = {{"family", effect.family},
+               {"atom", effect.atom},
+               {"order", effect.order},
+               {"p_adj", number(effect.adjusted_p)},
+               {"cv_gain", number(effect.gain)},
+               {"cv_se", number(effect.gain_error)},
+               {"params", Json::array()},
+               {"rms_contribution", number(effect.rms_contribution)},
+               {"vif", number(effect.vif)},
+               {"alias", Json::array()},
+               {"separate_by", effect.separate_by},
+               {"provisional", effect.provisional},
+               {"few_movements", effect.few_movements},
+               {"notes", effect.notes}};
+  for (const ParameterFinding& p : effect.parameters) json["params"].push_back(parameter_json(p));
+  for (const AliasFinding& alias : effect.aliases) json["alias"].push_back(alias_json(alias));
+  return json;
+}
+
+Json leftover_json(const LeftoverFinding& leftover) {
+  Json curve = Json::array();
+  for (const CurvePoint& point : leftover.curve) {
+    curve.push_back({number(point.x), number(point.y), number(point.error)});
+  }
+  return {{"p", number(leftover.p)},
+          {"inputs", leftover.inputs},
+          {"proxies_removed", leftover.proxies_removed},
+          {"curve", curve}};
+}
+
+Json error_json(const ErrorFinding& error) {
+  Json movements = Json::array();
+  for (const MovementError& m : error.movements) {
+    movements.push_back({{"movement", m.movement},
+                         {"mae_before", number(m.before)},
+                         {"mae_after", number(m.after)},
+                         {"rows", m.rows}});
+  }
+  return {{"test_movements", error.test_movements},
+          {"how", error.how},
+          {"mae_before", number(error.mae_before)},
+          {"mae_after", number(error.mae_after)},
+          {"rmse_before", number(error.rmse_before)},
+          {"rmse_after", number(error.rmse_after)},
+          {"max_before", number(error.max_before)},
+          {"max_after", number(error.max_after)},
+          {"ci_diff", {number(error.difference_low), number(error.difference_high)}},
+          {"ceiling", number(error.ceiling)},
+          {"closed_fraction", number(error.closed_fraction)},
+          {"confirmed", error.confirmed},
+          {"movements", movements}};
+}
+
+Json lists_json(const Diagnosis& diagnosis) {
+  Json lists;
+  lists["untestable"] = Json::array();
+  for (const UntestableFinding& one : diagnosis.untestable) {
+    lists["untestable"].push_back({{"family", one.family},
+                                   {"reason", one.reason},
+                                   {"share", number(one.share)},
+                                   {"clusters", one.clusters},
+                                   {"ask", one.ask}});
+  }
+  lists["aliased"] = Json::array();
+  for (const CoincidingFamilies& pair : diagnosis.aliased) {
+    lists["aliased"].push_back({{"families", {pair.first, pair.second}},
+                                {"corr", number(pair.correlation)},
+                                {"separate_by", pair.separate_by}});
+  }
+  lists["events"] = Json::array();
+  for (const EventFinding& event : diagnosis.events) {
+    lists["events"].push_back({{"movement", event.movement},
+                               {"movement_name", event.movement_name},
+                               {"t0", number(event.begin)},
+                               {"t1", number(event.end)},
+                               {"peak", number(event.peak)}});
+  }
+  lists["candidates"] = Json::array();
+  for (const CandidateFinding& one : diagnosis.candidates) {
+    lists["candidates"].push_back({{"family", one.family},
+                                   {"atom", one.atom},
+                                   {"p_adj", number(one.adjusted_p)},
+                                   {"score", number(one.score)},
+                                   {"cv_gain", number(one.gain)}});
+  }
+  return lists;
+}
+
+Json symbols_json(const Observations& data) {
+  Json symbols = Json::array();
+  for (const Signal& signal : data.signals) {
+    Json symbol = {{"name", signal.name}, {"column", signal.channel}, {"unit", signal.unit}};
+    if (!signal.recipe.empty()) symbol["computed_as"] = signal.recipe;
+    symbols.push_back(std::move(symbol));
+  }
+  return symbols;
+}
+
+}  // namespace
+
+std::string formula_text(const LoopModel& model, const Observations& data) {
+  return print(formula_of(model), data.names());
+}
+
+std::string write_loop_json(const Diagnosis& diagnosis, const Observations& data) {
+  const DiagnosisOptions& options = diagnosis.options;
+  Json json;
+  json["verdict"] = verdict_name(diagnosis.verdict);
+  json["confirmed"] = diagnosis.error.confirmed;
+  json["target"] = {{"name", data.target_name}, {"unit", data.target_unit}};
+  json["alpha"] = {
+      {"lib", options.alpha_library}, {"gen", options.alpha_leftover}, {"flips", options.flips}};
+  json["seed"] = diagnosis.seed;
+  json["noise"] = {{"sw", number(diagnosis.noise.within_sd)},
+                   {"sb", number(diagnosis.noise.between_sd)},
+                   {"rho", number(diagnosis.noise.rho)},
+                   {"n", diagnosis.rows},
+                   {"movements", diagnosis.movements},
+                   {"clusters", diagnosis.stretches},
+                   {"n_eff", number(diagnosis.noise.effective_rows)}};
+  json["effects"] = Json::array();
+  for (const EffectFinding& effect : diagnosis.effects) {
+    json["effects"].push_back(effect_json(effect));
+  }
+  json["leftover"] = leftover_json(diagnosis.leftover);
+  json.update(lists_json(diagnosis));
+  json["error"] = error_json(diagnosis.error);
+  json["base"] = diagnosis.before.base.name;
+  json["base_formula"] = formula_text(diagnosis.before, data);
+  json["formula"] = formula_text(diagnosis.after, data);
+  json["symbols"] = symbols_json(data);
+  json["notes"] = diagnosis.notes;
+  json["warnings"] = data.warnings;
+  json["pictures"] = loop_pictures(diagnosis, data);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace tribench::loop
