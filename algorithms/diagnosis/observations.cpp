@@ -123,6 +123,19 @@ void drop_rows_not_finite(Observations& data) {
   data.warnings.push_back(fmt::format("{} rows hold a value that is not finite: dropped", dropped));
 }
 
+void drop_slow_rows(Observations& data, double min_speed) {
+  const std::vector<double>& v = data.find("v")->values;
+  std::vector<char> keep(data.rows());
+  for (std::size_t i = 0; i < data.rows(); ++i) keep[i] = std::abs(v[i]) >= min_speed ? 1 : 0;
+  const std::size_t all = data.rows();
+  data = data.select(keep);
+  if (data.rows() == 0) {
+    throw_bad_input(fmt::format("no row is faster than {}", min_speed), "--min-speed");
+  }
+  data.warnings.push_back(
+      fmt::format("{} of {} rows are slower than {}: left out", all - data.rows(), all, min_speed));
+}
+
 void complete(Observations& data) {
   drop_rows_not_finite(data);
   if (data.rows() == 0) {
@@ -237,6 +250,17 @@ Observations Observations::select(const std::vector<char>& keep) const {
   return out;
 }
 
+Observations Observations::thinned(std::size_t most) const {
+  if (rows() <= most) return *this;
+  const std::size_t step = (rows() + most - 1) / most;
+  std::vector<char> keep(rows(), 0);
+  for (std::size_t i = 0, place = 0; i < rows(); ++i, ++place) {
+    if (i > 0 && movement[i] != movement[i - 1]) place = 0;
+    keep[i] = place % step == 0 ? 1 : 0;
+  }
+  return select(keep);
+}
+
 SignalTable::SignalTable(const Observations& data) : rows_(data.rows()) {
   for (const Signal& signal : data.signals) pointers_.push_back(signal.values.data());
 }
@@ -267,6 +291,8 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   add_campaign_time(out);
   add_distance(out);
   out.time = out.find("t")->values;
+  if (options.unordered) std::erase_if(out.signals, [](const Signal& s) { return s.name == "t"; });
+  if (options.min_speed > 0) drop_slow_rows(out, options.min_speed);
   drop_constant_signals(out);
   check_sign(out);
   return out;

@@ -56,6 +56,9 @@ struct Observations {
   std::vector<std::string> names() const;
   // The rows for which keep[row] != 0.
   Observations select(const std::vector<char>& keep) const;
+  // Every k-th row of each movement, so that at most about `rows` are left. Neighbouring rows of a
+  // fast recording say the same; a diagnosis loses next to nothing by it.
+  Observations thinned(std::size_t rows) const;
   // The numbers of the movements that occur, in order.
   std::vector<int> movements() const;
 };
@@ -74,7 +77,12 @@ class SignalTable {
 struct ObservationOptions {
   // Channels, beside those found, whose coefficients are fitted with the base and are no effects:
   // the rigid-body part that nobody has subtracted.
-  std::vector<std::string> rigid;
+  std::vector<std::string> rigid = {};
+  // Rows slower than this (in the velocity's unit) are left out: the direction of friction at
+  // standstill is not known, and a filtered velocity says little there.
+  double min_speed = 0;
+  // The order of the movements is not that of the campaign: nothing is said about drift.
+  bool unordered = false;
 };
 
 // From a data set with roles. The target is friction_torque, or motor_torque (motor_current)

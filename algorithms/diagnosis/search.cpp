@@ -21,6 +21,7 @@ constexpr double kRescueP = 0.15;
 constexpr double kRescueGain = 12;
 constexpr std::size_t kAtomsTried = 3;  // of a family, best scores first
 constexpr std::size_t kMostAtoms = 2;   // of a family: more is a sign of something else
+constexpr double kCancelling = 0.1;     // of the columns' own sums of squares
 constexpr double kNearAliasP = 0.05;
 constexpr double kExactCorrelation = 0.995;
 constexpr std::array<double, 7> kUsualGearRatios = {50, 80, 100, 101, 120, 121, 160};
@@ -374,8 +375,31 @@ bool Search::add_best(const Round& round) {
   }
   LoopModel model = current_.model;
   model.add(library_[winner.atom]);
-  current_ = fit(std::move(model), FitScope::everything);
+  FittedModel extended = fit(std::move(model), FitScope::everything);
+  if (again && cancels_itself(extended.model, winner.family)) {
+    notes.push_back(fmt::format("a second column of '{}' only cancels the first: left out",
+                                families_[winner.family].name));
+    return false;
+  }
+  current_ = std::move(extended);
   return true;
+}
+
+// Two columns that grew together and stand against each other say nothing but their difference.
+bool Search::cancels_itself(const LoopModel& model, std::size_t family) const {
+  double sum = 0;
+  Eigen::VectorXd together = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data_.rows()));
+  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
+    const Atom& atom = model.atoms[k];
+    if (atom.family != family) continue;
+    const Eigen::VectorXd one =
+        evaluate_columns(atom.columns, data_) *
+        model.coefficients.segment(static_cast<Eigen::Index>(model.first_column(k)),
+                                   static_cast<Eigen::Index>(atom.columns.size()));
+    together += one;
+    sum += one.squaredNorm();
+  }
+  return together.squaredNorm() < kCancelling * sum;
 }
 
 double Search::family_p_given_rest(std::size_t family, const FittedModel& rest, const Round& round,

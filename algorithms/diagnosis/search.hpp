@@ -87,6 +87,7 @@ class Search {
   void map_aliases(const Eigen::MatrixXf& correlations, const Round& round);
   void list_candidates(const Round& round);
   bool add_best(const Round& round);
+  bool cancels_itself(const LoopModel& model, std::size_t family) const;
   std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round) const;
   Candidate best_atom(std::size_t family, const Round& round, const FittedModel& state) const;
   void reconsider();

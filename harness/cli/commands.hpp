@@ -27,6 +27,7 @@ void add_data_command(CLI::App& app, ExitStatus& status);
 void add_fit_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_generate_command(CLI::App& app, ExitStatus& status);
 void add_list_command(CLI::App& app, ExitStatus& status, const Registry& registry);
+void add_loop_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_merge_command(CLI::App& app, ExitStatus& status);
 void add_pretrain_command(CLI::App& app, ExitStatus& status);
 void add_report_command(CLI::App& app, ExitStatus& status);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/diagnosis/effect_library.hpp"
 #include "algorithms/expression/operator_set.hpp"
 #include "algorithms/registry.hpp"
 #include "harness/cli/commands.hpp"
@@ -36,6 +37,14 @@ std::vector<Listed> listed_problems() {
 std::vector<Listed> listed_methods(const Registry& registry) {
   std::vector<Listed> all;
   for (const AlgorithmEntry& entry : registry.entries()) all.push_back({entry.name, entry.summary});
+  return all;
+}
+
+std::vector<Listed> listed_effects() {
+  std::vector<Listed> all;
+  for (const loop::EffectFamily& family : loop::builtin_effects()) {
+    all.push_back({family.name, family.summary});
+  }
   return all;
 }
 
@@ -87,6 +96,7 @@ void add_list_command(CLI::App& app, ExitStatus& /*status*/, const Registry& reg
   add_kind(*list, "problems", "Every problem of the catalogue", listed_problems);
   add_kind(*list, "methods", "Every algorithm a grid can name",
            [&registry] { return listed_methods(registry); });
+  add_kind(*list, "effects", "What the closed loop can find", listed_effects);
   add_kind(*list, "operators", "The operator sets", listed_operators);
   add_kind(*list, "data", "The measured sets", listed_data);
   add_kind(*list, "grids", "The grids that come with the program", listed_grids);

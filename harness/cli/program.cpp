@@ -38,6 +38,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_check_command(app, status);
   add_data_command(app, status);
   add_generate_command(app, status);
+  add_loop_command(app, status, registry);
   add_list_command(app, status, registry);
   add_study_command(app, status);
   add_submit_command(app, status, registry);

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+//
+// tribench loop: measured data and a base model in, the missing effects and the refitted model out.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algorithms/budget.hpp"
+#include "algorithms/diagnosis/closed_loop.hpp"
+#include "algorithms/diagnosis/diagnosis.hpp"
+#include "algorithms/diagnosis/loop_json.hpp"
+#include "foundation/error.hpp"
+#include "harness/cli/commands.hpp"
+#include "problems/csv.hpp"
+#include "problems/data_problem.hpp"
+#include "reports/loop_report.hpp"
+#include "reports/record_csv.hpp"
+
+namespace tribench {
+namespace {
+
+struct LoopArguments {
+  std::vector<std::string> files;
+  std::string model = "coulomb_viscous";
+  std::string roles;
+  std::vector<std::string> rigid;
+  std::vector<std::string> effects;
+  double gear_ratio = 0;
+  double alpha_library = 0.003;
+  double alpha_leftover = 0.002;
+  int flips = 1999;
+  int rows = 6000;
+  std::uint64_t seed = 1;
+  std::uint64_t evaluations = 200'000'000;
+  bool flip_sign = false;
+  bool drop_missing = false;
+  bool any_sign = false;
+  double min_speed = 0;
+  bool unordered = false;
+  std::string where;
+  bool json = false;
+  std::string out;
+};
+
+// "column=role,column=role"
+std::map<std::string, Role, std::less<>> parse_roles(const std::string& text) {
+  std::map<std::string, Role, std::less<>> roles;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    const std::size_t equals = part.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw_bad_input(fmt::format("'{}' is no COLUMN=ROLE", part), "--roles",
+                      "write for example --roles tau=friction_torque,w=velocity");
+    }
+    roles[part.substr(0, equals)] = find_role(part.substr(equals + 1));
+    begin = end + 1;
+  }
+  return roles;
+}
+
+bool is_word(const std::string& text) {
+  return std::ranges::all_of(text,
+                             [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+}
+
+// The base that --model names: a method of the registry, or a formula over the columns.
+loop::BaseMaker base_of(const LoopArguments& arguments, const Registry& registry,
+                        std::unique_ptr<Regressor>& method, Budget& budget) {
+  if (arguments.model == "coulomb_viscous") return loop::coulomb_viscous_base;
+  const bool known =
+      std::ranges::count(registry.entries(), arguments.model, &AlgorithmEntry::name) > 0;
+  if (!known && !is_word(arguments.model)) {
+    const std::string text = arguments.model;
+    return [text](const loop::Observations& data) { return loop::formula_base(data, text); };
+  }
+  method = registry.make(arguments.model);  // an unknown name is answered with the nearest
+  return loop::method_base(*method, arguments.model, RandomStream(arguments.seed).split("base"),
+                           budget);
+}
+
+// Keeps the rows in which a column has a value: "torque_enabled=1".
+void keep_rows_where(Dataset& data, const std::string& condition) {
+  const std::size_t equals = condition.find('=');
+  char* end = nullptr;
+  const double value =
+      equals == std::string::npos ? 0 : std::strtod(condition.c_str() + equals + 1, &end);
+  if (equals == std::string::npos || end == condition.c_str() + equals + 1) {
+    throw_bad_input(fmt::format("'{}' is no COLUMN=NUMBER", condition), "--where");
+  }
+  const std::vector<double> column = data.at(condition.substr(0, equals)).values;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    if (column[i] != value) continue;
+    for (Channel& channel : data.channels) channel.values[kept] = channel.values[i];
+    data.movement[kept++] = data.movement[i];
+  }
+  for (Channel& channel : data.channels) channel.values.resize(kept);
+  data.movement.resize(kept);
+  if (kept == 0) throw_bad_input("no row is left", "--where " + condition);
+}
+
+Dataset read_data(const LoopArguments& arguments, std::vector<std::string>& warnings) {
+  const CsvOptions options{parse_roles(arguments.roles), arguments.drop_missing};
+  std::vector<std::filesystem::path> files(arguments.files.begin(), arguments.files.end());
+  DataReading reading = read_csv_files(files, options);
+  warnings = reading.warnings;
+  if (reading.dropped_rows > 0) {
+    warnings.push_back(fmt::format("{} rows with missing values dropped", reading.dropped_rows));
+  }
+  if (arguments.flip_sign) flip_torques(reading.data);
+  if (!arguments.where.empty()) keep_rows_where(reading.data, arguments.where);
+  return std::move(reading.data);
+}
+
+loop::DiagnosisOptions diagnosis_options(const LoopArguments& arguments) {
+  loop::DiagnosisOptions options;
+  options.alpha_library = arguments.alpha_library;
+  options.alpha_leftover = arguments.alpha_leftover;
+  options.flips = static_cast<std::size_t>(arguments.flips);
+  options.families = arguments.effects;
+  options.physical_vetoes = !arguments.any_sign;
+  if (arguments.gear_ratio > 0) options.gear_ratios = {arguments.gear_ratio};
+  return options;
+}
+
+std::string one_line(const loop::EffectFinding& effect, const std::string& unit) {
+  std::string text = fmt::format("  {}. {}: {} ({:.3g} {} rms, p = {:.2g}, {:.0f} nats)",
+                                 effect.order, effect.family, effect.phrase,
+                                 effect.rms_contribution, unit, effect.adjusted_p, effect.gain);
+  for (const loop::ParameterFinding& p : effect.parameters) {
+    text += fmt::format("\n       {} = {:.4g} ({:.4g} .. {:.4g})", p.name, p.value, p.low, p.high);
+  }
+  for (const std::string& note : effect.notes) text += "\n       " + note;
+  return text;
+}
+
+void print_findings(const loop::Diagnosis& diagnosis, const loop::Observations& data) {
+  for (const std::string& warning : data.warnings) fmt::print("warning: {}\n", warning);
+  fmt::print("{}{}\n", verdict_name(diagnosis.verdict),
+             diagnosis.leftover.inputs.empty()
+                 ? ""
+                 : fmt::format(" in {}", fmt::join(diagnosis.leftover.inputs, " x ")));
+  for (const loop::EffectFinding& effect : diagnosis.effects) {
+    fmt::print("{}\n", one_line(effect, data.target_unit));
+  }
+  for (const std::string& note : diagnosis.notes) fmt::print("  note: {}\n", note);
+  const loop::ErrorFinding& error = diagnosis.error;
+  fmt::print("  error ({}): MAE {:.4g} -> {:.4g}, RMS {:.4g} -> {:.4g} {}{}\n", error.how,
+             error.mae_before, error.mae_after, error.rmse_before, error.rmse_after,
+             data.target_unit, error.confirmed ? "" : "; NOT confirmed on held-out data");
+  for (const loop::UntestableFinding& one : diagnosis.untestable) {
+    fmt::print("  cannot say: {} ({})\n", one.family, one.reason);
+  }
+  fmt::print("  {}\n", loop::formula_text(diagnosis.after, data));
+}
+
+std::string title_of(const LoopArguments& arguments) {
+  std::string title;
+  for (const std::string& file : arguments.files) {
+    title += (title.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
+  }
+  return title;
+}
+
+void close_loop(const LoopArguments& arguments, const Registry& registry) {
+  std::vector<std::string> warnings;
+  const Dataset dataset = read_data(arguments, warnings);
+  loop::Observations data =
+      loop::observe(dataset, {arguments.rigid, arguments.min_speed, arguments.unordered});
+  const std::size_t all_rows = data.rows();
+  data = data.thinned(static_cast<std::size_t>(arguments.rows));
+  if (data.rows() < all_rows) {
+    warnings.push_back(
+        fmt::format("{} of {} rows are used, evenly spaced (--rows)", data.rows(), all_rows));
+  }
+  data.warnings.insert(data.warnings.begin(), warnings.begin(), warnings.end());
+  std::unique_ptr<Regressor> method;
+  Budget budget(BudgetLimits{.evaluations = arguments.evaluations});
+  const loop::BaseMaker base = base_of(arguments, registry, method, budget);
+  const loop::Diagnosis diagnosis =
+      loop::diagnose(data, base, diagnosis_options(arguments), arguments.seed);
+  const std::string json = loop::write_loop_json(diagnosis, data);
+  if (!arguments.out.empty()) {
+    std::filesystem::create_directories(arguments.out);
+    write_file(std::filesystem::path(arguments.out) / "loop.json", json);
+    write_loop_report(nlohmann::json::parse(json), title_of(arguments), arguments.out);
+  }
+  if (arguments.json) {
+    fmt::print("{}", json);
+  } else {
+    print_findings(diagnosis, data);
+  }
+}
+
+}  // namespace
+
+void add_loop_command(CLI::App& app, ExitStatus& /*status*/, const Registry& registry) {
+  CLI::App* command = app.add_subcommand(
+      "loop", "Find what a friction model lacks in measured data, add it and refit");
+  command->footer(
+      "Example: tribench loop joint2.csv --model symmetric --gear-ratio 160 --out joint2");
+  auto arguments = std::make_shared<LoopArguments>();
+  command->add_option("DATA", arguments->files, "CSV files: one campaign, in order")->required();
+  command
+      ->add_option("--model", arguments->model,
+                   "the base: coulomb_viscous, symmetric, asymmetric, any method, a 'FORMULA'")
+      ->capture_default_str();
+  command->add_option("--roles", arguments->roles, "COLUMN=ROLE,... where names do not tell");
+  command
+      ->add_option("--rigid", arguments->rigid,
+                   "columns of the rigid body, fitted with the base and no effects")
+      ->delimiter(',');
+  command->add_option("--effects", arguments->effects, "test these families only")->delimiter(',');
+  command
+      ->add_option("--gear-ratio", arguments->gear_ratio,
+                   "motor turns per turn of the joint; without it the usual ones are scanned")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--alpha", arguments->alpha_library, "false alarms of the library")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->capture_default_str();
+  command->add_option("--alpha-leftover", arguments->alpha_leftover, "false alarms of UNKNOWN")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->capture_default_str();
+  command->add_option("--flips", arguments->flips, "sign flips of the null distribution")
+      ->check(CLI::Range(99, 99999))
+      ->capture_default_str();
+  command
+      ->add_option("--min-speed", arguments->min_speed,
+                   "leave out slower rows: the direction of friction is not known there")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--where", arguments->where, "COLUMN=NUMBER: use these rows only");
+  command->add_flag("--unordered", arguments->unordered,
+                    "the order of the movements says nothing: no drift");
+  command->add_option("--rows", arguments->rows, "thin a longer recording evenly to about so many")
+      ->check(CLI::Range(100, 10'000'000))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "same seed, same answer")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--evaluations", arguments->evaluations, "what a searched base may spend")
+      ->capture_default_str();
+  command->add_flag("--flip-sign", arguments->flip_sign, "the file's torques oppose the velocity");
+  command->add_flag("--drop-missing", arguments->drop_missing, "drop rows with missing values");
+  command->add_flag("--any-sign", arguments->any_sign,
+                    "accept effects whose parameters are not physical");
+  command->add_flag("--json", arguments->json, "print loop.json");
+  command->add_option("--out", arguments->out, "folder for loop.json, loop.md, loop.html");
+  command->callback([arguments, &registry] { close_loop(*arguments, registry); });
+}
+
+}  // namespace tribench
