@@ -65,14 +65,18 @@ Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>&
                               const BaseModel& base, const std::vector<EffectFamily>& families,
                               const DiagnosisOptions& options) {
   constexpr double kRidge = 1e-4;
-  constexpr int kReweightings = 3;
+  constexpr int kReweightings = 2;
+  constexpr std::size_t kAtomsOfRichModel = 4;
   std::vector<Expression> formulas = base.linear_terms;
   const std::vector<double> ratios =
       options.gear_ratios.empty() ? std::vector<double>{} : options.gear_ratios;
   for (std::size_t f = 0; f < families.size(); ++f) {
     std::vector<std::string> missing;
-    for (const Atom& atom : instantiate(families[f], f, data, ratios, missing)) {
-      formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
+    const std::vector<Atom> atoms = instantiate(families[f], f, data, ratios, missing);
+    // Neighbours on a grid of shapes say nearly the same: some of them will do.
+    const std::size_t step = (atoms.size() + kAtomsOfRichModel - 1) / kAtomsOfRichModel;
+    for (std::size_t k = 0; k < atoms.size(); k += std::max<std::size_t>(1, step)) {
+      formulas.insert(formulas.end(), atoms[k].columns.begin(), atoms[k].columns.end());
     }
   }
   Eigen::VectorXd y = target_vector(data);
@@ -94,10 +98,12 @@ Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>&
   const Eigen::VectorXd wanted = weights;
   Eigen::VectorXd residual = y;
   for (int pass = 0; pass < kReweightings; ++pass) {
-    const Eigen::MatrixXd weighted = weights.asDiagonal() * x;
-    Eigen::MatrixXd normal = x.transpose() * weighted;
+    const Eigen::MatrixXd weighted = weights.cwiseSqrt().asDiagonal() * x;
+    const Eigen::VectorXd weighted_y = weights.cwiseSqrt().cwiseProduct(y);
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(x.cols(), x.cols());
+    normal.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
     normal.diagonal().array() += kRidge * normal.trace() / static_cast<double>(normal.rows());
-    residual = y - x * normal.ldlt().solve(weighted.transpose() * y);
+    residual = y - x * normal.ldlt().solve(weighted.transpose() * weighted_y);
     // Huber's weights keep bursts from bending the model.
     const double sd =
         std::sqrt(residual.cwiseProduct(wanted).squaredNorm() / std::max(1.0, wanted.sum()));

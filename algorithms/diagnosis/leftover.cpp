@@ -114,14 +114,11 @@ void Search::check_exhaustively() {
 
 void Search::test_leftover() {
   const std::vector<Smoother> smoothers = make_smoothers(data_, random_.split("smoothers"));
-  std::vector<Eigen::MatrixXd> columns;
   std::vector<BlockScores> blocks;
   double largest = 0;
   for (const Smoother& smoother : smoothers) {
-    columns.push_back(whitened(smoother.columns, clusters_, current_.noise));
-    const Eigen::VectorXd before = columns.back().colwise().squaredNorm();
-    blocks.push_back(score_block(project_off(columns.back(), current_.basis), before,
-                                 current_.residual, clusters_, kSmootherRidge));
+    blocks.push_back(score_features(smoother.columns, current_.basis, current_.residual, clusters_,
+                                    current_.noise, kSmootherRidge));
     largest = std::max(largest, blocks.back().test.score);
   }
   // Once so many flips have exceeded it the p-value cannot come below alpha any more.
@@ -136,9 +133,11 @@ void Search::test_leftover() {
   Eigen::VectorXd best_losses;
   for (std::size_t k = 0; k < smoothers.size(); ++k) {
     if (adjusted_p(blocks[k].test.score, maxima) > options_.alpha_leftover) continue;
-    const Eigen::MatrixXd x = beside(current_.x, columns[k]);
+    const Eigen::MatrixXd features =
+        whitened(smoothers[k].columns.cast<double>(), clusters_, current_.noise);
+    const Eigen::MatrixXd x = beside(current_.x, features);
     const Eigen::VectorXd losses = held_out_losses(x, current_.residual, clusters_, current_.noise,
-                                                   columns[k].cols(), kSmootherRidge);
+                                                   features.cols(), kSmootherRidge);
     const Gain gain = paired_gain(current_.losses, losses);
     const bool product = smoothers[k].signals.size() > 1;
     const bool clearly =
@@ -170,8 +169,8 @@ void Search::drop_proxies(const Smoother& smoother) {
     LoopModel without = current_.model;
     remove_family(without, one.family);
     FittedModel rest = fit(std::move(without), FitScope::linear);
-    rest.basis =
-        orthonormal_basis(beside(rest.x, whitened(smoother.columns, clusters_, rest.noise)));
+    rest.basis = orthonormal_basis(
+        beside(rest.x, whitened(smoother.columns.cast<double>(), clusters_, rest.noise)));
     rest.residual = project_off(rest.residual, rest.basis);
     const Round round = test_all(rest);
     if (family_p_given_rest(one.family, rest, round, current_) <= options_.alpha_library) continue;

@@ -121,6 +121,29 @@ Json lists_json(const Diagnosis& diagnosis) {
   return lists;
 }
 
+void add_extras(Json& json, const LoopExtras& extras) {
+  json["learned"] = Json::array();
+  for (const LearnedEffect& one : extras.learned) {
+    json["learned"].push_back({{"family", one.family.name},
+                               {"formula", one.formula},
+                               {"p_adj", number(one.p)},
+                               {"cv_gain", number(one.gain)},
+                               {"found_on_movements", one.found_on},
+                               {"tested_on_movements", one.tested_on},
+                               {"accepted", one.accepted}});
+  }
+  json["next_movements"] = Json::array();
+  for (const ProposedMovement& one : extras.suggestions) {
+    json["next_movements"].push_back({{"kind", one.kind},
+                                      {"velocity", number(one.velocity)},
+                                      {"from", number(one.from)},
+                                      {"to", number(one.to)},
+                                      {"load_factor", number(one.load_factor)},
+                                      {"separation", number(one.separation)},
+                                      {"between", one.between}});
+  }
+}
+
 Json symbols_json(const Observations& data) {
   Json symbols = Json::array();
   for (const Signal& signal : data.signals) {
@@ -137,7 +160,8 @@ std::string formula_text(const LoopModel& model, const Observations& data) {
   return print(formula_of(model), data.names());
 }
 
-std::string write_loop_json(const Diagnosis& diagnosis, const Observations& data) {
+std::string write_loop_json(const Diagnosis& diagnosis, const Observations& data,
+                            const LoopExtras& extras) {
   const DiagnosisOptions& options = diagnosis.options;
   Json json;
   json["verdict"] = verdict_name(diagnosis.verdict);
@@ -166,6 +190,7 @@ std::string write_loop_json(const Diagnosis& diagnosis, const Observations& data
   json["symbols"] = symbols_json(data);
   json["notes"] = diagnosis.notes;
   json["warnings"] = data.warnings;
+  add_extras(json, extras);
   json["pictures"] = loop_pictures(diagnosis, data);
   return json.dump(2) + "\n";
 }

@@ -68,6 +68,13 @@ void add_campaign_time(Observations& data) {
   if (restarts) found->recipe = "time of the movements laid end to end";
 }
 
+// Path from where the velocity crossed zero between two rows to the later row, the velocity taken
+// to be linear in time between them.
+double since_crossing(double before, double now, double dt) {
+  const double part = std::abs(now) / (std::abs(now) + std::abs(before));
+  return 0.5 * std::abs(now) * part * dt;
+}
+
 // Path since the velocity last changed its sign; starts at 0 with every movement.
 void add_distance(Observations& data) {
   if (data.find("d") != nullptr) return;
@@ -78,17 +85,19 @@ void add_distance(Observations& data) {
   if (v == nullptr || (q == nullptr && !timed)) return;
   Signal signal{"d", "", q != nullptr ? q->unit : v->unit + " s", Role::none, {}, {}};
   signal.recipe =
-      q != nullptr ? "d += abs(q - q_before); d = 0 where v changes its sign or a movement starts"
-                   : "d += abs(v)*dt; d = 0 where v changes its sign or a movement starts";
+      "d grows by abs(q - q_before), or abs(v)*dt; at the first row after a change of v's sign it "
+      "is 0.5*abs(v)*dt*abs(v)/(abs(v) + abs(v_before)), at a movement's first row 0";
   signal.values.assign(data.rows(), 0.0);
   double direction = 0;
   for (std::size_t i = 0; i < data.rows(); ++i) {
     const bool starts = i == 0 || data.movement[i] != data.movement[i - 1];
     const double now = sign(v->values[i]);
-    if (!starts && (now == 0 || now == direction)) {
-      const double step = q != nullptr ? q->values[i] - q->values[i - 1]
-                                       : v->values[i] * (t->values[i] - t->values[i - 1]);
-      signal.values[i] = signal.values[i - 1] + std::abs(step);
+    if (!starts) {
+      const double dt = timed ? t->values[i] - t->values[i - 1] : 0;
+      const double step = q != nullptr ? q->values[i] - q->values[i - 1] : v->values[i] * dt;
+      const bool turned = now != 0 && now != direction;
+      signal.values[i] = turned ? since_crossing(v->values[i - 1], v->values[i], dt)
+                                : signal.values[i - 1] + std::abs(step);
     }
     if (starts || now != 0) direction = now;
   }

@@ -41,6 +41,25 @@ void finish_scores(BlockScores& block) {
   block.test.score = block.gamma.score(block.test.statistic);
 }
 
+// The sums of all testable blocks: one product with the flips serves them all.
+Eigen::MatrixXf side_by_side(std::span<const BlockScores> blocks) {
+  Eigen::Index rows = 0;
+  Eigen::Index columns = 0;
+  for (const BlockScores& block : blocks) {
+    if (!block.test.testable) continue;
+    rows = block.whitened_sums.rows();
+    columns += block.whitened_sums.cols();
+  }
+  Eigen::MatrixXf all(rows, columns);
+  Eigen::Index column = 0;
+  for (const BlockScores& block : blocks) {
+    if (!block.test.testable) continue;
+    all.middleCols(column, block.whitened_sums.cols()) = block.whitened_sums;
+    column += block.whitened_sums.cols();
+  }
+  return all;
+}
+
 }  // namespace
 
 Eigen::MatrixXf make_flips(std::size_t flips, std::size_t clusters, RandomStream random) {
@@ -121,6 +140,41 @@ BlockScores score_block(const Eigen::Ref<const Eigen::MatrixXd>& projected,
   return out;
 }
 
+BlockScores score_features(Eigen::MatrixXf features, const Eigen::MatrixXd& basis,
+                           const Eigen::VectorXd& residual, const Clusters& clusters,
+                           const Noise& noise, double ridge) {
+  for (const RowRange& m : clusters.movements) {
+    const auto theta = static_cast<float>(quasi_demeaning(noise, m.size()));
+    auto block = features.middleRows(static_cast<Eigen::Index>(m.begin),
+                                     static_cast<Eigen::Index>(m.size()));
+    const Eigen::RowVectorXf shift = theta * block.colwise().mean();
+    block.rowwise() -= shift;
+  }
+  const Eigen::MatrixXf directions = basis.cast<float>();
+  features.noalias() -= directions * (directions.transpose() * features).eval();
+  BlockScores out;
+  out.test.testable = true;
+  const Eigen::VectorXf target = residual.cast<float>();
+  const auto count = static_cast<Eigen::Index>(clusters.stretches.size());
+  Eigen::MatrixXf sums(features.cols(), count);
+  for (Eigen::Index c = 0; c < count; ++c) {
+    const RowRange& range = clusters.stretches[static_cast<std::size_t>(c)];
+    const auto begin = static_cast<Eigen::Index>(range.begin);
+    const auto size = static_cast<Eigen::Index>(range.size());
+    sums.col(c).noalias() =
+        features.middleRows(begin, size).transpose() * target.segment(begin, size);
+  }
+  Eigen::MatrixXf gram = Eigen::MatrixXf::Zero(features.cols(), features.cols());
+  gram.selfadjointView<Eigen::Lower>().rankUpdate(features.transpose());
+  const Eigen::MatrixXf whole = gram.selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd factor = factor_of(whole.cast<double>(), ridge);
+  const Eigen::MatrixXd rotated =
+      factor.triangularView<Eigen::Lower>().solve(sums.cast<double>()).transpose();
+  out.whitened_sums = rotated.cast<float>();
+  finish_scores(out);
+  return out;
+}
+
 std::vector<double> flip_maxima(std::span<BlockScores> blocks, const Eigen::MatrixXf& flips,
                                 double stop_above, std::size_t stop_count) {
   std::vector<double> maxima;
@@ -131,13 +185,18 @@ std::vector<double> flip_maxima(std::span<BlockScores> blocks, const Eigen::Matr
     const double mean = block.whitened_sums.cast<double>().rowwise().squaredNorm().sum();
     block.gamma.tabulate(std::max(block.test.statistic, 12 * mean));
   }
+  const Eigen::MatrixXf all = side_by_side(blocks);
   for (Eigen::Index first = 0; first < flips.rows(); first += kFlipsAtOnce) {
     const Eigen::Index count = std::min(kFlipsAtOnce, flips.rows() - first);
+    const Eigen::MatrixXf sums = flips.middleRows(first, count) * all;
     Eigen::VectorXd largest = Eigen::VectorXd::Zero(count);
+    Eigen::Index column = 0;
     for (const BlockScores& block : blocks) {
       if (!block.test.testable) continue;
-      const Eigen::MatrixXf sums = flips.middleRows(first, count) * block.whitened_sums;
-      const Eigen::VectorXf statistics = sums.rowwise().squaredNorm();
+      const Eigen::Index width = block.whitened_sums.cols();
+      const Eigen::VectorXf statistics =
+          sums.middleCols(column, width).array().square().rowwise().sum();
+      column += width;
       for (Eigen::Index b = 0; b < count; ++b) {
         largest[b] = std::max(largest[b], block.gamma.fast_score(statistics[b]));
       }

@@ -62,6 +62,12 @@ BlockScores score_block(const Eigen::Ref<const Eigen::MatrixXd>& zt,
 // [a b]
 Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
+// The same for a flexible basis of many features in single precision, which a ridge of per cents
+// forgives: whitens them with the noise and projects them off the basis first.
+BlockScores score_features(Eigen::MatrixXf features, const Eigen::MatrixXd& basis,
+                           const Eigen::VectorXd& residual, const Clusters& clusters,
+                           const Noise& noise, double ridge);
+
 // z - basis basis' z
 Eigen::MatrixXd project_off(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis);
 

@@ -25,7 +25,7 @@ constexpr double kFourierLength = 0.22;
 
 // The signal mapped to [0, 1]: |v|, log of the distance, anything else as it is. Empty where it
 // does not vary.
-Eigen::ArrayXd unit_values(const Observations& data, std::string_view name) {
+Eigen::ArrayXf unit_values(const Observations& data, std::string_view name) {
   const Signal* signal = data.find(name);
   if (signal == nullptr || signal->values.empty()) return {};
   Eigen::ArrayXd x = Eigen::Map<const Eigen::ArrayXd>(
@@ -39,34 +39,35 @@ Eigen::ArrayXd unit_values(const Observations& data, std::string_view name) {
   const double low = sorted[edge];
   const double high = sorted[sorted.size() - 1 - edge];
   if (!(high > low)) return {};
-  return ((x - low) / (high - low)).max(-0.1).min(1.1);
+  return ((x - low) / (high - low)).max(-0.1).min(1.1).cast<float>();
 }
 
-Eigen::MatrixXd radial(const Eigen::ArrayXd& x, int centres) {
-  Eigen::MatrixXd out(x.size(), centres);
-  const double spacing = 1.0 / (centres - 1);
+Eigen::MatrixXf radial(const Eigen::ArrayXf& x, int centres) {
+  Eigen::MatrixXf out(x.size(), centres);
+  const float spacing = 1.0F / static_cast<float>(centres - 1);
   for (int k = 0; k < centres; ++k) {
-    out.col(k) = (-0.5 * ((x - k * spacing) / spacing).square()).exp();
+    out.col(k) = (-0.5F * ((x - static_cast<float>(k) * spacing) / spacing).square()).exp();
   }
   return out;
 }
 
-Eigen::MatrixXd fourier(const Eigen::ArrayXd& x, const Eigen::ArrayXd& y, RandomStream random) {
-  Eigen::MatrixXd out(x.size(), kFourierFeatures);
+Eigen::MatrixXf fourier(const Eigen::ArrayXf& x, const Eigen::ArrayXf& y, RandomStream random) {
+  Eigen::MatrixXf out(x.size(), kFourierFeatures);
   for (Eigen::Index k = 0; k < kFourierFeatures; ++k) {
-    const double wx = random.normal() / kFourierLength;
-    const double wy = random.normal() / kFourierLength;
-    const double phase = random.uniform(0, 2 * std::numbers::pi);
+    const auto wx = static_cast<float>(random.normal() / kFourierLength);
+    const auto wy = static_cast<float>(random.normal() / kFourierLength);
+    const auto phase = static_cast<float>(random.uniform(0, 2 * std::numbers::pi));
     out.col(k) = (wx * x + wy * y + phase).cos();
   }
   return out;
 }
 
-Eigen::MatrixXd with_direction(const Eigen::MatrixXd& features, const Observations& data) {
+Eigen::MatrixXf with_direction(const Eigen::MatrixXf& features, const Observations& data) {
   const Signal* sign = data.find("sgn_v");
   if (sign == nullptr) return features;
-  const Eigen::Map<const Eigen::VectorXd> s(sign->values.data(), features.rows());
-  Eigen::MatrixXd out(features.rows(), 2 * features.cols());
+  const Eigen::VectorXf s =
+      Eigen::Map<const Eigen::VectorXd>(sign->values.data(), features.rows()).cast<float>();
+  Eigen::MatrixXf out(features.rows(), 2 * features.cols());
   out << features, s.asDiagonal() * features;
   return out;
 }
@@ -83,15 +84,15 @@ std::string input_name(const Observations& data, std::string_view signal) {
 std::vector<Smoother> make_smoothers(const Observations& data, RandomStream random) {
   std::vector<Smoother> all;
   for (const OneSignal& single : kSingles) {
-    const Eigen::ArrayXd x = unit_values(data, single.signal);
+    const Eigen::ArrayXf x = unit_values(data, single.signal);
     if (x.size() == 0) continue;
     all.push_back({{single.signal},
                    {input_name(data, single.signal)},
                    with_direction(radial(x, single.centres), data)});
   }
   for (const auto& [first, second] : kPairs) {
-    const Eigen::ArrayXd x = unit_values(data, first);
-    const Eigen::ArrayXd y = unit_values(data, second);
+    const Eigen::ArrayXf x = unit_values(data, first);
+    const Eigen::ArrayXf y = unit_values(data, second);
     if (x.size() == 0 || y.size() == 0) continue;
     const RandomStream part = random.split(std::string(first) + "*" + second);
     all.push_back({{first, second},

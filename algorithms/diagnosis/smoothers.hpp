@@ -17,7 +17,7 @@ namespace tribench::loop {
 struct Smoother {
   std::vector<std::string> signals;  // one or two
   std::vector<std::string> inputs;   // their role names: "velocity", "position", ...
-  Eigen::MatrixXd columns;           // rows x features, then the same times the direction
+  Eigen::MatrixXf columns;           // rows x features, then the same times the direction
 };
 
 // All smoothers that the data have the signals for.

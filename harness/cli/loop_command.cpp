@@ -49,6 +49,11 @@ struct LoopArguments {
   bool unordered = false;
   std::string where;
   bool json = false;
+  int suggest = 0;
+  std::string learn = "none";
+  std::uint64_t learn_evaluations = 50'000'000;
+  std::string learned;
+  std::string save_effect;
   std::string out;
 };
 
@@ -113,7 +118,7 @@ void keep_rows_where(Dataset& data, const std::string& condition) {
 Dataset read_data(const LoopArguments& arguments, std::vector<std::string>& warnings) {
   const CsvOptions options{parse_roles(arguments.roles), arguments.drop_missing};
   std::vector<std::filesystem::path> files(arguments.files.begin(), arguments.files.end());
-  DataReading reading = read_csv_files(files, options);
+  DataFile reading = read_csv_files(files, options);
   warnings = reading.warnings;
   if (reading.dropped_rows > 0) {
     warnings.push_back(fmt::format("{} rows with missing values dropped", reading.dropped_rows));
@@ -130,6 +135,7 @@ loop::DiagnosisOptions diagnosis_options(const LoopArguments& arguments) {
   options.flips = static_cast<std::size_t>(arguments.flips);
   options.families = arguments.effects;
   options.physical_vetoes = !arguments.any_sign;
+  if (!arguments.learned.empty()) options.learned = loop::read_effects(arguments.learned);
   if (arguments.gear_ratio > 0) options.gear_ratios = {arguments.gear_ratio};
   return options;
 }
@@ -173,7 +179,43 @@ std::string title_of(const LoopArguments& arguments) {
   return title;
 }
 
-void close_loop(const LoopArguments& arguments, const Registry& registry) {
+void print_extras(const loop::LoopExtras& extras) {
+  for (const loop::LearnedEffect& one : extras.learned) {
+    fmt::print("  learned ({}; p = {:.2g} on {} movements it was not found on): {}\n",
+               one.accepted ? "accepted" : "not confirmed", one.p, one.tested_on, one.formula);
+  }
+  if (!extras.suggestions.empty()) {
+    fmt::print("  next movements:\n{}", loop::movements_csv(extras.suggestions));
+  }
+}
+
+// Something is left over: lets a method grow the library, and where its formula holds on movements
+// it was not found on, runs the loop again with it.
+void grow_library(const LoopArguments& arguments, const Registry& registry,
+                  const loop::Observations& data, const loop::BaseMaker& base,
+                  loop::Diagnosis& diagnosis, loop::LoopExtras& extras) {
+  const std::unique_ptr<Regressor> method = registry.make(arguments.learn);
+  Budget budget(BudgetLimits{.evaluations = arguments.learn_evaluations});
+  const std::optional<loop::LearnedEffect> learned =
+      loop::learn_effect(diagnosis, data, *method, arguments.learn, budget);
+  if (!learned) return;
+  extras.learned.push_back(*learned);
+  if (!learned->accepted) return;
+  loop::DiagnosisOptions options = diagnosis.options;
+  options.learned.push_back(learned->family);
+  diagnosis = loop::diagnose(data, base, options, arguments.seed);
+  for (loop::EffectFinding& effect : diagnosis.effects) {
+    if (effect.family != learned->family.name) continue;
+    // Its p on movements it was not found on; the search's own would flatter it.
+    effect.adjusted_p = learned->p;
+    effect.notes.push_back(fmt::format("found by {} on {} movements, tested on {} others",
+                                       arguments.learn, learned->found_on, learned->tested_on));
+  }
+  if (arguments.save_effect.empty()) return;
+  write_file(arguments.save_effect, loop::write_effects(std::vector{learned->family}));
+}
+
+loop::Observations read_observations(const LoopArguments& arguments) {
   std::vector<std::string> warnings;
   const Dataset dataset = read_data(arguments, warnings);
   loop::Observations data =
@@ -185,22 +227,40 @@ void close_loop(const LoopArguments& arguments, const Registry& registry) {
         fmt::format("{} of {} rows are used, evenly spaced (--rows)", data.rows(), all_rows));
   }
   data.warnings.insert(data.warnings.begin(), warnings.begin(), warnings.end());
+  return data;
+}
+
+void close_loop(const LoopArguments& arguments, const Registry& registry) {
+  const loop::Observations data = read_observations(arguments);
   std::unique_ptr<Regressor> method;
   Budget budget(BudgetLimits{.evaluations = arguments.evaluations});
   const loop::BaseMaker base = base_of(arguments, registry, method, budget);
-  const loop::Diagnosis diagnosis =
+  loop::Diagnosis diagnosis =
       loop::diagnose(data, base, diagnosis_options(arguments), arguments.seed);
-  const std::string json = loop::write_loop_json(diagnosis, data);
+  loop::LoopExtras extras;
+  if (arguments.learn != "none" && !diagnosis.leftover.signals.empty()) {
+    grow_library(arguments, registry, data, base, diagnosis, extras);
+  }
+  if (arguments.suggest > 0) {
+    extras.suggestions =
+        loop::propose_movements(diagnosis, data, static_cast<std::size_t>(arguments.suggest));
+  }
+  const std::string json = loop::write_loop_json(diagnosis, data, extras);
   if (!arguments.out.empty()) {
-    std::filesystem::create_directories(arguments.out);
-    write_file(std::filesystem::path(arguments.out) / "loop.json", json);
-    write_loop_report(nlohmann::json::parse(json), title_of(arguments), arguments.out);
+    const std::filesystem::path folder = arguments.out;
+    std::filesystem::create_directories(folder);
+    write_file(folder / "loop.json", json);
+    write_loop_report(nlohmann::json::parse(json), title_of(arguments), folder);
+    if (arguments.suggest > 0) {
+      write_file(folder / "next_movements.csv", loop::movements_csv(extras.suggestions));
+    }
   }
   if (arguments.json) {
     fmt::print("{}", json);
-  } else {
-    print_findings(diagnosis, data);
+    return;
   }
+  print_findings(diagnosis, data);
+  print_extras(extras);
 }
 
 }  // namespace
@@ -254,6 +314,19 @@ void add_loop_command(CLI::App& app, ExitStatus& /*status*/, const Registry& reg
   command->add_flag("--drop-missing", arguments->drop_missing, "drop rows with missing values");
   command->add_flag("--any-sign", arguments->any_sign,
                     "accept effects whose parameters are not physical");
+  command
+      ->add_option("--suggest", arguments->suggest,
+                   "propose so many next movements that tell the rivals left apart")
+      ->check(CLI::Range(0, 1000));
+  command
+      ->add_option("--learn", arguments->learn,
+                   "method that learns a new effect from what is left over, or none")
+      ->capture_default_str();
+  command->add_option("--learn-evaluations", arguments->learn_evaluations, "what it may spend")
+      ->capture_default_str();
+  command->add_option("--save-effect", arguments->save_effect, "write a learned effect to a file");
+  command->add_option("--learned", arguments->learned, "test the effects of such a file too")
+      ->check(CLI::ExistingFile);
   command->add_flag("--json", arguments->json, "print loop.json");
   command->add_option("--out", arguments->out, "folder for loop.json, loop.md, loop.html");
   command->callback([arguments, &registry] { close_loop(*arguments, registry); });

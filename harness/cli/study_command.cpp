@@ -10,6 +10,7 @@
 
 #include "harness/cli/commands.hpp"
 #include "harness/study/external_torque_study.hpp"
+#include "harness/cli/study_loop.hpp"
 #include "harness/study/generator_study.hpp"
 #include "harness/study/paper_study.hpp"
 #include "harness/study/reference_study.hpp"
@@ -216,6 +217,7 @@ void add_study_command(CLI::App& app, ExitStatus& status) {
   add_reference_study(*study, status);
   add_external_torque_study(*study);
   add_paper_study(*study);
+  add_loop_study(*study, status);
 }
 
 }  // namespace tribench

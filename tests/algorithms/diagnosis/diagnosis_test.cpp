@@ -8,7 +8,7 @@
 
 #include "foundation/error.hpp"
 #include "problems/data_problem.hpp"
-#include "tests/algorithms/diagnosis/planted_data.hpp"
+#include "problems/kuka/planted.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -21,8 +21,8 @@ DiagnosisOptions options_of_planted() {
   return options;
 }
 
-Diagnosis diagnose_planted(const PlantedOptions& planted, std::uint64_t seed) {
-  const Observations data = observe(make_planted(planted, seed).data);
+Diagnosis diagnose_planted(const kuka::PlantedCase& planted, std::uint64_t seed) {
+  const Observations data = observe(kuka::make_planted(planted, seed).data);
   return diagnose(data, coulomb_viscous_base, options_of_planted(), seed);
 }
 
@@ -77,12 +77,12 @@ TEST_P(OutsideTheLibrary, IsUnknownAndLocated) {
   EXPECT_EQ(diagnosis.leftover.inputs, inputs);
 }
 
-INSTANTIATE_TEST_SUITE_P(Leftovers, OutsideTheLibrary,
-                         testing::Values(std::pair{"v_bump", std::vector<std::string>{"velocity"}},
-                                         std::pair{"q_bump", std::vector<std::string>{"position"}},
-                                         std::pair{
-                                             "tq_interaction",
-                                             std::vector<std::string>{"position", "temperature"}}));
+INSTANTIATE_TEST_SUITE_P(
+    Leftovers, OutsideTheLibrary,
+    testing::Values(std::pair{"velocity_bump", std::vector<std::string>{"velocity"}},
+                    std::pair{"position_bump", std::vector<std::string>{"position"}},
+                    std::pair{"temperature_position",
+                              std::vector<std::string>{"position", "temperature"}}));
 
 TEST(Diagnosis, NamesTwoEffects) {
   const Diagnosis diagnosis =
@@ -93,7 +93,7 @@ TEST(Diagnosis, NamesTwoEffects) {
 }
 
 TEST(Diagnosis, ListsWhatConstantVelocityCannotShow) {
-  const Diagnosis diagnosis = diagnose_planted({.only_constant_velocity = true}, 1);
+  const Diagnosis diagnosis = diagnose_planted({.trajectories = 0}, 1);
   EXPECT_EQ(diagnosis.verdict, Verdict::none);
   std::vector<std::string> untestable;
   for (const UntestableFinding& one : diagnosis.untestable) untestable.push_back(one.family);
@@ -103,13 +103,13 @@ TEST(Diagnosis, ListsWhatConstantVelocityCannotShow) {
 }
 
 TEST(Diagnosis, ListsCollisionsAsEventsAndNotAsFriction) {
-  const Diagnosis diagnosis = diagnose_planted({.collisions = 3, .collision_size = 16}, 6);
+  const Diagnosis diagnosis = diagnose_planted({.collisions = 3, .collision_scale = 16}, 6);
   EXPECT_EQ(diagnosis.verdict, Verdict::none);
   EXPECT_GE(diagnosis.events.size(), 2U);
 }
 
 TEST(Diagnosis, IsTheSameForTheSameSeed) {
-  const PlantedOptions planted{.effects = {{"load_coulomb", 0.5}}};
+  const kuka::PlantedCase planted{.effects = {{"load_coulomb", 0.5}}};
   const Diagnosis one = diagnose_planted(planted, 8);
   const Diagnosis two = diagnose_planted(planted, 8);
   EXPECT_EQ(one.error.mae_after, two.error.mae_after);
@@ -119,16 +119,16 @@ TEST(Diagnosis, IsTheSameForTheSameSeed) {
 }
 
 TEST(Diagnosis, SaysNothingAboutNoiseFreeDataOfItsBase) {
-  PlantedData planted = make_planted({}, 1);
+  kuka::PlantedData planted = kuka::make_planted({}, 1);
   for (Channel& channel : planted.data.channels) {
-    if (channel.role == Role::friction_torque) channel.values = planted.truth;
+    if (channel.role == Role::friction_torque) channel.values = planted.truth.base;
   }
   const Observations data = observe(planted.data);
   EXPECT_EQ(diagnose(data, coulomb_viscous_base, options_of_planted(), 1).verdict, Verdict::none);
 }
 
 TEST(Observations, FrictionAgainstTheVelocityIsRefusedWithTheMend) {
-  PlantedData planted = make_planted({}, 1);
+  kuka::PlantedData planted = kuka::make_planted({}, 1);
   for (Channel& channel : planted.data.channels) {
     if (channel.role != Role::friction_torque) continue;
     for (double& y : channel.values) y = -y;
@@ -144,7 +144,7 @@ TEST(Observations, FrictionAgainstTheVelocityIsRefusedWithTheMend) {
 }
 
 TEST(Observations, RowsThatAreNotFiniteAreDroppedAndCounted) {
-  PlantedData planted = make_planted({}, 1);
+  kuka::PlantedData planted = kuka::make_planted({}, 1);
   planted.data.channels[1].values[7] = std::numeric_limits<double>::quiet_NaN();
   const Observations data = observe(planted.data);
   EXPECT_EQ(data.rows(), planted.data.rows() - 1);
