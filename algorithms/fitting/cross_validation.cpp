@@ -12,10 +12,25 @@
 namespace tribench {
 namespace {
 
-// Which fold each row belongs to: movements are dealt out in a fixed random order.
+// A single movement is cut into this many stretches, which take the movements' place.
+constexpr std::size_t kStretches = 10;
+
+// The units that are held out whole: movements, or stretches of the only one.
+std::vector<int> units_of(std::span<const int> movement) {
+  std::vector<int> units(movement.begin(), movement.end());
+  if (std::ranges::adjacent_find(units, std::ranges::not_equal_to{}) != units.end()) return units;
+  if (units.size() < 2 * kStretches) return units;
+  for (std::size_t r = 0; r < units.size(); ++r) {
+    units[r] = static_cast<int>(r * kStretches / units.size());
+  }
+  return units;
+}
+
+// Which fold each row belongs to: the units are dealt out in a fixed random order.
 std::vector<int> folds_of(std::span<const int> movement, int folds) {
+  const std::vector<int> units = units_of(movement);
   std::map<int, int> fold_of;
-  for (const int m : movement) fold_of.emplace(m, 0);
+  for (const int unit : units) fold_of.emplace(unit, 0);
   std::vector<int> order;
   for (const auto& entry : fold_of) order.push_back(entry.first);
   RandomStream random(key_of("cross-validation folds"));
@@ -24,8 +39,8 @@ std::vector<int> folds_of(std::span<const int> movement, int folds) {
     fold_of[order[i]] = static_cast<int>(i % static_cast<std::size_t>(folds));
   }
   std::vector<int> result;
-  result.reserve(movement.size());
-  for (const int m : movement) result.push_back(fold_of[m]);
+  result.reserve(units.size());
+  for (const int unit : units) result.push_back(fold_of[unit]);
   return result;
 }
 

@@ -27,8 +27,8 @@ struct CrossValidation {
 
 // formulas: by increasing complexity, at least one. All values finite; movement[r] names the
 // movement of row r. Chosen is the simplest formula whose held-out error exceeds the smallest by
-// less than `tolerance` standard errors of the paired difference. With fewer than two movements the
-// last formula is chosen.
+// less than `tolerance` standard errors of the paired difference. The rows of a single movement are
+// held out by stretches, in their order; with fewer than 20 of them the last formula is chosen.
 CrossValidation cross_validate(std::span<const Expression> formulas, const Inputs& inputs,
                                std::span<const double> target, std::span<const int> movement,
                                int folds = 5, double tolerance = 1.0);

@@ -28,9 +28,13 @@ bool is_sign(const Input& input) {
   return input.sign_of || input.role == Role::velocity_sign || input.role == Role::gravity_sign;
 }
 
+// A load enters as itself and, times its sign, as its magnitude, like in every law of
+// load-dependent friction; its higher powers run away outside the loads that were seen.
 std::vector<int> exponent_caps(std::span<const Input> inputs, int degree) {
   std::vector<int> caps;
-  for (const Input& input : inputs) caps.push_back(is_sign(input) ? 1 : degree);
+  for (const Input& input : inputs) {
+    caps.push_back(is_sign(input) || input.role == Role::gravity_torque ? 1 : degree);
+  }
   return caps;
 }
 

@@ -164,13 +164,16 @@ class Search {
 
   // Trains a policy, then offers what it found and sparser versions of the best.
   void run(const RandomStream& random) {
-    Scoreboard scoreboard(problem_, budget_, progress_, threads_);
+    // A fifth is kept for what makes a formula out of what the search has found.
+    Budget searching = budget_.share(budget_.remaining() / 5 * 4);
+    Scoreboard scoreboard(problem_, searching, progress_, threads_);
     udsr::Policy policy(library_, random.split("policy"));
     if (!settings_.weights_text.empty()) {
       udsr::read_weights(settings_.weights_text, settings_.weights, policy);
     }
     const udsr::Prior prior(library_, settings_.prior, range_of(problem_));
     udsr::train(policy, prior, settings_.training, random.split("training"), scoreboard);
+    budget_.settle(searching);
     for (const auto& [complexity, entry] : scoreboard.front()) add(entry.formula, entry.nrmse);
     const std::size_t sparsified = std::min(kSparsified, scoreboard.best().size());
     for (std::size_t i = 0; i < sparsified; ++i) offer_sparser(scoreboard.best()[i].sequence);
@@ -206,10 +209,12 @@ class Search {
   // The simpler of two choices: the information criterion guards against a search that has tried
   // many formulas on independent rows, cross-validation against rows that are not independent.
   std::size_t choose(const std::vector<Expression>& front) {
+    const std::size_t informative = most_informative(front);
+    if (budget_.exhausted()) return informative;
     const CrossValidation validation =
         cross_validate(front, problem_.inputs(), problem_.target(), problem_.movement());
     budget_.spend(validation.node_rows);
-    return std::min(validation.chosen, most_informative(front));
+    return std::min(validation.chosen, informative);
   }
 
  private:
@@ -275,7 +280,7 @@ class Udsr : public Regressor {
       return result;
     }
     result.front = front;
-    result.chosen = context.budget.exhausted() ? front.size() - 1 : search.choose(front);
+    result.chosen = search.choose(front);
     return result;
   }
 
@@ -335,8 +340,7 @@ class Udsr : public Regressor {
     // A part's error is not the problem's: it does not enter the trace.
     Search search(settings_, data, context.operators, context.budget, nullptr, context.threads);
     const std::vector<Expression> front = solve(search, context, data, random, depth);
-    if (front.empty() || context.budget.exhausted())
-      return front.empty() ? front : std::vector{front.back()};
+    if (front.empty()) return front;
     const std::size_t chosen = search.choose(front);
     if (chosen + 1 == front.size()) return {front.back()};
     return {front[chosen], front.back()};

@@ -64,6 +64,24 @@ TEST(CrossValidation, HoldsOutWholeMovements) {
   EXPECT_EQ(cross_validate(front, {columns, v.size()}, y, movement).chosen, 0U);
 }
 
+TEST(CrossValidation, HoldsOutStretchesOfASingleMovement) {
+  // Ten levels in a row: each is known within its stretch and unknown for the next.
+  RandomStream random(6);
+  std::vector<double> v;
+  std::vector<double> y;
+  double level = 0;
+  for (int i = 0; i < 200; ++i) {
+    if (i % 20 == 0) level = random.normal();
+    v.push_back(i / 20 + 1e-3 * random.uniform());
+    y.push_back(level);
+  }
+  const std::vector<int> movement(200, 7);
+  const double* columns[] = {v.data()};
+  const std::vector<Expression> front = {
+      parse("0.5", kNames), parse("1 + v + v^2 + v^3 + v^4 + v^5 + v^6 + v^7 + v^8", kNames)};
+  EXPECT_EQ(cross_validate(front, {columns, v.size()}, y, movement).chosen, 0U);
+}
+
 TEST(CrossValidation, TakesTheLastFormulaWhereThereIsNothingToHoldOut) {
   const std::vector<double> v = {1, 2, 3};
   const std::vector<double> y = {1, 2, 3};
