@@ -9,6 +9,8 @@ foreach(room foundation problems algorithms reports harness)
   install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tribench
     FILES_MATCHING PATTERN "*.hpp")
 endforeach()
+install(DIRECTORY grids adapters examples DESTINATION ${CMAKE_INSTALL_DATADIR}/tribench
+  USE_SOURCE_PERMISSIONS)
 install(EXPORT tribench NAMESPACE tribench:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tribench
   FILE tribenchTargets.cmake)
 configure_package_config_file(cmake/tribenchConfig.cmake.in

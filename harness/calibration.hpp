@@ -14,7 +14,7 @@ struct CalibrationSample {
   double wall_s = 0;  // of the same round
 };
 
-// About 20 ms of double-precision arithmetic in one thread. The sample's at_s is left to the
+// About 5 ms of double-precision arithmetic in one thread. The sample's at_s is left to the
 // caller.
 CalibrationSample calibrate();
 

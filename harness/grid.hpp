@@ -24,9 +24,9 @@ namespace tribench {
 // itself; the others are enforced from outside and cost the cell.
 struct CellLimits {
   std::uint64_t evaluations = 20'000'000'000;  // node-rows
-  double seconds = 60;                      // CPU seconds of the fit
-  double wall_seconds = 180;                // of the whole cell
-  double cpu_limit_seconds = 90;            // CPU seconds of the whole cell
+  double seconds = 60;                         // CPU seconds of the fit
+  double wall_seconds = 180;                   // of the whole cell
+  double cpu_limit_seconds = 90;               // CPU seconds of the whole cell
   double memory_mib = 2048;
 
   bool operator==(const CellLimits&) const = default;

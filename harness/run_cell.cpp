@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <exception>
 #include <fstream>
 #include <new>
+#include <optional>
 
 #include "algorithms/external/external_method.hpp"
 #include "foundation/error.hpp"
@@ -226,15 +228,18 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
 }
 
 const Problem& CellRunner::problem(const CellTask& task) {
+  constexpr std::size_t kKept = 16;
   const std::string key = fmt::format("{}|{}|{}", task.cell.problem, task.cell.seed, task.data);
-  if (key != problem_key_) {
-    problem_.reset();
+  const auto found = std::ranges::find(problems_, key, &std::pair<std::string, Problem>::first);
+  if (found != problems_.end()) {
+    problems_.splice(problems_.begin(), problems_, found);
+  } else {
     const Catalogue catalogue(task.data.empty() ? std::nullopt
                                                 : std::optional<std::filesystem::path>(task.data));
-    problem_ = catalogue.find(task.cell.problem).make(task.cell.seed);
-    problem_key_ = key;
+    problems_.emplace_front(key, catalogue.find(task.cell.problem).make(task.cell.seed));
+    if (problems_.size() > kKept) problems_.pop_back();
   }
-  return *problem_;
+  return problems_.front().second;
 }
 
 CellResult CellRunner::run(const CellTask& task,

@@ -8,6 +8,8 @@ namespace embedded {
 std::string_view quick_grid();
 std::string_view paper_grid();
 std::string_view measured_grid();
+std::string_view nightly_grid();
+std::string_view udsr_ablation_grid();
 }  // namespace embedded
 
 namespace {
@@ -31,9 +33,10 @@ ShippedGrid shipped(std::string name, std::string_view toml) {
 }  // namespace
 
 const std::vector<ShippedGrid>& shipped_grids() {
-  static const std::vector<ShippedGrid> kGrids = {shipped("quick", embedded::quick_grid()),
-                                                  shipped("paper", embedded::paper_grid()),
-                                                  shipped("measured", embedded::measured_grid())};
+  static const std::vector<ShippedGrid> kGrids = {
+      shipped("quick", embedded::quick_grid()), shipped("paper", embedded::paper_grid()),
+      shipped("measured", embedded::measured_grid()), shipped("nightly", embedded::nightly_grid()),
+      shipped("udsr_ablation", embedded::udsr_ablation_grid())};
   return kGrids;
 }
 

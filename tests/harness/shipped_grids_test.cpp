@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "harness/shipped_grids.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "foundation/error.hpp"
+#include "tests/support/paths.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(ShippedGrids, AllParseAndSayWhatTheyAreFor) {
+  const Registry registry;
+  const Catalogue catalogue;
+  std::vector<std::string> names;
+  for (const ShippedGrid& shipped : shipped_grids()) {
+    const Grid grid = load_named_grid(shipped.name, registry, catalogue);
+    EXPECT_EQ(grid.name, shipped.name);
+    EXPECT_FALSE(grid.cells().empty()) << shipped.name;
+    EXPECT_GT(shipped.summary.size(), 20U) << shipped.name;
+    names.push_back(shipped.name);
+  }
+  EXPECT_THAT(names, ::testing::IsSupersetOf({"quick", "paper", "measured", "nightly"}));
+}
+
+// The schema for editors must not know a key that the reader refuses.
+TEST(GridSchema, NamesOnlyKeysThatTheReaderKnows) {
+  std::ifstream stream(testing::source_dir() / "grids" / "grid.schema.json");
+  const nlohmann::json schema = nlohmann::json::parse(stream);
+  const Registry registry;
+  const Catalogue catalogue;
+  for (const auto& [table, description] : schema.at("properties").items()) {
+    const bool is_array = description.at("type") == "array";
+    const nlohmann::json& owner = is_array ? description.at("items") : description;
+    for (const auto& [key, ignored] : owner.at("properties").items()) {
+      const std::string open = is_array ? "[[" + table + "]]" : "[" + table + "]";
+      const std::string toml =
+          "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"linear\"]\n" +
+          (table == "grid" ? std::string() : open + "\n") +
+          (table == "grid" && (key == "problems" || key == "methods") ? "" : key + " = []\n");
+      try {
+        parse_grid(toml, "g.toml", registry, catalogue);
+      } catch (const Error& error) {
+        EXPECT_THAT(error.what(), Not(HasSubstr("unknown key"))) << table << "." << key;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tribench
