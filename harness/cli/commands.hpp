@@ -34,5 +34,9 @@ void add_report_command(CLI::App& app, ExitStatus& status);
 void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_study_command(CLI::App& app, ExitStatus& status);
 void add_submit_command(CLI::App& app, ExitStatus& status, const Registry& registry);
+void add_compare_command(CLI::App& app, ExitStatus& status);
+void add_export_command(CLI::App& app, ExitStatus& status);
+// Under `study`.
+void add_comparison_study(CLI::App& study, ExitStatus& status);
 
 }  // namespace tribench

@@ -213,6 +213,7 @@ void add_paper_study(CLI::App& study) {
 void add_study_command(CLI::App& app, ExitStatus& status) {
   CLI::App* study = app.add_subcommand("study", "Experiments of the program with itself");
   study->require_subcommand(1);
+  add_comparison_study(*study, status);
   add_generator_study(*study, status);
   add_reference_study(*study, status);
   add_external_torque_study(*study);

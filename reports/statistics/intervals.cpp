@@ -11,17 +11,17 @@
 namespace tribench {
 namespace {
 
-Interval percentile_interval(const std::vector<double>& estimates, double confidence) {
+ConfidenceInterval percentile_interval(const std::vector<double>& estimates, double confidence) {
   const double tail = (1 - confidence) / 2;
   return {quantile(estimates, tail), quantile(estimates, 1 - tail)};
 }
 
-constexpr Interval kNone{std::numeric_limits<double>::quiet_NaN(),
-                         std::numeric_limits<double>::quiet_NaN()};
+constexpr ConfidenceInterval kNone{std::numeric_limits<double>::quiet_NaN(),
+                                   std::numeric_limits<double>::quiet_NaN()};
 
 }  // namespace
 
-Interval wilson(std::size_t hits, std::size_t trials, double confidence) {
+ConfidenceInterval wilson(std::size_t hits, std::size_t trials, double confidence) {
   if (trials == 0) return {0, 1};
   const auto n = static_cast<double>(trials);
   const double share = static_cast<double>(hits) / n;
@@ -32,16 +32,17 @@ Interval wilson(std::size_t hits, std::size_t trials, double confidence) {
   return {std::max(0.0, (centre - half) / scale), std::min(1.0, (centre + half) / scale)};
 }
 
-Interval bootstrap(std::span<const double> values,
-                   const std::function<double(std::span<const double>)>& statistic,
-                   double confidence, std::size_t rounds, const RandomStream& random) {
+ConfidenceInterval bootstrap(std::span<const double> values,
+                             const std::function<double(std::span<const double>)>& statistic,
+                             double confidence, std::size_t rounds, const RandomStream& random) {
   return two_level_bootstrap({{values.begin(), values.end()}}, statistic, confidence, rounds,
                              random);
 }
 
-Interval two_level_bootstrap(const std::vector<std::vector<double>>& groups,
-                             const std::function<double(std::span<const double>)>& statistic,
-                             double confidence, std::size_t rounds, const RandomStream& random) {
+ConfidenceInterval two_level_bootstrap(
+    const std::vector<std::vector<double>>& groups,
+    const std::function<double(std::span<const double>)>& statistic, double confidence,
+    std::size_t rounds, const RandomStream& random) {
   std::vector<const std::vector<double>*> filled;
   for (const auto& group : groups) {
     if (!group.empty()) filled.push_back(&group);

@@ -12,25 +12,26 @@
 
 namespace tribench {
 
-struct Interval {
+struct ConfidenceInterval {
   double low = 0;
   double high = 0;
   bool contains(double value) const { return low <= value && value <= high; }
 };
 
 // For `hits` of `trials` at the given confidence; Wilson 1927. [0, 1] without trials.
-Interval wilson(std::size_t hits, std::size_t trials, double confidence);
+ConfidenceInterval wilson(std::size_t hits, std::size_t trials, double confidence);
 
 // Percentile bootstrap with `rounds` resamples of the values (Efron 1979); `statistic` sees each
 // resample. Values hold no NaN; with none the interval is NaN. Cost: rounds x statistic.
-Interval bootstrap(std::span<const double> values,
-                   const std::function<double(std::span<const double>)>& statistic,
-                   double confidence, std::size_t rounds, const RandomStream& random);
+ConfidenceInterval bootstrap(std::span<const double> values,
+                             const std::function<double(std::span<const double>)>& statistic,
+                             double confidence, std::size_t rounds, const RandomStream& random);
 
 // Two levels: groups (problems) are resampled, then values (seeds) within each drawn group; the
 // statistic sees all drawn values. Davison, Hinkley 1997, section 3.8.
-Interval two_level_bootstrap(const std::vector<std::vector<double>>& groups,
-                             const std::function<double(std::span<const double>)>& statistic,
-                             double confidence, std::size_t rounds, const RandomStream& random);
+ConfidenceInterval two_level_bootstrap(
+    const std::vector<std::vector<double>>& groups,
+    const std::function<double(std::span<const double>)>& statistic, double confidence,
+    std::size_t rounds, const RandomStream& random);
 
 }  // namespace tribench

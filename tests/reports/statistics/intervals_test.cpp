@@ -51,15 +51,15 @@ TEST(TwoLevelBootstrap, IsWiderThanOneLevelWhereGroupsDiffer) {
     for (int i = 0; i < 20; ++i) groups.back().push_back(shift + random.normal());
     flat.insert(flat.end(), groups.back().begin(), groups.back().end());
   }
-  const Interval two = two_level_bootstrap(groups, mean, 0.95, 1000, random.split("two"));
-  const Interval one = bootstrap(flat, mean, 0.95, 1000, random.split("one"));
+  const ConfidenceInterval two = two_level_bootstrap(groups, mean, 0.95, 1000, random.split("two"));
+  const ConfidenceInterval one = bootstrap(flat, mean, 0.95, 1000, random.split("one"));
   EXPECT_GT(two.high - two.low, 1.8 * (one.high - one.low));
 }
 
 TEST(Bootstrap, IsTheSameForTheSameStreamAndEmptyForNothing) {
   const std::vector<double> values = {1, 2, 4, 8};
-  const Interval a = bootstrap(values, mean, 0.9, 100, RandomStream(1));
-  const Interval b = bootstrap(values, mean, 0.9, 100, RandomStream(1));
+  const ConfidenceInterval a = bootstrap(values, mean, 0.9, 100, RandomStream(1));
+  const ConfidenceInterval b = bootstrap(values, mean, 0.9, 100, RandomStream(1));
   EXPECT_EQ(a.low, b.low);
   EXPECT_EQ(a.high, b.high);
   EXPECT_TRUE(std::isnan(bootstrap({}, mean, 0.9, 10, RandomStream(1)).low));

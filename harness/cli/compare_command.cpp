@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+//
+// tribench compare: is a run better, worse or not distinguishable from another; with a history,
+// where it stepped or began to drift.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "harness/cli/commands.hpp"
+#include "reports/comparison.hpp"
+#include "reports/history.hpp"
+#include "reports/run_folder.hpp"
+
+namespace tribench {
+namespace {
+
+struct CompareArguments {
+  std::string base;
+  std::string now;
+  std::vector<std::string> history;  // oldest first, before `base`
+  bool json = false;
+};
+
+nlohmann::ordered_json changes_json(const std::vector<SeriesChange>& changes,
+                                    const std::vector<RunFolder>& runs) {
+  nlohmann::ordered_json array = nlohmann::ordered_json::array();
+  for (const SeriesChange& each : changes) {
+    const bool step = each.change.kind == Change::Kind::step;
+    array.push_back({{"method", each.method},
+                     {"operators", each.operators},
+                     {"problem", each.problem},
+                     {"change", step ? "step" : "drift"},
+                     {"since", runs[each.change.at].path.string()},
+                     {"ratio", each.change.ratio},
+                     {"p", each.change.p}});
+  }
+  return array;
+}
+
+void compare(const CompareArguments& arguments, ExitStatus& status) {
+  std::vector<RunFolder> runs;
+  for (const std::string& folder : arguments.history) runs.push_back(read_run_folder(folder));
+  runs.push_back(read_run_folder(arguments.base));
+  runs.push_back(read_run_folder(arguments.now));
+  const Comparison comparison = compare_runs(runs[runs.size() - 2], runs.back());
+  const bool has_history = !arguments.history.empty();
+  const std::vector<SeriesChange> changes =
+      has_history ? find_changes(runs) : std::vector<SeriesChange>();
+  if (arguments.json) {
+    nlohmann::ordered_json answer = comparison_json(comparison);
+    if (has_history) answer["history"] = changes_json(changes, runs);
+    fmt::print("{}\n", answer.dump(2));
+  } else {
+    fmt::print("{}", comparison_markdown(comparison));
+    if (has_history) fmt::print("\n### History\n\n{}", history_markdown(changes, runs));
+  }
+  if (comparison.has_regression()) status = ExitStatus::found;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, ExitStatus& status) {
+  CLI::App* command = app.add_subcommand(
+      "compare", "Decides whether a run is better, worse or not distinguishable from another");
+  command->footer(
+      "Exit status 1 on a regression.\n"
+      "Example: tribench compare runs/yesterday runs/today --history runs/monday runs/tuesday");
+  auto arguments = std::make_shared<CompareArguments>();
+  command->add_option("base", arguments->base, "folder of the run to compare with")->required();
+  command->add_option("new", arguments->now, "folder of the run in question")->required();
+  command->add_option("--history", arguments->history,
+                      "earlier runs, oldest first: steps and drifts over all of them");
+  command->add_flag("--json", arguments->json, "the comparison as JSON");
+  command->callback([arguments, &status] { compare(*arguments, status); });
+}
+
+}  // namespace tribench

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: MIT
+#include "reports/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <unordered_map>
+
+#include "foundation/random.hpp"
+#include "reports/record_csv.hpp"
+#include "reports/statistics/descriptive.hpp"
+#include "reports/statistics/rank_tests.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kConfidence = 0.95;
+
+struct Pair {
+  const Record* base;
+  const Record* now;
+};
+
+// The record without what time and the machine touch: equal text, equal result.
+std::string timeless(Record record) {
+  record.fit_cpu_s = record.fit_wall_s = record.peak_memory_mib = kMissing;
+  record.eval_ns_per_row = kMissing;
+  return results_csv({record});
+}
+
+double error_of(const Record& record) {
+  return is_ok(record) && !std::isnan(record.mae_test) ? record.mae_test : kInfinity;
+}
+
+double time_of(const Record& record) { return is_ok(record) ? record.fit_cpu_s : kMissing; }
+
+// log(new / base); 0 for equal figures, infinite where only one of them failed, NaN for no pair.
+double log_ratio(double base, double now) {
+  if (base == now) return std::isinf(base) ? kMissing : 0.0;
+  return std::log(now / base);
+}
+
+using Figure = double (*)(const Record&);
+using MethodKey = std::pair<std::string, std::string>;  // method, operators
+using Groups = std::map<MethodKey, std::map<std::string, std::vector<double>>>;  // by problem
+
+Groups log_ratios(const std::vector<Pair>& pairs, Figure figure) {
+  Groups groups;
+  for (const Pair& pair : pairs) {
+    const double ratio = log_ratio(figure(*pair.base), figure(*pair.now));
+    if (std::isnan(ratio)) continue;
+    groups[{pair.now->method, pair.now->operators}][pair.now->problem].push_back(ratio);
+  }
+  return groups;
+}
+
+// Row with everything but the adjusted p and the verdict.
+ComparisonRow row_of(const MethodKey& key, const std::string& problem,
+                     const std::vector<std::vector<double>>& by_problem,
+                     const ComparisonOptions& options) {
+  std::vector<double> all;
+  for (const auto& values : by_problem) all.insert(all.end(), values.begin(), values.end());
+  ComparisonRow row;
+  row.method = key.first;
+  row.operators = key.second;
+  row.problem = problem;
+  row.pairs = all.size();
+  row.equal = static_cast<std::size_t>(std::count(all.begin(), all.end(), 0.0));
+  row.ratio = std::exp(median(all));
+  const SignedRankTest test = wilcoxon_signed_rank(all);
+  row.p = test.p;
+  row.effect = test.effect;
+  if (row.equal == row.pairs) {
+    row.interval = {1, 1};
+    return row;
+  }
+  const RandomStream random(key_of(fmt::format("{}|{}|{}", key.first, key.second, problem)));
+  const ConfidenceInterval logs = two_level_bootstrap(
+      by_problem, [](std::span<const double> values) { return median(values); }, kConfidence,
+      options.rounds, random);
+  row.interval = {std::exp(logs.low), std::exp(logs.high)};
+  return row;
+}
+
+std::vector<ComparisonRow> rows_of(const Groups& groups, bool each_problem,
+                                   const ComparisonOptions& options) {
+  std::vector<ComparisonRow> rows;
+  for (const auto& [key, problems] : groups) {
+    std::vector<std::vector<double>> all;
+    for (const auto& [problem, values] : problems) all.push_back(values);
+    rows.push_back(row_of(key, "", all, options));
+  }
+  if (!each_problem) return rows;
+  for (const auto& [key, problems] : groups) {
+    if (problems.size() < 2) continue;  // the pooled row says it all
+    for (const auto& [problem, values] : problems) {
+      rows.push_back(row_of(key, problem, {values}, options));
+    }
+  }
+  return rows;
+}
+
+ComparisonVerdict judge(const ComparisonRow& row, double level, double equivalence) {
+  const double high = 1 + equivalence;
+  const double low = 1 / high;
+  if (row.p <= level && row.ratio > high) return ComparisonVerdict::worse;
+  if (row.p <= level && row.ratio < low) return ComparisonVerdict::better;
+  if (row.interval.low >= low && row.interval.high <= high) return ComparisonVerdict::equivalent;
+  return ComparisonVerdict::not_distinguishable;
+}
+
+// Holm over every row of the comparison, quality and time together.
+void decide(Comparison& comparison, const ComparisonOptions& options) {
+  std::vector<double> p;
+  for (const ComparisonRow& row : comparison.quality) p.push_back(row.p);
+  for (const ComparisonRow& row : comparison.time) p.push_back(row.p);
+  const std::vector<double> adjusted = holm(p);
+  std::size_t i = 0;
+  for (ComparisonRow& row : comparison.quality) {
+    row.p = adjusted[i++];
+    row.verdict = judge(row, options.level, options.quality_equivalence);
+  }
+  for (ComparisonRow& row : comparison.time) {
+    row.p = adjusted[i++];
+    row.verdict = judge(row, options.level, options.time_equivalence);
+  }
+}
+
+// CPU seconds of the calibration kernel in every session of a run.
+std::vector<double> calibration_of(const RunFolder& run) {
+  std::vector<double> seconds;
+  for (const auto& [key, value] : run.provenance) {
+    if (key.find(".calibration.samples.") == std::string::npos || !key.ends_with(".cpu_s")) {
+      continue;
+    }
+    double figure = 0;
+    if (read_csv_number(value, figure) && figure > 0) seconds.push_back(figure);
+  }
+  return seconds;
+}
+
+std::string why_no_time(const RunFolder& base, const RunFolder& now,
+                        const ComparisonOptions& options) {
+  for (const RunFolder* run : {&base, &now}) {
+    const Spread spread = spread_of(calibration_of(*run));
+    if (spread.count < 2) {
+      return fmt::format("{} has no calibration", run->path.string());
+    }
+    const double drift = spread.high / spread.low - 1;
+    if (drift > options.largest_drift) {
+      return fmt::format("the machine's pace changed by {:.0f} % during {}", 100 * drift,
+                         run->path.string());
+    }
+  }
+  const std::string cpu = base.provenance_of("sessions.0.machine.cpu");
+  if (cpu != now.provenance_of("sessions.0.machine.cpu")) return "the CPUs differ";
+  return {};
+}
+
+std::vector<ComparisonRow> compare_time(const std::vector<Pair>& pairs, const RunFolder& base,
+                                        const RunFolder& now, const ComparisonOptions& options) {
+  Groups groups = log_ratios(pairs, time_of);
+  // A machine that was slower throughout is no slower code.
+  const double pace = std::log(median(calibration_of(now)) / median(calibration_of(base)));
+  for (auto& [key, problems] : groups) {
+    for (auto& [problem, values] : problems) {
+      for (double& value : values) value -= pace;
+    }
+  }
+  return rows_of(groups, false, options);
+}
+
+// Failures that depend on the machine's pace as well as on the code.
+bool is_limit(const std::string& reason) {
+  return reason == "timeout" || reason == "cpu_limit" || reason == "out_of_memory";
+}
+
+// Two-sided exact sign test of `worse` against `better` cells.
+double sign_test(std::size_t worse, std::size_t better) {
+  const std::size_t n = worse + better;
+  double tail = 0;
+  for (std::size_t k = std::max(worse, better); k <= n; ++k) {
+    const auto all = static_cast<double>(n);
+    const auto hits = static_cast<double>(k);
+    tail += std::exp(std::lgamma(all + 1) - std::lgamma(hits + 1) - std::lgamma(all - hits + 1) -
+                     all * std::log(2.0));
+  }
+  return std::min(1.0, 2 * tail);
+}
+
+std::vector<Pair> count_cells(const RunFolder& base, const RunFolder& now, Comparison& comparison) {
+  std::unordered_map<std::string_view, const Record*> by_cell;
+  for (const Record& record : base.records) by_cell[record.cell] = &record;
+  std::vector<Pair> pairs;
+  for (const Record& record : now.records) {
+    const auto found = by_cell.find(record.cell);
+    if (found == by_cell.end()) {
+      ++comparison.only_new;
+      continue;
+    }
+    const Record& before = *found->second;
+    pairs.push_back({&before, &record});
+    if (timeless(before) == timeless(record)) ++comparison.identical;
+    if (is_ok(before) && !is_ok(record)) {
+      comparison.newly_failed.push_back(record.cell);
+      if (!is_limit(record.reason)) comparison.newly_broken.push_back(record.cell);
+    }
+    if (!is_ok(before) && is_ok(record)) comparison.newly_fine.push_back(record.cell);
+    if (record.singularity == "refuted" && before.singularity != "refuted") {
+      comparison.newly_singular.push_back(record.cell);
+    }
+  }
+  comparison.limits_p = sign_test(comparison.newly_failed.size() - comparison.newly_broken.size(),
+                                  comparison.newly_fine.size());
+  comparison.common = pairs.size();
+  comparison.only_base = base.records.size() - pairs.size();
+  return pairs;
+}
+
+std::size_t count_of(const std::vector<ComparisonRow>& rows, ComparisonVerdict verdict) {
+  return static_cast<std::size_t>(std::count_if(
+      rows.begin(), rows.end(), [&](const ComparisonRow& row) { return row.verdict == verdict; }));
+}
+
+}  // namespace
+
+std::string comparison_verdict_name(ComparisonVerdict verdict) {
+  switch (verdict) {
+    case ComparisonVerdict::better:
+      return "better";
+    case ComparisonVerdict::worse:
+      return "worse";
+    case ComparisonVerdict::equivalent:
+      return "equivalent";
+    default:
+      return "not distinguishable";
+  }
+}
+
+bool Comparison::has_regression() const {
+  const bool more_limits =
+      newly_failed.size() > newly_broken.size() + newly_fine.size() && limits_p <= level;
+  return !newly_broken.empty() || more_limits || count_of(quality, ComparisonVerdict::worse) > 0 ||
+         count_of(time, ComparisonVerdict::worse) > 0;
+}
+
+std::string Comparison::sentence() const {
+  if (common == 0) return "The runs have no cell in common: nothing can be compared.";
+  if (common == identical && only_base + only_new == 0) {
+    const std::size_t slower = count_of(time, ComparisonVerdict::worse);
+    return fmt::format("All {} cells are identical apart from time{}.", common,
+                       slower > 0 ? fmt::format(", but {} methods are slower", slower) : "");
+  }
+  return fmt::format(
+      "{}: {} of {} common cells identical; quality worse in {}, better in {}, equivalent in {}, "
+      "not distinguishable in {} of {} verdicts; slower in {} of {}; {} cells newly failed.",
+      has_regression() ? "REGRESSION" : "No regression", identical, common,
+      count_of(quality, ComparisonVerdict::worse), count_of(quality, ComparisonVerdict::better),
+      count_of(quality, ComparisonVerdict::equivalent),
+      count_of(quality, ComparisonVerdict::not_distinguishable), quality.size(),
+      count_of(time, ComparisonVerdict::worse), time.size(), newly_failed.size());
+}
+
+Comparison compare_runs(const RunFolder& base, const RunFolder& now,
+                        const ComparisonOptions& options) {
+  Comparison comparison;
+  comparison.level = options.level;
+  const std::vector<Pair> pairs = count_cells(base, now, comparison);
+  comparison.quality = rows_of(log_ratios(pairs, error_of), true, options);
+  comparison.why_no_time = why_no_time(base, now, options);
+  if (comparison.why_no_time.empty()) {
+    comparison.time = compare_time(pairs, base, now, options);
+  }
+  decide(comparison, options);
+  return comparison;
+}
+
+}  // namespace tribench

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+//
+// Is a run better or worse than another, or can they not be told apart? What a nightly job asks.
+//
+// In this order: what is exactly equal needs no statistics (equal cells with equal figures); cells
+// that failed or turned singular are counted; quality is then compared on pairs with the same
+// problem, method, operator set and seed: log ratio of the error on test movements, Wilcoxon's
+// signed-rank test Holm-adjusted over all verdicts of the comparison, a bootstrap interval of the
+// median ratio (two levels, problems and seeds, where problems are pooled). Time is compared, on
+// the log ratio of CPU seconds, only where both machines' calibration says that it can be.
+//
+// Verdicts: worse or better needs the adjusted p below the level AND a median ratio outside the
+// region of practical equivalence; equivalent needs the whole interval inside that region;
+// everything else is not distinguishable. Level 0.5 % for the whole comparison: of 200 comparisons
+// of identical code about one cries (`tribench study compare`).
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "reports/run_folder.hpp"
+#include "reports/statistics/intervals.hpp"
+
+namespace tribench {
+
+enum class ComparisonVerdict { better, worse, equivalent, not_distinguishable };
+std::string comparison_verdict_name(
+    ComparisonVerdict verdict);  // "better", "not distinguishable", ...
+
+struct ComparisonOptions {
+  double level = 0.005;               // family-wise, over all verdicts, two-sided
+  double quality_equivalence = 0.01;  // ratios within 1 +- this are of no practical use
+  double time_equivalence = 0.05;
+  double largest_drift = 0.05;  // of the calibration kernel within a run
+  std::size_t rounds = 2000;    // of each bootstrap
+};
+
+// One method (operator set), on one problem or, with an empty problem, on all of them.
+struct ComparisonRow {
+  std::string method;
+  std::string operators;
+  std::string problem;
+  std::size_t pairs = 0;        // seeds (and problems) that both runs have
+  std::size_t equal = 0;        // pairs whose figure is the same to the last bit
+  double ratio = kMissing;      // median of new / base
+  ConfidenceInterval interval;  // of the ratio, at 95 %
+  double effect = 0;            // rank-biserial; positive where new is larger (worse)
+  double p = kMissing;          // Holm-adjusted
+  ComparisonVerdict verdict = ComparisonVerdict::not_distinguishable;
+};
+
+struct Comparison {
+  std::size_t common = 0;     // cells in both
+  std::size_t identical = 0;  // of them, equal in everything but time
+  std::size_t only_base = 0;
+  std::size_t only_new = 0;
+  std::vector<std::string> newly_failed;    // cells that gave a formula before
+  std::vector<std::string> newly_broken;    // of them, not by running into a limit
+  std::vector<std::string> newly_fine;      // cells that failed before
+  std::vector<std::string> newly_singular;  // refuted now, not before
+  std::vector<ComparisonRow> quality;       // pooled rows first, then by problem
+  std::vector<ComparisonRow> time;          // pooled rows only; empty where it cannot be compared
+  std::string why_no_time;                  // empty where time was compared
+  // Cells that newly ran into a limit against those that no longer do (exact sign test).
+  double limits_p = 1;
+  double level = 0.005;
+
+  // A worse verdict, a cell that newly crashed or gave an error, or clearly more cells that ran
+  // into a limit (a single one may be the machine's bad moment).
+  bool has_regression() const;
+  std::string sentence() const;  // the outcome in one line
+};
+
+Comparison compare_runs(const RunFolder& base, const RunFolder& now,
+                        const ComparisonOptions& options = {});
+
+std::string comparison_markdown(const Comparison& comparison);
+nlohmann::ordered_json comparison_json(const Comparison& comparison);
+
+}  // namespace tribench

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+//
+// A comparison for people (Markdown) and for programs (JSON).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "reports/comparison.hpp"
+#include "reports/figures.hpp"
+#include "reports/markdown.hpp"
+
+namespace tribench {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kCellsShown = 10;
+
+std::string cell_list(const char* title, const std::vector<std::string>& cells) {
+  if (cells.empty()) return {};
+  std::string text = fmt::format("\n{} ({}):\n\n", title, cells.size());
+  for (std::size_t i = 0; i < std::min(kCellsShown, cells.size()); ++i) {
+    text += fmt::format("- {}\n", markdown_code(cells[i]));
+  }
+  if (cells.size() > kCellsShown)
+    text += fmt::format("- and {} more\n", cells.size() - kCellsShown);
+  return text;
+}
+
+std::string comparison_verdict_text(ComparisonVerdict verdict) {
+  const std::string name = comparison_verdict_name(verdict);
+  return verdict == ComparisonVerdict::worse ? fmt::format("**{}**", name) : name;
+}
+
+std::string table_of(const std::vector<ComparisonRow>& rows) {
+  MarkdownTable table({{"method"},
+                       {"operators"},
+                       {"problem"},
+                       {"new / base", Align::right},
+                       {"95 % interval", Align::right},
+                       {"effect", Align::right},
+                       {"p", Align::right},
+                       {"pairs (equal)", Align::right},
+                       {"verdict"}});
+  for (const ComparisonRow& row : rows) {
+    table.add({row.method, row.operators, row.problem.empty() ? "all" : row.problem,
+               figure(row.ratio, 4),
+               fmt::format("{} .. {}", figure(row.interval.low, 4), figure(row.interval.high, 4)),
+               figure(row.effect, 2), figure(row.p, 2),
+               fmt::format("{} ({})", row.pairs, row.equal), comparison_verdict_text(row.verdict)});
+  }
+  return table.text();
+}
+
+// JSON knows no infinity and no NaN.
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json rows_json(const std::vector<ComparisonRow>& rows) {
+  ordered_json array = ordered_json::array();
+  for (const ComparisonRow& row : rows) {
+    array.push_back({{"method", row.method},
+                     {"operators", row.operators},
+                     {"problem", row.problem},
+                     {"pairs", row.pairs},
+                     {"equal", row.equal},
+                     {"ratio", number(row.ratio)},
+                     {"low", number(row.interval.low)},
+                     {"high", number(row.interval.high)},
+                     {"effect", number(row.effect)},
+                     {"p", number(row.p)},
+                     {"verdict", comparison_verdict_name(row.verdict)}});
+  }
+  return array;
+}
+
+}  // namespace
+
+std::string comparison_markdown(const Comparison& comparison) {
+  std::string text = fmt::format("**{}**\n", comparison.sentence());
+  if (comparison.only_base + comparison.only_new > 0) {
+    text += fmt::format("\nCells only in the base: {}, only in the new run: {}.\n",
+                        comparison.only_base, comparison.only_new);
+  }
+  text += cell_list("Newly failed", comparison.newly_failed);
+  text += cell_list("Fail no longer", comparison.newly_fine);
+  text += cell_list("Newly singular", comparison.newly_singular);
+  if (comparison.identical < comparison.common) {
+    text += "\n### Quality: error on test movements\n\n" + table_of(comparison.quality);
+  }
+  text += "\n### Time: CPU seconds of fits\n\n";
+  text += comparison.why_no_time.empty()
+              ? table_of(comparison.time)
+              : fmt::format("Not compared: {}.\n", comparison.why_no_time);
+  return text;
+}
+
+ordered_json comparison_json(const Comparison& comparison) {
+  return {{"regression", comparison.has_regression()},
+          {"sentence", comparison.sentence()},
+          {"common", comparison.common},
+          {"identical", comparison.identical},
+          {"only_base", comparison.only_base},
+          {"only_new", comparison.only_new},
+          {"newly_failed", comparison.newly_failed},
+          {"newly_fine", comparison.newly_fine},
+          {"newly_singular", comparison.newly_singular},
+          {"quality", rows_json(comparison.quality)},
+          {"time", rows_json(comparison.time)},
+          {"why_no_time", comparison.why_no_time}};
+}
+
+}  // namespace tribench
