@@ -36,7 +36,10 @@ namespace tribench {
 // measure next. title: names the data, e.g. the file.
 std::string loop_markdown(const nlohmann::json& loop, const std::string& title);
 
-// Writes loop.md into the folder. Throws Error (failed) where it cannot be written.
+// One self-contained page with the pictures.
+std::string loop_html(const nlohmann::json& loop, const std::string& title);
+
+// Writes loop.md and loop.html into the folder. Throws Error (failed) where it cannot be written.
 void write_loop_report(const nlohmann::json& loop, const std::string& title,
                        const std::filesystem::path& folder);
 

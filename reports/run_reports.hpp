@@ -10,8 +10,9 @@
 
 namespace tribench {
 
-// Reads the folder and writes leaderboard.md beside what it read. Returns the first screen of the
-// leaderboard, for the terminal. Throws Error (bad_input) where the folder holds no run.
+// Reads the folder and writes leaderboard.md and report.html beside what it read. Returns the first
+// screen of the leaderboard, for the terminal. Throws Error (bad_input) where the folder holds no
+// run.
 std::string write_run_reports(const std::filesystem::path& folder);
 
 }  // namespace tribench
