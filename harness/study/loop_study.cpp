@@ -255,7 +255,7 @@ class FigureTable {
 
  private:
   void add_rate(const std::string& name, std::size_t hits, std::size_t trials, Target target) {
-    const Interval interval = wilson(hits, trials, kConfidence);
+    const ConfidenceInterval interval = wilson(hits, trials, kConfidence);
     LoopFigure figure{name,          hits, trials, 0, 100 * interval.low, 100 * interval.high,
                       target.text(), true};
     figure.value = trials > 0 ? 100 * static_cast<double>(hits) / static_cast<double>(trials) : 0;
