@@ -145,6 +145,27 @@ void drop_slow_rows(Observations& data, double min_speed) {
       fmt::format("{} of {} rows are slower than {}: left out", all - data.rows(), all, min_speed));
 }
 
+// A handful of rows the other way (noise around standstill) fixes no branch of its own: Coulomb and
+// viscous friction there would be fitted to next to nothing.
+void settle_directions(Observations& data) {
+  constexpr std::size_t kFewestRows = 30;
+  const std::vector<double>& v = data.find("v")->values;
+  const auto forward =
+      static_cast<std::size_t>(std::ranges::count_if(v, [](double x) { return x > 0; }));
+  const auto backward =
+      static_cast<std::size_t>(std::ranges::count_if(v, [](double x) { return x < 0; }));
+  const std::size_t fewer = std::min(forward, backward);
+  if (fewer >= std::max(kFewestRows, (forward + backward) / 100)) return;
+  std::vector<char> keep(data.rows());
+  for (std::size_t i = 0; i < data.rows(); ++i)
+    keep[i] = (v[i] > 0) == (forward > backward) ? 1 : 0;
+  data = data.select(keep);
+  data.warnings.push_back(fmt::format(
+      "all movement is in one direction ({} rows the other way are left out): direction asymmetry "
+      "and whatever needs both directions cannot be told from the base",
+      fewer));
+}
+
 void complete(Observations& data) {
   drop_rows_not_finite(data);
   if (data.rows() == 0) {
@@ -302,6 +323,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   out.time = out.find("t")->values;
   if (options.unordered) std::erase_if(out.signals, [](const Signal& s) { return s.name == "t"; });
   if (options.min_speed > 0) drop_slow_rows(out, options.min_speed);
+  settle_directions(out);
   drop_constant_signals(out);
   check_sign(out);
   return out;

@@ -143,6 +143,27 @@ TEST(Observations, FrictionAgainstTheVelocityIsRefusedWithTheMend) {
   EXPECT_NO_THROW(observe(planted.data));
 }
 
+TEST(Observations, AFewRowsTheOtherWayAreLeftOutAndSaid) {
+  kuka::PlantedData planted = kuka::make_planted({.trajectories = 0}, 1);
+  const auto values = [&](Role role) -> std::vector<double>& {
+    return std::ranges::find(planted.data.channels, role, &Channel::role)->values;
+  };
+  std::vector<double>& v = values(Role::velocity);
+  std::vector<double>& y = values(Role::friction_torque);
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (i % 1000 == 0) continue;
+    v[i] = std::abs(v[i]);
+    y[i] = std::abs(y[i]);
+  }
+  const Observations data = observe(planted.data);
+  EXPECT_GT(data.rows(), v.size() - 10);
+  const std::vector<double>& kept = data.find("v")->values;
+  EXPECT_TRUE(std::ranges::all_of(kept, [](double x) { return x > 0; }));
+  EXPECT_TRUE(std::ranges::any_of(data.warnings, [](const std::string& warning) {
+    return warning.find("one direction") != std::string::npos;
+  }));
+}
+
 TEST(Observations, RowsThatAreNotFiniteAreDroppedAndCounted) {
   kuka::PlantedData planted = kuka::make_planted({}, 1);
   planted.data.channels[1].values[7] = std::numeric_limits<double>::quiet_NaN();
