@@ -80,7 +80,16 @@ class ClosedLoop : public Regressor {
   }
 
   FitResult fit(FitContext& context) const override {
-    const Observations data = observe(context.data);
+    try {
+      return fit_observed(context, observe(context.data));
+    } catch (const Error& error) {
+      // Data that cannot be diagnosed, such as a target without one finite value.
+      return FitResult::unsupported(error.what());
+    }
+  }
+
+ private:
+  FitResult fit_observed(FitContext& context, const Observations& data) const {
     if (data.find("v") == nullptr) {
       return FitResult::unsupported("the closed loop needs an input with role velocity");
     }
@@ -93,17 +102,12 @@ class ClosedLoop : public Regressor {
       result.reason = StopReason::budget;
       return result;
     }
-    try {
-      const Diagnosis diagnosis =
-          diagnose(data, base_maker(context), options_, context.random.split("diagnosis").key());
-      report(context, data, diagnosis, result);
-    } catch (const Error& error) {
-      return FitResult::unsupported(error.what());
-    }
+    const Diagnosis diagnosis =
+        diagnose(data, base_maker(context), options_, context.random.split("diagnosis").key());
+    report(context, data, diagnosis, result);
     return result;
   }
 
- private:
   BaseMaker base_maker(FitContext& context) const {
     if (method_) {
       return method_base(*method_, base_name_, context.random.split("base"), context.budget);
