@@ -11,8 +11,8 @@
 // inputs so large that products overflow are not looked after.
 //
 // Equality up to the 64-bit hash: two different formulas share one with probability 2^-64.
-// Keeps its workspace: one Canonicalizer per thread; hardly an allocation once warm, about 40 ns a node
-// (bench/proof_bench).
+// Keeps its workspace: one Canonicalizer per thread; hardly an allocation once warm, about 40 ns a
+// node (bench/proof_bench).
 #pragma once
 
 #include <cstddef>

@@ -23,8 +23,8 @@ enum class Selection { evidence, mdl, best, accuracy, score };
 enum class Batching { off, on, automatic };
 enum class Units { off, soft, hard };
 
-// In the order of the published table of weights (backsolve, which is off there, is not among them);
-// ours are the last two.
+// In the order of the published table of weights (backsolve, which is off there, is not among
+// them); ours are the last two.
 enum class MutationKind : std::uint8_t {
   rotate_tree,
   add_node,

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/commands.hpp"
-#include "harness/study/external_torque_study.hpp"
 #include "harness/cli/study_loop.hpp"
+#include "harness/study/external_torque_study.hpp"
 #include "harness/study/generator_study.hpp"
 #include "harness/study/paper_study.hpp"
 #include "harness/study/reference_study.hpp"
