@@ -92,6 +92,8 @@ json record_json(const Record& r) {
           {"max_error_test", number(r.max_error_test)},
           {"r2_test", number(r.r2_test)},
           {"mae_truth", number(r.mae_truth)},
+          {"mae_ceiling", number(r.mae_ceiling)},
+          {"mae_law", number(r.mae_law)},
           {"relative_error_train", number(r.relative_error_train)},
           {"relative_error_test", number(r.relative_error_test)},
           {"complexity", r.complexity},
@@ -130,6 +132,8 @@ Record parse_record(const json& object) {
   r.max_error_test = number(object, "max_error_test");
   r.r2_test = number(object, "r2_test");
   r.mae_truth = number(object, "mae_truth");
+  r.mae_ceiling = number(object, "mae_ceiling");
+  r.mae_law = number(object, "mae_law");
   r.relative_error_train = number(object, "relative_error_train");
   r.relative_error_test = number(object, "relative_error_test");
   r.complexity = object.at("complexity");

@@ -72,6 +72,10 @@ struct Grid {
   std::vector<std::string> quarantine;  // globs over cell keys that are not run
   CellLimits limits;
   RetryPolicy retry;
+  // Published figures that the report sets beside the run's (reports/published.hpp): the file as
+  // the grid names it, and its text; both empty where there is none.
+  std::string reference_file;
+  std::string reference;
 
   // Every cell, in the order of the results: problem, method, operator set, seed.
   std::vector<Cell> cells() const;
@@ -81,13 +85,15 @@ struct Grid {
   bool quarantined(const std::string& cell_key) const;
 };
 
-// Throws Error (bad_input) with file, line and the nearest name.
+// Throws Error (bad_input) with file, line and the nearest name. Leaves `reference` empty.
 Grid parse_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
                 const Catalogue& catalogue);
+// Reads the published figures too, from beside the file.
 Grid load_grid(const std::filesystem::path& file, const Registry& registry,
                const Catalogue& catalogue);
 
 // The grid as it took effect, as TOML; parse_grid(print_grid(g)) gives the same cells and limits.
+// Published figures are named as they lie beside it in a run's folder.
 std::string print_grid(const Grid& grid);
 
 // * any text, ? one character.

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <sstream>
 
 #include "foundation/error.hpp"
 #include "harness/grid.hpp"
 #include "harness/toml_table.hpp"
+#include "reports/published.hpp"
 
 namespace tribench {
 namespace {
@@ -284,6 +286,14 @@ bool is_built_in(const OperatorSet& set) {
       operator_sets(), [&](const OperatorSet& built_in) { return built_in.name() == set.name(); });
 }
 
+std::optional<std::string> text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return std::nullopt;
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
 }  // namespace
 
 Grid parse_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
@@ -299,8 +309,8 @@ Grid parse_grid(std::string_view toml, const std::string& file_name, const Regis
   const TomlTable file(root, file_name, "",
                        {"grid", "budget", "retry", "method", "external", "operator_set"});
   file.require("grid");
-  const TomlTable table =
-      file.table("grid", {"name", "problems", "methods", "operators", "seeds", "quarantine"});
+  const TomlTable table = file.table(
+      "grid", {"name", "problems", "methods", "operators", "seeds", "quarantine", "reference"});
   Grid grid;
   grid.name = std::filesystem::path(file_name).stem().string();
   table.read("name", grid.name);
@@ -309,6 +319,7 @@ Grid parse_grid(std::string_view toml, const std::string& file_name, const Regis
   seeds.read("count", grid.seed_count);
   if (grid.seed_count == 0) throw_bad_input("'count' must be at least 1", seeds.place("count"));
   table.read("quarantine", grid.quarantine);
+  table.read("reference", grid.reference_file);
   grid.limits = read_limits(file.table("budget", limit_keys()), grid.limits);
   grid.retry = read_retry(
       file.table("retry", {"crashed", "timeout", "cpu_limit", "out_of_memory", "error"}));
@@ -318,14 +329,22 @@ Grid parse_grid(std::string_view toml, const std::string& file_name, const Regis
 
 Grid load_grid(const std::filesystem::path& file, const Registry& registry,
                const Catalogue& catalogue) {
-  std::ifstream stream(file);
-  if (!stream) {
+  const auto text = text_of(file);
+  if (!text) {
     throw_bad_input("the grid file cannot be read", file.string(),
                     "give the path of a TOML file, or a name from: tribench list grids");
   }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return parse_grid(text.str(), file.string(), registry, catalogue);
+  Grid grid = parse_grid(*text, file.string(), registry, catalogue);
+  if (grid.reference_file.empty()) return grid;
+  const std::filesystem::path reference = file.parent_path() / grid.reference_file;
+  const auto figures = text_of(reference);
+  if (!figures) {
+    throw_bad_input("the published figures cannot be read", reference.string(),
+                    "'reference' is a path from the grid file's folder");
+  }
+  check_published(*figures, reference.string());
+  grid.reference = *figures;
+  return grid;
 }
 
 std::string print_grid(const Grid& grid) {
@@ -340,6 +359,7 @@ std::string print_grid(const Grid& grid) {
   table.insert("seeds", toml::table{{"first", static_cast<std::int64_t>(grid.first_seed)},
                                     {"count", static_cast<std::int64_t>(grid.seed_count)}});
   table.insert("quarantine", text_array(grid.quarantine));
+  if (!grid.reference.empty()) table.insert("reference", kPublishedFile);
   toml::table budget;
   insert_limits(budget, grid.limits);
   toml::table root{{"grid", table}, {"budget", budget}};

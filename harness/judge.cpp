@@ -135,6 +135,11 @@ void judge_formula(const Problem& problem, const StagedFormula& staged, Record& 
   record.relative_error_test = on_test.relative;
   if (!problem.test.truth.empty()) {
     record.mae_truth = compute_errors(values, problem.test.truth).mae;
+    record.mae_ceiling = compute_errors(problem.test.truth, problem.test.target).mae;
+  }
+  if (!problem.true_law.empty()) {
+    const Expression law = parse(problem.true_law, problem.input_names());
+    record.mae_law = compute_errors(evaluator.evaluate(law, problem.test), problem.test.target).mae;
   }
   record.complexity = paper_complexity(formula);
   record.nodes = node_count(formula);

@@ -9,6 +9,7 @@
 
 #include "foundation/error.hpp"
 #include "harness/provenance.hpp"
+#include "reports/published.hpp"
 #include "reports/record_csv.hpp"
 
 namespace tribench {
@@ -20,6 +21,7 @@ void write_plan_files(const std::filesystem::path& folder, const Grid& grid) {
   }
   write_file(folder / "grid.toml", print_grid(grid));
   write_file(folder / "planned.csv", planned_csv(planned));
+  if (!grid.reference.empty()) write_file(folder / kPublishedFile, grid.reference);
 }
 
 void write_result_files(const std::filesystem::path& folder, std::vector<CellResult> results) {

@@ -10,6 +10,7 @@ std::string_view paper_grid();
 std::string_view measured_grid();
 std::string_view nightly_grid();
 std::string_view udsr_ablation_grid();
+std::string_view paper_reference();
 }  // namespace embedded
 
 namespace {
@@ -43,8 +44,12 @@ const std::vector<ShippedGrid>& shipped_grids() {
 Grid load_named_grid(const std::string& name_or_file, const Registry& registry,
                      const Catalogue& catalogue) {
   for (const ShippedGrid& grid : shipped_grids()) {
-    if (grid.name == name_or_file && !std::filesystem::exists(name_or_file)) {
-      return parse_grid(grid.toml, grid.name + ".toml", registry, catalogue);
+    if (grid.name == name_or_file && !std::filesystem::is_regular_file(name_or_file)) {
+      Grid parsed = parse_grid(grid.toml, grid.name + ".toml", registry, catalogue);
+      if (parsed.reference_file == "paper_reference.csv") {
+        parsed.reference = embedded::paper_reference();
+      }
+      return parsed;
     }
   }
   return load_grid(name_or_file, registry, catalogue);

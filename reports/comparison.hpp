@@ -77,6 +77,8 @@ Comparison compare_runs(const RunFolder& base, const RunFolder& now,
                         const ComparisonOptions& options = {});
 
 std::string comparison_markdown(const Comparison& comparison);
+// What fits on a first screen: the outcome, the cells that changed, pooled rows and verdicts.
+std::string comparison_head(const Comparison& comparison);
 nlohmann::ordered_json comparison_json(const Comparison& comparison);
 
 }  // namespace tribench

@@ -77,9 +77,7 @@ ordered_json rows_json(const std::vector<ComparisonRow>& rows) {
   return array;
 }
 
-}  // namespace
-
-std::string comparison_markdown(const Comparison& comparison) {
+std::string outcome(const Comparison& comparison) {
   std::string text = fmt::format("**{}**\n", comparison.sentence());
   if (comparison.only_base + comparison.only_new > 0) {
     text += fmt::format("\nCells only in the base: {}, only in the new run: {}.\n",
@@ -88,6 +86,25 @@ std::string comparison_markdown(const Comparison& comparison) {
   text += cell_list("Newly failed", comparison.newly_failed);
   text += cell_list("Fail no longer", comparison.newly_fine);
   text += cell_list("Newly singular", comparison.newly_singular);
+  return text;
+}
+
+}  // namespace
+
+std::string comparison_head(const Comparison& comparison) {
+  std::string text = outcome(comparison);
+  std::vector<ComparisonRow> told;
+  for (const ComparisonRow& row : comparison.quality) {
+    const bool decided =
+        row.verdict == ComparisonVerdict::worse || row.verdict == ComparisonVerdict::better;
+    if (decided || (row.problem.empty() && row.equal < row.pairs)) told.push_back(row);
+  }
+  if (!told.empty()) text += fmt::format("\n{}", table_of(told));
+  return text;
+}
+
+std::string comparison_markdown(const Comparison& comparison) {
+  std::string text = outcome(comparison);
   if (comparison.identical < comparison.common) {
     text += "\n### Quality: error on test movements\n\n" + table_of(comparison.quality);
   }

@@ -12,7 +12,7 @@ namespace tribench {
 
 // `digits` significant digits: 0.0371, 12.3, 1.2e-07; "-" for a missing figure, "inf" for infinity.
 std::string figure(double value, int digits = 3);
-// A median of counts: 22, 22.5.
+// As it is, with all its digits: a median of counts (22, 22.5), a published figure (1.025).
 std::string count_figure(double count);
 // "1 cell", "2 cells".
 std::string counted(std::size_t count, std::string_view noun);

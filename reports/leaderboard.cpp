@@ -163,6 +163,14 @@ std::string method_table(const ProblemTable& table) {
   return text.text();
 }
 
+std::string yardsticks(const ProblemTable& table) {
+  if (std::isnan(table.mae_ceiling)) return {};
+  std::string text = fmt::format("Noise ceiling {}", figure(table.mae_ceiling));
+  if (!std::isnan(table.mae_law))
+    text += fmt::format("; the true law's error {}", figure(table.mae_law));
+  return text + ".\n\n";
+}
+
 std::string formulas(const ProblemTable& table) {
   std::string text;
   for (const MethodRow& row : table.rows) {
@@ -195,8 +203,9 @@ std::string leaderboard_head(const RunFolder& run, const RunSummary& summary,
 }
 
 std::string leaderboard(const RunFolder& run, const RunSummary& summary,
-                        const std::string& changed) {
+                        const std::vector<Sensitivity>& sensitivity, const std::string& changed) {
   std::string text = leaderboard_head(run, summary, changed);
+  text += sensitivity_section(sensitivity);
   text += proofs_section(run.records);
   text +=
       "\n## How to read the tables\n\n"
@@ -215,6 +224,7 @@ std::string leaderboard(const RunFolder& run, const RunSummary& summary,
     if (table.problem != problem) text += fmt::format("\n## {}\n", table.problem);
     problem = table.problem;
     text += fmt::format("\n### {}, operators `{}`\n\n", table.problem, table.operators);
+    text += yardsticks(table);
     text += method_table(table) + '\n';
     text += reading_of(table) + "\n\n";
     text += formulas(table);

@@ -9,12 +9,14 @@
 #include <string>
 
 #include "reports/run_folder.hpp"
+#include "reports/sensitivity.hpp"
 #include "reports/summary.hpp"
 
 namespace tribench {
 
 // changed: what `compare` says against a base run, Markdown; empty where there is none.
 std::string leaderboard(const RunFolder& run, const RunSummary& summary,
+                        const std::vector<Sensitivity>& sensitivity,
                         const std::string& changed = {});
 
 // The first screen alone.

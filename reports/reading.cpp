@@ -101,6 +101,9 @@ std::string certainty_of(const ProblemTable& table) {
     }
     return text;
   }
+  if (methods_with(table, Standing::failed).size() + 1 == table.rows.size()) {
+    return "the others gave no formula";
+  }
   if (!methods_with(table, Standing::behind_untested).empty()) {
     return fmt::format("ahead on every seed, {} seeds are too few for a test", table.seeds);
   }

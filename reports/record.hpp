@@ -36,6 +36,8 @@ struct Record {
   double max_error_test = kMissing;
   double r2_test = kMissing;
   double mae_truth = kMissing;             // against the noise-free law on the test rows
+  double mae_ceiling = kMissing;           // of the noise-free target itself: the noise ceiling
+  double mae_law = kMissing;               // of the true law, where it is a formula of the inputs
   double relative_error_train = kMissing;  // 100 |y - f| / |y|, 2-norms, percent
   double relative_error_test = kMissing;
 

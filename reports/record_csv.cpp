@@ -56,6 +56,8 @@ constexpr Column<Record> kResultColumns[] = {
     {"relative_error_train", &R::relative_error_train},
     {"relative_error_test", &R::relative_error_test},
     {"complexity_adaptation", &R::complexity_adaptation},
+    {"mae_ceiling", &R::mae_ceiling},
+    {"mae_law", &R::mae_law},
     {"grid_check", &R::grid_check},
     {"dissipative", &R::dissipative},
     {"monotone", &R::monotone},

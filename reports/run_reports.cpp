@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "reports/comparison.hpp"
 #include "reports/html/html_report.hpp"
 #include "reports/html/page_data.hpp"
 #include "reports/leaderboard.hpp"
@@ -14,20 +15,44 @@
 #include "reports/summary.hpp"
 
 namespace tribench {
+namespace {
 
-std::string write_run_reports(const std::filesystem::path& folder) {
+struct Change {
+  std::string markdown;
+  nlohmann::ordered_json json;  // null without a base
+};
+
+Change change_since(const std::filesystem::path& base, const RunFolder& run) {
+  if (base.empty()) return {};
+  const RunFolder before = read_run_folder(base);
+  const Comparison comparison = compare_runs(before, run);
+  const std::string since =
+      fmt::format("Since {} ({}).\n\n", before.name, before.path.filename().string());
+  Change change{since + comparison_head(comparison), comparison_json(comparison)};
+  change.json["base"] = before.name;
+  return change;
+}
+
+}  // namespace
+
+std::string write_run_reports(const std::filesystem::path& folder,
+                              const std::filesystem::path& base) {
   RunFolder run = read_run_folder(folder);
-  const auto figures = read_published(folder / "reference.csv", run.complaints);
+  const auto figures = read_published(folder / kPublishedFile, run.complaints);
   const RunSummary summary = summarise(run);
-  const std::vector<PublishedRow> published = match_published(figures, summary);
-  std::string text = leaderboard(run, summary);
+  const std::vector<PublishedProblem> published = match_published(figures, summary);
+  const Change change = change_since(base, run);
+  const std::vector<Sensitivity> sensitivity = ranking_sensitivity(run, summary);
+  std::string text = leaderboard(run, summary, sensitivity, change.markdown);
   if (!published.empty()) {
-    text += "\n## Published figures beside ours\n\n" + published_markdown(published);
+    text += "\n## Published figures beside ours\n" + published_markdown(published, "###");
   }
   write_file(folder / "leaderboard.md", text);
-  write_file(folder / "report.html",
-             html_page(run.name, PageKind::run, page_data(run, summary, published)));
-  return leaderboard_head(run, summary);
+  nlohmann::ordered_json data = page_data(run, summary, published);
+  data["changed"] = change.json;
+  data["sensitivity"] = sensitivity_json(sensitivity);
+  write_file(folder / "report.html", html_page(run.name, PageKind::run, data));
+  return leaderboard_head(run, summary, change.markdown);
 }
 
 }  // namespace tribench

@@ -12,7 +12,8 @@ namespace tribench {
 
 // Reads the folder and writes leaderboard.md and report.html beside what it read. Returns the first
 // screen of the leaderboard, for the terminal. Throws Error (bad_input) where the folder holds no
-// run.
-std::string write_run_reports(const std::filesystem::path& folder);
+// run. base: an earlier run; what changed since then stands on the first screen. Empty: none.
+std::string write_run_reports(const std::filesystem::path& folder,
+                              const std::filesystem::path& base = {});
 
 }  // namespace tribench

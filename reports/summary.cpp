@@ -135,6 +135,19 @@ void hold_against_best(std::vector<MethodRow>& rows, const std::vector<const Cel
   }
 }
 
+// Median over the seeds of a figure that belongs to a problem and seed, whatever the method.
+double median_over_seeds(const std::vector<const Cells*>& methods, double Record::*figure) {
+  std::map<std::uint64_t, double> of_seed;
+  for (const Cells* cells : methods) {
+    for (const Record* record : *cells) {
+      if (!std::isnan(record->*figure)) of_seed.emplace(record->seed, record->*figure);
+    }
+  }
+  std::vector<double> values;
+  for (const auto& [seed, value] : of_seed) values.push_back(value);
+  return median(values);
+}
+
 ProblemTable table_of(const std::string& problem, const std::string& operators,
                       const std::vector<const Cells*>& methods) {
   std::vector<std::pair<MethodRow, const Cells*>> both;
@@ -143,7 +156,12 @@ ProblemTable table_of(const std::string& problem, const std::string& operators,
     return std::tie(a.first.placed_by, a.first.mae_test.middle, a.first.method) <
            std::tie(b.first.placed_by, b.first.mae_test.middle, b.first.method);
   });
-  ProblemTable table{problem, operators, {}, 0};
+  ProblemTable table{problem,
+                     operators,
+                     {},
+                     0,
+                     median_over_seeds(methods, &Record::mae_ceiling),
+                     median_over_seeds(methods, &Record::mae_law)};
   std::vector<const Cells*> cells;
   for (auto& [row, of] : both) {
     table.seeds = std::max(table.seeds, row.cells);

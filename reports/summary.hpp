@@ -65,8 +65,10 @@ struct MethodRow {
 struct ProblemTable {
   std::string problem;
   std::string operators;
-  std::vector<MethodRow> rows;  // best first
-  std::size_t seeds = 0;        // most that any method has
+  std::vector<MethodRow> rows;    // best first
+  std::size_t seeds = 0;          // most that any method has
+  double mae_ceiling = kMissing;  // noise ceiling and the true law's own error, where known:
+  double mae_law = kMissing;      // medians over the seeds
   bool has_best() const { return !rows.empty() && rows.front().standing == Standing::best; }
 };
 

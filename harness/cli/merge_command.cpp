@@ -13,6 +13,7 @@
 #include "harness/curves.hpp"
 #include "harness/provenance.hpp"
 #include "harness/run_files.hpp"
+#include "reports/published.hpp"
 #include "reports/record_csv.hpp"
 #include "reports/run_reports.hpp"
 
@@ -22,6 +23,11 @@ namespace {
 struct MergeArguments {
   std::vector<std::string> folders;
   std::string out;
+};
+
+struct ReportArguments {
+  std::string folder;
+  std::string base;
 };
 
 void print_damage(const JournalContents& journal) {
@@ -39,6 +45,10 @@ void merge(const MergeArguments& arguments) {
     std::filesystem::copy_file(folders.front() / file, out / file,
                                std::filesystem::copy_options::overwrite_existing);
   }
+  if (std::filesystem::exists(folders.front() / kPublishedFile)) {
+    std::filesystem::copy_file(folders.front() / kPublishedFile, out / kPublishedFile,
+                               std::filesystem::copy_options::overwrite_existing);
+  }
   write_result_files(out, merged.results);
   write_curves(out, merged.results, Catalogue());
   write_merged_provenance(out, folders, merged);
@@ -47,14 +57,15 @@ void merge(const MergeArguments& arguments) {
 }
 
 // The journal is the truth, even of a run that was killed; without one the CSV files are.
-void report(const std::filesystem::path& folder) {
+void report(const ReportArguments& arguments) {
+  const std::filesystem::path folder = arguments.folder;
   if (std::filesystem::exists(folder / "cells.jsonl")) {
     const JournalContents journal = read_journal(folder / "cells.jsonl");
     print_damage(journal);
     write_result_files(folder, journal.results);
     write_curves(folder, journal.results, Catalogue());
   }
-  fmt::print("{}\n", write_run_reports(folder));
+  fmt::print("{}\n", write_run_reports(folder, arguments.base));
 }
 
 }  // namespace
@@ -71,10 +82,12 @@ void add_merge_command(CLI::App& app, ExitStatus& /*status*/) {
 
 void add_report_command(CLI::App& app, ExitStatus& /*status*/) {
   CLI::App* command = app.add_subcommand("report", "Renders a run again, finished or not");
-  command->footer("Example: tribench report run-paper");
-  auto folder = std::make_shared<std::string>();
-  command->add_option("folder", *folder, "a run's folder")->required();
-  command->callback([folder] { report(*folder); });
+  command->footer("Example: tribench report runs/today --base runs/yesterday");
+  auto arguments = std::make_shared<ReportArguments>();
+  command->add_option("folder", arguments->folder, "a run's folder")->required();
+  command->add_option("--base", arguments->base,
+                      "an earlier run: the first screen says what changed since then");
+  command->callback([arguments] { report(*arguments); });
 }
 
 }  // namespace tribench

@@ -12,9 +12,7 @@
 #include "harness/cli/study_loop.hpp"
 #include "harness/study/external_torque_study.hpp"
 #include "harness/study/generator_study.hpp"
-#include "harness/study/paper_study.hpp"
 #include "harness/study/reference_study.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {
@@ -163,51 +161,6 @@ void add_external_torque_study(CLI::App& study) {
   });
 }
 
-void print_paper_json(const std::vector<PaperProblem>& problems) {
-  nlohmann::ordered_json array = nlohmann::ordered_json::array();
-  for (const PaperProblem& problem : problems) {
-    for (const PaperRow& row : problem.rows) {
-      array.push_back({{"name", problem.name + " " + row.method + " " + row.operators},
-                       {"summary", fmt::format("Table {}", problem.table)},
-                       {"problem", problem.name},
-                       {"method", row.method},
-                       {"operators", row.operators},
-                       {"mae_nm", row.mae_nm},  // NaN is null
-                       {"low_nm", row.low_nm},
-                       {"high_nm", row.high_nm},
-                       {"complexity", row.complexity},
-                       {"paper_mae_nm", row.paper_mae_nm},
-                       {"paper_complexity", row.paper_complexity},
-                       {"ceiling_nm", problem.ceiling_nm},
-                       {"seeds", row.seeds},
-                       {"failed", row.failed},
-                       {"singular", row.singular}});
-    }
-  }
-  fmt::print("{}\n", array.dump(2));
-}
-
-void add_paper_study(CLI::App& study) {
-  CLI::App* command =
-      study.add_subcommand("paper", "A run of the grid 'paper' beside the paper's three tables");
-  command->footer("Example: tribench run paper --out run-paper && tribench study paper run-paper");
-  auto run = std::make_shared<std::string>();
-  auto json = std::make_shared<bool>(false);
-  command->add_option("DIR", *run, "folder of a run with cells of A and B")->required();
-  auto out = std::make_shared<std::string>();
-  command->add_flag("--json", *json, "an array of figures");
-  command->add_option("--out", *out, "write the page to this file instead");
-  command->callback([run, json, out] {
-    const std::vector<PaperProblem> problems = run_paper_study(*run);
-    if (!out->empty()) write_file(*out, paper_study_markdown(problems));
-    if (*json) {
-      print_paper_json(problems);
-    } else if (out->empty()) {
-      fmt::print("{}", paper_study_markdown(problems));
-    }
-  });
-}
-
 }  // namespace
 
 void add_study_command(CLI::App& app, ExitStatus& status) {
@@ -217,7 +170,6 @@ void add_study_command(CLI::App& app, ExitStatus& status) {
   add_generator_study(*study, status);
   add_reference_study(*study, status);
   add_external_torque_study(*study);
-  add_paper_study(*study);
   add_loop_study(*study, status);
 }
 

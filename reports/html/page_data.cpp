@@ -71,6 +71,8 @@ ordered_json tables_json(const RunSummary& summary) {
                    {"operators", table.operators},
                    {"reading", reading_of(table)},
                    {"certainty", certainty_of(table)},
+                   {"ceiling", finite_or_null(table.mae_ceiling)},
+                   {"law", finite_or_null(table.mae_law)},
                    {"rows", std::move(rows)}});
   }
   return all;
@@ -181,7 +183,7 @@ ordered_json counts_json(const RunFolder& run, const RunSummary& summary) {
 }  // namespace
 
 ordered_json page_data(const RunFolder& run, const RunSummary& summary,
-                       const std::vector<PublishedRow>& published) {
+                       const std::vector<PublishedProblem>& published) {
   ordered_json missing = ordered_json::array();
   for (std::size_t i = 0; i < std::min(kMissingShown, run.missing.size()); ++i) {
     missing.push_back(run.missing[i].cell);

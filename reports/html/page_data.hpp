@@ -16,6 +16,6 @@ namespace tribench {
 // Keys: name, made_with, counts, problems, operators, tables, rankings, fronts, traces, profiles,
 // ecdf, curves, singular, failures, missing, complaints, reference, records, provenance.
 nlohmann::ordered_json page_data(const RunFolder& run, const RunSummary& summary,
-                                 const std::vector<PublishedRow>& published);
+                                 const std::vector<PublishedProblem>& published);
 
 }  // namespace tribench

@@ -131,6 +131,26 @@ FriedmanTest friedman(std::span<const double> values, std::size_t treatments, do
   return test;
 }
 
+double kendall_tau(std::span<const double> a, std::span<const double> b) {
+  const auto sign = [](double x) { return x > 0 ? 1 : (x < 0 ? -1 : 0); };
+  long concordance = 0;
+  long told_by_a = 0;
+  long told_by_b = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const int in_a = sign(a[i] - a[j]);
+      const int in_b = sign(b[i] - b[j]);
+      concordance += in_a * in_b;
+      told_by_a += in_a * in_a;
+      told_by_b += in_b * in_b;
+    }
+  }
+  if (told_by_a == 0 && told_by_b == 0) return 1;
+  if (told_by_a == 0 || told_by_b == 0) return 0;
+  return static_cast<double>(concordance) /
+         std::sqrt(static_cast<double>(told_by_a) * static_cast<double>(told_by_b));
+}
+
 double probability_of_superiority(std::span<const double> a, std::span<const double> b) {
   double wins = 0;
   for (const double x : a) {

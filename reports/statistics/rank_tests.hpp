@@ -47,6 +47,10 @@ struct FriedmanTest {
 // 1 and the critical difference infinite.
 FriedmanTest friedman(std::span<const double> values, std::size_t treatments, double level);
 
+// Kendall's tau-b, corrected for ties (Kendall 1945): 1 the same order, -1 the reverse; 1 where
+// neither tells two values apart, 0 where only one does. O(n^2).
+double kendall_tau(std::span<const double> a, std::span<const double> b);
+
 // Chance that a value of `a` is larger than one of `b`, ties half: Vargha, Delaney 2000.
 double probability_of_superiority(std::span<const double> a, std::span<const double> b);
 

@@ -7,6 +7,8 @@
 #include <set>
 
 #include "foundation/error.hpp"
+#include "harness/run_files.hpp"
+#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {
@@ -44,6 +46,35 @@ std::string refusal(const std::string& toml) {
 
 constexpr const char* kAxes =
     "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"grid_alpha\", \"grid_fixed\"]\n";
+
+// A grid names a file of published figures beside itself; a run's folder holds a copy.
+TEST(Grid, TakesPublishedFiguresAlongIntoTheRunsFolder) {
+  const std::filesystem::path folder =
+      std::filesystem::path(::testing::TempDir()) / "tribench_grid_reference";
+  std::filesystem::create_directories(folder / "run");
+  const std::string figures =
+      "table,problem,published_method,kind,methods,mae,complexity,note\n"
+      "T1,A/j2/no_load,SR,symbolic,grid_alpha,0.04,15,\n";
+  write_file(folder / "published.csv", figures);
+  const std::string toml = std::string(kAxes) + "reference = \"published.csv\"\n";
+  write_file(folder / "g.toml", toml);
+  const Grid grid = load_grid(folder / "g.toml", small_registry(), Catalogue());
+  EXPECT_EQ(grid.reference, figures);
+  write_plan_files(folder / "run", grid);
+  const Grid again = load_grid(folder / "run/grid.toml", small_registry(), Catalogue());
+  EXPECT_EQ(again.reference, figures);
+  EXPECT_EQ(print_grid(again), print_grid(grid));
+  write_file(folder / "published.csv", "table\n");
+  EXPECT_THROW(load_grid(folder / "g.toml", small_registry(), Catalogue()), Error);
+  std::filesystem::remove(folder / "published.csv");
+  try {
+    load_grid(folder / "g.toml", small_registry(), Catalogue());
+    ADD_FAILURE() << "a missing file was accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("published.csv"));
+  }
+  std::filesystem::remove_all(folder);
+}
 
 TEST(Grid, CrossesProblemsMethodsSetsAndSeedsAndRunsFixedFormsOnce) {
   const Grid grid = parse(R"([grid]

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "reports/record_csv.hpp"
 #include "reports/run_reports.hpp"
 #include "tests/reports/sample_run.hpp"
 
@@ -29,6 +30,28 @@ TEST(Leaderboard, ShowsFailuresMissingCellsAndWitnesses) {
   EXPECT_THAT(text, HasSubstr("missing: `A/j4/no_load|pysr|paper|99`"));
   EXPECT_THAT(text, HasSubstr(R"(at `{"qd": 0.25}`)"));
   EXPECT_THAT(text, HasSubstr("within 1 %"));
+}
+
+TEST(Leaderboard, SaysOnItsFirstScreenWhatChangedSinceABaseRun) {
+  const auto base = fresh_folder("leaderboard_base");
+  write_sample_run(base, 2);
+  const auto now = fresh_folder("leaderboard_now");
+  write_sample_run(now, 2);
+  std::vector<Record> records = sample_records(2);
+  for (Record& record : records) {
+    if (record.cell != "A/j2/no_load|pysr|paper|1") continue;
+    record.status = "failed";
+    record.reason = "timeout";
+    record.formula.clear();
+    record.mae_test = kMissing;
+  }
+  write_file(now / "results.csv", results_csv(records));
+  const std::string head = write_run_reports(now, base);
+  EXPECT_THAT(head, HasSubstr("## What changed"));
+  EXPECT_THAT(head, HasSubstr("Since sample (tribench_reports_leaderboard_base)"));
+  EXPECT_THAT(head, HasSubstr("- `A/j2/no_load|pysr|paper|1`"));
+  EXPECT_TRUE(text_of(now / "leaderboard.md").starts_with(head));
+  EXPECT_THAT(text_of(now / "report.html"), HasSubstr(R"("newly_failed":["A/j2/no_load|pysr)"));
 }
 
 }  // namespace

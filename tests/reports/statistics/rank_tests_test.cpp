@@ -134,6 +134,18 @@ TEST(ProbabilityOfSuperiority, CountsTiesHalf) {
   EXPECT_EQ(probability_of_superiority(a, b), 3.5 / 4);
 }
 
+// Hollander and Wolfe 1973, p. 187 (tuna, as in R's cor.test): tau = 0.444.
+TEST(KendallTau, GivesTheTextbooksAnswerAndCountsTies) {
+  const std::array<double, 9> lightness = {44.4, 45.9, 41.9, 53.3, 44.7, 44.1, 50.7, 45.2, 60.1};
+  const std::array<double, 9> panel = {2.6, 3.1, 2.5, 5.0, 3.6, 4.0, 5.2, 2.8, 3.8};
+  EXPECT_NEAR(kendall_tau(lightness, panel), 4.0 / 9, 1e-12);
+  // One tie in a: 2 of 3 pairs told there, 3 in b.
+  EXPECT_NEAR(kendall_tau(std::array<double, 3>{1, 1, 2}, std::array<double, 3>{1, 2, 3}),
+              2 / std::sqrt(6.0), 1e-12);
+  EXPECT_EQ(kendall_tau(std::array<double, 2>{1, 2}, std::array<double, 2>{2, 1}), -1);
+  EXPECT_EQ(kendall_tau(std::array<double, 2>{1, 1}, std::array<double, 2>{2, 1}), 0);
+}
+
 TEST(Quantile, InterpolatesAsTypeSevenAndSurvivesInfinityAndNaN) {
   const std::array<double, 4> values = {4, 1, 3, 2};
   EXPECT_EQ(median(values), 2.5);
