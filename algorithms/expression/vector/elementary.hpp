@@ -192,11 +192,7 @@ inline F64 sine_of_reduced(F64 r) {
 inline void reduce_large_lanes(F64 x, bool half_turn, F64& r, U64& turns) {
   for (std::size_t i = 0; i < kWidth<double>; ++i) {
     const double magnitude = x[i] < 0 ? -x[i] : x[i];
-    if (!(magnitude > kLargeAngle)) continue;
-    if (magnitude == __builtin_inf()) {
-      r[i] = __builtin_nan("");
-      continue;
-    }
+    if (!(magnitude > kLargeAngle && magnitude < __builtin_inf())) continue;
     const Reduced reduced = reduce_large_angle(magnitude, half_turn);
     r[i] = reduced.rest;
     turns[i] = reduced.turns;
@@ -210,7 +206,7 @@ inline F64 sin(F64 x) {
   F64 r = fma(n, splat(-0x1.921fb54442d18p+1), x);
   r = fma(n, splat(-0x1.1a62633145c07p-53), r);
   r = fma(n, splat(0x1.f1976b7ed8fbcp-109), r);
-  if (any_above(abs(x), kLargeAngle)) [[unlikely]] {
+  if (any_finite_above(abs(x), kLargeAngle)) [[unlikely]] {
     reduce_large_lanes(x, false, r, turns);
     const U64 flip = (U64)(abs(x) > kLargeAngle) & bits(x) & kSignBit64;
     r = from_bits(bits(r) ^ flip);
@@ -228,7 +224,7 @@ inline F64 cos(F64 x) {
   F64 r = fma(q, splat(-0x1.921fb54442d18p+0), size);
   r = fma(q, splat(-0x1.1a62633145c07p-54), r);
   r = fma(q, splat(0x1.f1976b7ed8fbcp-110), r);
-  if (any_above(size, kLargeAngle)) [[unlikely]]
+  if (any_finite_above(size, kLargeAngle)) [[unlikely]]
     reduce_large_lanes(x, true, r, turns);
   const F64 y = sine_of_reduced(r);
   return from_bits(bits(y) ^ (~turns << 63));

@@ -2,7 +2,7 @@
 //
 // exp, log, sin, cos and tanh of a vector of floats: at most 2 ulp, special points and bits as in
 // elementary.hpp, whose methods these are with shorter polynomials. Angles beyond kLargeAngleF are
-// handed to the double versions.
+// reduced in double.
 #pragma once
 
 #include "algorithms/expression/vector/elementary.hpp"
@@ -73,7 +73,11 @@ inline F32 log(F32 x) {
 
 // Beyond it the quotient x / pi no longer rounds to the right integer within a thousandth.
 constexpr float kLargeAngleF = 0x1p13F;
+// Up to here two parts of pi in double leave a remainder that is right to a float; beyond, the
+// double functions do it.
+constexpr float kHugeAngleF = 0x1p40F;
 
+// f of each half in double, a float again.
 template <typename F>
 inline F32 through_double(F f, F32 x) {
   using Half = float __attribute__((vector_size(kLaneBytes / 2)));
@@ -89,10 +93,36 @@ inline F32 through_double(F f, F32 x) {
   return result;
 }
 
+// x - n pi (sin) or x - (n + 1/2) pi (cos) in [-pi/2, pi/2], its sign turned where n is odd.
+template <bool HalfTurn>
+inline F32 signed_remainder(F32 x) {
+  return through_double(
+      [](F64 v) {
+        F64 q = fma(v, splat(0x1.45f306dc9c883p-2), splat(HalfTurn ? -0.5 : 0.0)) + kRounder;
+        const U64 turns = HalfTurn ? ~bits(q) : bits(q);
+        q = q - kRounder + (HalfTurn ? 0.5 : 0.0);
+        const F64 r = fma(q, splat(-0x1.921fb54442d18p+1), v);
+        return from_bits(bits(fma(q, splat(-0x1.1a62633145c07p-53), r)) ^ (turns << 63));
+      },
+      x);
+}
+
 inline F32 sine_of_reduced(F32 r) {
   constexpr float kS[] = {-0x1.555556p-3F, 0x1.11110cp-7F, -0x1.a017d6p-13F, 0x1.717010p-19F,
                           -0x1.96p-26F};
   return sine_series(r, kS);
+}
+
+// result, with the lanes beyond kLargeAngleF replaced.
+template <bool HalfTurn>
+inline F32 with_large_angles(F32 x, F32 result) {
+  const F32 size = abs(x);
+  const F32 large = sine_of_reduced(signed_remainder<HalfTurn>(x));
+  result = size > kLargeAngleF ? large : result;
+  if (!any_finite_above(size, kHugeAngleF)) [[likely]]
+    return result;
+  const F32 huge = through_double([](F64 v) { return HalfTurn ? cos(v) : sin(v); }, x);
+  return size > kHugeAngleF ? huge : result;
 }
 
 inline F32 sin(F32 x) {
@@ -103,10 +133,9 @@ inline F32 sin(F32 x) {
   r = fma(n, splat(0x1.ee59dap-49F), r);
   const F32 y = x == 0.0F ? x : sine_of_reduced(r);
   const F32 result = from_bits(bits(y) ^ (bits(rounded) << 31));
-  if (!any_above(abs(x), kLargeAngleF)) [[likely]]
+  if (!any_finite_above(abs(x), kLargeAngleF)) [[likely]]
     return result;
-  const F32 exact = through_double([](F64 v) { return sin(v); }, x);
-  return abs(x) <= kLargeAngleF ? result : exact;
+  return with_large_angles<false>(x, result);
 }
 
 inline F32 cos(F32 x) {
@@ -118,10 +147,9 @@ inline F32 cos(F32 x) {
   r = fma(q, splat(0x1.777a5cp-25F), r);
   r = fma(q, splat(0x1.ee59dap-50F), r);
   const F32 result = from_bits(bits(sine_of_reduced(r)) ^ (~bits(rounded) << 31));
-  if (!any_above(size, kLargeAngleF)) [[likely]]
+  if (!any_finite_above(size, kLargeAngleF)) [[likely]]
     return result;
-  const F32 exact = through_double([](F64 v) { return cos(v); }, x);
-  return size <= kLargeAngleF ? result : exact;
+  return with_large_angles<true>(size, result);
 }
 
 inline F32 tanh(F32 x) {

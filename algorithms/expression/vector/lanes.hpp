@@ -86,11 +86,14 @@ inline F64 min(double bound, F64 x) { return _mm512_maskz_min_pd(0xff, splat(bou
 inline F32 min(float bound, F32 x) { return _mm512_maskz_min_ps(0xffff, splat(bound), x); }
 inline F64 max(double bound, F64 x) { return _mm512_maskz_max_pd(0xff, splat(bound), x); }
 inline F32 max(float bound, F32 x) { return _mm512_maskz_max_ps(0xffff, splat(bound), x); }
-inline bool any_above(F64 x, double bound) {  // true where NaN
-  return _mm512_cmp_pd_mask(x, splat(bound), _CMP_NLE_UQ) != 0;
+// Whether a finite lane lies above; NaN and infinities do not count.
+inline bool any_finite_above(F64 x, double bound) {
+  return _mm512_mask_cmp_pd_mask(_mm512_cmp_pd_mask(x, splat(bound), _CMP_GT_OQ), x,
+                                 splat(__builtin_inf()), _CMP_LT_OQ) != 0;
 }
-inline bool any_above(F32 x, float bound) {
-  return _mm512_cmp_ps_mask(x, splat(bound), _CMP_NLE_UQ) != 0;
+inline bool any_finite_above(F32 x, float bound) {
+  return _mm512_mask_cmp_ps_mask(_mm512_cmp_ps_mask(x, splat(bound), _CMP_GT_OQ), x,
+                                 splat(__builtin_inff()), _CMP_LT_OQ) != 0;
 }
 inline bool any_outside(F64 x, double low, double below) {  // of [low, below); true where NaN
   return (_mm512_cmp_pd_mask(x, splat(low), _CMP_NGE_UQ) |
@@ -165,11 +168,15 @@ inline F64 min(double bound, F64 x) { return _mm256_min_pd(splat(bound), x); }
 inline F32 min(float bound, F32 x) { return _mm256_min_ps(splat(bound), x); }
 inline F64 max(double bound, F64 x) { return _mm256_max_pd(splat(bound), x); }
 inline F32 max(float bound, F32 x) { return _mm256_max_ps(splat(bound), x); }
-inline bool any_above(F64 x, double bound) {
-  return _mm256_movemask_pd(_mm256_cmp_pd(x, splat(bound), _CMP_NLE_UQ)) != 0;
+inline bool any_finite_above(F64 x, double bound) {
+  return _mm256_movemask_pd(_mm256_and_pd(_mm256_cmp_pd(x, splat(bound), _CMP_GT_OQ),
+                                          _mm256_cmp_pd(x, splat(__builtin_inf()), _CMP_LT_OQ))) !=
+         0;
 }
-inline bool any_above(F32 x, float bound) {
-  return _mm256_movemask_ps(_mm256_cmp_ps(x, splat(bound), _CMP_NLE_UQ)) != 0;
+inline bool any_finite_above(F32 x, float bound) {
+  return _mm256_movemask_ps(_mm256_and_ps(_mm256_cmp_ps(x, splat(bound), _CMP_GT_OQ),
+                                          _mm256_cmp_ps(x, splat(__builtin_inff()), _CMP_LT_OQ))) !=
+         0;
 }
 inline bool any_outside(F64 x, double low, double below) {
   return _mm256_movemask_pd(_mm256_or_pd(_mm256_cmp_pd(x, splat(low), _CMP_NGE_UQ),
@@ -229,8 +236,12 @@ inline F64 max(double bound, F64 x) { return x < bound ? splat(bound) : x; }
 inline F32 max(float bound, F32 x) { return x < bound ? splat(bound) : x; }
 inline bool any(I64 mask) { return (mask[0] | mask[1]) != 0; }
 inline bool any(I32 mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
-inline bool any_above(F64 x, double bound) { return any((I64) ~(x <= bound)); }
-inline bool any_above(F32 x, float bound) { return any((I32) ~(x <= bound)); }
+inline bool any_finite_above(F64 x, double bound) {
+  return any((I64)((x > bound) & (x < __builtin_inf())));
+}
+inline bool any_finite_above(F32 x, float bound) {
+  return any((I32)((x > bound) & (x < __builtin_inff())));
+}
 inline bool any_outside(F64 x, double low, double below) {
   return any((I64) ~((x >= low) & (x < below)));
 }
