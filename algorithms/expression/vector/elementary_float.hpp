@@ -36,11 +36,12 @@ inline F32 scale(F32 y, F32 n) {
 }
 
 inline F32 exp(F32 x) {
-  const F32 y = max(-104.0F, min(89.0F, x));
+  const auto vanishes = x < -104.0F;
+  const F32 y = vanishes ? F32{} : min(89.0F, x);
   const F32 n = fma(y, splat(kLog2EF), splat(kRounderF)) - kRounderF;
   F32 r = fma(n, splat(-kLn2HighF), y);
   r = fma(n, splat(-kLn2LowF), r);
-  return scale(1.0F + fma(r * r, exp_tail(r), r), n);
+  return vanishes ? F32{} : scale(1.0F + fma(r * r, exp_tail(r), r), n);
 }
 
 inline F32 log(F32 x) {
