@@ -13,6 +13,7 @@
 #include "harness/curves.hpp"
 #include "harness/provenance.hpp"
 #include "harness/run_files.hpp"
+#include "reports/pictures.hpp"
 #include "reports/published.hpp"
 #include "reports/record_csv.hpp"
 #include "reports/run_reports.hpp"
@@ -28,6 +29,7 @@ struct MergeArguments {
 struct ReportArguments {
   std::string folder;
   std::string base;
+  std::string pictures;
 };
 
 void print_damage(const JournalContents& journal) {
@@ -66,6 +68,10 @@ void report(const ReportArguments& arguments) {
     write_curves(folder, journal.results, Catalogue());
   }
   fmt::print("{}\n", write_run_reports(folder, arguments.base));
+  if (!arguments.pictures.empty()) {
+    const std::vector<std::string> files = write_pictures(folder, arguments.pictures);
+    fmt::print("{} pictures in {}\n", files.size(), arguments.pictures);
+  }
 }
 
 }  // namespace
@@ -87,6 +93,8 @@ void add_report_command(CLI::App& app, ExitStatus& /*status*/) {
   command->add_option("folder", arguments->folder, "a run's folder")->required();
   command->add_option("--base", arguments->base,
                       "an earlier run: the first screen says what changed since then");
+  command->add_option("--pictures", arguments->pictures,
+                      "write every picture of the page as SVG into this folder (needs nodejs)");
   command->callback([arguments] { report(*arguments); });
 }
 

@@ -19,8 +19,11 @@ std::string_view font_size4();
 std::string_view page_css();
 std::string_view formula_js();
 std::string_view plots_js();
+std::string_view run_plots_js();
+std::string_view loop_plots_js();
 std::string_view common_js();
 std::string_view run_js();
 std::string_view loop_js();
+std::string_view pictures_js();
 
 }  // namespace tribench::embedded

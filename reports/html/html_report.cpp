@@ -134,8 +134,10 @@ std::string html_page(std::string_view title, PageKind kind, const nlohmann::ord
   append_script(page, embedded::katex_js());
   append_script(page, embedded::formula_js());
   append_script(page, embedded::plots_js());
+  const bool run = kind == PageKind::run;
+  append_script(page, run ? embedded::run_plots_js() : embedded::loop_plots_js());
   append_script(page, embedded::common_js());
-  append_script(page, kind == PageKind::run ? embedded::run_js() : embedded::loop_js());
+  append_script(page, run ? embedded::run_js() : embedded::loop_js());
   page += "</body>\n</html>\n";
   return page;
 }

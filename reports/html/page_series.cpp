@@ -105,6 +105,10 @@ std::vector<double> log_grid(const std::vector<const CellTrace*>& group, bool cp
       low = std::min(low, x);
       high = std::max(high, x);
     }
+    // What was found last stands until the fit ends.
+    const double end =
+        cpu ? trace->record->fit_cpu_s : static_cast<double>(trace->record->evaluations);
+    if (!trace->steps.empty() && end > high) high = end;
   }
   std::vector<double> grid;
   if (!(low <= high)) return grid;

@@ -9,6 +9,7 @@
 
 #include "reports/html/html_report.hpp"
 #include "reports/loop_report.hpp"
+#include "reports/pictures.hpp"
 #include "reports/record_csv.hpp"
 #include "reports/run_reports.hpp"
 #include "tests/reports/sample_run.hpp"
@@ -105,12 +106,28 @@ TEST(Page, DrawsEveryPictureSortsFiltersAndShowsAFormulaOnHover) {
   const json answer = asked_in_browser(folder / "report.html", R"(
     const choose = (id, value) => { const s = document.getElementById(id); s.value = value;
                                     s.dispatchEvent(new Event('change')); };
+    const drawn = async () => { window.drawEverything(); await new Promise((done) => setTimeout(done, 200)); };
     choose('choose-operators', 'paper+div');
+    const waitingBefore = [...document.querySelectorAll('.plot')].filter((p) => !p.querySelector('svg')).length;
     await new Promise((done) => setTimeout(done, 300));
+    await drawn();
     const marks = {};
     for (const plot of document.querySelectorAll('.plot')) {
       marks[plot.id] = plot.querySelectorAll('svg path, svg rect, svg line').length;
     }
+    const rows = document.getElementById('front-rows');
+    rows.open = true;
+    await new Promise((done) => setTimeout(done, 50));
+    const values = rows.querySelectorAll('tbody tr').length;
+    const chip = [...document.querySelectorAll('.chip')].find((c) => c.textContent === 'pysr');
+    const dots = () => document.querySelectorAll('#front .mark-symbol.role-mark path').length;
+    const before = dots();
+    chip.click();
+    await drawn();
+    const hidden = before - dots();
+    const pressed = chip.getAttribute('aria-pressed');
+    chip.click();
+    await drawn();
     const table = document.querySelector('table[aria-label="records"]');
     const column = (n) => [...table.querySelectorAll('tbody tr')].map((r) => r.children[n].textContent);
     const heads = [...table.querySelectorAll('th')];
@@ -130,6 +147,9 @@ TEST(Page, DrawsEveryPictureSortsFiltersAndShowsAFormulaOnHover) {
       sorted: up.every((x, i) => i === 0 || up[i - 1] <= x) && down.every((x, i) => i === 0 || down[i - 1] >= x),
       numbers: up.length, aria: heads[at].getAttribute('aria-sort'), filtered: column(5),
       hover: document.querySelectorAll('#tip .katex').length,
+      shown: document.querySelectorAll('dl.formulas .katex').length,
+      tex: formulaToTex('a + -3*b - -2*c*(-d)'), values,  hidden,
+      pressed, waiting: waitingBefore,
       requests: performance.getEntriesByType('resource').map((r) => r.name)};
   )");
   ASSERT_TRUE(answer.is_object()) << answer;
@@ -143,9 +163,36 @@ TEST(Page, DrawsEveryPictureSortsFiltersAndShowsAFormulaOnHover) {
   EXPECT_GE(answer["filtered"].size(), 1U);
   for (const json& reason : answer["filtered"]) EXPECT_EQ(reason, "crashed (SIGSEGV)");
   EXPECT_GE(answer["hover"], 1);
+  EXPECT_GE(answer["shown"], 3);
+  EXPECT_EQ(answer["tex"], "a - 3\\,b - 2\\,c\\,d");
+  EXPECT_GE(answer["values"], 4);  // as a table, for who cannot see the picture
+  EXPECT_GE(answer["hidden"], 1);  // a method's button takes its points out
+  EXPECT_EQ(answer["pressed"], "false");
+  EXPECT_GE(answer["waiting"], 5);  // not drawn before they come near the screen
   for (const json& request : answer["requests"]) {
     EXPECT_TRUE(request.get<std::string>().starts_with("data:")) << request;
   }
+}
+
+TEST(Pictures, AreWrittenAsSvgWithMarksAndNothingFromOutside) {
+  if (std::system("command -v node >/dev/null 2>&1") != 0) GTEST_SKIP() << "no node";
+  const fs::path folder = whole_run("pictures");
+  const fs::path out = folder / "pictures";
+  const std::vector<std::string> files = write_pictures(folder, out);
+  EXPECT_THAT(files, ::testing::IsSupersetOf(
+                         {"A_j2_no_load.paper+div.front.svg", "A_j2_no_load.paper.friction.svg",
+                          "A_j4_no_load.paper.profile.svg", "A_j2_no_load.paper+div.singular.svg",
+                          "all.paper.ranks.svg", "all.paper.heat.svg"}));
+  std::size_t on_disk = 0;
+  for (const auto& entry : fs::directory_iterator(out)) {
+    ++on_disk;
+    const std::string text = text_of(entry.path());
+    EXPECT_TRUE(text.starts_with("<svg xmlns=")) << entry.path();
+    EXPECT_THAT(text, HasSubstr("role=\"graphics-symbol\"")) << entry.path();
+    EXPECT_THAT(text, Not(HasSubstr("href=\"http"))) << entry.path();
+    EXPECT_THAT(text, Not(HasSubstr("NaN"))) << entry.path();
+  }
+  EXPECT_EQ(on_disk, files.size());
 }
 
 TEST(Page, OfALoopDrawsItsPictures) {

@@ -20,14 +20,23 @@ function el(tag, attributes, ...children) {
 
 const byId = (id) => document.getElementById(id);
 
-function fig(value, digits) {
+// A measured figure with so many significant digits, as leaderboard.md has it.
+function fig(value, digits = 3) {
   if (value === null || value === undefined) return "–";
   if (!isFinite(value)) return "∞";
   if (value === 0) return "0";
-  const size = Math.abs(value);
-  return size >= 1e6 || size < 1e-4 ? value.toExponential((digits || 3) - 1)
-                                     : String(Number(value.toPrecision(digits || 3)));
+  const rounded = Math.abs(Number(value.toPrecision(digits)));
+  return rounded >= 1e6 || rounded < 1e-4 ? value.toExponential(digits - 1)
+                                          : value.toFixed(Math.max(0, digits - 1 - Math.floor(Math.log10(rounded))));
 }
+
+// A count, or a figure that is shown as it was given.
+function count(value) {
+  if (value === null || value === undefined) return "–";
+  return Math.abs(value) >= 1e6 ? value.toExponential(2) : String(value);
+}
+
+const counted = (number, noun) => `${number} ${noun}${number === 1 ? "" : "s"}`;
 
 function darkTheme() { return document.documentElement.dataset.theme === "dark"; }
 
@@ -41,10 +50,16 @@ function themeButton() {
             "light / dark");
 }
 
+function inkOf() {
+  const style = getComputedStyle(document.documentElement);
+  const ink = {};
+  for (const name of ["ink", "soft", "line", "card"]) ink[name] = style.getPropertyValue("--" + name).trim();
+  return ink;
+}
+
 // Colours belong to methods through the whole page.
 function lookFor(methods, width) {
-  return {...inkOf(), dark: darkTheme(), width, methods, order: methods,
-          colors: methods.map((m, i) => kPalette[i % kPalette.length])};
+  return {...inkOf(), dark: darkTheme(), width, methods, colors: colorsOf(methods)};
 }
 
 const kHidden = new Set(["series", "x", "y", "dots", "chosen", "level", "formula", "last", "from", "to"]);
@@ -75,11 +90,14 @@ function showTip(handler, event, item, datum) {
   tip.style.top = Math.max(4, y) + "px";
 }
 
-// Draws a specification into a card; `rows` are shown as a table for those who cannot see it.
+// Draws a specification into its card.
 function draw(id, spec, options) {
   const holder = byId(id);
   if (!holder) return;
   holder.replaceChildren();
+  holder.style.minHeight = "";
+  const rows = byId(id + "-rows");
+  if (rows) rows.hidden = !spec;
   if (!spec) {
     holder.append(el("p", {class: "empty"}, (options && options.empty) || "No data for this picture."));
     return;
@@ -89,11 +107,63 @@ function draw(id, spec, options) {
   holder.setAttribute("role", "img");
   holder.setAttribute("aria-label", spec.description);
   if (options && options.onclick) view.addEventListener("click", (e, item) => item && item.datum && options.onclick(item.datum));
+  if (rows) {
+    rows.spec = spec;
+    if (rows.open) fillRows(rows);
+  }
+}
+
+// Pictures are drawn when they come near the screen: `waiting` holds those that have not.
+const waiting = new Map();
+const kNear = "300px";
+const watcher = "IntersectionObserver" in window ? new IntersectionObserver((entries) => {
+  for (const entry of entries) if (entry.isIntersecting) drawNow(entry.target.id);
+}, {rootMargin: kNear}) : null;
+
+function drawNow(id) {
+  const action = waiting.get(id);
+  if (!action) return;
+  waiting.delete(id);
+  watcher.unobserve(byId(id));
+  action();
+}
+
+function drawLater(id, action) {
+  if (!watcher) { action(); return; }
+  waiting.set(id, action);
+  watcher.unobserve(byId(id));
+  watcher.observe(byId(id));
+}
+
+window.drawEverything = () => [...waiting.keys()].forEach(drawNow);
+
+// On paper pictures have the paper's width, whatever the window's.
+let printing = false;
+function setPrinting(on) {
+  printing = on;
+  if (!window.drawAll) return;
+  window.drawAll();
+  if (on) window.drawEverything();
+}
+addEventListener("beforeprint", () => setPrinting(true));
+addEventListener("afterprint", () => setPrinting(false));
+
+// The values of a picture as a table, for who cannot see it or wants the numbers.
+function fillRows(rows) {
+  const values = rows.spec.data.flatMap((d) => d.values || []);
+  const keys = [...new Set(values.flatMap((v) => Object.keys(v)))]
+    .filter((k) => !kHidden.has(k) || k === "x" || k === "y" || k === "formula")
+    .filter((k) => values.some((v) => v[k] !== null && typeof v[k] !== "object"));
+  const columns = keys.map((k) => ({name: k, key: k, number: values.some((v) => typeof v[k] === "number"),
+    show: k === "formula" ? (r) => formulaText(r.formula) : undefined}));
+  rows.lastChild.replaceChildren(dataTable(columns, values, {label: "values of " + rows.title, limit: 200}));
 }
 
 function card(id, title, text, wide) {
+  const rows = el("details", {id: id + "-rows", class: "rows", title: title.toLowerCase()}, el("summary", {}, "values"), el("div"));
+  rows.addEventListener("toggle", () => { if (rows.open && rows.spec) fillRows(rows); });
   return el("section", {class: wide ? "card wide" : "card"}, el("h3", {}, title),
-            el("p", {}, text), el("div", {class: "plot", id}));
+            el("p", {}, text), el("div", {class: "plot", id, style: "min-height:20rem"}), rows);
 }
 
 // A formula's text, cut for a cell; the whole stands in its title.
@@ -102,14 +172,17 @@ function formulaText(text) {
   return el("code", {title: text}, short);
 }
 
-const widthOf = (id) => Math.max(260, Math.floor(byId(id).getBoundingClientRect().width) - 4);
+function widthOf(id) {
+  if (printing) return byId(id).closest(".wide") ? 700 : 360;
+  return Math.max(260, Math.floor(byId(id).getBoundingClientRect().width) - 4);
+}
 
-// columns: [{name, key, number, show}]; rows: objects. Sorts by a header's button, filters by text.
+// columns: [{name, key, number or count, show}]; rows: objects. Sorts by a header's button, filters by text.
 function dataTable(columns, rows, options) {
   const limit = (options && options.limit) || 500;
   let order = null, ascending = true, wanted = "";
   const body = el("tbody");
-  const count = el("span", {class: "soft", "aria-live": "polite"});
+  const tally = el("span", {class: "soft", "aria-live": "polite"});
   const text = (row) => columns.map((c) => String(row[c.key] ?? "")).join(" ").toLowerCase();
   const fill = () => {
     let shown = rows.filter((row) => !wanted || text(row).includes(wanted));
@@ -126,15 +199,15 @@ function dataTable(columns, rows, options) {
     body.replaceChildren(...shown.slice(0, limit).map((row) => {
       const line = el("tr", {class: row.standing === "best" ? "best" : undefined});
       for (const c of columns) {
-        line.append(el("td", {class: c.number ? "number" : undefined},
-                       c.show ? c.show(row) : c.number ? fig(row[c.key]) : String(row[c.key] ?? "")));
+        line.append(el("td", {class: c.number || c.count ? "number" : undefined},
+                       c.show ? c.show(row) : c.count ? count(row[c.key]) : c.number ? fig(row[c.key]) : String(row[c.key] ?? "")));
       }
       return line;
     }));
-    count.textContent = total > limit ? `${limit} of ${total} rows shown` : `${total} rows`;
+    tally.textContent = total > limit ? `${limit} of ${total} rows shown` : counted(total, "row");
   };
   const heads = columns.map((c) => {
-    const head = el("th", {scope: "col", class: c.number ? "number" : undefined});
+    const head = el("th", {scope: "col", class: c.number || c.count ? "number" : undefined});
     head.append(el("button", {type: "button", onclick: () => {
       ascending = order === c ? !ascending : true;
       order = c;
@@ -147,7 +220,7 @@ function dataTable(columns, rows, options) {
   const filter = el("input", {type: "search", placeholder: "filter rows", "aria-label": "filter rows of " + options.label,
                               oninput: (e) => { wanted = e.target.value.toLowerCase(); fill(); }});
   fill();
-  return el("div", {}, el("div", {class: "tools"}, filter, count),
+  return el("div", {}, el("div", {class: rows.length > 3 ? "tools" : "tools few"}, filter, tally),
             el("div", {class: "table-box"}, el("table", {"aria-label": options.label},
                el("thead", {}, el("tr", {}, heads)), body)));
 }

@@ -59,10 +59,13 @@ function formulaToTex(text) {
     ++at;
     return {tex: `${wrap(base, 4)}^{${factor().tex}}`, level: 3};
   }
+  // A piece with a minus in front knows what stands behind it, so that signs can be taken out of
+  // products and sums: 2 (-3) x is -6 x to a reader, a + (-b) is a - b.
+  const negative = (piece) => piece.negated || {tex: `-${wrap(piece, 1)}`, level: 0.5, negated: piece};
   function factor() {
     if (peek() !== "-") return power();
     ++at;
-    return {tex: `-${wrap(factor(), 2)}`, level: 0.5};
+    return negative(factor());
   }
   function product() {
     let left = factor();
@@ -71,8 +74,11 @@ function formulaToTex(text) {
       if (op !== "*" && op !== "/") return left;
       ++at;
       const right = factor();
-      left = op === "/" ? {tex: `\\frac{${left.tex}}{${right.tex}}`, level: 2}
-                        : {tex: `${wrap(left, 1)}\\,${wrap(right, 2)}`, level: 1};
+      const minus = Boolean(left.negated) !== Boolean(right.negated);
+      const a = left.negated || left, b = right.negated || right;
+      left = op === "/" ? {tex: `\\frac{${a.tex}}{${b.tex}}`, level: 2}
+                        : {tex: `${wrap(a, 1)}\\,${wrap(b, 1)}`, level: 1};
+      if (minus) left = negative(left);
     }
   }
   function sum() {
@@ -81,7 +87,9 @@ function formulaToTex(text) {
       const op = peek();
       if (op !== "+" && op !== "-") return left;
       ++at;
-      left = {tex: `${left.tex} ${op} ${wrap(product(), 1)}`, level: 0};
+      const right = product();
+      const minus = (op === "-") !== Boolean(right.negated);
+      left = {tex: `${left.tex} ${minus ? "-" : "+"} ${wrap(right.negated || right, 1)}`, level: 0};
     }
   }
   const whole = sum();

@@ -50,7 +50,7 @@ function effectsTable() {
   const rows = list(loop.effects).map((e) => ({...e, interval: list(e.params).map((p) =>
     `${p.name} = ${fig(p.value)} (${fig(p.lo)} … ${fig(p.hi)})`).join(", "),
     alias: list(e.alias).map((a) => a.family + (a.exact ? " (exactly)" : "")).join(", ")}));
-  return dataTable([{name: "order", key: "order", number: true}, {name: "effect", key: "family"},
+  return dataTable([{name: "order", key: "order", count: true}, {name: "effect", key: "family"},
     {name: "term", key: "atom", show: (r) => el("code", {}, r.atom || "")}, {name: "parameters, 95 %", key: "interval"},
     {name: "rms, " + unit, key: "rms_contribution", number: true}, {name: "p", key: "p_adj", number: true},
     {name: "evidence, nats", key: "cv_gain", number: true}, {name: "could also be", key: "alias"}], rows, {label: "effects"});
@@ -64,7 +64,7 @@ function buildLoop() {
     el("div", {class: "facts"}, fact(fig(error.mae_before), "MAE before, " + unit),
       fact(fig(error.mae_after), "MAE after, " + unit), fact(fig(error.ceiling), "noise ceiling"),
       fact(isFinite(error.closed_fraction) ? Math.round(100 * error.closed_fraction) + " %" : "–", "of the gap closed"),
-      fact(fig(error.test_movements), "held-out movements")));
+      fact(count(error.test_movements), "held-out movements")));
   byId("nav").append(el("a", {href: "#residuals"}, "residuals"), el("a", {href: "#effects"}, "effects"),
                      el("a", {href: "#model"}, "model"), el("span", {class: "push"}, themeButton()));
   byId("main").append(
@@ -81,8 +81,8 @@ function buildLoop() {
       el("div", {class: "code"}, loop.formula)) : el("p", {}, "No formula."));
   window.drawAll = drawLoop;
   drawLoop();
-  let waiting = 0;
-  addEventListener("resize", () => { clearTimeout(waiting); waiting = setTimeout(drawLoop, 150); });
+  let resized = 0;
+  addEventListener("resize", () => { clearTimeout(resized); if (!printing) resized = setTimeout(drawLoop, 150); });
   document.documentElement.dataset.ready = "yes";
 }
 

@@ -4,8 +4,7 @@
 "use strict";
 
 const allMethods = [...new Set(data.tables.flatMap((t) => t.rows.map((r) => r.method)))].sort();
-const state = {problem: data.problems[0], operators: data.operators[0]};
-const here = (row) => row.problem === state.problem && (row.operators === state.operators || row.operators === "-");
+const state = {problem: data.problems[0], operators: data.operators[0], hidden: new Set()};
 const tableHere = () => data.tables.find((t) => t.problem === state.problem && t.operators === state.operators);
 
 function chooser(key, values, label) {
@@ -20,8 +19,8 @@ function standingCell(row) {
   return el("span", {class: kind}, row.standing_text);
 }
 
-function share(count, of) {
-  return count > 0 ? el("span", {class: "bad"}, `${count}/${of}`) : "0";
+function share(number, of) {
+  return number > 0 ? el("span", {class: "bad"}, `${number}/${of}`) : "0";
 }
 
 function methodTable(table) {
@@ -33,26 +32,37 @@ function methodTable(table) {
   if (any("truth")) columns.push({name: "to the truth", key: "truth", number: true});
   if (any("relative")) columns.push({name: "relative %", key: "relative", number: true});
   columns.push(
-    {name: "complexity", key: "complexity", number: true}, {name: "CPU s", key: "cpu", number: true},
-    {name: "proved free", key: "proved", number: true, show: (r) => `${r.proved}/${r.ok}`},
-    {name: "singular", key: "refuted", number: true, show: (r) => share(r.refuted, r.ok)},
-    {name: "failed", key: "failed", number: true, show: (r) => share(r.failed, r.cells)},
-    {name: "formula of the middle seed", key: "formula", show: (r) => r.formula ? formulaElement(r.formula) : "–"});
+    {name: "complexity", key: "complexity", count: true}, {name: "CPU s", key: "cpu", number: true},
+    {name: "proved free", key: "proved", count: true, show: (r) => `${r.proved}/${r.ok}`},
+    {name: "singular", key: "refuted", count: true, show: (r) => share(r.refuted, r.ok)},
+    {name: "failed", key: "failed", count: true, show: (r) => share(r.failed, r.cells)});
   return dataTable(columns, table.rows, {label: `methods on ${table.problem}, ${table.operators}`});
+}
+
+// The formula of each method's middle seed, as mathematics.
+function formulaList(table) {
+  const lines = table.rows.filter((r) => r.formula).map((r) => el("div", {class: "line"},
+    el("dt", {}, r.method, el("span", {class: "soft"}, ` seed ${r.seed}`)),
+    el("dd", {title: r.formula, tabindex: "0"}, formulaElement(r.formula))));
+  return lines.length ? el("details", {open: "open"}, el("summary", {}, "Formulas of the middle seeds"),
+                           el("dl", {class: "formulas"}, lines)) : "";
 }
 
 function winnersTable() {
   const rows = data.tables.map((t) => {
     const best = t.rows.find((r) => r.standing === "best") || {};
-    return {problem: t.problem, operators: t.operators, method: best.method || "none", mae: best.mae,
+    return {problem: t.problem, operators: t.operators, method: best.method || "none", mae: best.mae, ceiling: t.ceiling,
             complexity: best.complexity, refuted: best.refuted || 0, ok: best.ok || 0, sure: t.certainty};
   });
-  return dataTable([
+  const columns = [
     {name: "problem", key: "problem"}, {name: "operators", key: "operators"},
     {name: "best method", key: "method", show: (r) => el("b", {}, r.method)},
-    {name: "MAE test", key: "mae", number: true}, {name: "complexity", key: "complexity", number: true},
-    {name: "singular", key: "refuted", number: true, show: (r) => share(r.refuted, r.ok)},
-    {name: "how sure", key: "sure"}], rows, {label: "who wins where"});
+    {name: "MAE test", key: "mae", number: true}];
+  if (rows.some((r) => r.ceiling !== null)) columns.push({name: "noise ceiling", key: "ceiling", number: true});
+  columns.push({name: "complexity", key: "complexity", count: true},
+    {name: "singular", key: "refuted", count: true, show: (r) => share(r.refuted, r.ok)},
+    {name: "how sure", key: "sure"});
+  return dataTable(columns, rows, {label: "who wins where"});
 }
 
 function showRecord(datum) {
@@ -64,83 +74,82 @@ function showRecord(datum) {
   }
   if (datum.formula) box.append(formulaElement(datum.formula), el("div", {class: "code"}, datum.formula));
   box.hidden = false;
+  box.scrollIntoView({block: "nearest"});
 }
 
-function drawFronts(look) {
-  const points = data.fronts.filter(here).map((f) => ({...f, x: f.complexity, y: f.mae, series: f.method}))
-    .filter((f) => f.y > 0).sort((a, b) => a.x - b.x);
-  draw("front", points.length ? frontPlot(points, look("front")) : null, {onclick: showRecord,
-    empty: "No front was written for this problem."});
+// Buttons that take methods out of every picture.
+function methodButtons() {
+  return allMethods.map((method, i) => {
+    const button = el("button", {type: "button", class: "chip", "aria-pressed": "true"},
+                      el("span", {class: "dot", style: `background:${kPalette[i % kPalette.length]}`}), method);
+    button.onclick = () => {
+      const shown = state.hidden.delete(method);
+      if (!shown) state.hidden.add(method);
+      button.setAttribute("aria-pressed", String(shown));
+      drawPictures();
+    };
+    return button;
+  });
 }
 
-function curvesOf(picture) {
-  return data.curves.filter((c) => c.picture === picture && c.problem === state.problem &&
-                            (c.method === "" || c.operators === state.operators || c.operators === "-"))
-    .flatMap((c) => c.x.map((x, i) => ({x, y: c.y[i], curve: c.curve, method: c.method || "data",
-      series: c.method + "|" + c.curve, axes: [c.x_name, c.y_name]})));
-}
+const kEmpty = {front: "No front was written for this problem.", friction: "The run holds no curves of this kind.",
+  error: "The run holds no curves of this kind.", profile: "The run holds no curves of this kind.",
+  trace_evaluations: "No trace was written.", trace_cpu: "No trace was written.",
+  singular: "No formula of this problem was found singular inside the input box."};
 
-function drawCurve(id, picture, description, look, dots) {
-  const points = curvesOf(picture);
-  if (!points.length) return draw(id, null, {empty: "The run holds no curves of this kind."});
-  const axes = points[0].axes;
-  points.forEach((p) => { delete p.axes; if (dots && p.method !== "data") p.dots = true; });
-  draw(id, curvePlot(points, look(id), axes, description));
-}
-
-function drawTrace(id, axis, look) {
-  const points = data.traces.filter((t) => here(t) && t.axis === id.slice(6)).flatMap((t) =>
-    t.x.map((x, i) => ({x, y: t.middle[i], low: t.low[i], high: t.high[i], method: t.method, series: t.method})))
-    .filter((p) => p.y > 0 && p.low > 0 && isFinite(p.high));
-  draw(id, points.length ? tracePlot(points, look(id), axis) : null, {empty: "No trace was written."});
-}
-
-function drawShares(id, list, title, description, look) {
-  const points = list.filter((s) => s.operators === state.operators)
-    .flatMap((s) => s.x.map((x, i) => ({x, y: s.share[i], method: s.method, series: s.method})));
-  draw(id, points.length ? sharePlot(points, look(id), title, description) : null);
-}
-
-function drawSingular(look) {
-  const found = data.singular.filter(here);
-  const axes = [...new Set(found.flatMap((s) => Object.keys(s.point)))].filter((a) => !a.startsWith("sgn_")).slice(0, 2);
-  const points = found.map((s) => ({...s, x: s.point[axes[0]], y: s.point[axes[1]], witness: JSON.stringify(s.point)}))
-    .filter((p) => isFinite(p.x));
-  draw("singular", points.length ? singularPlot(points, look("singular"), axes) : null,
-       {onclick: showRecord, empty: "No formula of this problem was found singular inside the input box."});
+function drawPictures() {
+  const pictures = new RunPictures(data, state);
+  for (const id of kProblemPictures.concat(kOverallPictures)) {
+    const click = id === "front" || id === "singular" ? showRecord : undefined;
+    drawLater(id, () => draw(id, pictures[id](lookFor(allMethods, widthOf(id))), {onclick: click, empty: kEmpty[id]}));
+  }
 }
 
 function drawProblem() {
-  const look = (id) => lookFor(allMethods, widthOf(id));
   const table = tableHere();
   byId("problem-title").textContent = `${state.problem}, operators ${state.operators}`;
   byId("problem-reading").textContent = table ? table.reading : "No cell of this problem has ended.";
-  byId("problem-table").replaceChildren(table ? methodTable(table) : "");
+  byId("problem-ceiling").textContent = table && table.ceiling !== null
+    ? `Noise ceiling ${fig(table.ceiling)}` + (table.law === null ? "." : `; the true law's error ${fig(table.law)}.`) : "";
+  byId("problem-table").replaceChildren(table ? methodTable(table) : "", table ? formulaList(table) : "");
   byId("record").hidden = true;
-  drawFronts(look);
-  drawCurve("friction", "friction", "Friction against velocity", look);
-  drawCurve("error", "error", "Error against velocity", look, true);
-  drawCurve("profile", "profile", "Prediction along a sinusoidal velocity profile", look);
-  drawTrace("trace-evaluations", "evaluations (node-rows)", look);
-  drawTrace("trace-cpu", "CPU seconds", look);
-  drawSingular(look);
-  drawShares("profiles", data.profiles, "error as a factor to the best of its cell",
-             "Performance profile: share of cells within a factor of the best error", look);
-  drawShares("ecdf", data.ecdf, "evaluations (node-rows)",
-             "Share of targets reached against evaluations", look);
   const ranking = data.rankings.find((r) => r.operators === state.operators);
   byId("rank-reading").textContent = ranking ? ranking.reading : "";
-  draw("ranks", ranking && ranking.methods.length > 1 ? rankPlot(ranking, look("ranks")) : null);
-  const heat = data.tables.filter((t) => t.operators === state.operators).flatMap((t) =>
-    t.rows.map((r) => ({problem: t.problem, method: r.method, ratio: r.ratio, mae: r.mae, standing: r.standing})));
-  draw("heat", heat.length ? heatPlot(heat, look("heat")) : null);
+  byId("sensitivity").replaceChildren(...sensitivityPart());
+  drawPictures();
+}
+
+function changedPart() {
+  const changed = data.changed;
+  if (!changed) return [];
+  const lists = [["newly failed", changed.newly_failed], ["fail no longer", changed.newly_fine],
+                 ["newly singular", changed.newly_singular]].filter(([, cells]) => cells.length)
+    .map(([name, cells]) => el("p", {}, name + ": ", el("code", {}, cells.slice(0, 10).join("  ") +
+      (cells.length > 10 ? `  and ${cells.length - 10} more` : ""))));
+  const rows = changed.quality.filter((r) => r.verdict === "worse" || r.verdict === "better")
+    .map((r) => ({...r, problem: r.problem || "all"}));
+  return [el("h2", {id: "changed"}, "What changed since " + changed.base),
+    el("p", {class: changed.regression ? "reading bad" : "reading"}, changed.sentence), ...lists,
+    ...(rows.length ? [dataTable([{name: "method", key: "method"}, {name: "operators", key: "operators"},
+      {name: "problem", key: "problem"}, {name: "new / base", key: "ratio", number: true},
+      {name: "lowest", key: "low", number: true}, {name: "highest", key: "high", number: true},
+      {name: "p", key: "p", number: true}, {name: "verdict", key: "verdict"}], rows, {label: "what changed"})] : [])];
+}
+
+function sensitivityPart() {
+  const found = (data.sensitivity || []).find((s) => s.operators === state.operators);
+  if (!found) return [];
+  return [el("h3", {}, "Would the ranking be another one?"), el("p", {}, found.reading),
+    dataTable([{name: "made with", key: "what"}, {name: "rankings", key: "count", count: true},
+      {name: "leader", key: "leader"}, {name: "agreement (Kendall's tau, least)", key: "tau", number: true}],
+      found.rows, {label: "sensitivity of the ranking"})];
 }
 
 function failuresPart() {
   const parts = [];
   const rows = data.failures.map((f) => ({...f, first: f.cells.join(", ")}));
   parts.push(rows.length ? dataTable([
-    {name: "method", key: "method"}, {name: "reason", key: "reason"}, {name: "cells", key: "count", number: true},
+    {name: "method", key: "method"}, {name: "reason", key: "reason"}, {name: "cells", key: "count", count: true},
     {name: "first of them", key: "first", show: (r) => el("code", {}, r.first)}], rows, {label: "failures"})
     : el("p", {}, "No cell failed."));
   if (data.missing.length) {
@@ -153,28 +162,63 @@ function failuresPart() {
 
 function referencePart() {
   if (!data.reference.length) return [];
+  const rows = data.reference.flatMap((p) => p.rows);
+  const remarks = data.reference.map((p) => el("details", {}, el("summary", {}, `${p.table}: ${p.problem}`),
+    el("ul", {}, p.remarks.map((r) => el("li", {}, r)))));
   return [el("h2", {id: "reference"}, "Published figures beside ours"),
     dataTable([{name: "table", key: "table"}, {name: "problem", key: "problem"},
-      {name: "method", key: "published_method"}, {name: "published MAE", key: "published_mae", number: true},
+      {name: "published", key: "published_method"}, {name: "its MAE", key: "published_mae", count: true},
+      {name: "its complexity", key: "published_complexity", count: true},
       {name: "ours", key: "method"}, {name: "operators", key: "operators"}, {name: "our MAE", key: "mae", number: true},
-      {name: "lowest", key: "low", number: true}, {name: "highest", key: "high", number: true},
-      {name: "published complexity", key: "published_complexity", number: true},
-      {name: "our complexity", key: "complexity", number: true}, {name: "note", key: "note"}],
-      data.reference, {label: "published figures beside ours"})];
+      {name: "over seeds", key: "low", show: (r) => r.low === null ? "" : `${fig(r.low)} … ${fig(r.high)}`},
+      {name: "noise ceiling", key: "ceiling", number: true}, {name: "true law", key: "law", number: true},
+      {name: "our complexity", key: "complexity", count: true}, {name: "singular", key: "singular", count: true}],
+      rows, {label: "published figures beside ours"}),
+    el("p", {class: "soft", style: "margin-top:.8rem"}, "What the figures say, and what is known of a difference:"), ...remarks];
 }
 
 function recordsPart() {
   const rows = data.records.rows.map((values) => Object.fromEntries(data.records.columns.map((c, i) => [c, values[i]])));
-  const number = new Set(["seed", "mae_test", "mae_train", "complexity", "nodes", "fit_cpu_s", "evaluations", "r2_test"]);
-  const columns = data.records.columns.map((c) => ({name: c, key: c, number: number.has(c),
-    show: c === "formula" ? (r) => formulaText(r.formula) : undefined}));
+  const number = new Set(["mae_test", "mae_train", "fit_cpu_s", "r2_test"]);
+  const counts = new Set(["seed", "complexity", "nodes", "evaluations"]);
+  const long = new Set(["formula", "witness", "note", "reason"]);
+  const columns = data.records.columns.map((c) => ({name: c, key: c, number: number.has(c), count: counts.has(c),
+    show: long.has(c) ? (r) => r[c] ? formulaText(r[c]) : "" : undefined}));
   const note = data.records.total > rows.length
     ? `${rows.length} of ${data.records.total} records: failed and singular ones first, then one a method; all are in results.csv.` : "";
-  return [el("p", {class: "soft"}, note), dataTable(columns, rows, {label: "records", limit: 200})];
+  const table = dataTable(columns, rows, {label: "records", limit: 200});
+  table.classList.add("records");
+  return [el("p", {class: "soft"}, note), table];
 }
 
 function fact(value, label, bad) {
   return el("div", {class: "fact"}, el("b", {class: bad ? "bad" : undefined}, value), el("span", {class: "soft"}, label));
+}
+
+function problemPart() {
+  return [el("h2", {id: "problem"}, el("span", {id: "problem-title"})),
+    el("p", {class: "reading", id: "problem-reading"}), el("p", {class: "soft", id: "problem-ceiling"}),
+    el("div", {id: "problem-table"}), el("div", {class: "card", id: "record", hidden: "hidden"}),
+    el("div", {class: "tools chips", role: "group", "aria-label": "methods in the pictures"},
+       el("span", {class: "soft"}, "in the pictures:"), ...methodButtons()),
+    el("div", {class: "grid"},
+      card("front", "Accuracy and complexity", "Each point is a formula no other beats in both; ringed: chosen; cross: singular. Hover shows the formula, click its record."),
+      card("profile", "Sinusoidal velocity profile", "What each model predicts along the profile; dashed: the true law where it is known."),
+      card("friction", "Friction against velocity", "One panel a method. Lines: the model, at three loads where the load is an input; dashed: the true law; dots: measured.", true),
+      card("error", "Error against velocity", "Prediction minus measured on test movements, one panel a method. Points beyond five times the best method's errors are cut off.", true),
+      card("trace_evaluations", "Error against evaluations", "Median over seeds of the best training error so far; band: lowest to highest."),
+      card("trace_cpu", "Error against CPU time", "The same against seconds of the fit."),
+      card("singular", "Singularities in the input box", "Points where a formula has no finite value. Hover shows the formula and the witness.", true))];
+}
+
+function overallPart() {
+  return [el("h2", {id: "overall"}, "All problems"), el("p", {class: "reading", id: "rank-reading"}),
+    el("div", {class: "grid"},
+      card("heat", "Factor to the best", "Median error divided by the best of the problem.", true),
+      card("ranks", "Mean ranks", "Bands: half a critical difference to either side. Bars at the right join what Nemenyi's test cannot tell apart at 5 %."),
+      card("profiles", "Performance profile", "Share of cells with an error within a factor of the best one of the same problem and seed; failed cells never arrive."),
+      card("ecdf", "Targets reached", "Share of targets (2, 1.5, 1.2, 1.1, 1.05 and 1.01 times the best training error of the problem and seed) reached after so many evaluations.", true)),
+    el("div", {id: "sensitivity", style: "margin-top:1rem"})];
 }
 
 function build() {
@@ -183,38 +227,22 @@ function build() {
     el("div", {class: "facts"}, fact(String(c.cells), "cells"), fact(String(c.failed), "failed", c.failed > 0),
       fact(String(c.missing), "missing", c.missing > 0), fact(String(data.problems.length), "problems"),
       fact(String(allMethods.length), "methods"), fact(c.cpu, "CPU time in fits")));
-  byId("nav").append(
-    ...[["#wins", "who wins"], ["#problem", "problem"], ["#overall", "all problems"], ["#failed", "failed"],
-        ["#records", "records"], ["#provenance", "provenance"]].map(([h, t]) => el("a", {href: h}, t)),
+  const parts = [["#wins", "who wins"], ["#problem", "problem"], ["#overall", "all problems"]];
+  if (data.reference.length) parts.push(["#reference", "published"]);
+  parts.push(["#failed", "failed"], ["#records", "records"], ["#provenance", "provenance"]);
+  byId("nav").append(...parts.map(([h, t]) => el("a", {href: h}, t)),
     el("span", {class: "push"}, chooser("problem", data.problems, "problem"),
        chooser("operators", data.operators, "operators"), themeButton()));
   byId("main").append(
-    el("h2", {id: "wins"}, "Who wins where"), winnersTable(),
-    el("h2", {id: "problem"}, el("span", {id: "problem-title"})),
-    el("p", {class: "reading", id: "problem-reading"}), el("div", {id: "problem-table"}),
-    el("div", {class: "card", id: "record", hidden: "hidden"}),
-    el("div", {class: "grid", style: "margin-top:1rem"},
-      card("front", "Accuracy and complexity", "Each point is a formula no other beats in both; ringed: chosen; cross: singular. Hover shows the formula, click its record."),
-      card("friction", "Friction against velocity", "Dashed: the true law where it is known; dots: measured."),
-      card("error", "Error against velocity", "Prediction minus measured on test movements."),
-      card("profile", "Sinusoidal velocity profile", "What each model predicts along the profile."),
-      card("trace-evaluations", "Error against evaluations", "Median over seeds of the best training error so far; band: lowest to highest."),
-      card("trace-cpu", "Error against CPU time", "The same against seconds of the fit."),
-      card("singular", "Singularities in the input box", "Points where a formula has no finite value.", true)),
-    el("h2", {id: "overall"}, "All problems"), el("p", {class: "reading", id: "rank-reading"}),
-    el("div", {class: "grid"},
-      card("heat", "Factor to the best", "Median error divided by the best of the problem.", true),
-      card("ranks", "Mean ranks", "Bars join what Nemenyi's test cannot tell apart at 5 %."),
-      card("profiles", "Performance profile", "Share of cells with an error within a factor of the best one of the same problem and seed; failed cells never arrive."),
-      card("ecdf", "Targets reached", "Share of targets (2, 1.5, 1.2, 1.1, 1.05 and 1.01 times the best training error of the problem and seed) reached after so many evaluations.", true)),
+    el("h2", {id: "wins"}, "Who wins where"), winnersTable(), ...changedPart(), ...problemPart(), ...overallPart(),
     ...referencePart(),
     el("h2", {id: "failed"}, "What failed"), ...failuresPart(),
     el("h2", {id: "records"}, "Records"), ...recordsPart(),
     el("h2", {id: "provenance"}, "Provenance"), provenanceTable(data.provenance));
-  window.drawAll = drawProblem;
+  window.drawAll = drawPictures;
   drawProblem();
-  let waiting = 0;
-  addEventListener("resize", () => { clearTimeout(waiting); waiting = setTimeout(drawProblem, 150); });
+  let resized = 0;
+  addEventListener("resize", () => { clearTimeout(resized); if (!printing) resized = setTimeout(drawPictures, 150); });
   document.documentElement.dataset.ready = "yes";
 }
 

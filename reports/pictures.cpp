@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "reports/pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "foundation/child_process.hpp"
+#include "foundation/error.hpp"
+#include "reports/html/embedded.hpp"
+#include "reports/html/page_data.hpp"
+#include "reports/record_csv.hpp"
+#include "reports/run_folder.hpp"
+#include "reports/summary.hpp"
+
+namespace tribench {
+namespace {
+
+// A file that goes with its owner.
+class ScratchFile {
+ public:
+  ScratchFile(std::filesystem::path path, const std::string& text) : path_(std::move(path)) {
+    write_file(path_, text);
+  }
+  ~ScratchFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+  std::string name() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// Runs the script in node; returns what it printed.
+std::string run_in_node(const std::string& script, const std::vector<std::string>& arguments) {
+  ChildOptions options;
+  options.command = {"node", "-"};
+  options.command.insert(options.command.end(), arguments.begin(), arguments.end());
+  try {
+    ChildProcess node(options);
+    node.write(script);
+    node.close_input();
+    std::string output;
+    std::string errors;
+    for (bool ended = false; !ended;) {
+      const ChildOutput part = node.read(1);
+      output += part.output;
+      errors += part.errors;
+      ended = part.ended;
+    }
+    if (node.wait().ok()) return output;
+    throw Error(ErrorKind::failed, fmt::format("the pictures could not be drawn: {}", errors),
+                "node");
+  } catch (const Error& error) {
+    if (error.place() == "node") throw;
+    throw Error(ErrorKind::failed, fmt::format("node cannot be started ({})", error.what()),
+                "pictures", "apt-get install nodejs");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> write_pictures(const std::filesystem::path& folder,
+                                        const std::filesystem::path& out) {
+  const RunFolder run = read_run_folder(folder);
+  const RunSummary summary = summarise(run);
+  std::filesystem::create_directories(out);
+  const ScratchFile data(
+      out / ".data.json",
+      page_data(run, summary, {})
+          .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  std::string script;
+  for (const std::string_view part : {embedded::vega_js(), embedded::plots_js(),
+                                      embedded::run_plots_js(), embedded::pictures_js()}) {
+    script += part;
+    script += '\n';
+  }
+  std::istringstream printed(run_in_node(script, {data.name(), out.string()}));
+  std::vector<std::string> files;
+  for (std::string name; std::getline(printed, name);) files.push_back(name);
+  return files;
+}
+
+}  // namespace tribench
