@@ -84,8 +84,8 @@ TrainedModel without(const TrainedModel& model, std::size_t k) {
 class Eliminator {
  public:
   Eliminator(std::span<const double* const> inputs, std::span<const double> y,
-             Denominators denominators, Budget& budget)
-      : inputs_(inputs), y_(y), denominators_(denominators), budget_(budget) {}
+             Denominators denominators, const PoleGuard* guard, Budget& budget)
+      : inputs_(inputs), y_(y), denominators_(denominators), guard_(guard), budget_(budget) {}
 
   // Fits the inner parameters from where they are; false where nothing finite comes of it.
   bool refit(TrainedModel& model, std::vector<double>* worth);
@@ -97,6 +97,7 @@ class Eliminator {
   std::span<const double* const> inputs_;
   std::span<const double> y_;
   Denominators denominators_;
+  const PoleGuard* guard_;
   Budget& budget_;
   LevenbergMarquardt minimizer_;
 };
@@ -153,6 +154,7 @@ bool Eliminator::refit(TrainedModel& model, std::vector<double>* worth) {
   Projection projection(model.structure, inputs_, y_, denominators_, budget_);
   minimizer_.minimize(projection, model.inner,
                       {.max_iterations = kRefitIterations, .function_tolerance = 1e-8});
+  if (guard_ != nullptr) guard_->clear(projection, model.inner, budget_);
   const double reached = projection.sum_squares(model.inner);
   if (!std::isfinite(reached)) return false;
   model.sum_squares = reached;
@@ -174,8 +176,8 @@ bool Eliminator::may_go(TrainedModel& model, std::size_t k) const {
 std::vector<TrainedModel> eliminate(const TrainedModel& model,
                                     std::span<const double* const> inputs,
                                     std::span<const double> y, Denominators denominators,
-                                    Budget& budget) {
-  Eliminator eliminator(inputs, y, denominators, budget);
+                                    const PoleGuard* guard, Budget& budget) {
+  Eliminator eliminator(inputs, y, denominators, guard, budget);
   std::vector<TrainedModel> path;
   TrainedModel current = model;
   std::vector<double> worth;

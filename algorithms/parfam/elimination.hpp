@@ -11,13 +11,15 @@
 #include <vector>
 
 #include "algorithms/parfam/formula.hpp"
+#include "algorithms/parfam/pole_guard.hpp"
 
 namespace tribench::parfam {
 
-// From the model as given to one of few parameters; empty without budget.
+// From the model as given to one of few parameters; empty without budget. `guard` keeps constrained
+// denominators from 0 at every step; null for the others.
 std::vector<TrainedModel> eliminate(const TrainedModel& model,
                                     std::span<const double* const> inputs,
                                     std::span<const double> y, Denominators denominators,
-                                    Budget& budget);
+                                    const PoleGuard* guard, Budget& budget);
 
 }  // namespace tribench::parfam

@@ -4,9 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <sstream>
+#include <tuple>
+#include <utility>
+
+#include "foundation/error.hpp"
 
 namespace tribench::parfam {
 namespace {
+
+// In the order of what they cost to compute and to read.
+constexpr Op kBaseFunctions[] = {Op::exp, Op::sqrt, Op::tanh, Op::cos, Op::sin, Op::log};
 
 // All multisets of `size` base functions, in the order of the list.
 void multisets(const std::vector<Op>& base, std::size_t from, int size, std::vector<Op>& current,
@@ -22,7 +31,49 @@ void multisets(const std::vector<Op>& base, std::size_t from, int size, std::vec
   }
 }
 
+[[noreturn]] void refuse_family(const std::string& text) {
+  throw_bad_input(fmt::format("'{}' is no family of ParFam", text), {},
+                  "write the output's degrees, the functions and their arguments' degrees, as in "
+                  "'2/0 exp 2/0', or the output's alone, as in '3/1'");
+}
+
+// "2/1": the degrees of a ratio.
+std::pair<int, int> parse_degrees(const std::string& part, const std::string& text) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (part.size() != 3 || !digit(part[0]) || part[1] != '/' || !digit(part[2])) {
+    refuse_family(text);
+  }
+  return {part[0] - '0', part[2] - '0'};
+}
+
 }  // namespace
+
+Family parse_family(const std::string& text) {
+  std::istringstream parts(text);
+  std::string out;
+  std::string functions;
+  std::string in;
+  std::string more;
+  parts >> out >> functions >> in >> more;
+  if (functions.empty() != in.empty() || !more.empty()) refuse_family(text);
+  Family family;
+  std::tie(family.degree_out, family.degree_out_denominator) = parse_degrees(out, text);
+  if (functions.empty()) return family;
+  std::tie(family.degree_in, family.degree_in_denominator) = parse_degrees(in, text);
+  std::istringstream names(functions);
+  for (std::string name; std::getline(names, name, ',');) {
+    const auto found = std::ranges::find(kBaseFunctions, name, op_name);
+    if (found == std::end(kBaseFunctions)) refuse_family(text);
+    family.functions.push_back(*found);
+  }
+  return family;
+}
+
+bool is_within(const Family& family, const OperatorSet& operators) {
+  const bool divides = family.degree_in_denominator + family.degree_out_denominator > 0;
+  return (!divides || operators.allows(Op::div)) &&
+         std::ranges::all_of(family.functions, [&](Op op) { return operators.allows(op); });
+}
 
 std::string describe(const Family& family) {
   if (family.functions.empty()) {

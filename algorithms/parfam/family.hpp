@@ -27,6 +27,11 @@ struct Family {
   bool operator==(const Family&) const = default;
 };
 std::string describe(const Family& family);
+// The family that "2/0 exp 2/0" names: the output's degrees, then, where there are any, the
+// functions (separated by commas) and the degrees of their arguments. Throws Error (bad_input).
+Family parse_family(const std::string& text);
+// Whether the operators have its functions and, where it has denominators, a division.
+bool is_within(const Family& family, const OperatorSet& operators);
 
 // What a grid ranges over.
 struct GridLimits {

@@ -4,6 +4,7 @@
 // beats in both error and complexity, and chooses one.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "algorithms/expression/differentiate.hpp"
@@ -21,10 +22,11 @@ enum class Choice {
 
 class Front {
  public:
-  Front(const FiniteRows& data, FitContext& context);
+  // proved_only: formulas enter only if the proof engine clears them on the input box.
+  Front(const FiniteRows& data, FitContext& context, bool proved_only);
 
-  // Takes a formula in where it keeps to the operators, is finite on the rows and, where the set
-  // demands it, proved free of singularities.
+  // Takes a formula in where it keeps to the operators, is finite on the rows and, where that is
+  // asked for, proved free of singularities: polished, or as it came where the polish loses that.
   void offer(Expression formula);
   // The front by increasing complexity and the formula chosen from it.
   FitResult result(Choice choice);
@@ -39,10 +41,15 @@ class Front {
   };
   std::size_t choose(const std::vector<const Member*>& front, Choice choice) const;
   bool is_proved(const Expression& formula) const;
+  std::optional<Member> polished(Expression formula);
+  bool is_beaten(const Member& member) const;
+  void enter(Member member);
 
   const FiniteRows& data_;
   FitContext& context_;
+  bool proved_only_;
   ConstantFitter fitter_;
+  Evaluator evaluator_;
   Differentiator differentiator_;
   std::vector<Member> members_;
   double least_ = 1e308;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "algorithms/fitting/basin_hopping.hpp"
+#include "algorithms/fitting/ipopt_minimizer.hpp"
 #include "algorithms/fitting/nlopt_minimizer.hpp"
 #include "foundation/error.hpp"
 
@@ -16,8 +17,11 @@ constexpr int kLocalIterations = 40;
 constexpr double kSameValue = 1e-4;  // relative: two starts reached the same minimum
 constexpr double kBox = 5;           // of a global search, in the scaled units
 
-constexpr std::array<std::string_view, 7> kNames = {
-    "multi_start", "basin_hopping", "mlsl", "crs2", "esch", "isres", "direct_l"};
+constexpr int kIpoptStarts = 4;  // each costs as much as some thirty of the others
+constexpr std::uint64_t kIpoptEvaluations = 150;
+
+constexpr std::array<std::string_view, 8> kNames = {
+    "multi_start", "basin_hopping", "mlsl", "crs2", "esch", "isres", "direct_l", "ipopt"};
 
 std::vector<double> random_start(std::size_t n, RandomStream& random) {
   std::vector<double> start(n);
@@ -25,42 +29,60 @@ std::vector<double> random_start(std::size_t n, RandomStream& random) {
   return start;
 }
 
-Minimum best_of_starts(Projection& projection, const InnerSearchOptions& options,
+void keep_from_poles(Projection& projection, const InnerSearchOptions& options, Minimum& minimum,
+                     Budget& budget) {
+  if (options.guard == nullptr || !std::isfinite(minimum.value)) return;
+  options.guard->clear(projection, minimum.x, budget);
+  minimum.value = projection.sum_squares(minimum.x);
+}
+
+Minimum best_of_starts(Projection& projection, const InnerSearchOptions& options, Budget& budget,
                        RandomStream random) {
   LevenbergMarquardt minimizer;
   Minimum best;
   int agreements = 0;
   for (int i = 0; i < options.starts && agreements < options.agreements; ++i) {
     std::vector<double> x = random_start(projection.inner_parameters(), random);
-    const LevenbergMarquardtResult result = minimizer.minimize(
-        projection, x, {.max_iterations = kLocalIterations, .function_tolerance = 1e-7});
-    if (!std::isfinite(result.sum_squares)) continue;
-    const bool same = std::abs(result.sum_squares - best.value) <= kSameValue * best.value;
-    agreements = same ? agreements + 1 : result.sum_squares < best.value ? 1 : agreements;
-    if (!(result.sum_squares < best.value)) continue;
-    best.x = x;
-    best.value = result.sum_squares;
+    Minimum found;
+    found.value = minimizer
+                      .minimize(projection, x,
+                                {.max_iterations = kLocalIterations, .function_tolerance = 1e-7})
+                      .sum_squares;
+    found.x = std::move(x);
+    // A constraint never lowers a minimum.
+    if (found.value < best.value) keep_from_poles(projection, options, found, budget);
+    if (!std::isfinite(found.value)) continue;
+    const bool same = std::abs(found.value - best.value) <= kSameValue * best.value;
+    agreements = same ? agreements + 1 : found.value < best.value ? 1 : agreements;
+    if (found.value < best.value) best = std::move(found);
+  }
+  return best;
+}
+
+Minimum best_of_ipopt(const Projection& projection, const InnerSearchOptions& options,
+                      const Objective& objective, MinimizeOptions settings, RandomStream random) {
+  settings.max_evaluations = kIpoptEvaluations;
+  Minimum best;
+  for (int i = 0; i < std::min(options.starts, kIpoptStarts); ++i) {
+    const std::vector<double> start = random_start(projection.inner_parameters(), random);
+    Minimum found = minimize_ipopt(objective, start, {}, {}, settings);
+    if (found.value < best.value) best = std::move(found);
   }
   return best;
 }
 
 Minimum search_globally(Projection& projection, const InnerSearchOptions& options, Budget& budget,
                         RandomStream random) {
-  NormalEquations sums;
   bool stop = false;
-  const Objective objective = [&](std::span<const double> x, std::span<double> gradient) {
-    const double value = projection.sum_squares(x);
-    stop = budget.exhausted();
-    if (gradient.empty() || !std::isfinite(value)) return value;
-    projection.normal_equations(sums);
-    for (std::size_t k = 0; k < gradient.size(); ++k) gradient[k] = 2 * sums.gradient[k];
-    return value;
-  };
+  const Objective objective = projected_objective(projection, budget, stop);
   MinimizeOptions settings;
   settings.max_evaluations = static_cast<std::uint64_t>(options.evaluations);
   settings.value_tolerance = 1e-9;
   settings.seed = random.next() >> 33;
   settings.stop = &stop;
+  if (options.optimizer == Optimizer::ipopt) {
+    return best_of_ipopt(projection, options, objective, settings, random);
+  }
   const std::size_t n = projection.inner_parameters();
   const std::vector<double> start = random_start(n, random);
   if (options.optimizer != Optimizer::basin_hopping) {
@@ -111,9 +133,10 @@ std::optional<TrainedModel> search_family(const Structure& structure,
   if (projection.inner_parameters() == 0) {
     best.value = projection.sum_squares({});
   } else if (options.optimizer == Optimizer::multi_start) {
-    best = best_of_starts(projection, options, random);
+    best = best_of_starts(projection, options, budget, random);
   } else {
     best = search_globally(projection, options, budget, random);
+    keep_from_poles(projection, options, best, budget);
   }
   if (!std::isfinite(best.value)) return std::nullopt;
   const double value = projection.sum_squares(best.x);

@@ -10,6 +10,8 @@
 
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/basin_hopping.hpp"
+#include "algorithms/fitting/bfgs.hpp"
+#include "algorithms/fitting/ipopt_minimizer.hpp"
 #include "algorithms/fitting/nlopt_minimizer.hpp"
 #include "algorithms/parfam/published_formula.hpp"
 
@@ -111,6 +113,7 @@ class PublishedSearch {
 std::vector<Family> PublishedSearch::grid() const {
   GridLimits limits = options_.big ? big_grid() : small_grid();
   std::erase_if(limits.base_functions, [&](Op op) { return !context_.operators.allows(op); });
+  if (options_.family) return {*options_.family};
   if (!context_.operators.allows(Op::div)) {
     limits.degree_in_denominator = 0;
     limits.degree_out_denominator = 0;
@@ -133,20 +136,22 @@ Minimum PublishedSearch::minimize(const Objective& objective, std::size_t parame
                                   RandomStream random) {
   std::vector<double> start(parameters);
   for (double& value : start) value = random.normal();
-  MinimizeOptions settings;
-  settings.max_evaluations =
-      static_cast<std::uint64_t>(options_.iterations_per_input) * data_.columns.size();
-  settings.value_tolerance = 1e-10;
-  settings.seed = random.next() >> 33;
-  settings.stop = &stop_;
+  const int iterations = options_.iterations_per_input * static_cast<int>(data_.columns.size());
   if (options_.optimizer != Optimizer::basin_hopping &&
       options_.optimizer != Optimizer::multi_start) {
-    settings.max_evaluations *= static_cast<std::uint64_t>(options_.hops + 1);
+    MinimizeOptions settings;
+    settings.max_evaluations = static_cast<std::uint64_t>(iterations * (options_.hops + 1));
+    settings.value_tolerance = 1e-10;
+    settings.seed = random.next() >> 33;
+    settings.stop = &stop_;
+    if (options_.optimizer == Optimizer::ipopt) {
+      return minimize_ipopt(objective, start, {}, {}, settings);
+    }
     const Bounds box{std::vector<double>(parameters, -kBox), std::vector<double>(parameters, kBox)};
     return minimize_nlopt(nlopt_method(options_.optimizer), objective, start, box, settings);
   }
   const LocalMinimizer local = [&](std::span<const double> x) {
-    return minimize_nlopt(NloptMethod::lbfgs, objective, x, {}, settings);
+    return minimize_bfgs(objective, x, {.max_iterations = iterations, .stop = &stop_});
   };
   if (options_.optimizer == Optimizer::multi_start) {
     Minimum best = local(start);
@@ -201,7 +206,8 @@ std::optional<std::vector<double>> PublishedSearch::refit(const std::vector<doub
   std::vector<double> start;
   for (std::size_t place : places) start.push_back(theta[place]);
   MinimizeOptions settings;
-  settings.max_evaluations = static_cast<std::uint64_t>(options_.finetuning_iterations) * 5 / 4;
+  settings.max_evaluations =
+      static_cast<std::uint64_t>(options_.finetuning_steps * options_.finetuning_step_evaluations);
   settings.stop = &stop_;
   const Minimum minimum = minimize_nlopt(NloptMethod::lbfgs, objective, start, {}, settings);
   if (!std::isfinite(minimum.value)) return std::nullopt;
@@ -233,6 +239,9 @@ void PublishedSearch::finetune(RandomStream random) {
 
 FitResult PublishedSearch::run() {
   if (data_.rows() == 0) return FitResult::unsupported("there is no row without missing values");
+  if (options_.family && !is_within(*options_.family, context_.operators)) {
+    return FitResult::unsupported("the operators do not have what the family needs");
+  }
   if (std::ranges::all_of(data_.target, [](double y) { return y == 0; })) {
     return {{Expression::constant(0)}, 0, StopReason::converged, "the target is 0 throughout"};
   }

@@ -18,8 +18,10 @@ class ParFam : public Regressor {
       published_.optimizer = search_.inner.optimizer;
     }
     search_.inner.starts = static_cast<int>(parameters.integer("starts"));
-    search_.inner.denominators =
-        parameters.text("denominators") == "safe" ? Denominators::safe : Denominators::free;
+    search_.inner.denominators = parameters.text("denominators") == "safe" ? Denominators::safe
+                                 : parameters.text("denominators") == "constrained"
+                                     ? Denominators::constrained
+                                     : Denominators::free;
     search_.polynomial_degree = static_cast<int>(parameters.integer("polynomial_degree"));
     search_.functions = static_cast<int>(parameters.integer("functions"));
     search_.sample_rows = static_cast<std::size_t>(parameters.integer("sample_rows"));
@@ -28,6 +30,10 @@ class ParFam : public Regressor {
     search_.choice = choice == "bic"                  ? parfam::Choice::bic
                      : choice == "description_length" ? parfam::Choice::description_length
                                                       : parfam::Choice::cross_validation;
+    if (!parameters.text("family").empty()) {
+      search_.family = parfam::parse_family(parameters.text("family"));
+      published_.family = search_.family;
+    }
     published_.big = parameters.text("grid") == "big";
   }
 
@@ -50,12 +56,17 @@ std::vector<ParameterSpec> specs() {
   return {
       text("mode", "ours: projected and sparse; original: as published", "ours",
            {"ours", "original"}),
+      text("optimizer", "global search; default: multi_start in ours, basin_hopping in original",
+           "default",
+           {"default", "multi_start", "basin_hopping", "mlsl", "crs2", "esch", "isres", "direct_l",
+            "ipopt"}),
       text(
-          "optimizer", "global search; default: multi_start in ours, basin_hopping in original",
-          "default",
-          {"default", "multi_start", "basin_hopping", "mlsl", "crs2", "esch", "isres", "direct_l"}),
-      text("denominators", "safe: 1 + q^2, without poles; free: 1 + q (mode ours)", "safe",
-           {"safe", "free"}),
+          "denominators",
+          "safe: 1 + q^2, without poles; constrained: 1 + q kept from 0 by Ipopt and proved; free: "
+          "1 + q (mode ours)",
+          "safe", {"safe", "constrained", "free"}),
+      text("family",
+           "the only family that is searched, as in '2/0 exp 2/0' or '3/0'; empty: a grid", "", {}),
       text("choice", "how the formula is chosen from the front (mode ours)", "bic",
            {"bic", "description_length", "cross_validation"}),
       text("grid", "small: 51 families; big: 589 (mode original)", "small", {"small", "big"}),

@@ -306,4 +306,16 @@ std::vector<double> Projection::joint_curvature() {
   return curvature;
 }
 
+Objective projected_objective(Projection& projection, const Budget& budget, bool& stop) {
+  return
+      [&, sums = NormalEquations()](std::span<const double> x, std::span<double> gradient) mutable {
+        const double value = projection.sum_squares(x);
+        stop = budget.exhausted();
+        if (gradient.empty() || !std::isfinite(value)) return value;
+        projection.normal_equations(sums);
+        for (std::size_t k = 0; k < gradient.size(); ++k) gradient[k] = 2 * sums.gradient[k];
+        return value;
+      };
+}
+
 }  // namespace tribench::parfam

@@ -7,7 +7,8 @@
 //   f = sum_k c_k m_k(x, g_1(u_1), ...) / D(x, g),   u_i = N_i(x) / D_i(x)
 //
 // Denominators: `safe` ones are 1 + q^2 with q the polynomial, positive by construction; `free`
-// ones are 1 + q without q's constant, and may have poles.
+// ones are 1 + q without q's constant, and may have poles; `constrained` ones are free ones that
+// pole_guard.hpp keeps from 0.
 //
 // Source: Golub & Pereyra 1973 with Kaufman's approximation 1975 of the projected Jacobian, from
 // the normal equations of scaled columns; a column that depends on those before it (to 1e-11 of
@@ -20,12 +21,13 @@
 
 #include "algorithms/budget.hpp"
 #include "algorithms/fitting/levenberg_marquardt.hpp"
+#include "algorithms/fitting/objective.hpp"
 #include "algorithms/parfam/base_functions.hpp"
 #include "algorithms/parfam/monomial_columns.hpp"
 
 namespace tribench::parfam {
 
-enum class Denominators { safe, free };
+enum class Denominators { safe, free, constrained };
 
 // Keeps its workspace. One per thread.
 class Projection : public LeastSquaresProblem {
@@ -102,5 +104,9 @@ class Projection : public LeastSquaresProblem {
   std::vector<double> cross_;
   std::vector<double> values_;
 };
+
+// The sum of squares as a general minimiser wants it. `stop` is set when the budget is spent; all
+// three must outlive the objective.
+Objective projected_objective(Projection& projection, const Budget& budget, bool& stop);
 
 }  // namespace tribench::parfam

@@ -97,7 +97,17 @@ class Search {
         data_(context.data),
         all_(scale_rows(data_, context.data.inputs)),
         sample_(sample_rows(all_, options.sample_rows)),
-        front_(data_, context) {}
+        front_(data_, context,
+               options.inner.denominators == Denominators::constrained ||
+                   context.operators.proved_free_only()) {
+    if (options.inner.denominators != Denominators::constrained) return;
+    const auto guard_of = [&](const ScaledRows& rows) {
+      return PoleGuard(context.data.inputs, rows.scales, rows.pointers, rows.rows(),
+                       context.operators);
+    };
+    guard_.emplace(guard_of(all_));
+    sample_guard_.emplace(guard_of(sample_));
+  }
 
   FitResult run();
 
@@ -114,6 +124,8 @@ class Search {
   ScaledRows all_;
   ScaledRows sample_;
   Front front_;
+  std::optional<PoleGuard> guard_;  // of constrained denominators, on all rows
+  std::optional<PoleGuard> sample_guard_;
 };
 
 void Search::add_polynomials() {
@@ -147,6 +159,7 @@ void Search::add_polynomials() {
 
 // Base functions in the order of what they cost to compute and to read.
 std::vector<Family> Search::families() const {
+  if (options_.family) return {*options_.family};
   GridLimits limits;
   limits.base_functions.clear();
   for (Op op : {Op::exp, Op::sqrt, Op::tanh, Op::cos, Op::sin, Op::log}) {
@@ -166,6 +179,7 @@ std::vector<Structure> Search::structures() const {
   std::vector<int> caps = all_.caps;
   for (int& cap : caps) cap = std::min(cap, kMaximalPotence);
   std::vector<Structure> result;
+  const bool one_plus_q = options_.inner.denominators != Denominators::safe;
   for (const Family& family : families()) {
     Structure structure = make_structure(family, caps);
     for (std::size_t i = 0; i < structure.functions.size(); ++i) {
@@ -173,11 +187,11 @@ std::vector<Structure> Search::structures() const {
       if (structure.functions[i] == Op::exp && structure.denominators[i].empty()) {
         structure.numerators[i].erase(structure.numerators[i].begin());
       }
-      if (options_.inner.denominators == Denominators::free && !structure.denominators[i].empty()) {
+      if (one_plus_q && !structure.denominators[i].empty()) {
         structure.denominators[i].erase(structure.denominators[i].begin());
       }
     }
-    if (options_.inner.denominators == Denominators::free && !structure.out_denominator.empty()) {
+    if (one_plus_q && !structure.out_denominator.empty()) {
       structure.out_denominator.erase(structure.out_denominator.begin());
     }
     if (structure.inner_parameters() + structure.out_denominator.size() > kMostInner) continue;
@@ -202,10 +216,12 @@ void Search::add_families() {
   const std::uint64_t share = context_.budget.remaining() / 2 / grid.size();
   for (std::size_t i = 0; i < grid.size(); ++i) shares.push_back(context_.budget.share(share));
   const RandomStream random = context_.random.split("families");
+  InnerSearchOptions inner = options_.inner;
+  inner.guard = sample_guard_ ? &*sample_guard_ : nullptr;
 #pragma omp parallel for schedule(dynamic) num_threads(context_.threads)
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    found[i] = search_family(grid[i], sample_.pointers, sample_.target, options_.inner, shares[i],
-                             random.split(i));
+    found[i] =
+        search_family(grid[i], sample_.pointers, sample_.target, inner, shares[i], random.split(i));
   }
   for (const Budget& part : shares) context_.budget.settle(part);
   double squares = 0;
@@ -222,8 +238,10 @@ void Search::add_families() {
 }
 
 void Search::add_path(const TrainedModel& model) {
-  for (const TrainedModel& step :
-       eliminate(model, all_.pointers, all_.target, options_.inner.denominators, context_.budget)) {
+  const Denominators denominators = options_.inner.denominators;
+  for (TrainedModel& step : eliminate(model, all_.pointers, all_.target, denominators,
+                                      guard_ ? &*guard_ : nullptr, context_.budget)) {
+    if (guard_ && !guard_->make_proved(step, all_.target, context_.budget)) continue;
     front_.offer(formula_of(step, all_.scales, options_.inner.denominators, context_.operators));
   }
 }
@@ -232,6 +250,9 @@ FitResult Search::run() {
   if (data_.rows() == 0) return FitResult::unsupported("there is no row without missing values");
   if (!context_.operators.allows(Op::add) || !context_.operators.allows(Op::mul)) {
     return FitResult::unsupported("ParFam needs + and *");
+  }
+  if (options_.family && !is_within(*options_.family, context_.operators)) {
+    return FitResult::unsupported("the operators do not have what the family needs");
   }
   front_.offer(build::constant(0));
   add_polynomials();

@@ -13,6 +13,7 @@ namespace tribench::parfam {
 
 struct SearchOptions {
   InnerSearchOptions inner;
+  std::optional<Family> family;  // the only one that is searched, where given
   int polynomial_degree = 5;
   int functions = 1;              // at once
   std::size_t sample_rows = 500;  // for the search over families

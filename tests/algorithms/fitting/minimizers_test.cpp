@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "algorithms/fitting/basin_hopping.hpp"
+#include "algorithms/fitting/bfgs.hpp"
 #include "algorithms/fitting/ipopt_minimizer.hpp"
 #include "algorithms/fitting/nlopt_minimizer.hpp"
 #include "foundation/error.hpp"
@@ -67,6 +68,50 @@ TEST(Nlopt, LocalMethodsSolveRosenbrock) {
     EXPECT_NEAR(minimum.x[0], 1, 1e-4) << nlopt_method_name(method);
     EXPECT_GT(minimum.evaluations, 5U);
   }
+}
+
+TEST(Bfgs, SolvesRosenbrockFromTheClassicalStartAndSaysSo) {
+  const std::vector<double> start = {-1.2, 1};
+  const Minimum minimum = minimize_bfgs(rosenbrock, start);
+  EXPECT_EQ(minimum.status, MinimizeStatus::converged);
+  EXPECT_NEAR(minimum.x[0], 1, 1e-5);
+  EXPECT_NEAR(minimum.x[1], 1, 1e-5);
+  EXPECT_LT(minimum.evaluations, 60U);
+}
+
+TEST(Bfgs, EndsAQuadraticAfterAsManyStepsAsDimensions) {
+  // Exact line searches would need 5; a Wolfe search a few more.
+  const Objective bowl = [](std::span<const double> x, std::span<double> gradient) {
+    double sum = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double weight = std::pow(10.0, static_cast<double>(i));
+      sum += weight * x[i] * x[i];
+      if (!gradient.empty()) gradient[i] = 2 * weight * x[i];
+    }
+    return sum;
+  };
+  const std::vector<double> start = {1, 1, 1, 1, 1};
+  const Minimum minimum = minimize_bfgs(bowl, start);
+  EXPECT_EQ(minimum.status, MinimizeStatus::converged);
+  EXPECT_LT(minimum.value, 1e-10);
+  EXPECT_LT(minimum.evaluations, 60U);
+}
+
+TEST(Bfgs, ReportsAKinkALimitAndAStartThatIsNotFinite) {
+  const Objective kink = [](std::span<const double> x, std::span<double> gradient) {
+    if (!gradient.empty()) gradient[0] = x[0] > 0 ? 1 : -1;
+    return std::abs(x[0]);
+  };
+  const std::vector<double> one = {1.3};
+  const Minimum at_kink = minimize_bfgs(kink, one);
+  EXPECT_EQ(at_kink.status, MinimizeStatus::failed);
+  EXPECT_LE(at_kink.value, 1.3);
+  const std::vector<double> start = {-1.2, 1};
+  EXPECT_EQ(minimize_bfgs(rosenbrock, start, {.max_iterations = 3}).status, MinimizeStatus::limit);
+  const bool stop = true;
+  EXPECT_EQ(minimize_bfgs(rosenbrock, start, {.stop = &stop}).status, MinimizeStatus::limit);
+  const Objective nowhere = [](std::span<const double>, std::span<double>) { return NAN; };
+  EXPECT_EQ(minimize_bfgs(nowhere, start).status, MinimizeStatus::failed);
 }
 
 TEST(Nlopt, GlobalMethodsFindTheGlobalMinimumAndRepeatIt) {

@@ -7,6 +7,7 @@
 
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/expression/text.hpp"
+#include "foundation/error.hpp"
 
 namespace tribench::parfam {
 namespace {
@@ -50,6 +51,21 @@ TEST(Family, EnforceKeepsOnlyMonomialsWithAFunction) {
   const Structure structure = make_structure({1, 0, 2, 0, {Op::exp}, true}, caps);
   // 1, x, g, x^2, x g  ->  g, x g
   EXPECT_EQ(structure.out_numerator, (std::vector<Monomial>{{0, 1}, {1, 1}}));
+}
+
+TEST(Family, IsReadFromItsText) {
+  EXPECT_EQ(parse_family("2/0 exp 2/1"), (Family{2, 1, 2, 0, {Op::exp}, false}));
+  EXPECT_EQ(parse_family("1/1 cos,sqrt 1/0"), (Family{1, 0, 1, 1, {Op::cos, Op::sqrt}, false}));
+  EXPECT_EQ(parse_family("3/0"), (Family{0, 0, 3, 0, {}, false}));
+  for (const char* text : {"", "3", "3/0 exp", "2/0 gamma 2/0", "2/0 exp 2/0 1", "a/0"}) {
+    EXPECT_THROW(parse_family(text), Error) << text;
+  }
+}
+
+TEST(Family, IsWithinTheOperatorsThatItNeeds) {
+  EXPECT_TRUE(is_within(parse_family("2/0 exp 2/0"), find_operator_set("paper")));
+  EXPECT_FALSE(is_within(parse_family("2/1 exp 2/0"), find_operator_set("paper")));
+  EXPECT_FALSE(is_within(parse_family("2/0 cos 2/0"), find_operator_set("paper+div")));
 }
 
 TEST(Grid, HasThePublishedSizes) {

@@ -199,6 +199,76 @@ TEST(ParFam, KeepsToItsOperatorsAndItsProofs) {
   }
 }
 
+// A hyperbola whose pole lies in the input box and beyond the rows: a free denominator takes it.
+Sample hyperbola() {
+  Sample sample({{"x", "-", Role::none, -1, 1, {}}});
+  RandomStream random(5);
+  for (int r = 0; r < 40; ++r) {
+    const double x = -0.5 + r / 39.0;
+    sample.columns[0].push_back(x);
+    sample.target.push_back(x / (x - 0.8) + 0.01 * random.normal());
+  }
+  return sample;
+}
+
+std::size_t count_divisions(const Expression& formula) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(formula.nodes(), [](const Node& node) { return node.op == Op::div; }));
+}
+
+TEST(ParFam, OnlyFreeDenominatorsHavePoles) {
+  const InputBox box = {{-1, 1, {}}};
+  for (const char* denominators : {"safe", "constrained", "free"}) {
+    Sample sample = hyperbola();
+    const FitResult result = run_fit(sample.data(), "parfam",
+                                     {.parameters = {{"denominators", std::string(denominators)},
+                                                     {"functions", std::int64_t{0}}},
+                                      .operators = "paper+div"});
+    std::size_t refuted = 0;
+    std::size_t divisions = 0;
+    for (const Expression& formula : result.front) {
+      divisions += count_divisions(formula);
+      refuted += prove_free(formula, box).verdict == Verdict::proved_free ? 0 : 1;
+    }
+    EXPECT_GT(divisions, 0U) << denominators;
+    if (std::string(denominators) == "free") {
+      EXPECT_GT(refuted, 0U);
+    } else {
+      EXPECT_EQ(refuted, 0U) << denominators;
+    }
+  }
+}
+
+TEST(ParFam, ConstrainedDenominatorsFindARatioThatIsNoSquare) {
+  // 1 + 0.8 x is above 0 on the box, and no 1 + q^2.
+  Sample sample({{"x", "-", Role::none, -1, 1, {}}});
+  for (int r = 0; r < 60; ++r) {
+    const double x = -1 + 2.0 * r / 59;
+    sample.columns[0].push_back(x);
+    sample.target.push_back((1 - 2 * x) / (1 + 0.8 * x));
+  }
+  const FitResult result = run_fit(
+      sample.data(), "parfam",
+      {.parameters = {{"denominators", std::string("constrained")}, {"functions", std::int64_t{0}}},
+       .operators = "paper+div"});
+  EXPECT_LT(mean_absolute_error(result.front.at(result.chosen), sample.data(), sample.target), 1e-8)
+      << print(result.front[result.chosen], std::vector<std::string>{"x"});
+}
+
+TEST(ParFam, SearchesOneFamilyWhereItIsGiven) {
+  Sample sample = sample_of("x*exp(-0.5*y^2)", {"x", "y"}, 80);
+  for (const char* mode : {"ours", "original"}) {
+    const FitResult result = run_fit(
+        sample.data(), "parfam",
+        {.parameters = {{"mode", std::string(mode)}, {"family", std::string("1/0 exp 2/0")}}});
+    ASSERT_FALSE(result.front.empty());
+    const FitResult refused = run_fit(
+        sample.data(), "parfam",
+        {.parameters = {{"mode", std::string(mode)}, {"family", std::string("1/0 cos 2/0")}}});
+    EXPECT_EQ(refused.reason, StopReason::unsupported);
+  }
+}
+
 TEST(ParFam, SpendsNoMoreThanItsBudgetAndStillAnswers) {
   const Problem problem = Catalogue().find("A/j2/load").make(1);
   const Training training(problem);
@@ -213,7 +283,7 @@ TEST(ParFam, SpendsNoMoreThanItsBudgetAndStillAnswers) {
 TEST(ParFam, EveryOptimiserSearches) {
   Sample sample = sample_of("x*exp(-0.5*y^2)", {"x", "y"}, 60);
   for (const char* optimizer :
-       {"multi_start", "basin_hopping", "mlsl", "crs2", "esch", "isres", "direct_l"}) {
+       {"multi_start", "basin_hopping", "mlsl", "crs2", "esch", "isres", "direct_l", "ipopt"}) {
     const FitResult result =
         run_fit(sample.data(), "parfam", {.parameters = {{"optimizer", std::string(optimizer)}}});
     EXPECT_LT(mean_absolute_error(result.front.at(result.chosen), sample.data(), sample.target),
