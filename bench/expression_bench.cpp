@@ -8,6 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -15,6 +16,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <vector>
 
@@ -140,6 +142,54 @@ void interpreter(benchmark::State& state) {
              std::string(vector_level_name(level)));
 }
 
+// Seconds of the wall that `threads` threads take for all trees, several times over; each thread
+// has its own evaluator and takes every threads-th tree. last_values[k] is of tree k.
+double seconds_of(const Trees& trees, const Table<double>& table, std::size_t threads,
+                  std::vector<double>& last_values) {
+  constexpr int kRounds = 10;
+  const auto work = [&](std::size_t first) {
+    Evaluator evaluator;
+    std::vector<double> out(table.inputs.rows);
+    for (int round = 0; round < kRounds; ++round) {
+      for (std::size_t k = first; k < trees.formulas.size(); k += threads) {
+        evaluator.evaluate(trees.formulas[k], table.inputs, out);
+        if (round + 1 == kRounds) last_values[k] = out.back();
+      }
+    }
+  };
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<std::thread> others;
+  for (std::size_t t = 1; t < threads; ++t) others.emplace_back(work, t);
+  work(0);
+  for (std::thread& other : others) other.join();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// One thread and several in turn, so that a machine that slows down slows both; `speedup` is the
+// ratio of the shortest turns. Time is the wall's: nothing else may run.
+void scaling(benchmark::State& state) {
+  const Trees& trees = trees_of(static_cast<int>(state.range(0)));
+  const auto rows = static_cast<std::size_t>(state.range(1));
+  const auto threads = static_cast<std::size_t>(state.range(2));
+  if (threads > std::thread::hardware_concurrency()) {
+    return state.SkipWithError("this machine has fewer processors");
+  }
+  const Table<double> table(rows);
+  std::vector<double> alone(kTrees);
+  std::vector<double> together(kTrees);
+  double shortest_alone = 1e300;
+  double shortest_together = 1e300;
+  for (auto _ : state) {
+    shortest_alone = std::min(shortest_alone, seconds_of(trees, table, 1, alone));
+    const double seconds = seconds_of(trees, table, threads, together);
+    shortest_together = std::min(shortest_together, seconds);
+    state.SetIterationTime(seconds);
+  }
+  if (!same_bits(alone, together)) throw std::runtime_error("threads change the result");
+  state.counters["speedup"] = shortest_alone / shortest_together;
+  state.SetLabel(name_of(static_cast<int>(state.range(0))));
+}
+
 // Formulas evaluated again and again: kTurns times each, with constants handed in every time.
 constexpr int kTurns = 8;
 constexpr std::size_t kCompiled = 200;
@@ -217,9 +267,23 @@ void lower_levels(benchmark::internal::Benchmark* bench) {
   }
 }
 
+void scaling_cases(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"set", "rows", "threads"});
+  for (const int threads : {2, 4, 8, 16}) {
+    for (const int choice : {kArithmetic, kWithAll}) {
+      for (const int rows : {200, 1000, 5000}) bench->Args({choice, rows, threads});
+    }
+  }
+}
+
 BENCHMARK(interpreter<double>)->Apply(every_case)->Unit(benchmark::kMicrosecond);
 BENCHMARK(interpreter<float>)->Apply(every_case)->Unit(benchmark::kMicrosecond);
 BENCHMARK(interpreter<double>)->Apply(lower_levels)->Unit(benchmark::kMicrosecond);
+BENCHMARK(scaling)
+    ->Apply(scaling_cases)
+    ->UseManualTime()
+    ->MinTime(0.3)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(compiled<double>)->Apply(compiled_cases)->Unit(benchmark::kMicrosecond);
 BENCHMARK(compiled<float>)->Apply(compiled_cases)->Unit(benchmark::kMicrosecond);
 BENCHMARK(compiling)
