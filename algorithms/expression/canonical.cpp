@@ -6,10 +6,10 @@
 #include <cmath>
 #include <tuple>
 
+#include "algorithms/expression/evaluate.hpp"
+
 namespace tribench {
 namespace {
-
-constexpr double kMaxExponent = 64;  // what the evaluator computes as a product
 
 // SplitMix64's finaliser (Steele, Lea, Flood 2014).
 std::uint64_t mix(std::uint64_t x) {
@@ -27,33 +27,10 @@ std::uint64_t bits_of(double value) { return std::bit_cast<std::uint64_t>(value 
 // Any constant but 1 (or 0 added) is the same to the shape.
 std::uint64_t shape_of(double value, double neutral) { return value == neutral ? 1 : 2; }
 
-bool is_small_integer(double x) { return std::abs(x) <= kMaxExponent && x == std::floor(x); }
-
 // Whether a product of constants can be folded: neither overflows nor underflows to 0.
 bool folds(double a, double b) {
   const double product = a * b;
   return std::isfinite(product) && (product != 0 || a == 0 || b == 0);
-}
-
-double apply_to(Op op, double a) {
-  switch (op) {
-    case Op::exp:
-      return std::exp(a);
-    case Op::log:
-      return std::log(a);
-    case Op::sqrt:
-      return std::sqrt(a);
-    case Op::abs:
-      return std::abs(a);
-    case Op::sgn:
-      return a > 0 ? 1 : (a < 0 ? -1 : 0);
-    case Op::sin:
-      return std::sin(a);
-    case Op::cos:
-      return std::cos(a);
-    default:
-      return std::tanh(a);
-  }
 }
 
 }  // namespace
@@ -243,7 +220,8 @@ bool Canonicalizer::add_product_factors(const Item& product, int exponent, doubl
   if (product.value != 1 && !folds(coefficient, scale)) return false;
   for (std::uint32_t p = product.first; p < product.first + product.count; ++p) {
     const double number = parts_[p].number * exponent;
-    if (std::abs(number) > kMaxExponent || (exponent != 1 && parts_[p].number < 0)) return false;
+    if (std::abs(number) > kLargestProductPower || (exponent != 1 && parts_[p].number < 0))
+      return false;
   }
   coefficient *= scale;
   for (std::uint32_t p = product.first; p < product.first + product.count; ++p) {
@@ -284,7 +262,7 @@ void Canonicalizer::merge_factors() {
     if (kept > 0 && same_base(scratch_[kept - 1], part)) {
       Part& last = scratch_[kept - 1];
       const bool same_side = (last.number > 0) == (part.number > 0);
-      if (std::abs(last.number + part.number) <= kMaxExponent &&
+      if (std::abs(last.number + part.number) <= kLargestProductPower &&
           (same_side || is_non_zero(part.item))) {
         last.number += part.number;
         continue;
@@ -352,27 +330,7 @@ std::uint32_t Canonicalizer::scaled(std::uint32_t index, double factor) {
   return keep(product);
 }
 
-// ---- powers and functions
-
-std::uint32_t Canonicalizer::power(std::uint32_t base, std::uint32_t exponent) {
-  const Item& index = items_[exponent];
-  if (index.kind == Kind::constant) {
-    const double n = index.value;
-    if (n == 0 && is_finite(base)) return constant(1);
-    if (n == 1) return base;
-    if (items_[base].kind == Kind::constant) {
-      const double folded = std::pow(items_[base].value, n);
-      if (std::isfinite(folded)) return constant(folded);
-    }
-    if (n != 0 && is_small_integer(n)) {
-      scratch_.clear();
-      double coefficient = 1;
-      add_factors(base, static_cast<int>(n), coefficient);
-      return finish_product(coefficient);
-    }
-  }
-  return opaque(Op::pow, base, exponent);
-}
+// ---- functions
 
 std::uint32_t Canonicalizer::opaque(Op op, std::uint32_t left, std::uint32_t right) {
   Item item;
@@ -393,33 +351,6 @@ std::uint32_t Canonicalizer::opaque(Op op, std::uint32_t left, std::uint32_t rig
     item.hash.shape = mix(item.hash.shape, items_[right].hash.shape);
   }
   return push(item);
-}
-
-std::uint32_t Canonicalizer::function(Op op, std::uint32_t argument) {
-  const Item item = items_[argument];
-  if (item.kind == Kind::constant) {
-    const double value = apply_to(op, item.value);
-    if (std::isfinite(value)) return constant(value);
-  }
-  const bool is_even = op == Op::cos || op == Op::abs;
-  const bool is_odd = op == Op::sin || op == Op::tanh || op == Op::sgn;
-  if ((is_even || is_odd) && leads_negative(item)) {
-    const std::uint32_t flipped = function(op, scaled(argument, -1));
-    return is_odd ? scaled(flipped, -1) : flipped;
-  }
-  if (op == Op::abs) return magnitude(argument);
-  if (op == Op::sgn && item.op == Op::sgn) return argument;
-  return opaque(op, argument, argument);
-}
-
-// |x|, where the argument does not lead with a minus.
-std::uint32_t Canonicalizer::magnitude(std::uint32_t argument) {
-  const Item item = items_[argument];
-  if (item.op == Op::abs || item.op == Op::sqrt || item.op == Op::exp) return argument;
-  if (item.kind == Kind::product && item.value != 1) {
-    return scaled(magnitude(unit_of(argument)), item.value);
-  }
-  return opaque(Op::abs, argument, argument);
 }
 
 bool Canonicalizer::is_finite(std::uint32_t item) const {

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algorithms/expression/apply.hpp"
 #include "algorithms/expression/column_kernels.hpp"
 
 namespace tribench {
 namespace {
 
-constexpr double kMaxProductPower = 64;  // as the evaluator has it
-constexpr std::size_t kLanes = 8;        // rows of a cache line
+constexpr std::size_t kLanes = 8;  // rows of a cache line
 // Blocks are as long as a workspace of this many bytes allows (half of a small second-level
 // cache), within the two bounds: shorter ones pay for calls, longer ones for cache misses.
 constexpr std::size_t kWorkspaceBytes = 256 * 1024;
@@ -18,33 +18,7 @@ constexpr std::size_t kShortestBlock = 128;
 constexpr std::size_t kLongestBlock = 512;
 
 bool is_whole_power(const Node& exponent) {
-  return exponent.is_constant() && std::abs(exponent.value) <= kMaxProductPower &&
-         exponent.value == std::floor(exponent.value);
-}
-
-double unary_value(Op op, double a) {
-  double result = 0;
-  switch (op) {
-    case Op::neg:
-      return -a;
-    case Op::exp:
-      return std::exp(a);
-    case Op::log:
-      return std::log(a);
-    case Op::sqrt:
-      return std::sqrt(a);
-    case Op::abs:
-      return std::abs(a);
-    case Op::sin:
-      return std::sin(a);
-    case Op::cos:
-      return std::cos(a);
-    case Op::tanh:
-      return std::tanh(a);
-    default:
-      columns::sgn(&a, &result, 1);
-      return result;
-  }
+  return exponent.is_constant() && is_product_power(exponent.value);
 }
 
 }  // namespace
@@ -150,30 +124,7 @@ void Differentiator::forward_scalars() {
     const Step& step = steps_[i];
     if (step.kind != Kind::scalar || step.op == Op::constant) continue;
     const double a = scalars_[step.a];
-    const double b = scalars_[step.b];
-    switch (step.op) {
-      case Op::add:
-        scalars_[i] = a + b;
-        break;
-      case Op::sub:
-        scalars_[i] = a - b;
-        break;
-      case Op::mul:
-        scalars_[i] = a * b;
-        break;
-      case Op::div:
-        scalars_[i] = a / b;
-        break;
-      case Op::pow:
-        if (step.whole_power) {
-          columns::integer_power(&a, step.exponent, &scalars_[i], 1);
-        } else {
-          scalars_[i] = std::pow(a, b);
-        }
-        break;
-      default:
-        scalars_[i] = unary_value(step.op, a);
-    }
+    scalars_[i] = arity(step.op) == 1 ? apply(step.op, a) : apply(step.op, a, scalars_[step.b]);
   }
 }
 

@@ -11,6 +11,11 @@
 namespace tribench {
 namespace {
 
+// Rows between two looks at the bound: shorter than a block can be, so that giving up is early.
+template <typename T>
+constexpr std::size_t kRowsALook = 2048 / sizeof(T);
+static_assert(kRowsALook<double> <= kBlockRows<double> && kRowsALook<float> <= kBlockRows<float>);
+
 // Pairwise, in a fixed order.
 double total_of(std::array<double, 16> sums) {
   for (std::size_t half = 8; half > 0; half /= 2) {
@@ -24,7 +29,7 @@ double total_of(std::array<double, 16> sums) {
 template <typename T>
 struct BasicEvaluator<T>::Workspace {
   explicit Workspace(VectorLevel level)
-      : kernels(kernel_table<T>(level)), program(kernels), block(kBlockRows<T>) {}
+      : kernels(kernel_table<T>(level)), program(kernels), block(kRowsALook<T>) {}
   const KernelTable<T>& kernels;
   Program<T> program;
   std::vector<T> block;
@@ -70,7 +75,7 @@ ErrorSum BasicEvaluator<T>::sum_squared_errors(const Expression& formula,
   alignas(64) std::array<double, 16> sums{};
   ErrorSum result;
   while (result.rows < inputs.rows) {
-    const std::size_t n = std::min(kBlockRows<T>, inputs.rows - result.rows);
+    const std::size_t n = std::min(kRowsALook<T>, inputs.rows - result.rows);
     work.program.run(result.rows, n);
     work.kernels.add_squared_errors(sums.data(), work.block.data(), target.data() + result.rows, n);
     result.rows += n;

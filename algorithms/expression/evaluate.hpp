@@ -93,8 +93,10 @@ inline std::uint64_t node_rows(const Expression& formula, std::size_t rows) {
 }
 
 // Whether x^value is computed as a product of squares.
+inline constexpr double kLargestProductPower = 64;
 constexpr bool is_product_power(double value) {
-  return value >= -64 && value <= 64 && static_cast<double>(static_cast<int>(value)) == value;
+  return value >= -kLargestProductPower && value <= kLargestProductPower &&
+         static_cast<double>(static_cast<int>(value)) == value;
 }
 
 }  // namespace tribench

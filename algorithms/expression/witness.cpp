@@ -4,48 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algorithms/expression/apply.hpp"
+
 namespace tribench {
 namespace {
 
 constexpr int kBisectAttempts = 4;
-
-double apply_to(Op op, double a) {
-  switch (op) {
-    case Op::neg:
-      return -a;
-    case Op::exp:
-      return std::exp(a);
-    case Op::log:
-      return std::log(a);
-    case Op::sqrt:
-      return std::sqrt(a);
-    case Op::abs:
-      return std::abs(a);
-    case Op::sgn:
-      return a > 0 ? 1 : (a < 0 ? -1 : a);
-    case Op::sin:
-      return std::sin(a);
-    case Op::cos:
-      return std::cos(a);
-    default:
-      return std::tanh(a);
-  }
-}
-
-double apply_to(Op op, double a, double b) {
-  switch (op) {
-    case Op::add:
-      return a + b;
-    case Op::sub:
-      return a - b;
-    case Op::mul:
-      return a * b;
-    case Op::div:
-      return a / b;
-    default:
-      return b == 2 ? a * a : std::pow(a, b);
-  }
-}
 
 // Adds `node` and the nodes whose zeros are zeros (or poles) of it: the factors of a product, the
 // base of a constant power, the numerator of a quotient.
@@ -126,9 +90,9 @@ std::size_t WitnessSearch::trace(std::span<const double> point) {
     } else if (node.is_variable()) {
       values_[i] = point[node.variable];
     } else if (arity(node.op) == 1) {
-      values_[i] = apply_to(node.op, values_[i - 1]);
+      values_[i] = apply(node.op, values_[i - 1]);
     } else {
-      values_[i] = apply_to(node.op, values_[formula_.left_child(i)], values_[i - 1]);
+      values_[i] = apply(node.op, values_[formula_.left_child(i)], values_[i - 1]);
     }
     if (failed == formula_.size() && !std::isfinite(values_[i])) failed = i;
   }
