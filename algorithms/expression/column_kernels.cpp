@@ -216,4 +216,69 @@ void gram(const double* const* columns, std::size_t count, std::size_t n, double
   }
 }
 
+namespace {
+
+// A tile of 16 rows and 4 columns stays in registers while `inner` runs: sums of their own, since
+// the compiler keeps an array of them in memory.
+constexpr std::size_t kTileRows = 2 * kLanes;
+using FreeLanes =
+    double __attribute__((vector_size(kLanes * sizeof(double)), aligned(8), may_alias));
+
+__attribute__((always_inline)) inline void add_tile_of_4(const double* a, const double* b,
+                                                         std::size_t rows, std::size_t inner,
+                                                         double* out) {
+  const auto at = [&](std::size_t j, std::size_t half) {
+    return reinterpret_cast<FreeLanes*>(out + j * rows + half * kLanes);
+  };
+  Lanes s00 = *at(0, 0), s01 = *at(0, 1), s10 = *at(1, 0), s11 = *at(1, 1);
+  Lanes s20 = *at(2, 0), s21 = *at(2, 1), s30 = *at(3, 0), s31 = *at(3, 1);
+  for (std::size_t k = 0; k < inner; ++k, a += rows) {
+    const Lanes upper = *reinterpret_cast<const FreeLanes*>(a);
+    const Lanes lower = *reinterpret_cast<const FreeLanes*>(a + kLanes);
+    s00 += upper * b[k];
+    s01 += lower * b[k];
+    s10 += upper * b[inner + k];
+    s11 += lower * b[inner + k];
+    s20 += upper * b[2 * inner + k];
+    s21 += lower * b[2 * inner + k];
+    s30 += upper * b[3 * inner + k];
+    s31 += lower * b[3 * inner + k];
+  }
+  *at(0, 0) = s00, *at(0, 1) = s01, *at(1, 0) = s10, *at(1, 1) = s11;
+  *at(2, 0) = s20, *at(2, 1) = s21, *at(3, 0) = s30, *at(3, 1) = s31;
+}
+
+__attribute__((always_inline)) inline void add_tile_of_1(const double* a, const double* b,
+                                                         std::size_t rows, std::size_t inner,
+                                                         double* out) {
+  auto* at = reinterpret_cast<FreeLanes*>(out);
+  Lanes upper = at[0], lower = at[1];
+  for (std::size_t k = 0; k < inner; ++k, a += rows) {
+    upper += *reinterpret_cast<const FreeLanes*>(a) * b[k];
+    lower += *reinterpret_cast<const FreeLanes*>(a + kLanes) * b[k];
+  }
+  at[0] = upper, at[1] = lower;
+}
+
+}  // namespace
+
+TRIBENCH_EACH_LEVEL
+void add_product(const double* a, const double* b, std::size_t rows, std::size_t inner,
+                 std::size_t count, double* out) {
+  const std::size_t whole = rows - rows % kTileRows;
+  for (std::size_t i = 0; i < whole; i += kTileRows) {
+    std::size_t j = 0;
+    for (; j + 4 <= count; j += 4) {
+      add_tile_of_4(a + i, b + j * inner, rows, inner, out + j * rows + i);
+    }
+    for (; j < count; ++j) add_tile_of_1(a + i, b + j * inner, rows, inner, out + j * rows + i);
+  }
+  for (std::size_t j = 0; whole < rows && j < count; ++j) {
+    for (std::size_t k = 0; k < inner; ++k) {
+      const double factor = b[j * inner + k];
+      for (std::size_t i = whole; i < rows; ++i) out[j * rows + i] += a[k * rows + i] * factor;
+    }
+  }
+}
+
 }  // namespace tribench::columns

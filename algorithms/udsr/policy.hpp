@@ -68,9 +68,17 @@ class Policy {
 
  private:
   struct Unrolled;
+  struct StepErrors;
   void unroll(std::span<const Sequence* const> sequences, const Prior& prior, Unrolled& run) const;
-  void step(const Eigen::MatrixXd& gate_inputs, Eigen::MatrixXd& gates, Eigen::MatrixXd& cell,
-            Eigen::MatrixXd& hidden) const;
+  // What the place after `traversal` adds to the gates; bias included.
+  void set_gate_input(const Traversal& traversal, Eigen::Ref<Eigen::VectorXd> gates) const;
+  // gates: their inputs, bias included, on entry; activations on return. Columns are sequences.
+  void step(Eigen::MatrixXd& gates, Eigen::MatrixXd& cell, Eigen::MatrixXd& hidden) const;
+  Eigen::MatrixXd logits(const Eigen::MatrixXd& hidden) const;
+  void add_output_gradient(const Unrolled& run, std::size_t t, StepErrors& errors,
+                           Eigen::VectorXd& gradient) const;
+  void add_cell_gradient(const Unrolled& run, std::size_t t, StepErrors& errors,
+                         Eigen::VectorXd& gradient) const;
 
   const TokenLibrary* library_;
   Eigen::VectorXd parameters_;

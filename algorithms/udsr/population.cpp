@@ -12,6 +12,9 @@
 namespace tribench::udsr {
 namespace {
 
+// Node-rows from which a batch is scored by several threads: about a millisecond of one.
+constexpr std::uint64_t kWorthThreads = 1'000'000;
+
 std::string key_of_sequence(const Sequence& sequence) {
   return std::string(sequence.begin(), sequence.end());
 }
@@ -31,6 +34,7 @@ Scoreboard::Scoreboard(const ScoringProblem& problem, Budget& budget, Progress* 
 
 std::vector<double> Scoreboard::rewards(std::span<const Sequence> batch) {
   std::vector<std::string> keys;
+  const std::uint64_t spent_before = budget_->spent();
   std::vector<std::size_t> fresh;  // places whose sequence has to be scored, in order
   for (std::size_t i = 0; i < batch.size(); ++i) {
     keys.push_back(key_of_sequence(batch[i]));
@@ -40,8 +44,10 @@ std::vector<double> Scoreboard::rewards(std::span<const Sequence> batch) {
     fresh.push_back(i);
   }
   std::vector<Scored> scores(fresh.size());
+  // Threads that wait for each other cost more than a small batch.
+  const bool parallel = scorers_.size() > 1 && budget_->spent() - spent_before > kWorthThreads;
 #pragma omp parallel for schedule(dynamic, 4) \
-    num_threads(static_cast <int>(scorers_.size())) if (scorers_.size() > 1)
+    num_threads(static_cast <int>(scorers_.size())) if (parallel)
   for (std::size_t k = 0; k < fresh.size(); ++k) {
     scores[k] = scorers_[static_cast<std::size_t>(omp_get_thread_num())]->score(batch[fresh[k]]);
   }

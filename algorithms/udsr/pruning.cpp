@@ -47,6 +47,22 @@ bool takes_scale(const Expression& formula, std::size_t place, std::size_t paren
   return is_sum(above) || (arity(above) == 1 && above != Op::neg);
 }
 
+// Whether a constant is among the terms of the sum at `place`.
+bool has_offset(const Expression& formula, std::size_t place) {
+  const Node& node = formula.node(place);
+  if (node.is_constant()) return true;
+  return is_sum(node.op) && (has_offset(formula, formula.left_child(place)) ||
+                             has_offset(formula, formula.right_child(place)));
+}
+
+// Where a sum ends, and at the top. Inside exp an offset would be the scale of what stands outside.
+bool takes_offset(const Expression& formula, std::size_t place, std::size_t parent) {
+  if (has_offset(formula, place)) return false;
+  if (parent == kNone) return true;
+  const Op above = formula.node(parent).op;
+  return is_sum(formula.node(place).op) && !is_sum(above) && above != Op::exp;
+}
+
 // The term that a constant scales: the top of the chain of products above it, where that is an
 // operand of a sum; kNone otherwise.
 std::size_t term_of(const Expression& formula, const std::vector<std::size_t>& parents,
@@ -63,7 +79,8 @@ std::size_t term_of(const Expression& formula, const std::vector<std::size_t>& p
   return kNone;
 }
 
-// Constants other than exponents: what a fit moves.
+}  // namespace
+
 std::vector<std::size_t> movable_constants(const Expression& formula) {
   const std::vector<std::size_t> parents = parents_of(formula);
   std::vector<std::size_t> places;
@@ -76,16 +93,19 @@ std::vector<std::size_t> movable_constants(const Expression& formula) {
   return places;
 }
 
-}  // namespace
-
-Expression with_scales(const Expression& formula) {
+Expression with_constants(const Expression& formula) {
   const std::vector<std::size_t> parents = parents_of(formula);
   std::vector<Node> tape;
   for (std::size_t i = 0; i < formula.size(); ++i) {
     tape.push_back(formula.node(i));
-    if (!takes_scale(formula, i, parents[i])) continue;
-    tape.push_back(Node::constant(1));
-    tape.push_back({0, 0, 0, Op::mul});
+    if (takes_scale(formula, i, parents[i])) {
+      tape.push_back(Node::constant(1));
+      tape.push_back({0, 0, 0, Op::mul});
+    }
+    if (takes_offset(formula, i, parents[i])) {
+      tape.push_back(Node::constant(0));
+      tape.push_back({0, 0, 0, Op::add});
+    }
   }
   return Expression(std::move(tape));
 }

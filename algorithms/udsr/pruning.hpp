@@ -13,10 +13,14 @@
 
 namespace tribench::udsr {
 
-// The formula with a constant 1 before every term, inside and outside of functions, that has none:
-// exp(v*s - v^2) becomes exp(1*v*s - 1*v^2). Same values. A sequence with a linear token can hold
-// no constants (prior.hpp), and the scale of what stands in an exponent is never 1.
-Expression with_scales(const Expression& formula);
+// The formula with a constant 1 before every term, inside and outside of functions, that has none,
+// and a constant 0 added to every sum that has none: (v + s) exp(v s - v^2) becomes
+// (1 v + 1 s + 0) exp(1 v s - 1 v^2) + 0. Same values. A sequence with a linear token can hold no
+// constants (prior.hpp), and the scale of what stands in an exponent is never 1.
+Expression with_constants(const Expression& formula);
+
+// The places of the constants other than exponents: what a fit moves.
+std::vector<std::size_t> movable_constants(const Expression& formula);
 
 // Removes term after term: fits all constants, then drops the term whose loss costs least to first
 // order (its constant squared over its variance, Hassibi & Stork 1993), and again.

@@ -14,6 +14,7 @@
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
+#include "algorithms/fitting/description_length.hpp"
 #include "algorithms/registry.hpp"
 #include "algorithms/udsr/pruning.hpp"
 #include "algorithms/udsr/simplification.hpp"
@@ -36,6 +37,9 @@ constexpr std::size_t kFewestConstants = 2;
 // Below this normalised error all formulas are exact, and the simplest is the one.
 constexpr double kExact = 1e-9;
 
+// How the formula of a front is chosen that the method stands for.
+enum class Choice { simpler, description_length, cross_validation, bic };
+
 struct Settings {
   udsr::TokenOptions tokens;
   udsr::PriorOptions prior;
@@ -44,6 +48,7 @@ struct Settings {
   bool recursion = true;
   std::string weights;       // "shipped", "none" or a file's name
   std::string weights_text;  // the file's contents
+  Choice choice = Choice::simpler;
 };
 
 struct Candidate {
@@ -80,6 +85,13 @@ std::vector<ParameterSpec> parameter_specs() {
       {"learning_rate", "of Adam", 5e-4, 0, 1},
       {"entropy_weight", "of the policy's entropy in the loss", 0.03, 0, 10},
       {"entropy_gamma", "discount of the entropy by position", 0.7, 0, 1},
+      {"choice",
+       "the formula of the front: least BIC, cross-validation, the simpler of these two, or least "
+       "description length",
+       std::string("simpler"),
+       0,
+       0,
+       {"simpler", "description_length", "cross_validation", "bic"}},
       {"max_length", "tokens of a formula", std::int64_t{30}, 4, 200},
   };
 }
@@ -94,6 +106,12 @@ udsr::Baseline baseline_of(const std::string& name) {
   if (name == "moving_mean") return udsr::Baseline::moving_mean;
   if (name == "moving_quantile") return udsr::Baseline::moving_quantile;
   return name == "combined" ? udsr::Baseline::combined : udsr::Baseline::quantile;
+}
+
+Choice choice_of(const std::string& name) {
+  if (name == "description_length") return Choice::description_length;
+  if (name == "cross_validation") return Choice::cross_validation;
+  return name == "bic" ? Choice::bic : Choice::simpler;
 }
 
 std::string read_file(const std::string& path) {
@@ -124,6 +142,7 @@ Settings settings_from(const Parameters& parameters) {
   training.learning_rate = parameters.number("learning_rate");
   training.entropy_weight = parameters.number("entropy_weight");
   training.entropy_gamma = parameters.number("entropy_gamma");
+  settings.choice = choice_of(parameters.text("choice"));
   settings.weights = parameters.text("weights");
   if (settings.weights == "shipped") {
     settings.weights_text = embedded::udsr_weights();
@@ -206,32 +225,45 @@ class Search {
     return front;
   }
 
-  // The simpler of two choices: the information criterion guards against a search that has tried
-  // many formulas on independent rows, cross-validation against rows that are not independent.
+  // The place of the formula that stands for the front. The information criterion guards against a
+  // search that has tried many formulas on independent rows, cross-validation against rows that
+  // are not independent.
   std::size_t choose(const std::vector<Expression>& front) {
-    const std::size_t informative = most_informative(front);
-    if (budget_.exhausted()) return informative;
+    if (settings_.choice == Choice::description_length) return shortest(front);
+    if (settings_.choice == Choice::bic || budget_.exhausted()) return least_bic(front);
     const CrossValidation validation =
         cross_validate(front, problem_.inputs(), problem_.target(), problem_.movement());
     budget_.spend(validation.node_rows);
-    return std::min(validation.chosen, informative);
+    if (settings_.choice == Choice::cross_validation) return validation.chosen;
+    return std::min(validation.chosen, least_bic(front));
   }
 
  private:
-  // Least Bayesian information criterion, n ln(RSS / n) + p ln n (Schwarz 1978).
-  std::size_t most_informative(const std::vector<Expression>& front) {
-    const auto n = static_cast<double>(rows());
-    std::size_t best = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < front.size(); ++k) {
-      const auto constants = static_cast<double>(front[k].constant_positions().size());
-      const double criterion =
-          2 * n * std::log(scorer_.nrmse(front[k]) + kExact) + constants * std::log(n);
-      if (criterion >= least) continue;
-      least = criterion;
-      best = k;
+  static std::size_t place_of_least(const std::vector<double>& values) {
+    return static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
+  }
+
+  std::size_t shortest(const std::vector<Expression>& front) {
+    Differentiator differentiator;
+    std::vector<double> lengths;
+    for (const Expression& formula : front) {
+      lengths.push_back(
+          description_length(formula, problem_.inputs(), problem_.target(), differentiator));
+      budget_.spend(4 * node_rows(formula, rows()));
     }
-    return best;
+    return place_of_least(lengths);
+  }
+
+  // Bayesian information criterion, n ln(RSS / n) + p ln n (Schwarz 1978).
+  std::size_t least_bic(const std::vector<Expression>& front) {
+    const auto n = static_cast<double>(rows());
+    std::vector<double> criteria;
+    for (const Expression& formula : front) {
+      const auto constants = static_cast<double>(udsr::movable_constants(formula).size());
+      criteria.push_back(2 * n * std::log(scorer_.nrmse(formula) + kExact) +
+                         constants * std::log(n));
+    }
+    return place_of_least(criteria);
   }
 
   void add(Expression formula, double nrmse) {
@@ -245,8 +277,10 @@ class Search {
     const udsr::Scored scored = scorer_.score(sequence);
     if (scored.reward <= 0 || !budget_.spend(scoring_cost(problem_, sequence))) return;
     std::uint64_t cost = 0;
-    for (udsr::Pruner::Step& step :
-         pruner_.path(udsr::with_scales(scored.formula), kFewestConstants, cost)) {
+    // Without constants a formula has none but those that the linear token was solved for.
+    const Expression start =
+        settings_.tokens.constants ? udsr::with_constants(scored.formula) : scored.formula;
+    for (udsr::Pruner::Step& step : pruner_.path(start, kFewestConstants, cost)) {
       add(std::move(step.formula), step.nrmse);
     }
     budget_.spend(cost);

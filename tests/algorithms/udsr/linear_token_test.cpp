@@ -125,17 +125,18 @@ TEST_F(LinearTokenTest, PruningMovesTheScalesInsideFunctions) {
   ASSERT_GT(scored.nrmse, 1e-4);
   std::uint64_t cost = 0;
   double best = 1;
-  for (const Pruner::Step& step : Pruner(*problem).path(with_scales(scored.formula), 4, cost)) {
+  for (const Pruner::Step& step : Pruner(*problem).path(with_constants(scored.formula), 4, cost)) {
     if (step.formula.constant_positions().size() <= 6) best = std::min(best, step.nrmse);
   }
   EXPECT_LT(best, 1e-6);
 }
 
-TEST(WithScales, ScalesTermsOnceAndChangesNoValue) {
+TEST(WithConstants, ScalesTermsAndShiftsSumsOnceAndChangesNoValue) {
   const std::vector<std::string> names = {"v", "w"};
-  EXPECT_EQ(print(with_scales(parse("v + exp(v*w - w^2)", names)), names),
-            "v*1 + exp(v*w*1 - w^2*1)*1");
-  EXPECT_EQ(print(with_scales(parse("2*v + sqrt(3*w)*4", names)), names), "2*v + sqrt(3*w)*4");
+  EXPECT_EQ(print(with_constants(parse("v + exp(v*w - w^2)", names)), names),
+            "v*1 + exp(v*w*1 - w^2*1)*1 + 0");
+  EXPECT_EQ(print(with_constants(parse("2*v + sqrt(3*w)*4", names)), names),
+            "2*v + sqrt(3*w)*4 + 0");
 }
 
 TEST(WithoutTerm, KeepsWhatIsLeftOfADifference) {
