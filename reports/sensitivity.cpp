@@ -11,6 +11,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 #include <unordered_map>
 
 #include "reports/figures.hpp"
@@ -24,52 +25,36 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::array kBudgetShares = {0.001, 0.01, 0.1, 1.0};
 
-using MeanRanks = std::map<std::string, double>;  // by method
 // What places a record: infinite where it gave nothing, NaN where the figure does not exist for
 // anybody.
 using Placing = std::function<double(const Record&)>;
 using Chosen = std::function<bool(const Record&)>;
 
-// Mean ranks of `methods` over the problems where each of them has a place.
-MeanRanks mean_ranks(const std::vector<const Record*>& records,
-                     const std::vector<std::string>& methods, const Placing& placing,
-                     const Chosen& chosen) {
-  std::map<std::string, std::map<std::string, std::vector<double>>> figures;
-  for (const Record* record : records) {
-    if (!chosen(*record)) continue;
-    const double figure = placing(*record);
-    if (!std::isnan(figure)) figures[record->problem][record->method].push_back(figure);
-  }
-  std::vector<double> values;
-  for (const auto& [problem, by_method] : figures) {
-    const bool complete =
-        std::ranges::all_of(methods, [&](const auto& m) { return by_method.contains(m); });
-    if (!complete) continue;
-    std::vector<double> row;
-    for (const std::string& method : methods) row.push_back(median(by_method.at(method)));
-    // A problem where nobody has a figure says nothing.
-    if (std::ranges::any_of(row, [](double x) { return std::isfinite(x); })) {
-      values.insert(values.end(), row.begin(), row.end());
-    }
-  }
-  MeanRanks ranks;
-  if (values.empty()) return ranks;
-  const FriedmanTest test = friedman(values, methods.size(), kLevel);
-  for (std::size_t i = 0; i < methods.size(); ++i) ranks[methods[i]] = test.mean_ranks[i];
-  return ranks;
-}
+// A record with the places of its problem and method.
+struct Placed {
+  const Record* record;
+  std::size_t problem;
+  std::size_t method;
+};
 
 class Variations {
  public:
   Variations(const RunFolder& run, const Ranking& ranking) : ranking_(ranking) {
-    const std::set<std::string> ranked(ranking.methods.begin(), ranking.methods.end());
+    std::map<std::string, std::size_t> methods;
+    for (const std::string& method : ranking.methods) methods.emplace(method, methods.size());
+    std::map<std::string, std::size_t> problems;
+    std::set<std::uint64_t> seeds;
     for (const Record& record : run.records) {
       const bool belongs = record.operators == ranking.operators || record.operators == "-";
-      if (!belongs || !ranked.contains(record.method)) continue;
-      records_.push_back(&record);
-      seeds_.insert(record.seed);
-      problems_.insert(record.problem);
+      const auto method = methods.find(record.method);
+      if (!belongs || method == methods.end()) continue;
+      const std::size_t problem =
+          problems.try_emplace(record.problem, problems.size()).first->second;
+      records_.push_back({&record, problem, method->second});
+      seeds.insert(record.seed);
     }
+    problems_ = problems.size();
+    seeds_.assign(seeds.begin(), seeds.end());
   }
 
   void add_metrics() {
@@ -88,26 +73,30 @@ class Variations {
   }
 
   void add_seed_halves() {
-    const std::vector<std::uint64_t> seeds(seeds_.begin(), seeds_.end());
-    if (seeds.size() < 2) return;
+    if (seeds_.size() < 2) return;
     RankingVariation variation{"half of the seeds", 0, {}, kMissing};
-    const std::size_t middle = seeds.size() / 2;
+    const std::size_t middle = seeds_.size() / 2;
     const auto place_of = [&](const Record& r) {
-      return static_cast<std::size_t>(std::ranges::lower_bound(seeds, r.seed) - seeds.begin());
+      return static_cast<std::size_t>(std::ranges::lower_bound(seeds_, r.seed) - seeds_.begin());
     };
     for (const bool first : {true, false}) {
       add(variation, by_mae(), [&](const Record& r) { return (place_of(r) < middle) == first; });
-      if (seeds.size() < 4) continue;  // the same halves again
+      if (seeds_.size() < 4) continue;  // the same halves again
       add(variation, by_mae(), [&](const Record& r) { return (place_of(r) % 2 == 0) == first; });
     }
     keep(std::move(variation));
   }
 
   void add_left_out_problems() {
-    if (problems_.size() < 3) return;
+    if (problems_ < 3) return;
     RankingVariation variation{"without one of the problems", 0, {}, kMissing};
-    for (const std::string& problem : problems_) {
-      add(variation, by_mae(), [&](const Record& r) { return r.problem != problem; });
+    const std::vector<double> places = medians(by_mae(), all());
+    const auto methods = static_cast<std::ptrdiff_t>(ranking_.methods.size());
+    for (std::size_t left_out = 0; left_out < problems_; ++left_out) {
+      std::vector<double> others = places;
+      const auto from = others.begin() + static_cast<std::ptrdiff_t>(left_out) * methods;
+      others.erase(from, from + methods);
+      add(variation, others);
     }
     keep(std::move(variation));
   }
@@ -143,11 +132,35 @@ class Variations {
     };
   }
 
+  // By problem, then method: the median over the cells, NaN where there is none.
+  std::vector<double> medians(const Placing& placing, const Chosen& chosen) const {
+    const std::size_t methods = ranking_.methods.size();
+    std::vector<std::vector<double>> figures(problems_ * methods);
+    for (const Placed& each : records_) {
+      if (!chosen(*each.record)) continue;
+      figures[each.problem * methods + each.method].push_back(placing(*each.record));
+    }
+    std::vector<double> middle;
+    for (const std::vector<double>& values : figures) middle.push_back(median(values));
+    return middle;
+  }
+
   void add(RankingVariation& variation, const Placing& placing, const Chosen& chosen) const {
-    const MeanRanks ranks = mean_ranks(records_, ranking_.methods, placing, chosen);
-    if (ranks.empty()) return;
-    std::vector<double> now;
-    for (const std::string& method : ranking_.methods) now.push_back(ranks.at(method));
+    add(variation, medians(placing, chosen));
+  }
+
+  // Ranks over the problems where every method has a place and somebody a finite one.
+  void add(RankingVariation& variation, const std::vector<double>& places) const {
+    const std::size_t methods = ranking_.methods.size();
+    std::vector<double> values;
+    for (std::size_t at = 0; at < places.size(); at += methods) {
+      const std::span<const double> row(&places[at], methods);
+      if (std::ranges::any_of(row, [](double x) { return std::isnan(x); })) continue;
+      if (std::ranges::none_of(row, [](double x) { return std::isfinite(x); })) continue;
+      values.insert(values.end(), row.begin(), row.end());
+    }
+    if (values.empty()) return;
+    const std::vector<double> now = friedman(values, methods, kLevel).mean_ranks;
     const double tau = kendall_tau(ranking_.test.mean_ranks, now);
     // Of equal ranks the one that the leaderboard has first.
     const auto first = std::ranges::min_element(now) - now.begin();
@@ -161,9 +174,9 @@ class Variations {
   }
 
   const Ranking& ranking_;
-  std::vector<const Record*> records_;
-  std::set<std::uint64_t> seeds_;
-  std::set<std::string> problems_;
+  std::vector<Placed> records_;
+  std::vector<std::uint64_t> seeds_;  // sorted
+  std::size_t problems_ = 0;
   std::vector<RankingVariation> variations_;
 };
 
