@@ -206,7 +206,7 @@ std::string leaderboard(const RunFolder& run, const RunSummary& summary,
                         const std::vector<Sensitivity>& sensitivity, const std::string& changed) {
   std::string text = leaderboard_head(run, summary, changed);
   text += sensitivity_section(sensitivity);
-  text += proofs_section(run.records);
+  text += proofs_section(run);
   text +=
       "\n## How to read the tables\n\n"
       "Errors are mean absolute errors on test movements, medians over seeds, in the target's unit "

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -64,8 +65,23 @@ std::string run_in_node(const std::string& script, const std::vector<std::string
 
 }  // namespace
 
+std::string picture_file(std::string_view problem, std::string_view operators,
+                         std::string_view picture) {
+  std::string name;
+  bool replaced = false;  // a run of other characters becomes one _
+  for (const char c : fmt::format("{}.{}.{}", problem, operators, picture)) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                       std::string_view("._+-").find(c) != std::string_view::npos;
+    if (plain) name += c;
+    if (!plain && !replaced) name += '_';
+    replaced = !plain;
+  }
+  return name + ".svg";
+}
+
 std::vector<std::string> write_pictures(const std::filesystem::path& folder,
-                                        const std::filesystem::path& out) {
+                                        const std::filesystem::path& out,
+                                        const std::vector<std::string>& only) {
   const RunFolder run = read_run_folder(folder);
   const RunSummary summary = summarise(run);
   std::filesystem::create_directories(out);
@@ -79,7 +95,9 @@ std::vector<std::string> write_pictures(const std::filesystem::path& folder,
     script += part;
     script += '\n';
   }
-  std::istringstream printed(run_in_node(script, {data.name(), out.string()}));
+  std::vector<std::string> arguments = {data.name(), out.string()};
+  arguments.insert(arguments.end(), only.begin(), only.end());
+  std::istringstream printed(run_in_node(script, arguments));
   std::vector<std::string> files;
   for (std::string name; std::getline(printed, name);) files.push_back(name);
   return files;

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tribench {
@@ -15,7 +16,13 @@ namespace tribench {
 // trace_evaluations, trace_cpu and singular, and all.OPERATORS.PICTURE.svg for heat, ranks,
 // profiles and ecdf, where there is something to draw. Returns the files' names. Throws Error
 // (failed) where there is no node, naming the package.
+// only: names of the files wanted; empty: all.
 std::vector<std::string> write_pictures(const std::filesystem::path& run,
-                                        const std::filesystem::path& out);
+                                        const std::filesystem::path& out,
+                                        const std::vector<std::string>& only = {});
+
+// The name of a picture's file; of all problems together with `problem` "all".
+std::string picture_file(std::string_view problem, std::string_view operators,
+                         std::string_view picture);
 
 }  // namespace tribench

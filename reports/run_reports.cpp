@@ -8,6 +8,7 @@
 #include "reports/comparison.hpp"
 #include "reports/html/html_report.hpp"
 #include "reports/html/page_data.hpp"
+#include "reports/latex.hpp"
 #include "reports/leaderboard.hpp"
 #include "reports/published.hpp"
 #include "reports/record_csv.hpp"
@@ -34,6 +35,13 @@ Change change_since(const std::filesystem::path& base, const RunFolder& run) {
 }
 
 }  // namespace
+
+std::string run_tables_latex(const std::filesystem::path& folder) {
+  RunFolder run = read_run_folder(folder);
+  const auto figures = read_published(folder / kPublishedFile, run.complaints);
+  const RunSummary summary = summarise(run);
+  return latex_tables(run.name, summary, match_published(figures, summary));
+}
 
 std::string write_run_reports(const std::filesystem::path& folder,
                               const std::filesystem::path& base) {

@@ -16,4 +16,7 @@ namespace tribench {
 std::string write_run_reports(const std::filesystem::path& folder,
                               const std::filesystem::path& base = {});
 
+// The run as LaTeX tables (latex.hpp); writes nothing.
+std::string run_tables_latex(const std::filesystem::path& folder);
+
 }  // namespace tribench

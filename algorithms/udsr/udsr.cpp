@@ -12,6 +12,7 @@
 #include <string>
 
 #include "algorithms/expression/complexity.hpp"
+#include "algorithms/expression/singularity.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/description_length.hpp"
@@ -176,7 +177,12 @@ class Search {
         scorer_(problem_),
         pruner_(problem_),
         progress_(progress),
-        threads_(threads) {}
+        threads_(threads),
+        proved_only_(operators.proved_free_only()) {
+    for (const Input& input : data.inputs) {
+      box_.push_back({input.low, input.high, input.sign_of});
+    }
+  }
 
   std::size_t rows() const { return problem_.rows(); }
   const ScoringProblem& problem() const { return problem_; }
@@ -268,8 +274,16 @@ class Search {
 
   void add(Expression formula, double nrmse) {
     if (!std::isfinite(nrmse)) return;
-    Candidate& best = candidates_[paper_complexity(formula)];
-    if (nrmse < best.nrmse) best = {std::move(formula), nrmse};
+    const int complexity = paper_complexity(formula);
+    const auto found = candidates_.find(complexity);
+    if (found != candidates_.end() && !(nrmse < found->second.nrmse)) return;
+    if (!is_admitted(formula)) return;
+    candidates_[complexity] = {std::move(formula), nrmse};
+  }
+
+  // Where the operator set admits only formulas proved free of singularities.
+  bool is_admitted(const Expression& formula) const {
+    return !proved_only_ || prove_free(formula, box_).verdict == Verdict::proved_free;
   }
 
   // With constants before every term, then with ever fewer terms.
@@ -295,6 +309,8 @@ class Search {
   ConstantFitter fitter_;
   Progress* progress_;
   int threads_;
+  bool proved_only_;
+  InputBox box_;
   std::map<int, Candidate> candidates_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// tribench merge: shards joined into one run; tribench report: a run rendered again.
+// tribench merge: shards joined into one run.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -13,7 +13,6 @@
 #include "harness/curves.hpp"
 #include "harness/provenance.hpp"
 #include "harness/run_files.hpp"
-#include "reports/pictures.hpp"
 #include "reports/published.hpp"
 #include "reports/record_csv.hpp"
 #include "reports/run_reports.hpp"
@@ -24,12 +23,6 @@ namespace {
 struct MergeArguments {
   std::vector<std::string> folders;
   std::string out;
-};
-
-struct ReportArguments {
-  std::string folder;
-  std::string base;
-  std::string pictures;
 };
 
 void print_damage(const JournalContents& journal) {
@@ -58,22 +51,6 @@ void merge(const MergeArguments& arguments) {
              merged.results.size(), folders.size(), (out / "leaderboard.md").string());
 }
 
-// The journal is the truth, even of a run that was killed; without one the CSV files are.
-void report(const ReportArguments& arguments) {
-  const std::filesystem::path folder = arguments.folder;
-  if (std::filesystem::exists(folder / "cells.jsonl")) {
-    const JournalContents journal = read_journal(folder / "cells.jsonl");
-    print_damage(journal);
-    write_result_files(folder, journal.results);
-    write_curves(folder, journal.results, Catalogue());
-  }
-  fmt::print("{}\n", write_run_reports(folder, arguments.base));
-  if (!arguments.pictures.empty()) {
-    const std::vector<std::string> files = write_pictures(folder, arguments.pictures);
-    fmt::print("{} pictures in {}\n", files.size(), arguments.pictures);
-  }
-}
-
 }  // namespace
 
 void add_merge_command(CLI::App& app, ExitStatus& /*status*/) {
@@ -84,18 +61,6 @@ void add_merge_command(CLI::App& app, ExitStatus& /*status*/) {
       ->required();
   command->add_option("--out", arguments->out, "the joined run's folder")->required();
   command->callback([arguments] { merge(*arguments); });
-}
-
-void add_report_command(CLI::App& app, ExitStatus& /*status*/) {
-  CLI::App* command = app.add_subcommand("report", "Renders a run again, finished or not");
-  command->footer("Example: tribench report runs/today --base runs/yesterday");
-  auto arguments = std::make_shared<ReportArguments>();
-  command->add_option("folder", arguments->folder, "a run's folder")->required();
-  command->add_option("--base", arguments->base,
-                      "an earlier run: the first screen says what changed since then");
-  command->add_option("--pictures", arguments->pictures,
-                      "write every picture of the page as SVG into this folder (needs nodejs)");
-  command->callback([arguments] { report(*arguments); });
 }
 
 }  // namespace tribench

@@ -108,22 +108,6 @@ void add_reference_study(CLI::App& study, ExitStatus& status) {
   });
 }
 
-void print_torques(const std::vector<ExternalTorqueFigure>& figures) {
-  fmt::print("External torque in B with load, estimated with each friction model of the run.\n");
-  fmt::print(
-      "MAE in N m: median over the seeds and range; outside: rows whose load is beyond what "
-      "the adaptation has seen.\n\n");
-  fmt::print(
-      "| joint | model | fitted as | operators | seeds | MAE | range | outside | MAE there |\n");
-  fmt::print("|--:|---|---|---|--:|--:|---|--:|--:|\n");
-  for (const ExternalTorqueFigure& figure : figures) {
-    fmt::print("| {} | {} | {} | {} | {} | {:.3f} | {:.3f} to {:.3f} | {:.1f} % | {} |\n",
-               figure.joint, figure.model, figure.problem, figure.operators, figure.seeds,
-               figure.mae_nm, figure.low_nm, figure.high_nm, 100 * figure.outside_share,
-               figure.outside_share > 0 ? fmt::format("{:.3f}", figure.mae_outside_nm) : "-");
-  }
-}
-
 void print_torques_json(const std::vector<ExternalTorqueFigure>& figures) {
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
   for (const ExternalTorqueFigure& figure : figures) {
@@ -156,7 +140,7 @@ void add_external_torque_study(CLI::App& study) {
     if (*json) {
       print_torques_json(figures);
     } else {
-      print_torques(figures);
+      fmt::print("{}", external_torque_markdown(figures));
     }
   });
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/study/external_torque_study.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -125,6 +127,32 @@ std::vector<ExternalTorqueFigure> run_external_torque_study(const std::filesyste
     return std::tie(a.joint, a.mae_nm) < std::tie(b.joint, b.mae_nm);
   });
   return figures;
+}
+
+std::string external_torque_markdown(const std::vector<ExternalTorqueFigure>& figures) {
+  std::string text =
+      "External torque in B with load, estimated with each friction model of the run.\n"
+      "MAE in N m: median over the seeds and range; outside: rows whose load is beyond what the "
+      "adaptation has seen.\n\n"
+      "| joint | model | fitted as | operators | seeds | MAE | range | outside | MAE there |\n"
+      "|--:|---|---|---|--:|--:|---|--:|--:|\n";
+  for (const ExternalTorqueFigure& figure : figures) {
+    text +=
+        fmt::format("| {} | {} | {} | {} | {} | {:.3f} | {:.3f} to {:.3f} | {:.1f} % | {} |\n",
+                    figure.joint, figure.model, figure.problem, figure.operators, figure.seeds,
+                    figure.mae_nm, figure.low_nm, figure.high_nm, 100 * figure.outside_share,
+                    figure.outside_share > 0 ? fmt::format("{:.3f}", figure.mae_outside_nm) : "-");
+  }
+  return text;
+}
+
+std::string external_torque_section(const std::filesystem::path& run) {
+  try {
+    return "\n## External torque\n\n" + external_torque_markdown(run_external_torque_study(run));
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::bad_input) throw;
+    return {};
+  }
 }
 
 }  // namespace tribench

@@ -30,4 +30,10 @@ struct ExternalTorqueFigure {
 // error. Throws Error (bad_input) where the folder has no such record.
 std::vector<ExternalTorqueFigure> run_external_torque_study(const std::filesystem::path& run);
 
+// As a table for people.
+std::string external_torque_markdown(const std::vector<ExternalTorqueFigure>& figures);
+
+// With a heading, for a page about the run; empty where the run has no cell of B/jN/load.
+std::string external_torque_section(const std::filesystem::path& run);
+
 }  // namespace tribench

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/expression/singularity.hpp"
 #include "algorithms/expression/text.hpp"
 #include "algorithms/registry.hpp"
 
@@ -211,6 +212,23 @@ TEST_P(EveryMethod, KeepsToItsOperatorSetAndRepeatsNoFormula) {
     std::vector<std::string> formulas = texts(outcome.result, sample);
     std::ranges::sort(formulas);
     EXPECT_EQ(std::ranges::adjacent_find(formulas), formulas.end());
+  }
+}
+
+TEST_P(EveryMethod, OffersOnlyProvedFormulasWhereTheSetAdmitsNoOthers) {
+  if (registry_.find(GetParam()).fixed_form) GTEST_SKIP() << "a fixed form has no operator set";
+  Sample sample = friction_sample(80);
+  InputBox box;
+  for (const Input& input : sample.inputs) box.push_back({input.low, input.high, input.sign_of});
+  Setting setting;
+  setting.operators = "paper+safe_div";
+  setting.evaluations = 6'000'000;
+  for (setting.key = 1; setting.key <= 3; ++setting.key) {
+    const Outcome outcome = run(registry_, GetParam(), sample, setting);
+    for (const Expression& formula : outcome.result.front) {
+      EXPECT_EQ(prove_free(formula, box).verdict, Verdict::proved_free)
+          << print(formula, sample.names());
+    }
   }
 }
 

@@ -199,5 +199,22 @@ TEST_F(RunTest, ReportRendersTheJournalAgain) {
   EXPECT_EQ(read_text(folder_ / "run" / "leaderboard.md"), board);
 }
 
+TEST_F(RunTest, ReportWritesTablesForAPaperAndSaysWhatChangedSinceABase) {
+  ASSERT_EQ(run("run").status, 0);
+  const std::string folder = (folder_ / "run").string();
+  const std::string program = test_program().string();
+  const std::string tables = (folder_ / "tables.tex").string();
+  ASSERT_EQ(run_to_end({program, "report", folder, "--as", "latex", "--out", tables}).status, 0);
+  EXPECT_THAT(read_text(tables), HasSubstr("\\begin{tabular}"));
+  EXPECT_THAT(run_to_end({program, "report", folder, "--as", "latex"}).output,
+              HasSubstr("test\\_search"));
+  EXPECT_EQ(run_to_end({program, "report", folder, "--as", "word"}).status, 2);
+  EXPECT_EQ(run_to_end({program, "report", folder, "--out", tables}).status, 2);
+  const ProgramRun changed = run_to_end({program, "report", folder, "--base", folder});
+  EXPECT_EQ(changed.status, 0) << changed.errors;
+  EXPECT_THAT(changed.output, HasSubstr("## What changed"));
+  EXPECT_THAT(changed.output, HasSubstr("No regression"));
+}
+
 }  // namespace
 }  // namespace tribench::testing

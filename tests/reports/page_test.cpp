@@ -12,6 +12,7 @@
 #include "reports/pictures.hpp"
 #include "reports/record_csv.hpp"
 #include "reports/run_reports.hpp"
+#include "reports/study_page.hpp"
 #include "tests/reports/sample_run.hpp"
 
 namespace tribench {
@@ -188,11 +189,33 @@ TEST(Pictures, AreWrittenAsSvgWithMarksAndNothingFromOutside) {
     ++on_disk;
     const std::string text = text_of(entry.path());
     EXPECT_TRUE(text.starts_with("<svg xmlns=")) << entry.path();
-    EXPECT_THAT(text, HasSubstr("role=\"graphics-symbol\"")) << entry.path();
+    EXPECT_THAT(text, HasSubstr("<title>")) << entry.path();
+    EXPECT_THAT(text, HasSubstr("<path")) << entry.path();
     EXPECT_THAT(text, Not(HasSubstr("href=\"http"))) << entry.path();
     EXPECT_THAT(text, Not(HasSubstr("NaN"))) << entry.path();
   }
   EXPECT_EQ(on_disk, files.size());
+  const std::string one = picture_file("A/j4/no_load", "paper", "profile");
+  EXPECT_THAT(write_pictures(folder, folder / "one", {one, "nothing.svg"}),
+              ::testing::ElementsAre(one));
+}
+
+// Settings, machine, figures and pictures, from the folder alone; what the caller adds in between.
+TEST(StudyPage, HoldsWhatAReviewerAsksFor) {
+  if (std::system("command -v node >/dev/null 2>&1") != 0) GTEST_SKIP() << "no node";
+  const fs::path folder = whole_run("study_page");
+  write_file(folder / "reference.csv",
+             "table,problem,published_method,kind,methods,mae,complexity,note\n"
+             "Table 1,A/j2/no_load,PySR,symbolic,pysr,0.041,15,why it differs\n");
+  write_study_page(folder, folder / "docs/page.md", "\n## Added\n\nby the caller\n");
+  const std::string text = text_of(folder / "docs/page.md");
+  for (const char* part :
+       {"# The run sample", "some CPU", "commit abc1234", "### Table 1: A/j2/no_load",
+        "PySR: why it differs", "## Added", "](page/A_j2_no_load.paper.profile.svg)", "## Proofs",
+        "## Would the ranking be another one?", "[grid]\nname = \"sample\""}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+  EXPECT_TRUE(fs::exists(folder / "docs/page/A_j2_no_load.paper.profile.svg"));
 }
 
 TEST(Page, OfALoopDrawsItsPictures) {

@@ -71,8 +71,7 @@ TEST(Published, StandBesideOurMedianItsSpreadTheCeilingAndTheTrueLaw) {
   EXPECT_THAT(text, HasSubstr("1.02 .. 1.50 |          1.00 |     1.00 |           +10.0 %"));
   EXPECT_THAT(text, HasSubstr("not in this run"));
   // Of the adaptation alone, as the paper counts; B's truth is no formula of the inputs.
-  EXPECT_THAT(text,
-              HasSubstr("|          1.00 |        - |            +2.0 % |              4 |"));
+  EXPECT_THAT(text, HasSubstr("|          1.00 |        - |            +2.0 % |              4 |"));
   EXPECT_THAT(text, HasSubstr("Noise ceiling 1.00; the true law's error 1.00."));
 }
 

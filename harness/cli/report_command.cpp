@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+//
+// tribench report: a run rendered again, as its leaderboard and page, pictures, tables for a paper
+// or a page to cite.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "harness/cli/commands.hpp"
+#include "harness/curves.hpp"
+#include "harness/run_files.hpp"
+#include "harness/study/external_torque_study.hpp"
+#include "reports/pictures.hpp"
+#include "reports/record_csv.hpp"
+#include "reports/run_reports.hpp"
+#include "reports/study_page.hpp"
+
+namespace tribench {
+namespace {
+
+struct ReportArguments {
+  std::string folder;
+  std::string base;
+  std::string pictures;
+  std::string page;
+  std::string form;
+  std::string out;
+};
+
+// The journal is the truth, even of a run that was killed; without one the CSV files are.
+void refresh_files(const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder / "cells.jsonl")) return;
+  const JournalContents journal = read_journal(folder / "cells.jsonl");
+  for (const std::string& damage : journal.damage) fmt::print(stderr, "tribench: {}\n", damage);
+  write_result_files(folder, journal.results);
+  write_curves(folder, journal.results, Catalogue());
+}
+
+void report(const ReportArguments& arguments) {
+  const std::filesystem::path folder = arguments.folder;
+  refresh_files(folder);
+  if (!arguments.form.empty()) {
+    const std::string tables = run_tables_latex(folder);
+    if (arguments.out.empty()) {
+      fmt::print("{}", tables);
+    } else {
+      write_file(arguments.out, tables);
+    }
+    return;
+  }
+  fmt::print("{}\n", write_run_reports(folder, arguments.base));
+  if (!arguments.pictures.empty()) {
+    const std::vector<std::string> files = write_pictures(folder, arguments.pictures);
+    fmt::print("{} pictures in {}\n", files.size(), arguments.pictures);
+  }
+  if (!arguments.page.empty()) {
+    write_study_page(folder, arguments.page, external_torque_section(folder));
+    fmt::print("the page is {}\n", arguments.page);
+  }
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app, ExitStatus& /*status*/) {
+  CLI::App* command = app.add_subcommand("report", "Renders a run again, finished or not");
+  command->footer(
+      "Examples: tribench report runs/today --base runs/yesterday\n"
+      "          tribench report run-paper --pictures figures\n"
+      "          tribench report run-paper --as latex --out tables.tex");
+  auto arguments = std::make_shared<ReportArguments>();
+  command->add_option("folder", arguments->folder, "a run's folder")->required();
+  command->add_option("--base", arguments->base,
+                      "an earlier run: the first screen says what changed since then");
+  command->add_option("--pictures", arguments->pictures,
+                      "write every picture of the page as SVG into this folder (needs nodejs)");
+  command->add_option("--page", arguments->page,
+                      "write a page to cite (Markdown): settings, machine, published figures "
+                      "beside ours, proofs, pictures (needs nodejs)");
+  CLI::Option* form =
+      command->add_option("--as", arguments->form, "latex: tables for a paper instead of a report")
+          ->check(CLI::IsMember({"latex"}));
+  command->add_option("--out", arguments->out, "with --as: a file instead of the screen")
+      ->needs(form);
+  command->callback([arguments] { report(*arguments); });
+}
+
+}  // namespace tribench
