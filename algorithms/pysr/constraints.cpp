@@ -8,27 +8,11 @@
 #include <cmath>
 #include <string>
 
+#include "algorithms/pysr/text_pieces.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench::pysr {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> pieces;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(separator), text.size());
-    const std::string_view piece = trimmed(text.substr(0, end));
-    if (!piece.empty()) pieces.push_back(piece);
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return pieces;
-}
 
 Op find_operator(std::string_view name, std::string_view place) {
   std::vector<std::string> names;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "algorithms/pysr/backsolve.hpp"
 #include "algorithms/pysr/simplify.hpp"
 #include "algorithms/pysr/tape_edit.hpp"
 
@@ -24,6 +25,10 @@ constexpr std::size_t kGrowthChildren = 2;
 // Success rates of the mutations: smoothing and floor of PySR 2 (pysr/mutations.py).
 constexpr double kSuccessSmoothing = 0.02;
 constexpr double kSuccessFloor = 0.05;
+
+// Bursts of PySR 2 (pysr/plugins.py).
+constexpr int kBurstRetries = 4;
+constexpr double kCompoundChance = 0.25;
 
 }  // namespace
 
@@ -128,9 +133,8 @@ void Island::event(const Step& step, RandomStream& random, Budget& budget) {
   }
 }
 
-void Island::mutation_event(const Step& step, RandomStream& random, Budget& budget) {
+MutationKind Island::draw_mutation(const Member& parent, const Step& step, RandomStream& random) {
   const Options& options = shared_.options;
-  const Member parent = members_[run_tournament(members_, step.state.frequencies, options, random)];
   MutationWeights weights = conditioned(options.weights, parent.formula, parent.size,
                                         step.state.max_size, shared_.rows.columns.size());
   if (options.adaptive_weights) {
@@ -138,29 +142,64 @@ void Island::mutation_event(const Step& step, RandomStream& random, Budget& budg
       weights[k] *= std::max(success_[k], kSuccessFloor);
     }
   }
-  const MutationKind kind = draw_kind(weights, random);
-  const bool exempt = kind == MutationKind::do_nothing || kind == MutationKind::simplify ||
-                      kind == MutationKind::optimize;
-  if (kind == MutationKind::do_nothing) return replace_oldest(parent, step);
+  return draw_kind(weights, random);
+}
+
+void Island::mutation_event(const Step& step, RandomStream& random, Budget& budget) {
+  const Options& options = shared_.options;
+  const Member parent = members_[run_tournament(members_, step.state.frequencies, options, random)];
+  const int attempts = options.mutation_burst ? 1 + kBurstRetries : 1;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    const MutationKind kind = draw_mutation(parent, step, random);
+    if (kind == MutationKind::do_nothing) return replace_oldest(parent, step);
+    std::optional<Member> child = accepted_child(kind, parent, step, random, budget);
+    if (budget.exhausted()) return;
+    learn(kind, child && child->cost < parent.cost);
+    if (!child) continue;
+    accepted_[index_of(kind)] += 1;
+    return replace_oldest(std::move(*child), step);
+  }
+  if (!options.skip_failures) replace_oldest(parent, step);
+}
+
+std::optional<Member> Island::accepted_child(MutationKind kind, const Member& parent,
+                                             const Step& step, RandomStream& random,
+                                             Budget& budget) {
+  if (kind == MutationKind::backsolve) return solved_back(parent, step, random, budget);
+  const bool exempt = kind == MutationKind::simplify || kind == MutationKind::optimize;
   std::optional<Member> best;
   for (Expression& child : propose(kind, parent, step, random, budget)) {
     std::optional<Member> member = scored(std::move(child), step, exempt, budget);
-    if (budget.exhausted()) return;
+    if (budget.exhausted()) return std::nullopt;
     if (!member) continue;
     best_seen_.offer(*member);
     if (!best || member->cost < best->cost) best = std::move(member);
   }
-  const bool success =
-      best && (exempt || accepts(acceptance(best->cost, parent.cost, best->size, parent.size,
-                                            step.temperature, step.state.frequencies, options),
-                                 random));
-  learn(kind, success && best->cost < parent.cost);
-  if (success) {
-    accepted_[index_of(kind)] += 1;
-    replace_oldest(std::move(*best), step);
-  } else if (!options.skip_failures) {
-    replace_oldest(parent, step);
+  if (!best || exempt) return best;
+  const double chance = acceptance(best->cost, parent.cost, best->size, parent.size,
+                                   step.temperature, step.state.frequencies, shared_.options);
+  if (!accepts(chance, random)) return std::nullopt;
+  return best;
+}
+
+// Judged on all rows, and taken only where it is better there.
+std::optional<Member> Island::solved_back(const Member& parent, const Step& step,
+                                          RandomStream& random, Budget& budget) {
+  const Step whole{step.state, shared_.rows, step.temperature};
+  std::optional<Expression> child =
+      backsolve(parent.formula, members_, shared_.rows,
+                static_cast<std::size_t>(step.state.max_size), random, budget);
+  if (!child) return std::nullopt;
+  if (shared_.options.fit_children) *child = simplified(*child);
+  if (!shared_.validator.admits(*child, step.state.max_size)) return std::nullopt;
+  std::optional<Member> member = scored(std::move(*child), whole, false, budget);
+  if (!member) return std::nullopt;
+  const auto before = scorer_.mean_square(parent.formula, shared_.rows, budget);
+  if (!before || !(member->cost < scorer_.member_of(parent.formula, *before).cost)) {
+    return std::nullopt;
   }
+  best_seen_.offer(*member);
+  return member;
 }
 
 void Island::crossover_event(const Step& step, RandomStream& random, Budget& budget) {
@@ -192,6 +231,10 @@ std::vector<Expression> Island::structural(MutationKind kind, const Member& pare
   for (int attempt = 0; attempt < options.attempts; ++attempt) {
     std::optional<Expression> child = mutate(kind, parent.formula, alphabet, settings, random);
     if (!child) return {};
+    if (options.mutation_burst && random.chance(kCompoundChance)) {
+      const MutationKind second = draw_kind(options.weights, random);
+      if (auto further = mutate(second, *child, alphabet, settings, random)) child = further;
+    }
     if (options.fit_children) *child = simplified(*child);
     if (!shared_.validator.admits(*child, step.state.max_size)) continue;
     // Another draw of the same kind rather than a structure that has been fitted before.

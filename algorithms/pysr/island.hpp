@@ -63,6 +63,12 @@ class Island {
   void construct(RandomStream& random, Budget& budget);
   void event(const Step& step, RandomStream& random, Budget& budget);
   void mutation_event(const Step& step, RandomStream& random, Budget& budget);
+  MutationKind draw_mutation(const Member& parent, const Step& step, RandomStream& random);
+  // What takes a place in the population; none where nothing is accepted.
+  std::optional<Member> accepted_child(MutationKind kind, const Member& parent, const Step& step,
+                                       RandomStream& random, Budget& budget);
+  std::optional<Member> solved_back(const Member& parent, const Step& step, RandomStream& random,
+                                    Budget& budget);
   void crossover_event(const Step& step, RandomStream& random, Budget& budget);
   // Children that the kind proposes and the validator admits.
   std::vector<Expression> propose(MutationKind kind, const Member& parent, const Step& step,

@@ -148,7 +148,7 @@ MutationWeights conditioned(const MutationWeights& weights, const Expression& pa
     binaries += arity(node.op) == 2 ? 1 : 0;
   }
   if (parent.size() == 1) {
-    remove({mutate_operator, swap_operands, delete_node, simplify, prune});
+    remove({mutate_operator, swap_operands, delete_node, simplify, backsolve, prune});
     if (constants == 1) remove({mutate_feature});
   }
   if (constants == 0) remove({mutate_constant, optimize, prune});

@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/pysr/options.hpp"
 
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
 #include <utility>
+
+#include "algorithms/pysr/text_pieces.hpp"
+#include "foundation/error.hpp"
 
 namespace tribench::pysr {
 namespace {
@@ -36,6 +43,36 @@ bool switch_of(const std::string& name, bool otherwise) {
   return name == "profile" ? otherwise : name == "on";
 }
 
+// Reads "rotate_tree=4; backsolve=0.1" over the weights there are.
+void read_weights(std::string_view text, MutationWeights& weights) {
+  const auto refuse = [](std::string_view piece) {
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < kMutationKinds; ++k) {
+      names.emplace_back(mutation_name(static_cast<MutationKind>(k)));
+    }
+    throw_bad_input(
+        fmt::format("'{}' is no weight of a mutation", piece), "mutation_weights",
+        fmt::format("write it as in \"backsolve=0.1\" with one of {}", fmt::join(names, " ")));
+  };
+  for (const std::string_view piece : split(text, ';')) {
+    const std::size_t at = piece.find('=');
+    if (at == std::string_view::npos) refuse(piece);
+    std::size_t kind = 0;
+    while (kind < kMutationKinds &&
+           mutation_name(static_cast<MutationKind>(kind)) != trimmed(piece.substr(0, at))) {
+      ++kind;
+    }
+    const std::string_view number = trimmed(piece.substr(at + 1));
+    double weight = -1;
+    const auto read = std::from_chars(number.data(), number.data() + number.size(), weight);
+    if (kind == kMutationKinds || read.ec != std::errc() ||
+        read.ptr != number.data() + number.size() || !(weight >= 0) || !std::isfinite(weight)) {
+      refuse(piece);
+    }
+    weights[kind] = weight;
+  }
+}
+
 void set(int& value, const Parameters& parameters, std::string_view name) {
   if (parameters.integer(name) >= 0) value = static_cast<int>(parameters.integer(name));
 }
@@ -60,6 +97,15 @@ ParameterSpec on_off(std::string name, std::string summary) {
 }
 
 }  // namespace
+
+std::string_view mutation_name(MutationKind kind) {
+  static constexpr std::string_view kNames[kMutationKinds] = {
+      "rotate_tree", "add_node",      "delete_node",    "mutate_operator",
+      "do_nothing",  "swap_operands", "mutate_feature", "mutate_constant",
+      "insert_node", "simplify",      "randomize",      "optimize",
+      "backsolve",   "grow",          "prune"};
+  return kNames[index_of(kind)];
+}
 
 MutationWeights published_weights(Profile profile) {
   using enum MutationKind;
@@ -145,6 +191,10 @@ std::vector<ParameterSpec> parameter_specs() {
       share("parsimony", "cost of a node", 1e6),
       share("adaptive_parsimony", "how hard frequent sizes are held down in tournaments", 1e6),
       share("crossover_probability", "share of crossovers"),
+      {"mutation_weights", "weights that differ from the profile's, as in 'backsolve=0.1; grow=4'",
+       std::string()},
+      {"mutation_burst", "try a refused mutation up to four times more, and change some twice",
+       false},
       on_off("annealing", "accept worse children by temperature"),
       {"compat", "flip the sign of a mutated constant as often as the original does", false},
       share("replaced_by_peers", "share of members replaced from other islands in an epoch"),
@@ -209,6 +259,8 @@ Options options_from(const Parameters& parameters) {
   set(options.parsimony, parameters, "parsimony");
   set(options.adaptive_parsimony, parameters, "adaptive_parsimony");
   set(options.crossover_probability, parameters, "crossover_probability");
+  read_weights(parameters.text("mutation_weights"), options.weights);
+  options.mutation_burst = parameters.flag("mutation_burst");
   set(options.annealing, parameters, "annealing");
   options.compat = parameters.flag("compat");
   set(options.replaced_by_peers, parameters, "replaced_by_peers");

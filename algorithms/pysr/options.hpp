@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "algorithms/regressor.hpp"
@@ -23,8 +24,7 @@ enum class Selection { evidence, mdl, best, accuracy, score };
 enum class Batching { off, on, automatic };
 enum class Units { off, soft, hard };
 
-// In the order of the published table of weights (backsolve, which is off there, is not among
-// them); ours are the last two.
+// In the order of the published table of weights; ours are the last two.
 enum class MutationKind : std::uint8_t {
   rotate_tree,
   add_node,
@@ -38,13 +38,17 @@ enum class MutationKind : std::uint8_t {
   simplify,
   randomize,
   optimize,
+  backsolve,
   grow,   // the best of many terms, by its projection on the residual
   prune,  // the constant whose loss costs least is removed
 };
-inline constexpr std::size_t kMutationKinds = 14;
+inline constexpr std::size_t kMutationKinds = 15;
 using MutationWeights = std::array<double, kMutationKinds>;
 
 constexpr std::size_t index_of(MutationKind kind) { return static_cast<std::size_t>(kind); }
+
+// "rotate_tree", "add_node", ...
+std::string_view mutation_name(MutationKind kind);
 
 // The published weights; 0 for ours. v1 has no mutate_feature.
 MutationWeights published_weights(Profile profile);
@@ -85,6 +89,9 @@ struct Options {
   int attempts = 10;
   bool skip_failures = true;
   bool adaptive_weights = false;
+  // PySR 2's bursts, off there too: a mutation that is not accepted is tried again, and a child may
+  // be changed twice.
+  bool mutation_burst = false;
 
   // Migration.
   double replaced_by_peers = 0.00036;
