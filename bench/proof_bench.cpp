@@ -92,6 +92,57 @@ void prove(benchmark::State& state) {
 }
 BENCHMARK(prove)->Arg(7)->Arg(15)->Arg(31)->Arg(63)->Unit(benchmark::kMillisecond)->Iterations(1);
 
+// 1 / (q(v)^2 + gap) with the square multiplied out: its least values lie inside the box, next to
+// 0.
+std::vector<Expression> near_double_roots(std::size_t degree_of_root, double gap) {
+  RandomStream random = RandomStream(key_of("near double roots")).split(degree_of_root);
+  std::vector<Expression> all;
+  while (all.size() < 200) {
+    std::vector<double> q(degree_of_root + 1);
+    for (double& c : q) c = random.uniform(-1, 1);
+    std::vector<double> square(2 * degree_of_root + 1);
+    for (std::size_t i = 0; i < square.size(); ++i) {
+      for (std::size_t j = 0; j <= i && j < q.size(); ++j) {
+        if (i - j < q.size()) square[i] += q[j] * q[i - j];
+      }
+    }
+    Expression sum = Expression::constant(square[0] + gap);
+    for (std::size_t k = 1; k < square.size(); ++k) {
+      const Expression power = Expression::binary(Op::pow, Expression::variable(0),
+                                                  Expression::constant(static_cast<double>(k)));
+      const Expression term = Expression::binary(Op::mul, Expression::constant(square[k]), power);
+      sum = Expression::binary(Op::add, sum, term);
+    }
+    all.push_back(Expression::binary(Op::div, Expression::constant(1), sum));
+  }
+  return all;
+}
+
+void prove_polynomials(benchmark::State& state) {
+  const double gap = std::pow(10.0, -static_cast<double>(state.range(1)));
+  const std::vector<Expression> formulas =
+      near_double_roots(static_cast<std::size_t>(state.range(0)) / 2, gap);
+  std::size_t boxes = 0;
+  double worst = 0;
+  for (auto _ : state) {
+    boxes = 0;
+    for (const Expression& formula : formulas) {
+      const double start = cpu_ms();
+      const SingularityResult result = prove_free(formula, kBox);
+      worst = std::max(worst, cpu_ms() - start);
+      boxes += result.boxes;
+      if (result.verdict != Verdict::proved_free) state.SkipWithError("not proved");
+    }
+  }
+  state.counters["boxes_each"] = static_cast<double>(boxes) / static_cast<double>(formulas.size());
+  state.counters["worst_ms"] = worst;
+}
+BENCHMARK(prove_polynomials)
+    ->ArgNames({"degree", "gap_1e-"})
+    ->ArgsProduct({{2, 4, 6, 8}, {3, 6}})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+
 void hash(benchmark::State& state) {
   const std::vector<Expression> formulas =
       formulas_with_division(static_cast<std::size_t>(state.range(0)));

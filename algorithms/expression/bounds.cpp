@@ -112,6 +112,7 @@ bool FormulaBounds::sharpen(std::span<const Interval> box) {
     real_root_ = values_.back().range;
     return all;
   }
+  if (polynomials_.empty()) polynomials_ = polynomials_of(formula_);
   pass_points(box);
   for (std::size_t i = 0; i < formula_.size(); ++i) {
     values_[i] = extend(i, box, values_);
@@ -335,6 +336,15 @@ bool FormulaBounds::meet_corners(std::size_t i, Interval& range) const {
   return true;
 }
 
+void FormulaBounds::meet_polynomial(std::size_t i, std::span<const Interval> box,
+                                    Interval& range) const {
+  if (!polynomials_[i]) return;
+  const Interval& x = box[polynomials_[i]->variable];
+  if (!x.is_point()) {
+    range = intersect(range, polynomial_range(polynomials_[i]->coefficients, x));
+  }
+}
+
 void FormulaBounds::refine(std::size_t i, std::span<const Interval> box) {
   Interval range = Interval::entire();
   if (centre_failed_ > i) {
@@ -345,7 +355,7 @@ void FormulaBounds::refine(std::size_t i, std::span<const Interval> box) {
       range = add(range, multiply(gradient(i)[j], offset));
     }
   }
-  meet_corners(i, range);
+  if (!meet_corners(i, range)) meet_polynomial(i, box, range);
   if (i == formula_.root()) real_root_ = intersect(real_root_, range);
   if (!(widening_ < kInfinity)) return;
   range = {add_down(range.low, -widening_), add_up(range.high, widening_)};

@@ -6,9 +6,10 @@
 //   bound    the natural interval extension: cheap, loose where an input occurs more than once
 //   sharpen  node by node, the natural extension intersected with the mean-value form
 //            f(m) + F'(X)(X - m) and, where the interval gradient has one sign in every input (up
-//            to two of them), with the values at the two extreme corners. These bound the real
-//            value; a running bound of the rounding errors of the evaluation makes them bounds of
-//            the computed value too.
+//            to two of them), with the values at the two extreme corners; and polynomials in one
+//            variable with their exact range (polynomial_range.hpp). These bound the real value; a
+//            running bound of the rounding errors of the evaluation makes them bounds of the
+//            computed value too.
 //
 // Sources: Moore, Kearfott, Cloud 2009, "Introduction to Interval Analysis", chapter 6 (mean-value
 // form, monotonicity); Higham 2002, "Accuracy and Stability of Numerical Algorithms", section 3.3
@@ -19,11 +20,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/expression/interval.hpp"
+#include "algorithms/expression/polynomial_range.hpp"
 
 namespace tribench {
 
@@ -75,6 +78,7 @@ class FormulaBounds {
   void power_gradient(std::size_t i);
   void refine(std::size_t i, std::span<const Interval> box);
   bool meet_corners(std::size_t i, Interval& range) const;
+  void meet_polynomial(std::size_t i, std::span<const Interval> box, Interval& range) const;
   Interval* gradient(std::size_t i) { return gradients_.data() + i * active_.size(); }
   const Interval* gradient(std::size_t i) const { return gradients_.data() + i * active_.size(); }
 
@@ -82,8 +86,9 @@ class FormulaBounds {
 
   Expression formula_;
   std::vector<bool> same_operands_;  // binary nodes whose operands are the same formula
-  std::vector<std::size_t> used_;    // columns that occur, ascending
-  std::vector<std::size_t> active_;  // those whose range is not a point
+  std::vector<std::optional<Polynomial>> polynomials_;  // by node; empty until sharpened
+  std::vector<std::size_t> used_;                       // columns that occur, ascending
+  std::vector<std::size_t> active_;                     // those whose range is not a point
   Values values_;
   Interval real_root_;
   std::size_t failed_ = 0;

@@ -17,8 +17,15 @@ using Json = nlohmann::ordered_json;
 
 class Writer {
  public:
-  Writer(const Expression& formula, const NamedBox& box, std::size_t max_pieces)
-      : formula_(formula), box_(box), max_pieces_(max_pieces) {
+  Writer(const Expression& formula, const NamedBox& box, const CertificateClaim& claim,
+         std::size_t max_pieces)
+      : formula_(formula),
+        box_(box),
+        claim_(claim),
+        velocity_(claim_velocity(claim, box)),
+        max_pieces_(max_pieces) {
+    // A claim about the velocity is cut at its sign even where the formula has no such input.
+    if (claim.kind == CertificateClaim::Kind::dissipative) columns_.push_back(velocity_);
     for (const Node& node : formula.nodes()) {
       if (node.is_variable()) columns_.push_back(node.variable);
     }
@@ -29,7 +36,7 @@ class Writer {
   // False where the pieces do not suffice.
   bool cover(const Piece& piece) {
     if (entries_.size() >= max_pieces_) return false;
-    if (const auto bounds = piece_bounds(formula_, piece)) {
+    if (const auto bounds = proving_bounds(piece)) {
       close(piece, *bounds);
       return true;
     }
@@ -45,6 +52,12 @@ class Writer {
   Json take_entries() { return std::move(entries_); }
 
  private:
+  std::optional<PieceRange> proving_bounds(const Piece& piece) const {
+    const auto bounds = piece_bounds(formula_, piece);
+    if (!bounds || !claim_holds(claim_, velocity_, piece, *bounds)) return std::nullopt;
+    return bounds;
+  }
+
   void close(const Piece& piece, const PieceRange& bounds) {
     Json sides = Json::object();
     for (std::size_t j = 0; j < piece.size(); ++j) {
@@ -64,7 +77,7 @@ class Writer {
     return side.low / 2 + side.high / 2;
   }
 
-  // Tries a cut along each input and takes the one whose halves are bounded in more nodes.
+  // Tries a cut along each input and takes the one that proves more halves, else the widest.
   std::optional<std::pair<std::size_t, double>> choose_cut(const Piece& piece) const {
     std::optional<std::pair<std::size_t, double>> best;
     std::size_t most = 0;
@@ -72,47 +85,62 @@ class Writer {
     for (const std::size_t j : columns_) {
       const double middle = middle_of(piece[j]);
       if (!(piece[j].low < middle && middle < piece[j].high)) continue;
-      const std::size_t nodes = bounded_nodes(piece, j, middle);
+      const std::size_t halves = proved_halves(piece, j, middle);
       const double width =
           (piece[j].high - piece[j].low) / (box_.ranges[j].high - box_.ranges[j].low);
-      if (best && (nodes < most || (nodes == most && width <= widest))) continue;
+      if (best && (halves < most || (halves == most && width <= widest))) continue;
       best = {j, middle};
-      most = nodes;
+      most = halves;
       widest = width;
     }
     return best;
   }
 
-  std::size_t bounded_nodes(const Piece& piece, std::size_t axis, double middle) const {
+  std::size_t proved_halves(const Piece& piece, std::size_t axis, double middle) const {
     Piece half = piece;
     half[axis].high = middle;
-    std::size_t nodes = piece_bounds(formula_, half) ? 1 : 0;
+    const std::size_t lower = proving_bounds(half) ? 1 : 0;
     half[axis] = {middle, piece[axis].high};
-    return nodes + (piece_bounds(formula_, half) ? 1 : 0);
+    return lower + (proving_bounds(half) ? 1 : 0);
   }
 
   const Expression& formula_;
   const NamedBox& box_;
+  const CertificateClaim& claim_;
+  std::size_t velocity_;
   std::size_t max_pieces_;
   std::vector<std::size_t> columns_;
   Json entries_ = Json::array();
 };
 
+Json claim_json(const CertificateClaim& claim) {
+  switch (claim.kind) {
+    case CertificateClaim::Kind::bounded:
+      return {{"bounded", claim.limit}};
+    case CertificateClaim::Kind::dissipative:
+      return {{"dissipative", claim.velocity}};
+    default:
+      return "finite";
+  }
+}
+
 }  // namespace
 
 std::optional<std::string> write_certificate(const Expression& original, const NamedBox& named,
-                                             std::size_t max_pieces) {
+                                             std::size_t max_pieces,
+                                             const CertificateClaim& claim) {
   check_box(original, named.ranges);
   // As the checker will read them: signs that the formula does not use are gone.
   NamedBox box = parse_box(print_box(named));
   const Expression formula = parse_over(print(original, named.names), box);
-  Writer writer(formula, box, max_pieces);
+  Writer writer(formula, box, claim, max_pieces);
   for (const Piece& cell : certificate_cells(formula, box.ranges)) {
     if (!writer.cover(cell)) return std::nullopt;
   }
-  Json json = {{"format", "tribench certificate 1"},
+  Json json = {{"format", "tribench certificate 2"},
                {"formula", print(formula, box.names)},
                {"box", print_box(box)},
+               {"claim", claim_json(claim)},
                {"entries", writer.take_entries()}};
   json["digest"] = certificate_digest(json.dump());
   return json.dump(1);

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
 // A proof that can be checked by someone who does not trust the prover: the box cut into pieces, on
-// each of which plain interval arithmetic shows that every node of the formula is finite. The
+// each of which plain interval arithmetic shows that every node of the formula is finite and, where
+// that is claimed, that the value keeps to a limit or does not drive the joint (f v >= 0). The
 // checker (certificate_check.cpp) shares no interval code with the prover: it rounds by the
 // processor's rounding modes, knows no derivative and no mean-value form, and covers the box by
 // construction. What it trusts: the parser, the processor's rounding of + - * / sqrt, the C
 // library's exp log sin cos tanh pow to 8 ulp, and the evaluator's kernels likewise.
 //
-// JSON: {"format", "formula", "box", "entries": [...], "digest"}. The entries walk the cells of the
+// Not for monotony and oddness: the first needs derivatives, the second algebra, and the checker is
+// kept to a size that can be read in one go.
+//
+// JSON: {"format", "formula", "box", "claim", "entries": [...], "digest"}, the claim being
+// "finite", {"bounded": limit} or {"dissipative": "v"}. The entries walk the cells of the
 // sign cases (an input whose sign matters: < 0, 0, > 0; the first input outermost) in order; in a
 // cell, depth first, {"cut": ["v", 0.5]} halves the current piece at v = 0.5, lower half first, and
 // {"piece": {"v": [low, high], ...}, "bounds": [low, high]} closes one.
@@ -24,17 +29,28 @@
 
 namespace tribench {
 
+// What is certified beyond finiteness, which every certificate claims.
+struct CertificateClaim {
+  enum class Kind { finite, bounded, dissipative };
+  Kind kind = Kind::finite;
+  double limit = 0;      // bounded: |f| <= limit
+  std::string velocity;  // dissipative: the input whose sign f has, or is 0
+};
+
 // The certificate's text, or nothing where max_pieces do not suffice: a proof by sharper bounds
-// than the checker's may need more. Write one only for a formula that is proved free.
+// than the checker's may need more. Write one only for a claim that is proved. Throws Error
+// (bad_input) on a box that is none or a velocity that is not in it.
 inline constexpr std::size_t kMaxPieces = 100'000;
 std::optional<std::string> write_certificate(const Expression& formula, const NamedBox& box,
-                                             std::size_t max_pieces = kMaxPieces);
+                                             std::size_t max_pieces = kMaxPieces,
+                                             const CertificateClaim& claim = {});
 
 struct CertificateCheck {
   bool accepted = false;
   std::string reason;  // why not
   std::string formula;
   std::string box;
+  std::string claim;  // in words
   std::size_t pieces = 0;
 };
 // Never throws on a bad certificate: what cannot be read is rejected, with the reason.
@@ -51,6 +67,12 @@ std::vector<Piece> certificate_cells(const Expression& formula, const InputBox& 
 // The formula's range on the piece by natural interval extension; nothing where a node may not be
 // finite.
 std::optional<PieceRange> piece_bounds(const Expression& formula, const Piece& piece);
+// Whether a value within `bounds` on the piece keeps the claim; `velocity` is its input.
+bool claim_holds(const CertificateClaim& claim, std::size_t velocity, const Piece& piece,
+                 const PieceRange& bounds);
+// The place of the claim's velocity; 0 where it has none. Throws Error (bad_input) on a name that
+// is not in the box.
+std::size_t claim_velocity(const CertificateClaim& claim, const NamedBox& box);
 // Over the certificate's content without its digest.
 std::string certificate_digest(std::string_view content);
 

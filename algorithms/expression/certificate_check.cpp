@@ -11,6 +11,7 @@
 
 #include "algorithms/expression/certificate.hpp"
 #include "algorithms/expression/text.hpp"
+#include "foundation/error.hpp"
 
 namespace tribench {
 namespace {
@@ -198,8 +199,13 @@ Range apply(Op op, const Range& a, const Range& b) {
 // Reads the entries of a certificate against the cells they must cover.
 class Reader {
  public:
-  Reader(const Expression& formula, const NamedBox& box, const Json& entries)
-      : formula_(formula), box_(box), entries_(entries) {}
+  Reader(const Expression& formula, const NamedBox& box, const CertificateClaim& claim,
+         const Json& entries)
+      : formula_(formula),
+        box_(box),
+        claim_(claim),
+        velocity_(claim_velocity(claim, box)),
+        entries_(entries) {}
 
   // Empty where the entries prove the claim.
   std::string run() {
@@ -246,33 +252,58 @@ class Reader {
     if (!(claimed.low <= bounds->low && bounds->high <= claimed.high && is_finite(claimed))) {
       return "the formula may leave the bounds claimed on a piece" + place;
     }
+    if (!claim_holds(claim_, velocity_, piece, *bounds)) {
+      return "the property claimed may not hold on a piece" + place;
+    }
     return "";
   }
 
   const Expression& formula_;
   const NamedBox& box_;
+  const CertificateClaim& claim_;
+  std::size_t velocity_;
   const Json& entries_;
   std::size_t next_ = 0;
   std::size_t pieces_ = 0;
 };
 
+CertificateClaim read_claim(const Json& json) {
+  if (json == "finite") return {};
+  if (json.size() != 1) throw_bad_input("a claim is one property", "claim");
+  if (json.contains("bounded")) return {CertificateClaim::Kind::bounded, json["bounded"], ""};
+  return {CertificateClaim::Kind::dissipative, 0, json.at("dissipative")};
+}
+
+std::string claim_text(const CertificateClaim& claim) {
+  switch (claim.kind) {
+    case CertificateClaim::Kind::bounded:
+      return "finite and within +-" + Json(claim.limit).dump();
+    case CertificateClaim::Kind::dissipative:
+      return "finite and of no other sign than " + claim.velocity;
+    default:
+      return "finite";
+  }
+}
+
 void check_content(Json json, CertificateCheck& check) {
   const std::string digest = json.at("digest");
   json.erase("digest");
-  if (json.at("format") != "tribench certificate 1") {
+  if (json.at("format") != "tribench certificate 2") {
     check.reason = "the format is not known";
     return;
   }
   check.formula = json.at("formula");
   check.box = json.at("box");
-  if (json.size() != 4 || certificate_digest(json.dump()) != digest) {
+  if (json.size() != 5 || certificate_digest(json.dump()) != digest) {
     check.reason = "the digest does not fit the content";
     return;
   }
   NamedBox box = parse_box(check.box);
   const Expression formula = parse_over(check.formula, box);
   check_box(formula, box.ranges);
-  Reader reader(formula, box, json.at("entries"));
+  const CertificateClaim claim = read_claim(json.at("claim"));
+  check.claim = claim_text(claim);
+  Reader reader(formula, box, claim, json.at("entries"));
   check.reason = reader.run();
   check.pieces = reader.pieces();
   check.accepted = check.reason.empty();
@@ -332,6 +363,27 @@ std::optional<PieceRange> piece_bounds(const Expression& formula, const Piece& p
     if (!is_finite(stack.back())) return std::nullopt;
   }
   return stack.back();
+}
+
+bool claim_holds(const CertificateClaim& claim, std::size_t velocity, const Piece& piece,
+                 const PieceRange& bounds) {
+  if (claim.kind == CertificateClaim::Kind::finite) return true;
+  if (claim.kind == CertificateClaim::Kind::bounded) {
+    return -claim.limit <= bounds.low && bounds.high <= claim.limit;
+  }
+  const PieceRange& v = piece[velocity];
+  if (v.low == 0 && v.high == 0) return true;
+  return (v.low >= 0 && bounds.low >= 0) || (v.high <= 0 && bounds.high <= 0);
+}
+
+std::size_t claim_velocity(const CertificateClaim& claim, const NamedBox& box) {
+  if (claim.kind != CertificateClaim::Kind::dissipative) return 0;
+  const auto name = std::find(box.names.begin(), box.names.end(), claim.velocity);
+  if (name == box.names.end()) {
+    throw_bad_input("'" + claim.velocity + "' is not an input of the box", "claim",
+                    "name the velocity");
+  }
+  return static_cast<std::size_t>(name - box.names.begin());
 }
 
 std::string certificate_digest(std::string_view content) {

@@ -119,8 +119,27 @@ void print_text(const NamedBox& box, Property property, const PropertyResult& re
   fmt::print("  ({} boxes, {:.3g} s)\n", result.boxes, seconds);
 }
 
-void save_certificate(const Expression& formula, const NamedBox& box, const std::string& path) {
-  const auto certificate = write_certificate(formula, box);
+CertificateClaim claim_of(const PropertyQuestion& question, const NamedBox& box) {
+  switch (question.property) {
+    case Property::finite:
+      return {};
+    case Property::bounded:
+      if (question.limit == kInfinity) {
+        throw_bad_input("a certificate of a bound needs the bound", "--certificate", "add --limit");
+      }
+      return {CertificateClaim::Kind::bounded, question.limit, ""};
+    case Property::dissipative:
+      return {CertificateClaim::Kind::dissipative, 0, box.names[question.velocity]};
+    default:
+      throw_bad_input(
+          fmt::format("there are no certificates for '{}'", property_name(question.property)),
+          "--certificate", "finite, bounded and dissipative have them");
+  }
+}
+
+void save_certificate(const Expression& formula, const NamedBox& box, const CertificateClaim& claim,
+                      const std::string& path) {
+  const auto certificate = write_certificate(formula, box, kMaxPieces, claim);
   if (!certificate) {
     throw Error(
         ErrorKind::failed,
@@ -139,15 +158,13 @@ ExitStatus verify(const CheckOptions& options) {
   text << file.rdbuf();
   const CertificateCheck check = check_certificate(text.str());
   if (options.json) {
-    const Json json = {{"accepted", check.accepted},
-                       {"reason", check.reason},
-                       {"formula", check.formula},
-                       {"box", check.box},
-                       {"pieces", check.pieces}};
+    const Json json = {{"accepted", check.accepted}, {"reason", check.reason},
+                       {"formula", check.formula},   {"box", check.box},
+                       {"claim", check.claim},       {"pieces", check.pieces}};
     fmt::print("{}\n", json.dump(2));
   } else if (check.accepted) {
-    fmt::print("accepted: {} is finite everywhere on {}  ({} pieces)\n", check.formula, check.box,
-               check.pieces);
+    fmt::print("accepted: {} is {} everywhere on {}  ({} pieces)\n", check.formula, check.claim,
+               check.box, check.pieces);
   } else {
     fmt::print("rejected: {}\n", check.reason);
   }
@@ -166,6 +183,8 @@ ExitStatus run_check(const CheckOptions& options) {
   question.limit = options.limit;
   question.from = options.from;
   if (question.property != Property::finite) question.velocity = velocity_of(options, box);
+  CertificateClaim claim;  // asked for before the proof, so that a request in vain fails at once
+  if (!options.certificate.empty()) claim = claim_of(question, box);
   const auto start = std::chrono::steady_clock::now();
   const PropertyResult result = prove_property(formula, box.ranges, question);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -175,7 +194,7 @@ ExitStatus run_check(const CheckOptions& options) {
     print_text(box, question.property, result, seconds.count());
   }
   if (!options.certificate.empty() && result.verdict == Verdict::proved_free) {
-    save_certificate(formula, box, options.certificate);
+    save_certificate(formula, box, claim, options.certificate);
   }
   return status_of(result.verdict);
 }
@@ -201,7 +220,7 @@ void add_check_command(CLI::App& app, ExitStatus& status) {
   check->add_option("--limit", options->limit, "For bounded, in the formula's unit");
   check->add_option("--from", options->from, "For monotone, in the velocity's unit (0)");
   check->add_option("--certificate", options->certificate,
-                    "Writes a proof of finiteness that --verify checks");
+                    "Writes a proof (finite, bounded, dissipative) that --verify checks");
   check->add_option("--verify", options->verify, "Checks a certificate by itself");
   check->add_flag("--json", options->json,
                   "{verdict, witness, boxes, seconds, complexity, nodes, property}");

@@ -19,11 +19,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string certify(const std::string& formula, const std::string& box) {
+std::string certify(const std::string& formula, const std::string& box,
+                    const CertificateClaim& claim = {}) {
   NamedBox named = parse_box(box);
   const Expression parsed = parse_over(formula, named);
-  return write_certificate(parsed, named).value_or("");
+  return write_certificate(parsed, named, 2000, claim).value_or("");
 }
+
+CertificateClaim bounded_by(double limit) { return {CertificateClaim::Kind::bounded, limit, ""}; }
+const CertificateClaim kDissipative = {CertificateClaim::Kind::dissipative, 0, "v"};
 
 // The digest guards against accidents only: a forger recomputes it.
 std::string forge(Json json) {
@@ -72,7 +76,12 @@ TEST(Certificate, is_rejected_whatever_field_is_tampered_with) {
   while (!good["entries"][cut].contains("cut")) ++cut;
   std::size_t piece = 0;
   while (!good["entries"][piece].contains("piece")) ++piece;
-  tamper("format", [](Json& j) { j["format"] = "tribench certificate 2"; });
+  tamper("claim", [](Json& j) { j["claim"] = {{"dissipative", "v"}}; });
+  tamper("limit", [](Json& j) { j["claim"] = {{"bounded", 20}}; });
+  tamper("unknown claim", [](Json& j) { j["claim"] = {{"pretty", "v"}}; });
+  tamper("claim of another input", [](Json& j) { j["claim"] = {{"dissipative", "w"}}; });
+  tamper("no claim", [](Json& j) { j["claim"] = nullptr; });
+  tamper("format", [](Json& j) { j["format"] = "tribench certificate 1"; });
   tamper("formula", [](Json& j) { j["formula"] = "v/(v^2 - 2*v + 1) + sqrt(v*sgn_v)*g"; });
   tamper("formula, broken", [](Json& j) { j["formula"] = "v/("; });
   tamper("wider box", [](Json& j) { j["box"] = "v=-2:3,g=-60:60"; });
@@ -102,6 +111,29 @@ TEST(Certificate, is_rejected_whatever_field_is_tampered_with) {
   EXPECT_FALSE(check_certificate("").accepted);
   EXPECT_FALSE(check_certificate("[1, 2]").accepted);
   EXPECT_TRUE(check_certificate(forge(good)).accepted);
+}
+
+TEST(Certificate, covers_limits_and_dissipation) {
+  const std::string stribeck = "(3 + 2*exp(-(v/0.1)^2))*sgn_v + 4*v + 0.05*g*sgn_v*sgn_g";
+  for (const auto& [formula, claim] : {std::pair{stribeck, kDissipative},
+                                       {stribeck, bounded_by(20)},
+                                       {"v - 0.1*v^2*sgn_v", kDissipative},
+                                       {"v/(v^2 + 1)", bounded_by(0.51)},
+                                       {"2*v", kDissipative},
+                                       {"0*g", kDissipative}}) {
+    const CertificateCheck check = check_certificate(certify(formula, kBox, claim));
+    EXPECT_TRUE(check.accepted) << formula << ": " << check.reason;
+  }
+}
+
+TEST(Certificate, cannot_be_written_for_a_property_that_fails) {
+  for (const auto& [formula, claim] : {std::pair{std::string("3*sgn_v - 2*v"), kDissipative},
+                                       {"v + 0.001*g", kDissipative},
+                                       {"1 + v", kDissipative},
+                                       {"v/(v^2 + 1)", bounded_by(0.49)},
+                                       {"g", bounded_by(59)}}) {
+    EXPECT_EQ(certify(formula, kBox, claim), "") << formula;
+  }
 }
 
 TEST(Certificate, checker_accepts_no_false_claim_however_the_box_is_cut) {

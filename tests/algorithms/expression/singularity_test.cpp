@@ -219,7 +219,7 @@ TEST(Singularity, gives_the_same_answer_twice) {
 }
 
 TEST(Singularity, says_undecided_with_the_smallest_box_when_the_budget_is_spent) {
-  const Expression formula = parse("1/(v^2 - 0.6*v + 0.0900001)", kNames);
+  const Expression formula = parse("1/(exp(v - 0.3) - v - 0.6999999)", kNames);
   const SingularityResult result = prove_free(formula, joint_box(2, 60), {.node_boxes = 200});
   EXPECT_EQ(result.verdict, Verdict::undecided);
   ASSERT_EQ(result.undecided_box.size(), 4U);
