@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "algorithms/admission.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
@@ -114,6 +115,7 @@ json request_json(const FitContext& context,
           {"inputs", inputs},
           {"operator_set", context.operators.name()},
           {"operators", operators},
+          {"proved_free_only", context.operators.proved_free_only()},
           {"evaluations", context.budget.remaining()},
           {"seconds", context.budget.remaining_seconds()},
           // 31 bits: what every language's generators take as a seed.
@@ -192,8 +194,25 @@ class AnswerReader {
           fmt::format("'chosen' is {} in a front of {}", result.chosen, result.front.size()));
     }
     result.note = object.value("note", std::string());
+    keep_safe_formulas(result);
     context_.budget.book(object.value("evaluations", std::uint64_t{0}));
     result_ = std::move(result);
+  }
+
+  // Formulas not proved free go where the operator set admits no others. The next simpler one that
+  // is left stands in for a choice that goes, else the simplest.
+  void keep_safe_formulas(FitResult& result) const {
+    const Admission admission(context_);
+    std::vector<Expression> kept;
+    std::size_t chosen = 0;
+    for (std::size_t k = 0; k < result.front.size(); ++k) {
+      if (!admission.is_safe(result.front[k])) continue;
+      if (k <= result.chosen) chosen = kept.size();
+      kept.push_back(std::move(result.front[k]));
+    }
+    if (kept.empty()) throw_unusable("no formula of the front is proved free of singularities");
+    result.front = std::move(kept);
+    result.chosen = chosen;
   }
 
   Expression parse_formula(const std::string& text) const {

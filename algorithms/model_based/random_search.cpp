@@ -6,9 +6,9 @@
 #include <map>
 #include <optional>
 
+#include "algorithms/admission.hpp"
 #include "algorithms/expression/build.hpp"
 #include "algorithms/expression/complexity.hpp"
-#include "algorithms/expression/singularity.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
 
@@ -80,15 +80,6 @@ class RandomSearch : public Regressor {
   std::size_t size_;
 };
 
-bool is_admitted(const Expression& formula, const FitContext& context) {
-  if (!context.operators.admits(formula)) return false;
-  if (!context.operators.proved_free_only()) return true;
-  InputBox box;
-  for (const Input& input : context.data.inputs)
-    box.push_back({input.low, input.high, input.sign_of});
-  return prove_free(formula, box).verdict == Verdict::proved_free;
-}
-
 FitResult RandomSearch::fit(FitContext& context) const {
   const FiniteRows data(context.data);
   const std::vector<Op>& operators = context.operators.operators();
@@ -96,6 +87,7 @@ FitResult RandomSearch::fit(FitContext& context) const {
   if (operators.empty() || data.columns.empty()) {
     return FitResult::unsupported("random search needs inputs and operators");
   }
+  const Admission admission(context);
   RandomStream random = context.random.split("random_search");
   Evaluator evaluator;
   std::vector<double> values(data.rows());
@@ -116,7 +108,7 @@ FitResult RandomSearch::fit(FitContext& context) const {
     const int complexity = paper_complexity(found->formula);
     const auto place = best.find(complexity);
     if (place != best.end() && place->second.mean_square <= found->mean_square) continue;
-    if (!is_admitted(found->formula, context)) continue;
+    if (!admission.admits(found->formula)) continue;
     best.insert_or_assign(complexity, *found);
     if (found->mean_square >= least) continue;
     least = found->mean_square;

@@ -11,8 +11,8 @@
 #include <numeric>
 #include <string>
 
+#include "algorithms/admission.hpp"
 #include "algorithms/expression/complexity.hpp"
-#include "algorithms/expression/singularity.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/description_length.hpp"
@@ -178,11 +178,7 @@ class Search {
         pruner_(problem_),
         progress_(progress),
         threads_(threads),
-        proved_only_(operators.proved_free_only()) {
-    for (const Input& input : data.inputs) {
-      box_.push_back({input.low, input.high, input.sign_of});
-    }
-  }
+        admission_(operators, data.inputs) {}
 
   std::size_t rows() const { return problem_.rows(); }
   const ScoringProblem& problem() const { return problem_; }
@@ -282,9 +278,7 @@ class Search {
   }
 
   // Where the operator set admits only formulas proved free of singularities.
-  bool is_admitted(const Expression& formula) const {
-    return !proved_only_ || prove_free(formula, box_).verdict == Verdict::proved_free;
-  }
+  bool is_admitted(const Expression& formula) const { return admission_.is_safe(formula); }
 
   // With constants before every term, then with ever fewer terms.
   void offer_sparser(const udsr::Sequence& sequence) {
@@ -309,8 +303,7 @@ class Search {
   ConstantFitter fitter_;
   Progress* progress_;
   int threads_;
-  bool proved_only_;
-  InputBox box_;
+  Admission admission_;
   std::map<int, Candidate> candidates_;
 };
 

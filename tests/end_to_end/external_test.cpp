@@ -25,10 +25,11 @@ std::string shell_method(const std::string& name, const std::string& line) {
 class ExternalTest : public ::testing::Test {
  protected:
   std::string run(const std::string& methods, const std::string& more,
-                  const std::string& problem = "A/j2/no_load") {
+                  const std::string& problem = "A/j2/no_load",
+                  const std::string& operators = "paper") {
     write_text(folder_ / "grid.toml", "[grid]\nproblems = [\"" + problem + "\"]\nmethods = [" +
-                                          methods +
-                                          "]\noperators = [\"paper\"]\n[budget]\nevaluations = "
+                                          methods + "]\noperators = [\"" + operators +
+                                          "\"]\n[budget]\nevaluations = "
                                           "20_000_000\nwall_seconds = 60\nmemory_mib = 1500\n" +
                                           more);
     const ProgramRun ended =
@@ -61,6 +62,17 @@ echo '{"front": ["1 + sgn_qd", "13*sgn_qd"], "chosen": 1, "evaluations": 4321, "
   EXPECT_EQ(figure("good", "note"), "hello");
   EXPECT_EQ(figure("good", "singularity"), "proved_free");
   EXPECT_THAT(read_text(folder_ / "run" / "trace.csv"), HasSubstr("1000,"));
+}
+
+TEST_F(ExternalTest, OnlyProvedFormulasStayWhereTheSetAdmitsNoOthers) {
+  run("\"poles\", \"mixed\"",
+      shell_method("poles", "echo '{\"front\": [\"1/qd\"]}'") +
+          shell_method("mixed",
+                       "echo '{\"front\": [\"3\", \"3 + qd/(qd^2 + 1)\", \"1/qd\", "
+                       "\"4 + qd\"], \"chosen\": 2}'"),
+      "A/j2/no_load", "paper+safe_div");
+  EXPECT_EQ(figure("mixed", "formula", "paper+safe_div"), "3 + qd/(qd^2 + 1)");
+  EXPECT_THAT(figure("poles", "reason", "paper+safe_div"), HasSubstr("proved free"));
 }
 
 TEST_F(ExternalTest, WhatAProgramGetsWrongCostsItsOwnCell) {
