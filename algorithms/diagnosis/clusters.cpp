@@ -15,6 +15,7 @@ constexpr int kFolds = 10;
 constexpr int kFoldsOfOneMovement = 5;
 // Beyond this the AR(1) formula would say that nothing is left to learn from.
 constexpr double kLargestRho = 0.998;
+constexpr std::size_t kFewestForWeights = 10;
 
 std::vector<RowRange> movement_ranges(std::span<const int> movement) {
   std::vector<RowRange> ranges;
@@ -71,6 +72,59 @@ double autocovariance(const Eigen::VectorXd& deviation, std::span<const RowRange
   return sum;
 }
 
+// The offset's direction in whitened rows: `first` in a movement's first row, `next` in the others.
+struct OffsetDirection {
+  double first;
+  double next;
+  double length;  // squared
+  double noise;   // variance along it, without the offset's own
+  double offset;  // the offset's own
+};
+
+OffsetDirection offset_direction(const Clusters& clusters, std::size_t m, const Noise& noise) {
+  OffsetDirection u;
+  u.first = std::sqrt(noise.row_variance()) / noise.within_sd;
+  u.next = 1 - noise.whitening;
+  u.length =
+      u.first * u.first + static_cast<double>(clusters.movements[m].size() - 1) * u.next * u.next;
+  u.noise = noise.row_variance() *
+            std::min(noise.row_inflation(), static_cast<double>(clusters.movements[m].size()));
+  const double between = noise.between_sd * clusters.weight_of(m);
+  u.offset = between * between * u.length;
+  return u;
+}
+
+// In place: the part along the offset's direction is shrunk to the variance of the other rows.
+template <typename Matrix>
+void whiten(Matrix& columns, const Clusters& clusters, const Noise& noise) {
+  using Scalar = typename Matrix::Scalar;
+  const double share = noise.whitening;
+  for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
+    const RowRange& range = clusters.movements[m];
+    auto block = columns.middleRows(static_cast<Eigen::Index>(range.begin),
+                                    static_cast<Eigen::Index>(range.size()));
+    const OffsetDirection u = offset_direction(clusters, m, noise);
+    const double kept = std::sqrt(noise.row_variance() / (u.noise + u.offset));
+    for (Eigen::Index j = 0; j < block.cols(); ++j) {
+      auto column = block.col(j);
+      double before = 0;
+      double along = 0;
+      for (Eigen::Index i = 0; i < column.size(); ++i) {
+        const auto now = static_cast<double>(column[i]);
+        const double white = i == 0 ? u.first * now : now - share * before;
+        before = now;
+        along += (i == 0 ? u.first : u.next) * white;
+        column[i] = static_cast<Scalar>(white);
+      }
+      const double shift = (1 - kept) * along / u.length;
+      column[0] -= static_cast<Scalar>(shift * u.first);
+      column.tail(column.size() - 1).array() -= static_cast<Scalar>(shift * u.next);
+    }
+    const double weight = clusters.weight_of(m);
+    if (weight != 1) block *= static_cast<Scalar>(weight);
+  }
+}
+
 Eigen::VectorXd deviations(const Eigen::VectorXd& residual, std::span<const RowRange> movements) {
   Eigen::VectorXd out = residual;
   for (const RowRange& m : movements) {
@@ -99,7 +153,12 @@ Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters, 
   Noise noise;
   const auto movements = static_cast<double>(clusters.movements.size());
   const auto n = static_cast<double>(residual.size());
-  const Eigen::VectorXd deviation = deviations(residual, clusters.movements);
+  Eigen::VectorXd deviation = deviations(residual, clusters.movements);
+  for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
+    deviation.segment(static_cast<Eigen::Index>(clusters.movements[m].begin),
+                      static_cast<Eigen::Index>(clusters.movements[m].size())) *=
+        clusters.weight_of(m);
+  }
   const double within = deviation.squaredNorm();
   const double dof = std::max(1.0, n - movements - static_cast<double>(fitted));
   noise.within_sd = std::max(std::sqrt(within / dof), floor_sd);
@@ -111,13 +170,16 @@ Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters, 
   const double variance = noise.within_sd * noise.within_sd;
   double means = 0;
   double expected = 0;
-  for (const RowRange& m : clusters.movements) {
-    const double mean =
-        residual.segment(static_cast<Eigen::Index>(m.begin), static_cast<Eigen::Index>(m.size()))
-            .mean();
-    const auto rows = static_cast<double>(m.size());
+  for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
+    const RowRange& range = clusters.movements[m];
+    const double mean = residual
+                            .segment(static_cast<Eigen::Index>(range.begin),
+                                     static_cast<Eigen::Index>(range.size()))
+                            .mean();
+    const auto rows = static_cast<double>(range.size());
+    const double own = variance / (clusters.weight_of(m) * clusters.weight_of(m));
     means += mean * mean;
-    expected += variance * std::min(noise.inflation, rows) / rows;
+    expected += own * std::min(noise.inflation, rows) / rows;
     noise.effective_rows += rows / std::min(noise.inflation, rows);
   }
   if (clusters.movements.size() > 2) {
@@ -126,24 +188,64 @@ Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters, 
   return noise;
 }
 
-double quasi_demeaning(const Noise& noise, std::size_t rows) {
-  const double variance = noise.within_sd * noise.within_sd;
-  const auto n = static_cast<double>(rows);
-  const double between = n * noise.between_sd * noise.between_sd;
-  return 1 - std::sqrt(variance / (variance * std::min(noise.inflation, n) + between));
+Eigen::MatrixXd whitened(Eigen::MatrixXd columns, const Clusters& clusters, const Noise& noise) {
+  whiten(columns, clusters, noise);
+  return columns;
 }
 
-Eigen::MatrixXd whitened(const Eigen::MatrixXd& columns, const Clusters& clusters,
-                         const Noise& noise) {
-  Eigen::MatrixXd out = columns;
-  for (const RowRange& m : clusters.movements) {
-    const double theta = quasi_demeaning(noise, m.size());
-    auto block =
-        out.middleRows(static_cast<Eigen::Index>(m.begin), static_cast<Eigen::Index>(m.size()));
-    const Eigen::RowVectorXd shift = theta * block.colwise().mean();
-    block.rowwise() -= shift;
+Eigen::MatrixXf whitened_features(Eigen::MatrixXf columns, const Clusters& clusters,
+                                  const Noise& noise) {
+  whiten(columns, clusters, noise);
+  return columns;
+}
+
+Eigen::VectorXd offset_nats(const Clusters& clusters, const Noise& noise) {
+  std::vector<double> stretches(clusters.movements.size(), 0.0);
+  for (const std::size_t m : clusters.movement_of) ++stretches[m];
+  Eigen::VectorXd nats(static_cast<Eigen::Index>(clusters.stretches.size()));
+  for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
+    const std::size_t m = clusters.movement_of[c];
+    const OffsetDirection u = offset_direction(clusters, m, noise);
+    nats[static_cast<Eigen::Index>(c)] = 0.5 * std::log1p(u.offset / u.noise) / stretches[m];
   }
-  return out;
+  return nats;
+}
+
+std::vector<double> movement_weights(const Eigen::VectorXd& residual, const Clusters& clusters) {
+  const std::size_t count = clusters.movements.size();
+  std::vector<double> weights(count, 1.0);
+  if (count < kFewestForWeights) return weights;
+  const Noise noise = estimate_noise(residual, clusters, 0, 0);
+  const Eigen::VectorXd deviation = deviations(residual, clusters.movements);
+  const double variance = noise.within_sd * noise.within_sd;
+  if (!(variance > 0)) return weights;
+  // Of squares of an AR(1): they are correlated by rho^2.
+  const double square = noise.rho * noise.rho;
+  const double kurtosis = deviation.array().square().square().mean() / (variance * variance);
+  std::vector<double> logs(count, 0.0);
+  double mean = 0;
+  double sampling = 0;
+  for (std::size_t m = 0; m < count; ++m) {
+    const RowRange& range = clusters.movements[m];
+    const auto n = static_cast<double>(range.size());
+    const double squares = deviation
+                               .segment(static_cast<Eigen::Index>(range.begin),
+                                        static_cast<Eigen::Index>(range.size()))
+                               .squaredNorm();
+    logs[m] = std::log(std::max(squares / std::max(1.0, n - 1), 1e-6 * variance));
+    mean += logs[m] / static_cast<double>(count);
+    sampling += (kurtosis - 1) * (1 + square) / (1 - square) / n / static_cast<double>(count);
+  }
+  double spread = 0;
+  for (const double x : logs) spread += (x - mean) * (x - mean) / static_cast<double>(count - 1);
+  const double kept = spread > 0 ? std::clamp(1 - sampling / spread, 0.0, 1.0) : 0.0;
+  double squares = 0;
+  for (std::size_t m = 0; m < count; ++m) {
+    weights[m] = std::exp(-0.5 * kept * (logs[m] - mean));
+    squares += weights[m] * weights[m] / static_cast<double>(count);
+  }
+  for (double& w : weights) w /= std::sqrt(squares);
+  return weights;
 }
 
 double correlation_time(const Eigen::VectorXd& residual, std::span<const RowRange> movements) {

@@ -4,12 +4,15 @@
 // of every test) and the folds of cross-validation, which never cut a movement unless there is but
 // one. Also the noise within and between them, and the transform that takes it out of the way.
 //
-// Source: random-intercept quasi-demeaning (Fuller and Battese 1973); effective sizes as in the
-// specification, section 3.1 to 3.3. We differ in that the intercept belongs to the movement, not
-// to the stretch: stretches of one movement share their offset.
+// Source: random-intercept quasi-demeaning (Fuller and Battese 1973) after pre-whitening of
+// neighbouring rows (Prais and Winsten 1954); effective sizes as in the specification, section 3.1
+// to 3.3, whose optional whitening and weights by movement are the rule here. We differ in that the
+// intercept belongs to the movement, not to the stretch: stretches of one movement share their
+// offset.
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -31,6 +34,9 @@ struct Clusters {
   std::vector<int> fold_of;              // per stretch
   int folds = 0;
   std::size_t rows = 0;
+  // Per movement: its rows count as if their noise were 1/weight times the usual; empty: all 1.
+  std::vector<double> weight;
+  double weight_of(std::size_t movement) const { return weight.empty() ? 1 : weight[movement]; }
 };
 
 // Stretches hold at least 30 rows and 10 correlation times (in rows); a movement of up to 45 rows
@@ -44,6 +50,21 @@ struct Noise {
   double rho = 0;         // correlation of neighbouring rows within a movement
   double inflation = 1;   // (1 + rho) / (1 - rho)
   double effective_rows = 0;
+
+  // Each row less this share of the one before it is what tests and fits look at: rho, or 0 where
+  // that cannot be trusted (see Search::fit).
+  double whitening = 0;
+  // Variance of such a row, and how much its long-run variance exceeds it (1 where whitening is
+  // rho).
+  double row_variance() const {
+    return within_sd * within_sd * (1 + whitening * (whitening - 2 * rho));
+  }
+  double row_inflation() const {
+    const double w = whitening;
+    return inflation * (1 - w) * (1 - w) / (1 + w * (w - 2 * rho));
+  }
+  // What a squared whitened error counts, in nats.
+  double unit() const { return 2 * row_variance() * row_inflation(); }
 };
 
 // From residuals; `fitted` parameters are taken off the degrees of freedom. floor_sd keeps the
@@ -51,10 +72,20 @@ struct Noise {
 Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters, std::size_t fitted,
                      double floor_sd);
 
-// theta of a movement of n rows: a column's mean over the movement, times theta, is taken off.
-double quasi_demeaning(const Noise& noise, std::size_t rows);
-Eigen::MatrixXd whitened(const Eigen::MatrixXd& columns, const Clusters& clusters,
-                         const Noise& noise);
+// Rows less `whitening` times the row before, movement by movement; then the part along a
+// movement's offset shrunk by what is known of offsets; then the movement's weight. Noise of the
+// columns comes out with row_variance(), uncorrelated.
+Eigen::MatrixXd whitened(Eigen::MatrixXd columns, const Clusters& clusters, const Noise& noise);
+Eigen::MatrixXf whitened_features(Eigen::MatrixXf columns, const Clusters& clusters,
+                                  const Noise& noise);
+
+// ln of what the offsets add to the spread of each movement's mean, halved and shared out to its
+// stretches: the part of a negative log likelihood that says how well offsets are explained.
+Eigen::VectorXd offset_nats(const Clusters& clusters, const Noise& noise);
+
+// Weights of the movements from their own noise in `residual`: the spread of the movements' log
+// variances that sampling does not explain is kept, the rest is shrunk away. Mean square 1.
+std::vector<double> movement_weights(const Eigen::VectorXd& residual, const Clusters& clusters);
 
 // In rows: the larger of -1/log(rho) and the sum of the autocorrelations before they fall below
 // 0.05, pooled over the movements.

@@ -54,7 +54,7 @@ Eigen::VectorXd held_out_losses(const Eigen::MatrixXd& x, const Eigen::VectorXd&
   for (const Eigen::MatrixXd& gram : grams) {
     solutions.push_back(solve_scaled(total - gram, p, penalised, ridge));
   }
-  const double unit = 2 * noise.within_sd * noise.within_sd * noise.inflation;
+  const double unit = noise.unit();
   Eigen::VectorXd losses(static_cast<Eigen::Index>(clusters.stretches.size()));
   for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
     const auto begin = static_cast<Eigen::Index>(clusters.stretches[c].begin);
@@ -68,9 +68,7 @@ Eigen::VectorXd held_out_losses(const Eigen::MatrixXd& x, const Eigen::VectorXd&
 
 SubsetLosses::SubsetLosses(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y,
                            const Clusters& clusters, const Noise& noise)
-    : clusters_(clusters),
-      unit_(2 * noise.within_sd * noise.within_sd * noise.inflation),
-      width_(columns.cols() + 1) {
+    : clusters_(clusters), unit_(noise.unit()), width_(columns.cols() + 1) {
   Eigen::MatrixXd all(columns.rows(), width_);
   all << columns, y;
   others_.assign(static_cast<std::size_t>(clusters.folds), Eigen::MatrixXd::Zero(width_, width_));

@@ -14,7 +14,7 @@
 
 namespace tribench::loop {
 
-// Per cluster: sum of squared held-out errors / (2 sw^2 inflation), in nats. x: rows x columns,
+// Per cluster: sum of squared held-out errors over the noise's unit, in nats. x: rows x columns,
 // y: rows, both whitened. Columns that depend on others are harmless.
 // Cost: rows x columns^2, and one small factorisation a fold.
 // ridge: on the last `penalised` columns, relative to their sums of squares.

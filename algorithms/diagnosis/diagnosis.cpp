@@ -16,7 +16,8 @@ namespace tribench::loop {
 namespace {
 
 constexpr std::size_t kFewestRowsOfMovement = 5;
-constexpr std::size_t kFewMovements = 10;
+constexpr std::size_t kFewMovements = 40;     // a fifth of them is too few to judge by
+constexpr std::size_t kWantedMovements = 30;  // R9
 constexpr std::size_t kPiecesOfOneMovement = 5;
 
 std::vector<EffectFamily> chosen_families(const DiagnosisOptions& options) {
@@ -213,8 +214,8 @@ Diagnosis diagnose_training(const Observations& data, const std::vector<int>& te
   }
   const Clusters uncut = make_clusters(train.movement, 1, random);
   out.correlation_rows = correlation_time(train_rich, uncut.movements);
-  const Clusters clusters =
-      make_clusters(train.movement, out.correlation_rows, random.split("folds"));
+  Clusters clusters = make_clusters(train.movement, out.correlation_rows, random.split("folds"));
+  clusters.weight = movement_weights(train_rich, clusters);
   Search search(train, base, out.families, options, clusters, random.split("search"));
   search.run();
   out.rows = train.rows();
@@ -307,12 +308,16 @@ Diagnosis diagnose(const Observations& data, const BaseMaker& base, const Diagno
     out.error.how =
         single ? "pieces of the one movement left out in turn" : "each movement left out in turn";
     out.error.confirmed = out.effects.empty() || out.error.difference_low > 0;
-    out.notes.push_back(
-        single ? std::string("there is one movement: nothing that differs between movements "
-                             "(temperature, drift, repeatability) can be tested")
-               : fmt::format("there are {} movements: what differs between movements (temperature, "
-                             "drift, repeatability) can hardly be tested; 30 are wanted",
-                             movements));
+    if (single) {
+      out.notes.push_back(
+          "there is one movement: nothing that differs between movements (temperature, drift, "
+          "repeatability) can be tested");
+    } else if (movements < kWantedMovements) {
+      out.notes.push_back(
+          fmt::format("there are {} movements: what differs between movements (temperature, drift, "
+                      "repeatability) can hardly be tested; {} are wanted",
+                      movements, kWantedMovements));
+    }
     return out;
   }
   const std::vector<int> test =

@@ -124,6 +124,8 @@ struct MovementError {
   double before = 0;  // mean absolute error
   double after = 0;
   std::size_t rows = 0;
+  double mean_before = 0;  // of the error with its sign
+  double mean_after = 0;
 };
 
 struct ErrorFinding {
@@ -135,6 +137,9 @@ struct ErrorFinding {
   double rmse_after = std::numeric_limits<double>::quiet_NaN();
   double max_before = std::numeric_limits<double>::quiet_NaN();
   double max_after = std::numeric_limits<double>::quiet_NaN();
+  // Root mean square of the movements' mean errors: what noise within them does not hide.
+  double means_before = std::numeric_limits<double>::quiet_NaN();
+  double means_after = std::numeric_limits<double>::quiet_NaN();
   double difference_low = std::numeric_limits<double>::quiet_NaN();  // before - after, 95 %
   double difference_high = std::numeric_limits<double>::quiet_NaN();
   double ceiling = std::numeric_limits<double>::quiet_NaN();
@@ -168,11 +173,11 @@ struct Diagnosis {
   std::vector<EffectFamily> families;
 };
 
-// With ten movements or more a fifth of them is held out. With fewer, all take part in the verdict
-// and the whole procedure is repeated with each movement left out in turn to judge it; a single
-// movement is cut into five pieces for that.
-// Deterministic given the seed. Cost: some tens of milliseconds for 6 000 rows.
-// Throws Error (bad_input) where there are too few rows to fit the base.
+// With forty movements or more a fifth of them is held out. With fewer, which leave too few to
+// judge by, all take part in the verdict and the whole procedure is repeated with each movement
+// left out in turn to judge it; a single movement is cut into five pieces for that. Deterministic
+// given the seed. Cost: some tens of milliseconds for 6 000 rows. Throws Error (bad_input) where
+// there are too few rows to fit the base.
 Diagnosis diagnose(const Observations& data, const BaseMaker& base, const DiagnosisOptions& options,
                    std::uint64_t seed);
 

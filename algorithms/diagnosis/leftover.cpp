@@ -153,7 +153,7 @@ void Search::test_leftover() {
   leftover.inputs = smoothers[winner].inputs;
   leftover.signals = smoothers[winner].signals;
   const std::size_t before = found.size();
-  drop_proxies(smoothers[winner]);
+  drop_proxies(smoothers[winner], best.nats);
   if (found.size() < before) {
     // Without its proxies the leftover shows better where it lives.
     const std::vector<std::string> proxies = leftover.proxies_removed;
@@ -163,12 +163,20 @@ void Search::test_leftover() {
   }
 }
 
-void Search::drop_proxies(const Smoother& smoother) {
+// A family that the leftover's smoother makes superfluous is a proxy of what is left over, unless
+// it explains more than that: the smoother in v takes the place of any effect of v, the true one
+// too.
+void Search::drop_proxies(const Smoother& smoother, double leftover_nats) {
   const std::vector<Found> before = found;
   for (const Found& one : before) {
     LoopModel without = current_.model;
     remove_family(without, one.family);
     FittedModel rest = fit(std::move(without), FitScope::linear);
+    const Eigen::MatrixXd x = whitened(tangent(rest.model, data_), clusters_, current_.noise);
+    const Eigen::VectorXd y =
+        whitened(target_vector(data_) - predict(rest.model, data_), clusters_, current_.noise);
+    const Gain own = paired_gain(held_out_losses(x, y, clusters_, current_.noise), current_.losses);
+    if (own.nats > leftover_nats && own.nats > own.error) continue;
     rest.basis = orthonormal_basis(
         beside(rest.x, whitened(smoother.columns.cast<double>(), clusters_, rest.noise)));
     rest.residual = project_off(rest.residual, rest.basis);

@@ -83,6 +83,8 @@ Json error_json(const ErrorFinding& error) {
           {"ceiling", number(error.ceiling)},
           {"closed_fraction", number(error.closed_fraction)},
           {"confirmed", error.confirmed},
+          {"means_before", number(error.means_before)},
+          {"means_after", number(error.means_after)},
           {"movements", movements}};
 }
 

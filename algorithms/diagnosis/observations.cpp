@@ -75,6 +75,24 @@ double since_crossing(double before, double now, double dt) {
   return 0.5 * std::abs(now) * part * dt;
 }
 
+// Some movement turns or starts from standstill: else nobody knows how far back the last reversal
+// lies, and "distance" would be a name for the place within a recording.
+bool knows_a_reversal(const Observations& data, const std::vector<double>& v) {
+  constexpr double kStandstill = 0.05;  // of the movement's top speed
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i <= v.size(); ++i) {
+    if (i < v.size() && data.movement[i] == data.movement[begin]) {
+      if (v[i] * v[begin] < 0) return true;
+      continue;
+    }
+    double top = 0;
+    for (std::size_t k = begin; k < i; ++k) top = std::max(top, std::abs(v[k]));
+    if (std::abs(v[begin]) < kStandstill * top) return true;
+    begin = i;
+  }
+  return false;
+}
+
 // Path since the velocity last changed its sign; starts at 0 with every movement.
 void add_distance(Observations& data) {
   if (data.find("d") != nullptr) return;
@@ -82,7 +100,7 @@ void add_distance(Observations& data) {
   const Signal* q = data.find("q");
   const Signal* t = data.find("t");
   const bool timed = t != nullptr && t->recipe != "number of the movement in the file";
-  if (v == nullptr || (q == nullptr && !timed)) return;
+  if (v == nullptr || (q == nullptr && !timed) || !knows_a_reversal(data, v->values)) return;
   Signal signal{"d", "", q != nullptr ? q->unit : v->unit + " s", Role::none, {}, {}};
   signal.recipe =
       "d grows by abs(q - q_before), or abs(v)*dt; at the first row after a change of v's sign it "

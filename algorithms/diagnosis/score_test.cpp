@@ -143,13 +143,7 @@ BlockScores score_block(const Eigen::Ref<const Eigen::MatrixXd>& projected,
 BlockScores score_features(Eigen::MatrixXf features, const Eigen::MatrixXd& basis,
                            const Eigen::VectorXd& residual, const Clusters& clusters,
                            const Noise& noise, double ridge) {
-  for (const RowRange& m : clusters.movements) {
-    const auto theta = static_cast<float>(quasi_demeaning(noise, m.size()));
-    auto block = features.middleRows(static_cast<Eigen::Index>(m.begin),
-                                     static_cast<Eigen::Index>(m.size()));
-    const Eigen::RowVectorXf shift = theta * block.colwise().mean();
-    block.rowwise() -= shift;
-  }
+  features = whitened_features(std::move(features), clusters, noise);
   const Eigen::MatrixXf directions = basis.cast<float>();
   features.noalias() -= directions * (directions.transpose() * features).eval();
   BlockScores out;

@@ -44,6 +44,36 @@ double quantisation_floor(const std::vector<double>& target) {
   return std::max(negligible, smallest / std::sqrt(12.0));
 }
 
+// Where correlated noise is all that is wrong, fits with and without whitening agree but for noise.
+// Where they do not, the model lacks something fast (what happens at reversals, a filter's shadow),
+// and to look at changes within a movement would fit that. Hausman 1978: the difference in the
+// fitted values against what it can be at most by noise alone, parameter by parameter.
+bool whitening_is_safe(const LoopModel& model, const Observations& data, const Clusters& clusters,
+                       const Noise& noise) {
+  const Eigen::MatrixXd x = tangent(model, data);
+  const Eigen::VectorXd y = target_vector(data) - predict(model, data);
+  if (x.cols() == 0) return true;
+  const auto solution = [&](const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
+    const Eigen::VectorXd norms = columns.colwise().norm().cwiseMax(1e-300);
+    const Eigen::MatrixXd scaled = columns * norms.cwiseInverse().asDiagonal();
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+    qr.setThreshold(1e-9);
+    qr.compute(scaled);
+    return Eigen::VectorXd(qr.solve(target).cwiseQuotient(norms));
+  };
+  Noise plain;
+  plain.within_sd = 1;
+  const Eigen::MatrixXd weighted = whitened(x, clusters, plain);
+  const Eigen::VectorXd one = solution(weighted, whitened(y, clusters, plain));
+  const Eigen::VectorXd other =
+      solution(whitened(x, clusters, noise), whitened(y, clusters, noise));
+  const double rows =
+      static_cast<double>(data.rows()) / static_cast<double>(clusters.movements.size());
+  const double most = noise.within_sd * noise.within_sd * noise.inflation +
+                      rows * noise.between_sd * noise.between_sd;
+  return (weighted * (one - other)).squaredNorm() < most * static_cast<double>(x.cols());
+}
+
 // The largest canonical correlation of two column spaces.
 double canonical_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   const Eigen::MatrixXd qa = orthonormal_basis(a);
@@ -107,15 +137,25 @@ void Search::instantiate_library() {
 
 FittedModel Search::fit(LoopModel model, FitScope scope) const {
   FittedModel out;
-  Noise noise;
-  noise.within_sd = 1;  // no correction in the first pass
+  Noise plain;
+  plain.within_sd = 1;
+  Noise noise = plain;
+  Noise weighing = plain;  // how the coefficients are fitted: plain least squares at first
   for (int pass = 0; pass < 3; ++pass) {
     const bool refine = pass == 1 && scope == FitScope::everything;
-    fit_model(model, data_, clusters_, noise, refine ? scope : FitScope::linear);
+    fit_model(model, data_, clusters_, weighing, refine ? scope : FitScope::linear);
     if (pass == 2) break;
     const Eigen::VectorXd residual = target_vector(data_) - predict(model, data_);
     const auto fitted = static_cast<std::size_t>(model.coefficients.size());
     noise = estimate_noise(residual, clusters_, fitted, noise_floor_);
+    weighing = noise;
+    if (pass == 0) continue;
+    noise.whitening = noise.rho;
+    weighing = noise;
+    if (whitening_is_safe(model, data_, clusters_, noise)) continue;
+    noise.whitening = 0;
+    // A model that is wrong predicts best as plain least squares has it.
+    weighing = whitening_is_safe(model, data_, clusters_, noise) ? noise : plain;
   }
   out.x = whitened(tangent(model, data_), clusters_, noise);
   out.basis = orthonormal_basis(out.x);
@@ -182,6 +222,54 @@ Candidate Search::best_atom(std::size_t family, const Round& round,
   return best;
 }
 
+// How many independent pieces of data carry an atom, as an effective number: movements where it
+// differs between them rather than within them, else stretches.
+double Search::carriers(const Round& round, std::size_t atom, const FittedModel& state) const {
+  const Eigen::MatrixXd z =
+      project_off(round.columns.middleCols(static_cast<Eigen::Index>(blocks_[atom].first),
+                                           static_cast<Eigen::Index>(blocks_[atom].count)),
+                  state.basis);
+  double all = 0;
+  double squares = 0;
+  double between = 0;
+  for (const RowRange& m : clusters_.movements) {
+    const auto rows =
+        z.middleRows(static_cast<Eigen::Index>(m.begin), static_cast<Eigen::Index>(m.size()));
+    const double own = rows.squaredNorm();
+    all += own;
+    squares += own * own;
+    between += rows.colwise().sum().squaredNorm() / static_cast<double>(m.size());
+  }
+  const bool by_movement = between > 0.5 * all;
+  return by_movement ? all * all / squares : round.blocks[atom].test.effective_clusters;
+}
+
+// The rescue rule. What is carried by few movements cannot reach a small p by flipping their signs,
+// but it can explain their offsets: its gain counts what it leaves of their spread.
+std::optional<Candidate> Search::rescue(std::size_t family, const Round& round,
+                                        const FittedModel& state) const {
+  std::optional<Candidate> best;
+  // All atoms: with few carriers their scores tell next to nothing.
+  for (std::size_t k = 0; k < library_.size(); ++k) {
+    if (library_[k].family != family || !round.blocks[k].test.testable) continue;
+    if (!(carriers(round, k, state) < kFewClusters)) continue;
+    LoopModel model = state.model;
+    model.add(library_[k]);
+    const FittedModel with = fit(std::move(model), FitScope::linear);
+    Noise noise = state.noise;
+    noise.between_sd = with.noise.between_sd;
+    const Eigen::VectorXd y =
+        whitened(target_vector(data_) - predict(with.model, data_), clusters_, noise);
+    const Eigen::MatrixXd x = whitened(tangent(with.model, data_), clusters_, noise);
+    Eigen::VectorXd losses = held_out_losses(x, y, clusters_, noise);
+    const Gain gain = paired_gain(state.losses + offset_nats(clusters_, state.noise),
+                                  losses + offset_nats(clusters_, noise));
+    if (!(gain.nats > kRescueGain && gain.nats > 2 * gain.error)) continue;
+    if (!best || gain.nats > best->gain.nats) best = {family, k, gain, std::move(losses), true};
+  }
+  return best;
+}
+
 std::vector<Candidate> Search::admitted(const Round& round, const FittedModel& state,
                                         const std::vector<std::size_t>& skip) const {
   std::vector<Candidate> all;
@@ -189,15 +277,11 @@ std::vector<Candidate> Search::admitted(const Round& round, const FittedModel& s
     if (std::ranges::count(skip, f) > 0 || !(round.family_score[f] > 0)) continue;
     const bool significant = round.family_p[f] <= options_.alpha_library;
     if (!significant && round.family_p[f] >= kRescueP) continue;
-    Candidate candidate = best_atom(f, round, state);
-    const BlockTest& test = round.blocks[candidate.atom].test;
-    if (!significant) {
-      candidate.rescued = test.effective_clusters < kFewClusters &&
-                          candidate.gain.nats > kRescueGain &&
-                          candidate.gain.nats > 2 * candidate.gain.error;
-      if (!candidate.rescued) continue;
+    if (significant) {
+      all.push_back(best_atom(f, round, state));
+    } else if (std::optional<Candidate> one = rescue(f, round, state)) {
+      all.push_back(std::move(*one));
     }
-    all.push_back(std::move(candidate));
   }
   std::ranges::stable_sort(
       all, [](const Candidate& a, const Candidate& b) { return a.gain.nats > b.gain.nats; });
@@ -340,7 +424,8 @@ std::vector<AliasFinding> Search::aliases_of(const Candidate& winner, const Roun
                        current_.basis);
   };
   for (std::size_t f = 0; f < families_.size(); ++f) {
-    if (f == winner.family || round.family_p[f] > kNearAliasP) continue;
+    if (f == winner.family || round.family_p[f] > (winner.rescued ? kRescueP : kNearAliasP))
+      continue;
     const Candidate rival = best_atom(f, round, current_);
     const double r = canonical_correlation(columns(winner.atom), columns(rival.atom));
     const Gain lead = paired_gain(rival.losses, winner.losses);
@@ -358,7 +443,7 @@ std::vector<AliasFinding> Search::aliases_of(const Candidate& winner, const Roun
 }
 
 bool Search::add_best(const Round& round) {
-  const std::vector<Candidate> all = admitted(round, current_, {});
+  const std::vector<Candidate> all = admitted(round, current_, rejected_);
   if (all.empty()) return false;
   const Candidate& winner = all.front();
   if (!(winner.gain.nats > winner.gain.error)) return false;
@@ -474,8 +559,17 @@ void Search::run() {
   list_coinciding(round);
   list_candidates(round);
   for (int addition = 0; addition < options_.max_additions; ++addition) {
+    const std::vector<Found> before = found;
     if (!add_best(round)) break;
+    const bool grew = found.size() > before.size();
+    const std::size_t added = found.back().family;
     reconsider();
+    const bool stayed = std::ranges::count(found, added, &Found::family) > 0;
+    if (!grew || stayed) {
+      rejected_.clear();
+    } else {
+      rejected_.push_back(added);
+    }
     round = test_all(current_);
   }
   if (!found.empty()) check_exhaustively();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -89,6 +90,9 @@ class Search {
   bool add_best(const Round& round);
   bool cancels_itself(const LoopModel& model, std::size_t family) const;
   std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round) const;
+  double carriers(const Round& round, std::size_t atom, const FittedModel& state) const;
+  std::optional<Candidate> rescue(std::size_t family, const Round& round,
+                                  const FittedModel& state) const;
   Candidate best_atom(std::size_t family, const Round& round, const FittedModel& state) const;
   void reconsider();
   bool swap_or_drop(std::size_t family);
@@ -96,7 +100,7 @@ class Search {
                              const FittedModel& with) const;
   void check_exhaustively();
   void test_leftover();
-  void drop_proxies(const Smoother& smoother);
+  void drop_proxies(const Smoother& smoother, double leftover_nats);
   std::size_t atoms_of(std::size_t family) const;
   void remove_family(LoopModel& model, std::size_t family) const;
 
@@ -111,6 +115,8 @@ class Search {
   Eigen::MatrixXd columns_;    // the library's raw columns, unit rms
   std::vector<Block> blocks_;  // per atom, in columns_
   Eigen::MatrixXf flips_;
+  // Families that were added and did not stand in the same model: not to be tried again in it.
+  std::vector<std::size_t> rejected_;
   FittedModel base_fit_;
   FittedModel current_;
 };

@@ -162,9 +162,12 @@ void print_findings(const loop::Diagnosis& diagnosis, const loop::Observations& 
   }
   for (const std::string& note : diagnosis.notes) fmt::print("  note: {}\n", note);
   const loop::ErrorFinding& error = diagnosis.error;
-  fmt::print("  error ({}): MAE {:.4g} -> {:.4g}, RMS {:.4g} -> {:.4g} {}{}\n", error.how,
-             error.mae_before, error.mae_after, error.rmse_before, error.rmse_after,
-             data.target_unit, error.confirmed ? "" : "; NOT confirmed on held-out data");
+  fmt::print(
+      "  error ({}): MAE {:.4g} -> {:.4g}, RMS {:.4g} -> {:.4g}, movements' means RMS {:.3g} -> "
+      "{:.3g} {}{}\n",
+      error.how, error.mae_before, error.mae_after, error.rmse_before, error.rmse_after,
+      error.means_before, error.means_after, data.target_unit,
+      error.confirmed ? "" : "; NOT confirmed on held-out data");
   for (const loop::UntestableFinding& one : diagnosis.untestable) {
     fmt::print("  cannot say: {} ({})\n", one.family, one.reason);
   }
