@@ -5,7 +5,9 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <stdexcept>
 
+#include "algorithms/expression/compile.hpp"
 #include "algorithms/expression/differentiate.hpp"
 #include "algorithms/expression/text.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
@@ -22,18 +24,20 @@ struct ParFamCurve {
   std::vector<std::string> names = {"v", "s"};
   Expression truth = parse("(3.66*v + 8.52*s - 0.44)*exp(-0.78*v^2 + 1.26*v*s + 0.02*v)", names);
   std::vector<std::size_t> places = truth.constant_positions();
-  std::vector<double> v = std::vector<double>(90);
-  std::vector<double> s = std::vector<double>(90);
-  std::vector<double> y = std::vector<double>(90);
-  std::vector<const double*> columns = {v.data(), s.data()};
-  Inputs inputs{columns, 90};
+  std::vector<double> v;
+  std::vector<double> s;
+  std::vector<double> y;
+  std::vector<const double*> columns;
+  Inputs inputs;
   RandomStream random{1};
 
-  ParFamCurve() {
+  explicit ParFamCurve(std::size_t rows = 90)
+      : v(rows), s(rows), y(rows), columns{v.data(), s.data()}, inputs{columns, rows} {
     std::erase_if(places, [&](std::size_t place) { return truth.node(place).value == 2; });
-    for (std::size_t i = 0; i < 90; ++i) {
-      s[i] = i < 45 ? -1 : 1;
-      v[i] = s[i] * (0.015 + 0.665 * static_cast<double>(i % 45) / 44.0);
+    const std::size_t half = rows / 2;
+    for (std::size_t i = 0; i < rows; ++i) {
+      s[i] = i < half ? -1 : 1;
+      v[i] = s[i] * (0.015 + 0.665 * static_cast<double>(i % half) / static_cast<double>(half - 1));
     }
     Evaluator().evaluate(truth, inputs, y);
     for (double& value : y) value += kNoise * random.normal();
@@ -47,6 +51,44 @@ struct ParFamCurve {
   // A minimum counts where it leaves little more than the noise.
   static bool is_reached(double sum_squares) { return sum_squares < 90 * kNoise * kNoise * 1.5; }
 };
+
+// What one pass over the rows with other constants costs: interpreted, compiled, and with the sums
+// that a step of a fit needs. Compiled code has to pay back 20 us (expression_bench).
+void one_pass(benchmark::State& state) {
+  ParFamCurve curve(static_cast<std::size_t>(state.range(1)));
+  std::vector<double> out(curve.y.size());
+  std::vector<double> expected(curve.y.size());
+  Evaluator evaluator;
+  auto code = CompiledFormula::compile(curve.truth);
+  if (!code) return state.SkipWithError("no code is generated on this machine");
+  std::vector<double> constants;
+  for (const std::size_t place : curve.truth.constant_positions()) {
+    constants.push_back(curve.truth.node(place).value);
+  }
+  evaluator.evaluate(curve.truth, curve.inputs, expected);
+  code->evaluate(constants, curve.inputs, out);
+  if (out != expected) throw std::runtime_error("code and interpreter disagree");
+  Differentiator differentiator;
+  differentiator.prepare(curve.truth, curve.places);
+  std::vector<double> fitted;
+  for (const std::size_t place : curve.places) fitted.push_back(curve.truth.node(place).value);
+  NormalEquations sums;
+  for (auto _ : state) {
+    if (state.range(0) == 0) {
+      evaluator.evaluate(curve.truth, curve.inputs, out);
+    } else if (state.range(0) == 1) {
+      code->evaluate(constants, curve.inputs, out);
+    } else {
+      differentiator.set_constants(fitted);
+      differentiator.normal_equations(curve.inputs, curve.y, {}, sums);
+    }
+    benchmark::DoNotOptimize(out.data());
+    benchmark::ClobberMemory();
+  }
+}
+BENCHMARK(one_pass)
+    ->ArgNames({"interpreted_0_compiled_1_sums_2", "rows"})
+    ->ArgsProduct({{0, 1, 2}, {90, 1000, 5000}});
 
 void report(benchmark::State& state, std::int64_t starts, std::int64_t reached) {
   if (starts > 100 && reached < starts / 3) state.SkipWithError("too few starts reach the truth");
