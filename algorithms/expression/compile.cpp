@@ -7,6 +7,7 @@
 
 #include "algorithms/expression/code_generator.hpp"
 #include "algorithms/expression/compile_plan.hpp"
+#include "algorithms/expression/edit.hpp"
 #include "algorithms/expression/program.hpp"
 #include "algorithms/expression/vector/kernels.hpp"
 
@@ -20,11 +21,6 @@ constexpr std::align_val_t kCacheLine{64};
 constexpr std::size_t kWidest = 64;  // bytes of a vector
 
 int function_index(Op op) { return static_cast<int>(op) - static_cast<int>(Op::neg); }
-
-// Whether the constant at i is, itself, the exponent of a power.
-bool is_exponent(const Expression& formula, std::size_t i) {
-  return i + 1 < formula.size() && formula.node(i + 1).op == Op::pow;
-}
 
 }  // namespace
 

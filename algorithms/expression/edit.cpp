@@ -36,6 +36,24 @@ Node operation(Op op, std::size_t length) { return {0, static_cast<std::uint32_t
 
 }  // namespace
 
+Children children_of(const Expression& formula, std::size_t i) {
+  switch (arity(formula.node(i).op)) {
+    case 0:
+      return {};
+    case 1:
+      return {{formula.only_child(i), 0}, 1};
+    default:
+      return {{formula.left_child(i), formula.right_child(i)}, 2};
+  }
+}
+
+std::size_t parent_of(const Expression& formula, std::size_t i) {
+  for (std::size_t j = i + 1; j < formula.size(); ++j) {
+    if (formula.begin(j) <= i) return j;
+  }
+  return formula.size();
+}
+
 void splice(const Expression& base, std::size_t i, std::span<const Node> piece, Expression& out) {
   rewrite<1, 0>(base, i, {piece}, {}, out);
 }

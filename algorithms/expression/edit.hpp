@@ -29,6 +29,23 @@ inline std::size_t child_of(const Expression& formula, std::size_t i, int c) {
   return c == arity(formula.node(i).op) - 1 ? formula.right_child(i) : formula.left_child(i);
 }
 
+// Places of the children of node i, left to right; 0, 1 or 2 of them.
+struct Children {
+  std::size_t place[2] = {0, 0};
+  std::size_t count = 0;
+};
+Children children_of(const Expression& formula, std::size_t i);
+
+// The parent of node i; `formula.size()` for the root. O(size).
+std::size_t parent_of(const Expression& formula, std::size_t i);
+
+// Whether node i is a constant and the exponent of a ^: part of the structure to most searches and
+// fits. (A right child stands directly before its parent.)
+inline bool is_exponent(const Expression& formula, std::size_t i) {
+  return i + 1 < formula.size() && formula.node(i).is_constant() &&
+         formula.node(i + 1).op == Op::pow;
+}
+
 // `base` with the subtree that ends at i replaced by `piece`, a whole formula in postfix order
 // with its lengths set (the nodes of a formula or of a subtree).
 void splice(const Expression& base, std::size_t i, std::span<const Node> piece, Expression& out);

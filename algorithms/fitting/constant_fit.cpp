@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "algorithms/expression/differentiate.hpp"
+#include "algorithms/expression/edit.hpp"
 #include "algorithms/fitting/cholesky.hpp"
 #include "algorithms/fitting/linear_constants.hpp"
 
@@ -59,9 +60,7 @@ void ConstantFitter::Workspace::choose_constants(const Expression& formula, bool
   places.clear();
   for (std::size_t i = 0; i < formula.size(); ++i) {
     if (!formula.node(i).is_constant()) continue;
-    // An exponent is a right child, so its parent is the next place of the tape.
-    const bool exponent = i + 1 < formula.size() && formula.node(i + 1).op == Op::pow;
-    if (!exponent || fit_exponents) places.push_back(i);
+    if (!is_exponent(formula, i) || fit_exponents) places.push_back(i);
   }
 }
 

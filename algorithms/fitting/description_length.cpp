@@ -6,6 +6,8 @@
 #include <limits>
 #include <set>
 
+#include "algorithms/expression/edit.hpp"
+
 namespace tribench {
 namespace {
 
@@ -24,9 +26,7 @@ double description_length(const Expression& formula, const Inputs& inputs,
                           std::span<const double> target, Differentiator& differentiator) {
   // Whole exponents belong to the structure; all other constants are parameters.
   std::vector<std::size_t> places = formula.constant_positions();
-  std::erase_if(places, [&](std::size_t i) {
-    return i + 1 < formula.size() && formula.node(i + 1).op == Op::pow;
-  });
+  std::erase_if(places, [&](std::size_t i) { return is_exponent(formula, i); });
   differentiator.prepare(formula, places);
   NormalEquations sums;
   differentiator.normal_equations(inputs, target, {}, sums);

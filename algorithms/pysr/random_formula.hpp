@@ -3,6 +3,8 @@
 // Random leaves, operators and formulas.
 // Source: SymbolicRegression.jl, MutationFunctions.jl: a leaf is a constant N(0, 1) or an input
 // with even chances; an operator's arity is drawn in proportion to the operators of that arity.
+// Formulas grow at random leaves: neither the balanced nor the divided shapes of
+// expression/random_formula.hpp, which benches and tests use.
 #pragma once
 
 #include "algorithms/expression/expression.hpp"
