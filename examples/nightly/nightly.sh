@@ -20,6 +20,9 @@ if [ ! -e "$archive/good" ]; then
     exit 0
 fi
 
+# What changed stands on the first screen of the leaderboard and of the page.
+"$tribench" report "$night" --base "$archive/good/" >"$night/report.txt"
+
 status=0
 "$tribench" compare "$archive/good/" "$night" >"$night/comparison.md" || status=$?
 cat "$night/comparison.md"

@@ -16,17 +16,17 @@ run(${CMAKE_COMMAND} -S "${CONSUMER_DIR}" -B "${SCRATCH_DIR}/build" -G Ninja
 run(${CMAKE_COMMAND} --build "${SCRATCH_DIR}/build")
 
 # A program of one's own has the whole command line, and its own method in it.
-run("${SCRATCH_DIR}/build/consumer" list methods)
-if(NOT output MATCHES "consumer_median")
-  message(FATAL_ERROR "the consumer's method is not listed:\n${output}")
+run("${SCRATCH_DIR}/build/median" list methods)
+if(NOT output MATCHES "median")
+  message(FATAL_ERROR "the example's method is not listed:\n${output}")
 endif()
 file(WRITE "${SCRATCH_DIR}/grid.toml"
-  "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"consumer_median\"]\n")
-run("${SCRATCH_DIR}/build/consumer" run "${SCRATCH_DIR}/grid.toml" --out "${SCRATCH_DIR}/run"
+  "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"median\"]\n")
+run("${SCRATCH_DIR}/build/median" run "${SCRATCH_DIR}/grid.toml" --out "${SCRATCH_DIR}/run"
   --jobs 1 --quiet)
 file(READ "${SCRATCH_DIR}/run/results.csv" results)
-if(NOT results MATCHES "consumer_median,-,1,ok")
-  message(FATAL_ERROR "the consumer's method did not run:\n${results}")
+if(NOT results MATCHES "median,-,1,ok")
+  message(FATAL_ERROR "the example's method did not run:\n${results}")
 endif()
 
 # The installed program stands by itself.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A method of one's own under tribench's command line.
+// A whole method: the median of the target. Under tribench's command line, in a program of its own;
+// built and run by the tests.
 #include <algorithm>
 #include <memory>
 #include <vector>
@@ -31,6 +32,6 @@ std::unique_ptr<tribench::Regressor> make_median(const tribench::Parameters&,
 
 int main(int argc, char** argv) {
   tribench::Registry registry;
-  registry.add({"consumer_median", "the median of the target", {}, true, make_median});
+  registry.add({"median", "the median of the target", {}, true, make_median});
   return tribench::run_program(argc, argv, registry);
 }
