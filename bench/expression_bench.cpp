@@ -267,6 +267,32 @@ void lower_levels(benchmark::internal::Benchmark* bench) {
   }
 }
 
+// Sums of squared errors against a bound that the first block exceeds (as for most candidates of a
+// search) or that none does.
+void error_sums(benchmark::State& state) {
+  const Trees& trees = trees_of(kArithmetic);
+  const bool is_early = state.range(1) != 0;
+  const auto rows = static_cast<std::size_t>(state.range(0));
+  const Table<double> table(rows);
+  const std::vector<double> target(rows, 1e3);
+  Evaluator evaluator;
+  std::size_t done = 0;
+  for (auto _ : state) {
+    done = 0;
+    for (const Expression& formula : trees.formulas) {
+      const ErrorSum sum =
+          evaluator.sum_squared_errors(formula, table.inputs, target, is_early ? 1.0 : kNoBound);
+      done += sum.rows;
+      if (is_early && sum.status == ErrorSumStatus::complete) {
+        throw std::runtime_error("an error sum above its bound is called complete");
+      }
+    }
+  }
+  state.counters["rows_done_%"] =
+      100 * static_cast<double>(done) / static_cast<double>(rows * trees.formulas.size());
+  report(state, static_cast<double>(trees.nodes), rows, is_early ? "given up early" : "to the end");
+}
+
 void scaling_cases(benchmark::internal::Benchmark* bench) {
   bench->ArgNames({"set", "rows", "threads"});
   for (const int threads : {2, 4, 8, 16}) {
@@ -279,6 +305,10 @@ void scaling_cases(benchmark::internal::Benchmark* bench) {
 BENCHMARK(interpreter<double>)->Apply(every_case)->Unit(benchmark::kMicrosecond);
 BENCHMARK(interpreter<float>)->Apply(every_case)->Unit(benchmark::kMicrosecond);
 BENCHMARK(interpreter<double>)->Apply(lower_levels)->Unit(benchmark::kMicrosecond);
+BENCHMARK(error_sums)
+    ->ArgNames({"rows", "early"})
+    ->ArgsProduct({{200, 1000, 5000}, {0, 1}})
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK(scaling)
     ->Apply(scaling_cases)
     ->UseManualTime()
