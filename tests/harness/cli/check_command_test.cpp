@@ -104,5 +104,23 @@ TEST(CheckCommand, writes_a_certificate_that_it_verifies_and_rejects_once_tamper
   EXPECT_EQ(run_check("--verify " + path.string()).exit, 2);
 }
 
+TEST(CheckCommand, certifies_the_property_asked_for_or_says_that_it_cannot) {
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("tribench_claim_" + std::to_string(getpid()) + ".json");
+  const std::string asked = "'3*sgn_v + 2*v' --box v=-2:2 --certificate " + path.string();
+  EXPECT_EQ(run_check(asked + " --property dissipative").exit, 0);
+  const auto dissipative =
+      nlohmann::json::parse(run_check("--json --verify " + path.string()).output);
+  EXPECT_EQ(dissipative["accepted"], true);
+  EXPECT_EQ(dissipative["claim"], "finite and of no other sign than v");
+  EXPECT_EQ(run_check(asked + " --property bounded --limit 7").exit, 0);
+  const auto bounded = nlohmann::json::parse(run_check("--json --verify " + path.string()).output);
+  EXPECT_EQ(bounded["accepted"], true);
+  std::filesystem::remove(path);
+  EXPECT_EQ(run_check(asked + " --property bounded").exit, 2);  // no limit
+  EXPECT_EQ(run_check(asked + " --property odd").exit, 2);
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
 }  // namespace
 }  // namespace tribench
