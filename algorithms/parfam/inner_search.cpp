@@ -17,6 +17,7 @@ constexpr int kLocalIterations = 40;
 constexpr double kSameValue = 1e-4;  // relative: two starts reached the same minimum
 constexpr double kBox = 5;           // of a global search, in the scaled units
 
+constexpr std::uint64_t kHopEvaluations = 200;
 constexpr int kIpoptStarts = 4;  // each costs as much as some thirty of the others
 constexpr std::uint64_t kIpoptEvaluations = 150;
 
@@ -71,6 +72,25 @@ Minimum best_of_ipopt(const Projection& projection, const InnerSearchOptions& op
   return best;
 }
 
+// Basin hopping on n / 2 ln SSE, the negative log-likelihood but for a constant: a temperature of 1
+// is then on the loss' own scale, whatever the units and the noise. Steps are as large as the
+// parameters of the first minimum.
+Minimum hop(const Objective& objective, std::size_t rows, std::span<const double> start,
+            const InnerSearchOptions& options, MinimizeOptions settings, RandomStream random) {
+  settings.max_evaluations = kHopEvaluations;
+  const LocalMinimizer local = [&](std::span<const double> x) {
+    Minimum minimum = minimize_nlopt(NloptMethod::lbfgs, objective, x, {}, settings);
+    minimum.value = 0.5 * static_cast<double>(rows) * std::log(std::max(minimum.value, 1e-300));
+    return minimum;
+  };
+  const Minimum first = local(start);
+  BasinHoppingOptions hops;
+  hops.iterations = options.starts;
+  for (const double x : first.x) hops.scales.push_back(std::max(1.0, std::abs(x)));
+  hops.stop = settings.stop;
+  return basin_hopping(local, first.x, hops, random);
+}
+
 Minimum search_globally(Projection& projection, const InnerSearchOptions& options, Budget& budget,
                         RandomStream random) {
   bool stop = false;
@@ -89,15 +109,10 @@ Minimum search_globally(Projection& projection, const InnerSearchOptions& option
     const Bounds box{std::vector<double>(n, -kBox), std::vector<double>(n, kBox)};
     return minimize_nlopt(nlopt_method(options.optimizer), objective, start, box, settings);
   }
-  settings.max_evaluations = 200;
-  const LocalMinimizer local = [&](std::span<const double> x) {
-    return minimize_nlopt(NloptMethod::lbfgs, objective, x, {}, settings);
-  };
-  BasinHoppingOptions hops;
-  hops.iterations = options.starts;
-  hops.temperature = 0;  // on the scale of the loss: a hop counts if it improves
-  hops.stop = &stop;
-  return basin_hopping(local, start, hops, random);
+  settings.stop = &stop;
+  Minimum found = hop(objective, projection.rows(), start, options, settings, random);
+  found.value = projection.sum_squares(found.x);
+  return found;
 }
 
 }  // namespace

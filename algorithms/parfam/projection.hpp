@@ -39,6 +39,7 @@ class Projection : public LeastSquaresProblem {
 
   const Structure& structure() const { return structure_; }
   std::size_t inner_parameters() const { return inner_count_; }
+  std::size_t rows() const { return rows_; }
 
   // Residual sum of squares with the best linear coefficients. NaN where not finite.
   double sum_squares(std::span<const double> inner) override;
