@@ -143,8 +143,14 @@ TEST(Page, DrawsEveryPictureSortsFiltersAndShowsAFormulaOnHover) {
     const dot = document.querySelector('#front .mark-symbol.role-mark path');
     dot.dispatchEvent(new MouseEvent('mousemove', {bubbles: true, clientX: 10, clientY: 10}));
     dot.dispatchEvent(new MouseEvent('mouseover', {bubbles: true, clientX: 10, clientY: 10}));
+    const at_dot = dot.getBoundingClientRect();
+    for (const kind of ['pointerdown', 'mousedown', 'pointerup', 'mouseup', 'click']) {
+      dot.dispatchEvent(new MouseEvent(kind, {bubbles: true, clientX: at_dot.x + 2, clientY: at_dot.y + 2}));
+    }
+    const record = document.getElementById('record');
     window.answer = {
       ready: document.documentElement.dataset.ready, errors: window.pageErrors, marks,
+      record: record.hidden ? '' : record.textContent,
       sorted: up.every((x, i) => i === 0 || up[i - 1] <= x) && down.every((x, i) => i === 0 || down[i - 1] >= x),
       numbers: up.length, aria: heads[at].getAttribute('aria-sort'), filtered: column(5),
       hover: document.querySelectorAll('#tip .katex').length,
@@ -164,6 +170,7 @@ TEST(Page, DrawsEveryPictureSortsFiltersAndShowsAFormulaOnHover) {
   EXPECT_GE(answer["filtered"].size(), 1U);
   for (const json& reason : answer["filtered"]) EXPECT_EQ(reason, "crashed (SIGSEGV)");
   EXPECT_GE(answer["hover"], 1);
+  EXPECT_THAT(answer["record"].get<std::string>(), HasSubstr("cell: A/j2/no_load|"));  // on click
   EXPECT_GE(answer["shown"], 3);
   EXPECT_EQ(answer["tex"], "a - 3\\,b - 2\\,c\\,d");
   EXPECT_GE(answer["values"], 4);  // as a table, for who cannot see the picture
@@ -233,6 +240,21 @@ TEST(Page, OfALoopDrawsItsPictures) {
   EXPECT_EQ(answer["errors"], json::array());
   EXPECT_GT(answer["marks"]["residual-0"], 300);
   EXPECT_GT(answer["marks"]["movements"], 25);
+}
+
+TEST(Page, OfALoopSaysNothingOfFiguresThatAreNotThere) {
+  if (!has_browser()) GTEST_SKIP() << "no chromium";
+  const fs::path folder = fresh_folder("loop_page_bare");
+  nlohmann::json loop = sample_loop();
+  loop["error"]["ceiling"] = nullptr;
+  loop["error"]["closed_fraction"] = nullptr;
+  write_loop_report(loop, "joint 2", folder);
+  const json answer = asked_in_browser(
+      folder / "loop.html", "window.answer = document.querySelector('.facts').textContent;");
+  ASSERT_TRUE(answer.is_string());
+  EXPECT_THAT(answer.get<std::string>(), HasSubstr("MAE after"));
+  EXPECT_THAT(answer.get<std::string>(), Not(HasSubstr("ceiling")));
+  EXPECT_THAT(answer.get<std::string>(), Not(HasSubstr("gap closed")));
 }
 
 TEST(Page, OfAnUnfinishedRunOpensToo) {

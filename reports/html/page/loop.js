@@ -58,12 +58,14 @@ function effectsTable() {
 
 function buildLoop() {
   const error = loop.error || {};
+  const known = (value) => typeof value === "number" && isFinite(value);  // null is neither
   const fact = (value, label) => el("div", {class: "fact"}, el("b", {}, value), el("span", {class: "soft"}, label));
   byId("top").append(el("h1", {}, data.title), el("p", {class: "reading"}, el("b", {}, data.verdict)),
     ...data.sentences.map((s) => el("p", {}, s.replace(/\*\*/g, ""))),
     el("div", {class: "facts"}, fact(fig(error.mae_before), "MAE before, " + unit),
-      fact(fig(error.mae_after), "MAE after, " + unit), fact(fig(error.ceiling), "noise ceiling"),
-      fact(isFinite(error.closed_fraction) ? Math.round(100 * error.closed_fraction) + " %" : "–", "of the gap closed"),
+      fact(fig(error.mae_after), "MAE after, " + unit),
+      ...(known(error.ceiling) ? [fact(fig(error.ceiling), "noise ceiling")] : []),
+      ...(known(error.closed_fraction) ? [fact(Math.round(100 * error.closed_fraction) + " %", "of the gap closed")] : []),
       fact(count(error.test_movements), "held-out movements")));
   byId("nav").append(el("a", {href: "#residuals"}, "residuals"), el("a", {href: "#effects"}, "effects"),
                      el("a", {href: "#model"}, "model"), el("span", {class: "push"}, themeButton()));
