@@ -151,7 +151,8 @@ void remark_on_simple(PublishedProblem& problem, const PublishedRow& symbolic) {
     if (is_kind(row, "symbolic") || !std::isfinite(error_of(row))) continue;
     if (is_kind(row, "baseline") && is_published_form(problem, row)) continue;
     if (error_of(row) > kAsGood * error_of(symbolic)) continue;
-    as_good.push_back(fmt::format("{} ({})", row.ours->method, figure(error_of(row))));
+    const std::string with = row.operators == "-" ? std::string() : row.operators + ", ";
+    as_good.push_back(fmt::format("{} ({}{})", row.ours->method, with, figure(error_of(row))));
   }
   if (!as_good.empty()) {
     problem.remarks.push_back(fmt::format("As good as symbolic regression here (within 5 %): {}.",

@@ -208,7 +208,7 @@ class RunPictures {
   panels(picture, description, look, dots) {
     const all = this.curves(picture);
     if (!all.some((p) => p.method !== "data")) return null;
-    const axes = all[0].axes;
+    const axes = dots ? [all[0].axes[0], "error of " + all[0].axes[1]] : all[0].axes;
     all.forEach((p) => { delete p.axes; if (dots && p.method !== "data") p.dots = true; });
     const points = all.filter((p) => p.method !== "data");
     return panelPlot(points, all.filter((p) => p.method === "data"), look, axes, description,
