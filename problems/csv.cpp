@@ -182,10 +182,19 @@ void demote_current(const CsvOptions& options, DataFile& reading) {
   }
 }
 
+// A gravity torque may stand in its own unit beside a motor's volts or amperes: it is a load, and
+// the factor between the two is for the model to find.
+bool is_load_in_own_unit(const Dataset& data, const Channel& channel) {
+  const Channel* motor = data.find(Role::motor_torque);
+  return channel.role == Role::gravity_torque && channel.unit.starts_with("N") &&
+         motor != nullptr && (motor->unit == "V" || motor->unit == "A");
+}
+
 void check_torque_units(const Dataset& data, std::string_view file) {
   const Channel* first = nullptr;
   for (const Channel& channel : data.channels) {
     if (!is_torque_like(channel.role) || channel.unit == "-") continue;
+    if (is_load_in_own_unit(data, channel)) continue;
     if (first == nullptr) first = &channel;
     if (channel.unit != first->unit) {
       throw_bad_input(

@@ -27,6 +27,15 @@ bool belongs_to_base(const Observations& data, const Signal& signal) {
          signal.role == Role::gravity_torque || signal.role == Role::gravity_sign;
 }
 
+std::vector<std::size_t> rows_of_movements(const Observations& data) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (i == 0 || data.movement[i] != data.movement[i - 1]) rows.push_back(0);
+    ++rows.back();
+  }
+  return rows;
+}
+
 // Renames the columns of a formula: column j becomes column to[j].
 Expression renumbered(const Expression& formula, std::span<const std::size_t> to) {
   std::vector<Node> nodes(formula.nodes().begin(), formula.nodes().end());
@@ -97,6 +106,10 @@ class ClosedLoop : public Regressor {
       return FitResult::unsupported(fmt::format(
           "the closed loop needs at least {} rows, here are {}", kFewestRows, data.rows()));
     }
+    if (!std::ranges::any_of(rows_of_movements(data),
+                             [](std::size_t rows) { return rows >= kFewestRowsOfMovement; })) {
+      return base_alone(context, data);
+    }
     FitResult result;
     if (!context.budget.spend(kNodesPerRow * data.rows())) {
       result.reason = StopReason::budget;
@@ -105,6 +118,23 @@ class ClosedLoop : public Regressor {
     const Diagnosis diagnosis =
         diagnose(data, base_maker(context), options_, context.random.split("diagnosis").key());
     report(context, data, diagnosis, result);
+    return result;
+  }
+
+  // Movements of a row or two: there is no noise within them to measure anything against.
+  FitResult base_alone(FitContext& context, const Observations& data) const {
+    Noise noise;
+    noise.within_sd = 1;
+    const Clusters clusters = make_clusters(data.movement, 1, context.random.split("clusters"));
+    LoopModel model;
+    model.base = base_maker(context)(data);
+    model.coefficients.setZero(static_cast<Eigen::Index>(model.base.linear_terms.size()));
+    fit_model(model, data, clusters, noise, FitScope::everything);
+    FitResult result;
+    result.front = {over_inputs(formula_of(model), data, context.data.inputs)};
+    result.note = fmt::format(
+        "the base alone: every movement has fewer than {} rows, too few to tell noise from effects",
+        kFewestRowsOfMovement);
     return result;
   }
 

@@ -15,7 +15,6 @@
 namespace tribench::loop {
 namespace {
 
-constexpr std::size_t kFewestRowsOfMovement = 5;
 constexpr std::size_t kFewMovements = 40;     // a fifth of them is too few to judge by
 constexpr std::size_t kWantedMovements = 30;  // R9
 constexpr std::size_t kPiecesOfOneMovement = 5;
@@ -168,6 +167,13 @@ void mark_provisional(Diagnosis& diagnosis, const Observations& train) {
 }
 
 void check_enough(const Observations& train, const BaseModel& base) {
+  if (train.rows() == 0) {
+    throw_bad_input(fmt::format("no movement has the {} rows it takes to tell noise from effects",
+                                kFewestRowsOfMovement),
+                    train.target_name,
+                    "give the recorded rows, not a mean a movement; without a 'movement' column a "
+                    "file is one movement");
+  }
   const std::size_t parameters =
       base.linear_terms.size() + base.formula.constant_positions().size();
   if (train.rows() >= 3 * parameters + 10) return;
@@ -201,6 +207,7 @@ Diagnosis diagnose_training(const Observations& data, const std::vector<int>& te
   out.families = chosen_families(options);
   out.test_movements = test;
   const std::vector<char> train_rows = rows_of(data, test, false, {});
+  if (std::ranges::count(train_rows, 1) == 0) check_enough(data.select(train_rows), {});
   const BaseModel base = make_base(data.select(train_rows));
   const Eigen::VectorXd rich = rich_residual(data, train_rows, base, out.families, options);
   out.events = find_events(data, rich, out.masked);

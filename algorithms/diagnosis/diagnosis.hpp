@@ -18,11 +18,16 @@
 
 namespace tribench::loop {
 
+// Shorter movements are left out.
+inline constexpr std::size_t kFewestRowsOfMovement = 5;
+
 struct DiagnosisOptions {
   double alpha_library = 0.003;
   double alpha_leftover = 0.002;
   std::size_t flips = 1999;
-  int max_additions = 6;
+  // The paper's own raw data hold seven at once: both branches, their curvature, three terms of the
+  // load and two ripples.
+  std::size_t max_effects = 8;
   double test_share = 0.2;  // of the movements; 0: no movements are held out
   // Empty: the usual ratios are scanned, and the scan is paid for in the statistics.
   std::vector<double> gear_ratios;

@@ -162,8 +162,10 @@ std::vector<ProposedMovement> candidates(const Observations& data) {
   return all;
 }
 
+// The same movement for the question asked: a load that tells nothing more is no other movement.
 bool alike(const ProposedMovement& a, const ProposedMovement& b) {
-  return a.kind == b.kind && a.load_factor == b.load_factor &&
+  const bool says_the_same = std::abs(a.separation - b.separation) < 0.01 * a.separation;
+  return a.kind == b.kind && (a.load_factor == b.load_factor || says_the_same) &&
          std::abs(a.velocity - b.velocity) < 0.3 * std::abs(a.velocity);
 }
 

@@ -113,6 +113,13 @@ void Search::check_exhaustively() {
 }
 
 void Search::test_leftover() {
+  if (clusters_.stretches.size() < kFewestClusters) {
+    notes.push_back(fmt::format(
+        "{} stretches of movement are too few to tell whether anything is left over; {} "
+        "are needed",
+        clusters_.stretches.size(), kFewestClusters));
+    return;
+  }
   const std::vector<Smoother> smoothers = make_smoothers(data_, random_.split("smoothers"));
   std::vector<BlockScores> blocks;
   double largest = 0;

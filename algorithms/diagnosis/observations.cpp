@@ -326,7 +326,9 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   for (const Channel& channel : data.channels) {
     if (channel.values.size() != data.rows()) continue;  // a text column: movement
     const std::string name = signal_name(channel.role, channel.name);
-    const bool wanted = name != channel.name || channel.name.starts_with("distance_since_reversal");
+    const bool wanted = std::ranges::count(kSignalNames, channel.role,
+                                           &std::pair<Role, std::string_view>::first) > 0 ||
+                        channel.name.starts_with("distance_since_reversal");
     const bool rigid = std::ranges::count(options.rigid, channel.name) > 0;
     if ((!wanted && !rigid) || out.find(name) != nullptr) continue;
     const bool distance = channel.name.starts_with("distance_since_reversal");

@@ -13,17 +13,12 @@
 namespace tribench::loop {
 namespace {
 
-// A family excited in fewer clusters cannot reach a small p by sign flips (specification, 3.3).
-constexpr std::size_t kFewestClusters = 20;
 // The rescue rule for families carried by few clusters (specification, 6.4).
 constexpr double kFewClusters = 25;
-constexpr double kRescueP = 0.15;
 constexpr double kRescueGain = 12;
 constexpr std::size_t kAtomsTried = 3;  // of a family, best scores first
 constexpr std::size_t kMostAtoms = 2;   // of a family: more is a sign of something else
 constexpr double kCancelling = 0.1;     // of the columns' own sums of squares
-constexpr double kNearAliasP = 0.05;
-constexpr double kExactCorrelation = 0.995;
 constexpr std::array<double, 7> kUsualGearRatios = {50, 80, 100, 101, 120, 121, 160};
 
 // Torque comes in steps: no residual is more certain than its quantisation allows.
@@ -42,46 +37,6 @@ double quantisation_floor(const std::vector<double>& target) {
   const double negligible = 1e-9 * span;
   if (distinct * 2 > sorted.size()) return negligible;
   return std::max(negligible, smallest / std::sqrt(12.0));
-}
-
-// Where correlated noise is all that is wrong, fits with and without whitening agree but for noise.
-// Where they do not, the model lacks something fast (what happens at reversals, a filter's shadow),
-// and to look at changes within a movement would fit that. Hausman 1978: the difference in the
-// fitted values against what it can be at most by noise alone, parameter by parameter.
-bool whitening_is_safe(const LoopModel& model, const Observations& data, const Clusters& clusters,
-                       const Noise& noise) {
-  const Eigen::MatrixXd x = tangent(model, data);
-  const Eigen::VectorXd y = target_vector(data) - predict(model, data);
-  if (x.cols() == 0) return true;
-  const auto solution = [&](const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
-    const Eigen::VectorXd norms = columns.colwise().norm().cwiseMax(1e-300);
-    const Eigen::MatrixXd scaled = columns * norms.cwiseInverse().asDiagonal();
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-    qr.setThreshold(1e-9);
-    qr.compute(scaled);
-    return Eigen::VectorXd(qr.solve(target).cwiseQuotient(norms));
-  };
-  Noise plain;
-  plain.within_sd = 1;
-  const Eigen::MatrixXd weighted = whitened(x, clusters, plain);
-  const Eigen::VectorXd one = solution(weighted, whitened(y, clusters, plain));
-  const Eigen::VectorXd other =
-      solution(whitened(x, clusters, noise), whitened(y, clusters, noise));
-  const double rows =
-      static_cast<double>(data.rows()) / static_cast<double>(clusters.movements.size());
-  const double most = noise.within_sd * noise.within_sd * noise.inflation +
-                      rows * noise.between_sd * noise.between_sd;
-  return (weighted * (one - other)).squaredNorm() < most * static_cast<double>(x.cols());
-}
-
-// The largest canonical correlation of two column spaces.
-double canonical_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  const Eigen::MatrixXd qa = orthonormal_basis(a);
-  const Eigen::MatrixXd qb = orthonormal_basis(b);
-  if (qa.cols() == 0 || qb.cols() == 0) return 0;
-  const Eigen::MatrixXd cross = qa.transpose() * qb;
-  const Eigen::MatrixXd gram = cross.transpose() * cross;
-  return std::sqrt(std::min(1.0, gram.selfadjointView<Eigen::Lower>().operatorNorm()));
 }
 
 }  // namespace
@@ -133,39 +88,6 @@ void Search::instantiate_library() {
                                            static_cast<Eigen::Index>(blocks_[k].count));
     if (!block.allFinite()) usable_[k] = 0;
   }
-}
-
-FittedModel Search::fit(LoopModel model, FitScope scope) const {
-  FittedModel out;
-  Noise plain;
-  plain.within_sd = 1;
-  Noise noise = plain;
-  Noise weighing = plain;  // how the coefficients are fitted: plain least squares at first
-  for (int pass = 0; pass < 3; ++pass) {
-    const bool refine = pass == 1 && scope == FitScope::everything;
-    fit_model(model, data_, clusters_, weighing, refine ? scope : FitScope::linear);
-    if (pass == 2) break;
-    const Eigen::VectorXd residual = target_vector(data_) - predict(model, data_);
-    const auto fitted = static_cast<std::size_t>(model.coefficients.size());
-    noise = estimate_noise(residual, clusters_, fitted, noise_floor_);
-    weighing = noise;
-    if (pass == 0) continue;
-    noise.whitening = noise.rho;
-    weighing = noise;
-    if (whitening_is_safe(model, data_, clusters_, noise)) continue;
-    noise.whitening = 0;
-    // A model that is wrong predicts best as plain least squares has it.
-    weighing = whitening_is_safe(model, data_, clusters_, noise) ? noise : plain;
-  }
-  out.x = whitened(tangent(model, data_), clusters_, noise);
-  out.basis = orthonormal_basis(out.x);
-  const Eigen::VectorXd residual =
-      whitened(target_vector(data_) - predict(model, data_), clusters_, noise);
-  out.residual = project_off(residual, out.basis);
-  out.losses = held_out_losses(out.x, out.residual, clusters_, noise);
-  out.model = std::move(model);
-  out.noise = noise;
-  return out;
 }
 
 Round Search::test_all(const FittedModel& state) const {
@@ -288,124 +210,6 @@ std::vector<Candidate> Search::admitted(const Round& round, const FittedModel& s
   return all;
 }
 
-void Search::list_untestable(const Round& round) {
-  for (std::size_t f = 0; f < families_.size(); ++f) {
-    double share = 0;
-    std::size_t carrying = 0;
-    bool present = false;
-    bool testable = false;
-    for (std::size_t k = 0; k < library_.size(); ++k) {
-      if (library_[k].family != f) continue;
-      present = true;
-      testable = testable || round.blocks[k].test.testable;
-      share = std::max(share, round.blocks[k].test.share);
-      carrying = std::max(carrying, round.blocks[k].test.carrying);
-    }
-    if (!present || testable) continue;
-    const bool collinear = share * share < 1e-3;
-    untestable.push_back(
-        {families_[f].name,
-         collinear
-             ? std::string("these data show nothing of it that the base does not have already")
-             : fmt::format("only {} stretches of movement carry it; {} are needed", carrying,
-                           kFewestClusters),
-         share, carrying, families_[f].separate_by.empty() ? "" : families_[f].separate_by[0]});
-  }
-}
-
-void Search::list_coinciding(const Round& round) {
-  const Eigen::MatrixXd projected = project_off(round.columns, base_fit_.basis);
-  Eigen::MatrixXf unit = projected.cast<float>();
-  for (Eigen::Index j = 0; j < unit.cols(); ++j) {
-    const float norm = unit.col(j).norm();
-    if (norm > 0) unit.col(j) /= norm;
-  }
-  const Eigen::MatrixXf correlations = unit.transpose() * unit;
-  map_aliases(correlations, round);
-  for (std::size_t a = 0; a < library_.size(); ++a) {
-    for (std::size_t b = a + 1; b < library_.size(); ++b) {
-      if (library_[a].family == library_[b].family || !round.blocks[a].test.testable ||
-          !round.blocks[b].test.testable) {
-        continue;
-      }
-      const auto cross = correlations.block(
-          static_cast<Eigen::Index>(blocks_[a].first), static_cast<Eigen::Index>(blocks_[b].first),
-          static_cast<Eigen::Index>(blocks_[a].count), static_cast<Eigen::Index>(blocks_[b].count));
-      if (cross.cwiseAbs().maxCoeff() < 0.5F) continue;
-      const auto block = [&](std::size_t k) {
-        return projected.middleCols(static_cast<Eigen::Index>(blocks_[k].first),
-                                    static_cast<Eigen::Index>(blocks_[k].count));
-      };
-      if (blocks_[a].count == 1 && blocks_[b].count == 1 &&
-          std::abs(cross(0, 0)) < static_cast<float>(kExactCorrelation)) {
-        continue;
-      }
-      const double r = canonical_correlation(block(a), block(b));
-      if (r < kExactCorrelation) continue;
-      const EffectFamily& first = families_[library_[a].family];
-      const EffectFamily& second = families_[library_[b].family];
-      const bool known = std::ranges::any_of(aliased, [&](const CoincidingFamilies& pair) {
-        return pair.first == first.name && pair.second == second.name;
-      });
-      if (known) continue;
-      aliased.push_back(
-          {first.name, second.name, r, first.separate_by.empty() ? "" : first.separate_by[0]});
-    }
-  }
-}
-
-void Search::map_aliases(const Eigen::MatrixXf& correlations, const Round& round) {
-  std::vector<std::size_t> place(families_.size(), families_.size());
-  for (std::size_t f = 0; f < families_.size(); ++f) {
-    if (!(round.family_score[f] > 0)) continue;
-    place[f] = alias_map.families.size();
-    alias_map.families.push_back(families_[f].name);
-  }
-  const auto count = static_cast<Eigen::Index>(alias_map.families.size());
-  alias_map.correlation = Eigen::MatrixXd::Identity(count, count);
-  for (std::size_t a = 0; a < library_.size(); ++a) {
-    for (std::size_t b = 0; b < library_.size(); ++b) {
-      const std::size_t i = place[library_[a].family];
-      const std::size_t j = place[library_[b].family];
-      if (i == j || i == families_.size() || j == families_.size()) continue;
-      if (!round.blocks[a].test.testable || !round.blocks[b].test.testable) continue;
-      const double r = correlations
-                           .block(static_cast<Eigen::Index>(blocks_[a].first),
-                                  static_cast<Eigen::Index>(blocks_[b].first),
-                                  static_cast<Eigen::Index>(blocks_[a].count),
-                                  static_cast<Eigen::Index>(blocks_[b].count))
-                           .cwiseAbs()
-                           .maxCoeff();
-      double& entry =
-          alias_map.correlation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-      entry = std::max(entry, r);
-    }
-  }
-}
-
-void Search::list_candidates(const Round& round) {
-  for (std::size_t f = 0; f < families_.size(); ++f) {
-    if (!(round.family_score[f] > 0)) continue;
-    CandidateFinding finding;
-    finding.family = families_[f].name;
-    finding.adjusted_p = round.family_p[f];
-    finding.score = round.family_score[f];
-    for (std::size_t k = 0; k < library_.size(); ++k) {
-      if (library_[k].family == f && round.blocks[k].test.testable &&
-          round.blocks[k].test.score == finding.score) {
-        finding.atom = library_[k].label;
-        break;
-      }
-    }
-    if (finding.adjusted_p < kNearAliasP) {
-      finding.gain = best_atom(f, round, base_fit_).gain.nats;
-    }
-    candidates.push_back(std::move(finding));
-  }
-  std::ranges::stable_sort(candidates,
-                           [](const auto& a, const auto& b) { return a.score > b.score; });
-}
-
 std::size_t Search::atoms_of(std::size_t family) const {
   return static_cast<std::size_t>(std::ranges::count(current_.model.atoms, family, &Atom::family));
 }
@@ -414,32 +218,6 @@ void Search::remove_family(LoopModel& model, std::size_t family) const {
   for (std::size_t k = model.atoms.size(); k-- > 0;) {
     if (model.atoms[k].family == family) model.remove(k);
   }
-}
-
-std::vector<AliasFinding> Search::aliases_of(const Candidate& winner, const Round& round) const {
-  std::vector<AliasFinding> aliases;
-  const auto columns = [&](std::size_t atom) {
-    return project_off(round.columns.middleCols(static_cast<Eigen::Index>(blocks_[atom].first),
-                                                static_cast<Eigen::Index>(blocks_[atom].count)),
-                       current_.basis);
-  };
-  for (std::size_t f = 0; f < families_.size(); ++f) {
-    if (f == winner.family || round.family_p[f] > (winner.rescued ? kRescueP : kNearAliasP))
-      continue;
-    const Candidate rival = best_atom(f, round, current_);
-    const double r = canonical_correlation(columns(winner.atom), columns(rival.atom));
-    const Gain lead = paired_gain(rival.losses, winner.losses);
-    const bool exact = r > kExactCorrelation;
-    if (!exact && lead.nats >= 2 * lead.error) continue;
-    aliases.push_back({families_[f].name, r, lead.nats, lead.error, exact,
-                       families_[winner.family].separate_by.empty()
-                           ? ""
-                           : families_[winner.family].separate_by[0]});
-  }
-  for (const KnownAlias& known : families_[winner.family].known_aliases) {
-    aliases.push_back({known.name, 1, 0, 0, true, known.separate_by});
-  }
-  return aliases;
 }
 
 bool Search::add_best(const Round& round) {
@@ -558,7 +336,10 @@ void Search::run() {
   list_untestable(round);
   list_coinciding(round);
   list_candidates(round);
-  for (int addition = 0; addition < options_.max_additions; ++addition) {
+  // A second column of a family refines it and is no addition; the bound on rounds ends a dance of
+  // swaps.
+  for (std::size_t turn = 0; turn < 3 * options_.max_effects; ++turn) {
+    if (found.size() >= options_.max_effects) break;
     const std::vector<Found> before = found;
     if (!add_best(round)) break;
     const bool grew = found.size() > before.size();

@@ -18,6 +18,11 @@
 
 namespace tribench::loop {
 
+// A family excited in fewer clusters cannot reach a small p by sign flips (specification, 3.3).
+inline constexpr std::size_t kFewestClusters = 20;
+// Up to this p a family carried by few clusters may be rescued by its gain (specification, 6.4).
+inline constexpr double kRescueP = 0.15;
+
 // A model fitted to the training movements, in the coordinates of its own noise.
 struct FittedModel {
   LoopModel model;

@@ -136,6 +136,8 @@ TEST(Csv, TorqueLikeColumnsShareOneUnit) {
   options.roles = {{"motor_current_A", Role::motor_current}};
   EXPECT_THAT(complaint(both, options), HasSubstr("one unit"));
   EXPECT_EQ(parse_csv("v,motor_torque_V,gravity_torque_V\n1,2,3\n", "d.csv").data.rows(), 1U);
+  // The load beside a motor's volts keeps its own unit.
+  EXPECT_EQ(parse_csv("v,motor_torque_V,gravity_torque_Nm\n1,2,3\n", "d.csv").data.rows(), 1U);
 }
 
 TEST(Csv, ColumnsOfTextAreKeptApart) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "problems/csv.hpp"
 #include "problems/data_problem.hpp"
 #include "problems/kuka/planted.hpp"
 
@@ -162,6 +163,38 @@ TEST(Observations, AFewRowsTheOtherWayAreLeftOutAndSaid) {
   EXPECT_TRUE(std::ranges::any_of(data.warnings, [](const std::string& warning) {
     return warning.find("one direction") != std::string::npos;
   }));
+}
+
+TEST(Observations, DistanceSinceReversalIsKnownOnlyWhereSomethingTurnsOrStartsFromStandstill) {
+  const auto observed = [](double first) {
+    std::string text = "movement,time_s,v,friction_torque_Nm\n";
+    for (int m = 0; m < 4; ++m) {
+      for (int i = 0; i < 50; ++i) {
+        const double v = (m % 2 == 0 ? 1 : -1) * (i == 0 ? first : 1.0 + 0.01 * i);
+        text += std::to_string(m) + "," + std::to_string(0.1 * i) + "," + std::to_string(v) + "," +
+                std::to_string(v) + "\n";
+      }
+    }
+    return observe(parse_csv(text, "d.csv").data);
+  };
+  EXPECT_EQ(observed(1.0).find("d"), nullptr);
+  const Observations data = observed(0.0);
+  ASSERT_NE(data.find("d"), nullptr);
+  EXPECT_GT(data.find("d")->values[49], 4.0);
+}
+
+// A column may be named as effects name it.
+TEST(Observations, ColumnsNamedLikeSignalsAreTheirSignals) {
+  std::string text = "movement,v,g,q,tau_f\n";
+  for (int i = 0; i < 80; ++i) {
+    const double v = i < 40 ? 1 + 0.01 * i : -1 - 0.01 * i;
+    text += "1," + std::to_string(v) + "," + std::to_string(0.1 * i) + "," + std::to_string(i) +
+            "," + std::to_string(3 * v) + "\n";
+  }
+  const Observations data = observe(parse_csv(text, "d.csv").data);
+  for (const char* name : {"v", "g", "q", "sgn_v", "sgn_g"}) {
+    EXPECT_NE(data.find(name), nullptr) << name;
+  }
 }
 
 TEST(Observations, RowsThatAreNotFiniteAreDroppedAndCounted) {

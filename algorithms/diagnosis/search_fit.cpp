@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+//
+// A model fitted in the coordinates of its own noise.
+#include <Eigen/QR>
+
+#include "algorithms/diagnosis/search.hpp"
+
+namespace tribench::loop {
+namespace {
+
+// Where correlated noise is all that is wrong, fits with and without whitening agree but for noise.
+// Where they do not, the model lacks something fast (what happens at reversals, a filter's shadow),
+// and to look at changes within a movement would fit that. Hausman 1978: the difference in the
+// fitted values against what it can be at most by noise alone, parameter by parameter.
+bool whitening_is_safe(const LoopModel& model, const Observations& data, const Clusters& clusters,
+                       const Noise& noise) {
+  const Eigen::MatrixXd x = tangent(model, data);
+  const Eigen::VectorXd y = target_vector(data) - predict(model, data);
+  if (x.cols() == 0) return true;
+  const auto solution = [&](const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
+    const Eigen::VectorXd norms = columns.colwise().norm().cwiseMax(1e-300);
+    const Eigen::MatrixXd scaled = columns * norms.cwiseInverse().asDiagonal();
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+    qr.setThreshold(1e-9);
+    qr.compute(scaled);
+    return Eigen::VectorXd(qr.solve(target).cwiseQuotient(norms));
+  };
+  Noise plain;
+  plain.within_sd = 1;
+  const Eigen::MatrixXd weighted = whitened(x, clusters, plain);
+  const Eigen::VectorXd one = solution(weighted, whitened(y, clusters, plain));
+  const Eigen::VectorXd other =
+      solution(whitened(x, clusters, noise), whitened(y, clusters, noise));
+  const double rows =
+      static_cast<double>(data.rows()) / static_cast<double>(clusters.movements.size());
+  const double most = noise.within_sd * noise.within_sd * noise.inflation +
+                      rows * noise.between_sd * noise.between_sd;
+  return (weighted * (one - other)).squaredNorm() < most * static_cast<double>(x.cols());
+}
+
+}  // namespace
+
+FittedModel Search::fit(LoopModel model, FitScope scope) const {
+  FittedModel out;
+  Noise plain;
+  plain.within_sd = 1;
+  Noise noise = plain;
+  Noise weighing = plain;  // how the coefficients are fitted: plain least squares at first
+  for (int pass = 0; pass < 3; ++pass) {
+    const bool refine = pass == 1 && scope == FitScope::everything;
+    fit_model(model, data_, clusters_, weighing, refine ? scope : FitScope::linear);
+    if (pass == 2) break;
+    const Eigen::VectorXd residual = target_vector(data_) - predict(model, data_);
+    const auto fitted = static_cast<std::size_t>(model.coefficients.size());
+    noise = estimate_noise(residual, clusters_, fitted, noise_floor_);
+    weighing = noise;
+    if (pass == 0) continue;
+    noise.whitening = noise.rho;
+    weighing = noise;
+    if (whitening_is_safe(model, data_, clusters_, noise)) continue;
+    noise.whitening = 0;
+    // A model that is wrong predicts best as plain least squares has it.
+    weighing = whitening_is_safe(model, data_, clusters_, noise) ? noise : plain;
+  }
+  out.x = whitened(tangent(model, data_), clusters_, noise);
+  out.basis = orthonormal_basis(out.x);
+  const Eigen::VectorXd residual =
+      whitened(target_vector(data_) - predict(model, data_), clusters_, noise);
+  out.residual = project_off(residual, out.basis);
+  out.losses = held_out_losses(out.x, out.residual, clusters_, noise);
+  out.model = std::move(model);
+  out.noise = noise;
+  return out;
+}
+
+}  // namespace tribench::loop

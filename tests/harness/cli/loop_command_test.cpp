@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "foundation/random.hpp"
+#include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+testing::ProgramRun tribench(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), testing::program().string());
+  return testing::run_to_end(arguments);
+}
+
+std::string generated(const testing::TemporaryFolder& folder, const std::string& problem,
+                      const std::string& seed) {
+  const std::string file = (folder / ("data" + seed + ".csv")).string();
+  EXPECT_EQ(tribench({"generate", problem, "--seed", seed, "--out", file}).status, 0);
+  return file;
+}
+
+std::vector<std::string> families(const Json& loop) {
+  std::vector<std::string> names;
+  for (const Json& effect : loop["effects"]) names.push_back(effect["family"]);
+  return names;
+}
+
+// `rows` rows a movement, friction Coulomb and viscous with a ripple that no model has; the line
+// maker turns (movement, row) into a line.
+template <typename Line>
+std::string file_of(const testing::TemporaryFolder& folder, const std::string& header,
+                    int movements, int rows, Line line) {
+  std::string text = header + "\n";
+  for (int m = 0; m < movements; ++m) {
+    for (int i = 0; i < rows; ++i) text += line(m, i) + "\n";
+  }
+  testing::write_text(folder / "bad.csv", text);
+  return (folder / "bad.csv").string();
+}
+
+double speed_of(int m) { return (m % 2 == 0 ? 1 : -1) * (0.1 + 0.05 * m); }
+double noise_of(int m, int i) {
+  RandomStream random = RandomStream(7).split(static_cast<std::uint64_t>(1000 * m + i));
+  return 0.3 * random.normal();
+}
+double friction_of(double v, int m, int i) { return (v > 0 ? 5 : -5) + 3 * v + noise_of(m, i); }
+
+std::string csv(std::initializer_list<double> values) {
+  std::string text;
+  for (const double x : values) text += (text.empty() ? "" : ",") + std::to_string(x);
+  return text;
+}
+
+TEST(LoopCommand, bad_input_ends_with_status_2_and_says_how_to_mend_it) {
+  const testing::TemporaryFolder folder;
+  const auto complaint = [&](const std::string& header, auto line,
+                             const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"loop", file_of(folder, header, 12, 20, line)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const testing::ProgramRun run = tribench(arguments);
+    EXPECT_EQ(run.status, 2) << header;
+    return run.errors;
+  };
+  const auto good = [](int m, int i) {
+    return csv({1.0 * m, speed_of(m), friction_of(speed_of(m), m, i)});
+  };
+  EXPECT_THAT(complaint("movement,speed,friction_torque_Nm", good), HasSubstr("--roles"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,torque", good), HasSubstr("--roles"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm",
+                        [](int m, int i) {
+                          return csv({1.0 * m, speed_of(m), -friction_of(speed_of(m), m, i)});
+                        }),
+              HasSubstr("--flip-sign"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm",
+                        [](int m, int i) {
+                          return std::to_string(m) + "," + std::to_string(speed_of(m)) + "," +
+                                 (i == 3 ? "nan" : std::to_string(friction_of(speed_of(m), m, i)));
+                        }),
+              HasSubstr("--drop-missing"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm",
+                        [](int m, int) {
+                          return std::to_string(m) + "," + std::to_string(speed_of(m)) + ",inf";
+                        }),
+              HasSubstr("friction_torque_Nm"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--min-speed", "99"}),
+              HasSubstr("--min-speed"));
+  EXPECT_THAT(
+      complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--effects", "stribek"}),
+      HasSubstr("stribeck"));
+  EXPECT_THAT(
+      complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--model", "symetric"}),
+      HasSubstr("symmetric"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--model", "5*w +"}),
+              HasSubstr("w"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--where", "nope=1"}),
+              HasSubstr("nope"));
+}
+
+TEST(LoopCommand, poor_input_is_warned_of_and_nothing_is_claimed) {
+  const testing::TemporaryFolder folder;
+  const auto answer = [&](const std::string& header, int movements, int rows, auto line) {
+    const testing::ProgramRun run =
+        tribench({"loop", file_of(folder, header, movements, rows, line), "--json"});
+    EXPECT_EQ(run.status, 0) << run.errors;
+    const Json loop = Json::parse(run.output);
+    EXPECT_EQ(loop["verdict"], "NONE") << header;
+    EXPECT_TRUE(loop["effects"].empty()) << header;
+    return loop["warnings"].dump() + loop["notes"].dump();
+  };
+  // No movement column: the file is one movement.
+  EXPECT_THAT(answer("velocity_rad_s,friction_torque_Nm", 1, 400,
+                     [](int m, int i) {
+                       const double v = std::sin(0.05 * i);
+                       return csv({v, friction_of(v, m, i)});
+                     }),
+              HasSubstr("one movement"));
+  // A channel that never changes.
+  EXPECT_THAT(answer("movement,velocity_rad_s,temperature_degC,friction_torque_Nm", 12, 20,
+                     [](int m, int i) {
+                       return csv({1.0 * m, speed_of(m), 30, friction_of(speed_of(m), m, i)});
+                     }),
+              HasSubstr("constant"));
+  // Too few movements.
+  EXPECT_THAT(answer("movement,velocity_rad_s,friction_torque_Nm", 4, 40,
+                     [](int m, int i) {
+                       return csv({1.0 * m, speed_of(m), friction_of(speed_of(m), m, i)});
+                     }),
+              HasSubstr("there are 4 movements"));
+  // All one direction.
+  EXPECT_THAT(answer("movement,velocity_rad_s,friction_torque_Nm", 12, 20,
+                     [](int m, int i) {
+                       const double v = std::abs(speed_of(m));
+                       return csv({1.0 * m, v, friction_of(v, m, i)});
+                     }),
+              HasSubstr("one direction"));
+}
+
+TEST(LoopCommand, one_row_a_movement_is_refused_with_the_reason) {
+  const testing::TemporaryFolder folder;
+  const testing::ProgramRun run = tribench({"loop", generated(folder, "A/j2/no_load", "1")});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("no movement has the 5 rows"));
+}
+
+TEST(LoopCommand, writes_its_three_files_and_the_next_movements) {
+  const testing::TemporaryFolder folder;
+  const std::string data = generated(folder, "undeclared/power_quadrant_gain/0.5", "1");
+  const std::string out = (folder / "out").string();
+  const testing::ProgramRun run =
+      tribench({"loop", data, "--any-sign", "--suggest", "2", "--out", out, "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const Json loop = Json::parse(run.output);
+  EXPECT_EQ(families(loop), std::vector<std::string>{"power_quadrant_gain"});
+  EXPECT_LE(loop["next_movements"].size(), 2U);
+  ASSERT_GE(loop["next_movements"].size(), 1U);
+  EXPECT_GT(loop["next_movements"][0]["separation"].get<double>(), 0);
+  for (const char* name : {"out/loop.json", "out/loop.md", "out/loop.html"}) {
+    EXPECT_GT(std::filesystem::file_size(folder / name), 1000U) << name;
+  }
+  EXPECT_THAT(testing::read_text(folder / "out/next_movements.csv"),
+              HasSubstr("order,kind,velocity,from,to,load_factor,separation,between"));
+}
+
+TEST(LoopCommand, grows_an_effect_from_what_is_left_over_saves_it_and_reads_it_back) {
+  const testing::TemporaryFolder folder;
+  const std::string first = generated(folder, "undeclared/position_bump/2", "1");
+  const std::string effect = (folder / "effect.toml").string();
+  const testing::ProgramRun learning =
+      tribench({"loop", first, "--any-sign", "--gear-ratio", "160", "--learn", "pysr",
+                "--learn-evaluations", "20000000", "--save-effect", effect, "--json"});
+  ASSERT_EQ(learning.status, 0) << learning.errors;
+  const Json grown = Json::parse(learning.output);
+  ASSERT_EQ(grown["learned"].size(), 1U);
+  EXPECT_TRUE(grown["learned"][0]["accepted"]);
+  EXPECT_LE(grown["learned"][0]["p_adj"].get<double>(), 0.003);
+  EXPECT_GE(grown["learned"][0]["tested_on_movements"].get<int>(), 40);
+  EXPECT_EQ(families(grown), std::vector<std::string>{"learned:position"});
+  EXPECT_LT(grown["error"]["mae_after"], 0.75 * grown["error"]["mae_before"].get<double>());
+
+  // On another campaign, from the file.
+  const std::string second = generated(folder, "undeclared/position_bump/2", "2");
+  const testing::ProgramRun reading = tribench(
+      {"loop", second, "--any-sign", "--gear-ratio", "160", "--learned", effect, "--json"});
+  ASSERT_EQ(reading.status, 0) << reading.errors;
+  const Json known = Json::parse(reading.output);
+  EXPECT_EQ(families(known), std::vector<std::string>{"learned:position"});
+  EXPECT_LT(known["error"]["mae_after"], 0.75 * known["error"]["mae_before"].get<double>());
+
+  testing::write_text(folder / "broken.toml", "[[effect]]\nname = \"x\"\n");
+  const testing::ProgramRun broken =
+      tribench({"loop", second, "--learned", (folder / "broken.toml").string()});
+  EXPECT_EQ(broken.status, 2);
+  EXPECT_THAT(broken.errors, HasSubstr("phrase"));
+}
+
+// The paper's own case: what the symmetric model lacks on raw data of joint 2, and nothing else.
+TEST(LoopCommand, closes_the_loop_on_the_papers_joint_2_down_to_its_noise) {
+  const testing::TemporaryFolder folder;
+  const testing::ProgramRun run = tribench({"loop", generated(folder, "A/j2/load", "1"), "--model",
+                                            "symmetric", "--gear-ratio", "160", "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const Json loop = Json::parse(run.output);
+  EXPECT_EQ(loop["verdict"], "EFFECTS");
+  EXPECT_THAT(families(loop),
+              ::testing::IsSupersetOf({"asymmetry", "load_coulomb", "power_quadrant_gain",
+                                       "power_quadrant_step", "gear_ripple", "output_ripple"}));
+  // The noise is normal with 0.80 N m a row and 0.05 a movement: its mean magnitude is the ceiling.
+  const double ceiling = std::sqrt(2 / 3.14159265) * std::hypot(0.80, 0.05);
+  EXPECT_GT(loop["error"]["mae_before"].get<double>(), 5 * ceiling);
+  EXPECT_LT(loop["error"]["mae_after"].get<double>(), 1.03 * ceiling);
+}
+
+}  // namespace
+}  // namespace tribench
