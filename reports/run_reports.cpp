@@ -27,8 +27,8 @@ Change change_since(const std::filesystem::path& base, const RunFolder& run) {
   if (base.empty()) return {};
   const RunFolder before = read_run_folder(base);
   const Comparison comparison = compare_runs(before, run);
-  const std::string since =
-      fmt::format("Since {} ({}).\n\n", before.name, before.path.filename().string());
+  const std::string since = fmt::format("Since {} ({}).\n\n", before.name,
+                                        std::filesystem::canonical(base).filename().string());
   Change change{since + comparison_head(comparison), comparison_json(comparison)};
   change.json["base"] = before.name;
   return change;
