@@ -66,6 +66,9 @@ std::string how_it_was_made(const RunFolder& run, const RunSummary& summary) {
   add("CPU time in fits", duration_figure(summary.fit_cpu_s));
   add("cells",
       fmt::format("{}, {} failed, {} missing", summary.cells, summary.failed, run.missing.size()));
+  std::size_t seeds = 0;
+  for (const ProblemTable& each : summary.tables) seeds = std::max(seeds, each.seeds);
+  add("seeds of a method on a problem", fmt::format("{}", seeds));
   add("fingerprint of the results", run.provenance_of("fingerprint"));
   return "\n## How it was made\n\n" + table.text();
 }
