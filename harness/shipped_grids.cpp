@@ -9,7 +9,9 @@ std::string_view quick_grid();
 std::string_view paper_grid();
 std::string_view measured_grid();
 std::string_view nightly_grid();
+std::string_view nguyen_grid();
 std::string_view udsr_ablation_grid();
+std::string_view udsr_ablation_nguyen_grid();
 std::string_view paper_reference();
 }  // namespace embedded
 
@@ -35,9 +37,13 @@ ShippedGrid shipped(std::string name, std::string_view toml) {
 
 const std::vector<ShippedGrid>& shipped_grids() {
   static const std::vector<ShippedGrid> kGrids = {
-      shipped("quick", embedded::quick_grid()), shipped("paper", embedded::paper_grid()),
-      shipped("measured", embedded::measured_grid()), shipped("nightly", embedded::nightly_grid()),
-      shipped("udsr_ablation", embedded::udsr_ablation_grid())};
+      shipped("quick", embedded::quick_grid()),
+      shipped("paper", embedded::paper_grid()),
+      shipped("measured", embedded::measured_grid()),
+      shipped("nightly", embedded::nightly_grid()),
+      shipped("nguyen", embedded::nguyen_grid()),
+      shipped("udsr_ablation", embedded::udsr_ablation_grid()),
+      shipped("udsr_ablation_nguyen", embedded::udsr_ablation_nguyen_grid())};
   return kGrids;
 }
 

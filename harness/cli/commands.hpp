@@ -38,5 +38,6 @@ void add_compare_command(CLI::App& app, ExitStatus& status);
 void add_export_command(CLI::App& app, ExitStatus& status);
 // Under `study`.
 void add_comparison_study(CLI::App& study, ExitStatus& status);
+void add_recovery_study(CLI::App& study);
 
 }  // namespace tribench

@@ -155,6 +155,7 @@ void add_study_command(CLI::App& app, ExitStatus& status) {
   add_reference_study(*study, status);
   add_external_torque_study(*study);
   add_loop_study(*study, status);
+  add_recovery_study(*study);
 }
 
 }  // namespace tribench
