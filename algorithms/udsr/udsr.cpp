@@ -14,9 +14,8 @@
 #include "algorithms/admission.hpp"
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
-#include "algorithms/fitting/cross_validation.hpp"
-#include "algorithms/fitting/description_length.hpp"
 #include "algorithms/registry.hpp"
+#include "algorithms/udsr/choice.hpp"
 #include "algorithms/udsr/pruning.hpp"
 #include "algorithms/udsr/simplification.hpp"
 #include "algorithms/udsr/training.hpp"
@@ -35,11 +34,6 @@ constexpr int kMaxRecursion = 2;
 // Of so many of the most rewarding sequences, versions with fewer terms are offered too.
 constexpr std::size_t kSparsified = 8;
 constexpr std::size_t kFewestConstants = 2;
-// Below this normalised error all formulas are exact, and the simplest is the one.
-constexpr double kExact = 1e-9;
-
-// How the formula of a front is chosen that the method stands for.
-enum class Choice { simpler, description_length, cross_validation, bic };
 
 struct Settings {
   udsr::TokenOptions tokens;
@@ -49,7 +43,7 @@ struct Settings {
   bool recursion = true;
   std::string weights;       // "shipped", "none" or a file's name
   std::string weights_text;  // the file's contents
-  Choice choice = Choice::simpler;
+  udsr::Choice choice = udsr::Choice::simpler;
 };
 
 struct Candidate {
@@ -109,12 +103,6 @@ udsr::Baseline baseline_of(const std::string& name) {
   return name == "combined" ? udsr::Baseline::combined : udsr::Baseline::quantile;
 }
 
-Choice choice_of(const std::string& name) {
-  if (name == "description_length") return Choice::description_length;
-  if (name == "cross_validation") return Choice::cross_validation;
-  return name == "bic" ? Choice::bic : Choice::simpler;
-}
-
 std::string read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
@@ -143,7 +131,7 @@ Settings settings_from(const Parameters& parameters) {
   training.learning_rate = parameters.number("learning_rate");
   training.entropy_weight = parameters.number("entropy_weight");
   training.entropy_gamma = parameters.number("entropy_gamma");
-  settings.choice = choice_of(parameters.text("choice"));
+  settings.choice = udsr::choice_of(parameters.text("choice"));
   settings.weights = parameters.text("weights");
   if (settings.weights == "shipped") {
     settings.weights_text = embedded::udsr_weights();
@@ -227,47 +215,7 @@ class Search {
     return front;
   }
 
-  // The place of the formula that stands for the front. The information criterion guards against a
-  // search that has tried many formulas on independent rows, cross-validation against rows that
-  // are not independent.
-  std::size_t choose(const std::vector<Expression>& front) {
-    if (settings_.choice == Choice::description_length) return shortest(front);
-    if (settings_.choice == Choice::bic || budget_.exhausted()) return least_bic(front);
-    const CrossValidation validation =
-        cross_validate(front, problem_.inputs(), problem_.target(), problem_.movement());
-    budget_.spend(validation.node_rows);
-    if (settings_.choice == Choice::cross_validation) return validation.chosen;
-    return std::min(validation.chosen, least_bic(front));
-  }
-
  private:
-  static std::size_t place_of_least(const std::vector<double>& values) {
-    return static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
-  }
-
-  std::size_t shortest(const std::vector<Expression>& front) {
-    Differentiator differentiator;
-    std::vector<double> lengths;
-    for (const Expression& formula : front) {
-      lengths.push_back(
-          description_length(formula, problem_.inputs(), problem_.target(), differentiator));
-      budget_.spend(4 * node_rows(formula, rows()));
-    }
-    return place_of_least(lengths);
-  }
-
-  // Bayesian information criterion, n ln(RSS / n) + p ln n (Schwarz 1978).
-  std::size_t least_bic(const std::vector<Expression>& front) {
-    const auto n = static_cast<double>(rows());
-    std::vector<double> criteria;
-    for (const Expression& formula : front) {
-      const auto constants = static_cast<double>(udsr::movable_constants(formula).size());
-      criteria.push_back(2 * n * std::log(scorer_.nrmse(formula) + kExact) +
-                         constants * std::log(n));
-    }
-    return place_of_least(criteria);
-  }
-
   void add(Expression formula, double nrmse) {
     if (!std::isfinite(nrmse)) return;
     const int complexity = paper_complexity(formula);
@@ -323,7 +271,8 @@ class Udsr : public Regressor {
       return result;
     }
     result.front = front;
-    result.chosen = search.choose(front);
+    result.chosen = udsr::choose_sound(settings_.choice, front, search.problem(),
+                                       input_box(context.data.inputs), context.budget);
     return result;
   }
 
@@ -384,7 +333,8 @@ class Udsr : public Regressor {
     Search search(settings_, data, context.operators, context.budget, nullptr, context.threads);
     const std::vector<Expression> front = solve(search, context, data, random, depth);
     if (front.empty()) return front;
-    const std::size_t chosen = search.choose(front);
+    const std::size_t chosen =
+        udsr::choose(settings_.choice, front, search.problem(), context.budget);
     if (chosen + 1 == front.size()) return {front.back()};
     return {front[chosen], front.back()};
   }

@@ -42,6 +42,14 @@ TEST_F(PriorTest, ForbidsInversesNestedTrigonometryAndIdleConstants) {
   EXPECT_TRUE(prior().allows(tokens({"*", "x1", "+", "const", "x2"})));
 }
 
+TEST_F(PriorTest, AllowsThreeConstantsAndNoFormulaWithoutAnInput) {
+  EXPECT_TRUE(prior().allows(
+      tokens({"+", "*", "const", "x1", "+", "*", "const", "x2", "*", "const", "tanh", "x1"})));
+  EXPECT_FALSE(prior().allows(tokens({"+", "const", "+", "*", "const", "x1", "+", "*", "const",
+                                      "x2", "*", "const", "tanh", "x1"})));
+  EXPECT_FALSE(prior().allows(tokens({"+", "const", "tanh", "tanh", "const"})));
+}
+
 TEST_F(PriorTest, AllowsOneLinearTokenUnderInvertibleFunctionsAndNoConstantBesideIt) {
   EXPECT_TRUE(prior().allows(tokens({"linear"})));
   EXPECT_TRUE(prior().allows(tokens({"*", "linear", "exp", "x1"})));

@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "algorithms/admission.hpp"
+#include "algorithms/expression/singularity.hpp"
 #include "algorithms/registry.hpp"
 
 namespace tribench {
@@ -37,11 +40,11 @@ const Given kSmall = {
     {"steps", std::int64_t{2}}, {"batch", std::int64_t{60}}, {"generations", std::int64_t{3}}};
 
 FitResult fit(const FrictionCurve& curve, const Given& parameters, int threads = 1,
-              std::uint64_t evaluations = 40'000'000) {
+              std::uint64_t evaluations = 40'000'000, const char* operators = "paper") {
   const Registry registry;
   const TrainingData data = curve.data();
   Budget budget({evaluations, INFINITY});
-  FitContext context{data, find_operator_set("paper"), budget, RandomStream(7), threads};
+  FitContext context{data, find_operator_set(operators), budget, RandomStream(7), threads};
   return registry.make("udsr", parameters)->fit(context);
 }
 
@@ -71,6 +74,20 @@ TEST(Udsr, GivesTheSameFrontForAnyNumberOfThreads) {
   const FitResult three = fit(curve, parameters, 3);
   EXPECT_EQ(one.front, three.front);
   EXPECT_EQ(one.chosen, three.chosen);
+}
+
+TEST(Udsr, ChoosesNoRefutedFormulaAndOffersNoneWhereTheOperatorSetAsksForProofs) {
+  const FrictionCurve curve;
+  const InputBox box = input_box(curve.inputs);
+  const auto unproved = [&](const FitResult& result) {
+    return std::ranges::count_if(result.front, [&](const Expression& formula) {
+      return prove_free(formula, box).verdict != Verdict::proved_free;
+    });
+  };
+  const FitResult risky = fit(curve, kSmall, 1, 40'000'000, "paper+div");
+  EXPECT_GT(unproved(risky), 0);
+  EXPECT_NE(prove_free(risky.front[risky.chosen], box).verdict, Verdict::refuted);
+  EXPECT_EQ(unproved(fit(curve, kSmall, 1, 40'000'000, "paper+safe_div")), 0);
 }
 
 TEST(Udsr, EveryPartCanBeSwitchedAndMatters) {

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/udsr/choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "algorithms/expression/differentiate.hpp"
+#include "algorithms/expression/singularity.hpp"
+#include "algorithms/fitting/cross_validation.hpp"
+#include "algorithms/fitting/description_length.hpp"
+#include "algorithms/udsr/pruning.hpp"
+
+namespace tribench::udsr {
+namespace {
+
+// Below this normalised error all formulas are exact, and the simplest is the one.
+constexpr double kExact = 1e-9;
+
+std::size_t place_of_least(const std::vector<double>& values) {
+  return static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
+}
+
+std::size_t shortest(std::span<const Expression> front, const ScoringProblem& problem,
+                     Budget& budget) {
+  Differentiator differentiator;
+  std::vector<double> lengths;
+  for (const Expression& formula : front) {
+    lengths.push_back(
+        description_length(formula, problem.inputs(), problem.target(), differentiator));
+    budget.spend(4 * node_rows(formula, problem.rows()));
+  }
+  return place_of_least(lengths);
+}
+
+// n ln(RSS / n) + p ln n.
+std::size_t least_bic(std::span<const Expression> front, const ScoringProblem& problem) {
+  const auto n = static_cast<double>(problem.rows());
+  Scorer scorer(problem);
+  std::vector<double> criteria;
+  for (const Expression& formula : front) {
+    const auto constants = static_cast<double>(movable_constants(formula).size());
+    criteria.push_back(2 * n * std::log(scorer.nrmse(formula) + kExact) + constants * std::log(n));
+  }
+  return place_of_least(criteria);
+}
+
+}  // namespace
+
+Choice choice_of(const std::string& name) {
+  if (name == "description_length") return Choice::description_length;
+  if (name == "cross_validation") return Choice::cross_validation;
+  return name == "bic" ? Choice::bic : Choice::simpler;
+}
+
+std::size_t choose(Choice rule, std::span<const Expression> front, const ScoringProblem& problem,
+                   Budget& budget) {
+  if (rule == Choice::description_length) return shortest(front, problem, budget);
+  if (rule == Choice::bic || budget.exhausted()) return least_bic(front, problem);
+  const CrossValidation validation =
+      cross_validate(front, problem.inputs(), problem.target(), problem.movement());
+  budget.spend(validation.node_rows);
+  if (rule == Choice::cross_validation) return validation.chosen;
+  return std::min(validation.chosen, least_bic(front, problem));
+}
+
+std::size_t choose_sound(Choice rule, const std::vector<Expression>& front,
+                         const ScoringProblem& problem, const InputBox& box, Budget& budget) {
+  std::vector<Expression> left = front;
+  std::vector<std::size_t> places(front.size());
+  std::iota(places.begin(), places.end(), 0);
+  while (true) {
+    const std::size_t chosen = choose(rule, left, problem, budget);
+    if (left.size() == 1 || prove_free(left[chosen], box).verdict != Verdict::refuted) {
+      return places[chosen];
+    }
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(chosen));
+    places.erase(places.begin() + static_cast<std::ptrdiff_t>(chosen));
+  }
+}
+
+}  // namespace tribench::udsr
