@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/pysr/description_length.hpp"
+#include "algorithms/pysr/dimension.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -64,14 +65,11 @@ std::optional<double> description_length(const Expression& formula, const Rows& 
 }
 
 double evidence_price(const Expression& formula, std::size_t rows) {
-  std::size_t constants = 0;
   std::size_t nodes = 0;
   for (std::size_t i = 0; i < formula.size(); ++i) {
-    if (is_exponent(formula, i)) continue;
-    ++nodes;
-    if (formula.node(i).is_constant()) ++constants;
+    if (!is_exponent(formula, i)) ++nodes;
   }
-  return 0.5 * static_cast<double>(constants) * std::log(static_cast<double>(rows)) +
+  return 0.5 * static_cast<double>(shape_dimension(formula)) * std::log(static_cast<double>(rows)) +
          kNodePrice * static_cast<double>(nodes);
 }
 

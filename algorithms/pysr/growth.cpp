@@ -7,6 +7,7 @@
 #include "algorithms/expression/column_kernels.hpp"
 #include "algorithms/fitting/cholesky.hpp"
 #include "algorithms/pysr/description_length.hpp"
+#include "algorithms/pysr/dimension.hpp"
 #include "algorithms/pysr/simplify.hpp"
 #include "algorithms/pysr/tape_edit.hpp"
 
@@ -182,8 +183,7 @@ std::vector<Proposal> Grower::grow(const Expression& formula, const Rows& rows, 
   }
   if (!differentiate(formula, probes, rows, budget)) return proposals;
   orthonormalise(rows.size());
-  for (const Candidate& candidate :
-       distinct(formula, ranked(probes, samples, rows.size(), random), probes)) {
+  for (const Candidate& candidate : distinct(ranked(probes, samples, rows.size(), random))) {
     if (proposals.size() >= count) break;
     build(formula, candidate, probes, proposals);
   }
@@ -214,9 +214,7 @@ std::vector<Grower::Candidate> Grower::ranked(std::span<const Probe> probes, std
   return candidates;
 }
 
-std::vector<Grower::Candidate> Grower::distinct(const Expression& formula,
-                                                std::vector<Candidate> candidates,
-                                                std::span<const Probe> probes) const {
+std::vector<Grower::Candidate> Grower::distinct(std::vector<Candidate> candidates) const {
   std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate::decrease);
   const auto n = static_cast<double>(residual_.size());
   const double before = square_of(residual_);
@@ -224,7 +222,7 @@ std::vector<Grower::Candidate> Grower::distinct(const Expression& formula,
   double last = 0;
   for (Candidate& candidate : candidates) {
     candidate.gain = -0.5 * n * std::log1p(-std::min(candidate.decrease / before, kAllExplained)) -
-                     price_of(formula, candidate, probes);
+                     price_of(candidate);
     // What explains the same is the same to first order; the cheapest stands for all.
     if (kept.empty() || candidate.decrease < (1 - kSameDecrease) * last) {
       kept.push_back(candidate);
@@ -237,18 +235,12 @@ std::vector<Grower::Candidate> Grower::distinct(const Expression& formula,
   return kept;
 }
 
-double Grower::price_of(const Expression& formula, const Candidate& candidate,
-                        std::span<const Probe> probes) const {
+double Grower::price_of(const Candidate& candidate) const {
   const Expression& term = library_->terms[candidate.term].formula;
-  // 1 + c t costs a node and a constant more than c t; a product, a node.
+  // 1 + c t costs two nodes more than c t.
   double nodes = static_cast<double>(term.size()) + (candidate.multiplicative ? 5 : 3);
-  double constants = 1 + (candidate.multiplicative ? 1 : 0);
   if (candidate.term == 0) nodes = 2;
-  // A constant grown by a constant, or multiplied, merges with it.
-  if (formula.node(probes[candidate.probe].place).is_constant() && candidate.multiplicative) {
-    constants -= 1;
-  }
-  for (const Node& node : term.nodes()) constants += node.is_constant() ? 1 : 0;
+  const double constants = candidate.term == 0 ? 1 : static_cast<double>(shape_dimension(term));
   return kNodePrice * nodes + 0.5 * constants * std::log(static_cast<double>(residual_.size()));
 }
 

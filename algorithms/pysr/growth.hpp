@@ -83,10 +83,8 @@ class Grower {
   Candidate rate(std::size_t probe, std::size_t term, bool multiplicative, std::size_t rows) const;
   std::vector<Candidate> ranked(std::span<const Probe> probes, std::size_t samples,
                                 std::size_t rows, RandomStream& random);
-  std::vector<Candidate> distinct(const Expression& formula, std::vector<Candidate> candidates,
-                                  std::span<const Probe> probes) const;
-  double price_of(const Expression& formula, const Candidate& candidate,
-                  std::span<const Probe> probes) const;
+  std::vector<Candidate> distinct(std::vector<Candidate> candidates) const;
+  double price_of(const Candidate& candidate) const;
   void build(const Expression& formula, const Candidate& candidate, std::span<const Probe> probes,
              std::vector<Proposal>& proposals) const;
   std::span<double> column(std::size_t k, std::size_t rows) {
