@@ -125,7 +125,7 @@ LinearFit solve_linear(LoopModel& model, const Observations& data, const Cluster
     const Eigen::MatrixXd scaled = x * norms.cwiseInverse().asDiagonal();
     fit.qr.setThreshold(1e-9);
     fit.qr.compute(scaled);
-    const Eigen::VectorXd solution = fit.qr.solve(target);
+    const Eigen::VectorXd solution = basic_solution(fit.qr, target);
     model.coefficients = solution.cwiseQuotient(norms);
     fit.residual = target - scaled * solution;
   }
@@ -239,6 +239,19 @@ std::size_t LoopModel::first_column(std::size_t atom) const {
   std::size_t first = base.linear_terms.size();
   for (std::size_t k = 0; k < atom; ++k) first += atoms[k].columns.size();
   return first;
+}
+
+Eigen::VectorXd basic_solution(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
+                               const Eigen::VectorXd& target) {
+  const Eigen::Index rank = qr.rank();
+  Eigen::VectorXd rotated = target;
+  rotated.applyOnTheLeft(qr.householderQ().adjoint());
+  Eigen::VectorXd ordered = Eigen::VectorXd::Zero(qr.cols());
+  ordered.head(rank) = qr.matrixQR()
+                           .topLeftCorner(rank, rank)
+                           .triangularView<Eigen::Upper>()
+                           .solve(rotated.head(rank));
+  return qr.colsPermutation() * ordered;
 }
 
 Eigen::MatrixXd evaluate_columns(std::span<const Expression> formulas, const Observations& data) {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 #include <functional>
 #include <string>
 #include <vector>
@@ -45,6 +46,11 @@ struct LoopModel {
   void remove(std::size_t atom);
   std::size_t first_column(std::size_t atom) const;  // of its coefficients
 };
+
+// Least squares in which columns beyond the rank get no weight (Eigen's own solve divides by their
+// pivots, however small).
+Eigen::VectorXd basic_solution(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
+                               const Eigen::VectorXd& target);
 
 // Values of formulas, one a column.
 Eigen::MatrixXd evaluate_columns(std::span<const Expression> formulas, const Observations& data);

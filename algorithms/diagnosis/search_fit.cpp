@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // A model fitted in the coordinates of its own noise.
-#include <Eigen/QR>
-
 #include "algorithms/diagnosis/search.hpp"
 
 namespace tribench::loop {
@@ -23,7 +21,7 @@ bool whitening_is_safe(const LoopModel& model, const Observations& data, const C
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
     qr.setThreshold(1e-9);
     qr.compute(scaled);
-    return Eigen::VectorXd(qr.solve(target).cwiseQuotient(norms));
+    return Eigen::VectorXd(basic_solution(qr, target).cwiseQuotient(norms));
   };
   Noise plain;
   plain.within_sd = 1;
