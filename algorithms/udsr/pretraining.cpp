@@ -194,7 +194,10 @@ WeightsProvenance pretrain(Policy& policy, const PretrainingOptions& options,
     }
   }
   return {
-      fmt::format("tribench pretrain --seed {} --sequences {}", options.seed, options.sequences),
+      fmt::format("tribench pretrain --seed {} --sequences {}{}", options.seed, options.sequences,
+                  options.epochs == PretrainingOptions().epochs
+                      ? ""
+                      : fmt::format(" --epochs {}", options.epochs)),
       options.seed, corpus.size(), held_out_loss(policy, prior, held_out)};
 }
 

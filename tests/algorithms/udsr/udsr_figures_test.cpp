@@ -9,6 +9,8 @@
 #include "algorithms/expression/text.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/registry.hpp"
+#include "algorithms/udsr/pretraining.hpp"
+#include "algorithms/udsr/weights.hpp"
 #include "problems/catalogue.hpp"
 
 namespace tribench {
@@ -63,6 +65,17 @@ TEST(UdsrFigures, AveragedDatasetAIsFoundNearlyAsWellAsByTheTrueLawRefitted) {
   // Aimed at 1.25 for both; joint 2 is just above it.
   EXPECT_LT(joint_2, 1.35);
   EXPECT_LT(joint_4, 1.25);
+}
+
+TEST(Pretraining, MakesTheShippedWeightsBitForBit) {
+  const udsr::TokenLibrary library = udsr::pretraining_library();
+  const udsr::PretrainingOptions options;
+  udsr::Policy made(library, RandomStream(options.seed));
+  udsr::pretrain(made, options, [](double) {});
+  udsr::Policy shipped(library, RandomStream(2));
+  udsr::read_weights(embedded::udsr_weights(), "shipped", shipped);
+  // A file holds single precision.
+  EXPECT_EQ(made.parameters().cast<float>(), shipped.parameters().cast<float>());
 }
 
 }  // namespace
