@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "algorithms/admission.hpp"
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/grid_check.hpp"
@@ -64,15 +65,9 @@ double measure_ns_per_row(const Expression& formula, const Table& table) {
 // For a formula of the front that is not the cell's own: a tenth of the default effort.
 constexpr ProofLimits kFrontProof{200'000, 0};
 
-InputBox box_of(const Problem& problem) {
-  InputBox box;
-  for (const Input& input : problem.inputs) box.push_back({input.low, input.high, input.sign_of});
-  return box;
-}
-
 SingularityResult prove(const Problem& problem, const Expression& formula,
                         const ProofLimits& limits = {}) {
-  return prove_free(formula, box_of(problem), limits);
+  return prove_free(formula, input_box(problem.inputs), limits);
 }
 
 // Physics is asked of finite formulas alone, and beyond the Stribeck range for the slope.
@@ -93,7 +88,7 @@ std::string verdict_on(Property property, const Expression& formula, const Input
 }
 
 void judge_singularity(const Problem& problem, const Expression& formula, Record& record) {
-  const InputBox box = box_of(problem);
+  const InputBox box = input_box(problem.inputs);
   const SingularityResult proof = prove_free(formula, box);
   record.singularity = verdict_name(proof.verdict);
   if (proof.witness) record.witness = witness_json(*proof.witness, problem.input_names());

@@ -76,29 +76,48 @@ double peak_memory_mib() {
   return kMissing;
 }
 
+// The inputs that the stage may use and that vary in its rows. One that does not (the sign of a
+// load that never changed) has nothing to tell, and a coefficient fitted to it would be anything:
+// the formula is judged where that input takes other values.
+std::vector<std::size_t> telling_inputs(const Stage& stage) {
+  std::vector<std::size_t> places;
+  for (const std::size_t place : stage.inputs) {
+    const std::vector<double>& column = stage.train.columns[place];
+    if (std::ranges::adjacent_find(column, std::ranges::not_equal_to{}) != column.end()) {
+      places.push_back(place);
+    }
+  }
+  return places.empty() ? stage.inputs : places;
+}
+
 // What one stage's method sees: its own inputs, and the target less what is already explained.
 class StageView {
  public:
   StageView(const Problem& problem, const Stage& stage, const Expression& so_far)
-      : target_(stage.train.target), movement_(stage.train.movement) {
-    for (const std::size_t place : stage.inputs) {
+      : places_(telling_inputs(stage)),
+        target_(stage.train.target),
+        movement_(stage.train.movement) {
+    for (const std::size_t place : places_) {
       inputs_.push_back(problem.inputs[place]);
       columns_.push_back(stage.train.columns[place].data());
     }
-    relink_signs(problem, stage);
+    relink_signs(problem);
     if (!so_far.empty()) subtract(stage.train, so_far);
   }
+
+  // Of the method's columns among the problem's.
+  std::span<const std::size_t> places() const { return places_; }
 
   TrainingData data() const { return {inputs_, columns_, target_, movement_}; }
 
  private:
   // Places among the problem's inputs become places among the stage's.
-  void relink_signs(const Problem& problem, const Stage& stage) {
+  void relink_signs(const Problem& problem) {
     for (std::size_t j = 0; j < inputs_.size(); ++j) {
-      const std::optional<std::size_t> whole = problem.inputs[stage.inputs[j]].sign_of;
+      const std::optional<std::size_t> whole = problem.inputs[places_[j]].sign_of;
       inputs_[j].sign_of.reset();
-      for (std::size_t k = 0; whole && k < stage.inputs.size(); ++k) {
-        if (stage.inputs[k] == *whole) inputs_[j].sign_of = k;
+      for (std::size_t k = 0; whole && k < places_.size(); ++k) {
+        if (places_[k] == *whole) inputs_[j].sign_of = k;
       }
     }
   }
@@ -111,6 +130,7 @@ class StageView {
     for (std::size_t r = 0; r < target_.size(); ++r) target_[r] -= values[r];
   }
 
+  std::vector<std::size_t> places_;
   std::vector<Input> inputs_;
   std::vector<const double*> columns_;
   std::vector<double> target_;
@@ -118,10 +138,10 @@ class StageView {
 };
 
 // A formula over a stage's inputs as one over the problem's.
-Expression over_problem(const Expression& formula, const Stage& stage) {
+Expression over_problem(const Expression& formula, std::span<const std::size_t> places) {
   std::vector<Node> nodes(formula.nodes().begin(), formula.nodes().end());
   for (Node& node : nodes) {
-    if (node.is_variable()) node.variable = static_cast<std::uint16_t>(stage.inputs[node.variable]);
+    if (node.is_variable()) node.variable = static_cast<std::uint16_t>(places[node.variable]);
   }
   return Expression(std::move(nodes));
 }
@@ -169,11 +189,11 @@ StagesResult fit_stages(const Problem& problem, const Regressor& method, const C
     }
     result.front.clear();
     for (const Expression& formula : fit.front) {
-      const Expression whole = over_problem(formula, stage);
+      const Expression whole = over_problem(formula, view.places());
       result.front.push_back(so_far.empty() ? whole : Expression::binary(Op::add, so_far, whole));
     }
     result.chosen_place = fit.chosen;
-    if (s > 0) result.chosen.adaptation = over_problem(fit.front.at(fit.chosen), stage);
+    if (s > 0) result.chosen.adaptation = over_problem(fit.front.at(fit.chosen), view.places());
     so_far = result.front.at(fit.chosen);
   }
   result.chosen.formula = so_far;

@@ -44,6 +44,65 @@ std::vector<int> folds_of(std::span<const int> movement, int folds) {
   return result;
 }
 
+// Per row: is it held out?
+using Marks = std::vector<char>;
+
+std::vector<Marks> movement_holdouts(std::span<const int> movement, int folds) {
+  const std::vector<int> fold = folds_of(movement, folds);
+  const int used = fold.empty() ? 0 : 1 + *std::ranges::max_element(fold);
+  std::vector<Marks> result;
+  for (int f = 0; f < used; ++f) {
+    Marks marks(fold.size());
+    for (std::size_t r = 0; r < fold.size(); ++r) marks[r] = fold[r] == f ? 1 : 0;
+    result.push_back(std::move(marks));
+  }
+  return result;
+}
+
+struct Side {
+  std::size_t input = 0;
+  bool upper = false;
+};
+
+// The sides on which the box is wider than the rows.
+std::vector<Side> sides_beyond(const Inputs& inputs, const InputBox& box) {
+  constexpr double kSlack = 0.05;  // of the rows' range
+  std::vector<Side> sides;
+  for (std::size_t j = 0; j < box.size() && inputs.rows > 0; ++j) {
+    if (box[j].sign_of) continue;
+    const auto [low, high] =
+        std::minmax_element(inputs.columns[j], inputs.columns[j] + inputs.rows);
+    const double slack = kSlack * (*high - *low);
+    if (!(slack > 0)) continue;
+    if (box[j].low < *low - slack) sides.push_back({j, false});
+    if (box[j].high > *high + slack) sides.push_back({j, true});
+  }
+  return sides;
+}
+
+// The fifth of the rows that lies farthest on each such side.
+std::vector<Marks> edge_holdouts(const Inputs& inputs, const InputBox& box) {
+  constexpr std::size_t kPart = 5;
+  constexpr std::size_t kFewestRows = 10;
+  std::vector<Marks> result;
+  if (inputs.rows < kPart * kFewestRows) return result;
+  for (const Side& side : sides_beyond(inputs, box)) {
+    const double* column = inputs.columns[side.input];
+    std::vector<double> sorted(column, column + inputs.rows);
+    std::ranges::sort(sorted);
+    const std::size_t place = inputs.rows / kPart;
+    const double limit = side.upper ? sorted[inputs.rows - 1 - place] : sorted[place];
+    Marks marks(inputs.rows);
+    for (std::size_t r = 0; r < inputs.rows; ++r) {
+      marks[r] = (side.upper ? column[r] > limit : column[r] < limit) ? 1 : 0;
+    }
+    if (std::ranges::count(marks, 1) >= static_cast<std::ptrdiff_t>(kFewestRows)) {
+      result.push_back(std::move(marks));
+    }
+  }
+  return result;
+}
+
 struct Rows {
   std::vector<std::vector<double>> columns;
   std::vector<const double*> pointers;
@@ -52,12 +111,12 @@ struct Rows {
   Inputs inputs() const { return {pointers, target.size()}; }
 };
 
-Rows select_rows(const Inputs& inputs, std::span<const double> target, std::span<const int> fold,
-                 int which, bool inside) {
+Rows select_rows(const Inputs& inputs, std::span<const double> target, const Marks& marks,
+                 char wanted) {
   Rows rows;
   rows.columns.resize(inputs.columns.size());
   for (std::size_t r = 0; r < target.size(); ++r) {
-    if ((fold[r] == which) != inside) continue;
+    if (marks[r] != wanted) continue;
     for (std::size_t j = 0; j < rows.columns.size(); ++j) {
       rows.columns[j].push_back(inputs.columns[j][r]);
     }
@@ -97,22 +156,78 @@ std::size_t simplest_good(const std::vector<std::vector<double>>& errors,
   return best;
 }
 
+// Points of the box, signs in agreement with what they are the signs of.
+Rows points_of(const InputBox& box) {
+  constexpr std::size_t kPoints = 2000;
+  Rows points;
+  points.columns.assign(box.size(), std::vector<double>(kPoints));
+  points.target.assign(kPoints, 0);
+  RandomStream random(key_of("points of the box"));
+  for (std::size_t r = 0; r < kPoints; ++r) {
+    for (std::size_t j = 0; j < box.size(); ++j) {
+      const double part = random.uniform(-0.25, 1.25);  // half of the points on the box's faces
+      points.columns[j][r] = box[j].low + (box[j].high - box[j].low) * std::clamp(part, 0.0, 1.0);
+    }
+    for (std::size_t j = 0; j < box.size(); ++j) {
+      if (box[j].sign_of) points.columns[j][r] = points.columns[*box[j].sign_of][r] < 0 ? -1 : 1;
+    }
+  }
+  for (const auto& column : points.columns) points.pointers.push_back(column.data());
+  return points;
+}
+
+// What a straight line through the rows' range can come to over the box: the range of the target,
+// as many times as the box is wider than the rows.
+class Band {
+ public:
+  Band(const Inputs& inputs, std::span<const double> target, const InputBox& box)
+      : points_(points_of(box)), values_(points_.target.size()) {
+    double wider = 1;
+    for (const Side& side : sides_beyond(inputs, box)) {
+      const double* column = inputs.columns[side.input];
+      const auto [low, high] = std::minmax_element(column, column + inputs.rows);
+      wider = std::max(
+          wider, (std::max(box[side.input].high, *high) - std::min(box[side.input].low, *low)) /
+                     (*high - *low));
+    }
+    const auto [low, high] = std::ranges::minmax(target);
+    middle_ = 0.5 * (low + high);
+    reach_ = wider * (high - low);
+  }
+
+  bool holds(Evaluator& evaluator, const Expression& formula) {
+    evaluator.evaluate(formula, points_.inputs(), values_);
+    return std::ranges::all_of(values_,
+                               [&](double value) { return std::abs(value - middle_) <= reach_; });
+  }
+
+ private:
+  Rows points_;
+  std::vector<double> values_;
+  double middle_ = 0;
+  double reach_ = 0;
+};
+
 }  // namespace
+
+bool reaches_beyond(const Inputs& inputs, const InputBox& box) {
+  return !sides_beyond(inputs, box).empty();
+}
 
 CrossValidation cross_validate(std::span<const Expression> formulas, const Inputs& inputs,
                                std::span<const double> target, std::span<const int> movement,
-                               int folds, double tolerance) {
+                               const InputBox& box, int folds, double tolerance) {
   CrossValidation result;
   result.chosen = formulas.size() - 1;
-  const std::vector<int> fold = folds_of(movement, folds);
-  const int used = target.empty() ? 0 : 1 + *std::ranges::max_element(fold);
-  if (used < 2) return result;
+  std::vector<Marks> holdouts = movement_holdouts(movement, folds);
+  if (holdouts.size() < 2) return result;
+  std::ranges::move(edge_holdouts(inputs, box), std::back_inserter(holdouts));
   ConstantFitter fitter;
   Evaluator evaluator;
   std::vector<std::vector<double>> errors(formulas.size());
-  for (int f = 0; f < used; ++f) {
-    const Rows train = select_rows(inputs, target, fold, f, false);
-    const Rows held_out = select_rows(inputs, target, fold, f, true);
+  for (const Marks& marks : holdouts) {
+    const Rows train = select_rows(inputs, target, marks, 0);
+    const Rows held_out = select_rows(inputs, target, marks, 1);
     for (std::size_t k = 0; k < formulas.size(); ++k) {
       Expression formula = formulas[k];
       result.node_rows += fitter.fit(formula, train.inputs(), train.target).node_rows;
@@ -121,8 +236,16 @@ CrossValidation cross_validate(std::span<const Expression> formulas, const Input
   }
   for (const std::vector<double>& of_formula : errors) {
     double mean = 0;
-    for (const double e : of_formula) mean += e / static_cast<double>(used);
+    for (const double e : of_formula) mean += e / static_cast<double>(holdouts.size());
     result.mean_square.push_back(mean);
+  }
+  if (reaches_beyond(inputs, box)) {
+    Band band(inputs, target, box);
+    for (std::size_t k = 0; k < formulas.size(); ++k) {
+      if (!band.holds(evaluator, formulas[k])) {
+        result.mean_square[k] = std::numeric_limits<double>::infinity();
+      }
+    }
   }
   result.chosen = simplest_good(errors, result.mean_square, tolerance);
   return result;

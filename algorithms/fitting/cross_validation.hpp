@@ -7,6 +7,10 @@
 // Source: Hastie, Tibshirani & Friedman 2009, section 7.10. We differ from their one-standard-error
 // rule in that the error compared is the paired difference to the best formula, fold by fold, whose
 // standard error is far smaller than that of either.
+//
+// Where the formula will be used beyond the rows (the declared box is wider than their range), held
+// out as well are the rows at the edge that it will be continued over: the best formula between the
+// rows is often not the best beyond them (a square of the load, fitted to the unloaded arm).
 #pragma once
 
 #include <cstdint>
@@ -15,6 +19,7 @@
 
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/expression.hpp"
+#include "algorithms/expression/input_box.hpp"
 
 namespace tribench {
 
@@ -25,12 +30,18 @@ struct CrossValidation {
   std::uint64_t node_rows = 0;  // what it cost
 };
 
+// True where the box is wider than the rows' range by more than a twentieth of it, for an input
+// that varies and is not a sign.
+bool reaches_beyond(const Inputs& inputs, const InputBox& box);
+
 // formulas: by increasing complexity, at least one. All values finite; movement[r] names the
 // movement of row r. Chosen is the simplest formula whose held-out error exceeds the smallest by
 // less than `tolerance` standard errors of the paired difference. The rows of a single movement are
 // held out by stretches, in their order; with fewer than 20 of them the last formula is chosen.
+// box: the ranges the formula will be used over; none given means those of the rows. A formula
+// that leaves the band of a straight continuation somewhere in a wider box counts as infinite.
 CrossValidation cross_validate(std::span<const Expression> formulas, const Inputs& inputs,
                                std::span<const double> target, std::span<const int> movement,
-                               int folds = 5, double tolerance = 1.0);
+                               const InputBox& box = {}, int folds = 5, double tolerance = 1.0);
 
 }  // namespace tribench

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/parfam/front.hpp"
+#include "algorithms/admission.hpp"
 
 #include <fmt/format.h>
 
@@ -72,7 +73,7 @@ Front::Front(const FiniteRows& data, FitContext& context, bool proved_only)
 }
 
 bool Front::is_proved(const Expression& formula) const {
-  return prove_free(formula, box_of(context_.data.inputs)).verdict == Verdict::proved_free;
+  return prove_free(formula, input_box(context_.data.inputs)).verdict == Verdict::proved_free;
 }
 
 std::optional<Front::Member> Front::polished(Expression formula) {
@@ -137,10 +138,12 @@ void Front::enter(Member member) {
 }
 
 std::size_t Front::choose(const std::vector<const Member*>& front, Choice choice) const {
-  if (choice == Choice::cross_validation) {
+  const InputBox box = input_box(context_.data.inputs);
+  const bool beyond = reaches_beyond(data_.table(), box) && !context_.budget.out_of_time();
+  if (choice == Choice::cross_validation || (choice == Choice::bic && beyond)) {
     std::vector<Expression> formulas;
     for (const Member* member : front) formulas.push_back(member->formula);
-    return cross_validate(formulas, data_.table(), data_.target, data_.movement).chosen;
+    return cross_validate(formulas, data_.table(), data_.target, data_.movement, box).chosen;
   }
   const auto criterion = [&](const Member* member) {
     return choice == Choice::bic ? member->bic : member->description_length;

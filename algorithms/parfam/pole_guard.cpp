@@ -86,16 +86,10 @@ Constraints constraints_at(const Structure& structure, const std::vector<std::ve
 
 }  // namespace
 
-InputBox box_of(std::span<const Input> inputs) {
-  InputBox box;
-  for (const Input& input : inputs) box.push_back({input.low, input.high, input.sign_of});
-  return box;
-}
-
 PoleGuard::PoleGuard(std::span<const Input> inputs, std::span<const double> scales,
                      std::span<const double* const> columns, std::size_t rows,
                      const OperatorSet& operators)
-    : box_(box_of(inputs)),
+    : box_(input_box(inputs)),
       scales_(scales.begin(), scales.end()),
       columns_(columns.begin(), columns.end()),
       rows_(rows),

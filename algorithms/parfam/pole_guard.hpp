@@ -13,15 +13,12 @@
 
 #include <vector>
 
+#include "algorithms/admission.hpp"
 #include "algorithms/expression/input_box.hpp"
 #include "algorithms/expression/operator_set.hpp"
 #include "algorithms/parfam/formula.hpp"
-#include "problems/problem.hpp"
 
 namespace tribench::parfam {
-
-// The box of a problem's inputs.
-InputBox box_of(std::span<const Input> inputs);
 
 // Threads may share one; Ipopt's solves wait for one another.
 class PoleGuard {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/pysr/search.hpp"
+#include "algorithms/admission.hpp"
 
 #include <fmt/format.h>
 
@@ -11,6 +12,8 @@
 #include "algorithms/expression/input_box.hpp"
 #include "algorithms/expression/singularity.hpp"
 #include "algorithms/expression/text.hpp"
+#include "algorithms/finite_rows.hpp"
+#include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/pysr/description_length.hpp"
 #include "algorithms/pysr/island.hpp"
 #include "algorithms/pysr/migration.hpp"
@@ -52,16 +55,6 @@ ScoreRule rule_of(const Options& options, const Rows& rows, const OperatorSet& o
           options.evidence_cost ? rows.size() : 0, operators.allows(Op::pow)};
 }
 
-// The box of the inputs; a sign whose input is not among them ranges on its own.
-InputBox box_of(std::span<const Input> inputs) {
-  InputBox box;
-  for (const Input& input : inputs) {
-    const bool has_owner = input.sign_of && *input.sign_of < inputs.size();
-    box.push_back({input.low, input.high, has_owner ? input.sign_of : std::nullopt});
-  }
-  return box;
-}
-
 class Search {
  public:
   Search(const Options& options, FitContext& context, const Rows& all, const Rows& sample)
@@ -86,6 +79,7 @@ class Search {
   void report();
   bool has_converged();
   FitResult result_of(const std::vector<Candidate>& front, const InputBox& box) const;
+  std::vector<double> errors_beyond(std::span<const Expression> front, const InputBox& box) const;
   template <typename Work>
   void on_all_islands(Work work);
 
@@ -227,7 +221,7 @@ FitResult Search::run() {
     library = &full_library;
   }
   Climber climber(options_, context_.operators, validator_, all_, *library, shared_.rule);
-  const InputBox box = box_of(context_.data.inputs);
+  const InputBox box = input_box(context_.data.inputs);
   std::function<bool(const Expression&)> admitted;
   if (options_.safe || context_.operators.proved_free_only()) {
     admitted = [&box](const Expression& formula) {
@@ -240,6 +234,19 @@ FitResult Search::run() {
   return result_of(front, box);
 }
 
+// Held-out errors of the front where its choice will be used beyond the rows it was found on, which
+// no measure of size can speak for; empty where it will not. Done even where the search has spent
+// everything: it costs a few hundredths of that, and is counted.
+std::vector<double> Search::errors_beyond(std::span<const Expression> front,
+                                          const InputBox& box) const {
+  if (!options_.refine || front.empty() || context_.budget.out_of_time()) return {};
+  const FiniteRows rows(context_.data);
+  if (!reaches_beyond(rows.table(), box)) return {};
+  CrossValidation validation = cross_validate(front, rows.table(), rows.target, rows.movement, box);
+  context_.budget.spend(validation.node_rows);
+  return std::move(validation.mean_square);
+}
+
 FitResult Search::result_of(const std::vector<Candidate>& front, const InputBox& box) const {
   FitResult result;
   std::vector<FrontPoint> points;
@@ -249,16 +256,21 @@ FitResult Search::result_of(const std::vector<Candidate>& front, const InputBox&
     result.front.push_back(candidate.formula);
     points.push_back(candidate.point);
   }
+  std::vector<double> beyond = errors_beyond(result.front, box);
   // The formula the method stands for must not be wrong between the training points: the next
   // choice takes the place of one that is refuted.
   while (!points.empty()) {
-    const std::size_t choice = select(points, options_.selection);
+    const std::size_t choice =
+        beyond.empty()
+            ? select(points, options_.selection)
+            : static_cast<std::size_t>(std::ranges::min_element(beyond) - beyond.begin());
     result.chosen = places[choice];
     if (!options_.refine || points.size() == 1 ||
         prove_free(result.front[result.chosen], box).verdict != Verdict::refuted) {
       break;
     }
     points.erase(points.begin() + static_cast<std::ptrdiff_t>(choice));
+    if (!beyond.empty()) beyond.erase(beyond.begin() + static_cast<std::ptrdiff_t>(choice));
     places.erase(places.begin() + static_cast<std::ptrdiff_t>(choice));
   }
   result.reason = context_.budget.exhausted() ? StopReason::budget : StopReason::converged;

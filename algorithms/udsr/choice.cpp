@@ -54,13 +54,15 @@ Choice choice_of(const std::string& name) {
 }
 
 std::size_t choose(Choice rule, std::span<const Expression> front, const ScoringProblem& problem,
-                   Budget& budget) {
+                   const InputBox& box, Budget& budget) {
   if (rule == Choice::description_length) return shortest(front, problem, budget);
-  if (rule == Choice::bic || budget.exhausted()) return least_bic(front, problem);
+  // Beyond the rows no criterion speaks: held-out edges do, even where the search spent everything.
+  const bool beyond = reaches_beyond(problem.inputs(), box) && !budget.out_of_time();
+  if (rule == Choice::bic || (budget.exhausted() && !beyond)) return least_bic(front, problem);
   const CrossValidation validation =
-      cross_validate(front, problem.inputs(), problem.target(), problem.movement());
+      cross_validate(front, problem.inputs(), problem.target(), problem.movement(), box);
   budget.spend(validation.node_rows);
-  if (rule == Choice::cross_validation) return validation.chosen;
+  if (rule == Choice::cross_validation || beyond) return validation.chosen;
   return std::min(validation.chosen, least_bic(front, problem));
 }
 
@@ -70,7 +72,7 @@ std::size_t choose_sound(Choice rule, const std::vector<Expression>& front,
   std::vector<std::size_t> places(front.size());
   std::iota(places.begin(), places.end(), 0);
   while (true) {
-    const std::size_t chosen = choose(rule, left, problem, budget);
+    const std::size_t chosen = choose(rule, left, problem, box, budget);
     if (left.size() == 1 || prove_free(left[chosen], box).verdict != Verdict::refuted) {
       return places[chosen];
     }

@@ -22,9 +22,10 @@ enum class Choice { simpler, bic, cross_validation, description_length };
 Choice choice_of(const std::string& name);
 
 // The place of the choice; front: by increasing complexity, not empty. Spends from the budget; once
-// that is exhausted the cheapest criterion decides alone.
+// that is exhausted the cheapest criterion decides alone. Where the box reaches beyond the rows,
+// cross-validation with held-out edges decides.
 std::size_t choose(Choice rule, std::span<const Expression> front, const ScoringProblem& problem,
-                   Budget& budget);
+                   const InputBox& box, Budget& budget);
 
 // The same, but a formula that the proof engine refutes on the box gives way to the next choice,
 // unless all are refuted.

@@ -334,7 +334,7 @@ class Udsr : public Regressor {
     const std::vector<Expression> front = solve(search, context, data, random, depth);
     if (front.empty()) return front;
     const std::size_t chosen =
-        udsr::choose(settings_.choice, front, search.problem(), context.budget);
+        udsr::choose(settings_.choice, front, search.problem(), {}, context.budget);
     if (chosen + 1 == front.size()) return {front.back()};
     return {front[chosen], front.back()};
   }

@@ -93,6 +93,21 @@ TEST(FitAndJudge, AddsTheStagesFormulasAndCountsTheAdaptationApart) {
   EXPECT_EQ(again.mae_test, record.mae_test);
 }
 
+TEST(FitAndJudge, ShowsAMethodNoInputThatDoesNotVaryInItsRows) {
+  // The line method divides by the spread of the first input it sees: of a constant that is zero.
+  Problem problem = two_stage_problem();
+  for (Stage& stage : problem.stages) stage.inputs.insert(stage.inputs.begin(), 2);
+  problem.inputs.push_back({"sgn_g", "-", Role::gravity_sign, -1, 1, {}});
+  for (Stage& stage : problem.stages) stage.train.columns.emplace_back(stage.train.rows(), 1.0);
+  problem.test.columns.emplace_back(problem.test.rows(), -1.0);
+  CellTask task;
+  task.cell = {problem.name, "line", "paper", 1};
+  task.operators = find_operator_set("paper");
+  const CellResult result = fit_and_judge(problem, LineMethod(), task);
+  EXPECT_NEAR(result.record.mae_test, 0, 1e-12) << result.record.reason;
+  EXPECT_EQ(result.record.formula.find("sgn_g"), std::string::npos) << result.record.formula;
+}
+
 TEST(JudgeFormula, FailsAFormulaWithoutAValueAtATestRow) {
   const Problem problem = two_stage_problem();
   Record record;

@@ -1,6 +1,9 @@
+// SPDX-License-Identifier: MIT
 #include "algorithms/fitting/cross_validation.hpp"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "algorithms/expression/text.hpp"
 #include "foundation/random.hpp"
@@ -80,6 +83,63 @@ TEST(CrossValidation, HoldsOutStretchesOfASingleMovement) {
   const std::vector<Expression> front = {
       parse("0.5", kNames), parse("1 + v + v^2 + v^3 + v^4 + v^5 + v^6 + v^7 + v^8", kNames)};
   EXPECT_EQ(cross_validate(front, {columns, v.size()}, y, movement).chosen, 0U);
+}
+
+TEST(CrossValidation, KnowsWhereTheBoxReachesBeyondTheRows) {
+  const Line line = noisy_line();
+  const std::vector<double> sign(100, 1.0);
+  const double* columns[] = {line.v.data(), sign.data()};
+  const Inputs inputs{columns, 100};
+  EXPECT_FALSE(reaches_beyond(inputs, {}));
+  EXPECT_FALSE(reaches_beyond(inputs, {{-1.02, 1.02}, {-1, 1, 0}}));
+  EXPECT_TRUE(reaches_beyond(inputs, {{-1, 1.5}, {-1, 1, 0}}));
+  EXPECT_TRUE(reaches_beyond(inputs, {{-1.5, 1}, {-1, 1, 0}}));
+}
+
+TEST(CrossValidation, RefusesAFormulaThatRunsAwayWhereTheBoxIsWiderThanTheRows) {
+  // The second formula is the truth on the rows; where it will be used it comes to 1e10.
+  RandomStream random(8);
+  std::vector<double> v;
+  std::vector<double> y;
+  std::vector<int> movement;
+  for (int r = 0; r < 200; ++r) {
+    v.push_back(random.uniform(-1, 1));
+    y.push_back(v.back() + 1e-9 * std::exp(20 * v.back()));
+    movement.push_back(r / 20);
+  }
+  const double* columns[] = {v.data()};
+  const std::vector<Expression> front = {parse("1*v", kNames),
+                                         parse("1*v + 1e-9*exp(20*v)", kNames)};
+  EXPECT_EQ(cross_validate(front, {columns, 200}, y, movement).chosen, 1U);
+  EXPECT_EQ(cross_validate(front, {columns, 200}, y, movement, {{-1, 1}}).chosen, 1U);
+  const CrossValidation beyond = cross_validate(front, {columns, 200}, y, movement, {{-1, 2.2}});
+  EXPECT_EQ(beyond.chosen, 0U);
+  EXPECT_TRUE(std::isinf(beyond.mean_square[1]));
+}
+
+TEST(CrossValidation, HoldsOutTheEdgeThatAFormulaWillBeContinuedOver) {
+  // |v|: a polynomial of degree 6 follows its corner better than a parabola, and leaves it faster
+  // where the rows end.
+  std::vector<double> v;
+  std::vector<double> y;
+  std::vector<int> movement;
+  for (int r = 0; r < 400; ++r) {
+    v.push_back(-1 + 0.005 * r);
+    y.push_back(std::abs(v.back()));
+    movement.push_back(r % 10);
+  }
+  const double* columns[] = {v.data()};
+  const std::vector<Expression> front = {parse("0.5 + 0.1*v", kNames),
+                                         parse("0.1 + 0.1*v + 0.9*v^2", kNames),
+                                         parse("0.1 + 0.1*v + 0.9*v^2 + 0.1*v^3 + 0.1*v^4 + "
+                                               "0.1*v^5 + 0.1*v^6",
+                                               kNames)};
+  const auto last_over_parabola = [&](const InputBox& box) {
+    const CrossValidation result = cross_validate(front, {columns, 400}, y, movement, box);
+    return result.mean_square[2] / result.mean_square[1];
+  };
+  EXPECT_LT(last_over_parabola({}), 1);
+  EXPECT_GT(last_over_parabola({{-1, 1.2}}), 1);
 }
 
 TEST(CrossValidation, TakesTheLastFormulaWhereThereIsNothingToHoldOut) {
