@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "foundation/error.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "foundation/random.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/comparison.hpp"
 
 #include <gmock/gmock.h>

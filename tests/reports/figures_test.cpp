@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/figures.hpp"
 
 #include <gtest/gtest.h>

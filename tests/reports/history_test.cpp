@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/history.hpp"
 
 #include <gmock/gmock.h>

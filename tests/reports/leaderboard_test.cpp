@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/leaderboard.hpp"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/loop_report.hpp"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/record_csv.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/run_folder.hpp"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/summary.hpp"
 
 #include <gmock/gmock.h>

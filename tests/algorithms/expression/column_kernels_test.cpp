@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "algorithms/expression/column_kernels.hpp"
 
 #include <gtest/gtest.h>

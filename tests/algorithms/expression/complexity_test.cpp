@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "algorithms/expression/complexity.hpp"
 
 #include <gtest/gtest.h>

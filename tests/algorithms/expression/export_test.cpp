@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "algorithms/expression/export.hpp"
 
 #include <dlfcn.h>

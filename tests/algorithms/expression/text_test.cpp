@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "algorithms/expression/text.hpp"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "algorithms/udsr/linear_token.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "algorithms/udsr/policy.hpp"
 
 #include <gtest/gtest.h>

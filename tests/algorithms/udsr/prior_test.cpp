@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "algorithms/udsr/prior.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "algorithms/udsr/simplification.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "algorithms/udsr/training.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The figures that the README states and that a change of the search or of the choice can lose.
 #include <gtest/gtest.h>
 

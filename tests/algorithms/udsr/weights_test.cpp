@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "algorithms/udsr/weights.hpp"
 
 #include <gmock/gmock.h>

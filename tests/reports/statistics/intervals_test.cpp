@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/statistics/intervals.hpp"
 
 #include <gtest/gtest.h>

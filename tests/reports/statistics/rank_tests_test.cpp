@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/statistics/rank_tests.hpp"
 
 #include <gtest/gtest.h>
