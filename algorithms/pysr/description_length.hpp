@@ -32,9 +32,10 @@ std::optional<double> description_length(const Expression& formula, const Rows& 
                                          Differentiator& workspace);
 
 // The evidence for a formula, as nats against it: n / 2 ln(s^2) + p / 2 ln n + k / 2, with p
-// numbers that its shape leaves to be chosen (dimension.hpp) and k nodes, exponents not among them. The Bayesian information criterion (Schwarz
-// 1978) with a prior that falls by exp(-1/2) with every node. Needs no derivatives. `zero_loss` is
-// the mean square of the target, which sets what counts as rounding.
+// numbers that its shape leaves to be chosen (dimension.hpp) and k nodes, exponents not among them.
+// The Bayesian information criterion (Schwarz 1978) with a prior that falls by exp(-1/2) with every
+// node. Needs no derivatives. `zero_loss` is the mean square of the target, which sets what counts
+// as rounding.
 //
 // Against the description length it charges a constant ln(n) / 2 whatever its size and units, and
 // a node 1/2 instead of ln q: the latter is the price of a formula typed by chance, which is more

@@ -15,6 +15,7 @@
 #include "reports/run_reports.hpp"
 #include "reports/study_page.hpp"
 #include "tests/reports/sample_run.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace tribench {
 namespace {
@@ -23,18 +24,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using testing::output_of;
 
 bool has_browser() { return std::system("command -v chromium >/dev/null 2>&1") == 0; }
-
-std::string output_of(const std::string& command) {
-  std::string text;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return text;
-  char buffer[65536];
-  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) text.append(buffer, n);
-  pclose(pipe);
-  return text;
-}
 
 // Appends a script to the page, opens it in a browser without a network and returns what the
 // script left in `window.answer`.

@@ -46,6 +46,8 @@ ProgramRun run_to_end(const std::vector<std::string>& command,
   return run;
 }
 
+std::string output_of(const std::string& line) { return run_to_end({"bash", "-c", line}).output; }
+
 TemporaryFolder::TemporaryFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "tribench-test-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a folder");

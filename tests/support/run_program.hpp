@@ -21,6 +21,9 @@ struct ProgramRun {
 ProgramRun run_to_end(const std::vector<std::string>& command,
                       const std::vector<std::string>& environment = {});
 
+// What a line of shell prints; empty where it cannot be run.
+std::string output_of(const std::string& line);
+
 // A folder of its own that is removed at the end.
 class TemporaryFolder {
  public:

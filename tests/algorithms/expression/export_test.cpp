@@ -18,6 +18,7 @@
 #include "algorithms/expression/random_formula.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace tribench {
 namespace {
@@ -25,6 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using testing::output_of;
 
 constexpr int kPoints = 40;
 const std::vector<std::string> kNames = {"v", "sgn_v", "g"};
@@ -143,16 +145,6 @@ void expect_script_agrees(const std::string& output, const std::vector<Case>& al
                   where_text(each, at));
     }
   }
-}
-
-std::string output_of(const std::string& command) {
-  std::string text;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return text;
-  char buffer[4096];
-  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) text.append(buffer, n);
-  pclose(pipe);
-  return text;
 }
 
 TEST(Export, CGivesTheEvaluatorsValuesWhenCompiled) {
