@@ -184,6 +184,54 @@ void settle_directions(Observations& data) {
       fewer));
 }
 
+// Means of equal parts of each movement, in the order of the rows.
+Observations steady_means(const Observations& data) {
+  std::vector<std::size_t> part(data.rows());
+  std::vector<char> first(data.rows(), 0);
+  std::size_t parts = 0;
+  for (std::size_t begin = 0; begin < data.rows();) {
+    std::size_t end = begin;
+    while (end < data.rows() && data.movement[end] == data.movement[begin]) ++end;
+    const std::size_t count = std::min(kRowsOfSteadyMovement, end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t k = (i - begin) * count / (end - begin);
+      first[i] = i == begin || parts + k != part[i - 1] ? 1 : 0;
+      part[i] = parts + k;
+    }
+    parts += count;
+    begin = end;
+  }
+  Observations out = data.select(first);
+  const auto average = [&](const std::vector<double>& values, std::vector<double>& means) {
+    means.assign(parts, 0.0);
+    std::vector<double> rows(parts, 0.0);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      means[part[i]] += values[i];
+      ++rows[part[i]];
+    }
+    for (std::size_t k = 0; k < parts; ++k) means[k] /= rows[k];
+  };
+  average(data.target, out.target);
+  for (std::size_t j = 0; j < data.signals.size(); ++j) {
+    average(data.signals[j].values, out.signals[j].values);
+    const std::string& name = out.signals[j].name;
+    if (!name.starts_with("sgn_")) continue;
+    average(data.find(name.substr(4))->values, out.signals[j].values);
+    for (double& x : out.signals[j].values) x = sign(x);
+  }
+  average(data.time, out.time);
+  const std::vector<double>& v = out.find("v")->values;
+  for (std::size_t k = 1; k < parts; ++k) {
+    if (out.movement[k] != out.movement[k - 1] || v[k] * v[k - 1] > 0) continue;
+    throw_bad_input(fmt::format("movement '{}' changes its direction: it holds no one speed",
+                                out.movement_names[static_cast<std::size_t>(out.movement[k])]),
+                    "--steady", "leave --steady out, or name a movement for each speed (--roles)");
+  }
+  out.warnings.push_back(
+      fmt::format("each movement is averaged to {} rows (--steady)", kRowsOfSteadyMovement));
+  return out;
+}
+
 void complete(Observations& data) {
   drop_rows_not_finite(data);
   if (data.rows() == 0) {
@@ -344,6 +392,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   if (options.unordered) std::erase_if(out.signals, [](const Signal& s) { return s.name == "t"; });
   if (options.min_speed > 0) drop_slow_rows(out, options.min_speed);
   settle_directions(out);
+  if (options.steady) out = steady_means(out);
   drop_constant_signals(out);
   check_sign(out);
   return out;

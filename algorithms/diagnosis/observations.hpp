@@ -83,7 +83,14 @@ struct ObservationOptions {
   double min_speed = 0;
   // The order of the movements is not that of the campaign: nothing is said about drift.
   bool unordered = false;
+  // Every movement holds one speed: it is averaged to kRowsOfSteadyMovement rows. What the measured
+  // velocity does within such a movement is the controller's and the encoder's doing; row by row
+  // it would pass for friction (errors in variables) and bend the fit at low speed.
+  bool steady = false;
 };
+
+// The fewest that still tell noise within a movement from noise between movements.
+inline constexpr std::size_t kRowsOfSteadyMovement = 5;
 
 // From a data set with roles. The target is friction_torque, or motor_torque (motor_current)
 // minus gravity_torque where the units agree. Where gravity has another unit than the target its

@@ -129,6 +129,12 @@ Candidate Search::best_atom(std::size_t family, const Round& round,
   std::ranges::stable_sort(atoms, [&](std::size_t a, std::size_t b) {
     return round.blocks[a].test.score > round.blocks[b].test.score;
   });
+  // A column that the model has already is no part of the effect: an atom that holds one gives way
+  // to one that does without.
+  const auto holds_known_column = [&](std::size_t k) {
+    return static_cast<std::size_t>(round.blocks[k].whitened_sums.cols()) < blocks_[k].count;
+  };
+  if (!std::ranges::all_of(atoms, holds_known_column)) std::erase_if(atoms, holds_known_column);
   if (atoms.size() > kAtomsTried) atoms.resize(kAtomsTried);
   Candidate best;
   best.family = family;
@@ -199,11 +205,14 @@ std::vector<Candidate> Search::admitted(const Round& round, const FittedModel& s
     if (std::ranges::count(skip, f) > 0 || !(round.family_score[f] > 0)) continue;
     const bool significant = round.family_p[f] <= options_.alpha_library;
     if (!significant && round.family_p[f] >= kRescueP) continue;
+    std::optional<Candidate> one = rescue(f, round, state);
     if (significant) {
-      all.push_back(best_atom(f, round, state));
-    } else if (std::optional<Candidate> one = rescue(f, round, state)) {
-      all.push_back(std::move(*one));
+      // What few movements carry gains by their offsets, significant or not: a smaller p must not
+      // make it harder to be admitted.
+      Candidate plain = best_atom(f, round, state);
+      if (!one || plain.gain.nats >= one->gain.nats) one = std::move(plain);
     }
+    if (one) all.push_back(std::move(*one));
   }
   std::ranges::stable_sort(
       all, [](const Candidate& a, const Candidate& b) { return a.gain.nats > b.gain.nats; });

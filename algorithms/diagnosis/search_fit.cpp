@@ -44,8 +44,12 @@ FittedModel Search::fit(LoopModel model, FitScope scope) const {
   plain.within_sd = 1;
   Noise noise = plain;
   Noise weighing = plain;  // how the coefficients are fitted: plain least squares at first
+  const bool formula = !model.base.formula.empty();
+  bool safe = true;
   for (int pass = 0; pass < 3; ++pass) {
-    const bool refine = pass == 1 && scope == FitScope::everything;
+    // A formula's constants are moved by every pass: the first must start from its best fit, and
+    // the last must undo what a whitening that is not safe has done to them.
+    const bool refine = pass == 1 || (formula && (pass == 0 || !safe));
     fit_model(model, data_, clusters_, weighing, refine ? scope : FitScope::linear);
     if (pass == 2) break;
     const Eigen::VectorXd residual = target_vector(data_) - predict(model, data_);
@@ -58,7 +62,8 @@ FittedModel Search::fit(LoopModel model, FitScope scope) const {
     if (whitening_is_safe(model, data_, clusters_, noise)) continue;
     noise.whitening = 0;
     // A model that is wrong predicts best as plain least squares has it.
-    weighing = whitening_is_safe(model, data_, clusters_, noise) ? noise : plain;
+    safe = whitening_is_safe(model, data_, clusters_, noise);
+    weighing = safe ? noise : plain;
   }
   out.x = whitened(tangent(model, data_), clusters_, noise);
   out.basis = orthonormal_basis(out.x);

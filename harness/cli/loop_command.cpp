@@ -47,6 +47,7 @@ struct LoopArguments {
   bool any_sign = false;
   double min_speed = 0;
   bool unordered = false;
+  bool steady = false;
   std::string where;
   bool json = false;
   int suggest = 0;
@@ -221,8 +222,8 @@ void grow_library(const LoopArguments& arguments, const Registry& registry,
 loop::Observations read_observations(const LoopArguments& arguments) {
   std::vector<std::string> warnings;
   const Dataset dataset = read_data(arguments, warnings);
-  loop::Observations data =
-      loop::observe(dataset, {arguments.rigid, arguments.min_speed, arguments.unordered});
+  loop::Observations data = loop::observe(
+      dataset, {arguments.rigid, arguments.min_speed, arguments.unordered, arguments.steady});
   const std::size_t all_rows = data.rows();
   data = data.thinned(static_cast<std::size_t>(arguments.rows));
   if (data.rows() < all_rows) {
@@ -305,6 +306,9 @@ void add_loop_command(CLI::App& app, ExitStatus& /*status*/, const Registry& reg
   command->add_option("--where", arguments->where, "COLUMN=NUMBER: use these rows only");
   command->add_flag("--unordered", arguments->unordered,
                     "the order of the movements says nothing: no drift");
+  command->add_flag(
+      "--steady", arguments->steady,
+      "each movement holds one speed: average it, its velocity's noise is not friction");
   command->add_option("--rows", arguments->rows, "thin a longer recording evenly to about so many")
       ->check(CLI::Range(100, 10'000'000))
       ->capture_default_str();

@@ -42,13 +42,20 @@ class MeasuredLoop : public ::testing::Test {
   static double error(const Json& loop, const char* key) { return loop["error"][key]; }
 };
 
+// The model of the published figures: symmetric with an offset. Plain least squares with the effect
+// named here gives 2.39 -> 1.92 N on all rows and 2.18 -> 1.68 N without the slowest 2 %.
 TEST_F(MeasuredLoop, emps_has_viscous_friction_that_differs_by_direction) {
-  // The model of the published figures: symmetric with an offset; least squares gives 2.39 -> 1.67.
-  const Json json = loop("emps/emps_estimation.csv", {"--model", "20*sgn_v + 200*v - 3"});
-  ASSERT_FALSE(json["effects"].empty());
-  EXPECT_EQ(json["effects"][0]["family"], "asymmetry");
-  EXPECT_LT(error(json, "rmse_before"), 2.39);
-  EXPECT_LT(error(json, "rmse_after"), 1.75);
+  const std::vector<std::string> base = {"--model", "20*sgn_v + 200*v - 3"};
+  const Json all = loop("emps/emps_estimation.csv", base);
+  ASSERT_FALSE(all["effects"].empty());
+  EXPECT_EQ(all["effects"][0]["family"], "asymmetry");
+  EXPECT_EQ(all["effects"][0]["params"][0]["name"], "viscous_half_gap");
+  EXPECT_LT(error(all, "rmse_before"), 2.39);
+  EXPECT_LT(error(all, "rmse_after"), 1.76);
+  const Json moving = loop("emps/emps_estimation.csv", {base[0], base[1], "--min-speed", "0.005"});
+  EXPECT_EQ(moving["effects"][0]["family"], "asymmetry");
+  EXPECT_TRUE(moving["confirmed"]);
+  EXPECT_LT(error(moving, "rmse_after"), 1.67);
 }
 
 TEST_F(MeasuredLoop, ur10e_joint_2_has_friction_that_grows_with_the_load) {
@@ -70,13 +77,17 @@ TEST_F(MeasuredLoop, ur10e_joint_1_has_viscous_friction_that_saturates) {
   EXPECT_LT(error(json, "rmse_after"), 0.121);
 }
 
+// Least squares of the speeds' means, each left out in turn: 0.143 -> 0.040 mN m (Stribeck).
 TEST_F(MeasuredLoop, screw_drive_1_slows_down_the_fall_of_friction_and_drive_2_claims_nothing) {
-  const std::vector<std::string> options = {"--roles", "set_speed_rpm=movement", "--unordered"};
+  const std::vector<std::string> options = {"--roles", "set_speed_rpm=movement", "--unordered",
+                                            "--steady"};
   const Json one = loop("screw-drives/drive1_steady.csv", options);
   ASSERT_EQ(one["effects"].size(), 1U);
   EXPECT_THAT(families(one),
               ::testing::Contains(::testing::AnyOf("stribeck", "nonlinear_viscous")));
-  EXPECT_LT(error(one, "means_after"), 0.6 * error(one, "means_before"));
+  EXPECT_TRUE(one["confirmed"]);
+  EXPECT_GT(error(one, "means_before"), 0.143e-3);
+  EXPECT_LT(error(one, "means_after"), 0.0405e-3);
   const Json two = loop("screw-drives/drive2_steady.csv", options);
   EXPECT_EQ(two["verdict"], "NONE");
   EXPECT_TRUE(two["effects"].empty());

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/observations.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "foundation/error.hpp"
+
+namespace tribench::loop {
+namespace {
+
+Channel channel(const char* name, const char* unit, Role role) { return {name, unit, role, {}}; }
+
+// Movements of `rows` rows; velocity(m, i) is their speed, friction 2 sgn(v) + v.
+template <typename Velocity>
+Dataset movements_of(int movements, int rows, Velocity velocity) {
+  Dataset data;
+  data.name = "test";
+  data.channels = {channel("v", "rad/s", Role::velocity),
+                   channel("tau", "N m", Role::friction_torque),
+                   channel("q", "rad", Role::position), channel("t", "s", Role::time)};
+  for (int m = 0; m < movements; ++m) {
+    data.movement_names.push_back("m" + std::to_string(m));
+    double q = 0;
+    for (int i = 0; i < rows; ++i) {
+      const double v = velocity(m, i);
+      q += 0.01 * v;
+      data.channels[0].values.push_back(v);
+      data.channels[1].values.push_back((v > 0 ? 2 : -2) + v);
+      data.channels[2].values.push_back(q);
+      data.channels[3].values.push_back(0.01 * i);
+      data.movement.push_back(m);
+    }
+  }
+  return data;
+}
+
+double steady_speed(int m, int i) { return (m % 2 == 0 ? 1 : -1) * (1 + m + 0.5 * std::sin(i)); }
+
+TEST(Observations, steady_movements_are_averaged_in_equal_parts_of_whole_movements) {
+  const Dataset data = movements_of(6, 50, steady_speed);
+  const Observations means = observe(data, {.steady = true});
+  ASSERT_EQ(means.rows(), 6 * kRowsOfSteadyMovement);
+  EXPECT_EQ(means.movements().size(), 6U);
+  for (std::size_t k = 0; k < means.rows(); ++k) {
+    double speed = 0;
+    double friction = 0;
+    for (std::size_t i = 10 * k; i < 10 * (k + 1); ++i) {
+      speed += data.channels[0].values[i] / 10;
+      friction += data.channels[1].values[i] / 10;
+    }
+    EXPECT_DOUBLE_EQ(means.find("v")->values[k], speed);
+    EXPECT_DOUBLE_EQ(means.target[k], friction);
+    EXPECT_EQ(means.find("sgn_v")->values[k], speed > 0 ? 1 : -1);
+  }
+}
+
+TEST(Observations, a_movement_that_turns_is_not_taken_for_steady) {
+  const Dataset data = movements_of(6, 50, [](int, int i) { return i < 25 ? 1.0 : -1.0; });
+  try {
+    observe(data, {.steady = true});
+    FAIL() << "a movement that turns was averaged";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("movement 'm0' changes its direction"));
+  }
+}
+
+// Path since the velocity crossed zero, found again from the sine it is the integral of.
+TEST(Observations, the_distance_since_a_reversal_is_the_path_travelled_since) {
+  constexpr double kRate = 0.05;  // rad a row
+  const Dataset data = movements_of(2, 400, [](int, int i) { return std::cos(kRate * i); });
+  const Observations out = observe(data);
+  const Signal* d = out.find("d");
+  ASSERT_NE(d, nullptr);
+  const std::vector<double>& q = out.find("q")->values;
+  double turn = q[0];  // a movement starts at distance 0
+  for (std::size_t i = 1; i < 400; ++i) {
+    const double before = out.find("v")->values[i - 1];
+    const double now = out.find("v")->values[i];
+    // The turning point: the position's extremum, between the two rows.
+    if (before * now < 0) turn = q[i] - 0.005 * now * std::abs(now) / (std::abs(now - before));
+    EXPECT_NEAR(d->values[i], std::abs(q[i] - turn), 1e-12) << i;
+  }
+  EXPECT_EQ(d->values[400], 0);
+}
+
+}  // namespace
+}  // namespace tribench::loop
