@@ -58,11 +58,16 @@ void add_loop_study(CLI::App& study, ExitStatus& status) {
   command->add_option("--seed", options->first_seed, "of the first run")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  command->add_option("--only", options->only,
+                      "the cases of runs.csv that begin so: null, single/stribeck, pair");
   command->add_option("--jobs", options->threads, "threads; the figures are the same for any")
       ->check(CLI::Range(0, 1024));
+  command->add_option("--out", options->out,
+                      "folder for runs.csv, a line a run; a study that was stopped goes on there");
   command->add_flag("--json", *json, "an array of figures");
   command->callback([options, json, &status] {
-    const std::vector<LoopFigure> figures = run_loop_study(*options);
+    options->quiet = false;
+    const std::vector<LoopFigure> figures = run_loop_study(*options, diagnose_case).figures;
     if (*json) {
       print_json(figures);
     } else {

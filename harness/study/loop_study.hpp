@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// How often the closed loop is right: the test matrix of planted effects, run many times with the
-// truth known, and the naive tests on the same data for comparison.
+// How often a diagnosis is right: the test matrix of planted effects, run many times with the
+// truth known, and the naive tests on the same data for comparison. A bench for the closed loop
+// and for anyone's own method (docs/closed_loop.md).
 //
-// Source: the specification of the closed loop, sections 6.1 to 6.3. Planted signs are random, so
-// the physical vetoes are off; the gear ratio is given.
+// Source: the specification of the closed loop, sections 6.1 to 6.3.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "harness/study/loop_figures.hpp"
+#include "harness/study/loop_methods.hpp"
 
 namespace tribench {
 
@@ -17,21 +21,20 @@ struct LoopStudyOptions {
   int null_runs = 200;     // ordinary noise; a fifth as many with hard noise and with A only
   int runs_per_cell = 10;  // of each effect at each size
   std::uint64_t first_seed = 1;
-  int threads = 0;  // 0: all; the figures are the same for any number
+  std::string only;  // cases whose key begins so, as "single/stribeck"; empty: all
+  int threads = 0;   // 0: all; the figures are the same for any number
+  // Takes runs.csv, a line a run, written as they end. Empty: nothing is written. A folder that
+  // has one already is gone on with: what it holds of these runs is not run again.
+  std::filesystem::path out;
+  bool quiet = true;  // no progress line
 };
 
-// A rate with its Wilson interval, or a mean (trials 0).
-struct LoopFigure {
-  std::string name;
-  std::size_t hits = 0;
-  std::size_t trials = 0;
-  double value = 0;
-  double low = 0;
-  double high = 0;
-  std::string target;  // as the specification words it
-  bool met = true;     // the value itself against the target
+struct LoopStudy {
+  std::vector<LoopOutcome> outcomes;  // in the order of the test matrix
+  std::vector<LoopFigure> figures;
 };
 
-std::vector<LoopFigure> run_loop_study(const LoopStudyOptions& options);
+// Throws what the method throws, once the runs in progress have ended.
+LoopStudy run_loop_study(const LoopStudyOptions& options, const LoopMethod& method);
 
 }  // namespace tribench

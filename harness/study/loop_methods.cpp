@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "harness/study/loop_methods.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "algorithms/diagnosis/diagnosis.hpp"
+
+namespace tribench {
+
+LoopAnswer diagnose_case(const LoopCase& one, const kuka::PlantedData& planted) {
+  const loop::Observations data = loop::observe(planted.data);
+  loop::DiagnosisOptions options;
+  options.physical_vetoes = false;
+  options.gear_ratios = {kPlantedGearRatio};
+  const loop::Diagnosis diagnosis =
+      loop::diagnose(data, loop::coulomb_viscous_base, options, one.seed);
+  LoopAnswer answer;
+  for (const loop::EffectFinding& effect : diagnosis.effects) {
+    answer.effects.push_back({effect.family, {}});
+    for (const loop::AliasFinding& alias : effect.aliases) {
+      answer.effects.back().aliases.push_back(alias.family);
+    }
+  }
+  answer.unknown = diagnosis.verdict == loop::Verdict::unknown;
+  answer.inputs = diagnosis.leftover.inputs;
+  for (const loop::EventFinding& event : diagnosis.events) {
+    answer.bursts.push_back({event.movement, event.begin, event.end});
+  }
+  const Eigen::VectorXd before = loop::predict(diagnosis.before, data);
+  const Eigen::VectorXd after = loop::predict(diagnosis.after, data);
+  answer.before.assign(data.rows(), std::numeric_limits<double>::quiet_NaN());
+  answer.after = answer.before;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (!std::ranges::binary_search(diagnosis.test_movements, data.movement[i])) continue;
+    if (diagnosis.masked[i] != 0) continue;
+    answer.before[i] = before[static_cast<Eigen::Index>(i)];
+    answer.after[i] = after[static_cast<Eigen::Index>(i)];
+  }
+  return answer;
+}
+
+}  // namespace tribench

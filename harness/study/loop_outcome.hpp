@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+//
+// What a method of diagnosis says of a planted case, and what that is worth against the truth. The
+// method says what it found; every figure is computed here.
+//
+// Source: the specification of the closed loop, section 6.2.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/study/loop_cases.hpp"
+#include "harness/study/naive_tests.hpp"
+#include "problems/kuka/planted.hpp"
+
+namespace tribench {
+
+struct LoopAnswer {
+  struct Effect {
+    std::string family;
+    std::vector<std::string> aliases;  // what else it could be
+  };
+  struct Burst {
+    int movement = 0;
+    double begin_s = 0;
+    double end_s = 0;
+  };
+  std::vector<Effect> effects;      // the first found first
+  bool unknown = false;             // something is missing that is not in the library
+  std::vector<std::string> inputs;  // where that lives, as role names
+  std::vector<Burst> bursts;
+  // Predictions of the target, per row of the data; NaN where the row is not to be judged.
+  std::vector<double> before;
+  std::vector<double> after;
+};
+
+struct LoopOutcome {
+  std::string key;
+  std::string group;
+  double scale = 0;
+  std::uint64_t seed = 0;
+  std::vector<std::string> planted;
+  std::vector<std::string> claimed;
+  std::vector<std::string> aliases;  // of all that is claimed
+  bool unknown = false;
+  std::vector<std::string> inputs;
+  std::size_t events = 0;
+  std::size_t bursts = 0;
+  std::size_t bursts_found = 0;
+  double mae_before = 0;
+  double mae_after = 0;
+  double mae_noise = 0;  // the ceiling: of the noise on the rows that were judged
+  NaiveFindings naive;   // of the null runs
+  double cpu_s = 0;
+
+  // The one effect that was planted; empty where it was none or two.
+  std::string_view family() const { return planted.size() == 1 ? planted[0] : std::string_view(); }
+  bool is_any() const { return unknown || !claimed.empty(); }
+  std::size_t right() const;    // planted effects that are claimed
+  bool is_covered() const;      // each planted effect is claimed or an alias of a claim
+  bool is_first_right() const;  // the first claim was planted
+  bool is_exact() const;        // the claims are what was planted, UNKNOWN where it should be
+  bool is_wrong() const;        // a wrong claim, the truth in no alias set, no UNKNOWN
+  bool is_located() const;      // UNKNOWN in the inputs in which the one effect lives
+};
+
+LoopOutcome judge_answer(const LoopCase& one, const LoopAnswer& answer,
+                         const kuka::PlantedData& planted);
+
+// One line of CSV an outcome.
+inline constexpr std::array<std::string_view, 19> kOutcomeColumns = {
+    "case",      "group",        "scale",     "seed",   "planted",      "claimed",    "aliases",
+    "unknown",   "inputs",       "events",    "bursts", "bursts_found", "mae_before", "mae_after",
+    "mae_noise", "naive_f_test", "naive_bic", "exact",  "cpu_s"};
+std::string outcome_row(const LoopOutcome& outcome);
+// Throws Error (bad_input) where a field is no number.
+LoopOutcome read_outcome(std::span<const std::string_view> fields);
+
+}  // namespace tribench

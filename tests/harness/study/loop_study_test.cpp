@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "harness/study/loop_study.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+#include <iterator>
+
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_text(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+const LoopFigure& figure(const LoopStudy& study, const std::string& name) {
+  const auto found = std::ranges::find(study.figures, name, &LoopFigure::name);
+  if (found == study.figures.end()) throw std::runtime_error("no figure " + name);
+  return *found;
+}
+
+LoopAnswer says_nothing(const LoopCase& /*one*/, const kuka::PlantedData& planted) {
+  LoopAnswer answer;
+  answer.before = planted.truth.base;
+  answer.after = planted.truth.base;
+  return answer;
+}
+
+// Knows the truth: what the best of methods would say.
+LoopAnswer knows_all(const LoopCase& /*one*/, const kuka::PlantedData& planted) {
+  LoopAnswer answer;
+  answer.before = planted.truth.base;
+  answer.after = planted.truth.noise_free();
+  for (const kuka::PlantedEffect& effect : planted.truth.effects) {
+    if (effect.in_library) {
+      answer.effects.push_back({effect.family, {}});
+      continue;
+    }
+    answer.unknown = true;
+    for (const Role role : effect.lives_in) answer.inputs.emplace_back(role_name(role));
+  }
+  const std::vector<double>& time = planted.data.find(Role::time)->values;
+  for (const kuka::PlantedCollision& burst : planted.truth.collisions) {
+    answer.bursts.push_back({burst.movement, time[burst.first_row], time[burst.last_row]});
+  }
+  return answer;
+}
+
+LoopStudyOptions small_study() { return {.null_runs = 5, .runs_per_cell = 2, .first_seed = 900}; }
+
+TEST(LoopStudy, AMethodThatKnowsTheTruthMeetsEveryTarget) {
+  const LoopStudy study = run_loop_study(small_study(), knows_all);
+  for (const LoopFigure& one : study.figures) {
+    if (one.name.find("for comparison") == std::string::npos) {
+      EXPECT_TRUE(one.met) << one.name << ": " << one.value;
+    }
+  }
+  EXPECT_NEAR(figure(study, "held-out MAE after / ceiling, k = 4").value, 1, 1e-9);
+  EXPECT_NEAR(figure(study, "closed fraction [%], k = 4").value, 100, 1e-6);
+  EXPECT_EQ(figure(study, "two effects, recall, k = 2").trials, 14U);
+}
+
+TEST(LoopStudy, AMethodThatSaysNothingRaisesNoAlarmAndFindsNothing) {
+  const LoopStudy study = run_loop_study(small_study(), says_nothing);
+  EXPECT_EQ(figure(study, "false alarm, any").hits, 0U);
+  EXPECT_EQ(figure(study, "first pick right, k = 4").hits, 0U);
+  EXPECT_EQ(figure(study, "bursts found, 16 sd").hits, 0U);
+  EXPECT_FALSE(figure(study, "exact verdict, k = 1").met);
+  // The naive tests look at the data, not at the method.
+  EXPECT_GE(figure(study, "for comparison: rows taken for independent, F test and BH 5 %").hits,
+            4U);
+}
+
+TEST(LoopStudy, AStudyThatWasStoppedGoesOnWhereItWas) {
+  const fs::path out = fs::path(::testing::TempDir()) / "loop_study_resumed";
+  fs::remove_all(out);
+  std::atomic<int> calls = 0;
+  LoopStudyOptions options = small_study();
+  options.only = "single/stribeck";
+  options.out = out;
+  const LoopMethod counting = [&calls](const LoopCase& one, const kuka::PlantedData& planted) {
+    if (++calls > 6) throw_bad_input("enough");
+    return knows_all(one, planted);
+  };
+  EXPECT_THROW(run_loop_study(options, counting), Error);
+  std::ofstream(out / "runs.csv", std::ios::app) << "single/stribeck/4/901,sing";  // torn
+  calls = 0;
+  const LoopStudy resumed = run_loop_study(options, counting);
+  EXPECT_EQ(calls, 4);
+  LoopStudyOptions afresh = options;
+  afresh.out.clear();
+  const LoopStudy whole = run_loop_study(afresh, knows_all);
+  ASSERT_EQ(whole.outcomes.size(), 10U);
+  for (std::size_t i = 0; i < whole.outcomes.size(); ++i) {
+    EXPECT_EQ(resumed.outcomes[i].key, whole.outcomes[i].key);
+    EXPECT_EQ(resumed.outcomes[i].claimed, whole.outcomes[i].claimed);
+    EXPECT_EQ(resumed.outcomes[i].mae_before, whole.outcomes[i].mae_before);
+  }
+  EXPECT_EQ(read_text(out / "runs.csv").find(",sing\n"), std::string::npos);
+}
+
+TEST(LoopStudy, AFileOfSomethingElseIsRefused) {
+  const fs::path out = fs::path(::testing::TempDir()) / "loop_study_foreign";
+  fs::create_directories(out);
+  std::ofstream(out / "runs.csv") << "cell,problem\n1,2\n";
+  LoopStudyOptions options = small_study();
+  options.out = out;
+  EXPECT_THROW(run_loop_study(options, knows_all), Error);
+  EXPECT_EQ(read_text(out / "runs.csv"), "cell,problem\n1,2\n");
+}
+
+TEST(LoopStudy, TheLoopItselfIsTheSameForAnyNumberOfThreads) {
+  LoopStudyOptions options{.null_runs = 5, .runs_per_cell = 1, .first_seed = 910};
+  options.only = "single/load_coulomb";
+  options.threads = 1;
+  const LoopStudy one = run_loop_study(options, diagnose_case);
+  options.threads = 3;
+  const LoopStudy three = run_loop_study(options, diagnose_case);
+  for (std::size_t i = 0; i < one.outcomes.size(); ++i) {
+    EXPECT_EQ(one.outcomes[i].mae_after, three.outcomes[i].mae_after);
+    EXPECT_EQ(one.outcomes[i].claimed, three.outcomes[i].claimed);
+  }
+  EXPECT_EQ(figure(one, "first pick right, k = 1").hits, 1U);
+}
+
+}  // namespace
+}  // namespace tribench
