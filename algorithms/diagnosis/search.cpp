@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "foundation/error.hpp"
 
@@ -172,6 +173,18 @@ double Search::carriers(const Round& round, std::size_t atom, const FittedModel&
   return by_movement ? all * all / squares : round.blocks[atom].test.effective_clusters;
 }
 
+// With the spread of the movements' offsets that this model itself leaves: what differs between
+// movements shows in that spread more than in the squares.
+Eigen::VectorXd Search::losses_with_own_offsets(const FittedModel& with,
+                                                const Noise& reference) const {
+  Noise noise = reference;
+  noise.between_sd = with.noise.between_sd;
+  const Eigen::VectorXd y =
+      whitened(target_vector(data_) - predict(with.model, data_), clusters_, noise);
+  const Eigen::MatrixXd x = whitened(tangent(with.model, data_), clusters_, noise);
+  return held_out_losses(x, y, clusters_, noise) + offset_nats(clusters_, noise);
+}
+
 // The rescue rule. What is carried by few movements cannot reach a small p by flipping their signs,
 // but it can explain their offsets: its gain counts what it leaves of their spread.
 std::optional<Candidate> Search::rescue(std::size_t family, const Round& round,
@@ -183,17 +196,53 @@ std::optional<Candidate> Search::rescue(std::size_t family, const Round& round,
     if (!(carriers(round, k, state) < kFewClusters)) continue;
     LoopModel model = state.model;
     model.add(library_[k]);
-    const FittedModel with = fit(std::move(model), FitScope::linear);
-    Noise noise = state.noise;
-    noise.between_sd = with.noise.between_sd;
-    const Eigen::VectorXd y =
-        whitened(target_vector(data_) - predict(with.model, data_), clusters_, noise);
-    const Eigen::MatrixXd x = whitened(tangent(with.model, data_), clusters_, noise);
-    Eigen::VectorXd losses = held_out_losses(x, y, clusters_, noise);
-    const Gain gain = paired_gain(state.losses + offset_nats(clusters_, state.noise),
-                                  losses + offset_nats(clusters_, noise));
+    Eigen::VectorXd losses =
+        losses_with_own_offsets(fit(std::move(model), FitScope::linear), state.noise);
+    const Gain gain = paired_gain(state.losses + offset_nats(clusters_, state.noise), losses);
     if (!(gain.nats > kRescueGain && gain.nats > 2 * gain.error)) continue;
-    if (!best || gain.nats > best->gain.nats) best = {family, k, gain, std::move(losses), true};
+    if (!best || gain.nats > best->gain.nats) {
+      losses -= offset_nats(clusters_, state.noise);
+      best = {family, k, gain, std::move(losses), true};
+    }
+  }
+  return best;
+}
+
+// As the data have it: in a model's own coordinates a spread of offsets that the atom's absence has
+// swollen would hide it.
+bool Search::differs_between_movements(std::size_t atom, const FittedModel& state) const {
+  const Eigen::MatrixXd z =
+      project_off(columns_.middleCols(static_cast<Eigen::Index>(blocks_[atom].first),
+                                      static_cast<Eigen::Index>(blocks_[atom].count)),
+                  orthonormal_basis(tangent(state.model, data_)));
+  double between = 0;
+  for (const RowRange& m : clusters_.movements) {
+    between += z.middleRows(static_cast<Eigen::Index>(m.begin), static_cast<Eigen::Index>(m.size()))
+                   .colwise()
+                   .sum()
+                   .squaredNorm() /
+               static_cast<double>(m.size());
+  }
+  return between > 0.5 * z.squaredNorm();
+}
+
+// A missing effect that differs between movements swells the spread of their offsets, in which its
+// atoms look alike. The best of them is the one that leaves the least of that spread.
+std::size_t Search::best_shape(std::size_t atom, const Round& round,
+                               const FittedModel& state) const {
+  if (!differs_between_movements(atom, state)) return atom;
+  std::size_t best = atom;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < library_.size(); ++k) {
+    if (library_[k].family != library_[atom].family || !round.blocks[k].test.testable) continue;
+    LoopModel model = state.model;
+    model.add(library_[k]);
+    const double loss =
+        losses_with_own_offsets(fit(std::move(model), FitScope::linear), state.noise).sum();
+    if (loss < least) {
+      least = loss;
+      best = k;
+    }
   }
   return best;
 }
@@ -246,7 +295,7 @@ bool Search::add_best(const Round& round) {
                      aliases_of(winner, round)});
   }
   LoopModel model = current_.model;
-  model.add(library_[winner.atom]);
+  model.add(library_[best_shape(winner.atom, round, current_)]);
   FittedModel extended = fit(std::move(model), FitScope::everything);
   if (again && cancels_itself(extended.model, winner.family)) {
     notes.push_back(fmt::format("a second column of '{}' only cancels the first: left out",

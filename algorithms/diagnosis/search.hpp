@@ -96,6 +96,9 @@ class Search {
   bool cancels_itself(const LoopModel& model, std::size_t family) const;
   std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round) const;
   double carriers(const Round& round, std::size_t atom, const FittedModel& state) const;
+  bool differs_between_movements(std::size_t atom, const FittedModel& state) const;
+  Eigen::VectorXd losses_with_own_offsets(const FittedModel& with, const Noise& reference) const;
+  std::size_t best_shape(std::size_t atom, const Round& round, const FittedModel& state) const;
   std::optional<Candidate> rescue(std::size_t family, const Round& round,
                                   const FittedModel& state) const;
   Candidate best_atom(std::size_t family, const Round& round, const FittedModel& state) const;

@@ -68,6 +68,19 @@ TEST(Diagnosis, RefinesShapesOffItsGrid) {
   }
 }
 
+// A large effect that differs between movements hides in the spread of their offsets; the wrong
+// shape of its family would leave it there.
+TEST(Diagnosis, ChoosesTheShapeThatLeavesTheLeastBetweenMovements) {
+  const Diagnosis diagnosis = diagnose_planted({.effects = {{"nonlinear_viscous", 4.0}}}, 9);
+  ASSERT_EQ(diagnosis.effects.size(), 1U);
+  EXPECT_EQ(diagnosis.effects[0].family, "nonlinear_viscous");
+  const auto power =
+      std::ranges::find(diagnosis.effects[0].parameters, "n", &ParameterFinding::name);
+  ASSERT_NE(power, diagnosis.effects[0].parameters.end());
+  EXPECT_NEAR(power->value, 4, 0.4);
+  EXPECT_LT(diagnosis.noise.between_sd, 0.08);  // planted: 0.045
+}
+
 class OutsideTheLibrary
     : public testing::TestWithParam<std::pair<const char*, std::vector<std::string>>> {};
 
