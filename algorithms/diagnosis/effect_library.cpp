@@ -131,7 +131,12 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
   for (const AtomTemplate& source : family.atoms) {
     std::vector<std::string> lacking;
     for (const std::string& name : variables_of(source)) {
-      if (data.find(name) == nullptr) lacking.push_back(name);
+      const auto withheld = std::ranges::find(data.withheld, name, &WithheldSignal::name);
+      if (withheld != data.withheld.end()) {
+        lacking.push_back(fmt::format("{} ({})", name, withheld->why));
+      } else if (data.find(name) == nullptr) {
+        lacking.push_back(name);
+      }
     }
     if (lacking.empty()) {
       std::vector<double> values;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "algorithms/diagnosis/observation_rows.hpp"
 #include "algorithms/regressor.hpp"
 #include "foundation/error.hpp"
 
@@ -34,14 +35,12 @@ std::string signal_name(Role role, std::string_view channel) {
   return std::string(channel);
 }
 
-double sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
-
 void add_sign(Observations& data, std::string_view of, Role role) {
   const std::string name = "sgn_" + std::string(of);
   const Signal* source = data.find(of);
   if (source == nullptr || data.find(name) != nullptr) return;
   Signal signal{name, source->channel, "-", role, {}, source->values};
-  for (double& x : signal.values) x = sign(x);
+  for (double& x : signal.values) x = sign_of(x);
   data.signals.push_back(std::move(signal));
 }
 
@@ -109,7 +108,7 @@ void add_distance(Observations& data) {
   double direction = 0;
   for (std::size_t i = 0; i < data.rows(); ++i) {
     const bool starts = i == 0 || data.movement[i] != data.movement[i - 1];
-    const double now = sign(v->values[i]);
+    const double now = sign_of(v->values[i]);
     if (!starts) {
       const double dt = timed ? t->values[i] - t->values[i - 1] : 0;
       const double step = q != nullptr ? q->values[i] - q->values[i - 1] : v->values[i] * dt;
@@ -120,116 +119,6 @@ void add_distance(Observations& data) {
     if (starts || now != 0) direction = now;
   }
   data.signals.push_back(std::move(signal));
-}
-
-void drop_constant_signals(Observations& data) {
-  std::erase_if(data.signals, [&](const Signal& signal) {
-    if (signal.values.empty()) return false;
-    const auto [low, high] = std::ranges::minmax(signal.values);
-    const double scale = std::max(std::abs(low), std::abs(high));
-    if (high - low > 1e-12 * scale) return false;
-    if (signal.recipe.empty() && signal.role != Role::velocity_sign) {
-      data.warnings.push_back(
-          fmt::format("the channel '{}' is constant ({}) and left out", signal.channel, low));
-    }
-    return signal.name != "sgn_v" && signal.name != "v";
-  });
-}
-
-void drop_rows_not_finite(Observations& data) {
-  std::vector<char> keep(data.rows(), 1);
-  std::size_t dropped = 0;
-  for (std::size_t i = 0; i < data.rows(); ++i) {
-    bool finite = std::isfinite(data.target[i]);
-    for (const Signal& signal : data.signals) finite = finite && std::isfinite(signal.values[i]);
-    keep[i] = finite ? 1 : 0;
-    if (!finite) ++dropped;
-  }
-  if (dropped == 0) return;
-  data = data.select(keep);
-  data.warnings.push_back(fmt::format("{} rows hold a value that is not finite: dropped", dropped));
-}
-
-void drop_slow_rows(Observations& data, double min_speed) {
-  const std::vector<double>& v = data.find("v")->values;
-  std::vector<char> keep(data.rows());
-  for (std::size_t i = 0; i < data.rows(); ++i) keep[i] = std::abs(v[i]) >= min_speed ? 1 : 0;
-  const std::size_t all = data.rows();
-  data = data.select(keep);
-  if (data.rows() == 0) {
-    throw_bad_input(fmt::format("no row is faster than {}", min_speed), "--min-speed");
-  }
-  data.warnings.push_back(
-      fmt::format("{} of {} rows are slower than {}: left out", all - data.rows(), all, min_speed));
-}
-
-// A handful of rows the other way (noise around standstill) fixes no branch of its own: Coulomb and
-// viscous friction there would be fitted to next to nothing.
-void settle_directions(Observations& data) {
-  constexpr std::size_t kFewestRows = 30;
-  const std::vector<double>& v = data.find("v")->values;
-  const auto forward =
-      static_cast<std::size_t>(std::ranges::count_if(v, [](double x) { return x > 0; }));
-  const auto backward =
-      static_cast<std::size_t>(std::ranges::count_if(v, [](double x) { return x < 0; }));
-  const std::size_t fewer = std::min(forward, backward);
-  if (fewer >= std::max(kFewestRows, (forward + backward) / 100)) return;
-  std::vector<char> keep(data.rows());
-  for (std::size_t i = 0; i < data.rows(); ++i)
-    keep[i] = (v[i] > 0) == (forward > backward) ? 1 : 0;
-  data = data.select(keep);
-  data.warnings.push_back(fmt::format(
-      "all movement is in one direction ({} rows the other way are left out): direction asymmetry "
-      "and whatever needs both directions cannot be told from the base",
-      fewer));
-}
-
-// Means of equal parts of each movement, in the order of the rows.
-Observations steady_means(const Observations& data) {
-  std::vector<std::size_t> part(data.rows());
-  std::vector<char> first(data.rows(), 0);
-  std::size_t parts = 0;
-  for (std::size_t begin = 0; begin < data.rows();) {
-    std::size_t end = begin;
-    while (end < data.rows() && data.movement[end] == data.movement[begin]) ++end;
-    const std::size_t count = std::min(kRowsOfSteadyMovement, end - begin);
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t k = (i - begin) * count / (end - begin);
-      first[i] = i == begin || parts + k != part[i - 1] ? 1 : 0;
-      part[i] = parts + k;
-    }
-    parts += count;
-    begin = end;
-  }
-  Observations out = data.select(first);
-  const auto average = [&](const std::vector<double>& values, std::vector<double>& means) {
-    means.assign(parts, 0.0);
-    std::vector<double> rows(parts, 0.0);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      means[part[i]] += values[i];
-      ++rows[part[i]];
-    }
-    for (std::size_t k = 0; k < parts; ++k) means[k] /= rows[k];
-  };
-  average(data.target, out.target);
-  for (std::size_t j = 0; j < data.signals.size(); ++j) {
-    average(data.signals[j].values, out.signals[j].values);
-    const std::string& name = out.signals[j].name;
-    if (!name.starts_with("sgn_")) continue;
-    average(data.find(name.substr(4))->values, out.signals[j].values);
-    for (double& x : out.signals[j].values) x = sign(x);
-  }
-  average(data.time, out.time);
-  const std::vector<double>& v = out.find("v")->values;
-  for (std::size_t k = 1; k < parts; ++k) {
-    if (out.movement[k] != out.movement[k - 1] || v[k] * v[k - 1] > 0) continue;
-    throw_bad_input(fmt::format("movement '{}' changes its direction: it holds no one speed",
-                                out.movement_names[static_cast<std::size_t>(out.movement[k])]),
-                    "--steady", "leave --steady out, or name a movement for each speed (--roles)");
-  }
-  out.warnings.push_back(
-      fmt::format("each movement is averaged to {} rows (--steady)", kRowsOfSteadyMovement));
-  return out;
 }
 
 void complete(Observations& data) {
@@ -267,18 +156,6 @@ void set_target(Observations& out, const Dataset& data) {
   }
 }
 
-void check_sign(const Observations& data) {
-  if (!data.rigid.empty()) return;  // inertia and gravity may dominate: no sign to be expected
-  const Signal* v = data.find("v");
-  const double r = correlation(data.target, v->values);
-  if (r < -0.1) {
-    throw_bad_input(fmt::format("friction opposes the velocity here (correlation {:.2f}); it is "
-                                "expected positive with velocity",
-                                r),
-                    data.target_name, "turn the target's sign with --flip-sign");
-  }
-}
-
 }  // namespace
 
 double correlation(std::span<const double> x, std::span<const double> y) {
@@ -309,6 +186,12 @@ std::vector<std::string> Observations::names() const {
   std::vector<std::string> names;
   for (const Signal& signal : signals) names.push_back(signal.name);
   return names;
+}
+
+void Observations::take_away(std::string_view name, std::string why) {
+  if (std::erase_if(signals, [&](const Signal& signal) { return signal.name == name; }) > 0) {
+    withheld.push_back({std::string(name), std::move(why)});
+  }
 }
 
 std::vector<int> Observations::movements() const {
@@ -342,6 +225,7 @@ Observations Observations::select(const std::vector<char>& keep) const {
   out.target_unit = target_unit;
   out.movement_names = movement_names;
   out.rigid = rigid;
+  out.withheld = withheld;
   out.warnings = warnings;
   return out;
 }
@@ -389,11 +273,12 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   add_campaign_time(out);
   add_distance(out);
   out.time = out.find("t")->values;
-  if (options.unordered) std::erase_if(out.signals, [](const Signal& s) { return s.name == "t"; });
+  if (options.unordered) out.take_away("t", "the movements' order says nothing");
   if (options.min_speed > 0) drop_slow_rows(out, options.min_speed);
   settle_directions(out);
   if (options.steady) out = steady_means(out);
   drop_constant_signals(out);
+  drop_negligible_load(out);
   check_sign(out);
   return out;
 }

@@ -39,6 +39,12 @@ struct Signal {
   std::vector<double> values;
 };
 
+// A signal in which no effect can be tested, and why: "there is one movement".
+struct WithheldSignal {
+  std::string name;
+  std::string why;
+};
+
 // Rows of one movement stand together, in the order of the campaign.
 struct Observations {
   std::vector<Signal> signals;
@@ -49,11 +55,14 @@ struct Observations {
   std::vector<std::string> movement_names;  // all of the data set's, used or not
   std::vector<double> time;                 // per row, within the campaign or the row's number
   std::vector<std::string> rigid;  // signals whose coefficient is fitted with the base (see below)
+  std::vector<WithheldSignal> withheld;  // of those in `signals`, or taken from them
   std::vector<std::string> warnings;
 
   std::size_t rows() const { return target.size(); }
   const Signal* find(std::string_view name) const;
   std::vector<std::string> names() const;
+  // Takes a signal away (if it is there) and remembers why.
+  void take_away(std::string_view name, std::string why);
   // The rows for which keep[row] != 0.
   Observations select(const std::vector<char>& keep) const;
   // Every k-th row of each movement, so that at most about `rows` are left. Neighbouring rows of a

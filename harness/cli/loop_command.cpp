@@ -148,6 +148,7 @@ std::string one_line(const loop::EffectFinding& effect, const std::string& unit)
   for (const loop::ParameterFinding& p : effect.parameters) {
     text += fmt::format("\n       {} = {:.4g} ({:.4g} .. {:.4g})", p.name, p.value, p.low, p.high);
   }
+  if (effect.provisional) text += "\n       provisional: it shares an input with what is left over";
   for (const std::string& note : effect.notes) text += "\n       " + note;
   return text;
 }

@@ -87,5 +87,31 @@ TEST(Observations, the_distance_since_a_reversal_is_the_path_travelled_since) {
   EXPECT_EQ(d->values[400], 0);
 }
 
+// Gravity of a joint whose axis is free of it: a model's rounding, and no load.
+TEST(Observations, a_load_below_what_the_rows_can_show_is_left_out_and_said) {
+  Dataset data = movements_of(6, 50, steady_speed);
+  data.channels[1].role = Role::motor_torque;
+  data.channels.push_back(channel("g", "N m", Role::gravity_torque));
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    data.channels.back().values.push_back(1e-3 * std::sin(0.1 * static_cast<double>(i)));
+  }
+  const Observations out = observe(data);
+  EXPECT_EQ(out.find("g"), nullptr);
+  ASSERT_EQ(out.withheld.size(), 2U);
+  EXPECT_EQ(out.withheld[0].name, "g");
+  EXPECT_THAT(out.warnings, ::testing::Contains(::testing::HasSubstr("never exceeds 0.001 N m")));
+  for (double& g : data.channels.back().values) g *= 1000;
+  EXPECT_NE(observe(data).find("g"), nullptr);
+}
+
+// In one direction the mean tells friction's sign, however it varies with the speed.
+TEST(Observations, friction_that_falls_with_speed_in_one_direction_is_not_taken_for_a_wrong_sign) {
+  Dataset data = movements_of(6, 50, [](int m, int) { return 1.0 + m; });
+  for (double& tau : data.channels[1].values) tau = 20 - tau;
+  EXPECT_EQ(observe(data).rows(), 300U);
+  for (double& tau : data.channels[1].values) tau = -tau;
+  EXPECT_THROW(observe(data), Error);
+}
+
 }  // namespace
 }  // namespace tribench::loop

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/observation_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "foundation/error.hpp"
+
+namespace tribench::loop {
+namespace {
+
+double cosine(const std::vector<double>& x, const std::vector<double>& y) {
+  double xx = 0;
+  double yy = 0;
+  double xy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += x[i] * x[i];
+    yy += y[i] * y[i];
+    xy += x[i] * y[i];
+  }
+  return xx > 0 && yy > 0 ? xy / std::sqrt(xx * yy) : 0;
+}
+
+}  // namespace
+
+void drop_constant_signals(Observations& data) {
+  for (const std::string& name : data.names()) {
+    const Signal& signal = *data.find(name);
+    if (signal.values.empty()) continue;
+    const auto [low, high] = std::ranges::minmax(signal.values);
+    const double scale = std::max(std::abs(low), std::abs(high));
+    if (high - low > 1e-12 * scale) continue;
+    if (signal.recipe.empty() && signal.role != Role::velocity_sign) {
+      data.warnings.push_back(
+          fmt::format("the channel '{}' is constant ({}) and left out", signal.channel, low));
+    }
+    if (name != "sgn_v" && name != "v") data.take_away(name, "it is constant");
+  }
+}
+
+void drop_negligible_load(Observations& data) {
+  const Signal* g = data.find("g");
+  if (g == nullptr || g->unit != data.target_unit) return;
+  double largest = 0;
+  for (const double x : g->values) largest = std::max(largest, std::abs(x));
+  double mean = 0;
+  double squares = 0;
+  const auto rows = static_cast<double>(data.rows());
+  for (const double y : data.target) mean += y / rows;
+  for (const double y : data.target) squares += (y - mean) * (y - mean) / rows;
+  if (largest * largest > squares / rows) return;
+  data.warnings.push_back(
+      fmt::format("the load '{}' never exceeds {:.2g} {}, less than these rows can show: left out",
+                  g->channel, largest, g->unit));
+  for (const char* name : {"g", "sgn_g"}) data.take_away(name, "the load is next to nothing");
+}
+
+void drop_rows_not_finite(Observations& data) {
+  std::vector<char> keep(data.rows(), 1);
+  std::size_t dropped = 0;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    bool finite = std::isfinite(data.target[i]);
+    for (const Signal& signal : data.signals) finite = finite && std::isfinite(signal.values[i]);
+    keep[i] = finite ? 1 : 0;
+    if (!finite) ++dropped;
+  }
+  if (dropped == 0) return;
+  data = data.select(keep);
+  data.warnings.push_back(fmt::format("{} rows hold a value that is not finite: dropped", dropped));
+}
+
+void drop_slow_rows(Observations& data, double min_speed) {
+  const std::vector<double>& v = data.find("v")->values;
+  std::vector<char> keep(data.rows());
+  for (std::size_t i = 0; i < data.rows(); ++i) keep[i] = std::abs(v[i]) >= min_speed ? 1 : 0;
+  const std::size_t all = data.rows();
+  data = data.select(keep);
+  if (data.rows() == 0) {
+    throw_bad_input(fmt::format("no row is faster than {}", min_speed), "--min-speed");
+  }
+  data.warnings.push_back(
+      fmt::format("{} of {} rows are slower than {}: left out", all - data.rows(), all, min_speed));
+}
+
+void settle_directions(Observations& data) {
+  constexpr std::size_t kFewestRows = 30;
+  const std::vector<double>& v = data.find("v")->values;
+  const auto forward =
+      static_cast<std::size_t>(std::ranges::count_if(v, [](double x) { return x > 0; }));
+  const auto backward =
+      static_cast<std::size_t>(std::ranges::count_if(v, [](double x) { return x < 0; }));
+  const std::size_t fewer = std::min(forward, backward);
+  if (fewer >= std::max(kFewestRows, (forward + backward) / 100)) return;
+  std::vector<char> keep(data.rows());
+  for (std::size_t i = 0; i < data.rows(); ++i)
+    keep[i] = (v[i] > 0) == (forward > backward) ? 1 : 0;
+  data = data.select(keep);
+  data.warnings.push_back(fmt::format(
+      "all movement is in one direction ({} rows the other way are left out): direction asymmetry "
+      "and whatever needs both directions cannot be told from the base",
+      fewer));
+}
+
+Observations steady_means(const Observations& data) {
+  std::vector<std::size_t> part(data.rows());
+  std::vector<char> first(data.rows(), 0);
+  std::size_t parts = 0;
+  for (std::size_t begin = 0; begin < data.rows();) {
+    std::size_t end = begin;
+    while (end < data.rows() && data.movement[end] == data.movement[begin]) ++end;
+    const std::size_t count = std::min(kRowsOfSteadyMovement, end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t k = (i - begin) * count / (end - begin);
+      first[i] = i == begin || parts + k != part[i - 1] ? 1 : 0;
+      part[i] = parts + k;
+    }
+    parts += count;
+    begin = end;
+  }
+  Observations out = data.select(first);
+  const auto average = [&](const std::vector<double>& values, std::vector<double>& means) {
+    means.assign(parts, 0.0);
+    std::vector<double> rows(parts, 0.0);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      means[part[i]] += values[i];
+      ++rows[part[i]];
+    }
+    for (std::size_t k = 0; k < parts; ++k) means[k] /= rows[k];
+  };
+  average(data.target, out.target);
+  for (std::size_t j = 0; j < data.signals.size(); ++j) {
+    average(data.signals[j].values, out.signals[j].values);
+    const std::string& name = out.signals[j].name;
+    if (!name.starts_with("sgn_")) continue;
+    average(data.find(name.substr(4))->values, out.signals[j].values);
+    for (double& x : out.signals[j].values) x = sign_of(x);
+  }
+  average(data.time, out.time);
+  const std::vector<double>& v = out.find("v")->values;
+  for (std::size_t k = 1; k < parts; ++k) {
+    if (out.movement[k] != out.movement[k - 1] || v[k] * v[k - 1] > 0) continue;
+    throw_bad_input(fmt::format("movement '{}' changes its direction: it holds no one speed",
+                                out.movement_names[static_cast<std::size_t>(out.movement[k])]),
+                    "--steady", "leave --steady out, or name a movement for each speed (--roles)");
+  }
+  out.warnings.push_back(
+      fmt::format("each movement is averaged to {} rows (--steady)", kRowsOfSteadyMovement));
+  return out;
+}
+
+void check_sign(const Observations& data) {
+  if (!data.rigid.empty()) return;  // inertia and gravity may dominate: no sign to be expected
+  // Of rows in one direction the mean tells the sign, not how friction varies with the speed.
+  const std::vector<double>& v = data.find("v")->values;
+  const auto [low, high] = std::ranges::minmax(v);
+  const double r = low < 0 && high > 0 ? correlation(data.target, v) : cosine(data.target, v);
+  if (r < -0.1) {
+    throw_bad_input(fmt::format("friction opposes the velocity here (correlation {:.2f}); it is "
+                                "expected positive with velocity",
+                                r),
+                    data.target_name, "turn the target's sign with --flip-sign");
+  }
+}
+
+}  // namespace tribench::loop

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+//
+// Which rows and signals of a recording take part in a diagnosis. Each function changes the
+// observations and says what it did in their warnings. Internal to the room.
+#pragma once
+
+#include "algorithms/diagnosis/observations.hpp"
+
+namespace tribench::loop {
+
+inline double sign_of(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+
+// Rows with a value that is not finite.
+void drop_rows_not_finite(Observations& data);
+
+// Rows slower than min_speed, in the velocity's unit. Throws Error (bad_input) where none is left.
+void drop_slow_rows(Observations& data, double min_speed);
+
+// A handful of rows the other way (noise around standstill) fixes no branch of its own: Coulomb and
+// viscous friction there would be fitted to next to nothing. Leaves rows of one direction then.
+void settle_directions(Observations& data);
+
+// Means of equal parts of each movement, in the order of the rows. Throws Error (bad_input) where a
+// movement holds no one direction.
+Observations steady_means(const Observations& data);
+
+// Signals that never change, but v and its sign.
+void drop_constant_signals(Observations& data);
+
+// Losses are at most the load itself. A load below what this many rows can show of anything (the
+// standard error of their mean) takes no part; its shape would only stand for something else.
+void drop_negligible_load(Observations& data);
+
+// Throws Error (bad_input) where friction opposes the velocity.
+void check_sign(const Observations& data);
+
+}  // namespace tribench::loop
