@@ -60,6 +60,9 @@ EffectFamily nonlinear_viscous() {
   return f;
 }
 
+// Where inertia and gravity weigh alike at the fastest and heaviest the grid holds them so.
+ShapeTemplate inertia_in_load() { return {"J", "g/a", {0.3, 1}, 0.03, 10}; }
+
 EffectFamily load_coulomb() {
   EffectFamily f{"load_coulomb",
                  "E4",
@@ -67,7 +70,8 @@ EffectFamily load_coulomb() {
                  "Coulomb friction grows with the load",
                  "Bittencourt et al. 2010",
                  {}};
-  f.atoms = {{{"sgn_v*abs(g)"}, {"mu"}}};
+  f.atoms = {{{"sgn_v*abs(g)"}, {"mu"}},
+             {{"sgn_v*abs(g + J*a)"}, {"mu"}, {inertia_in_load()}, true}};
   f.sanity = {{"mu", 1, 0, 1e30, "friction that falls as the load grows"}};
   f.separate_by = {"R3"};
   return f;
@@ -80,7 +84,7 @@ EffectFamily load_viscous() {
                  "viscous friction grows with the load",
                  "Bittencourt et al. 2010",
                  {}};
-  f.atoms = {{{"v*abs(g)"}, {"mu_v"}}};
+  f.atoms = {{{"v*abs(g)"}, {"mu_v"}}, {{"v*abs(g + J*a)"}, {"mu_v"}, {inertia_in_load()}, true}};
   f.separate_by = {"R3"};
   return f;
 }

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "algorithms/diagnosis/findings.hpp"
 #include "algorithms/diagnosis/held_out.hpp"
@@ -257,16 +258,30 @@ std::vector<int> pieces(const Observations& data, double correlation_rows) {
   return unit;
 }
 
+// The movements that are left out at once, each set in ascending order.
+std::vector<std::vector<int>> left_out_together(const Observations& data) {
+  std::map<int, std::vector<int>> sets;
+  for (const int m : data.movements()) {
+    sets[data.group.empty() ? m : data.group[static_cast<std::size_t>(m)]].push_back(m);
+  }
+  std::vector<std::vector<int>> all;
+  for (auto& [number, movements] : sets) {
+    std::ranges::sort(movements);
+    all.push_back(std::move(movements));
+  }
+  return all;
+}
+
 // Few movements: the whole procedure again for each, without it, and all of them judged together.
 ErrorFinding judge_in_turn(const Observations& data, const BaseMaker& base, const Diagnosis& whole,
                            RandomStream random) {
   const std::vector<char> usable = rows_of(data, {}, false, whole.masked);
   Eigen::VectorXd before(static_cast<Eigen::Index>(data.rows()));
   Eigen::VectorXd after(static_cast<Eigen::Index>(data.rows()));
-  for (const int m : data.movements()) {
-    const Diagnosis without = diagnose_training(data, {m}, base, whole.options,
-                                                random.split(static_cast<std::uint64_t>(m)));
-    const std::vector<char> rows = rows_of(data, {m}, true, {});
+  for (const std::vector<int>& left : left_out_together(data)) {
+    const auto key = static_cast<std::uint64_t>(left.front());
+    const Diagnosis without = diagnose_training(data, left, base, whole.options, random.split(key));
+    const std::vector<char> rows = rows_of(data, left, true, {});
     const Observations left_out = data.select(rows);
     const Eigen::VectorXd one = predict(without.before, left_out);
     const Eigen::VectorXd other = predict(without.after, left_out);
@@ -290,6 +305,7 @@ ErrorFinding judge_in_turn(const Observations& data, const BaseMaker& base, cons
 Observations cut_in_pieces(const Observations& data) {
   Observations out = data;
   out.movement_names.clear();
+  out.group.clear();
   for (std::size_t i = 0; i < data.rows(); ++i) {
     out.movement[i] = static_cast<int>(i * kPiecesOfOneMovement / data.rows());
   }
@@ -308,14 +324,16 @@ Diagnosis diagnose(const Observations& data, const BaseMaker& base, const Diagno
   const RandomStream random(seed);
   const std::size_t movements = data.movements().size();
   const bool hold_out = options.test_share > 0;
-  if (hold_out && movements < kFewMovements) {
+  if (hold_out && (movements < kFewMovements || !data.group.empty())) {
     const bool single = movements == 1;
     const Observations cut = single ? cut_in_pieces(data) : data;
     Diagnosis out = diagnose_training(cut, {}, base, options, random);
     out.seed = seed;
     out.error = judge_in_turn(cut, base, out, random.split("in turn"));
-    out.error.how =
-        single ? "pieces of the one movement left out in turn" : "each movement left out in turn";
+    out.error.how = single ? "pieces of the one movement left out in turn"
+                    : cut.group.empty()
+                        ? "each movement left out in turn"
+                        : fmt::format("movements of one '{}' left out in turn", cut.group_name);
     out.error.confirmed = out.effects.empty() || out.error.difference_low > 0;
     if (single) {
       out.notes.push_back(

@@ -28,6 +28,10 @@ double mean(std::span<const double> values) {
 // The value of a shape in the data's units.
 double scaled(const ShapeTemplate& shape, double value, const Observations& data) {
   if (shape.scale.empty()) return value;
+  if (const std::size_t slash = shape.scale.find('/'); slash != std::string::npos) {
+    return value * signal_scale(data, shape.scale.substr(0, slash)) /
+           signal_scale(data, shape.scale.substr(slash + 1));
+  }
   const Signal* signal = data.find(shape.scale);
   if (signal == nullptr) return value;
   // A reference (T0) is a place on the axis, not a width.
@@ -128,7 +132,10 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
     missing = {"an angle: the position is in m"};
     return atoms;
   }
+  const bool rigid_load =
+      std::ranges::count(data.rigid, "g") > 0 && std::ranges::count(data.rigid, "a") > 0;
   for (const AtomTemplate& source : family.atoms) {
+    if (source.rigid_load && !rigid_load) continue;
     std::vector<std::string> lacking;
     for (const std::string& name : variables_of(source)) {
       const auto withheld = std::ranges::find(data.withheld, name, &WithheldSignal::name);

@@ -24,7 +24,7 @@ namespace tribench::loop {
 
 struct ShapeTemplate {
   std::string name;
-  std::string scale;         // signal whose scale multiplies grid, low and high; empty: 1
+  std::string scale;  // signal whose scale multiplies grid, low and high; "g/a": of two; empty: 1
   std::vector<double> grid;  // one atom for each value (the product over all shapes)
   double low = 0;            // bounds of the refinement; low == high: not refined
   double high = 0;
@@ -34,6 +34,9 @@ struct AtomTemplate {
   std::vector<std::string> columns;
   std::vector<std::string> coefficients;  // names of the columns' coefficients, for the report
   std::vector<ShapeTemplate> shapes = {};
+  // Only where gravity and acceleration stand in the base because nobody has subtracted the rigid
+  // body: the load on the transmission is then their sum, not the gravity alone.
+  bool rigid_load = false;
 };
 
 // What a coefficient must satisfy to be physical; a finding that does not is demoted to UNKNOWN.

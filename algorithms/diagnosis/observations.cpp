@@ -224,6 +224,8 @@ Observations Observations::select(const std::vector<char>& keep) const {
   out.target_name = target_name;
   out.target_unit = target_unit;
   out.movement_names = movement_names;
+  out.group = group;
+  out.group_name = group_name;
   out.rigid = rigid;
   out.withheld = withheld;
   out.warnings = warnings;

@@ -53,7 +53,11 @@ struct Observations {
   std::string target_unit;
   std::vector<int> movement;                // per row: index into movement_names
   std::vector<std::string> movement_names;  // all of the data set's, used or not
-  std::vector<double> time;                 // per row, within the campaign or the row's number
+  // Per movement: those with one number are left out together when the models are judged (one
+  // trajectory at several gains says little of the others). Empty: each movement by itself.
+  std::vector<int> group;
+  std::string group_name;
+  std::vector<double> time;        // per row, within the campaign or the row's number
   std::vector<std::string> rigid;  // signals whose coefficient is fitted with the base (see below)
   std::vector<WithheldSignal> withheld;  // of those in `signals`, or taken from them
   std::vector<std::string> warnings;

@@ -49,6 +49,7 @@ struct LoopArguments {
   bool unordered = false;
   bool steady = false;
   std::string where;
+  std::string leave_out;
   bool json = false;
   int suggest = 0;
   std::string learn = "none";
@@ -116,7 +117,43 @@ void keep_rows_where(Dataset& data, const std::string& condition) {
   if (kept == 0) throw_bad_input("no row is left", "--where " + condition);
 }
 
-Dataset read_data(const LoopArguments& arguments, std::vector<std::string>& warnings) {
+// Which movements have the same value in a column of numbers or text.
+struct Groups {
+  std::vector<int> of_movement;
+  std::string name;
+};
+
+Groups groups_by(const DataFile& file, const std::string& column) {
+  if (column.empty()) return {};
+  const auto text = std::ranges::find(file.texts, column, &TextColumn::name);
+  std::vector<std::string> values;
+  if (text != file.texts.end()) {
+    values = text->values;
+  } else {
+    for (const double x : file.data.at(column).values) values.push_back(fmt::format("{}", x));
+  }
+  std::vector<std::string> names;
+  Groups groups{std::vector<int>(file.data.movement_names.size(), -1), column};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto known = std::ranges::find(names, values[i]);
+    const int number = static_cast<int>(known - names.begin());
+    if (known == names.end()) names.push_back(values[i]);
+    int& group = groups.of_movement[static_cast<std::size_t>(file.data.movement[i])];
+    if (group != -1 && group != number) {
+      throw_bad_input(fmt::format("'{}' changes within a movement (row {})", column, i + 1),
+                      "--leave-out", "name a column that is the same all through a movement");
+    }
+    group = number;
+  }
+  if (names.size() < 2) {
+    throw_bad_input(fmt::format("'{}' is the same in every movement", column), "--leave-out",
+                    "name a column that tells movements apart");
+  }
+  return groups;
+}
+
+Dataset read_data(const LoopArguments& arguments, std::vector<std::string>& warnings,
+                  Groups& groups) {
   const CsvOptions options{parse_roles(arguments.roles), arguments.drop_missing};
   std::vector<std::filesystem::path> files(arguments.files.begin(), arguments.files.end());
   DataFile reading = read_csv_files(files, options);
@@ -124,6 +161,7 @@ Dataset read_data(const LoopArguments& arguments, std::vector<std::string>& warn
   if (reading.dropped_rows > 0) {
     warnings.push_back(fmt::format("{} rows with missing values dropped", reading.dropped_rows));
   }
+  groups = groups_by(reading, arguments.leave_out);
   if (arguments.flip_sign) flip_torques(reading.data);
   if (!arguments.where.empty()) keep_rows_where(reading.data, arguments.where);
   return std::move(reading.data);
@@ -222,9 +260,12 @@ void grow_library(const LoopArguments& arguments, const Registry& registry,
 
 loop::Observations read_observations(const LoopArguments& arguments) {
   std::vector<std::string> warnings;
-  const Dataset dataset = read_data(arguments, warnings);
+  Groups groups;
+  const Dataset dataset = read_data(arguments, warnings, groups);
   loop::Observations data = loop::observe(
       dataset, {arguments.rigid, arguments.min_speed, arguments.unordered, arguments.steady});
+  data.group = groups.of_movement;
+  data.group_name = groups.name;
   const std::size_t all_rows = data.rows();
   data = data.thinned(static_cast<std::size_t>(arguments.rows));
   if (data.rows() < all_rows) {
@@ -305,6 +346,8 @@ void add_loop_command(CLI::App& app, ExitStatus& /*status*/, const Registry& reg
                    "leave out slower rows: the direction of friction is not known there")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--where", arguments->where, "COLUMN=NUMBER: use these rows only");
+  command->add_option("--leave-out", arguments->leave_out,
+                      "COLUMN: judge by leaving out, in turn, all movements that share its value");
   command->add_flag("--unordered", arguments->unordered,
                     "the order of the movements says nothing: no drift");
   command->add_flag(

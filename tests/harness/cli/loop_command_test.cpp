@@ -104,6 +104,12 @@ TEST(LoopCommand, bad_input_ends_with_status_2_and_says_how_to_mend_it) {
               HasSubstr("w"));
   EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--where", "nope=1"}),
               HasSubstr("nope"));
+  EXPECT_THAT(
+      complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--leave-out", "velocity"}),
+      HasSubstr("velocity_rad_s"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good,
+                        {"--leave-out", "friction_torque_Nm"}),
+              HasSubstr("changes within a movement"));
 }
 
 TEST(LoopCommand, poor_input_is_warned_of_and_nothing_is_claimed) {
@@ -143,6 +149,23 @@ TEST(LoopCommand, poor_input_is_warned_of_and_nothing_is_claimed) {
                        return csv({1.0 * m, v, friction_of(v, m, i)});
                      }),
               HasSubstr("one direction"));
+}
+
+TEST(LoopCommand, movements_of_one_kind_are_left_out_together) {
+  const testing::TemporaryFolder folder;
+  const auto line = [](int m, int i) {
+    return csv({1.0 * m, speed_of(m), friction_of(speed_of(m), m, i)}) + "," +
+           (m % 3 == 0   ? "slow"
+            : m % 3 == 1 ? "fast"
+                         : "loaded");
+  };
+  const std::string file =
+      file_of(folder, "movement,velocity_rad_s,friction_torque_Nm,kind", 12, 20, line);
+  const testing::ProgramRun run = tribench({"loop", file, "--leave-out", "kind", "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const Json loop = Json::parse(run.output);
+  EXPECT_EQ(loop["error"]["how"], "movements of one 'kind' left out in turn");
+  EXPECT_EQ(loop["error"]["test_movements"], 12);
 }
 
 TEST(LoopCommand, one_row_a_movement_is_refused_with_the_reason) {
