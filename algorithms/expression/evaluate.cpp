@@ -29,7 +29,7 @@ double total_of(std::array<double, 16> sums) {
 template <typename T>
 struct BasicEvaluator<T>::Workspace {
   explicit Workspace(VectorLevel level)
-      : kernels(kernel_table<T>(level)), program(kernels), block(kRowsALook<T>) {}
+      : kernels(kernel_table<T>(level)), program(level), block(kRowsALook<T>) {}
   const KernelTable<T>& kernels;
   Program<T> program;
   std::vector<T> block;

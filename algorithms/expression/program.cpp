@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <new>
-#include <utility>
 
 #include "algorithms/expression/evaluate.hpp"
 
@@ -11,20 +10,21 @@ namespace tribench {
 namespace {
 
 constexpr std::align_val_t kCacheLine{64};
-constexpr int kAdd = 0;
-constexpr int kMul = 2;
+constexpr std::size_t kLine = 64;
 
-int basic_index(Op op) { return static_cast<int>(op) - static_cast<int>(Op::add); }
-int function_index(Op op) { return static_cast<int>(op) - static_cast<int>(Op::neg); }
-static_assert(static_cast<int>(Op::div) - static_cast<int>(Op::add) == kBasicOps - 1);
-static_assert(static_cast<int>(Op::tanh) - static_cast<int>(Op::neg) == kFunctions - 1);
+// From one buffer to the next: not a multiple of 4 KiB, or a load from one waits for a store to the
+// other (processors compare the lowest 12 bits of addresses first).
+template <typename T>
+constexpr std::size_t kStride = kBlockRows<T> + 3 * kLine / sizeof(T);
 
-bool is_commutative(int basic) { return basic == kAdd || basic == kMul; }
+// Operands of a call: so many buffers can end with it.
+constexpr std::size_t kMostOperands = 3;
 
-// The outer form of `c op (pair)`.
-int outer_with_pair_on_the_right(int basic) {
-  if (is_commutative(basic)) return basic;
-  return basic == 1 ? kOuterSubFrom : kOuterDivInto;
+std::size_t basic_index(Op op) {
+  return static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::add);
+}
+std::size_t function_index(Op op) {
+  return static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::neg);
 }
 
 }  // namespace
@@ -37,168 +37,203 @@ void Program<T>::FreeBlocks::operator()(T* p) const {
 template <typename T>
 void Program<T>::reserve(std::size_t nodes) {
   if (nodes <= capacity_) return;
-  capacity_ = std::max<std::size_t>(2 * capacity_, std::max<std::size_t>(nodes, 64));
+  capacity_ = std::max<std::size_t>({2 * capacity_, nodes, 64});
+  kinds_.resize(capacity_ + 1);
+  operations_.resize(capacity_ + 1);
+  planned_.resize(capacity_ + 1);
   calls_.resize(capacity_ + 1);
-  stack_.resize(capacity_ + 1);
-  // Values alive at once: at most one a leaf.
+  // Values alive at once: at most one for two nodes.
   const std::size_t buffers = capacity_ / 2 + 2;
-  buffers_.reset(new (kCacheLine) T[buffers * kBlockRows<T>]);
-  free_buffers_.resize(buffers);
-  for (std::size_t i = 0; i < buffers; ++i) {
-    free_buffers_[i] = static_cast<std::int32_t>(buffers - 1 - i);
+  owners_.assign(buffers + kMostOperands, -1);
+  const std::size_t scalars = (capacity_ * sizeof(T) + kLine - 1) / kLine * kLine / sizeof(T);
+  memory_size_ = scalars + buffers * kStride<T>;
+  memory_.reset(new (kCacheLine) T[memory_size_]);
+  buffers_ = memory_.get() + scalars;
+  values_.assign(capacity_ + 1, memory_.get());
+}
+
+// Of every node what it is worth if it is a leaf, and the list of those that are none.
+template <typename T>
+void Program<T>::take_leaves(std::span<const Node> tape, std::span<const T* const> columns) {
+  const T* const no_column = nullptr;
+  const T* const* const starts = columns.empty() ? &no_column : columns.data();
+  T* const scalars = memory_.get();
+  std::uint8_t* const kinds = kinds_.data() + 1;
+  const T** const values = values_.data() + 1;
+  std::uint32_t* operation = operations_.data();
+  for (std::size_t i = 0; i < tape.size(); ++i) {
+    const Node& node = tape[i];
+    // Selected by a mask: compilers make a branch of a conditional.
+    const std::uintptr_t is_column = std::uintptr_t{0} - (node.op == Op::variable ? 1U : 0U);
+    const auto column = reinterpret_cast<std::uintptr_t>(starts[node.variable & is_column]);
+    const auto scalar = reinterpret_cast<std::uintptr_t>(scalars + i);
+    values[i] = reinterpret_cast<const T*>((column & is_column) | (scalar & ~is_column));
+    scalars[i] = static_cast<T>(node.value);
+    kinds[i] = static_cast<std::uint8_t>(node.op);
+    *operation = static_cast<std::uint32_t>(i);
+    operation += node.op > Op::variable ? 1 : 0;
   }
-  free_count_ = buffers;
+  *operation = static_cast<std::uint32_t>(tape.size());
 }
 
 template <typename T>
-void Program<T>::bind(Call& call, int index, const Value& value) {
-  call.scalar[index] = value.scalar;
-  call.operand[index] = value.is_scalar() ? &call.scalar[index] : value.data;
-  call.moves[index] = value.moves ? ~std::size_t{0} : 0;
-}
-
-template <typename T>
-void Program<T>::release(const Value& value) {
-  if (value.buffer >= 0) free_buffers_[free_count_++] = value.buffer;
-}
-
-template <typename T>
-auto Program<T>::emit(BlockKernel<T> kernel, const Value& a, const Value& b, const Value& c)
-    -> Value {
-  Call& call = calls_[call_count_++];
-  call.kernel = kernel;
-  bind(call, 0, a);
-  bind(call, 1, b);
-  bind(call, 2, c);
-  release(a);
-  release(b);
-  release(c);
-  const std::int32_t buffer = free_buffers_[--free_count_];
-  call.out = buffers_.get() + static_cast<std::size_t>(buffer) * kBlockRows<T>;
-  call.out_moves = 0;
-  return {call.out, 0, buffer, false};
-}
-
-template <typename T>
-auto Program<T>::fold(BlockKernel<T> kernel, const Value& a, const Value& b) const -> Value {
-  Value result;
-  kernel(&result.scalar, &a.scalar, &b.scalar, nullptr, 1);
-  return result;
-}
-
-// Makes an operation held back into a value.
-template <typename T>
-void Program<T>::settle(Entry& entry) {
-  if (entry.basic < 0) return;
-  const int form = entry.b.is_scalar() ? kFormVS : (entry.a.is_scalar() ? kFormSV : kFormVV);
-  entry.a = emit(kernels_.binary[entry.basic][form], entry.a, entry.b, {});
-  entry.basic = -1;
-}
-
-template <typename T>
-void Program<T>::apply_basic(int op) {
-  Entry& right = stack_[--depth_];
-  Entry& left = stack_[depth_ - 1];
-  if (left.basic >= 0 && right.basic >= 0) settle(right);
-  if (left.basic >= 0 || right.basic >= 0) {
-    const bool on_the_left = left.basic >= 0;
-    const Entry& pair = on_the_left ? left : right;
-    const Value& other = on_the_left ? right.a : left.a;
-    const int outer = on_the_left ? op : outer_with_pair_on_the_right(op);
-    const int form = pair.b.is_scalar() ? kFormVS : (pair.a.is_scalar() ? kFormSV : kFormVV);
-    left.a = emit(kernels_.pair[pair.basic][form][outer][other.is_scalar() ? 1 : 0], pair.a, pair.b,
-                  other);
-    left.basic = -1;
-    return;
+void Program<T>::decide(std::span<const Node> tape) {
+  std::uint8_t* const kinds = kinds_.data() + 1;
+  Planned* next = planned_.data();
+  for (const std::uint32_t* operation = operations_.data(); *operation < tape.size(); ++operation) {
+    const std::size_t i = *operation;
+    const std::size_t right = i - 1;
+    const std::size_t left = right - tape[right].length;  // of a function: any node, or none
+    const unsigned right_kind = kinds[right];
+    const Decision decision =
+        kDecisionTable[decision_index(tape[i].op, kinds[static_cast<std::ptrdiff_t>(left)],
+                                      right_kind)];
+    if (decision.is_special()) {
+      planned_count_ = static_cast<std::size_t>(next - planned_.data());
+      decide_special(tape, i);
+      next = planned_.data() + planned_count_;
+      continue;
+    }
+    const unsigned settles = decision.settles_right();
+    *next = {static_cast<std::uint32_t>(right), right_kind - kHeldValue};
+    next += settles;
+    kinds[right] = static_cast<std::uint8_t>(settles != 0 ? unsigned{kBufferValue} : right_kind);
+    *next = {static_cast<std::uint32_t>(i), decision.call()};
+    next += decision.calls();
+    kinds[i] = static_cast<std::uint8_t>(decision.kind());
   }
-  if (left.a.is_scalar() && right.a.is_scalar()) {
-    left.a = fold(kernels_.binary[op][kFormVV], left.a, right.a);
-    return;
-  }
-  left.b = right.a;
-  if (left.a.is_scalar() && is_commutative(op)) std::swap(left.a, left.b);
-  left.basic = static_cast<std::int8_t>(op);
+  planned_count_ = static_cast<std::size_t>(next - planned_.data());
+}
+
+// Makes an operation held back into a call of its own. It comes before the calls of later nodes:
+// buffers are given back in the order of the tape.
+template <typename T>
+void Program<T>::settle(std::size_t node) {
+  std::uint8_t& kind = kinds_[node + 1];
+  if (kind < kHeldValue) return;
+  const auto end = planned_.begin() + static_cast<std::ptrdiff_t>(planned_count_);
+  const auto place = std::find_if(planned_.begin(), end,
+                                  [&](const Planned& call) { return call.node > node; });
+  std::copy_backward(place, end, end + 1);
+  *place = {static_cast<std::uint32_t>(node), static_cast<std::uint32_t>(kind - kHeldValue)};
+  planned_count_ += 1;
+  kind = kBufferValue;
 }
 
 template <typename T>
-void Program<T>::apply_power() {
-  settle(stack_[--depth_]);
-  Entry& base = stack_[depth_ - 1];
-  const Value exponent = stack_[depth_].a;
+void Program<T>::fold(BlockKernel<T> kernel, std::size_t node, std::size_t left,
+                      std::size_t right) {
+  T* const scalars = memory_.get();
+  kernel(scalars + node, scalars + left, scalars + right, nullptr, 1);
+  kinds_[node + 1] = kScalarValue;
+}
+
+// Operations on constants, and powers.
+template <typename T>
+void Program<T>::decide_special(std::span<const Node> tape, std::size_t node) {
+  const Op op = tape[node].op;
+  const std::size_t right = node - 1;
+  if (op > Op::pow) {
+    return fold(kernels_.function[function_index(op)], node, right, right);
+  }
+  const std::size_t left = right - tape[right].length;
+  if (op < Op::pow) {
+    return fold(kernels_.binary[basic_index(op)][kFormVV], node, left, right);
+  }
+  decide_power(node, left, right);
+}
+
+template <typename T>
+void Program<T>::decide_power(std::size_t node, std::size_t base, std::size_t exponent) {
   settle(base);
-  const bool product =
-      exponent.is_scalar() && is_product_power(static_cast<double>(exponent.scalar));
-  if (base.a.is_scalar() && exponent.is_scalar()) {
-    base.a = fold(product ? kernels_.integer_power : kernels_.power[kFormVV], base.a, exponent);
-  } else if (product && exponent.scalar == T{2}) {
-    base.b = base.a;
-    base.b.buffer = -1;  // the same buffer: given back once
-    base.basic = kMul;
-  } else if (product) {
-    base.a = emit(kernels_.integer_power, base.a, exponent, {});
-  } else {
-    const int form = exponent.is_scalar() ? kFormVS : (base.a.is_scalar() ? kFormSV : kFormVV);
-    base.a = emit(kernels_.power[form], base.a, exponent, {});
+  settle(exponent);
+  const T value = memory_[exponent];
+  const bool base_is_scalar = kinds_[base + 1] == kScalarValue;
+  const bool exponent_is_scalar = kinds_[exponent + 1] == kScalarValue;
+  const bool is_product = exponent_is_scalar && is_product_power(static_cast<double>(value));
+  if (base_is_scalar && exponent_is_scalar) {
+    return fold(is_product ? kernels_.integer_power : kernels_.power[kFormVV], node, base,
+                exponent);
   }
-}
-
-template <typename T>
-void Program<T>::apply_function(Op op) {
-  Entry& entry = stack_[depth_ - 1];
-  settle(entry);
-  const BlockKernel<T> kernel = kernels_.function[function_index(op)];
-  if (entry.a.is_scalar()) {
-    entry.a = fold(kernel, entry.a, {});
-  } else if (op == Op::neg) {  // -x is x * -1, zeros and infinities included
-    entry.b = {};
-    entry.b.scalar = T{-1};
-    entry.basic = kMul;
-  } else {
-    entry.a = emit(kernel, entry.a, {}, {});
+  if (is_product && value == T{2}) {
+    kinds_[node + 1] = kHeldSquare;
+    return;
   }
+  const int form = exponent_is_scalar ? kFormVS : (base_is_scalar ? kFormSV : kFormVV);
+  plan(node, is_product ? kIntegerPowerCall : kPowerCall + form);
+  kinds_[node + 1] = kBufferValue;
 }
 
 template <typename T>
 void Program<T>::translate(const Expression& formula, std::span<const T* const> columns, T* out,
                            Result result) {
-  reserve(formula.size());
-  call_count_ = 0;
-  depth_ = 0;
-  for (const Node& node : formula.nodes()) {
-    if (node.op == Op::variable) {
-      Entry& entry = stack_[depth_++];
-      entry.a = {columns[node.variable], 0, -1, true};
-      entry.basic = -1;
-    } else if (node.op == Op::constant) {
-      Entry& entry = stack_[depth_++];
-      entry.a = {nullptr, static_cast<T>(node.value), -1, false};
-      entry.basic = -1;
-    } else if (node.op < Op::pow) {
-      apply_basic(basic_index(node.op));
-    } else if (node.op == Op::pow) {
-      apply_power();
-    } else {
-      apply_function(node.op);
-    }
+  tape_ = formula.nodes();
+  reserve(tape_.size());
+  out_ = out;
+  out_moves_ = result == Result::rows ? ~std::size_t{0} : 0;
+  take_leaves(tape_, columns);
+  decide(tape_);
+  settle(tape_.size() - 1);
+}
+
+// Finds the operands of every call and runs it on the first block.
+template <typename T>
+void Program<T>::bind_and_run(std::size_t n) {
+  const Node* const tape = tape_.data();
+  const T** const values = values_.data() + 1;
+  std::int32_t* owner = owners_.data() + kMostOperands;  // behind the last buffer in use
+  Call* call = calls_.data();
+  const Planned* const last = planned_.data() + planned_count_ - 1;
+  for (const Planned* planned = planned_.data(); planned <= last; ++planned, ++call) {
+    const auto node = static_cast<std::ptrdiff_t>(planned->node);
+    const CallForm<T>& form = forms_[planned->call];
+    const std::ptrdiff_t right_length = tape[node - 1].length;
+    const std::ptrdiff_t inner =
+        node - form.inner_is_child - (right_length & form.inner_is_left);
+    const std::ptrdiff_t inner_length = tape[inner - 1].length;
+    const T* const a = values[inner - 1 - (inner_length & form.a_is_left)];
+    const T* const b = values[inner - 1 - (inner_length & form.b_is_left)];
+    const T* const c = values[node - 1 - (right_length & form.other_is_left)];
+    // Buffers of this subtree are the ones used last; they end here.
+    const std::ptrdiff_t first = node + 1 - static_cast<std::ptrdiff_t>(tape[node].length);
+    const int ended = (owner[-1] >= first ? 1 : 0) + (owner[-2] >= first ? 1 : 0) +
+                      (owner[-3] >= first ? 1 : 0);
+    owner -= ended;
+    T* const buffer =
+        buffers_ + static_cast<std::size_t>(owner - owners_.data() - kMostOperands) * kStride<T>;
+    *owner++ = static_cast<std::int32_t>(node);
+    T* const out = planned == last ? out_ : buffer;
+    values[node] = out;
+    *call = {form.kernel, out, {a, b, c}};
+    form.kernel(out, a, b, c, n);
   }
-  Entry& root = stack_[0];
-  settle(root);
-  if (root.a.buffer < 0) {  // a leaf or a constant
-    root.a = emit(root.a.is_scalar() ? kernels_.fill : kernels_.copy, root.a, {}, {});
-  }
-  release(root.a);
-  Call& last = calls_[call_count_ - 1];
-  last.out = out;
-  last.out_moves = result == Result::rows ? ~std::size_t{0} : 0;
+}
+
+// Columns advance with the row; scalars and buffers, which share one piece of memory, do not.
+template <typename T>
+const T* Program<T>::at_row(const T* operand, std::size_t row) const {
+  const std::size_t from_memory = reinterpret_cast<std::uintptr_t>(operand) -
+                                  reinterpret_cast<std::uintptr_t>(memory_.get());
+  return operand + (from_memory < memory_size_ * sizeof(T) ? 0 : row);
+}
+
+// A formula without a call: a column or a scalar.
+template <typename T>
+void Program<T>::run_leaf(std::size_t row, std::size_t n) const {
+  const bool is_scalar = kinds_[tape_.size()] == kScalarValue;
+  const BlockKernel<T> kernel = is_scalar ? kernels_.fill : kernels_.copy;
+  kernel(out_ + (row & out_moves_), at_row(values_[tape_.size()], row), nullptr, nullptr, n);
 }
 
 template <typename T>
-void Program<T>::run(std::size_t row, std::size_t n) const {
-  const Call* const end = calls_.data() + call_count_;
-  for (const Call* call = calls_.data(); call != end; ++call) {
-    call->kernel(call->out + (row & call->out_moves), call->operand[0] + (row & call->moves[0]),
-                 call->operand[1] + (row & call->moves[1]),
-                 call->operand[2] + (row & call->moves[2]), n);
+void Program<T>::run(std::size_t row, std::size_t n) {
+  if (planned_count_ == 0) return run_leaf(row, n);
+  if (row == 0) return bind_and_run(n);
+  const Call* const last = calls_.data() + planned_count_ - 1;
+  for (const Call* call = calls_.data(); call <= last; ++call) {
+    T* const out = call == last ? out_ + (row & out_moves_) : call->out;
+    call->kernel(out, at_row(call->operand[0], row), at_row(call->operand[1], row),
+                 at_row(call->operand[2], row), n);
   }
 }
 

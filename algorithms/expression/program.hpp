@@ -7,6 +7,11 @@
 // An operation whose operands are ready is held back until its parent is seen, so that both run as
 // one pass: a * b + c, c - x / 2, (x - y)^2 ... The two roundings remain; only the way through
 // memory is saved. Operations on constants alone are done once, by the same kernels.
+//
+// Three steps, each without branches that depend on the formula (call_forms.hpp says why): leaves
+// become operands; a table decides for every operation whether it is held back or calls a kernel;
+// every call finds its operands. The last runs together with the first block of rows, where most of
+// it hides behind the arithmetic.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +20,9 @@
 #include <span>
 #include <vector>
 
+#include "algorithms/expression/call_forms.hpp"
 #include "algorithms/expression/expression.hpp"
-#include "algorithms/expression/vector/kernels.hpp"
+#include "algorithms/expression/vector/level.hpp"
 
 namespace tribench {
 
@@ -28,7 +34,8 @@ inline constexpr std::size_t kBlockRows = sizeof(T) == sizeof(double) ? 256 : 10
 template <typename T>
 class Program {
  public:
-  explicit Program(const KernelTable<T>& kernels) : kernels_(kernels) {}
+  explicit Program(VectorLevel level)
+      : kernels_(kernel_table<T>(level)), forms_(call_forms<T>(level)) {}
 
   // Translates `formula`; column j starts at columns[j] and the result is written from `out` on.
   // where result_is_block, `out` holds one block that every block of rows overwrites.
@@ -36,56 +43,58 @@ class Program {
   void translate(const Expression& formula, std::span<const T* const> columns, T* out,
                  Result result);
 
-  // Rows [row, row + n), n <= kBlockRows.
-  void run(std::size_t row, std::size_t n) const;
+  // Rows [row, row + n), n <= kBlockRows. The first run after a translation must be of row 0.
+  void run(std::size_t row, std::size_t n);
 
  private:
-  // A value that exists: in a column, a buffer or a scalar.
-  struct Value {
-    const T* data = nullptr;  // null: the scalar
-    T scalar = 0;
-    std::int32_t buffer = -1;  // to be given back after its last use
-    bool moves = false;        // data advances with the row: a column
-    bool is_scalar() const { return data == nullptr; }
-  };
-  // Operand of an operation not yet seen: a value, or an operation held back.
-  struct Entry {
-    Value a;
-    Value b;
-    std::int8_t basic = -1;  // 0..3: a (+ - * /) b is held back; -1: a is the value
+  // A call before its operands are known.
+  struct Planned {
+    std::uint32_t node;
+    std::uint32_t call;  // number in forms_
   };
   struct Call {
     BlockKernel<T> kernel;
     T* out;
     const T* operand[3];
-    T scalar[3];
-    // All ones where the pointer advances with the row, else 0.
-    std::size_t moves[3];
-    std::size_t out_moves;
   };
 
-  void apply_basic(int op);
-  void apply_power();
-  void apply_function(Op op);
-  void settle(Entry& entry);
-  Value emit(BlockKernel<T> kernel, const Value& a, const Value& b, const Value& c);
-  Value fold(BlockKernel<T> kernel, const Value& a, const Value& b) const;
-  void bind(Call& call, int index, const Value& value);
-  void release(const Value& value);
   void reserve(std::size_t nodes);
+  void take_leaves(std::span<const Node> tape, std::span<const T* const> columns);
+  void decide(std::span<const Node> tape);
+  void decide_special(std::span<const Node> tape, std::size_t node);
+  void decide_power(std::size_t node, std::size_t base, std::size_t exponent);
+  void fold(BlockKernel<T> kernel, std::size_t node, std::size_t left, std::size_t right);
+  void settle(std::size_t node);
+  void plan(std::size_t node, int call) {
+    planned_[planned_count_++] = {static_cast<std::uint32_t>(node),
+                                  static_cast<std::uint32_t>(call)};
+  }
+  void bind_and_run(std::size_t n);
+  void run_leaf(std::size_t row, std::size_t n) const;
+  const T* at_row(const T* operand, std::size_t row) const;
 
   struct FreeBlocks {
     void operator()(T* p) const;
   };
 
   const KernelTable<T>& kernels_;
+  const CallForms<T>& forms_;
+  std::span<const Node> tape_;
+  T* out_ = nullptr;
+  std::size_t out_moves_ = 0;  // all ones where the result advances with the row, else 0
+
+  // Of each node, one unused entry in front.
+  std::vector<std::uint8_t> kinds_;
+  std::vector<const T*> values_;
+  std::vector<std::uint32_t> operations_;  // nodes that are no leaves
+  std::vector<Planned> planned_;
+  std::size_t planned_count_ = 0;
   std::vector<Call> calls_;
-  std::size_t call_count_ = 0;
-  std::vector<Entry> stack_;
-  std::size_t depth_ = 0;
-  std::unique_ptr<T[], FreeBlocks> buffers_;
-  std::vector<std::int32_t> free_buffers_;
-  std::size_t free_count_ = 0;
+  std::vector<std::int32_t> owners_;  // node whose value is in buffer k, three entries in front
+  // Scalars, one a node, and behind them the buffers.
+  std::unique_ptr<T[], FreeBlocks> memory_;
+  std::size_t memory_size_ = 0;
+  T* buffers_ = nullptr;
   std::size_t capacity_ = 0;  // nodes provided for
 };
 
