@@ -36,7 +36,7 @@ constexpr Decision decide_basic(int op, int left, int right) {
   if (right_is_held) {
     return decide(kBufferValue, false, pair_call(right, op, true, left == kScalarValue));
   }
-  if (left == kScalarValue && right == kScalarValue) return kSpecial;
+  if (left == kScalarValue && right == kScalarValue) return decide(kScalarValue, false, -1);
   const int form = right == kScalarValue ? kFormVS : (left == kScalarValue ? kFormSV : kFormVV);
   return decide(kHeldValue + op * kFormCount + form, false, -1);
 }

@@ -40,14 +40,17 @@ void Program<T>::reserve(std::size_t nodes) {
   capacity_ = std::max<std::size_t>({2 * capacity_, nodes, 64});
   kinds_.resize(capacity_ + 1);
   operations_.resize(capacity_ + 1);
-  planned_.resize(capacity_ + 1);
+  planned_.resize(capacity_ + 2);
   calls_.resize(capacity_ + 1);
   // Values alive at once: at most one for two nodes.
   const std::size_t buffers = capacity_ / 2 + 2;
   owners_.assign(buffers + kMostOperands, -1);
-  const std::size_t scalars = (capacity_ * sizeof(T) + kLine - 1) / kLine * kLine / sizeof(T);
+  constexpr std::size_t kPerLine = kLine / sizeof(T);
+  const std::size_t scalars = (capacity_ / kPerLine + 2) * kPerLine;  // one unused in front
   memory_size_ = scalars + buffers * kStride<T>;
   memory_.reset(new (kCacheLine) T[memory_size_]);
+  memory_[0] = 0;
+  scalars_ = memory_.get() + 1;
   buffers_ = memory_.get() + scalars;
   values_.assign(capacity_ + 1, memory_.get());
 }
@@ -57,7 +60,7 @@ template <typename T>
 void Program<T>::take_leaves(std::span<const Node> tape, std::span<const T* const> columns) {
   const T* const no_column = nullptr;
   const T* const* const starts = columns.empty() ? &no_column : columns.data();
-  T* const scalars = memory_.get();
+  T* const scalars = scalars_;
   std::uint8_t* const kinds = kinds_.data() + 1;
   const T** const values = values_.data() + 1;
   std::uint32_t* operation = operations_.data();
@@ -79,6 +82,7 @@ void Program<T>::take_leaves(std::span<const Node> tape, std::span<const T* cons
 template <typename T>
 void Program<T>::decide(std::span<const Node> tape) {
   std::uint8_t* const kinds = kinds_.data() + 1;
+  T* const scalars = scalars_;
   Planned* next = planned_.data();
   for (const std::uint32_t* operation = operations_.data(); *operation < tape.size(); ++operation) {
     const std::size_t i = *operation;
@@ -94,6 +98,11 @@ void Program<T>::decide(std::span<const Node> tape) {
       next = planned_.data() + planned_count_;
       continue;
     }
+    // The value if both are constants; else it is not looked at.
+    const T x = scalars[static_cast<std::ptrdiff_t>(left)];
+    const T y = scalars[right];
+    const T folded[kBasicOps] = {x + y, x - y, x * y, x / y};
+    scalars[i] = folded[basic_index(tape[i].op) % kBasicOps];
     const unsigned settles = decision.settles_right();
     *next = {static_cast<std::uint32_t>(right), right_kind - kHeldValue};
     next += settles;
@@ -123,31 +132,24 @@ void Program<T>::settle(std::size_t node) {
 template <typename T>
 void Program<T>::fold(BlockKernel<T> kernel, std::size_t node, std::size_t left,
                       std::size_t right) {
-  T* const scalars = memory_.get();
-  kernel(scalars + node, scalars + left, scalars + right, nullptr, 1);
+  kernel(scalars_ + node, scalars_ + left, scalars_ + right, nullptr, 1);
   kinds_[node + 1] = kScalarValue;
 }
 
-// Operations on constants, and powers.
+// Functions of constants, and powers.
 template <typename T>
 void Program<T>::decide_special(std::span<const Node> tape, std::size_t node) {
   const Op op = tape[node].op;
   const std::size_t right = node - 1;
-  if (op > Op::pow) {
-    return fold(kernels_.function[function_index(op)], node, right, right);
-  }
-  const std::size_t left = right - tape[right].length;
-  if (op < Op::pow) {
-    return fold(kernels_.binary[basic_index(op)][kFormVV], node, left, right);
-  }
-  decide_power(node, left, right);
+  if (op == Op::pow) return decide_power(node, right - tape[right].length, right);
+  fold(kernels_.function[function_index(op)], node, right, right);
 }
 
 template <typename T>
 void Program<T>::decide_power(std::size_t node, std::size_t base, std::size_t exponent) {
   settle(base);
   settle(exponent);
-  const T value = memory_[exponent];
+  const T value = scalars_[exponent];
   const bool base_is_scalar = kinds_[base + 1] == kScalarValue;
   const bool exponent_is_scalar = kinds_[exponent + 1] == kScalarValue;
   const bool is_product = exponent_is_scalar && is_product_power(static_cast<double>(value));
@@ -184,7 +186,12 @@ void Program<T>::bind_and_run(std::size_t n) {
   std::int32_t* owner = owners_.data() + kMostOperands;  // behind the last buffer in use
   Call* call = calls_.data();
   const Planned* const last = planned_.data() + planned_count_ - 1;
+  // Which kernel comes next is known before the one in front of it is called: the processor, which
+  // will have guessed wrong, learns so at once.
+  BlockKernel<T> next = forms_[planned_.front().call].kernel;
   for (const Planned* planned = planned_.data(); planned <= last; ++planned, ++call) {
+    const BlockKernel<T> kernel = next;
+    next = forms_[planned[1].call].kernel;
     const auto node = static_cast<std::ptrdiff_t>(planned->node);
     const CallForm<T>& form = forms_[planned->call];
     const std::ptrdiff_t right_length = tape[node - 1].length;
@@ -204,8 +211,8 @@ void Program<T>::bind_and_run(std::size_t n) {
     *owner++ = static_cast<std::int32_t>(node);
     T* const out = planned == last ? out_ : buffer;
     values[node] = out;
-    *call = {form.kernel, out, {a, b, c}};
-    form.kernel(out, a, b, c, n);
+    *call = {kernel, out, {a, b, c}};
+    kernel(out, a, b, c, n);
   }
 }
 

@@ -91,9 +91,10 @@ class Program {
   std::size_t planned_count_ = 0;
   std::vector<Call> calls_;
   std::vector<std::int32_t> owners_;  // node whose value is in buffer k, three entries in front
-  // Scalars, one a node, and behind them the buffers.
+  // Scalars, one a node (of what is no scalar: anything), and behind them the buffers.
   std::unique_ptr<T[], FreeBlocks> memory_;
   std::size_t memory_size_ = 0;
+  T* scalars_ = nullptr;
   T* buffers_ = nullptr;
   std::size_t capacity_ = 0;  // nodes provided for
 };

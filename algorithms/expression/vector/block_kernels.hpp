@@ -42,16 +42,17 @@ struct ReadPart {
 template <bool Mixed, typename T, typename F>
 inline void for_rows(T* out, std::size_t n, F f) {
   constexpr std::size_t kStep = kWidth<T>;
-  constexpr std::size_t kTurn = Mixed ? 3 : 2;
+  constexpr std::size_t kTurn = Mixed && sizeof(T) == sizeof(double) ? 3 : 2;
   const ReadWhole<T> whole;
   std::size_t i = 0;
   for (; i + kTurn * kStep <= n; i += kTurn * kStep) {
     const Vector<T> first = f(whole, i, ByDivider{});
     if constexpr (Mixed) {
       const Vector<T> second = f(whole, i + kStep, ByMultiplying{});
-      const Vector<T> third = f(whole, i + 2 * kStep, ByMultiplying{});
       store(out + i + kStep, second);
-      store(out + i + 2 * kStep, third);
+      if constexpr (kTurn == 3) {
+        store(out + i + 2 * kStep, f(whole, i + 2 * kStep, ByMultiplying{}));
+      }
     } else {
       const Vector<T> second = f(whole, i + kStep, ByDivider{});
       store(out + i + kStep, second);
