@@ -38,45 +38,30 @@ template <typename T>
 void Program<T>::reserve(std::size_t nodes) {
   if (nodes <= capacity_) return;
   capacity_ = std::max<std::size_t>({2 * capacity_, nodes, 64});
-  kinds_.resize(capacity_ + 1);
-  operations_.resize(capacity_ + 1);
+  const std::size_t entries = capacity_ + 1 + kLeavesAtOnce;
+  kinds_.resize(entries);
+  operations_.resize(entries);
   planned_.resize(capacity_ + 2);
   calls_.resize(capacity_ + 1);
   // Values alive at once: at most one for two nodes.
   const std::size_t buffers = capacity_ / 2 + 2;
   owners_.assign(buffers + kMostOperands, -1);
   constexpr std::size_t kPerLine = kLine / sizeof(T);
-  const std::size_t scalars = (capacity_ / kPerLine + 2) * kPerLine;  // one unused in front
+  const std::size_t scalars = (entries / kPerLine + 1) * kPerLine;
   memory_size_ = scalars + buffers * kStride<T>;
   memory_.reset(new (kCacheLine) T[memory_size_]);
   memory_[0] = 0;
   scalars_ = memory_.get() + 1;
   buffers_ = memory_.get() + scalars;
-  values_.assign(capacity_ + 1, memory_.get());
+  values_.assign(entries, memory_.get());
 }
 
-// Of every node what it is worth if it is a leaf, and the list of those that are none.
 template <typename T>
 void Program<T>::take_leaves(std::span<const Node> tape, std::span<const T* const> columns) {
   const T* const no_column = nullptr;
-  const T* const* const starts = columns.empty() ? &no_column : columns.data();
-  T* const scalars = scalars_;
-  std::uint8_t* const kinds = kinds_.data() + 1;
-  const T** const values = values_.data() + 1;
-  std::uint32_t* operation = operations_.data();
-  for (std::size_t i = 0; i < tape.size(); ++i) {
-    const Node& node = tape[i];
-    // Selected by a mask: compilers make a branch of a conditional.
-    const std::uintptr_t is_column = std::uintptr_t{0} - (node.op == Op::variable ? 1U : 0U);
-    const auto column = reinterpret_cast<std::uintptr_t>(starts[node.variable & is_column]);
-    const auto scalar = reinterpret_cast<std::uintptr_t>(scalars + i);
-    values[i] = reinterpret_cast<const T*>((column & is_column) | (scalar & ~is_column));
-    scalars[i] = static_cast<T>(node.value);
-    kinds[i] = static_cast<std::uint8_t>(node.op);
-    *operation = static_cast<std::uint32_t>(i);
-    operation += node.op > Op::variable ? 1 : 0;
-  }
-  *operation = static_cast<std::uint32_t>(tape.size());
+  const LeafLists<T> lists = {columns.empty() ? &no_column : columns.data(), scalars_,
+                              values_.data() + 1, kinds_.data() + 1, operations_.data()};
+  take_leaves_(tape, lists);
 }
 
 template <typename T>

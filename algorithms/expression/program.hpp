@@ -22,6 +22,7 @@
 
 #include "algorithms/expression/call_forms.hpp"
 #include "algorithms/expression/expression.hpp"
+#include "algorithms/expression/leaves.hpp"
 #include "algorithms/expression/vector/level.hpp"
 
 namespace tribench {
@@ -35,7 +36,9 @@ template <typename T>
 class Program {
  public:
   explicit Program(VectorLevel level)
-      : kernels_(kernel_table<T>(level)), forms_(call_forms<T>(level)) {}
+      : kernels_(kernel_table<T>(level)),
+        forms_(call_forms<T>(level)),
+        take_leaves_(leaf_reader<T>(level)) {}
 
   // Translates `formula`; column j starts at columns[j] and the result is written from `out` on.
   // where result_is_block, `out` holds one block that every block of rows overwrites.
@@ -79,11 +82,12 @@ class Program {
 
   const KernelTable<T>& kernels_;
   const CallForms<T>& forms_;
+  const LeafReader<T> take_leaves_;
   std::span<const Node> tape_;
   T* out_ = nullptr;
   std::size_t out_moves_ = 0;  // all ones where the result advances with the row, else 0
 
-  // Of each node, one unused entry in front.
+  // Of each node, one unused entry in front and kLeavesAtOnce behind.
   std::vector<std::uint8_t> kinds_;
   std::vector<const T*> values_;
   std::vector<std::uint32_t> operations_;  // nodes that are no leaves
