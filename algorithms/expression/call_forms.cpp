@@ -20,30 +20,36 @@ constexpr int outer_with_pair_on_the_right(int basic) {
   return basic == kSub ? kOuterSubFrom : kOuterDivInto;
 }
 
-constexpr Decision decide(int kind, bool settles_right, int call) {
-  const int calls = call >= 0 ? 1 : 0;
-  return {static_cast<std::uint16_t>(kind | (settles_right ? 16 : 0) | calls << 5 |
-                                     (calls != 0 ? call << 7 : 0))};
+constexpr Decision kSpecial{.is_special = 1};
+
+constexpr Decision value(ValueKind kind) { return {.kind = kind}; }
+constexpr Decision held(int op, int form) {
+  return {.kind = static_cast<std::uint8_t>(kHeldValue + op * kFormCount + form)};
 }
-constexpr Decision kSpecial{64};
+constexpr Decision called(int call, bool settles_right) {
+  return {.call = static_cast<std::uint16_t>(call),
+          .kind = kBufferValue,
+          .settles_right = settles_right ? std::uint8_t{1} : std::uint8_t{0},
+          .calls = 1};
+}
 
 constexpr Decision decide_basic(int op, int left, int right) {
   const bool left_is_held = left >= kHeldValue;
   const bool right_is_held = right >= kHeldValue;
   if (left_is_held) {
-    return decide(kBufferValue, right_is_held, pair_call(left, op, false, right == kScalarValue));
+    return called(pair_call(left, op, false, right == kScalarValue), right_is_held);
   }
   if (right_is_held) {
-    return decide(kBufferValue, false, pair_call(right, op, true, left == kScalarValue));
+    return called(pair_call(right, op, true, left == kScalarValue), false);
   }
-  if (left == kScalarValue && right == kScalarValue) return decide(kScalarValue, false, -1);
+  if (left == kScalarValue && right == kScalarValue) return value(kScalarValue);
   const int form = right == kScalarValue ? kFormVS : (left == kScalarValue ? kFormSV : kFormVV);
-  return decide(kHeldValue + op * kFormCount + form, false, -1);
+  return held(op, form);
 }
 
 constexpr Decision decide_function(int function, int argument) {
   if (argument == kScalarValue) return kSpecial;
-  return decide(kBufferValue, argument >= kHeldValue, kFunctionCall + function);
+  return called(kFunctionCall + function, argument >= kHeldValue);
 }
 
 constexpr std::array<Decision, kDecisions> make_decisions() {
@@ -87,8 +93,8 @@ CallForms<T> make_call_forms(const KernelTable<T>& kernels) {
   const auto at = [&](int call) -> CallForm<T>& { return forms[static_cast<std::size_t>(call)]; };
   for (int kind = kHeldValue; kind <= kHeldSquare; ++kind) {
     const Held held = held_of(kind);
-    at(kind - kHeldValue) = {kernels.binary[held.op][held.form], 0, 0, 0, held.a_is_left,
-                             held.b_is_left};
+    at(kind - kHeldValue) = {
+        kernels.binary[held.op][held.form], 0, 0, 0, held.a_is_left, held.b_is_left};
     for (int op = 0; op < kBasicOps; ++op) {
       for (int scalar = 0; scalar < 2; ++scalar) {
         const auto& pairs = kernels.pair[held.op][held.form];
@@ -96,7 +102,11 @@ CallForms<T> make_call_forms(const KernelTable<T>& kernels) {
         at(pair_call(kind, op, false, other_is_scalar)) = {
             pairs[op][scalar], 1, -1, 0, held.a_is_left, held.b_is_left};
         at(pair_call(kind, op, true, other_is_scalar)) = {
-            pairs[outer_with_pair_on_the_right(op)][scalar], 1,  0, -1, held.a_is_left,
+            pairs[outer_with_pair_on_the_right(op)][scalar],
+            1,
+            0,
+            -1,
+            held.a_is_left,
             held.b_is_left};
       }
     }

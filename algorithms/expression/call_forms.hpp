@@ -41,18 +41,14 @@ constexpr int pair_call(int held, int op, bool held_is_right, bool other_is_scal
 }
 inline constexpr int kCallCount = pair_call(kHeldSquare, kBasicOps - 1, true, true) + 1;
 
-// Packed into 16 bits: the kind of the node (4 bits), whether the right child, held back, has to be
-// computed first, whether the node is computed itself, whether it needs more than the table, and the
-// number of its call.
+// Of an operation whose operands are known.
 struct Decision {
-  std::uint16_t bits = 0;
-  unsigned kind() const { return bits & 15U; }
-  unsigned settles_right() const { return (bits >> 4) & 1U; }
-  unsigned calls() const { return (bits >> 5) & 1U; }
-  bool is_special() const { return (bits & 64U) != 0; }
-  unsigned call() const { return bits >> 7; }
+  std::uint16_t call = 0;          // its number, where there is one
+  std::uint8_t kind = 0;           // what the node is to its parent
+  std::uint8_t settles_right = 0;  // 1: the right child, held back, has to be computed first
+  std::uint8_t calls = 0;          // 1: the node is computed itself
+  std::uint8_t is_special = 0;     // 1: needs more than the table
 };
-static_assert(kCallCount <= 512);
 
 // Of an operation and the kinds of its children (left: any for a function).
 inline constexpr std::size_t kDecisions = std::size_t{kOpCount} * 256;

@@ -66,14 +66,13 @@ TRIBENCH_AVX512 void read_eight_by_eight(std::span<const Node> tape, const LeafL
         _mm512_and_si512(_mm512_maskz_srli_epi64(0xff, rest, 32), _mm512_set1_epi64(0xffff));
     const __m512i scalars = _mm512_add_epi64(
         _mm512_set1_epi64(reinterpret_cast<std::int64_t>(lists.scalars + i)), scalar_offsets);
-    const __m512i operand = _mm512_mask_i64gather_epi64(
-        scalars, _mm512_cmpeq_epi64_mask(op, one), variable, lists.columns, 8);
+    const __m512i operand = _mm512_mask_i64gather_epi64(scalars, _mm512_cmpeq_epi64_mask(op, one),
+                                                        variable, lists.columns, 8);
     store_scalars(lists.scalars + i, value);
     _mm512_storeu_si512(lists.values + i, operand);
     _mm512_mask_cvtepi64_storeu_epi8(lists.kinds + i, 0xff, op);
     const __mmask8 is_operation = _mm512_cmpgt_epu64_mask(op, one);
-    const __m512i number =
-        _mm512_add_epi64(_mm512_set1_epi64(static_cast<std::int64_t>(i)), lane);
+    const __m512i number = _mm512_add_epi64(_mm512_set1_epi64(static_cast<std::int64_t>(i)), lane);
     const __m512i packed = _mm512_maskz_compress_epi64(is_operation, number);
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(operation),
                         _mm512_maskz_cvtepi64_epi32(0xff, packed));

@@ -74,10 +74,9 @@ void Program<T>::decide(std::span<const Node> tape) {
     const std::size_t right = i - 1;
     const std::size_t left = right - tape[right].length;  // of a function: any node, or none
     const unsigned right_kind = kinds[right];
-    const Decision decision =
-        kDecisionTable[decision_index(tape[i].op, kinds[static_cast<std::ptrdiff_t>(left)],
-                                      right_kind)];
-    if (decision.is_special()) {
+    const Decision& decision = kDecisionTable[decision_index(
+        tape[i].op, kinds[static_cast<std::ptrdiff_t>(left)], right_kind)];
+    if (decision.is_special != 0) {
       planned_count_ = static_cast<std::size_t>(next - planned_.data());
       decide_special(tape, i);
       next = planned_.data() + planned_count_;
@@ -88,14 +87,16 @@ void Program<T>::decide(std::span<const Node> tape) {
     const T y = scalars[right];
     const T folded[kBasicOps] = {x + y, x - y, x * y, x / y};
     scalars[i] = folded[basic_index(tape[i].op) % kBasicOps];
-    const unsigned settles = decision.settles_right();
     *next = {static_cast<std::uint32_t>(right), right_kind - kHeldValue};
-    next += settles;
-    kinds[right] = static_cast<std::uint8_t>(settles != 0 ? unsigned{kBufferValue} : right_kind);
-    *next = {static_cast<std::uint32_t>(i), decision.call()};
-    next += decision.calls();
-    kinds[i] = static_cast<std::uint8_t>(decision.kind());
+    next += decision.settles_right;
+    *next = {static_cast<std::uint32_t>(i), decision.call};
+    next += decision.calls;
+    kinds[i] = decision.kind;
   }
+  const std::size_t root = tape.size() - 1;
+  *next = {static_cast<std::uint32_t>(root), kinds[root] - unsigned{kHeldValue}};
+  next += kinds[root] >= kHeldValue ? 1 : 0;
+  *next = {};  // looked up, never run
   planned_count_ = static_cast<std::size_t>(next - planned_.data());
 }
 
@@ -106,8 +107,8 @@ void Program<T>::settle(std::size_t node) {
   std::uint8_t& kind = kinds_[node + 1];
   if (kind < kHeldValue) return;
   const auto end = planned_.begin() + static_cast<std::ptrdiff_t>(planned_count_);
-  const auto place = std::find_if(planned_.begin(), end,
-                                  [&](const Planned& call) { return call.node > node; });
+  const auto place =
+      std::find_if(planned_.begin(), end, [&](const Planned& call) { return call.node > node; });
   std::copy_backward(place, end, end + 1);
   *place = {static_cast<std::uint32_t>(node), static_cast<std::uint32_t>(kind - kHeldValue)};
   planned_count_ += 1;
@@ -160,7 +161,6 @@ void Program<T>::translate(const Expression& formula, std::span<const T* const> 
   out_moves_ = result == Result::rows ? ~std::size_t{0} : 0;
   take_leaves(tape_, columns);
   decide(tape_);
-  settle(tape_.size() - 1);
 }
 
 // Finds the operands of every call and runs it on the first block.
@@ -180,16 +180,15 @@ void Program<T>::bind_and_run(std::size_t n) {
     const auto node = static_cast<std::ptrdiff_t>(planned->node);
     const CallForm<T>& form = forms_[planned->call];
     const std::ptrdiff_t right_length = tape[node - 1].length;
-    const std::ptrdiff_t inner =
-        node - form.inner_is_child - (right_length & form.inner_is_left);
+    const std::ptrdiff_t inner = node - form.inner_is_child - (right_length & form.inner_is_left);
     const std::ptrdiff_t inner_length = tape[inner - 1].length;
     const T* const a = values[inner - 1 - (inner_length & form.a_is_left)];
     const T* const b = values[inner - 1 - (inner_length & form.b_is_left)];
     const T* const c = values[node - 1 - (right_length & form.other_is_left)];
     // Buffers of this subtree are the ones used last; they end here.
     const std::ptrdiff_t first = node + 1 - static_cast<std::ptrdiff_t>(tape[node].length);
-    const int ended = (owner[-1] >= first ? 1 : 0) + (owner[-2] >= first ? 1 : 0) +
-                      (owner[-3] >= first ? 1 : 0);
+    const int ended =
+        (owner[-1] >= first ? 1 : 0) + (owner[-2] >= first ? 1 : 0) + (owner[-3] >= first ? 1 : 0);
     owner -= ended;
     T* const buffer =
         buffers_ + static_cast<std::size_t>(owner - owners_.data() - kMostOperands) * kStride<T>;
@@ -204,8 +203,8 @@ void Program<T>::bind_and_run(std::size_t n) {
 // Columns advance with the row; scalars and buffers, which share one piece of memory, do not.
 template <typename T>
 const T* Program<T>::at_row(const T* operand, std::size_t row) const {
-  const std::size_t from_memory = reinterpret_cast<std::uintptr_t>(operand) -
-                                  reinterpret_cast<std::uintptr_t>(memory_.get());
+  const std::size_t from_memory =
+      reinterpret_cast<std::uintptr_t>(operand) - reinterpret_cast<std::uintptr_t>(memory_.get());
   return operand + (from_memory < memory_size_ * sizeof(T) ? 0 : row);
 }
 
