@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "algorithms/diagnosis/derived_channels.hpp"
 #include "algorithms/diagnosis/observation_rows.hpp"
 #include "algorithms/regressor.hpp"
 #include "foundation/error.hpp"
@@ -67,13 +68,6 @@ void add_campaign_time(Observations& data) {
   if (restarts) found->recipe = "time of the movements laid end to end";
 }
 
-// Path from where the velocity crossed zero between two rows to the later row, the velocity taken
-// to be linear in time between them.
-double since_crossing(double before, double now, double dt) {
-  const double part = std::abs(now) / (std::abs(now) + std::abs(before));
-  return 0.5 * std::abs(now) * part * dt;
-}
-
 // Some movement turns or starts from standstill: else nobody knows how far back the last reversal
 // lies, and "distance" would be a name for the place within a recording.
 bool knows_a_reversal(const Observations& data, const std::vector<double>& v) {
@@ -101,22 +95,13 @@ void add_distance(Observations& data) {
   const bool timed = t != nullptr && t->recipe != "number of the movement in the file";
   if (v == nullptr || (q == nullptr && !timed) || !knows_a_reversal(data, v->values)) return;
   Signal signal{"d", "", q != nullptr ? q->unit : v->unit + " s", Role::none, {}, {}};
-  signal.recipe =
-      "d grows by abs(q - q_before), or abs(v)*dt; at the first row after a change of v's sign it "
-      "is 0.5*abs(v)*dt*abs(v)/(abs(v) + abs(v_before)), at a movement's first row 0";
-  signal.values.assign(data.rows(), 0.0);
-  double direction = 0;
+  signal.recipe = distance_recipe();
+  DistanceSinceReversal distance(q != nullptr ? PathFrom::position : PathFrom::velocity);
   for (std::size_t i = 0; i < data.rows(); ++i) {
     const bool starts = i == 0 || data.movement[i] != data.movement[i - 1];
-    const double now = sign_of(v->values[i]);
-    if (!starts) {
-      const double dt = timed ? t->values[i] - t->values[i - 1] : 0;
-      const double step = q != nullptr ? q->values[i] - q->values[i - 1] : v->values[i] * dt;
-      const bool turned = now != 0 && now != direction;
-      signal.values[i] = turned ? since_crossing(v->values[i - 1], v->values[i], dt)
-                                : signal.values[i - 1] + std::abs(step);
-    }
-    if (starts || now != 0) direction = now;
+    if (starts) distance.start_movement();
+    const double dt = timed && !starts ? t->values[i] - t->values[i - 1] : 0;
+    signal.values.push_back(distance.next(v->values[i], q != nullptr ? q->values[i] : 0, dt));
   }
   data.signals.push_back(std::move(signal));
 }

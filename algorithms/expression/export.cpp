@@ -100,6 +100,16 @@ CodeForm find_code_form(std::string_view name) {
   return static_cast<CodeForm>(found - names.begin());
 }
 
+std::vector<std::string> export_arguments(const Expression& formula,
+                                          std::span<const std::string> names,
+                                          const ExportOptions& options) {
+  std::vector<std::string> all;
+  for (const CodeInputs::Argument& one : inputs_of(formula, names, options).arguments) {
+    all.push_back(one.code_name);
+  }
+  return all;
+}
+
 std::string export_code(const Expression& formula, std::span<const std::string> names,
                         CodeForm form, const ExportOptions& options) {
   if (!is_identifier(options.function) || safe_name(options.function, "") != options.function) {

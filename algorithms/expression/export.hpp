@@ -37,6 +37,11 @@ struct ExportOptions {
   int digits = 0;  // of constants in LaTeX; 0: all
 };
 
+// The code's arguments in their order, each as it is called in the code.
+std::vector<std::string> export_arguments(const Expression& formula,
+                                          std::span<const std::string> names,
+                                          const ExportOptions& options = {});
+
 // names[i] is column i. A name that the target reserves gets a trailing underscore. Throws Error
 // (bad_input) where the function's name is no identifier.
 std::string export_code(const Expression& formula, std::span<const std::string> names,

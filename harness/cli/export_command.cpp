@@ -4,13 +4,19 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "algorithms/diagnosis/derived_channels.hpp"
 #include "algorithms/expression/export.hpp"
 #include "algorithms/expression/text.hpp"
+#include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
 #include "reports/record_csv.hpp"
 
@@ -21,12 +27,56 @@ struct ExportArguments {
   std::string formula;
   std::string form;
   std::string box;
+  std::string derive;
   std::string out;
   ExportOptions options;
 };
 
-void write_export(const ExportArguments& arguments) {
+// The formula of a loop.json, and how its channels that no sensor gives are computed.
+struct LoopFormula {
+  std::string text;
+  std::optional<loop::PathFrom> distance_from;
+};
+
+LoopFormula read_loop(const std::string& file) {
+  std::ifstream in(file);
+  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
+  if (!in || json.is_discarded() || !json.contains("formula") || !json.contains("symbols")) {
+    throw_bad_input("this is no loop.json: it has no formula and symbols", file,
+                    "give a formula, or the loop.json that 'tribench loop --out' writes");
+  }
+  LoopFormula loop{json["formula"], std::nullopt};
+  bool has_position = false;
+  bool derives_distance = false;
+  for (const nlohmann::json& symbol : json["symbols"]) {
+    const std::string name = symbol.value("name", "");
+    has_position = has_position || name == "q";
+    derives_distance = derives_distance || (name == "d" && symbol.contains("computed_as"));
+  }
+  if (derives_distance) {
+    loop.distance_from = has_position ? loop::PathFrom::position : loop::PathFrom::velocity;
+  }
+  return loop;
+}
+
+// "d=q", "d=v"
+std::optional<loop::PathFrom> distance_from(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  if (text == "d=q") return loop::PathFrom::position;
+  if (text == "d=v") return loop::PathFrom::velocity;
+  throw_bad_input(
+      fmt::format("'{}' derives no channel that is known", text), "--derive",
+      "write d=q (distance since reversal from the position) or d=v (from the velocity)");
+}
+
+void write_export(ExportArguments arguments) {
   const CodeForm form = find_code_form(arguments.form);
+  std::optional<loop::PathFrom> from = distance_from(arguments.derive);
+  if (arguments.formula.ends_with(".json")) {
+    LoopFormula loop = read_loop(arguments.formula);
+    arguments.formula = std::move(loop.text);
+    if (!from) from = loop.distance_from;
+  }
   ExportOptions options = arguments.options;
   std::vector<std::string> names;
   Expression formula;
@@ -37,7 +87,14 @@ void write_export(const ExportArguments& arguments) {
     formula = parse_over(arguments.formula, *options.box);
     names = options.box->names;
   }
-  const std::string code = export_code(formula, names, form, options);
+  std::string code = export_code(formula, names, form, options);
+  const std::vector<std::string> called = export_arguments(formula, names, options);
+  if (from && form == CodeForm::c && std::ranges::count(called, "d") > 0) {
+    code += loop::c_history_code(options.function, called, *from);
+  } else if (!arguments.derive.empty()) {
+    throw_bad_input(form == CodeForm::c ? "the formula has no input d" : "only C has a history",
+                    "--derive", "leave it out");
+  }
   if (arguments.out.empty()) {
     fmt::print("{}", code);
   } else {
@@ -52,13 +109,16 @@ void add_export_command(CLI::App& app, ExitStatus& /*status*/) {
       app.add_subcommand("export", "Code for a controller (C), a notebook, MATLAB or a paper");
   command->footer(
       "Example: tribench export '8.5*sgn_v + 14*v' --as c --box 'v=-2:2' --function friction\n"
-      "An input sgn_X is computed from X. In front of a formula that begins with a minus put --.");
+      "An input sgn_X is computed from X. In front of a formula that begins with a minus put --.\n"
+      "In place of a formula: the loop.json of 'tribench loop', with its channels' history in C.");
   auto arguments = std::make_shared<ExportArguments>();
-  command->add_option("formula", arguments->formula, "the formula")->required();
+  command->add_option("formula", arguments->formula, "the formula, or a loop.json")->required();
   command->add_option("--as", arguments->form, "c, python, latex, sympy or matlab")->required();
   command->add_option(
       "--box", arguments->box,
       "where the formula was judged: 'v=-2:2,g=-60:60'; fixes the arguments' order");
+  command->add_option("--derive", arguments->derive,
+                      "d=q or d=v: C that keeps the distance since the last reversal up to date");
   command->add_option("--function", arguments->options.function, "the function's name")
       ->capture_default_str();
   command

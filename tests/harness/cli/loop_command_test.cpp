@@ -194,6 +194,32 @@ TEST(LoopCommand, writes_its_three_files_and_the_next_movements) {
               HasSubstr("order,kind,velocity,from,to,load_factor,separation,between"));
 }
 
+// derived_channels_test.cpp compiles such code and holds it to the loop's own values.
+TEST(LoopCommand, what_it_found_is_exported_as_c_with_the_history_it_needs) {
+  const testing::TemporaryFolder folder;
+  const std::string data = generated(folder, "undeclared/hysteresis/2", "1");
+  const std::string out = (folder / "out").string();
+  const testing::ProgramRun run = tribench({"loop", data, "--any-sign", "--out", out, "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_EQ(families(Json::parse(run.output)), std::vector<std::string>{"hysteresis"});
+  const testing::ProgramRun code = tribench({"export", out + "/loop.json", "--as", "c"});
+  ASSERT_EQ(code.status, 0) << code.errors;
+  EXPECT_THAT(code.output, HasSubstr("double friction(double v, double d)"));
+  EXPECT_THAT(
+      code.output,
+      HasSubstr("double friction_step(friction_history *h, double v, double q, double dt)"));
+  EXPECT_EQ(tribench({"export", out + "/loop.md", "--as", "c"}).status, 2);
+  testing::write_text(folder / "other.json", "{}");
+  const testing::ProgramRun other =
+      tribench({"export", (folder / "other.json").string(), "--as", "c"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.errors, HasSubstr("no loop.json"));
+  EXPECT_THAT(tribench({"export", "2*v", "--as", "c", "--derive", "d=q"}).errors,
+              HasSubstr("no input d"));
+  EXPECT_THAT(tribench({"export", "d*v", "--as", "c", "--derive", "d=x"}).errors,
+              HasSubstr("write d=q"));
+}
+
 TEST(LoopCommand, grows_an_effect_from_what_is_left_over_saves_it_and_reads_it_back) {
   const testing::TemporaryFolder folder;
   const std::string first = generated(folder, "undeclared/position_bump/2", "1");

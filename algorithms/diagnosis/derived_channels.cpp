@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/derived_channels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tribench::loop {
+namespace {
+
+double sign_of(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+
+}  // namespace
+
+double DistanceSinceReversal::next(double v, double q, double dt) {
+  const double now = sign_of(v);
+  if (!started_) {
+    distance_ = 0;
+    direction_ = now;
+    started_ = true;
+  } else if (now != 0 && now != direction_) {
+    const double part = std::abs(v) / (std::abs(v) + std::abs(v_));
+    distance_ = 0.5 * std::abs(v) * part * dt;
+    direction_ = now;
+  } else {
+    const double step = from_ == PathFrom::position ? q - q_ : v * dt;
+    distance_ += std::abs(step);
+  }
+  v_ = v;
+  q_ = q;
+  return distance_;
+}
+
+std::string distance_recipe() {
+  return "d grows by abs(q - q_before), or abs(v)*dt; at the first row after a change of v's sign "
+         "it "
+         "is 0.5*abs(v)*dt*abs(v)/(abs(v) + abs(v_before)), at a movement's first row 0";
+}
+
+std::string c_history_code(std::string_view function, std::span<const std::string> arguments,
+                           PathFrom from) {
+  const bool by_position = from == PathFrom::position;
+  std::vector<std::string> taken = {"v"};
+  if (by_position) taken.emplace_back("q");
+  for (const std::string& name : arguments) {
+    if (name != "d" && std::ranges::count(taken, name) == 0) taken.push_back(name);
+  }
+  std::string parameters;
+  for (const std::string& name : taken) parameters += fmt::format("double {}, ", name);
+  constexpr std::string_view kCode = R"(
+/* What {0} needs to know of the movement so far, for d: the distance since the velocity last
+ * changed its sign. One a joint; begin each movement with {0}_start. */
+typedef struct {{
+  int started;
+  double direction, v_before,{1} d;
+}} {0}_history;
+
+void {0}_start({0}_history *h) {{
+  h->started = 0;
+}}
+
+/* Once a sample, in order. dt: seconds since the sample before. */
+double {0}_step({0}_history *h, {2}double dt) {{
+  const double now = (double)((v > 0.0) - (v < 0.0));
+  if (!h->started) {{
+    h->d = 0.0;
+    h->direction = now;
+    h->started = 1;
+  }} else if (now != 0.0 && now != h->direction) {{
+    /* The path from the zero crossing, the velocity taken to be linear in time. */
+    const double part = fabs(v) / (fabs(v) + fabs(h->v_before));
+    h->d = 0.5 * fabs(v) * part * dt;
+    h->direction = now;
+  }} else {{
+    h->d += fabs({3});
+  }}
+  h->v_before = v;
+{4}  const double d = h->d;
+  return {0}({5});
+}}
+)";
+  return fmt::format(kCode, function, by_position ? " q_before," : "", parameters,
+                     by_position ? "q - h->q_before" : "v * dt",
+                     by_position ? "  h->q_before = q;\n" : "", fmt::join(arguments, ", "));
+}
+
+}  // namespace tribench::loop

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/derived_channels.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "algorithms/diagnosis/loop_model.hpp"
+#include "algorithms/expression/export.hpp"
+#include "algorithms/expression/text.hpp"
+#include "problems/kuka/planted.hpp"
+
+namespace tribench::loop {
+namespace {
+
+namespace fs = std::filesystem;
+
+// More than any history holds.
+struct History {
+  double storage[16] = {};
+};
+
+using Start = void (*)(History*);
+
+// The exported code of a formula with its history, compiled and loaded.
+class Compiled {
+ public:
+  Compiled(const std::string& formula, PathFrom from) {
+    std::vector<std::string> names;
+    const Expression parsed = parse_collecting_names(formula, names);
+    const std::string code = export_code(parsed, names, CodeForm::c) +
+                             c_history_code("friction", export_arguments(parsed, names), from);
+    const fs::path folder = fs::path(::testing::TempDir()) / "tribench_history";
+    fs::create_directories(folder);
+    std::ofstream(folder / "f.c") << code;
+    const fs::path library = folder / fmt::format("f{}.so", static_cast<int>(from));
+    const std::string command = fmt::format(
+        "cc -std=c99 -O2 -ffp-contract=off -Wall -Wextra -Werror -shared -fPIC -o '{}' '{}' -lm",
+        library.string(), (folder / "f.c").string());
+    if (std::system(command.c_str()) != 0) return;
+    handle_ = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  }
+  ~Compiled() {
+    if (handle_ != nullptr) dlclose(handle_);
+  }
+  Compiled(const Compiled&) = delete;
+  Compiled& operator=(const Compiled&) = delete;
+
+  template <typename Function>
+  Function function(const char* name) const {
+    return handle_ == nullptr ? nullptr : std::bit_cast<Function>(dlsym(handle_, name));
+  }
+
+ private:
+  void* handle_ = nullptr;
+};
+
+bool has_compiler() { return std::system("command -v cc >/dev/null 2>&1") == 0; }
+
+const std::string kFormula = "8*sgn_v + 14*v - 5*sgn_v*exp(-d/0.05) + 0.1*a";
+
+// Two-tone trajectories with reversals: what the loop has found is evaluated on the channels it
+// computed itself; the controller has only position, velocity, acceleration and its clock.
+TEST(DerivedChannels, c_code_gives_the_loops_own_values_on_movements_with_reversals) {
+  if (!has_compiler()) GTEST_SKIP() << "no C compiler";
+  const Observations data = observe(kuka::make_planted({}, 3).data);
+  const BaseModel model = formula_base(data, kFormula);
+  const Eigen::MatrixXd expected = evaluate_columns(std::vector{model.formula}, data);
+  const Compiled code(kFormula, PathFrom::position);
+  const auto start = code.function<Start>("friction_start");
+  const auto step =
+      code.function<double (*)(History*, double, double, double, double)>("friction_step");
+  ASSERT_NE(start, nullptr);
+  ASSERT_NE(step, nullptr);
+  History history;
+  int reversals = 0;
+  const std::vector<double>& v = data.find("v")->values;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    const bool starts = i == 0 || data.movement[i] != data.movement[i - 1];
+    if (starts) start(&history);
+    if (!starts && v[i] * v[i - 1] < 0) ++reversals;
+    const double dt = starts ? 0 : data.time[i] - data.time[i - 1];
+    const double friction =
+        step(&history, v[i], data.find("q")->values[i], data.find("a")->values[i], dt);
+    ASSERT_NEAR(friction, expected(static_cast<Eigen::Index>(i), 0), 1e-12 * 30) << "row " << i;
+  }
+  EXPECT_GT(reversals, 50);
+}
+
+TEST(DerivedChannels, c_code_keeps_the_same_distance_to_the_last_bit_by_either_path) {
+  if (!has_compiler()) GTEST_SKIP() << "no C compiler";
+  for (const PathFrom from : {PathFrom::position, PathFrom::velocity}) {
+    const Compiled code("d + 0*v", from);
+    const auto start = code.function<Start>("friction_start");
+    const auto by_position =
+        code.function<double (*)(History*, double, double, double)>("friction_step");
+    const auto by_velocity = code.function<double (*)(History*, double, double)>("friction_step");
+    ASSERT_NE(start, nullptr);
+    History history;
+    DistanceSinceReversal distance(from);
+    start(&history);
+    double q = 0.3;
+    for (int i = 0; i < 500; ++i) {
+      // Turns, standstill and exact zeros.
+      const double v = i % 60 < 5 ? 0 : std::sin(0.11 * i) + 0.4 * std::cos(0.37 * i);
+      const double dt = 0.001 * (1 + i % 3);
+      q += v * dt;
+      const double c = from == PathFrom::position ? by_position(&history, v, q, dt)
+                                                  : by_velocity(&history, v, dt);
+      EXPECT_EQ(c, distance.next(v, q, dt)) << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tribench::loop
