@@ -209,6 +209,21 @@ ChildExit ChildProcess::wait() {
   return exit_;
 }
 
+ChildRun run_child(const ChildOptions& options, std::string_view input) {
+  ChildProcess child(options);
+  if (!input.empty()) child.write(input);
+  child.close_input();
+  ChildRun run;
+  for (bool ended = false; !ended;) {
+    const ChildOutput part = child.read(1.0);
+    run.output += part.output;
+    run.errors += part.errors;
+    ended = part.ended;
+  }
+  run.exit = child.wait();
+  return run;
+}
+
 std::string signal_name(int signal) {
   const char* name = ::sigabbrev_np(signal);
   return name != nullptr ? fmt::format("SIG{}", name) : fmt::format("signal {}", signal);

@@ -18,10 +18,10 @@
 namespace tribench {
 
 struct ChildOptions {
-  std::vector<std::string> command;
-  std::vector<std::string> environment;     // NAME=value, besides this process's own
-  std::filesystem::path working_directory;  // empty: this process's own
-  bool own_group = true;                    // false: stays in this process's group and ends with it
+  std::vector<std::string> command = {};
+  std::vector<std::string> environment = {};     // NAME=value, besides this process's own
+  std::filesystem::path working_directory = {};  // empty: this process's own
+  bool own_group = true;  // false: stays in this process's group and ends with it
 };
 
 // How a process ended.
@@ -71,6 +71,16 @@ class ChildProcess {
   int input_ = -1;
   std::array<int, 2> streams_{-1, -1};  // its output, its errors
 };
+
+// What a program left behind that was run to its end.
+struct ChildRun {
+  ChildExit exit;
+  std::string output;
+  std::string errors;
+};
+// Hands `input` to the program, closes its standard input and waits for its end. For programs that
+// read their input before they print much. Throws Error (failed) where it cannot be started.
+ChildRun run_child(const ChildOptions& options, std::string_view input = {});
 
 // "SIGSEGV" for 11; "signal 99" where there is no name.
 std::string signal_name(int signal);

@@ -22,26 +22,6 @@ namespace {
 constexpr double kElementSeconds = 300;  // half a second an element is Slurm's own: well below 1 %
 constexpr int kProgramMemoryMib = 256;   // the run itself, beside its workers
 
-struct CommandResult {
-  ChildExit exit;
-  std::string output;
-  std::string errors;
-};
-
-CommandResult run_command(const std::vector<std::string>& command) {
-  ChildProcess child(ChildOptions{command, {}, {}, true});
-  child.close_input();
-  CommandResult result;
-  for (bool ended = false; !ended;) {
-    const ChildOutput output = child.read(1.0);
-    result.output += output.output;
-    result.errors += output.errors;
-    ended = output.ended;
-  }
-  result.exit = child.wait();
-  return result;
-}
-
 // In single quotes for the shell.
 std::string quoted(const std::string& text) {
   std::string result = "'";
@@ -74,9 +54,9 @@ std::string without_blanks(std::string name) {
 }
 
 std::string submit(const std::vector<std::string>& command) {
-  CommandResult result;
+  ChildRun result;
   try {
-    result = run_command(command);
+    result = run_child({.command = command});
   } catch (const Error&) {
     throw_bad_input("sbatch is not installed here", "--slurm",
                     "submit from a machine of the cluster, or run shards by --shard K/N");
@@ -90,7 +70,7 @@ std::string submit(const std::vector<std::string>& command) {
 }
 
 std::size_t elements_left(const std::string& job) {
-  const CommandResult result = run_command({"squeue", "-h", "-r", "-o", "%i", "-j", job});
+  const ChildRun result = run_child({.command = {"squeue", "-h", "-r", "-o", "%i", "-j", job}});
   if (!result.exit.ok()) return 0;  // Slurm has forgotten the job: it has ended
   return static_cast<std::size_t>(std::ranges::count(result.output, '\n'));
 }

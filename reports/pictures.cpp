@@ -42,19 +42,9 @@ std::string run_in_node(const std::string& script, const std::vector<std::string
   options.command = {"node", "-"};
   options.command.insert(options.command.end(), arguments.begin(), arguments.end());
   try {
-    ChildProcess node(options);
-    node.write(script);
-    node.close_input();
-    std::string output;
-    std::string errors;
-    for (bool ended = false; !ended;) {
-      const ChildOutput part = node.read(1);
-      output += part.output;
-      errors += part.errors;
-      ended = part.ended;
-    }
-    if (node.wait().ok()) return output;
-    throw Error(ErrorKind::failed, fmt::format("the pictures could not be drawn: {}", errors),
+    const ChildRun run = run_child(options, script);
+    if (run.exit.ok()) return run.output;
+    throw Error(ErrorKind::failed, fmt::format("the pictures could not be drawn: {}", run.errors),
                 "node");
   } catch (const Error& error) {
     if (error.place() == "node") throw;

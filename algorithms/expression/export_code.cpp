@@ -6,13 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/export_forms.hpp"
 #include "algorithms/expression/text.hpp"
 
 namespace tribench {
 namespace {
-
-constexpr double kMaxProductPower = 64;  // as in evaluate.hpp
 
 // Collects statements; every new name is one prefix and a number.
 class Writer {
@@ -56,11 +55,6 @@ class Writer {
   std::string prefix_ = "t";
   Statements statements_;
 };
-
-bool is_product_power(const Node& exponent) {
-  return exponent.is_constant() && std::abs(exponent.value) <= kMaxProductPower &&
-         exponent.value == std::floor(exponent.value);
-}
 
 std::string ranges_comment(const CodeSource& source, std::string_view mark) {
   std::string text;
@@ -162,9 +156,10 @@ Statements write_statements(const CodeSource& source, const Dialect& dialect) {
       const std::string right = std::move(stack.back());
       stack.pop_back();
       const Node& exponent = source.formula.node(i - 1);
-      stack.back() = node.op == Op::pow && is_product_power(exponent)
-                         ? writer.power(stack.back(), static_cast<int>(exponent.value))
-                         : writer.assign(dialect.binary(node.op, stack.back(), right));
+      stack.back() =
+          node.op == Op::pow && exponent.is_constant() && is_product_power(exponent.value)
+              ? writer.power(stack.back(), static_cast<int>(exponent.value))
+              : writer.assign(dialect.binary(node.op, stack.back(), right));
     }
   }
   return writer.finish(stack.back());

@@ -8,73 +8,33 @@
 #include <string>
 
 #include "algorithms/expression/export_forms.hpp"
+#include "algorithms/expression/infix.hpp"
 #include "algorithms/expression/text.hpp"
 
 namespace tribench {
 namespace {
 
-// How tightly a piece binds; a looser piece is put in parentheses.
-enum Binding { kSum = 0, kProduct = 1, kMinus = 2, kPower = 3, kAtom = 4 };
-
-struct Piece {
-  std::string text;
-  Binding binding = kAtom;
-};
-
 constexpr std::array<std::string_view, 20> kGreek = {
     "alpha", "beta", "gamma", "delta", "epsilon", "theta", "kappa", "lambda", "mu",  "nu",
     "xi",    "rho",  "sigma", "tau",   "phi",     "chi",   "psi",   "omega",  "eta", "zeta"};
 
-std::string in_parentheses(const Piece& piece, Binding wanted, bool latex) {
-  if (piece.binding >= wanted) return piece.text;
-  return latex ? fmt::format("\\left({}\\right)", piece.text) : fmt::format("({})", piece.text);
-}
-
-// Walks the tape and lets `leaf`, `unary` and `binary` write the pieces.
-template <typename Leaf, typename Unary, typename Binary>
-std::string write_pieces(const Expression& formula, Leaf leaf, Unary unary, Binary binary) {
-  std::vector<Piece> stack;
-  for (std::size_t i = 0; i < formula.size(); ++i) {
-    const Node& node = formula.node(i);
-    if (arity(node.op) == 0) {
-      stack.push_back(leaf(node));
-    } else if (arity(node.op) == 1) {
-      stack.back() = unary(node.op, stack.back());
-    } else {
-      const Piece right = std::move(stack.back());
-      stack.pop_back();
-      stack.back() = binary(node.op, stack.back(), right, formula.node(i - 1));
-    }
-  }
-  return stack.back().text;
-}
-
-Piece sympy_unary(Op op, const Piece& a) {
-  if (op == Op::neg) return {fmt::format("-{}", in_parentheses(a, kMinus, false)), kMinus};
+Piece sympy_unary(Op op, const Piece& a, const Node& /*child*/) {
+  if (op == Op::neg) return {fmt::format("-{}", at_least(kMinus, a)), kMinus};
   const std::string_view name = op == Op::abs ? "Abs" : (op == Op::sgn ? "sign" : op_name(op));
   return {fmt::format("sp.{}({})", name, a.text), kAtom};
 }
 
 Piece sympy_binary(Op op, const Piece& a, const Piece& b, const Node& exponent) {
-  switch (op) {
-    case Op::add:
-    case Op::sub:
-      return {fmt::format("{} {} {}", a.text, op_name(op), in_parentheses(b, kProduct, false)),
-              kSum};
-    case Op::mul:
-    case Op::div:
-      return {fmt::format("{}{}{}", in_parentheses(a, kProduct, false), op_name(op),
-                          in_parentheses(b, kMinus, false)),
-              kProduct};
-    default: {
-      // An integer exponent stays one, so that SymPy multiplies instead of taking logarithms.
-      const bool whole = exponent.is_constant() && exponent.value == std::floor(exponent.value) &&
-                         std::abs(exponent.value) < 1e6;
-      const std::string power =
-          whole ? fmt::format("{:.0f}", exponent.value) : in_parentheses(b, kMinus, false);
-      return {fmt::format("{}**{}", in_parentheses(a, kAtom, false), power), kPower};
-    }
-  }
+  if (op != Op::pow) return write_arithmetic(op, a, b);
+  // An integer exponent stays one, so that SymPy multiplies instead of taking logarithms.
+  const bool whole = exponent.is_constant() && exponent.value == std::floor(exponent.value) &&
+                     std::abs(exponent.value) < 1e6;
+  const std::string power = whole ? fmt::format("{:.0f}", exponent.value) : at_least(kMinus, b);
+  return {fmt::format("{}**{}", at_least(kAtom, a), power), kPower};
+}
+
+std::string latex_at_least(Binding wanted, const Piece& piece) {
+  return at_least(wanted, piece, "\\left(", "\\right)");
 }
 
 std::string latex_number(double value, int digits) {
@@ -108,10 +68,10 @@ std::string latex_name(std::string_view name) {
   return fmt::format("{}_{{\\mathrm{{{}}}}}", latex_word(name.substr(0, bar)), subscript);
 }
 
-Piece latex_unary(Op op, const Piece& a) {
+Piece latex_unary(Op op, const Piece& a, const Node& /*child*/) {
   switch (op) {
     case Op::neg:
-      return {fmt::format("-{}", in_parentheses(a, kMinus, true)), kMinus};
+      return {fmt::format("-{}", latex_at_least(kMinus, a)), kMinus};
     case Op::exp:
       return {fmt::format("\\exp\\left({}\\right)", a.text), kAtom};
     case Op::sqrt:
@@ -125,24 +85,24 @@ Piece latex_unary(Op op, const Piece& a) {
   }
 }
 
-Piece latex_binary(Op op, const Piece& a, const Piece& b) {
+Piece latex_binary(Op op, const Piece& a, const Piece& b, const Node& /*exponent*/) {
   switch (op) {
     case Op::add:
     case Op::sub: {
       const bool signed_right = b.text.starts_with('-');
       return {fmt::format("{} {} {}", a.text, op_name(op),
-                          in_parentheses(b, signed_right ? kAtom : kProduct, true)),
+                          latex_at_least(signed_right ? kAtom : kProduct, b)),
               kSum};
     }
     case Op::mul:
-      return {fmt::format("{} \\cdot {}", in_parentheses(a, kProduct, true),
-                          in_parentheses(b, b.text.starts_with('-') ? kAtom : kPower, true)),
+      return {fmt::format("{} \\cdot {}", latex_at_least(kProduct, a),
+                          latex_at_least(b.text.starts_with('-') ? kAtom : kPower, b)),
               kProduct};
     case Op::div:
       return {fmt::format("\\frac{{{}}}{{{}}}", a.text, b.text), kPower};
     default: {
       // A fraction or a power as the base of a power needs its parentheses.
-      return {fmt::format("{}^{{{}}}", in_parentheses(a, kAtom, true), b.text), kPower};
+      return {fmt::format("{}^{{{}}}", latex_at_least(kAtom, a), b.text), kPower};
     }
   }
 }
@@ -182,10 +142,7 @@ std::string latex_code(const CodeSource& source) {
     if (!column.is_sign) return {name, kAtom};
     return {fmt::format("\\operatorname{{sgn}}\\left({}\\right)", name), kAtom};
   };
-  const auto binary = [](Op op, const Piece& a, const Piece& b, const Node& /*exponent*/) {
-    return latex_binary(op, a, b);
-  };
-  return write_pieces(source.formula, leaf, latex_unary, binary) + "\n";
+  return write_pieces(source.formula, leaf, latex_unary, latex_binary) + "\n";
 }
 
 }  // namespace tribench

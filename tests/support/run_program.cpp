@@ -31,19 +31,8 @@ Rows read_rows(const std::filesystem::path& file) {
 
 ProgramRun run_to_end(const std::vector<std::string>& command,
                       const std::vector<std::string>& environment) {
-  ChildProcess program(ChildOptions{command, environment, {}, true});
-  program.close_input();
-  ProgramRun run;
-  for (bool ended = false; !ended;) {
-    const ChildOutput output = program.read(1.0);
-    run.output += output.output;
-    run.errors += output.errors;
-    ended = output.ended;
-  }
-  const ChildExit exit = program.wait();
-  run.status = exit.status;
-  run.signal = exit.signal;
-  return run;
+  const ChildRun run = run_child({.command = command, .environment = environment});
+  return {run.exit.status, run.exit.signal, run.output, run.errors};
 }
 
 std::string output_of(const std::string& line) { return run_to_end({"bash", "-c", line}).output; }
