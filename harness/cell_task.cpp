@@ -94,6 +94,8 @@ json record_json(const Record& r) {
           {"mae_truth", number(r.mae_truth)},
           {"mae_ceiling", number(r.mae_ceiling)},
           {"mae_law", number(r.mae_law)},
+          {"mae_refitted", number(r.mae_refitted)},
+          {"mae_truth_refitted", number(r.mae_truth_refitted)},
           {"relative_error_train", number(r.relative_error_train)},
           {"relative_error_test", number(r.relative_error_test)},
           {"complexity", r.complexity},
@@ -134,6 +136,8 @@ Record parse_record(const json& object) {
   r.mae_truth = number(object, "mae_truth");
   r.mae_ceiling = number(object, "mae_ceiling");
   r.mae_law = number(object, "mae_law");
+  r.mae_refitted = number(object, "mae_refitted");
+  r.mae_truth_refitted = number(object, "mae_truth_refitted");
   r.relative_error_train = number(object, "relative_error_train");
   r.relative_error_test = number(object, "relative_error_test");
   r.complexity = object.at("complexity");

@@ -184,8 +184,8 @@ void sample_problem(const ProblemEntry& entry, const std::vector<const Record*>&
     if (profile) sampler.add_profile(drawn, *profile);
   };
   Sampler(first, points).add_measured();
-  if (!first.true_law.empty()) {
-    sample(first, {{}, {}, {}, parse(first.true_law, first.input_names())});
+  if (const std::string law = first.true_law(); !law.empty()) {
+    sample(first, {{}, {}, {}, parse(law, first.input_names())});
   }
   for (const Record* record : records) {
     const Problem& problem = problem_of(record->seed);

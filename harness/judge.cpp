@@ -9,32 +9,15 @@
 
 #include "algorithms/admission.hpp"
 #include "algorithms/expression/complexity.hpp"
-#include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/grid_check.hpp"
 #include "algorithms/expression/property.hpp"
 #include "algorithms/expression/singularity.hpp"
 #include "algorithms/expression/text.hpp"
 #include "harness/metrics.hpp"
+#include "harness/table_evaluator.hpp"
 
 namespace tribench {
 namespace {
-
-// Evaluates over whole tables; keeps its buffers.
-class TableEvaluator {
- public:
-  std::span<const double> evaluate(const Expression& formula, const Table& table) {
-    columns_.clear();
-    for (const std::vector<double>& column : table.columns) columns_.push_back(column.data());
-    values_.resize(table.rows());
-    evaluator_.evaluate(formula, {columns_, table.rows()}, values_);
-    return values_;
-  }
-
- private:
-  Evaluator evaluator_;
-  std::vector<const double*> columns_;
-  std::vector<double> values_;
-};
 
 // The rows that the judged formula was fitted to: the last stage's.
 const Table& fitted_rows(const Problem& problem) { return problem.stages.back().train; }
@@ -130,11 +113,6 @@ void judge_formula(const Problem& problem, const StagedFormula& staged, Record& 
   record.relative_error_test = on_test.relative;
   if (!problem.test.truth.empty()) {
     record.mae_truth = compute_errors(values, problem.test.truth).mae;
-    record.mae_ceiling = compute_errors(problem.test.truth, problem.test.target).mae;
-  }
-  if (!problem.true_law.empty()) {
-    const Expression law = parse(problem.true_law, problem.input_names());
-    record.mae_law = compute_errors(evaluator.evaluate(law, problem.test), problem.test.target).mae;
   }
   record.complexity = paper_complexity(formula);
   record.nodes = node_count(formula);

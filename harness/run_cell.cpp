@@ -15,6 +15,7 @@
 #include "algorithms/external/external_method.hpp"
 #include "foundation/error.hpp"
 #include "harness/judge.hpp"
+#include "harness/table_evaluator.hpp"
 
 namespace tribench {
 namespace {
@@ -123,10 +124,8 @@ class StageView {
   }
 
   void subtract(const Table& table, const Expression& so_far) {
-    std::vector<const double*> columns;
-    for (const std::vector<double>& column : table.columns) columns.push_back(column.data());
-    std::vector<double> values(table.rows());
-    Evaluator().evaluate(so_far, {columns, table.rows()}, values);
+    TableEvaluator evaluator;
+    const std::span<const double> values = evaluator.evaluate(so_far, table);
     for (std::size_t r = 0; r < target_.size(); ++r) target_[r] -= values[r];
   }
 
@@ -206,6 +205,13 @@ void name_problem(const Problem& problem, Record& record) {
   record.load = problem.load;
 }
 
+void set_yardsticks(const Yardsticks& yardsticks, Record& record) {
+  record.mae_ceiling = yardsticks.ceiling;
+  record.mae_law = yardsticks.law;
+  record.mae_refitted = yardsticks.refitted;
+  record.mae_truth_refitted = yardsticks.truth_refitted;
+}
+
 }  // namespace
 
 CellResult fit_and_judge(const Problem& problem, const Regressor& method, const CellTask& task) {
@@ -247,16 +253,18 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
   return result;
 }
 
-const Problem& CellRunner::problem(const CellTask& task) {
+const CellRunner::Measured& CellRunner::problem(const CellTask& task) {
   constexpr std::size_t kKept = 16;
   const std::string key = fmt::format("{}|{}|{}", task.cell.problem, task.cell.seed, task.data);
-  const auto found = std::ranges::find(problems_, key, &std::pair<std::string, Problem>::first);
+  const auto found = std::ranges::find(problems_, key, &std::pair<std::string, Measured>::first);
   if (found != problems_.end()) {
     problems_.splice(problems_.begin(), problems_, found);
   } else {
     const Catalogue catalogue(task.data.empty() ? std::nullopt
                                                 : std::optional<std::filesystem::path>(task.data));
-    problems_.emplace_front(key, catalogue.find(task.cell.problem).make(task.cell.seed));
+    Problem made = catalogue.find(task.cell.problem).make(task.cell.seed);
+    const Yardsticks yardsticks = measure_yardsticks(made);
+    problems_.emplace_front(key, Measured{std::move(made), yardsticks});
     if (problems_.size() > kKept) problems_.pop_back();
   }
   return problems_.front().second;
@@ -268,14 +276,17 @@ CellResult CellRunner::run(const CellTask& task,
   failed.record = empty_record(task.cell);
   failed.record.status = "failed";
   try {
-    const Problem& data = problem(task);
-    name_problem(data, failed.record);
+    const Measured& data = problem(task);
+    name_problem(data.problem, failed.record);
+    set_yardsticks(data.yardsticks, failed.record);
     on_problem(failed.record);
     const std::unique_ptr<Regressor> method =
         task.method.is_external()
             ? make_external_method(task.method.command, task.method.parameters)
             : registry_.make(task.method.algorithm, task.method.parameters);
-    return fit_and_judge(data, *method, task);
+    CellResult result = fit_and_judge(data.problem, *method, task);
+    set_yardsticks(data.yardsticks, result.record);
+    return result;
   } catch (const Error& error) {
     failed.record.reason = fmt::format("error ({})", error.what());
   }

@@ -13,12 +13,14 @@
 #include "algorithms/registry.hpp"
 #include "algorithms/regressor.hpp"
 #include "harness/cell_task.hpp"
+#include "harness/yardsticks.hpp"
 #include "problems/problem.hpp"
 
 namespace tribench {
 
 // Fits every stage of the problem, each to what the stages before have left, and judges the sum.
-// Errors of the method become a failed record; std::bad_alloc is passed on.
+// Errors of the method become a failed record; std::bad_alloc is passed on. The record's yardsticks
+// are left to whoever knows them.
 CellResult fit_and_judge(const Problem& problem, const Regressor& method, const CellTask& task);
 
 // Keeps the last problems made: cells that follow each other often share one, and making it (20 ms
@@ -32,10 +34,14 @@ class CellRunner {
   CellResult run(const CellTask& task, const std::function<void(const Record&)>& on_problem);
 
  private:
-  const Problem& problem(const CellTask& task);
+  struct Measured {
+    Problem problem;
+    Yardsticks yardsticks;
+  };
+  const Measured& problem(const CellTask& task);
 
   const Registry& registry_;
-  std::list<std::pair<std::string, Problem>> problems_;  // by key; the one used last stands first
+  std::list<std::pair<std::string, Measured>> problems_;  // by key; the one used last stands first
 };
 
 }  // namespace tribench

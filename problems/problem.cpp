@@ -10,4 +10,13 @@ std::vector<std::string> Problem::input_names() const {
   return names;
 }
 
+std::string Problem::true_law() const {
+  std::string whole;
+  for (const Stage& stage : stages) {
+    if (stage.law.empty()) return {};
+    whole += whole.empty() ? stage.law : " + (" + stage.law + ")";
+  }
+  return whole;
+}
+
 }  // namespace tribench

@@ -44,6 +44,9 @@ struct Stage {
   std::string name;                 // "fit", "adapt"
   std::vector<std::size_t> inputs;  // places among the problem's inputs that this stage may use
   Table train;                      // columns of ALL the problem's inputs, in the problem's order
+  // What lies behind the target, less what earlier stages explain, as a formula over the problem's
+  // inputs (print form); empty where it is not one or not known.
+  std::string law = {};
 };
 
 struct Problem {
@@ -57,9 +60,9 @@ struct Problem {
   std::vector<Input> inputs;
   std::vector<Stage> stages;  // at least one
   Table test;
-  // The true law as a formula over the inputs, where it is one (print form), else empty.
-  std::string true_law;
 
+  // The laws of all stages together, in print form; empty where one of them is not known.
+  std::string true_law() const;
   bool staged() const { return stages.size() > 1; }
   std::vector<std::string> input_names() const;
 };

@@ -163,14 +163,6 @@ std::string method_table(const ProblemTable& table) {
   return text.text();
 }
 
-std::string yardsticks(const ProblemTable& table) {
-  if (std::isnan(table.mae_ceiling)) return {};
-  std::string text = fmt::format("Noise ceiling {}", figure(table.mae_ceiling));
-  if (!std::isnan(table.mae_law))
-    text += fmt::format("; the true law's error {}", figure(table.mae_law));
-  return text + ".\n\n";
-}
-
 std::string formulas(const ProblemTable& table) {
   std::string text;
   for (const MethodRow& row : table.rows) {
@@ -224,7 +216,9 @@ std::string leaderboard(const RunFolder& run, const RunSummary& summary,
     if (table.problem != problem) text += fmt::format("\n## {}\n", table.problem);
     problem = table.problem;
     text += fmt::format("\n### {}, operators `{}`\n\n", table.problem, table.operators);
-    text += yardsticks(table);
+    if (const std::string yardsticks = yardsticks_text(table); !yardsticks.empty()) {
+      text += yardsticks + "\n\n";
+    }
     text += method_table(table) + '\n';
     text += reading_of(table) + "\n\n";
     text += formulas(table);

@@ -104,14 +104,24 @@ bool is_published_form(const PublishedProblem& problem, const PublishedRow& row)
   return false;
 }
 
+// How near an error comes to the ceiling, and how sure that is.
+std::string nearness(const Against& ceiling) {
+  if (ceiling.middle <= kNearCeiling) return "within 3 %";
+  if (ceiling.interval.contains(kNearCeiling)) return "cannot be told from 3 %";
+  return "not within 3 %";
+}
+
 void remark_on_ceiling(PublishedProblem& problem, const PublishedRow& symbolic) {
-  std::string text = fmt::format("Best symbolic regression: {} ({}), {}", symbolic.ours->method,
+  const MethodRow& ours = *symbolic.ours;
+  std::string text = fmt::format("Best symbolic regression: {} ({}), {}", ours.method,
                                  symbolic.operators, figure(error_of(symbolic)));
-  if (std::isfinite(problem.mae_ceiling)) {
-    text += fmt::format(
-        ", {:+.1f} % against the noise ceiling{}",
-        100 * (error_of(symbolic) / problem.mae_ceiling - 1),
-        error_of(symbolic) <= kNearCeiling * problem.mae_ceiling ? "" : " (not within 3 %)");
+  if (std::isfinite(ours.ceiling.middle)) {
+    text += fmt::format("; seed by seed {} against the noise ceiling, {}",
+                        against_text(ours.ceiling), nearness(ours.ceiling));
+  }
+  if (std::isfinite(ours.refitted.middle)) {
+    text += fmt::format(", and {} against the true law refitted to the same rows",
+                        against_text(ours.refitted));
   }
   problem.remarks.push_back(text + ".");
 }
@@ -181,7 +191,7 @@ void set_yardsticks(PublishedProblem& problem, const RunSummary& summary) {
   for (const ProblemTable& table : summary.tables) {
     if (table.problem != problem.problem) continue;
     problem.mae_ceiling = table.mae_ceiling;
-    problem.mae_law = table.mae_law;
+    problem.mae_refitted = table.mae_refitted;
     return;
   }
 }
@@ -218,7 +228,9 @@ std::vector<PublishedProblem> match_published(const std::vector<PublishedFigure>
       return each.problem == figure.problem && each.table == figure.table;
     });
     if (found == problems.end()) {
-      found = problems.insert(problems.end(), {figure.table, figure.problem, {}, {}, {}, {}});
+      found = problems.insert(problems.end(), PublishedProblem{});
+      found->table = figure.table;
+      found->problem = figure.problem;
       set_yardsticks(*found, summary);
     }
     const std::size_t before = found->rows.size();

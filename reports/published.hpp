@@ -55,8 +55,8 @@ struct PublishedRow {
 struct PublishedProblem {
   std::string table;
   std::string problem;
-  double mae_ceiling = kMissing;  // noise ceiling
-  double mae_law = kMissing;      // the true law's own error
+  double mae_ceiling = kMissing;   // noise ceiling
+  double mae_refitted = kMissing;  // the true law, its constants fitted to the training rows
   std::vector<PublishedRow> rows;
   std::vector<std::string>
       remarks;  // what the figures say, and the notes, one sentence or two each

@@ -152,4 +152,30 @@ std::string standing_text(const MethodRow& row) {
   }
 }
 
+std::string against_text(const Against& against) {
+  if (!std::isfinite(against.middle)) return "-";
+  const bool percent = against.middle < 2;
+  const auto text = [percent](double ratio) {
+    return percent ? fmt::format("{:+.1f}", 100 * (ratio - 1)) : ratio_figure(ratio);
+  };
+  std::string all = percent ? text(against.middle) + " %" : "x" + text(against.middle);
+  if (!std::isnan(against.interval.low)) {
+    all += fmt::format(" ({} .. {})", text(against.interval.low), text(against.interval.high));
+  }
+  return all;
+}
+
+std::string yardsticks_text(const ProblemTable& table) {
+  if (std::isnan(table.mae_ceiling)) return {};
+  std::string text = fmt::format("Noise ceiling {}", figure(table.mae_ceiling));
+  if (!std::isnan(table.mae_law)) {
+    text += fmt::format("; the true law's error {}", figure(table.mae_law));
+  }
+  if (!std::isnan(table.mae_refitted)) {
+    text += fmt::format(", {} with its constants fitted to the training rows",
+                        figure(table.mae_refitted));
+  }
+  return text + ".";
+}
+
 }  // namespace tribench

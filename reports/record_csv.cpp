@@ -58,6 +58,8 @@ constexpr Column<Record> kResultColumns[] = {
     {"complexity_adaptation", &R::complexity_adaptation},
     {"mae_ceiling", &R::mae_ceiling},
     {"mae_law", &R::mae_law},
+    {"mae_refitted", &R::mae_refitted},
+    {"mae_truth_refitted", &R::mae_truth_refitted},
     {"grid_check", &R::grid_check},
     {"dissipative", &R::dissipative},
     {"monotone", &R::monotone},

@@ -56,6 +56,14 @@ const Record* representative_of(const Cells& cells, double middle) {
   return chosen;
 }
 
+Against ratio_to(const Cells& cells, double Record::*yardstick) {
+  std::vector<double> ratios;
+  for (const Record* record : cells) {
+    if (record->*yardstick > 0) ratios.push_back(placing_error(*record) / (record->*yardstick));
+  }
+  return {median(ratios), median_interval(ratios, 1 - kLevel)};
+}
+
 MethodRow row_of(const Cells& cells) {
   MethodRow row;
   row.method = cells.front()->method;
@@ -81,6 +89,8 @@ MethodRow row_of(const Cells& cells) {
   row.complexity = median_count(cells, &Record::complexity);
   row.complexity_adaptation = median_count(cells, &Record::complexity_adaptation);
   row.evaluations = median_count(cells, &Record::evaluations);
+  row.ceiling = ratio_to(cells, &Record::mae_ceiling);
+  row.refitted = ratio_to(cells, &Record::mae_refitted);
   row.representative = representative_of(cells, row.mae_test.middle);
   return row;
 }
@@ -161,7 +171,8 @@ ProblemTable table_of(const std::string& problem, const std::string& operators,
                      {},
                      0,
                      median_over_seeds(methods, &Record::mae_ceiling),
-                     median_over_seeds(methods, &Record::mae_law)};
+                     median_over_seeds(methods, &Record::mae_law),
+                     median_over_seeds(methods, &Record::mae_refitted)};
   std::vector<const Cells*> cells;
   for (auto& [row, of] : both) {
     table.seeds = std::max(table.seeds, row.cells);

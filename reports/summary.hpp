@@ -35,6 +35,12 @@ enum class Standing {
   failed,               // no median: half of its cells or more failed
 };
 
+// A method's errors over a yardstick's, seed by seed; a failed cell counts as infinite.
+struct Against {
+  double middle = kMissing;                            // median over the seeds
+  ConfidenceInterval interval = {kMissing, kMissing};  // of it, 95 %; missing below six seeds
+};
+
 struct MethodRow {
   std::string method;
   std::string operators;  // "-" for a fixed form
@@ -50,6 +56,8 @@ struct MethodRow {
   double complexity_adaptation = 0;
   double fit_cpu_s = kMissing;
   double evaluations = kMissing;
+  Against ceiling;   // the noise ceiling
+  Against refitted;  // the true law with its constants fitted to the same rows
   std::size_t proved_free = 0;
   std::size_t refuted = 0;
   std::size_t undecided = 0;
@@ -65,10 +73,12 @@ struct MethodRow {
 struct ProblemTable {
   std::string problem;
   std::string operators;
-  std::vector<MethodRow> rows;    // best first
-  std::size_t seeds = 0;          // most that any method has
-  double mae_ceiling = kMissing;  // noise ceiling and the true law's own error, where known:
-  double mae_law = kMissing;      // medians over the seeds
+  std::vector<MethodRow> rows;  // best first
+  std::size_t seeds = 0;        // most that any method has
+  // Yardsticks, where known; medians over the seeds.
+  double mae_ceiling = kMissing;   // noise ceiling
+  double mae_law = kMissing;       // the true law's own error
+  double mae_refitted = kMissing;  // the same with its constants fitted to the training rows
   bool has_best() const { return !rows.empty() && rows.front().standing == Standing::best; }
 };
 
@@ -108,5 +118,9 @@ std::string certainty_of(const ProblemTable& table);
 std::string reading_of(const Ranking& ranking);
 // "best", "within 1 %", "not distinguishable", "x1.84 (p 0.012)", ...
 std::string standing_text(const MethodRow& row);
+// "+7.2 % (-1.8 .. +10.1)", "x19 (18 .. 20)" from twice the yardstick on, "-" where not known.
+std::string against_text(const Against& against);
+// "Noise ceiling 0.04; the true law's error 0.04, 0.042 refitted."; empty where not known.
+std::string yardsticks_text(const ProblemTable& table);
 
 }  // namespace tribench

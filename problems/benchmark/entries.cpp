@@ -123,9 +123,9 @@ Problem make_peer(const PeerLaw& law, std::string name, Table train) {
   stage.name = "fit";
   for (std::size_t j = 0; j < problem.inputs.size(); ++j) stage.inputs.push_back(j);
   stage.train = std::move(train);
+  stage.law = law.formula;
   problem.stages.push_back(std::move(stage));
   problem.test = test_grid(law);
-  problem.true_law = law.formula;
   return problem;
 }
 

@@ -79,9 +79,9 @@ Problem make_nguyen(int number, std::uint64_t seed) {
   stage.name = "fit";
   for (std::size_t j = 0; j < law.inputs; ++j) stage.inputs.push_back(j);
   stage.train = draw(law, kTrainRows, random.split("train"));
+  stage.law = law.formula;
   problem.stages.push_back(std::move(stage));
   problem.test = draw(law, kTestRows, random.split("test"));
-  problem.true_law = law.formula;
   return problem;
 }
 

@@ -73,8 +73,7 @@ Problem blank(const std::string& name, std::string dataset, int joint, bool load
           .target_unit = "N m",
           .inputs = {},
           .stages = {},
-          .test = {},
-          .true_law = {}};
+          .test = {}};
 }
 
 Problem make_averaged_problem(const std::string& name, int number, std::uint64_t seed) {
@@ -83,10 +82,11 @@ Problem make_averaged_problem(const std::string& name, int number, std::uint64_t
   const std::vector<char> test = test_movements(joint, seed);
   Problem problem = blank(name, "A", number, false);
   problem.inputs = velocity_inputs();
-  problem.stages.push_back(
-      {"fit", {0, 1}, make_table(data, problem.inputs, "tau_f", complement(test))});
+  problem.stages.push_back({"fit",
+                            {0, 1},
+                            make_table(data, problem.inputs, "tau_f", complement(test)),
+                            joint.law.formula(false, joint.mean_ripple_nm())});
   problem.test = make_table(data, problem.inputs, "tau_f", test);
-  problem.true_law = joint.law.formula(false, joint.mean_ripple_nm());
   return problem;
 }
 
@@ -103,9 +103,11 @@ Problem make_load_problem(const std::string& name, int number, std::uint64_t see
   const KnownDataset raw = make_a_raw(joint, seed, kTestRows);
   Problem problem = blank(name, "A", number, true);
   problem.inputs = load_inputs(joint.gravity_amplitude_nm);
-  problem.stages.push_back({"fit", {0, 1, 2, 3}, load_training(joint, seed, raw, problem.inputs)});
+  problem.stages.push_back({"fit",
+                            {0, 1, 2, 3},
+                            load_training(joint, seed, raw, problem.inputs),
+                            joint.law.formula(true)});
   problem.test = make_table(raw, problem.inputs, "tau_f", test_movements(joint, seed));
-  problem.true_law = joint.law.formula(true);
   return problem;
 }
 
@@ -117,10 +119,11 @@ Problem make_channels_problem(const std::string& name, int number, std::uint64_t
   problem.inputs = load_inputs(joint.gravity_amplitude_nm);
   problem.inputs.push_back({"q", "rad", Role::position, -kStrokeEnd_rad, kStrokeEnd_rad, {}});
   problem.inputs.push_back({"time_s", "s", Role::time, 0, raw.data.at("time_s").values.back(), {}});
-  problem.stages.push_back(
-      {"fit", {0, 1, 2, 3, 4, 5}, load_training(joint, seed, raw, problem.inputs)});
+  problem.stages.push_back({"fit",
+                            {0, 1, 2, 3, 4, 5},
+                            load_training(joint, seed, raw, problem.inputs),
+                            joint.law.formula(true)});
   problem.test = make_table(raw, problem.inputs, "tau_f", test_movements(joint, seed));
-  problem.true_law = joint.law.formula(true);
   return problem;
 }
 
@@ -134,12 +137,15 @@ Problem make_b_problem(const std::string& name, int number, bool load, bool adap
   problem.stages.push_back(
       {"fit",
        {0, 1, 2, 3},
-       load_training(joint, seed, make_a_raw(joint, seed, kTestRows), problem.inputs)});
+       load_training(joint, seed, make_a_raw(joint, seed, kTestRows), problem.inputs),
+       joint.law.formula(true)});
   const std::vector<char> one = {1};
   if (adapted) {
     const KnownDataset movement = make_adaptation_movement(joint, seed);
-    problem.stages.push_back(
-        {"adapt", {1, 2, 3}, make_table(movement, problem.inputs, "tau_f", one)});
+    problem.stages.push_back({"adapt",
+                              {1, 2, 3},
+                              make_table(movement, problem.inputs, "tau_f", one),
+                              joint.shift_formula()});
   }
   const KnownDataset test = make_b_test(joint, seed, load);
   const std::vector<char> all(test.data.movement_names.size(), 1);

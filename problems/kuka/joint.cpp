@@ -73,6 +73,11 @@ double Joint::shift_at(double velocity_rad_s, double gravity_nm) const {
   return shift_offset_nm + s * (shift_coulomb_nm + shift_load * std::abs(gravity_nm));
 }
 
+std::string Joint::shift_formula() const {
+  return fmt::format("{} + sgn_qd*({} + {}*sgn_g*g)", shift_offset_nm, shift_coulomb_nm,
+                     shift_load);
+}
+
 double Joint::mean_ripple_nm() const {
   double mean = 0;
   for (const Harmonic& harmonic : ripple) {

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "problems/friction/law.hpp"
@@ -40,6 +41,8 @@ struct Joint {
   double noise_scale_b = 1;  // of ripple and noise in B
 
   double shift_at(double velocity_rad_s, double gravity_nm) const;
+  // The same over sgn_qd, g and sgn_g, wherever qd and g are not 0.
+  std::string shift_formula() const;
   // Mean of the ripple over the stroke of A [N m].
   double mean_ripple_nm() const;
 };

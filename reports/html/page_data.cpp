@@ -72,7 +72,7 @@ ordered_json tables_json(const RunSummary& summary) {
                    {"reading", reading_of(table)},
                    {"certainty", certainty_of(table)},
                    {"ceiling", finite_or_null(table.mae_ceiling)},
-                   {"law", finite_or_null(table.mae_law)},
+                   {"yardsticks", yardsticks_text(table)},
                    {"rows", std::move(rows)}});
   }
   return all;

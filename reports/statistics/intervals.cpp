@@ -32,6 +32,24 @@ ConfidenceInterval wilson(std::size_t hits, std::size_t trials, double confidenc
   return {std::max(0.0, (centre - half) / scale), std::min(1.0, (centre + half) / scale)};
 }
 
+ConfidenceInterval median_interval(std::span<const double> values, double confidence) {
+  const std::size_t n = values.size();
+  const auto size = static_cast<double>(n);
+  // Chance that fewer than k + 1 of the values lie below the median.
+  double below = 0;
+  std::size_t k = 0;
+  for (; k < n; ++k) {
+    const auto hits = static_cast<double>(k);
+    below += std::exp(std::lgamma(size + 1) - std::lgamma(hits + 1) - std::lgamma(size - hits + 1) -
+                      size * std::log(2.0));
+    if (below > (1 - confidence) / 2) break;
+  }
+  if (k == 0) return kNone;
+  std::vector<double> sorted(values.begin(), values.end());
+  std::ranges::sort(sorted);
+  return {sorted[k - 1], sorted[n - k]};
+}
+
 ConfidenceInterval bootstrap(std::span<const double> values,
                              const std::function<double(std::span<const double>)>& statistic,
                              double confidence, std::size_t rounds, const RandomStream& random) {

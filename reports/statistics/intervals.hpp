@@ -21,6 +21,11 @@ struct ConfidenceInterval {
 // For `hits` of `trials` at the given confidence; Wilson 1927. [0, 1] without trials.
 ConfidenceInterval wilson(std::size_t hits, std::size_t trials, double confidence);
 
+// For the median of what the values are drawn from: from the k-th smallest to the k-th largest,
+// with the largest k that keeps the confidence whatever the distribution (Conover 1999, section
+// 3.2). NaN where there are too few values: fewer than six at 95 %. Values hold no NaN.
+ConfidenceInterval median_interval(std::span<const double> values, double confidence);
+
 // Percentile bootstrap with `rounds` resamples of the values (Efron 1979); `statistic` sees each
 // resample. Values hold no NaN; with none the interval is NaN. Cost: rounds x statistic.
 ConfidenceInterval bootstrap(std::span<const double> values,

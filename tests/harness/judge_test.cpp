@@ -77,7 +77,6 @@ TEST(FitAndJudge, AddsTheStagesFormulasAndCountsTheAdaptationApart) {
   EXPECT_EQ(record.status, "ok") << record.reason;
   EXPECT_NEAR(record.mae_test, 0, 1e-12);
   EXPECT_NEAR(record.mae_truth, 0, 1e-12);
-  EXPECT_NEAR(record.mae_ceiling, 0, 1e-12);
   EXPECT_NEAR(record.r2_test, 1, 1e-12);
   // (2 v + 1) + (3 g + 0): two products, three sums, two variables.
   EXPECT_EQ(record.complexity, 7);

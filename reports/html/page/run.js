@@ -109,8 +109,7 @@ function drawProblem() {
   const table = tableHere();
   byId("problem-title").textContent = `${state.problem}, operators ${state.operators}`;
   byId("problem-reading").textContent = table ? table.reading : "No cell of this problem has ended.";
-  byId("problem-ceiling").textContent = table && table.ceiling !== null
-    ? `Noise ceiling ${fig(table.ceiling)}` + (table.law === null ? "." : `; the true law's error ${fig(table.law)}.`) : "";
+  byId("problem-ceiling").textContent = table ? table.yardsticks : "";
   byId("problem-table").replaceChildren(table ? methodTable(table) : "", table ? formulaList(table) : "");
   byId("record").hidden = true;
   const ranking = data.rankings.find((r) => r.operators === state.operators);
@@ -171,7 +170,8 @@ function referencePart() {
       {name: "its complexity", key: "published_complexity", count: true},
       {name: "ours", key: "method"}, {name: "operators", key: "operators"}, {name: "our MAE", key: "mae", number: true},
       {name: "over seeds", key: "low", show: (r) => r.low === null ? "" : `${fig(r.low)} … ${fig(r.high)}`},
-      {name: "noise ceiling", key: "ceiling", number: true}, {name: "true law", key: "law", number: true},
+      {name: "noise ceiling", key: "ceiling", number: true}, {name: "law refitted", key: "refitted", number: true},
+      {name: "against the ceiling", key: "against_ceiling"}, {name: "against the law refitted", key: "against_refitted"},
       {name: "our complexity", key: "complexity", count: true}, {name: "singular", key: "singular", count: true}],
       rows, {label: "published figures beside ours"}),
     el("p", {class: "soft", style: "margin-top:.8rem"}, "What the figures say, and what is known of a difference:"), ...remarks];

@@ -125,7 +125,7 @@ TEST(ParFam, ComesNearTheTrueLawOnAveragedDataOfBothJoints) {
       std::vector<const double*> columns;
       for (const auto& column : problem.test.columns) columns.push_back(column.data());
       const TrainingData test{problem.inputs, columns, problem.test.target, problem.test.movement};
-      Expression law = parse(problem.true_law, problem.input_names());
+      Expression law = parse(problem.true_law(), problem.input_names());
       ConstantFitter().fit(law, training.data().table(), training.table->target, {},
                            {.max_iterations = 50});
       const FitResult result = run_fit(training.data(), "parfam", {.seed = seed});

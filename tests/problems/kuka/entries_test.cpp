@@ -62,9 +62,10 @@ TEST(KukaEntries, HaveThePapersInputsAndAreInsideTheirBox) {
 TEST(KukaEntries, TheTrueLawGivesTheTruth) {
   const Catalogue catalogue;
   Evaluator evaluator;
-  for (const char* name : {"A/j2/no_load", "A/j4/no_load", "A/j2/load", "A/j4/load"}) {
+  for (const char* name :
+       {"A/j2/no_load", "A/j4/no_load", "A/j2/load", "A/j4/load", "B/j2/no_load", "B/j4/load"}) {
     const Problem problem = catalogue.find(name).make(9);
-    const Expression law = parse(problem.true_law, problem.input_names());
+    const Expression law = parse(problem.true_law(), problem.input_names());
     std::vector<const double*> columns;
     for (const auto& column : problem.test.columns) columns.push_back(column.data());
     std::vector<double> values(problem.test.rows());

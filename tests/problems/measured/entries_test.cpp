@@ -37,7 +37,7 @@ TEST(MeasuredEntries, EveryProblemCanBeMadeAndKeepsItsPromises) {
       EXPECT_GT(train.rows(), 20U) << plan.name;
       EXPECT_LE(train.rows(), 6000U) << plan.name;
       EXPECT_GT(problem.test.rows(), 0U) << plan.name;
-      EXPECT_TRUE(problem.true_law.empty());
+      EXPECT_TRUE(problem.true_law().empty());
       if (plan.test_file.empty()) {
         const std::set<int> trained(train.movement.begin(), train.movement.end());
         for (const int movement : problem.test.movement) {

@@ -25,6 +25,36 @@ TEST(Wilson, GivesThePublishedIntervals) {
   EXPECT_EQ(wilson(0, 0, 0.95).high, 1);
 }
 
+TEST(MedianInterval, IsBetweenTheOrderStatisticsOfTheBinomialTable) {
+  std::vector<double> values(10);
+  std::iota(values.begin(), values.end(), 1.0);
+  // Ten values at 95 %: the second and the ninth (97.9 %); fifteen: the fourth and the twelfth.
+  EXPECT_EQ(median_interval(values, 0.95).low, 2);
+  EXPECT_EQ(median_interval(values, 0.95).high, 9);
+  values.resize(15);
+  std::iota(values.begin(), values.end(), 1.0);
+  EXPECT_EQ(median_interval(values, 0.95).low, 4);
+  EXPECT_EQ(median_interval(values, 0.95).high, 12);
+  // 2 * 2^-6 < 5 % < 2 * 2^-5: six are the fewest.
+  values.resize(6);
+  EXPECT_EQ(median_interval(values, 0.95).low, 1);
+  EXPECT_EQ(median_interval(values, 0.95).high, 6);
+  values.resize(5);
+  EXPECT_TRUE(std::isnan(median_interval(values, 0.95).low));
+}
+
+TEST(MedianInterval, CoversTheMedianOfASkewedLawAtLeastAsOftenAsItClaims) {
+  RandomStream random(6);
+  constexpr int kStudies = 2000;
+  int covered = 0;
+  for (int study = 0; study < kStudies; ++study) {
+    std::vector<double> values(12);
+    for (double& value : values) value = std::exp(2 * random.normal());
+    if (median_interval(values, 0.95).contains(1)) ++covered;
+  }
+  EXPECT_GE(covered, 0.95 * kStudies);
+}
+
 TEST(Bootstrap, CoversTheTrueMeanNearlyAsOftenAsItClaims) {
   RandomStream random(5);
   constexpr int kStudies = 400;
