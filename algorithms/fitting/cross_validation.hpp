@@ -10,7 +10,9 @@
 //
 // Where the formula will be used beyond the rows (the declared box is wider than their range), held
 // out as well are the rows at the edge that it will be continued over: the best formula between the
-// rows is often not the best beyond them (a square of the load, fitted to the unloaded arm).
+// rows is often not the best beyond them (a square of the load, fitted to the unloaded arm). There
+// a larger formula has to be better by two standard errors, not by one: what it adds is seen on the
+// rows and trusted beyond them.
 #pragma once
 
 #include <cstdint>
@@ -36,12 +38,14 @@ bool reaches_beyond(const Inputs& inputs, const InputBox& box);
 
 // formulas: by increasing complexity, at least one. All values finite; movement[r] names the
 // movement of row r. Chosen is the simplest formula whose held-out error exceeds the smallest by
-// less than `tolerance` standard errors of the paired difference. The rows of a single movement are
-// held out by stretches, in their order; with fewer than 20 of them the last formula is chosen.
-// box: the ranges the formula will be used over; none given means those of the rows. A formula
-// that leaves the band of a straight continuation somewhere in a wider box counts as infinite.
+// less than one standard error of the paired difference (two where it reaches beyond), and is
+// nowhere twice as large. The rows of
+// a single movement are held out by stretches, in their order; with fewer than 20 of them the last
+// formula is chosen. box: the ranges the formula will be used over; none given means those of the
+// rows. A formula that leaves the band of a straight continuation somewhere in a wider box counts
+// as infinite.
 CrossValidation cross_validate(std::span<const Expression> formulas, const Inputs& inputs,
                                std::span<const double> target, std::span<const int> movement,
-                               const InputBox& box = {}, int folds = 5, double tolerance = 1.0);
+                               const InputBox& box = {}, int folds = 5);
 
 }  // namespace tribench

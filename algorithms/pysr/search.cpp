@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <optional>
 
 #include "algorithms/expression/input_box.hpp"
 #include "algorithms/expression/singularity.hpp"
@@ -79,7 +80,8 @@ class Search {
   void report();
   bool has_converged();
   FitResult result_of(const std::vector<Candidate>& front, const InputBox& box) const;
-  std::vector<double> errors_beyond(std::span<const Expression> front, const InputBox& box) const;
+  std::optional<std::size_t> choice_beyond(std::span<const Expression> front,
+                                           const InputBox& box) const;
   template <typename Work>
   void on_all_islands(Work work);
 
@@ -234,21 +236,23 @@ FitResult Search::run() {
   return result_of(front, box);
 }
 
-// Held-out errors of the front where its choice will be used beyond the rows it was found on, which
-// no measure of size can speak for; empty where it will not. Done even where the search has spent
-// everything: it costs a few hundredths of that, and is counted.
-std::vector<double> Search::errors_beyond(std::span<const Expression> front,
-                                          const InputBox& box) const {
-  if (!options_.refine || front.empty() || context_.budget.out_of_time()) return {};
+// The choice where the formula will be used beyond the rows it was found on, which no measure of
+// size can speak for; none where it will not. Made even where the search has spent everything: it
+// costs a few hundredths of that, and is counted.
+std::optional<std::size_t> Search::choice_beyond(std::span<const Expression> front,
+                                                 const InputBox& box) const {
+  if (!options_.refine || context_.budget.out_of_time()) return {};
   const FiniteRows rows(context_.data);
   if (!reaches_beyond(rows.table(), box)) return {};
-  CrossValidation validation = cross_validate(front, rows.table(), rows.target, rows.movement, box);
+  const CrossValidation validation =
+      cross_validate(front, rows.table(), rows.target, rows.movement, box);
   context_.budget.spend(validation.node_rows);
-  return std::move(validation.mean_square);
+  return validation.chosen;
 }
 
 FitResult Search::result_of(const std::vector<Candidate>& front, const InputBox& box) const {
   FitResult result;
+  result.reason = context_.budget.exhausted() ? StopReason::budget : StopReason::converged;
   std::vector<FrontPoint> points;
   std::vector<std::size_t> places;
   for (const Candidate& candidate : front) {
@@ -256,24 +260,22 @@ FitResult Search::result_of(const std::vector<Candidate>& front, const InputBox&
     result.front.push_back(candidate.formula);
     points.push_back(candidate.point);
   }
-  std::vector<double> beyond = errors_beyond(result.front, box);
   // The formula the method stands for must not be wrong between the training points: the next
   // choice takes the place of one that is refuted.
-  while (!points.empty()) {
-    const std::size_t choice =
-        beyond.empty()
-            ? select(points, options_.selection)
-            : static_cast<std::size_t>(std::ranges::min_element(beyond) - beyond.begin());
+  std::vector<Expression> left = result.front;
+  while (!left.empty()) {
+    const std::optional<std::size_t> beyond = choice_beyond(left, box);
+    const std::size_t choice = beyond ? *beyond : select(points, options_.selection);
     result.chosen = places[choice];
-    if (!options_.refine || points.size() == 1 ||
-        prove_free(result.front[result.chosen], box).verdict != Verdict::refuted) {
+    if (!options_.refine || left.size() == 1 ||
+        prove_free(left[choice], box).verdict != Verdict::refuted) {
       break;
     }
-    points.erase(points.begin() + static_cast<std::ptrdiff_t>(choice));
-    if (!beyond.empty()) beyond.erase(beyond.begin() + static_cast<std::ptrdiff_t>(choice));
-    places.erase(places.begin() + static_cast<std::ptrdiff_t>(choice));
+    const auto place = static_cast<std::ptrdiff_t>(choice);
+    left.erase(left.begin() + place);
+    points.erase(points.begin() + place);
+    places.erase(places.begin() + place);
   }
-  result.reason = context_.budget.exhausted() ? StopReason::budget : StopReason::converged;
   return result;
 }
 

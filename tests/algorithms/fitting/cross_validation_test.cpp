@@ -142,6 +142,47 @@ TEST(CrossValidation, HoldsOutTheEdgeThatAFormulaWillBeContinuedOver) {
   EXPECT_GT(last_over_parabola({{-1, 1.2}}), 1);
 }
 
+TEST(CrossValidation, ForgivesNoFormulaThatIsFarWorseInOnePart) {
+  // The line is wrong by far where the last movement is held out, which makes the standard error of
+  // its mean as large as the mean; the exponential is exact. The third is exact as well, and
+  // larger.
+  std::vector<double> v;
+  std::vector<double> y;
+  std::vector<int> movement;
+  for (int r = 0; r < 200; ++r) {
+    v.push_back(-1 + 0.01 * r);
+    y.push_back(std::exp(8 * v.back()));
+    movement.push_back(r / 40);
+  }
+  const double* columns[] = {v.data()};
+  const std::vector<Expression> front = {parse("1*v", kNames), parse("1.1*exp(7.9*v)", kNames),
+                                         parse("1.1*exp(7.9*v) + 0.1*v", kNames)};
+  EXPECT_EQ(cross_validate(front, {columns, 200}, y, movement).chosen, 1U);
+}
+
+TEST(CrossValidation, AsksMoreOfALargerFormulaThatWillBeUsedBeyondTheRows) {
+  int within = 0;
+  int beyond = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    RandomStream random(100 + seed);
+    std::vector<double> v;
+    std::vector<double> y;
+    std::vector<int> movement;
+    for (int r = 0; r < 200; ++r) {
+      v.push_back(random.uniform(-1, 1));
+      y.push_back(v.back() + 0.15 * v.back() * v.back() + 0.5 * random.normal());
+      movement.push_back(r / 20);
+    }
+    const double* columns[] = {v.data()};
+    const std::vector<Expression> front = {parse("0.1 + 1*v", kNames),
+                                           parse("0.1 + 1*v + 0.1*v^2", kNames)};
+    within += cross_validate(front, {columns, 200}, y, movement).chosen == 1 ? 1 : 0;
+    beyond += cross_validate(front, {columns, 200}, y, movement, {{-1, 1.2}}).chosen == 1 ? 1 : 0;
+  }
+  EXPECT_GT(within, 0);
+  EXPECT_LT(2 * beyond, within) << beyond << " of " << within;
+}
+
 TEST(CrossValidation, TakesTheLastFormulaWhereThereIsNothingToHoldOut) {
   const std::vector<double> v = {1, 2, 3};
   const std::vector<double> y = {1, 2, 3};
