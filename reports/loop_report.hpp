@@ -15,8 +15,8 @@
 //        "channel": "velocity", "unit": "rad/s",
 //        "x": [..],                            // thinned to about 1500 rows
 //        "before": [..], "after": [..],        // residual of those rows; null where missing
-//        "effect": [..],                       // what the added effects give at those rows,
-//        together "effects": [{"family": "stribeck", "y": [..]}]  // optionally each by itself
+//        "effect": [..],                       // what the refitted model says beyond the base
+//        "effects": [{"family": "stribeck", "y": [..]}]  // optionally each by itself
 //     }],
 //     "movements": [{"name": "17", "test": true, "mae_before": 0.5, "mae_after": 0.1}],
 //     "alias_map": {"families": ["stribeck", ..], "correlation": [[1, 0.3], [0.3, 1]]}

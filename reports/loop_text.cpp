@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -35,9 +36,14 @@ std::string errors_of(const json& loop) {
                fmt::format("{} .. {}", figure(element_of(error["ci_diff"], 0)),
                            figure(element_of(error["ci_diff"], 1)))});
   }
-  add("ceiling", "noise ceiling: no model of these inputs does better");
-  add("closed_fraction", "share of the gap to the ceiling that was closed");
-  return table.text();
+  add("ceiling", "the noise at least: no model does better");
+  add("attainable", "the noise at most: a smooth model of these inputs gets there");
+  const double closed = number_of(error, "closed_fraction");
+  if (!std::isnan(closed)) {
+    table.add({"share of the gap to the noise that was closed", closed_share(error)});
+  }
+  const std::string note = text_of(error, "ceiling_note");
+  return table.text() + (note.empty() ? "" : fmt::format("\nNo closed fraction: {}.\n", note));
 }
 
 std::string effects_table(const json& effects) {

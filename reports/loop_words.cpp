@@ -152,6 +152,22 @@ std::string parameters_of(const json& effect) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+std::string closed_share(const json& error) {
+  const double low = number_of(error, "closed_fraction");
+  if (std::isnan(low)) return {};
+  const double high = number_of(error, "closed_fraction_high");
+  std::string text = fmt::format("{:.0f} %", 100 * low);
+  if (!std::isnan(high) && std::lround(100 * high) > std::lround(100 * low)) {
+    text = fmt::format("{:.0f} .. {:.0f} %", 100 * low, 100 * high);
+  }
+  const json interval = items_of(error, "closed_fraction_ci");
+  const double from = element_of(interval, 0);
+  const double to = element_of(interval, 1);
+  if (std::isnan(from) || std::isnan(to)) return text;
+  return fmt::format("{} (the lower figure's 95 % interval: {:.0f} .. {:.0f} %)", text, 100 * from,
+                     100 * to);
+}
+
 std::string verdict_sentence(const json& loop) {
   const std::string verdict = text_of(loop, "verdict");
   const std::size_t count = items_of(loop, "effects").size();

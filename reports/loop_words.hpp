@@ -30,6 +30,9 @@ std::string movement_words(std::string_view request);
 // "mu = 0.034 (0.031 .. 0.037)".
 std::string parameters_of(const nlohmann::json& effect);
 
+// "52 .. 100 % (95 %: 49 .. 55 at least)" of an `error` object; empty where not known.
+std::string closed_share(const nlohmann::json& error);
+
 std::string verdict_sentence(const nlohmann::json& loop);
 // What, how large, how sure, what else it could be, which movement would settle it.
 std::string effect_sentence(const nlohmann::json& effect, const nlohmann::json& loop);

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "algorithms/diagnosis/ceiling.hpp"
 #include "algorithms/diagnosis/findings.hpp"
 #include "algorithms/diagnosis/held_out.hpp"
 #include "algorithms/diagnosis/search.hpp"
@@ -58,62 +58,6 @@ std::vector<char> rows_of(const Observations& data, const std::vector<int>& test
     keep[i] = is_test == in_test && long_enough && (masked.empty() || masked[i] == 0) ? 1 : 0;
   }
   return keep;
-}
-
-// Residual of every row under the richest model there is (base and all effects, a small ridge),
-// fitted to the training rows: what is left is noise and events, so it says how long noise lasts.
-Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>& train_rows,
-                              const BaseModel& base, const std::vector<EffectFamily>& families,
-                              const DiagnosisOptions& options) {
-  constexpr double kRidge = 1e-4;
-  constexpr int kReweightings = 2;
-  constexpr std::size_t kAtomsOfRichModel = 4;
-  std::vector<Expression> formulas = base.linear_terms;
-  const std::vector<double> ratios =
-      options.gear_ratios.empty() ? std::vector<double>{} : options.gear_ratios;
-  for (std::size_t f = 0; f < families.size(); ++f) {
-    std::vector<std::string> missing;
-    const std::vector<Atom> atoms = instantiate(families[f], f, data, ratios, missing);
-    // Neighbours on a grid of shapes say nearly the same: some of them will do.
-    const std::size_t step = (atoms.size() + kAtomsOfRichModel - 1) / kAtomsOfRichModel;
-    for (std::size_t k = 0; k < atoms.size(); k += std::max<std::size_t>(1, step)) {
-      formulas.insert(formulas.end(), atoms[k].columns.begin(), atoms[k].columns.end());
-    }
-  }
-  Eigen::VectorXd y = target_vector(data);
-  if (!base.formula.empty()) {
-    LoopModel model;
-    model.base.formula = base.formula;
-    y -= predict(model, data);
-  }
-  Eigen::MatrixXd x = evaluate_columns(formulas, data);
-  for (Eigen::Index j = 0; j < x.cols(); ++j) {
-    const double norm = x.col(j).norm();
-    x.col(j) = norm > 0 && std::isfinite(norm) ? Eigen::VectorXd(x.col(j) / norm)
-                                               : Eigen::VectorXd::Zero(x.rows());
-  }
-  Eigen::VectorXd weights(static_cast<Eigen::Index>(data.rows()));
-  for (Eigen::Index i = 0; i < weights.size(); ++i) {
-    weights[i] = train_rows[static_cast<std::size_t>(i)];
-  }
-  const Eigen::VectorXd wanted = weights;
-  Eigen::VectorXd residual = y;
-  for (int pass = 0; pass < kReweightings; ++pass) {
-    const Eigen::MatrixXd weighted = weights.cwiseSqrt().asDiagonal() * x;
-    const Eigen::VectorXd weighted_y = weights.cwiseSqrt().cwiseProduct(y);
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(x.cols(), x.cols());
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
-    normal.diagonal().array() += kRidge * normal.trace() / static_cast<double>(normal.rows());
-    residual = y - x * normal.ldlt().solve(weighted.transpose() * weighted_y);
-    // Huber's weights keep bursts from bending the model.
-    const double sd =
-        std::sqrt(residual.cwiseProduct(wanted).squaredNorm() / std::max(1.0, wanted.sum()));
-    for (Eigen::Index i = 0; i < weights.size(); ++i) {
-      const double size = std::abs(residual[i]);
-      weights[i] = wanted[i] * (size > 2 * sd ? 2 * sd / size : 1.0);
-    }
-  }
-  return residual;
 }
 
 Verdict verdict_of(const Diagnosis& diagnosis) {
@@ -272,33 +216,66 @@ std::vector<std::vector<int>> left_out_together(const Observations& data) {
   return all;
 }
 
+// What the models fitted without them make of the movements left out, in rows of all data.
+struct LeftOut {
+  Eigen::VectorXd before;
+  Eigen::VectorXd after;
+  Eigen::VectorXd corrected;  // as `after` where no bounds are asked for
+};
+
+LeftOut left_out_predictions(const Observations& data, const Diagnosis& fitted,
+                             const std::vector<int>& left, RandomStream random) {
+  LeftOut out{predict(fitted.before, data), predict(fitted.after, data), {}};
+  out.corrected = out.after;
+  if (!fitted.options.ceiling) return out;
+  out.corrected += smooth_correction(data, rows_of(data, left, false, fitted.masked),
+                                     target_vector(data) - out.after, random);
+  return out;
+}
+
+// Errors on the rows with judged[i] != 0. unit: of those rows.
+ErrorFinding judge_rows(const Observations& data, const std::vector<char>& judged,
+                        const LeftOut& models, std::span<const int> unit, bool ceiling,
+                        RandomStream random) {
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (judged[i] != 0) rows.push_back(static_cast<Eigen::Index>(i));
+  }
+  const Observations part = data.select(judged);
+  const Eigen::VectorXd before = models.before(rows);
+  const Eigen::VectorXd after = models.after(rows);
+  ErrorFinding error = judge(part, before, after, unit, random.split("bootstrap"));
+  if (ceiling) {
+    const auto y = target_vector(part);
+    bound_ceiling(error, part, y - before, y - after, y - models.corrected(rows), unit,
+                  random.split("ceiling"));
+  }
+  return error;
+}
+
 // Few movements: the whole procedure again for each, without it, and all of them judged together.
 ErrorFinding judge_in_turn(const Observations& data, const BaseMaker& base, const Diagnosis& whole,
                            RandomStream random) {
   const std::vector<char> usable = rows_of(data, {}, false, whole.masked);
-  Eigen::VectorXd before(static_cast<Eigen::Index>(data.rows()));
-  Eigen::VectorXd after(static_cast<Eigen::Index>(data.rows()));
+  LeftOut all;
+  for (Eigen::VectorXd* one : {&all.before, &all.after, &all.corrected}) {
+    one->setZero(static_cast<Eigen::Index>(data.rows()));
+  }
   for (const std::vector<int>& left : left_out_together(data)) {
-    const auto key = static_cast<std::uint64_t>(left.front());
-    const Diagnosis without = diagnose_training(data, left, base, whole.options, random.split(key));
+    const RandomStream own = random.split(static_cast<std::uint64_t>(left.front()));
+    const Diagnosis without = diagnose_training(data, left, base, whole.options, own);
+    const LeftOut models = left_out_predictions(data, without, left, own.split("smooth"));
     const std::vector<char> rows = rows_of(data, left, true, {});
-    const Observations left_out = data.select(rows);
-    const Eigen::VectorXd one = predict(without.before, left_out);
-    const Eigen::VectorXd other = predict(without.after, left_out);
-    Eigen::Index next = 0;
     for (std::size_t i = 0; i < data.rows(); ++i) {
       if (rows[i] == 0) continue;
-      before[static_cast<Eigen::Index>(i)] = one[next];
-      after[static_cast<Eigen::Index>(i)] = other[next++];
+      const auto at = static_cast<Eigen::Index>(i);
+      all.before[at] = models.before[at];
+      all.after[at] = models.after[at];
+      all.corrected[at] = models.corrected[at];
     }
   }
-  const Observations judged = data.select(usable);
-  std::vector<Eigen::Index> places;
-  for (std::size_t i = 0; i < data.rows(); ++i) {
-    if (usable[i] != 0) places.push_back(static_cast<Eigen::Index>(i));
-  }
-  return judge(judged, before(places), after(places), pieces(judged, whole.correlation_rows),
-               random.split("bootstrap"));
+  const std::vector<int> unit = pieces(data.select(usable), whole.correlation_rows);
+  return judge_rows(data, usable, all, unit, whole.options.ceiling, random);
 }
 
 // One recording: five pieces of it stand for movements.
@@ -352,10 +329,11 @@ Diagnosis diagnose(const Observations& data, const BaseMaker& base, const Diagno
   Diagnosis out = diagnose_training(data, test, base, options, random);
   out.seed = seed;
   out.error.how = "none held out";
-  const Observations held_out = data.select(rows_of(data, test, true, out.masked));
-  if (held_out.rows() > 0) {
-    out.error = judge(held_out, predict(out.before, held_out), predict(out.after, held_out),
-                      held_out.movement, random.split("bootstrap"));
+  const std::vector<char> judged = rows_of(data, test, true, out.masked);
+  if (std::ranges::count(judged, 1) > 0) {
+    const LeftOut models = left_out_predictions(data, out, test, random.split("smooth"));
+    out.error =
+        judge_rows(data, judged, models, data.select(judged).movement, options.ceiling, random);
     out.error.how = "held out";
     out.error.confirmed = out.effects.empty() || out.error.difference_low > 0;
   }

@@ -32,6 +32,7 @@ struct DiagnosisOptions {
   // Empty: the usual ratios are scanned, and the scan is paid for in the statistics.
   std::vector<double> gear_ratios;
   bool physical_vetoes = true;
+  bool ceiling = false;               // bound the noise too: what else could be had (ceiling.hpp)
   std::vector<EffectFamily> learned;  // families beside the built-in ones
   std::vector<std::string> families;  // to be tested; empty: all
 };
@@ -147,8 +148,16 @@ struct ErrorFinding {
   double means_after = std::numeric_limits<double>::quiet_NaN();
   double difference_low = std::numeric_limits<double>::quiet_NaN();  // before - after, 95 %
   double difference_high = std::numeric_limits<double>::quiet_NaN();
+  // Where asked for (DiagnosisOptions::ceiling): the noise lies between `ceiling`, which no model
+  // does better than, and `attainable`, which a smooth one reaches; the share of the gap that was
+  // closed between the two figures that follow from them, the first with its 95 % interval.
   double ceiling = std::numeric_limits<double>::quiet_NaN();
+  double attainable = std::numeric_limits<double>::quiet_NaN();
   double closed_fraction = std::numeric_limits<double>::quiet_NaN();
+  double closed_low = std::numeric_limits<double>::quiet_NaN();
+  double closed_high = std::numeric_limits<double>::quiet_NaN();
+  double closed_fraction_high = std::numeric_limits<double>::quiet_NaN();
+  std::string ceiling_note;  // why a figure is missing
   std::vector<MovementError> movements;
   bool confirmed = true;  // the effects' improvement holds on the test movements
 };

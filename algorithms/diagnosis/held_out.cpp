@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/held_out.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -103,6 +104,60 @@ std::vector<int> choose_test_movements(const Observations& data, double share,
   }
   std::ranges::sort(chosen);
   return chosen;
+}
+
+Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>& train_rows,
+                              const BaseModel& base, const std::vector<EffectFamily>& families,
+                              const DiagnosisOptions& options) {
+  constexpr double kRidge = 1e-4;
+  constexpr int kReweightings = 2;
+  constexpr std::size_t kAtomsOfRichModel = 4;
+  std::vector<Expression> formulas = base.linear_terms;
+  const std::vector<double> ratios =
+      options.gear_ratios.empty() ? std::vector<double>{} : options.gear_ratios;
+  for (std::size_t f = 0; f < families.size(); ++f) {
+    std::vector<std::string> missing;
+    const std::vector<Atom> atoms = instantiate(families[f], f, data, ratios, missing);
+    // Neighbours on a grid of shapes say nearly the same: some of them will do.
+    const std::size_t step = (atoms.size() + kAtomsOfRichModel - 1) / kAtomsOfRichModel;
+    for (std::size_t k = 0; k < atoms.size(); k += std::max<std::size_t>(1, step)) {
+      formulas.insert(formulas.end(), atoms[k].columns.begin(), atoms[k].columns.end());
+    }
+  }
+  Eigen::VectorXd y = target_vector(data);
+  if (!base.formula.empty()) {
+    LoopModel model;
+    model.base.formula = base.formula;
+    y -= predict(model, data);
+  }
+  Eigen::MatrixXd x = evaluate_columns(formulas, data);
+  for (Eigen::Index j = 0; j < x.cols(); ++j) {
+    const double norm = x.col(j).norm();
+    x.col(j) = norm > 0 && std::isfinite(norm) ? Eigen::VectorXd(x.col(j) / norm)
+                                               : Eigen::VectorXd::Zero(x.rows());
+  }
+  Eigen::VectorXd weights(static_cast<Eigen::Index>(data.rows()));
+  for (Eigen::Index i = 0; i < weights.size(); ++i) {
+    weights[i] = train_rows[static_cast<std::size_t>(i)];
+  }
+  const Eigen::VectorXd wanted = weights;
+  Eigen::VectorXd residual = y;
+  for (int pass = 0; pass < kReweightings; ++pass) {
+    const Eigen::MatrixXd weighted = weights.cwiseSqrt().asDiagonal() * x;
+    const Eigen::VectorXd weighted_y = weights.cwiseSqrt().cwiseProduct(y);
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(x.cols(), x.cols());
+    normal.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+    normal.diagonal().array() += kRidge * normal.trace() / static_cast<double>(normal.rows());
+    residual = y - x * normal.ldlt().solve(weighted.transpose() * weighted_y);
+    // Huber's weights keep bursts from bending the model.
+    const double sd =
+        std::sqrt(residual.cwiseProduct(wanted).squaredNorm() / std::max(1.0, wanted.sum()));
+    for (Eigen::Index i = 0; i < weights.size(); ++i) {
+      const double size = std::abs(residual[i]);
+      weights[i] = wanted[i] * (size > 2 * sd ? 2 * sd / size : 1.0);
+    }
+  }
+  return residual;
 }
 
 std::vector<EventFinding> find_events(const Observations& data, const Eigen::VectorXd& residual,

@@ -15,6 +15,12 @@ namespace tribench::loop {
 // than two movements would be left.
 std::vector<int> choose_test_movements(const Observations& data, double share, RandomStream random);
 
+// Residual of every row under the richest model there is (base and all effects, a small ridge),
+// fitted to the training rows: what is left is noise and events, so it says how long noise lasts.
+Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>& train_rows,
+                              const BaseModel& base, const std::vector<EffectFamily>& families,
+                              const DiagnosisOptions& options);
+
 // Runs of at least four rows beyond four robust standard deviations of a residual in which no
 // repeatable structure is left, on one side, with five rows around them.
 // residual: of all rows, from a rich model fitted to the training movements.

@@ -48,22 +48,45 @@ bool worth_a_look(const Signal& signal) {
   return !signal.name.starts_with("sgn_") && signal.name != "a2";
 }
 
+// The signals worth a look: those in which the effects and what is left over live come first.
+std::vector<std::size_t> in_order(const Diagnosis& diagnosis, const Observations& data) {
+  std::vector<std::size_t> order;
+  const auto add = [&](std::size_t j) {
+    if (worth_a_look(data.signals[j]) && std::ranges::count(order, j) == 0) order.push_back(j);
+  };
+  for (const Atom& atom : diagnosis.after.atoms) {
+    for (const Expression& column : atom.columns) {
+      for (const Node& node : column.nodes()) {
+        if (node.is_variable()) add(node.variable);
+      }
+    }
+  }
+  for (const std::string& name : diagnosis.leftover.signals) {
+    if (const Signal* left = data.find(name)) {
+      add(static_cast<std::size_t>(left - data.signals.data()));
+    }
+  }
+  for (std::size_t j = 0; j < data.signals.size(); ++j) add(j);
+  return order;
+}
+
+// `effect` is what the refitted model says beyond the base as it was: it lies in the residual
+// before where it explains it. `effects` hold each effect's own term.
 Json residuals_json(const Diagnosis& diagnosis, const Observations& data) {
   std::vector<std::size_t> rows;
   const std::size_t step = (data.rows() + kMostRows - 1) / kMostRows;
   for (std::size_t i = 0; i < data.rows(); i += step) rows.push_back(i);
   const Eigen::VectorXd before = target_vector(data) - predict(diagnosis.before, data);
   const Eigen::VectorXd after = target_vector(data) - predict(diagnosis.after, data);
-  Eigen::VectorXd effect = Eigen::VectorXd::Zero(before.size());
+  const Eigen::VectorXd effect = before - after;
   Json effects = Json::array();
   for (const EffectFinding& finding : diagnosis.effects) {
     const Eigen::VectorXd one = contribution(diagnosis, data, finding.family);
-    effect += one;
     effects.push_back({{"family", finding.family}, {"y", values_of(one, rows)}});
   }
   Json all = Json::array();
-  for (const Signal& signal : data.signals) {
-    if (!worth_a_look(signal)) continue;
+  for (const std::size_t j : in_order(diagnosis, data)) {
+    const Signal& signal = data.signals[j];
     const Eigen::Map<const Eigen::VectorXd> x(signal.values.data(), before.size());
     all.push_back({{"channel", input_name(data, signal.name)},
                    {"unit", signal.unit},

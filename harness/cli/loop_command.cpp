@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -173,6 +174,7 @@ loop::DiagnosisOptions diagnosis_options(const LoopArguments& arguments) {
   options.alpha_leftover = arguments.alpha_leftover;
   options.flips = static_cast<std::size_t>(arguments.flips);
   options.families = arguments.effects;
+  options.ceiling = true;
   options.physical_vetoes = !arguments.any_sign;
   if (!arguments.learned.empty()) options.learned = loop::read_effects(arguments.learned);
   if (arguments.gear_ratio > 0) options.gear_ratios = {arguments.gear_ratio};
@@ -208,6 +210,16 @@ void print_findings(const loop::Diagnosis& diagnosis, const loop::Observations& 
       error.how, error.mae_before, error.mae_after, error.rmse_before, error.rmse_after,
       error.means_before, error.means_after, data.target_unit,
       error.confirmed ? "" : "; NOT confirmed on held-out data");
+  if (!std::isnan(error.ceiling)) {
+    fmt::print("  the noise lies between {:.4g} and {:.4g} {} (mean magnitude)", error.ceiling,
+               error.attainable, data.target_unit);
+    if (!std::isnan(error.closed_fraction)) {
+      fmt::print("; {:.0f} to {:.0f} % of the gap above it is closed", 100 * error.closed_fraction,
+                 100 * error.closed_fraction_high);
+    }
+    fmt::print("\n");
+  }
+  if (!error.ceiling_note.empty()) fmt::print("  no closed fraction: {}\n", error.ceiling_note);
   for (const loop::UntestableFinding& one : diagnosis.untestable) {
     fmt::print("  cannot say: {} ({})\n", one.family, one.reason);
   }

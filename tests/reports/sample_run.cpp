@@ -138,7 +138,8 @@ nlohmann::json sample_loop() {
     "untestable": [{"family": "inertia", "reason": "no acceleration in the data", "ask": "R4"}],
     "events": [{"movement": 17, "t0": 1.2, "t1": 1.3, "peak": 4.1}],
     "error": {"test_movements": 22, "mae_before": 0.81, "mae_after": 0.24,
-              "ci_diff": [0.49, 0.63], "ceiling": 0.2, "closed_fraction": 0.93},
+              "ci_diff": [0.49, 0.63], "ceiling": 0.19, "attainable": 0.2, "closed_fraction": 0.91,
+              "closed_fraction_ci": [0.85, 0.95], "closed_fraction_high": 0.93},
     "candidates": [{"family": "stribeck", "p_adj": 0.0005, "score": 14.2},
                    {"family": "temperature", "p_adj": 0.31, "score": 2.2}],
     "formula": "8.1*sgn_v + 14*v"

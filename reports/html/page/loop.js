@@ -33,8 +33,9 @@ function drawLoop() {
        colors: ["#d1495b", "#8aa4a8"]}, unit) : null);
   const found = new Set(list(loop.effects).map((e) => e.family));
   const bars = list(loop.candidates).filter((c) => isFinite(c.score)).slice(0, 20)
-    .map((c) => ({name: c.family, x: c.score, p: c.p_adj, found: found.has(c.family)}));
-  draw("evidence", bars.length ? barPlot(bars, lookFor([], widthOf("evidence")), "score") : null);
+    .map((c) => ({name: c.family, x: Math.max(0, c.cv_gain || 0), p: c.p_adj, score: c.score, gain: c.cv_gain,
+      label: "p = " + fig(c.p_adj), found: found.has(c.family)})).sort((a, b) => b.x - a.x || b.score - a.score);
+  draw("evidence", bars.length ? barPlot(bars, lookFor([], widthOf("evidence")), "cross-validated gain, nats") : null);
   const map = pictures.alias_map || {};
   const cells = list(map.families).flatMap((a, i) => map.families.map((b, j) =>
     ({a, b, correlation: (map.correlation[i] || [])[j], size: Math.abs((map.correlation[i] || [])[j])})))
@@ -56,6 +57,12 @@ function effectsTable() {
     {name: "evidence, nats", key: "cv_gain", number: true}, {name: "could also be", key: "alias"}], rows, {label: "effects"});
 }
 
+function closedShare(error) {
+  const low = Math.round(100 * error.closed_fraction);
+  const high = Math.round(100 * (error.closed_fraction_high ?? error.closed_fraction));
+  return high > low ? `${low} … ${high} %` : low + " %";
+}
+
 function buildLoop() {
   const error = loop.error || {};
   const known = (value) => typeof value === "number" && isFinite(value);  // null is neither
@@ -64,19 +71,20 @@ function buildLoop() {
     ...data.sentences.map((s) => el("p", {}, s.replace(/\*\*/g, ""))),
     el("div", {class: "facts"}, fact(fig(error.mae_before), "MAE before, " + unit),
       fact(fig(error.mae_after), "MAE after, " + unit),
-      ...(known(error.ceiling) ? [fact(fig(error.ceiling), "noise ceiling")] : []),
-      ...(known(error.closed_fraction) ? [fact(Math.round(100 * error.closed_fraction) + " %", "of the gap closed")] : []),
+      ...(known(error.ceiling) ? [fact(known(error.attainable) && fig(error.attainable) !== fig(error.ceiling)
+        ? `${fig(error.ceiling)} … ${fig(error.attainable)}` : fig(error.ceiling), "the noise lies here, " + unit)] : []),
+      ...(known(error.closed_fraction) ? [fact(closedShare(error), "of the gap to the noise closed")] : []),
       fact(count(error.test_movements), "held-out movements")));
   byId("nav").append(el("a", {href: "#residuals"}, "residuals"), el("a", {href: "#effects"}, "effects"),
                      el("a", {href: "#model"}, "model"), el("span", {class: "push"}, themeButton()));
   byId("main").append(
     el("h2", {id: "residuals"}, "Residuals"),
     el("div", {class: "grid"}, list(pictures.residuals).map((r, i) =>
-      card("residual-" + i, "Against " + r.channel, "Residual before and after, and what the fitted effects give."))),
+      card("residual-" + i, "Against " + r.channel, "Residual before and after; the fitted effect is what the refitted model says beyond the base."))),
     el("h2", {id: "effects"}, "Effects"), effectsTable(),
     el("div", {class: "grid", style: "margin-top:1rem"},
       card("movements", "Error of each movement", "Below the dashed line: better than before."),
-      card("evidence", "Candidates", "Score of each candidate; coloured: added."),
+      card("evidence", "Candidates", "What each would have gained by itself on movements left out; coloured: added. p is corrected for the search."),
       card("aliases", "What could be mistaken for what", "Absolute correlation of two effects in these data, base removed."),
       card("leftover", "Left over", "Structure that none of the effects explains.")),
     el("h2", {id: "model"}, "The model now"), loop.formula ? el("div", {class: "card"}, formulaElement(loop.formula),

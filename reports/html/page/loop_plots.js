@@ -34,7 +34,10 @@ function barPlot(values, look, title) {
     axes: [{orient: "bottom", scale: "x", title, grid: true}, {orient: "left", scale: "y"}],
     marks: [{type: "rect", from: {data: "values"}, encode: {enter: {x: {scale: "x", value: 0},
       x2: {scale: "x", field: "x"}, y: {scale: "y", field: "name"}, height: {scale: "y", band: 1},
-      fill: {signal: `datum.found ? '${kPalette[0]}' : '${look.soft}'`}, tooltip: {signal: "datum"}}}}]};
+      fill: {signal: `datum.found ? '${kPalette[0]}' : '${look.soft}'`}, tooltip: {signal: "datum"}}}},
+      {type: "text", from: {data: "values"}, encode: {enter: {x: {scale: "x", field: "x", offset: 6},
+        y: {scale: "y", field: "name", band: 0.5}, baseline: {value: "middle"}, fontSize: {value: 10},
+        fill: {value: look.ink}, text: {field: "label"}}}}]};
 }
 
 function aliasPlot(values, look, families) {
