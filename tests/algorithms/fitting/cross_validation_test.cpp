@@ -143,21 +143,22 @@ TEST(CrossValidation, HoldsOutTheEdgeThatAFormulaWillBeContinuedOver) {
 }
 
 TEST(CrossValidation, ForgivesNoFormulaThatIsFarWorseInOnePart) {
-  // The line is wrong by far where the last movement is held out, which makes the standard error of
-  // its mean as large as the mean; the exponential is exact. The third is exact as well, and
-  // larger.
+  // The constant is wrong where the movement with the peak is held out and nowhere else, so that
+  // the standard error of its mean is as large as the mean. The peak is exact; the third formula
+  // is exact as well, and larger.
   std::vector<double> v;
   std::vector<double> y;
   std::vector<int> movement;
   for (int r = 0; r < 200; ++r) {
     v.push_back(-1 + 0.01 * r);
-    y.push_back(std::exp(8 * v.back()));
+    y.push_back(1 / (1 + 100 * (v.back() - 0.4) * (v.back() - 0.4)));
     movement.push_back(r / 40);
   }
   const double* columns[] = {v.data()};
-  const std::vector<Expression> front = {parse("1*v", kNames), parse("1.1*exp(7.9*v)", kNames),
-                                         parse("1.1*exp(7.9*v) + 0.1*v", kNames)};
-  EXPECT_EQ(cross_validate(front, {columns, 200}, y, movement).chosen, 1U);
+  const std::vector<Expression> front = {parse("0.1", kNames),
+                                         parse("1.1/(1 + 99*(v - 0.4)^2)", kNames),
+                                         parse("1.1/(1 + 99*(v - 0.4)^2) + 0.1*v", kNames)};
+  EXPECT_EQ(cross_validate(front, {columns, 200}, y, movement, {{-1, 1.2}}).chosen, 1U);
 }
 
 TEST(CrossValidation, AsksMoreOfALargerFormulaThatWillBeUsedBeyondTheRows) {
