@@ -9,11 +9,6 @@
 
 namespace tribench::loop {
 
-// log Q(a, x) = log( Gamma(a, x) / Gamma(a) ), the regularised upper incomplete gamma function.
-// a > 0; x >= 0 (0 gives 0). Relative error of the logarithm below 1e-10.
-// Source: series and Lentz's continued fraction, Abramowitz & Stegun 6.5.29 and 6.5.31.
-double log_gamma_upper_tail(double a, double x);
-
 // A Gamma distribution matched to the mean and the variance of a statistic under its null
 // distribution; score(q) = -log10 P(Q >= q).
 class MatchedGamma {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "algorithms/diagnosis/effect_library.hpp"
-#include "algorithms/diagnosis/gamma_tail.hpp"
 #include "algorithms/diagnosis/loop_model.hpp"
 #include "algorithms/diagnosis/score_test.hpp"
+#include "foundation/incomplete_gamma.hpp"
 
 namespace tribench {
 namespace {
@@ -51,7 +51,7 @@ NaiveFindings test_naively(const loop::Observations& data, double gear_ratio) {
       const auto p = static_cast<double>(own.cols());
       // With thousands of rows p F is chi-squared with p degrees of freedom.
       const double chi = explained / ((before - explained) / (n - p));
-      smallest = std::min(smallest, std::exp(loop::log_gamma_upper_tail(p / 2, chi / 2)));
+      smallest = std::min(smallest, std::exp(log_gamma_upper_tail(p / 2, chi / 2)));
       if (n * std::log((before - explained) / before) + p * std::log(n) < 0) findings.bic = true;
     }
     family_p.push_back(smallest);

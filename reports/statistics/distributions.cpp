@@ -2,14 +2,12 @@
 #include "reports/statistics/distributions.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "foundation/incomplete_gamma.hpp"
 
 namespace tribench {
 namespace {
-
-constexpr double kTiny = 1e-300;
-constexpr int kMaxTerms = 10000;
 
 // Root of a continuous increasing function by bisection to the last bits.
 template <typename F>
@@ -22,36 +20,6 @@ double root_of(F increasing, double low, double high) {
   return (low + high) / 2;
 }
 
-double gamma_series(double a, double x) {
-  double term = 1 / a;
-  double sum = term;
-  for (int n = 1; n < kMaxTerms && std::abs(term) > std::abs(sum) * 1e-17; ++n) {
-    term *= x / (a + n);
-    sum += term;
-  }
-  return sum * std::exp(-x + a * std::log(x) - std::lgamma(a));
-}
-
-// Lentz's method for the upper function.
-double gamma_fraction(double a, double x) {
-  double b = x + 1 - a;
-  double c = 1 / kTiny;
-  double d = 1 / b;
-  double h = d;
-  for (int i = 1; i < kMaxTerms; ++i) {
-    const double numerator = -i * (i - a);
-    b += 2;
-    d = numerator * d + b;
-    if (std::abs(d) < kTiny) d = kTiny;
-    c = b + numerator / c;
-    if (std::abs(c) < kTiny) c = kTiny;
-    d = 1 / d;
-    h *= d * c;
-    if (std::abs(d * c - 1) < 1e-16) break;
-  }
-  return std::exp(-x + a * std::log(x) - std::lgamma(a)) * h;
-}
-
 }  // namespace
 
 double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
@@ -61,10 +29,7 @@ double normal_quantile(double p) {
 }
 
 double chi_squared_tail(double x, double degrees) {
-  const double a = degrees / 2;
-  const double half = x / 2;
-  if (half <= 0) return 1;
-  return half < a + 1 ? 1 - gamma_series(a, half) : gamma_fraction(a, half);
+  return std::exp(log_gamma_upper_tail(degrees / 2, x / 2));
 }
 
 double normal_range_cdf(double q, int k) {

@@ -10,7 +10,6 @@ double normal_cdf(double z);
 double normal_quantile(double p);
 
 // P(X > x) for chi-squared with `degrees` degrees of freedom; x >= 0, degrees > 0.
-// Series and continued fraction of the incomplete gamma function (Abramowitz, Stegun 6.5.29, 31).
 double chi_squared_tail(double x, double degrees);
 
 // P(range of k independent standard normals <= q): the studentized range with infinitely many
