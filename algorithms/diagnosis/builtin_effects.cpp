@@ -21,7 +21,8 @@ EffectFamily asymmetry() {
              {{"1", "abs(v)"}, {"half_gap", "viscous_half_gap"}}};
   f.known_aliases = {{"sensor_offset",
                       "read the torque with the drive unpowered or the brake on, or turn the axis "
-                      "free of gravity"}};
+                      "free of gravity",
+                      "half_gap"}};
   f.separate_by = {"R8"};
   return f;
 }

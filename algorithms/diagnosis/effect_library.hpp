@@ -51,7 +51,8 @@ struct Sanity {
 // A cause that has the same column as this one, whatever the data.
 struct KnownAlias {
   std::string name;
-  std::string separate_by;  // R1 ... R9 and what to do
+  std::string separate_by;       // R1 ... R9 and what to do
+  std::string coefficient = {};  // only of atoms that have it; empty: of all
 };
 
 struct EffectFamily {

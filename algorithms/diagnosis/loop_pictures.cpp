@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/loop_pictures.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -75,7 +77,10 @@ std::vector<std::size_t> in_order(const Diagnosis& diagnosis, const Observations
 Json residuals_json(const Diagnosis& diagnosis, const Observations& data) {
   std::vector<std::size_t> rows;
   const std::size_t step = (data.rows() + kMostRows - 1) / kMostRows;
-  for (std::size_t i = 0; i < data.rows(); i += step) rows.push_back(i);
+  for (std::size_t i = 0; i < data.rows(); i += step) {
+    const bool event = i < diagnosis.masked.size() && diagnosis.masked[i] != 0;
+    if (!event) rows.push_back(i);
+  }
   const Eigen::VectorXd before = target_vector(data) - predict(diagnosis.before, data);
   const Eigen::VectorXd after = target_vector(data) - predict(diagnosis.after, data);
   const Eigen::VectorXd effect = before - after;
@@ -99,7 +104,23 @@ Json residuals_json(const Diagnosis& diagnosis, const Observations& data) {
   return all;
 }
 
+// Where every movement (or piece of the one movement) was left out in turn, its error then.
+Json left_out_json(const Diagnosis& diagnosis, const Observations& data) {
+  const bool pieces = data.movements().size() == 1;
+  Json all = Json::array();
+  for (const MovementError& one : diagnosis.error.movements) {
+    const std::string name = pieces ? fmt::format("piece {}", one.movement + 1)
+                                    : data.movement_names[static_cast<std::size_t>(one.movement)];
+    all.push_back(
+        {{"name", name}, {"test", true}, {"mae_before", one.before}, {"mae_after", one.after}});
+  }
+  return all;
+}
+
 Json movements_json(const Diagnosis& diagnosis, const Observations& data) {
+  if (diagnosis.test_movements.empty() && !diagnosis.error.movements.empty()) {
+    return left_out_json(diagnosis, data);
+  }
   const Eigen::VectorXd before = (target_vector(data) - predict(diagnosis.before, data)).cwiseAbs();
   const Eigen::VectorXd after = (target_vector(data) - predict(diagnosis.after, data)).cwiseAbs();
   Json all = Json::array();

@@ -166,7 +166,11 @@ std::vector<AliasFinding> Search::aliases_of(const Candidate& winner, const Roun
                            ? ""
                            : families_[winner.family].separate_by[0]});
   }
+  const std::vector<std::string>& coefficients = library_[winner.atom].coefficients;
   for (const KnownAlias& known : families_[winner.family].known_aliases) {
+    const bool applies =
+        known.coefficient.empty() || std::ranges::count(coefficients, known.coefficient) > 0;
+    if (!applies) continue;
     aliases.push_back({known.name, 1, 0, 0, true, known.separate_by});
   }
   return aliases;

@@ -8,10 +8,24 @@ const pictures = loop.pictures || {};
 const unit = pictures.unit || "N m";
 const list = (value) => Array.isArray(value) ? value : [];
 
+// One far-off row must not flatten all others: the frame ends a little beyond what all but one in 250 reach.
+function frameOf(r) {
+  const sizes = [...list(r.before), ...list(r.after), ...list(r.effect)].filter((y) => y !== null).map(Math.abs).sort((a, b) => a - b);
+  return sizes.length ? 1.3 * sizes[Math.floor(0.996 * (sizes.length - 1))] : 0;
+}
+
+function beyondFrame(r) {
+  const frame = frameOf(r);
+  const beyond = list(r.before).filter((y, i) => Math.max(Math.abs(y), Math.abs(r.after[i] ?? 0)) > frame).length;
+  return beyond ? `; ${beyond} of ${r.before.length} rows lie beyond the frame` : "";
+}
+
 function residualPoints(r) {
   const rows = [];
+  const frame = frameOf(r);
   const add = (values, name, dots) => list(values).forEach((y, i) => {
-    if (y !== null && isFinite(r.x[i])) rows.push({x: r.x[i], y, curve: name, method: name, series: name, dots});
+    if (y === null || !isFinite(r.x[i]) || Math.abs(y) > frame) return;
+    rows.push({x: r.x[i], y, curve: name, method: name, series: name, dots});
   });
   add(r.before, "before", true);
   add(r.after, "after", true);
@@ -80,7 +94,7 @@ function buildLoop() {
   byId("main").append(
     el("h2", {id: "residuals"}, "Residuals"),
     el("div", {class: "grid"}, list(pictures.residuals).map((r, i) =>
-      card("residual-" + i, "Against " + r.channel, "Residual before and after; the fitted effect is what the refitted model says beyond the base."))),
+      card("residual-" + i, "Against " + r.channel, "Residual before and after; the fitted effect is what the refitted model says beyond the base" + beyondFrame(r) + "."))),
     el("h2", {id: "effects"}, "Effects"), effectsTable(),
     el("div", {class: "grid", style: "margin-top:1rem"},
       card("movements", "Error of each movement", "Below the dashed line: better than before."),

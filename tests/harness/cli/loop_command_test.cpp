@@ -151,6 +151,56 @@ TEST(LoopCommand, poor_input_is_warned_of_and_nothing_is_claimed) {
               HasSubstr("one direction"));
 }
 
+TEST(LoopCommand, files_without_movements_are_one_movement_each) {
+  const testing::TemporaryFolder folder;
+  std::vector<std::string> command = {"loop"};
+  for (int m = 0; m < 12; ++m) {
+    std::string text = "velocity_rad_s,friction_torque_Nm\n";
+    for (int i = 0; i < 30; ++i) {
+      text += csv({speed_of(m), friction_of(speed_of(m), m, i)}) + "\n";
+    }
+    const std::string name = "pass" + std::to_string(m) + ".csv";
+    testing::write_text(folder / name, text);
+    command.push_back((folder / name).string());
+  }
+  command.push_back("--json");
+  const testing::ProgramRun run = tribench(command);
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const Json loop = Json::parse(run.output);
+  EXPECT_EQ(loop["verdict"], "NONE");
+  EXPECT_EQ(loop["noise"]["movements"], 12);
+  EXPECT_THAT(loop["notes"].dump(), HasSubstr("12 movements"));
+}
+
+// Data that leave nothing to be found, or nothing to find it with.
+TEST(LoopCommand, degenerate_data_neither_crash_nor_claim_anything) {
+  const testing::TemporaryFolder folder;
+  const auto expect_nothing = [&](const std::string& header, auto line) {
+    const testing::ProgramRun run =
+        tribench({"loop", file_of(folder, header, 12, 20, line), "--json"});
+    ASSERT_EQ(run.status, 0) << run.errors;
+    const Json loop = Json::parse(run.output);
+    EXPECT_EQ(loop["verdict"], "NONE") << header;
+    EXPECT_TRUE(loop["effects"].empty()) << header;
+  };
+  // No noise at all: the base leaves no residual.
+  expect_nothing("movement,velocity_rad_s,friction_torque_Nm", [](int m, int) {
+    const double v = speed_of(m);
+    return csv({1.0 * m, v, (v > 0 ? 5 : -5) + 3 * v});
+  });
+  // Acceleration zero throughout, gravity the same everywhere.
+  expect_nothing("movement,velocity_rad_s,acceleration_rad_s2,gravity_torque_Nm,friction_torque_Nm",
+                 [](int m, int i) {
+                   return csv({1.0 * m, speed_of(m), 0, 7, friction_of(speed_of(m), m, i)});
+                 });
+  // The same column twice, under two roles: gravity and position in step.
+  expect_nothing("movement,velocity_rad_s,position_rad,gravity_torque_Nm,friction_torque_Nm",
+                 [](int m, int i) {
+                   const double q = 0.05 * i;
+                   return csv({1.0 * m, speed_of(m), q, q, friction_of(speed_of(m), m, i)});
+                 });
+}
+
 TEST(LoopCommand, movements_of_one_kind_are_left_out_together) {
   const testing::TemporaryFolder folder;
   const auto line = [](int m, int i) {
