@@ -8,6 +8,7 @@
 #include <map>
 
 #include "algorithms/diagnosis/ceiling.hpp"
+#include "algorithms/diagnosis/events.hpp"
 #include "algorithms/diagnosis/findings.hpp"
 #include "algorithms/diagnosis/held_out.hpp"
 #include "algorithms/diagnosis/search.hpp"
@@ -155,7 +156,7 @@ Diagnosis diagnose_training(const Observations& data, const std::vector<int>& te
   if (std::ranges::count(train_rows, 1) == 0) check_enough(data.select(train_rows), {});
   const BaseModel base = make_base(data.select(train_rows));
   const Eigen::VectorXd rich = rich_residual(data, train_rows, base, out.families, options);
-  out.events = find_events(data, rich, out.masked);
+  out.events = find_events(data, rich, out.masked, random.split("events"));
   const std::vector<char> kept = rows_of(data, test, false, out.masked);
   const Observations train = data.select(kept);
   check_enough(train, base);

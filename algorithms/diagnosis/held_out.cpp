@@ -9,25 +9,7 @@
 namespace tribench::loop {
 namespace {
 
-constexpr double kEventSd = 4;
-constexpr std::size_t kEventRun = 4;
-constexpr std::size_t kEventMargin = 5;
 constexpr int kBootstraps = 2000;
-// Rows beyond this share are no events: the model is wrong.
-constexpr double kMostEvents = 0.05;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), values.begin() + middle, values.end());
-  return values[static_cast<std::size_t>(middle)];
-}
-
-double robust_sd(const std::vector<double>& deviations) {
-  std::vector<double> magnitudes = deviations;
-  for (double& x : magnitudes) x = std::abs(x);
-  return 1.4826 * median(std::move(magnitudes));
-}
 
 // Speed and direction of a movement: the strata of the split.
 struct Kind {
@@ -158,58 +140,6 @@ Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>&
     }
   }
   return residual;
-}
-
-std::vector<EventFinding> find_events(const Observations& data, const Eigen::VectorXd& residual,
-                                      std::vector<char>& masked) {
-  masked.assign(data.rows(), 0);
-  std::vector<double> deviation(data.rows());
-  std::vector<RowRange> ranges;
-  for (std::size_t i = 0; i < data.rows(); ++i) {
-    if (i == 0 || data.movement[i] != data.movement[i - 1]) ranges.push_back({i, i});
-    ranges.back().end = i + 1;
-  }
-  for (const RowRange& m : ranges) {
-    std::vector<double> part(residual.data() + m.begin, residual.data() + m.end);
-    const double middle = median(part);
-    for (std::size_t i = m.begin; i < m.end; ++i) {
-      deviation[i] = residual[static_cast<Eigen::Index>(i)] - middle;
-    }
-  }
-  const double pooled = robust_sd(deviation);
-  std::vector<EventFinding> events;
-  std::size_t flagged = 0;
-  for (const RowRange& m : ranges) {
-    const std::vector<double> own(deviation.begin() + static_cast<std::ptrdiff_t>(m.begin),
-                                  deviation.begin() + static_cast<std::ptrdiff_t>(m.end));
-    const double limit = kEventSd * std::max(pooled, robust_sd(own));
-    std::size_t i = m.begin;
-    while (i < m.end) {
-      std::size_t end = i;
-      const double side = deviation[i] > 0 ? 1 : -1;
-      double peak = 0;
-      while (end < m.end && side * deviation[end] > limit) {
-        peak = std::max(peak, std::abs(deviation[end]));
-        ++end;
-      }
-      if (end - i >= kEventRun && limit > 0) {
-        events.push_back({data.movement[i],
-                          data.movement_names.empty()
-                              ? std::to_string(data.movement[i])
-                              : data.movement_names[static_cast<std::size_t>(data.movement[i])],
-                          data.time[i], data.time[end - 1], peak});
-        flagged += end - i;
-        const std::size_t from = std::max(m.begin + kEventMargin, i) - kEventMargin;
-        for (std::size_t k = from; k < std::min(m.end, end + kEventMargin); ++k) masked[k] = 1;
-      }
-      i = std::max(end, i + 1);
-    }
-  }
-  if (static_cast<double>(flagged) > kMostEvents * static_cast<double>(data.rows())) {
-    events.clear();
-    masked.assign(data.rows(), 0);
-  }
-  return events;
 }
 
 ErrorFinding judge(const Observations& data, const Eigen::VectorXd& before,

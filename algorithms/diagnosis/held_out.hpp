@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The movements nobody touches: which they are, and what the models make of them. Also the bursts
-// (collisions, contacts, glitches) that are events, not friction. Internal to the room.
+// The movements nobody touches: which they are, and what the models make of them.
+// Internal to the room.
 #pragma once
 
 #include <span>
@@ -20,12 +20,6 @@ std::vector<int> choose_test_movements(const Observations& data, double share, R
 Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>& train_rows,
                               const BaseModel& base, const std::vector<EffectFamily>& families,
                               const DiagnosisOptions& options);
-
-// Runs of at least four rows beyond four robust standard deviations of a residual in which no
-// repeatable structure is left, on one side, with five rows around them.
-// residual: of all rows, from a rich model fitted to the training movements.
-std::vector<EventFinding> find_events(const Observations& data, const Eigen::VectorXd& residual,
-                                      std::vector<char>& masked);
 
 // Errors of both models on `data` (the test movements), movement by movement, with a bootstrap
 // interval of the paired difference. unit: per row, what the bootstrap draws (movements, or pieces
