@@ -3,9 +3,11 @@
 // The parts of the search that doubt its own answer: all small subsets of families, and what is
 // left over that no family explains.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "algorithms/diagnosis/search.hpp"
 
@@ -112,6 +114,48 @@ void Search::check_exhaustively() {
   current_ = std::move(other);
 }
 
+// An effect that lives in one input of a pair, times the other: what there is where the effect's
+// size varies with that other input. Far sharper than a smoother in the pair.
+std::vector<Search::Modifier> Search::modifiers() const {
+  std::vector<Modifier> all;
+  for (const Found& one : found) {
+    std::set<std::string> lives_in;
+    std::vector<Expression> formulas;
+    for (const Atom& atom : current_.model.atoms) {
+      if (atom.family != one.family) continue;
+      formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
+      for (const Expression& column : atom.columns) {
+        for (const Node& node : column.nodes()) {
+          if (!node.is_variable()) continue;
+          const Signal& signal = data_.signals[node.variable];
+          if (signal.role != Role::velocity_sign) lives_in.insert(signal.name);
+        }
+      }
+    }
+    if (lives_in.size() != 1) continue;
+    for (const SignalPair& pair : smoothed_pairs()) {
+      const bool first = *lives_in.begin() == pair[0];
+      if (!first && *lives_in.begin() != pair[1]) continue;
+      const std::string_view name = pair[first ? 1 : 0];
+      const Eigen::VectorXd other = unit_signal(data_, name);
+      if (other.size() == 0) continue;
+      all.push_back({one.family,
+                     {std::string(pair[0]), std::string(pair[1])},
+                     name == "T",
+                     other.asDiagonal() * evaluate_columns(formulas, data_)});
+    }
+  }
+  return all;
+}
+
+BlockScores Search::score_modifier(const Modifier& modifier) const {
+  const Eigen::MatrixXd z = whitened(modifier.columns, clusters_, current_.noise);
+  BlockScores block = score_block(project_off(z, current_.basis), z.colwise().squaredNorm(),
+                                  current_.residual, clusters_, 0);
+  if (block.test.carrying < kFewestClusters) block.test.testable = false;
+  return block;
+}
+
 void Search::test_leftover() {
   if (clusters_.stretches.size() < kFewestClusters) {
     notes.push_back(fmt::format(
@@ -121,32 +165,44 @@ void Search::test_leftover() {
     return;
   }
   const std::vector<Smoother> smoothers = make_smoothers(data_, random_.split("smoothers"));
+  const std::vector<Modifier> products = modifiers();
   std::vector<BlockScores> blocks;
-  double largest = 0;
   for (const Smoother& smoother : smoothers) {
     blocks.push_back(score_features(smoother.columns, current_.basis, current_.residual, clusters_,
                                     current_.noise, kSmootherRidge));
-    largest = std::max(largest, blocks.back().test.score);
   }
+  for (const Modifier& modifier : products) blocks.push_back(score_modifier(modifier));
+  double largest = 0;
+  for (const BlockScores& block : blocks) largest = std::max(largest, block.test.score);
   // Once so many flips have exceeded it the p-value cannot come below alpha any more.
   const auto stop = static_cast<std::size_t>(
       std::ceil(options_.alpha_leftover * static_cast<double>(options_.flips + 1)));
   const std::vector<double> maxima = flip_maxima(blocks, flips_, largest, stop);
   leftover.p = adjusted_p(largest, maxima);
   if (leftover.p > options_.alpha_leftover) return;
-  // Where it lives: the smoother that predicts best; a product only if it beats every single input.
-  std::size_t winner = smoothers.size();
+  locate_leftover(smoothers, products, blocks, maxima);
+}
+
+// Where it lives: what predicts best; a product only if it beats every single input.
+void Search::locate_leftover(const std::vector<Smoother>& smoothers,
+                             const std::vector<Modifier>& products,
+                             const std::vector<BlockScores>& blocks,
+                             const std::vector<double>& maxima) {
+  std::size_t winner = blocks.size();
   Gain best{-1e300, 0};
   Eigen::VectorXd best_losses;
-  for (std::size_t k = 0; k < smoothers.size(); ++k) {
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
     if (adjusted_p(blocks[k].test.score, maxima) > options_.alpha_leftover) continue;
+    const bool smooth = k < smoothers.size();
     const Eigen::MatrixXd features =
-        whitened(smoothers[k].columns.cast<double>(), clusters_, current_.noise);
-    const Eigen::MatrixXd x = beside(current_.x, features);
-    const Eigen::VectorXd losses = held_out_losses(x, current_.residual, clusters_, current_.noise,
-                                                   features.cols(), kSmootherRidge);
+        whitened(smooth ? Eigen::MatrixXd(smoothers[k].columns.cast<double>())
+                        : products[k - smoothers.size()].columns,
+                 clusters_, current_.noise);
+    const Eigen::VectorXd losses =
+        held_out_losses(beside(current_.x, features), current_.residual, clusters_, current_.noise,
+                        features.cols(), smooth ? kSmootherRidge : 0);
     const Gain gain = paired_gain(current_.losses, losses);
-    const bool product = smoothers[k].signals.size() > 1;
+    const bool product = !smooth || smoothers[k].signals.size() > 1;
     const bool clearly =
         best_losses.size() == 0 || paired_gain(best_losses, losses).nats >
                                        (product ? paired_gain(best_losses, losses).error : 0.0);
@@ -156,18 +212,50 @@ void Search::test_leftover() {
       winner = k;
     }
   }
-  if (winner == smoothers.size()) return;
-  leftover.inputs = smoothers[winner].inputs;
-  leftover.signals = smoothers[winner].signals;
-  const std::size_t before = found.size();
-  drop_proxies(smoothers[winner], best.nats);
-  if (found.size() < before) {
-    // Without its proxies the leftover shows better where it lives.
-    const std::vector<std::string> proxies = leftover.proxies_removed;
-    test_leftover();
-    leftover.proxies_removed.insert(leftover.proxies_removed.begin(), proxies.begin(),
-                                    proxies.end());
+  if (winner == blocks.size()) return;
+  leftover.signals = winner < smoothers.size() ? smoothers[winner].signals
+                                               : products[winner - smoothers.size()].signals;
+  leftover.inputs.clear();
+  for (const std::string& signal : leftover.signals) {
+    leftover.inputs.push_back(input_name(data_, signal));
   }
+  const std::size_t before = found.size();
+  const bool varies = drop_varying(products);
+  const auto home = std::ranges::find(smoothers, leftover.signals, &Smoother::signals);
+  if (home != smoothers.end()) drop_proxies(*home, best.nats);
+  if (found.size() == before) return;
+  // Without its proxies the leftover shows better where it lives; what an effect varies with is
+  // known already.
+  const LeftoverFinding known = leftover;
+  test_leftover();
+  if (varies || leftover.inputs.empty()) {
+    leftover.inputs = known.inputs;
+    leftover.signals = known.signals;
+  }
+  leftover.proxies_removed.insert(leftover.proxies_removed.begin(), known.proxies_removed.begin(),
+                                  known.proxies_removed.end());
+}
+
+// An effect whose size varies with temperature is part of what is left over: c f(q) + d f(q) T is
+// d f(q) (T - T0), and the origin of T is nobody's. (Nelder 1977: no main effect is to be read
+// where an interaction holds it.) Where it varies with speed, load or position it is still itself.
+bool Search::drop_varying(const std::vector<Modifier>& products) {
+  LoopModel model = current_.model;
+  for (const Modifier& product : products) {
+    if (product.signals != leftover.signals || !product.with_temperature) continue;
+    std::vector<BlockScores> own = {score_modifier(product)};
+    if (!own[0].test.testable) continue;
+    if (adjusted_p(own[0].test.score, flip_maxima(own, flips_)) > options_.alpha_library) continue;
+    leftover.proxies_removed.push_back(families_[product.family].name);
+    notes.push_back(fmt::format("the size of '{}' varies with {}: it is part of what is left over",
+                                families_[product.family].name,
+                                fmt::join(leftover.inputs, " or ")));
+    std::erase_if(found, [&](const Found& one) { return one.family == product.family; });
+    remove_family(model, product.family);
+  }
+  if (model.atoms.size() == current_.model.atoms.size()) return false;
+  current_ = fit(std::move(model), FitScope::everything);
+  return true;
 }
 
 // A family that the leftover's smoother makes superfluous is a proxy of what is left over, unless

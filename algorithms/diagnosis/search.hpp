@@ -107,7 +107,20 @@ class Search {
   double family_p_given_rest(std::size_t family, const FittedModel& rest, const Round& round,
                              const FittedModel& with) const;
   void check_exhaustively();
+  // A found effect times another input.
+  struct Modifier {
+    std::size_t family;
+    std::vector<std::string> signals;  // as the smoothers' pair
+    bool with_temperature;
+    Eigen::MatrixXd columns;
+  };
+  std::vector<Modifier> modifiers() const;
+  BlockScores score_modifier(const Modifier& modifier) const;
   void test_leftover();
+  void locate_leftover(const std::vector<Smoother>& smoothers,
+                       const std::vector<Modifier>& products,
+                       const std::vector<BlockScores>& blocks, const std::vector<double>& maxima);
+  bool drop_varying(const std::vector<Modifier>& products);
   void drop_proxies(const Smoother& smoother, double leftover_nats);
   std::size_t atoms_of(std::size_t family) const;
   void remove_family(LoopModel& model, std::size_t family) const;

@@ -17,7 +17,7 @@ struct OneSignal {
 // Specification, section 3.8.
 constexpr std::array<OneSignal, 8> kSingles = {
     {{"v", 16}, {"q", 28}, {"g", 10}, {"T", 8}, {"t", 24}, {"d", 8}, {"a", 8}, {"v2", 8}}};
-constexpr std::array<std::array<const char*, 2>, 5> kPairs = {
+constexpr std::array<SignalPair, 5> kPairs = {
     {{"v", "q"}, {"q", "T"}, {"v", "T"}, {"v", "g"}, {"g", "T"}}};
 constexpr Eigen::Index kFourierFeatures = 30;
 // Of the unit interval into which a signal is mapped.
@@ -74,6 +74,15 @@ Eigen::MatrixXf with_direction(const Eigen::MatrixXf& features, const Observatio
 
 }  // namespace
 
+std::span<const SignalPair> smoothed_pairs() { return kPairs; }
+
+Eigen::VectorXd unit_signal(const Observations& data, std::string_view name) {
+  Eigen::VectorXd x = unit_values(data, name).cast<double>().matrix();
+  if (x.size() == 0) return x;
+  x.array() -= x.mean();
+  return x * (std::sqrt(static_cast<double>(x.size())) / x.norm());
+}
+
 std::string input_name(const Observations& data, std::string_view signal) {
   if (signal == "d") return "distance_since_reversal";
   const Signal* found = data.find(signal);
@@ -94,8 +103,8 @@ std::vector<Smoother> make_smoothers(const Observations& data, RandomStream rand
     const Eigen::ArrayXf x = unit_values(data, first);
     const Eigen::ArrayXf y = unit_values(data, second);
     if (x.size() == 0 || y.size() == 0) continue;
-    const RandomStream part = random.split(std::string(first) + "*" + second);
-    all.push_back({{first, second},
+    const RandomStream part = random.split(std::string(first) + "*" + std::string(second));
+    all.push_back({{std::string(first), std::string(second)},
                    {input_name(data, first), input_name(data, second)},
                    with_direction(fourier(x, y, part), data)});
   }

@@ -6,7 +6,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "algorithms/diagnosis/observations.hpp"
@@ -22,6 +25,14 @@ struct Smoother {
 
 // All smoothers that the data have the signals for.
 std::vector<Smoother> make_smoothers(const Observations& data, RandomStream random);
+
+// The pairs of signals in which smoothers look for products.
+using SignalPair = std::array<std::string_view, 2>;
+std::span<const SignalPair> smoothed_pairs();
+
+// The signal as smoothers see it (|v| for v), centred and of unit rms; empty where it does not
+// vary.
+Eigen::VectorXd unit_signal(const Observations& data, std::string_view name);
 
 // The name under which a signal is reported: its role's.
 std::string input_name(const Observations& data, std::string_view signal);

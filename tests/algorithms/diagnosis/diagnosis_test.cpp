@@ -98,6 +98,18 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"temperature_position",
                               std::vector<std::string>{"position", "temperature"}}));
 
+// The mean temperature is not 0, so a ripple whose size varies with temperature looks like one
+// that does not, and something more.
+TEST(Diagnosis, ARippleThatVariesWithTemperatureIsNoRippleOfTheLibrary) {
+  for (const double scale : {0.5, 2.0}) {
+    const Diagnosis diagnosis =
+        diagnose_planted({.effects = {{"temperature_position", scale}}}, 81017);
+    EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
+    EXPECT_TRUE(diagnosis.effects.empty());
+    EXPECT_EQ(diagnosis.leftover.inputs, (std::vector<std::string>{"position", "temperature"}));
+  }
+}
+
 TEST(Diagnosis, NamesTwoEffects) {
   const Diagnosis diagnosis =
       diagnose_planted({.effects = {{"load_coulomb", 1.0}, {"hysteresis", 1.0}}}, 5);
