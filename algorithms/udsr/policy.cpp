@@ -46,7 +46,8 @@ Policy::Layout Policy::layout() const {
   return at;
 }
 
-Policy::Policy(const TokenLibrary& library, RandomStream random) : library_(&library) {
+Policy::Policy(const TokenLibrary& library, RandomStream random)
+    : library_(&library), start_(VectorXd::Zero(2 * kH)) {
   const Layout at = layout();
   parameters_ = VectorXd::Zero(at.size);
   parameters_.segment(at.gate_bias + kH, kH).setOnes();  // forget gate
@@ -107,8 +108,8 @@ std::vector<Sequence> Policy::sample(std::size_t count, const Prior& prior,
     streams.push_back(random.split(i));
     active[i] = i;
   }
-  MatrixXd cell = MatrixXd::Zero(kH, static_cast<Index>(count));
-  MatrixXd hidden = cell;
+  MatrixXd hidden = start_.head(kH).replicate(1, static_cast<Index>(count));
+  MatrixXd cell = start_.tail(kH).replicate(1, static_cast<Index>(count));
   while (!active.empty()) {
     const auto n = static_cast<Index>(active.size());
     MatrixXd gates(4 * kH, n);

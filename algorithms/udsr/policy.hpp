@@ -24,6 +24,7 @@ struct WeightedSequence {
   const Sequence* sequence = nullptr;
   double advantage = 0;
   double entropy = 0;
+  const Eigen::VectorXd* start = nullptr;  // this sequence's own first state; see begin_from
 };
 
 class Policy {
@@ -33,6 +34,10 @@ class Policy {
   // Recurrent weights start at zero, the output layer Glorot-uniform, as in the original.
   Policy(const TokenLibrary& library, RandomStream random);
 
+  // The state before the first step, for all sequences that bring none of their own: the hidden
+  // state, then the cell, 2 kHidden numbers. Zero unless a data encoder says otherwise.
+  void begin_from(const Eigen::VectorXd& start) { start_ = start; }
+
   // Draws `count` sequences; sequence i depends on random.split(i) alone.
   std::vector<Sequence> sample(std::size_t count, const Prior& prior,
                                const RandomStream& random) const;
@@ -41,9 +46,10 @@ class Policy {
   std::vector<double> log_probabilities(std::span<const Sequence* const> sequences,
                                         const Prior& prior) const;
 
-  // The loss above and its gradient with respect to parameters(). Cost: O(sum of lengths).
+  // The loss above and its gradient with respect to parameters(); start_gradient, where wanted, is
+  // that with respect to each sequence's first state, a column each. Cost: O(sum of lengths).
   double loss(std::span<const WeightedSequence> batch, const Prior& prior, double gamma,
-              Eigen::VectorXd& gradient) const;
+              Eigen::VectorXd& gradient, Eigen::MatrixXd* start_gradient = nullptr) const;
 
   const Eigen::VectorXd& parameters() const { return parameters_; }
   Eigen::VectorXd& parameters() { return parameters_; }
@@ -69,7 +75,9 @@ class Policy {
  private:
   struct Unrolled;
   struct StepErrors;
-  void unroll(std::span<const Sequence* const> sequences, const Prior& prior, Unrolled& run) const;
+  // first: 2 kHidden x sequences, the states before the first step.
+  void unroll(std::span<const Sequence* const> sequences, const Eigen::MatrixXd& first,
+              const Prior& prior, Unrolled& run) const;
   // What the place after `traversal` adds to the gates; bias included.
   void set_gate_input(const Traversal& traversal, Eigen::Ref<Eigen::VectorXd> gates) const;
   // gates: their inputs, bias included, on entry; activations on return. Columns are sequences.
@@ -82,6 +90,7 @@ class Policy {
 
   const TokenLibrary* library_;
   Eigen::VectorXd parameters_;
+  Eigen::VectorXd start_;
 };
 
 // Kingma & Ba 2015, with their defaults.

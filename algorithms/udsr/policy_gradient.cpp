@@ -62,6 +62,7 @@ void extend_by_zero(MatrixXd& columns, Index count) {
 // One teacher-forced pass over a batch, step by step; columns are the sequences that are as long,
 // n of them, longest first.
 struct Policy::Unrolled {
+  MatrixXd first;                        // 2 kH x sequences: hidden, cell
   std::vector<std::vector<int>> parent;  // [step][sequence]: input columns
   std::vector<std::vector<int>> sibling;
   std::vector<MatrixXd> gates;   // activations, 4 kH x n
@@ -80,13 +81,14 @@ struct Policy::StepErrors {
   MatrixXd recurrent;  // kH x 4 kH: the recurrent weights, transposed
 };
 
-void Policy::unroll(std::span<const Sequence* const> sequences, const Prior& prior,
-                    Unrolled& run) const {
+void Policy::unroll(std::span<const Sequence* const> sequences, const MatrixXd& first,
+                    const Prior& prior, Unrolled& run) const {
   auto n = static_cast<Index>(sequences.size());
   const std::size_t longest = sequences.empty() ? 0 : sequences.front()->size();
   std::vector<Traversal> traversals(sequences.size(), Traversal(*library_));
-  MatrixXd cell = MatrixXd::Zero(kH, n);
-  MatrixXd hidden = cell;
+  run.first = first;
+  MatrixXd hidden = first.topRows(kH);
+  MatrixXd cell = first.bottomRows(kH);
   for (std::size_t t = 0; t < longest; ++t) {
     while (sequences[static_cast<std::size_t>(n - 1)]->size() <= t) --n;
     keep_first(cell, n);
@@ -121,7 +123,7 @@ std::vector<double> Policy::log_probabilities(std::span<const Sequence* const> s
   std::vector<const Sequence*> sorted;
   for (const std::size_t i : order) sorted.push_back(sequences[i]);
   Unrolled run;
-  unroll(sorted, prior, run);
+  unroll(sorted, start_.replicate(1, static_cast<Index>(sorted.size())), prior, run);
   std::vector<double> sums(sequences.size(), 0.0);
   for (std::size_t j = 0; j < sorted.size(); ++j) {
     for (std::size_t t = 0; t < sorted[j]->size(); ++t) {
@@ -174,8 +176,8 @@ void Policy::add_cell_gradient(const Unrolled& run, std::size_t t, StepErrors& e
   const auto out = gates.bottomRows(kH).array();
   MatrixXd tanh_cell = run.cell[t];
   columns::tanh(tanh_cell.data(), tanh_cell.data(), static_cast<std::size_t>(tanh_cell.size()));
-  const ArrayXXd previous =
-      t > 0 ? ArrayXXd(run.cell[t - 1].leftCols(n).array()) : ArrayXXd(ArrayXXd::Zero(kH, n));
+  const ArrayXXd previous = t > 0 ? ArrayXXd(run.cell[t - 1].leftCols(n).array())
+                                  : ArrayXXd(run.first.bottomRows(kH).array());
   errors.cell.array() += errors.hidden.array() * out * (1 - tanh_cell.array().square());
   MatrixXd d_gates(4 * kH, n);
   d_gates.topRows(kH).array() = errors.cell.array() * candidate * in * (1 - in);
@@ -188,8 +190,9 @@ void Policy::add_cell_gradient(const Unrolled& run, std::size_t t, StepErrors& e
     d_input.col(run.parent[t][sequence]) += d_gates.col(j);
     d_input.col(run.sibling[t][sequence]) += d_gates.col(j);
   }
-  if (t > 0) {
-    const MatrixXd before = run.hidden[t - 1].leftCols(n).transpose();
+  if (t > 0 || !run.first.isZero(0)) {
+    const MatrixXd before = t > 0 ? MatrixXd(run.hidden[t - 1].leftCols(n).transpose())
+                                  : MatrixXd(run.first.topRows(kH).transpose());
     columns::add_product(d_gates.data(), before.data(), 4 * kH, static_cast<std::size_t>(n), kH,
                          gradient.data() + at.recurrent);
   }
@@ -200,18 +203,21 @@ void Policy::add_cell_gradient(const Unrolled& run, std::size_t t, StepErrors& e
 }
 
 double Policy::loss(std::span<const WeightedSequence> batch, const Prior& prior, double gamma,
-                    VectorXd& gradient) const {
+                    VectorXd& gradient, MatrixXd* start_gradient) const {
   std::vector<const Sequence*> given;
   for (const WeightedSequence& item : batch) given.push_back(item.sequence);
   StepErrors errors;
   errors.gamma = gamma;
   std::vector<const Sequence*> sequences;
-  for (const std::size_t i : longest_first(given)) {
+  const std::vector<std::size_t> order = longest_first(given);
+  MatrixXd first(2 * kH, static_cast<Index>(order.size()));
+  for (const std::size_t i : order) {
+    first.col(static_cast<Index>(sequences.size())) = batch[i].start ? *batch[i].start : start_;
     errors.batch.push_back(&batch[i]);
     sequences.push_back(given[i]);
   }
   Unrolled run;
-  unroll(sequences, prior, run);
+  unroll(sequences, first, prior, run);
   const Layout at = layout();
   gradient = VectorXd::Zero(at.size);
   errors.hidden.resize(kH, 0);
@@ -222,6 +228,14 @@ double Policy::loss(std::span<const WeightedSequence> batch, const Prior& prior,
     extend_by_zero(errors.cell, run.log_p[t].cols());
     add_output_gradient(run, t, errors, gradient);
     add_cell_gradient(run, t, errors, gradient);
+  }
+  if (start_gradient != nullptr) {
+    start_gradient->resize(2 * kH, static_cast<Index>(order.size()));
+    for (std::size_t j = 0; j < order.size(); ++j) {
+      const auto column = static_cast<Index>(order[j]);
+      start_gradient->col(column).head(kH) = errors.hidden.col(static_cast<Index>(j));
+      start_gradient->col(column).tail(kH) = errors.cell.col(static_cast<Index>(j));
+    }
   }
   return errors.loss;
 }

@@ -15,6 +15,18 @@ namespace {
 // Node-rows from which a batch is scored by several threads: about a millisecond of one.
 constexpr std::uint64_t kWorthThreads = 1'000'000;
 
+// Puts an entry into its place among the `most` best.
+void remember(const Scoreboard::Entry& entry, std::size_t most,
+              std::vector<Scoreboard::Entry>& best) {
+  if (best.size() == most && entry.reward <= best.back().reward) return;
+  const auto place = std::ranges::find_if(
+      best, [&](const Scoreboard::Entry& other) { return other.reward < entry.reward; });
+  // Equal rewards are, but for rounding, equal formulas written in another order.
+  if (place != best.begin() && std::prev(place)->reward == entry.reward) return;
+  best.insert(place, entry);
+  if (best.size() > most) best.pop_back();
+}
+
 std::string key_of_sequence(const Sequence& sequence) {
   return std::string(sequence.begin(), sequence.end());
 }
@@ -66,13 +78,21 @@ std::vector<double> Scoreboard::rewards(std::span<const Sequence> batch) {
 void Scoreboard::book(const Sequence& sequence, const Scored& scored) {
   if (scored.reward <= 0) return;
   offer(scored.formula, scored.nrmse);
-  if (best_.size() == kRemembered && scored.reward <= best_.back().reward) return;
-  const auto place =
-      std::ranges::find_if(best_, [&](const Entry& entry) { return entry.reward < scored.reward; });
-  // Equal rewards are, but for rounding, equal formulas written in another order.
-  if (place != best_.begin() && std::prev(place)->reward == scored.reward) return;
-  best_.insert(place, {scored.reward, sequence});
-  if (best_.size() > kRemembered) best_.pop_back();
+  remember({scored.reward, sequence}, kRemembered, best_);
+  remember({scored.reward, sequence}, kRememberedOfLength, best_of_length_[sequence.size()]);
+}
+
+std::vector<Scoreboard::Entry> Scoreboard::promising() const {
+  std::vector<Entry> all(best_.begin(), best_.begin() + static_cast<std::ptrdiff_t>(
+                                                            std::min(kPromising, best_.size())));
+  for (const auto& [length, entries] : best_of_length_) {
+    for (const Entry& entry : entries) {
+      if (std::ranges::find(all, entry.sequence, &Entry::sequence) == all.end()) {
+        all.push_back(entry);
+      }
+    }
+  }
+  return all;
 }
 
 void Scoreboard::offer(const Expression& formula, double nrmse) {

@@ -38,6 +38,10 @@ class Scoreboard {
   };
   std::span<const Entry> best() const { return best_; }
 
+  // The best of all, and the best of each length: what a sequence lacks that holds no constants
+  // inside functions shows only once it has them, and the longest ones hide it from the rewards.
+  std::vector<Entry> promising() const;
+
   // Offers a formula that did not come from a sequence.
   void offer(const Expression& formula, double nrmse);
   // Best formula of each complexity (the paper's count).
@@ -49,6 +53,8 @@ class Scoreboard {
 
  private:
   static constexpr std::size_t kRemembered = 32;
+  static constexpr std::size_t kRememberedOfLength = 4;
+  static constexpr std::size_t kPromising = 8;  // of the best of all
   void book(const Sequence& sequence, const Scored& scored);
 
   const ScoringProblem* problem_;
@@ -57,6 +63,7 @@ class Scoreboard {
   std::vector<std::unique_ptr<Scorer>> scorers_;   // one per thread
   std::unordered_map<std::string, double> known_;  // looked up only, never iterated
   std::vector<Entry> best_;
+  std::map<std::size_t, std::vector<Entry>> best_of_length_;
   std::map<int, FrontEntry> front_;
   double best_reward_ = 0;
   double best_nrmse_ = 0;

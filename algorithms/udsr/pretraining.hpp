@@ -4,12 +4,14 @@
 // token library under the prior, and on friction laws. What it learns is a prior over formulas.
 //
 // Source: Landajuela et al. 2022, section 3.4 (large-scale pre-training), whose corpus and weights
-// were never published. Ours is small and made by one command; it has no data encoder.
+// were never published. Ours is small and made by one command. With a data encoder each formula of
+// the corpus comes with rows made from it, and the encoder learns with the policy.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 
+#include "algorithms/udsr/data_encoder.hpp"
 #include "algorithms/udsr/policy.hpp"
 #include "algorithms/udsr/weights.hpp"
 
@@ -36,8 +38,15 @@ Sequence friction_law(const TokenLibrary& library, RandomStream& random);
 std::vector<Sequence> make_corpus(const TokenLibrary& library, const Prior& prior, int size,
                                   double friction_share, const RandomStream& random);
 
+// Features of rows that a formula could have made: constants and the linear token's coefficients
+// N(0, 1), inputs uniform on [-1, 1], in three of four draws each even one the sign of the one
+// before it, noise of a hundredth. No rows where the formula is not finite on most of them.
+Eigen::MatrixXd imagined_features(const TokenLibrary& library, const Sequence& sequence,
+                                  RandomStream random);
+
 // progress(done) is told the share of the work done, 0 to 1. Returns where the weights came from.
-WeightsProvenance pretrain(Policy& policy, const PretrainingOptions& options,
+// encoder: trained along, where there is one.
+WeightsProvenance pretrain(Policy& policy, DataEncoder* encoder, const PretrainingOptions& options,
                            const std::function<void(double)>& progress);
 
 }  // namespace tribench::udsr

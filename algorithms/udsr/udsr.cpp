@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "algorithms/admission.hpp"
@@ -31,8 +32,6 @@ using udsr::ScoringProblem;
 
 // Deeper recursion would search for parts of parts of a smoother's guess.
 constexpr int kMaxRecursion = 2;
-// Of so many of the most rewarding sequences, versions with fewer terms are offered too.
-constexpr std::size_t kSparsified = 8;
 constexpr std::size_t kFewestConstants = 2;
 
 struct Settings {
@@ -43,6 +42,7 @@ struct Settings {
   bool recursion = true;
   std::string weights;       // "shipped", "none" or a file's name
   std::string weights_text;  // the file's contents
+  std::optional<udsr::DataEncoder> encoder;
   udsr::Choice choice = udsr::Choice::simpler;
 };
 
@@ -61,6 +61,8 @@ std::vector<ParameterSpec> parameter_specs() {
       {"population", "of genetic programming", std::int64_t{100}, 2, 10000},
       {"recursion", "recursive simplification", true},
       {"weights", "pre-trained policy: shipped, none, or a file", std::string("shipped")},
+      {"encoder", "the policy starts from what the weight file's data encoder makes of the rows",
+       false},
       {"policy",
        "how the policy learns",
        std::string("risk_seeking"),
@@ -138,6 +140,9 @@ Settings settings_from(const Parameters& parameters) {
   } else if (settings.weights != "none") {
     settings.weights_text = read_file(settings.weights);
   }
+  if (parameters.flag("encoder")) {
+    settings.encoder = udsr::read_encoder(settings.weights_text, settings.weights);
+  }
   return settings;
 }
 
@@ -180,12 +185,15 @@ class Search {
     if (!settings_.weights_text.empty()) {
       udsr::read_weights(settings_.weights_text, settings_.weights, policy);
     }
+    if (settings_.encoder) {
+      policy.begin_from(settings_.encoder->encode(
+          udsr::DataEncoder::features(problem_.inputs(), problem_.target())));
+    }
     const udsr::Prior prior(library_, settings_.prior, range_of(problem_));
     udsr::train(policy, prior, settings_.training, random.split("training"), scoreboard);
     budget_.settle(searching);
     for (const auto& [complexity, entry] : scoreboard.front()) add(entry.formula, entry.nrmse);
-    const std::size_t sparsified = std::min(kSparsified, scoreboard.best().size());
-    for (std::size_t i = 0; i < sparsified; ++i) offer_sparser(scoreboard.best()[i].sequence);
+    for (const Scoreboard::Entry& entry : scoreboard.promising()) offer_sparser(entry.sequence);
   }
 
   // Fits the constants of a formula that came from elsewhere and adds it.

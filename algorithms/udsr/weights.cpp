@@ -23,8 +23,27 @@ struct Stored {
   Eigen::VectorXd parameters;
 };
 
-std::string digest(const Json& tokens, const Json& parameters) {
-  return fmt::format("{:016x}", key_of(tokens.dump() + parameters.dump()));
+constexpr const char* kMend = "make one with: tribench pretrain --out FILE";
+
+// encoder: null where there is none.
+std::string digest(const Json& tokens, const Json& parameters, const Json& encoder) {
+  return fmt::format("{:016x}", key_of(tokens.dump() + parameters.dump() +
+                                       (encoder.is_null() ? "" : encoder.dump())));
+}
+
+Json in_single_precision(const Eigen::VectorXd& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(static_cast<float>(value));
+  return list;
+}
+
+Eigen::VectorXd read_numbers(const Json& list) {
+  const auto values = list.get<std::vector<float>>();
+  Eigen::VectorXd result(static_cast<Eigen::Index>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    result[static_cast<Eigen::Index>(i)] = static_cast<double>(values[i]);
+  }
+  return result;
 }
 
 std::optional<std::size_t> place_of(const std::vector<std::string>& names,
@@ -34,30 +53,31 @@ std::optional<std::size_t> place_of(const std::vector<std::string>& names,
   return static_cast<std::size_t>(found - names.begin());
 }
 
-Stored parse_stored(std::string_view text, std::string_view place) {
-  const Json file = Json::parse(text, nullptr, false);
-  const std::string mend = "make one with: tribench pretrain --out FILE";
+// A weight file whose hash matches.
+Json parse_checked(std::string_view text, std::string_view place) {
+  Json file = Json::parse(text, nullptr, false);
   if (file.is_discarded() || file.value("format", "") != kFormat) {
-    throw_bad_input("this is not a policy's weight file", place, mend);
+    throw_bad_input("this is not a policy's weight file", place, kMend);
   }
-  if (file.value("version", 0) != kWeightsVersion) {
-    throw_bad_input(fmt::format("weight files of version {} are not read, only version {}",
-                                file.value("version", 0), kWeightsVersion),
-                    place, mend);
+  const int version = file.value("version", 0);
+  if (version != kWeightsVersion && version != kWeightsVersionWithEncoder) {
+    throw_bad_input(fmt::format("weight files of version {} are not read, only versions {} and {}",
+                                version, kWeightsVersion, kWeightsVersionWithEncoder),
+                    place, kMend);
   }
   if (!file.contains("tokens") || !file.contains("parameters") || !file.contains("operations") ||
-      file.value("hash", "") != digest(file["tokens"], file["parameters"])) {
-    throw_bad_input("the weight file is damaged: its hash does not match", place, mend);
+      file.contains("encoder") != (version == kWeightsVersionWithEncoder) ||
+      file.value("hash", "") !=
+          digest(file["tokens"], file["parameters"], file.value("encoder", Json()))) {
+    throw_bad_input("the weight file is damaged: its hash does not match", place, kMend);
   }
-  Stored stored;
-  stored.tokens = file["tokens"].get<std::vector<std::string>>();
-  stored.operations = file["operations"].get<std::size_t>();
-  const auto values = file["parameters"].get<std::vector<float>>();
-  stored.parameters.resize(static_cast<Eigen::Index>(values.size()));
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    stored.parameters[static_cast<Eigen::Index>(i)] = static_cast<double>(values[i]);
-  }
-  return stored;
+  return file;
+}
+
+Stored parse_stored(std::string_view text, std::string_view place) {
+  const Json file = parse_checked(text, place);
+  return {file["tokens"].get<std::vector<std::string>>(), file["operations"].get<std::size_t>(),
+          read_numbers(file["parameters"])};
 }
 
 // Copies the blocks, column by column and row by row where both sides know the token.
@@ -120,25 +140,28 @@ class Transfer {
 
 }  // namespace
 
-std::string write_weights(const Policy& policy, const WeightsProvenance& provenance) {
+std::string write_weights(const Policy& policy, const DataEncoder* encoder,
+                          const WeightsProvenance& provenance) {
   const TokenLibrary& library = policy.library();
   Json tokens = Json::array();
   for (std::size_t i = 0; i < library.size(); ++i) {
     tokens.push_back(library[static_cast<TokenId>(i)].name);
   }
-  Json parameters = Json::array();
-  for (const double value : policy.parameters()) parameters.push_back(static_cast<float>(value));
+  Json parameters = in_single_precision(policy.parameters());
+  Json encoding;
+  if (encoder != nullptr) encoding = in_single_precision(encoder->parameters());
   Json file;
   file["format"] = kFormat;
-  file["version"] = kWeightsVersion;
+  file["version"] = encoder == nullptr ? kWeightsVersion : kWeightsVersionWithEncoder;
   file["provenance"] = {{"command", provenance.command},
                         {"seed", provenance.seed},
                         {"sequences", provenance.sequences},
                         {"loss_per_token", provenance.loss_per_token}};
-  file["hash"] = digest(tokens, parameters);
+  file["hash"] = digest(tokens, parameters, encoding);
   file["operations"] = library.operations();
   file["tokens"] = std::move(tokens);
   file["parameters"] = std::move(parameters);
+  if (encoder != nullptr) file["encoder"] = std::move(encoding);
   return file.dump() + "\n";
 }
 
@@ -147,9 +170,24 @@ void read_weights(std::string_view text, std::string_view place, Policy& policy)
   Transfer transfer(stored, policy);
   if (!transfer.fits()) {
     throw_bad_input("the weight file does not have as many parameters as its tokens need", place,
-                    "make one with: tribench pretrain --out FILE");
+                    kMend);
   }
   transfer.run();
+}
+
+DataEncoder read_encoder(std::string_view text, std::string_view place) {
+  const Json file = parse_checked(text, place);
+  const std::string mend = "make one with: tribench pretrain --encoder --out FILE";
+  if (!file.contains("encoder")) {
+    throw_bad_input("the weight file has no data encoder", place, mend);
+  }
+  DataEncoder encoder(RandomStream(0));
+  Eigen::VectorXd stored = read_numbers(file["encoder"]);
+  if (stored.size() != DataEncoder::size()) {
+    throw_bad_input("the weight file's data encoder has another size", place, mend);
+  }
+  encoder.parameters() = std::move(stored);
+  return encoder;
 }
 
 }  // namespace tribench::udsr

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
 //
 // Pre-trained policies as files: versioned JSON with the names of the tokens, the parameters, a
-// hash over both and where they came from. A policy for fewer tokens takes the rows and columns
-// that it needs, by name.
+// hash over both and where they came from; version 2 holds a data encoder besides. A policy for
+// fewer tokens takes the rows and columns that it needs, by name.
 #pragma once
 
 #include <string>
 #include <string_view>
 
+#include "algorithms/udsr/data_encoder.hpp"
 #include "algorithms/udsr/policy.hpp"
 
 namespace tribench::udsr {
 
 inline constexpr int kWeightsVersion = 1;
+inline constexpr int kWeightsVersionWithEncoder = 2;
 
 // Where a file's parameters came from, for the reader of the file.
 struct WeightsProvenance {
@@ -22,11 +24,16 @@ struct WeightsProvenance {
   double loss_per_token = 0;  // nats, on held-out sequences
 };
 
-std::string write_weights(const Policy& policy, const WeightsProvenance& provenance);
+// encoder: null where there is none.
+std::string write_weights(const Policy& policy, const DataEncoder* encoder,
+                          const WeightsProvenance& provenance);
 
 // Fills `policy` from a file's text. place: the file's name, for errors. Throws Error (bad_input)
 // where the text is not such a file, its version is another, or its hash does not match.
 void read_weights(std::string_view text, std::string_view place, Policy& policy);
+
+// The encoder of the same file. Throws as above, and where the file has none.
+DataEncoder read_encoder(std::string_view text, std::string_view place);
 
 }  // namespace tribench::udsr
 

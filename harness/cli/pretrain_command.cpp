@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "algorithms/udsr/pretraining.hpp"
@@ -21,6 +22,7 @@ namespace {
 struct Arguments {
   udsr::PretrainingOptions options;
   std::string out;
+  bool encoder = false;
   bool json = false;
 };
 
@@ -36,9 +38,12 @@ void run(const Arguments& arguments) {
     throw_bad_input("the file cannot be written", arguments.out, "name another with --out");
   const udsr::TokenLibrary library = udsr::pretraining_library();
   udsr::Policy policy(library, RandomStream(arguments.options.seed));
+  std::optional<udsr::DataEncoder> encoder;
+  if (arguments.encoder) encoder.emplace(RandomStream(arguments.options.seed).split("encoder"));
+  udsr::DataEncoder* const trained = encoder ? &*encoder : nullptr;
   const udsr::WeightsProvenance provenance =
-      udsr::pretrain(policy, arguments.options, show_progress);
-  file << udsr::write_weights(policy, provenance);
+      udsr::pretrain(policy, trained, arguments.options, show_progress);
+  file << udsr::write_weights(policy, trained, provenance);
   file.close();
   if (!file) throw Error(ErrorKind::failed, "the file could not be written whole", arguments.out);
   if (arguments.json) {
@@ -67,6 +72,8 @@ void add_pretrain_command(CLI::App& app, ExitStatus& /*status*/) {
   command->add_option("--epochs", arguments->options.epochs, "passes over the corpus")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command->add_flag("--encoder", arguments->encoder,
+                    "train a data encoder along; used by udsr with encoder = true");
   command->add_flag("--json", arguments->json, "what was done, as JSON");
   command->callback([arguments] { run(*arguments); });
 }

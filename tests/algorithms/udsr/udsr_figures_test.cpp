@@ -72,7 +72,7 @@ TEST(Pretraining, MakesTheShippedWeightsBitForBit) {
   const udsr::TokenLibrary library = udsr::pretraining_library();
   const udsr::PretrainingOptions options;
   udsr::Policy made(library, RandomStream(options.seed));
-  udsr::pretrain(made, options, [](double) {});
+  udsr::pretrain(made, nullptr, options, [](double) {});
   udsr::Policy shipped(library, RandomStream(2));
   udsr::read_weights(embedded::udsr_weights(), "shipped", shipped);
   // A file holds single precision.

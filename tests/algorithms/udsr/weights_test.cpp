@@ -19,7 +19,7 @@ class WeightsTest : public testing::Test {
     RandomStream random(2);
     // What a file holds is single precision.
     for (double& p : policy.parameters()) p = static_cast<float>(0.3 * random.normal());
-    text = write_weights(policy, {"test", 1, 2, 3});
+    text = write_weights(policy, nullptr, {"test", 1, 2, 3});
   }
   static PriorOptions plain() {
     PriorOptions options;
@@ -99,9 +99,9 @@ TEST(Pretraining, LowersTheLossOnFormulasItHasNotSeen) {
   options.held_out = 200;
   options.epochs = 0;
   Policy policy(library, RandomStream(1));
-  const double before = pretrain(policy, options, [](double) {}).loss_per_token;
+  const double before = pretrain(policy, nullptr, options, [](double) {}).loss_per_token;
   options.epochs = 6;
-  EXPECT_LT(pretrain(policy, options, [](double) {}).loss_per_token, 0.97 * before);
+  EXPECT_LT(pretrain(policy, nullptr, options, [](double) {}).loss_per_token, 0.97 * before);
 }
 
 }  // namespace
