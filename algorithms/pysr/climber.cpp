@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "algorithms/pysr/description_length.hpp"
+#include "algorithms/fitting/evidence.hpp"
 #include "algorithms/pysr/simplify.hpp"
 
 namespace tribench::pysr {

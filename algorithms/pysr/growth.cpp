@@ -6,8 +6,8 @@
 
 #include "algorithms/expression/column_kernels.hpp"
 #include "algorithms/fitting/cholesky.hpp"
-#include "algorithms/pysr/description_length.hpp"
-#include "algorithms/pysr/dimension.hpp"
+#include "algorithms/fitting/evidence.hpp"
+#include "algorithms/fitting/shape_dimension.hpp"
 #include "algorithms/pysr/simplify.hpp"
 #include "algorithms/pysr/tape_edit.hpp"
 

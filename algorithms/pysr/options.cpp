@@ -25,7 +25,8 @@ Selection selection_of(const std::string& name) {
   if (name == "best") return Selection::best;
   if (name == "accuracy") return Selection::accuracy;
   if (name == "mdl") return Selection::mdl;
-  return name == "score" ? Selection::score : Selection::evidence;
+  if (name == "evidence") return Selection::evidence;
+  return name == "score" ? Selection::score : Selection::posterior;
 }
 
 Batching batching_of(const std::string& name, Batching otherwise) {
@@ -226,11 +227,11 @@ std::vector<ParameterSpec> parameter_specs() {
       share("unit_penalty", "added to the loss of inconsistent units", 1e12),
       {"guesses", "formulas to start from, separated by ';'", std::string()},
       {"selection",
-       "choice from the front; profile: evidence for native, best for v1 and v2",
+       "choice from the front; profile: posterior for native, best for v1 and v2",
        std::string("profile"),
        0,
        0,
-       {"profile", "evidence", "mdl", "best", "accuracy", "score"}},
+       {"profile", "posterior", "evidence", "mdl", "best", "accuracy", "score"}},
       on_off("fit_children", "fit the constants of every child"),
       on_off("novelty", "fit no structure twice on an island"),
       on_off("linear_scaling", "give a child the scale and offset it lacks"),

@@ -20,7 +20,7 @@
 namespace tribench::pysr {
 
 enum class Profile { native, v1, v2 };
-enum class Selection { evidence, mdl, best, accuracy, score };
+enum class Selection { posterior, evidence, mdl, best, accuracy, score };
 enum class Batching { off, on, automatic };
 enum class Units { off, soft, hard };
 
@@ -121,7 +121,7 @@ struct Options {
 
   // Start and choice.
   std::string guesses;  // formulas, separated by ';'
-  Selection selection = Selection::evidence;
+  Selection selection = Selection::posterior;
 
   // Ours.
   bool fit_children = true;    // every child's constants are fitted before it is judged

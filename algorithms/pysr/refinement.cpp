@@ -2,10 +2,11 @@
 #include "algorithms/pysr/refinement.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "algorithms/expression/complexity.hpp"
-#include "algorithms/pysr/description_length.hpp"
+#include "algorithms/fitting/description_length.hpp"
+#include "algorithms/fitting/evidence.hpp"
+#include "algorithms/fitting/posterior_choice.hpp"
 
 namespace tribench::pysr {
 namespace {
@@ -27,6 +28,26 @@ std::vector<Candidate> pareto_of(std::vector<Candidate> candidates,
     front.push_back(std::move(candidate));
   }
   return front;
+}
+
+// What a choice from the front may ask for, besides size and loss.
+void describe(std::vector<Candidate>& front, std::span<const Candidate> pool, const Rows& rows,
+              Budget& budget) {
+  std::vector<WeighedFormula> weighed;
+  for (const Candidate& candidate : pool) {
+    weighed.push_back({&candidate.formula, candidate.point.evidence_against, candidate.point.loss});
+  }
+  std::vector<Expression> formulas;
+  for (const Candidate& candidate : front) formulas.push_back(candidate.formula);
+  const PosteriorDistances distances =
+      distances_from_posterior_mean(formulas, weighed, rows.inputs());
+  budget.spend(distances.node_rows);
+  Differentiator workspace;
+  for (std::size_t k = 0; k < front.size(); ++k) {
+    front[k].point.distance = distances.mean_square[k];
+    front[k].point.description_length =
+        description_length(front[k].formula, rows.inputs(), rows.target, workspace);
+  }
 }
 
 }  // namespace
@@ -62,12 +83,8 @@ std::vector<Candidate> refined_front(Climber& climber, const Options& options, c
     for (const Fitted& start : starts) climber.climb(start, effort, random, budget);
   }
   climber.on_fitted({});
-  std::vector<Candidate> front = pareto_of(std::move(candidates), admitted);
-  Differentiator workspace;
-  for (Candidate& candidate : front) {
-    candidate.point.description_length = description_length(candidate.formula, rows, workspace)
-                                             .value_or(std::numeric_limits<double>::infinity());
-  }
+  std::vector<Candidate> front = pareto_of(candidates, admitted);
+  describe(front, candidates, rows, budget);
   return front;
 }
 

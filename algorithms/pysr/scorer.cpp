@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "algorithms/expression/column_kernels.hpp"
-#include "algorithms/pysr/description_length.hpp"
+#include "algorithms/fitting/evidence.hpp"
 
 namespace tribench::pysr {
 namespace {

@@ -15,7 +15,7 @@
 #include "algorithms/expression/text.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
-#include "algorithms/pysr/description_length.hpp"
+#include "algorithms/fitting/evidence.hpp"
 #include "algorithms/pysr/island.hpp"
 #include "algorithms/pysr/migration.hpp"
 #include "algorithms/pysr/refinement.hpp"

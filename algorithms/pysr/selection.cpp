@@ -28,6 +28,9 @@ std::size_t select(std::span<const FrontPoint> front, Selection rule) {
   const auto place = [&](auto found) { return static_cast<std::size_t>(found - front.begin()); };
   const auto most_accurate = std::ranges::min_element(front, {}, &FrontPoint::loss);
   if (rule == Selection::accuracy) return place(most_accurate);
+  if (rule == Selection::posterior) {
+    return place(std::ranges::min_element(front, {}, &FrontPoint::distance));
+  }
   if (rule == Selection::evidence) {
     return place(std::ranges::min_element(front, {}, &FrontPoint::evidence_against));
   }

@@ -9,6 +9,8 @@
 #include "algorithms/expression/singularity.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/description_length.hpp"
+#include "algorithms/fitting/evidence.hpp"
+#include "algorithms/fitting/posterior_choice.hpp"
 #include "algorithms/udsr/pruning.hpp"
 
 namespace tribench::udsr {
@@ -45,19 +47,44 @@ std::size_t least_bic(std::span<const Expression> front, const ScoringProblem& p
   return place_of_least(criteria);
 }
 
+std::size_t nearest_to_posterior_mean(std::span<const Expression> front,
+                                      std::span<const Candidate> pool,
+                                      const ScoringProblem& problem, Budget& budget) {
+  constexpr double kNodesAreFree = 0;
+  double zero_loss = 0;
+  for (const double y : problem.target()) zero_loss += y * y / static_cast<double>(problem.rows());
+  std::vector<WeighedFormula> weighed;
+  for (const Candidate& candidate : pool) {
+    const double variance = problem.variance() > 0 ? problem.variance() : 1;
+    const double mean_square = candidate.nrmse * candidate.nrmse * variance;
+    weighed.push_back(
+        {&candidate.formula,
+         evidence_against(candidate.formula, mean_square, zero_loss, problem.rows(), kNodesAreFree),
+         mean_square});
+  }
+  const PosteriorDistances distances =
+      distances_from_posterior_mean(front, weighed, problem.inputs());
+  budget.spend(distances.node_rows);
+  return place_of_least(distances.mean_square);
+}
+
 }  // namespace
 
 Choice choice_of(const std::string& name) {
   if (name == "description_length") return Choice::description_length;
   if (name == "cross_validation") return Choice::cross_validation;
-  return name == "bic" ? Choice::bic : Choice::simpler;
+  if (name == "simpler") return Choice::simpler;
+  return name == "bic" ? Choice::bic : Choice::posterior;
 }
 
-std::size_t choose(Choice rule, std::span<const Expression> front, const ScoringProblem& problem,
-                   const InputBox& box, Budget& budget) {
+std::size_t choose(Choice rule, std::span<const Expression> front, std::span<const Candidate> pool,
+                   const ScoringProblem& problem, const InputBox& box, Budget& budget) {
   if (rule == Choice::description_length) return shortest(front, problem, budget);
   // Beyond the rows no criterion speaks: held-out edges do, even where the search spent everything.
   const bool beyond = reaches_beyond(problem.inputs(), box) && !budget.out_of_time();
+  if (rule == Choice::posterior && !beyond) {
+    return nearest_to_posterior_mean(front, pool, problem, budget);
+  }
   if (rule == Choice::bic || (budget.exhausted() && !beyond)) return least_bic(front, problem);
   const CrossValidation validation =
       cross_validate(front, problem.inputs(), problem.target(), problem.movement(), box);
@@ -67,12 +94,13 @@ std::size_t choose(Choice rule, std::span<const Expression> front, const Scoring
 }
 
 std::size_t choose_sound(Choice rule, const std::vector<Expression>& front,
-                         const ScoringProblem& problem, const InputBox& box, Budget& budget) {
+                         std::span<const Candidate> pool, const ScoringProblem& problem,
+                         const InputBox& box, Budget& budget) {
   std::vector<Expression> left = front;
   std::vector<std::size_t> places(front.size());
   std::iota(places.begin(), places.end(), 0);
   while (true) {
-    const std::size_t chosen = choose(rule, left, problem, box, budget);
+    const std::size_t chosen = choose(rule, left, pool, problem, box, budget);
     if (left.size() == 1 || prove_free(left[chosen], box).verdict != Verdict::refuted) {
       return places[chosen];
     }

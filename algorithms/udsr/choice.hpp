@@ -2,11 +2,13 @@
 //
 // Which formula of a front uDSR stands for.
 //
-// The information criterion (Schwarz 1978) guards against a search that has tried many formulas on
-// independent rows, cross-validation over movements against rows that are not independent; the
-// simpler of the two choices is the default.
+// By default the one nearest to the posterior mean of everything the search has fitted
+// (fitting/posterior_choice.hpp), as in pysr. The one difference: a node costs nothing. pysr
+// chooses its formulas node by node; here nodes come with the constants that every term is given
+// and with products by signs, and are no choice.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,19 +19,27 @@
 
 namespace tribench::udsr {
 
-enum class Choice { simpler, bic, cross_validation, description_length };
+enum class Choice { posterior, simpler, bic, cross_validation, description_length };
 
 Choice choice_of(const std::string& name);
 
-// The place of the choice; front: by increasing complexity, not empty. Spends from the budget; once
+// A formula with its error.
+struct Candidate {
+  Expression formula;
+  double nrmse = std::numeric_limits<double>::infinity();
+};
+
+// The place of the choice; front: by increasing complexity, not empty; pool: all that was fitted,
+// the front among it. Spends from the budget; once
 // that is exhausted the cheapest criterion decides alone. Where the box reaches beyond the rows,
 // cross-validation with held-out edges decides.
-std::size_t choose(Choice rule, std::span<const Expression> front, const ScoringProblem& problem,
-                   const InputBox& box, Budget& budget);
+std::size_t choose(Choice rule, std::span<const Expression> front, std::span<const Candidate> pool,
+                   const ScoringProblem& problem, const InputBox& box, Budget& budget);
 
 // The same, but a formula that the proof engine refutes on the box gives way to the next choice,
 // unless all are refuted.
 std::size_t choose_sound(Choice rule, const std::vector<Expression>& front,
-                         const ScoringProblem& problem, const InputBox& box, Budget& budget);
+                         std::span<const Candidate> pool, const ScoringProblem& problem,
+                         const InputBox& box, Budget& budget);
 
 }  // namespace tribench::udsr

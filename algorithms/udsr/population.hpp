@@ -53,8 +53,8 @@ class Scoreboard {
 
  private:
   static constexpr std::size_t kRemembered = 32;
-  static constexpr std::size_t kRememberedOfLength = 4;
-  static constexpr std::size_t kPromising = 8;  // of the best of all
+  static constexpr std::size_t kRememberedOfLength = 8;
+  static constexpr std::size_t kPromising = 16;  // of the best of all
   void book(const Sequence& sequence, const Scored& scored);
 
   const ScoringProblem* problem_;

@@ -25,7 +25,7 @@ enum class Baseline { quantile, moving_mean, moving_quantile, combined };
 struct TrainingOptions {
   int batch = 500;
   int max_steps = 200;
-  int patience = 10;      // steps without a better formula before stopping
+  int patience = 60;      // steps without a better formula before stopping
   double epsilon = 0.05;  // share of the batch that is kept; 0.02 with GP in the original
   double learning_rate = 5e-4;
   double entropy_weight = 0.03;

@@ -26,6 +26,7 @@
 namespace tribench {
 namespace {
 
+using udsr::Candidate;
 using udsr::Scoreboard;
 using udsr::Scorer;
 using udsr::ScoringProblem;
@@ -43,12 +44,7 @@ struct Settings {
   std::string weights;       // "shipped", "none" or a file's name
   std::string weights_text;  // the file's contents
   std::optional<udsr::DataEncoder> encoder;
-  udsr::Choice choice = udsr::Choice::simpler;
-};
-
-struct Candidate {
-  Expression formula;
-  double nrmse = std::numeric_limits<double>::infinity();
+  udsr::Choice choice = udsr::Choice::posterior;
 };
 
 std::vector<ParameterSpec> parameter_specs() {
@@ -77,18 +73,18 @@ std::vector<ParameterSpec> parameter_specs() {
        {"quantile", "moving_mean", "moving_quantile", "combined"}},
       {"batch", "formulas sampled a step", std::int64_t{500}, 1, 100000},
       {"steps", "most steps of training", std::int64_t{200}, 0, 100000},
-      {"patience", "steps without a better formula before stopping", std::int64_t{10}, 1, 100000},
+      {"patience", "steps without a better formula before stopping", std::int64_t{60}, 1, 100000},
       {"epsilon", "share of a batch that trains the policy", 0.05, 1e-4, 1},
       {"learning_rate", "of Adam", 5e-4, 0, 1},
       {"entropy_weight", "of the policy's entropy in the loss", 0.03, 0, 10},
       {"entropy_gamma", "discount of the entropy by position", 0.7, 0, 1},
       {"choice",
-       "the formula of the front: least BIC, cross-validation, the simpler of these two, or least "
-       "description length",
-       std::string("simpler"),
+       "the formula of the front: nearest to the posterior mean, least BIC, cross-validation, the "
+       "simpler of these two, or least description length",
+       std::string("posterior"),
        0,
        0,
-       {"simpler", "description_length", "cross_validation", "bic"}},
+       {"posterior", "simpler", "description_length", "cross_validation", "bic"}},
       {"max_length", "tokens of a formula", std::int64_t{30}, 4, 200},
   };
 }
@@ -175,6 +171,8 @@ class Search {
 
   std::size_t rows() const { return problem_.rows(); }
   const ScoringProblem& problem() const { return problem_; }
+  // Everything that was fitted on the way to the front.
+  const std::vector<Candidate>& pool() const { return pool_; }
 
   // Trains a policy, then offers what it found and sparser versions of the best.
   void run(const RandomStream& random) {
@@ -226,6 +224,7 @@ class Search {
  private:
   void add(Expression formula, double nrmse) {
     if (!std::isfinite(nrmse)) return;
+    pool_.push_back({formula, nrmse});
     const int complexity = paper_complexity(formula);
     const auto found = candidates_.find(complexity);
     if (found != candidates_.end() && !(nrmse < found->second.nrmse)) return;
@@ -261,6 +260,7 @@ class Search {
   int threads_;
   Admission admission_;
   std::map<int, Candidate> candidates_;
+  std::vector<Candidate> pool_;
 };
 
 class Udsr : public Regressor {
@@ -279,7 +279,7 @@ class Udsr : public Regressor {
       return result;
     }
     result.front = front;
-    result.chosen = udsr::choose_sound(settings_.choice, front, search.problem(),
+    result.chosen = udsr::choose_sound(settings_.choice, front, search.pool(), search.problem(),
                                        input_box(context.data.inputs), context.budget);
     return result;
   }
@@ -342,7 +342,7 @@ class Udsr : public Regressor {
     const std::vector<Expression> front = solve(search, context, data, random, depth);
     if (front.empty()) return front;
     const std::size_t chosen =
-        udsr::choose(settings_.choice, front, search.problem(), {}, context.budget);
+        udsr::choose(settings_.choice, front, search.pool(), search.problem(), {}, context.budget);
     if (chosen + 1 == front.size()) return {front.back()};
     return {front[chosen], front.back()};
   }

@@ -24,8 +24,8 @@
 
 #include "algorithms/expression/expression.hpp"
 
-namespace tribench::pysr {
+namespace tribench {
 
 std::size_t shape_dimension(const Expression& formula);
 
-}  // namespace tribench::pysr
+}  // namespace tribench

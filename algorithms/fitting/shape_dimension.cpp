@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/pysr/dimension.hpp"
+#include "algorithms/fitting/shape_dimension.hpp"
 
 #include <vector>
 
-namespace tribench::pysr {
+namespace tribench {
 namespace {
 
 struct Shape {
@@ -62,4 +62,4 @@ std::size_t shape_dimension(const Expression& formula) {
   return stack.empty() ? 0 : stack.back().dimension;
 }
 
-}  // namespace tribench::pysr
+}  // namespace tribench

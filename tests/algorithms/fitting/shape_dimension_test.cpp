@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/pysr/dimension.hpp"
+#include "algorithms/fitting/shape_dimension.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "algorithms/expression/text.hpp"
 
-namespace tribench::pysr {
+namespace tribench {
 namespace {
 
 std::size_t dimension(const char* text) {
@@ -55,4 +55,4 @@ TEST(ShapeDimension, DoesNotDependOnTheWayAFormulaIsBracketed) {
 }
 
 }  // namespace
-}  // namespace tribench::pysr
+}  // namespace tribench
