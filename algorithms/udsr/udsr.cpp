@@ -15,7 +15,6 @@
 #include "algorithms/admission.hpp"
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
-#include "algorithms/registry.hpp"
 #include "algorithms/udsr/choice.hpp"
 #include "algorithms/udsr/pruning.hpp"
 #include "algorithms/udsr/simplification.hpp"
