@@ -18,6 +18,10 @@ target_compile_options(tribench_warnings INTERFACE
 if(TRIBENCH_SANITIZE)
   add_compile_options(-fsanitize=${TRIBENCH_SANITIZE} -fno-omit-frame-pointer -g)
   add_link_options(-fsanitize=${TRIBENCH_SANITIZE})
+  if(TRIBENCH_SANITIZE MATCHES "undefined")
+    # A finding ends the program: one that is only printed lets its test pass.
+    add_compile_options(-fno-sanitize-recover=undefined)
+  endif()
 endif()
 if(TRIBENCH_COVERAGE)
   add_compile_options(--coverage)

@@ -15,11 +15,10 @@ void read_one_by_one(std::span<const Node> tape, const LeafLists<T>& lists) {
   std::uint32_t* operation = lists.operations;
   for (std::size_t i = 0; i < tape.size(); ++i) {
     const Node& node = tape[i];
-    // Selected by a mask: compilers make a branch of a conditional.
-    const std::uintptr_t is_column = std::uintptr_t{0} - (node.op == Op::variable ? 1U : 0U);
-    const auto column = reinterpret_cast<std::uintptr_t>(lists.columns[node.variable & is_column]);
-    const auto scalar = reinterpret_cast<std::uintptr_t>(lists.scalars + i);
-    lists.values[i] = reinterpret_cast<const T*>((column & is_column) | (scalar & ~is_column));
+    // Looked up, not asked: compilers make a branch of a conditional.
+    const std::size_t is_column = node.op == Op::variable ? 1 : 0;
+    const T* const either[2] = {lists.scalars + i, lists.columns[node.variable * is_column]};
+    lists.values[i] = either[is_column];
     lists.scalars[i] = static_cast<T>(node.value);
     lists.kinds[i] = static_cast<std::uint8_t>(node.op);
     *operation = static_cast<std::uint32_t>(i);
