@@ -221,8 +221,10 @@ namespace {
 // A tile of 16 rows and 4 columns stays in registers while `inner` runs: sums of their own, since
 // the compiler keeps an array of them in memory.
 constexpr std::size_t kTileRows = 2 * kLanes;
-using FreeLanes =
-    double __attribute__((vector_size(kLanes * sizeof(double)), aligned(8), may_alias));
+// At any address. (An alignment that only an alias of the vector carries gets lost under clang.)
+struct __attribute__((packed, may_alias)) FreeLanes {
+  Lanes lanes;
+};
 
 __attribute__((always_inline)) inline void add_tile_of_4(const double* a, const double* b,
                                                          std::size_t rows, std::size_t inner,
@@ -230,11 +232,11 @@ __attribute__((always_inline)) inline void add_tile_of_4(const double* a, const 
   const auto at = [&](std::size_t j, std::size_t half) {
     return reinterpret_cast<FreeLanes*>(out + j * rows + half * kLanes);
   };
-  Lanes s00 = *at(0, 0), s01 = *at(0, 1), s10 = *at(1, 0), s11 = *at(1, 1);
-  Lanes s20 = *at(2, 0), s21 = *at(2, 1), s30 = *at(3, 0), s31 = *at(3, 1);
+  Lanes s00 = at(0, 0)->lanes, s01 = at(0, 1)->lanes, s10 = at(1, 0)->lanes, s11 = at(1, 1)->lanes;
+  Lanes s20 = at(2, 0)->lanes, s21 = at(2, 1)->lanes, s30 = at(3, 0)->lanes, s31 = at(3, 1)->lanes;
   for (std::size_t k = 0; k < inner; ++k, a += rows) {
-    const Lanes upper = *reinterpret_cast<const FreeLanes*>(a);
-    const Lanes lower = *reinterpret_cast<const FreeLanes*>(a + kLanes);
+    const Lanes upper = reinterpret_cast<const FreeLanes*>(a)->lanes;
+    const Lanes lower = reinterpret_cast<const FreeLanes*>(a + kLanes)->lanes;
     s00 += upper * b[k];
     s01 += lower * b[k];
     s10 += upper * b[inner + k];
@@ -244,20 +246,20 @@ __attribute__((always_inline)) inline void add_tile_of_4(const double* a, const 
     s30 += upper * b[3 * inner + k];
     s31 += lower * b[3 * inner + k];
   }
-  *at(0, 0) = s00, *at(0, 1) = s01, *at(1, 0) = s10, *at(1, 1) = s11;
-  *at(2, 0) = s20, *at(2, 1) = s21, *at(3, 0) = s30, *at(3, 1) = s31;
+  at(0, 0)->lanes = s00, at(0, 1)->lanes = s01, at(1, 0)->lanes = s10, at(1, 1)->lanes = s11;
+  at(2, 0)->lanes = s20, at(2, 1)->lanes = s21, at(3, 0)->lanes = s30, at(3, 1)->lanes = s31;
 }
 
 __attribute__((always_inline)) inline void add_tile_of_1(const double* a, const double* b,
                                                          std::size_t rows, std::size_t inner,
                                                          double* out) {
   auto* at = reinterpret_cast<FreeLanes*>(out);
-  Lanes upper = at[0], lower = at[1];
+  Lanes upper = at[0].lanes, lower = at[1].lanes;
   for (std::size_t k = 0; k < inner; ++k, a += rows) {
-    upper += *reinterpret_cast<const FreeLanes*>(a) * b[k];
-    lower += *reinterpret_cast<const FreeLanes*>(a + kLanes) * b[k];
+    upper += reinterpret_cast<const FreeLanes*>(a)->lanes * b[k];
+    lower += reinterpret_cast<const FreeLanes*>(a + kLanes)->lanes * b[k];
   }
-  at[0] = upper, at[1] = lower;
+  at[0].lanes = upper, at[1].lanes = lower;
 }
 
 }  // namespace

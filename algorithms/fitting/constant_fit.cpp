@@ -67,8 +67,9 @@ void ConstantFitter::Workspace::choose_constants(const Expression& formula, bool
 void ConstantFitter::Workspace::put_linear_first(const Expression& formula) {
   const std::vector<std::size_t> first = linear_constants(formula, places);
   linear = first.size();
-  std::ranges::stable_partition(
-      places, [&](std::size_t place) { return std::ranges::binary_search(first, place); });
+  std::stable_partition(places.begin(), places.end(), [&](std::size_t place) {
+    return std::ranges::binary_search(first, place);
+  });
 }
 
 double ConstantFitter::Workspace::plain_sum_squares() {

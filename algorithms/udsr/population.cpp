@@ -97,10 +97,8 @@ std::vector<Scoreboard::Entry> Scoreboard::promising() const {
 
 void Scoreboard::offer(const Expression& formula, double nrmse) {
   if (!std::isfinite(nrmse)) return;
-  FrontEntry& entry = front_
-                          .try_emplace(paper_complexity(formula),
-                                       std::numeric_limits<double>::infinity(), Expression())
-                          .first->second;
+  const FrontEntry none{std::numeric_limits<double>::infinity(), Expression()};
+  FrontEntry& entry = front_.try_emplace(paper_complexity(formula), none).first->second;
   if (nrmse < entry.nrmse) entry = {nrmse, formula};
   if (nrmse >= best_nrmse_) return;
   best_nrmse_ = nrmse;

@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   constexpr int kCount = 1000;
   std::vector<long> squares(kCount);
   long sum = 0;
-#pragma omp parallel for schedule(dynamic) num_threads(4)
+#pragma omp parallel for schedule(static) num_threads(4)
   for (int i = 0; i < kCount; ++i) {
     squares[static_cast<std::size_t>(i)] = static_cast<long>(i) * i;
     if (is_race) sum += i;
