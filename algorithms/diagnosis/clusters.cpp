@@ -106,19 +106,18 @@ void whiten(Matrix& columns, const Clusters& clusters, const Noise& noise) {
     const OffsetDirection u = offset_direction(clusters, m, noise);
     const double kept = std::sqrt(noise.row_variance() / (u.noise + u.offset));
     for (Eigen::Index j = 0; j < block.cols(); ++j) {
-      auto column = block.col(j);
-      double before = 0;
-      double along = 0;
-      for (Eigen::Index i = 0; i < column.size(); ++i) {
-        const auto now = static_cast<double>(column[i]);
-        const double white = i == 0 ? u.first * now : now - share * before;
-        before = now;
-        along += (i == 0 ? u.first : u.next) * white;
-        column[i] = static_cast<Scalar>(white);
-      }
+      Scalar* column = block.col(j).data();
+      const auto rows = block.rows();
+      const auto part = static_cast<Scalar>(share);
+      // Backwards, so that each row finds the one before as it was.
+      for (Eigen::Index i = rows - 1; i > 0; --i) column[i] -= part * column[i - 1];
+      column[0] = static_cast<Scalar>(u.first * static_cast<double>(column[0]));
+      const auto rest = block.col(j).tail(rows - 1);
+      const double along =
+          u.first * static_cast<double>(column[0]) + u.next * static_cast<double>(rest.sum());
       const double shift = (1 - kept) * along / u.length;
       column[0] -= static_cast<Scalar>(shift * u.first);
-      column.tail(column.size() - 1).array() -= static_cast<Scalar>(shift * u.next);
+      block.col(j).tail(rows - 1).array() -= static_cast<Scalar>(shift * u.next);
     }
     const double weight = clusters.weight_of(m);
     if (weight != 1) block *= static_cast<Scalar>(weight);

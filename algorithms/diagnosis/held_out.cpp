@@ -92,7 +92,6 @@ Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>&
                               const BaseModel& base, const std::vector<EffectFamily>& families,
                               const DiagnosisOptions& options) {
   constexpr double kRidge = 1e-4;
-  constexpr int kReweightings = 2;
   constexpr std::size_t kAtomsOfRichModel = 4;
   std::vector<Expression> formulas = base.linear_terms;
   const std::vector<double> ratios =
@@ -118,28 +117,32 @@ Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>&
     x.col(j) = norm > 0 && std::isfinite(norm) ? Eigen::VectorXd(x.col(j) / norm)
                                                : Eigen::VectorXd::Zero(x.rows());
   }
-  Eigen::VectorXd weights(static_cast<Eigen::Index>(data.rows()));
-  for (Eigen::Index i = 0; i < weights.size(); ++i) {
-    weights[i] = train_rows[static_cast<std::size_t>(i)];
+  std::vector<Eigen::Index> train;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (train_rows[i] != 0) train.push_back(static_cast<Eigen::Index>(i));
   }
-  const Eigen::VectorXd wanted = weights;
-  Eigen::VectorXd residual = y;
-  for (int pass = 0; pass < kReweightings; ++pass) {
-    const Eigen::MatrixXd weighted = weights.cwiseSqrt().asDiagonal() * x;
-    const Eigen::VectorXd weighted_y = weights.cwiseSqrt().cwiseProduct(y);
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(x.cols(), x.cols());
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
-    normal.diagonal().array() += kRidge * normal.trace() / static_cast<double>(normal.rows());
-    residual = y - x * normal.ldlt().solve(weighted.transpose() * weighted_y);
-    // Huber's weights keep bursts from bending the model.
-    const double sd =
-        std::sqrt(residual.cwiseProduct(wanted).squaredNorm() / std::max(1.0, wanted.sum()));
-    for (Eigen::Index i = 0; i < weights.size(); ++i) {
-      const double size = std::abs(residual[i]);
-      weights[i] = wanted[i] * (size > 2 * sd ? 2 * sd / size : 1.0);
-    }
+  const Eigen::MatrixXd rows = x(train, Eigen::all);
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(x.cols(), x.cols());
+  normal.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  Eigen::VectorXd right = rows.transpose() * y(train);
+  const auto residual_of = [&] {
+    Eigen::MatrixXd loaded = normal;
+    loaded.diagonal().array() += kRidge * normal.trace() / static_cast<double>(normal.rows());
+    return Eigen::VectorXd(y - x * loaded.ldlt().solve(right));
+  };
+  const Eigen::VectorXd residual = residual_of();
+  // Huber's weights keep bursts from bending the model; few rows have one below 1.
+  const double sd =
+      std::sqrt(residual(train).squaredNorm() / std::max(1.0, static_cast<double>(train.size())));
+  std::vector<Eigen::Index> wild;
+  for (const Eigen::Index i : train) {
+    if (std::abs(residual[i]) > 2 * sd) wild.push_back(i);
   }
-  return residual;
+  const Eigen::VectorXd lost = 1 - 2 * sd / residual(wild).array().abs();
+  const Eigen::MatrixXd wild_rows = lost.cwiseSqrt().asDiagonal() * x(wild, Eigen::all);
+  normal.selfadjointView<Eigen::Lower>().rankUpdate(wild_rows.transpose(), -1.0);
+  right -= wild_rows.transpose() * lost.cwiseSqrt().cwiseProduct(y(wild));
+  return residual_of();
 }
 
 ErrorFinding judge(const Observations& data, const Eigen::VectorXd& before,

@@ -40,7 +40,7 @@ void Search::check_exhaustively() {
     std::vector<Atom> atoms;
     std::vector<Eigen::Index> columns;
   };
-  const Round round = test_all(base_fit_);
+  const Round& round = base_round_;
   std::vector<FamilyBlock> blocks;
   Eigen::MatrixXd all = whitened(tangent(base_fit_.model, data_), clusters_, current_.noise);
   const Eigen::Index base_columns = all.cols();

@@ -390,7 +390,8 @@ void Search::run() {
     notes.push_back("the base model leaves no residual");
     return;
   }
-  Round round = test_all(base_fit_);
+  base_round_ = test_all(base_fit_);
+  Round round = base_round_;
   list_untestable(round);
   list_coinciding(round);
   list_candidates(round);

@@ -139,6 +139,7 @@ class Search {
   // Families that were added and did not stand in the same model: not to be tried again in it.
   std::vector<std::size_t> rejected_;
   FittedModel base_fit_;
+  Round base_round_;  // of the base
   FittedModel current_;
 };
 

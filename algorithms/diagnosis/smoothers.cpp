@@ -33,11 +33,12 @@ Eigen::ArrayXf unit_values(const Observations& data, std::string_view name) {
   if (name == "v") x = x.abs();
   if (name == "d") x = (x + 1e-3 * x.maxCoeff() + 1e-12).log();
   // The bulk of the values spans the interval: one far-off row must not flatten the rest.
-  std::vector<double> sorted(x.begin(), x.end());
-  std::ranges::sort(sorted);
-  const std::size_t edge = sorted.size() / 200;
-  const double low = sorted[edge];
-  const double high = sorted[sorted.size() - 1 - edge];
+  std::vector<double> values(x.begin(), x.end());
+  const auto edge = static_cast<std::ptrdiff_t>(values.size() / 200);
+  std::ranges::nth_element(values, values.begin() + edge);
+  const double low = values[static_cast<std::size_t>(edge)];
+  std::ranges::nth_element(values, values.end() - 1 - edge);
+  const double high = *(values.end() - 1 - edge);
   if (!(high > low)) return {};
   return ((x - low) / (high - low)).max(-0.1).min(1.1).cast<float>();
 }
