@@ -9,6 +9,9 @@ namespace {
 // turned.
 constexpr double kStribeckLimit = 0.15;
 
+// A step of the load that is wider than this part of it is no step: it would pass for a gain.
+constexpr double kWidestStep = 0.1;
+
 EffectFamily asymmetry() {
   EffectFamily f{"asymmetry",
                  "E2",
@@ -114,7 +117,7 @@ EffectFamily power_quadrant_step() {
                  "a loss jumps where driving turns into back-driving",
                  "Tadese et al. 2021",
                  {}};
-  f.atoms = {{{"tanh(g/g0)"}, {"step"}, {{"g0", "g", {0.012, 0.05, 0.15}, 0.003, 0.3}}}};
+  f.atoms = {{{"tanh(g/g0)"}, {"step"}, {{"g0", "g", {0.012, 0.05}, 0.003, kWidestStep}}}};
   f.separate_by = {"R3", "R8"};
   return f;
 }

@@ -93,6 +93,13 @@ Eigen::VectorXd derivative(LoopModel& model, const Nonlinear& p, const SignalTab
   return (up - down) / (above - below);
 }
 
+// A shape that a fit has driven to its bound cannot follow its derivative: to project what it
+// cannot do out of other effects would hide them (a wide step of the load would hide a gain).
+bool held_by_bound(const LoopModel& model, const Nonlinear& p) {
+  const double value = value_of(model, p);
+  return !p.of_base && (value <= p.low || value >= p.high);
+}
+
 std::vector<Expression> linear_columns(const LoopModel& model) {
   std::vector<Expression> all = model.base.linear_terms;
   for (const Atom& atom : model.atoms) {
@@ -287,7 +294,12 @@ Eigen::MatrixXd tangent(const LoopModel& model, const Observations& data) {
   Eigen::MatrixXd out(linear.rows(), linear.cols() + static_cast<Eigen::Index>(parameters.size()));
   out.leftCols(linear.cols()) = linear;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
-    out.col(linear.cols() + static_cast<Eigen::Index>(j)) = derivative(copy, parameters[j], table);
+    auto column = out.col(linear.cols() + static_cast<Eigen::Index>(j));
+    if (held_by_bound(model, parameters[j])) {
+      column.setZero();
+    } else {
+      column = derivative(copy, parameters[j], table);
+    }
   }
   return out;
 }

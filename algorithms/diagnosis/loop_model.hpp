@@ -58,7 +58,7 @@ Eigen::VectorXd predict(const LoopModel& model, const Observations& data);
 Eigen::Map<const Eigen::VectorXd> target_vector(const Observations& data);
 
 // Every direction in which the fitted model can move: base constants, linear terms, atoms' columns
-// and their refined shapes. rows x directions.
+// and their refined shapes; zeros for a shape that stands at its bound. rows x directions.
 Eigen::MatrixXd tangent(const LoopModel& model, const Observations& data);
 
 enum class FitScope { linear, everything };

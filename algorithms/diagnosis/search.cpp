@@ -279,28 +279,36 @@ void Search::remove_family(LoopModel& model, std::size_t family) const {
 }
 
 bool Search::add_best(const Round& round) {
-  const std::vector<Candidate> all = admitted(round, current_, rejected_);
-  if (all.empty()) return false;
-  const Candidate& winner = all.front();
-  if (!(winner.gain.nats > winner.gain.error)) return false;
+  for (const Candidate& winner : admitted(round, current_, rejected_)) {
+    if (!(winner.gain.nats > winner.gain.error)) return false;
+    if (add(winner, round)) return true;
+  }
+  return false;
+}
+
+// False where the family has had its share already: the next best may still be needed.
+bool Search::add(const Candidate& winner, const Round& round) {
   const bool again = atoms_of(winner.family) > 0;
+  const auto note_once = [&](std::string text) {
+    if (std::ranges::count(notes, text) == 0) notes.push_back(std::move(text));
+  };
   if (atoms_of(winner.family) >= kMostAtoms) {
-    notes.push_back(fmt::format(
+    note_once(fmt::format(
         "more than {} columns of '{}' are asked for: a sign of something that only looks like it",
         kMostAtoms, families_[winner.family].name));
     return false;
-  }
-  if (!again) {
-    found.push_back({winner.family, round.family_p[winner.family], winner.gain, winner.rescued,
-                     aliases_of(winner, round)});
   }
   LoopModel model = current_.model;
   model.add(library_[best_shape(winner.atom, round, current_)]);
   FittedModel extended = fit(std::move(model), FitScope::everything);
   if (again && cancels_itself(extended.model, winner.family)) {
-    notes.push_back(fmt::format("a second column of '{}' only cancels the first: left out",
-                                families_[winner.family].name));
+    note_once(fmt::format("a second column of '{}' only cancels the first: left out",
+                          families_[winner.family].name));
     return false;
+  }
+  if (!again) {
+    found.push_back({winner.family, round.family_p[winner.family], winner.gain, winner.rescued,
+                     aliases_of(winner, round)});
   }
   current_ = std::move(extended);
   return true;

@@ -93,6 +93,7 @@ class Search {
   void map_aliases(const Eigen::MatrixXf& correlations, const Round& round);
   void list_candidates(const Round& round);
   bool add_best(const Round& round);
+  bool add(const Candidate& winner, const Round& round);
   bool cancels_itself(const LoopModel& model, std::size_t family) const;
   std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round) const;
   double carriers(const Round& round, std::size_t atom, const FittedModel& state) const;
