@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "algorithms/expression/differentiate.hpp"
 #include "algorithms/expression/singularity.hpp"
@@ -68,6 +69,16 @@ std::size_t nearest_to_posterior_mean(std::span<const Expression> front,
   return place_of_least(distances.mean_square);
 }
 
+// The first formula that is exact on every row; none where there is noise.
+std::optional<std::size_t> simplest_exact(std::span<const Expression> front,
+                                          const ScoringProblem& problem) {
+  Scorer scorer(problem);
+  for (std::size_t k = 0; k < front.size(); ++k) {
+    if (scorer.nrmse(front[k]) < kExact) return k;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Choice choice_of(const std::string& name) {
@@ -96,6 +107,7 @@ std::size_t choose(Choice rule, std::span<const Expression> front, std::span<con
 std::size_t choose_sound(Choice rule, const std::vector<Expression>& front,
                          std::span<const Candidate> pool, const ScoringProblem& problem,
                          const InputBox& box, Budget& budget) {
+  if (const std::optional<std::size_t> exact = simplest_exact(front, problem)) return *exact;
   std::vector<Expression> left = front;
   std::vector<std::size_t> places(front.size());
   std::iota(places.begin(), places.end(), 0);

@@ -37,7 +37,9 @@ std::size_t choose(Choice rule, std::span<const Expression> front, std::span<con
                    const ScoringProblem& problem, const InputBox& box, Budget& budget);
 
 // The same, but a formula that the proof engine refutes on the box gives way to the next choice,
-// unless all are refuted.
+// unless all are refuted. Where a formula is exact on every row the data have no noise, there is
+// nothing to weigh, and the simplest exact one is chosen: where it is singular, so is the law, as
+// x^y is at 0.
 std::size_t choose_sound(Choice rule, const std::vector<Expression>& front,
                          std::span<const Candidate> pool, const ScoringProblem& problem,
                          const InputBox& box, Budget& budget);
