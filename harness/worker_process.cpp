@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "algorithms/external/external_method.hpp"
+#include "algorithms/external/scratch_folder.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench {

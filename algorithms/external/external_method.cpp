@@ -2,10 +2,8 @@
 #include "algorithms/external/external_method.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,6 +11,7 @@
 
 #include "algorithms/admission.hpp"
 #include "algorithms/expression/text.hpp"
+#include "algorithms/external/scratch_folder.hpp"
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
 
@@ -26,30 +25,6 @@ constexpr std::size_t kMaxOutputBytes = 1U << 24;  // a program that prints with
 constexpr std::size_t kQuotedCharacters = 200;
 
 [[noreturn]] void throw_unusable(std::string_view what) { throw Error(ErrorKind::failed, what); }
-
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    const std::filesystem::path parent = external_scratch_folder(::getpid());
-    std::filesystem::create_directories(parent);
-    std::string name = (parent / "XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw_unusable(fmt::format("cannot make a folder in {}", parent.string()));
-    }
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;  // a file left behind is no reason to lose a result
-    std::filesystem::remove_all(path_, ignored);
-    std::filesystem::remove(path_.parent_path(), ignored);  // unless another fit still uses it
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 std::string excerpt(std::string_view text) {
   std::string shown(text.substr(0, kQuotedCharacters));
@@ -285,10 +260,6 @@ class ExternalMethod : public Regressor {
 std::unique_ptr<Regressor> make_external_method(std::vector<std::string> command,
                                                 std::map<std::string, ParameterValue> parameters) {
   return std::make_unique<ExternalMethod>(std::move(command), std::move(parameters));
-}
-
-std::filesystem::path external_scratch_folder(pid_t pid) {
-  return std::filesystem::temp_directory_path() / fmt::format("tribench-external-{}", pid);
 }
 
 }  // namespace tribench

@@ -8,9 +8,6 @@
 // the group ends the program too.
 #pragma once
 
-#include <sys/types.h>
-
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -25,9 +22,5 @@ namespace tribench {
 // operator set, an exit status other than 0) throw Error (failed) from fit().
 std::unique_ptr<Regressor> make_external_method(std::vector<std::string> command,
                                                 std::map<std::string, ParameterValue> parameters);
-
-// The folder where process `pid` keeps the files of the program it runs; to be removed by whoever
-// ends that process by force.
-std::filesystem::path external_scratch_folder(pid_t pid);
 
 }  // namespace tribench

@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "harness/study/external_diagnosis.hpp"
 #include "harness/study/loop_study.hpp"
 
 namespace tribench {
@@ -65,9 +66,16 @@ void add_loop_study(CLI::App& study, ExitStatus& status) {
   command->add_option("--out", options->out,
                       "folder for runs.csv, a line a run; a study that was stopped goes on there");
   command->add_flag("--json", *json, "an array of figures");
-  command->callback([options, json, &status] {
+  auto command_line = std::make_shared<std::vector<std::string>>();
+  command->add_option("--command", *command_line,
+                      "your own method instead of the loop: a program and its words, run without a "
+                      "shell once a case (docs/closed_loop.md)");
+  command->callback([options, json, command_line, &status] {
     options->quiet = false;
-    const std::vector<LoopFigure> figures = run_loop_study(*options, diagnose_case).figures;
+    const std::vector<LoopFigure> figures =
+        run_loop_study(*options, command_line->empty() ? LoopMethod(diagnose_case)
+                                                       : make_external_diagnosis(*command_line))
+            .figures;
     if (*json) {
       print_json(figures);
     } else {

@@ -105,8 +105,7 @@ class RunsFile {
 LoopStudy run_loop_study(const LoopStudyOptions& options, const LoopMethod& method) {
   std::vector<LoopCase> cases =
       make_loop_cases(options.null_runs, options.runs_per_cell, options.first_seed);
-  std::erase_if(cases,
-                [&](const LoopCase& one) { return !one.key().starts_with(options.only); });
+  std::erase_if(cases, [&](const LoopCase& one) { return !one.key().starts_with(options.only); });
   if (cases.empty()) {
     throw_bad_input(fmt::format("no case begins with '{}'", options.only), "--only",
                     "as in runs.csv: single/stribeck, null, pair");

@@ -9,6 +9,8 @@
 #include <iterator>
 
 #include "foundation/error.hpp"
+#include "harness/study/external_diagnosis.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench {
 namespace {
@@ -104,6 +106,44 @@ TEST(LoopStudy, AStudyThatWasStoppedGoesOnWhereItWas) {
     EXPECT_EQ(resumed.outcomes[i].mae_before, whole.outcomes[i].mae_before);
   }
   EXPECT_EQ(read_text(out / "runs.csv").find(",sing\n"), std::string::npos);
+}
+
+// A program of one's own that knows a single effect.
+TEST(LoopStudy, AProgramIsJudgedLikeTheLoop) {
+  const LoopMethod program = make_external_diagnosis(
+      {"python3", (tribench::testing::source_dir() / "tests/harness/study/load_only.py").string()});
+  LoopStudyOptions options{.null_runs = 2, .runs_per_cell = 1, .first_seed = 920};
+  options.only = "single/load_";
+  const LoopStudy study = run_loop_study(options, program);
+  for (const LoopOutcome& one : study.outcomes) {
+    if (one.scale < 2) continue;
+    EXPECT_EQ(one.claimed, std::vector<std::string>{"load_coulomb"}) << one.key;
+    EXPECT_EQ(one.is_exact(), one.planted[0] == "load_coulomb") << one.key;
+    EXPECT_TRUE(one.is_covered()) << one.key;  // the other one is its alias
+    EXPECT_LT(one.mae_after, one.mae_before) << one.key;
+    if (one.is_exact()) EXPECT_NEAR(one.mae_after / one.mae_noise, 1, 0.05) << one.key;
+  }
+  options.only = "null";
+  EXPECT_EQ(figure(run_loop_study(options, program), "false alarm, any").hits, 0U);
+}
+
+TEST(LoopStudy, AProgramThatFailsIsNamedWithItsCase) {
+  LoopStudyOptions options{.null_runs = 1, .runs_per_cell = 1, .first_seed = 921};
+  options.only = "null";
+  const std::vector<std::pair<std::vector<std::string>, std::string>> failures = {
+      {{"false"}, "status 1"},
+      {{"echo", "garbage"}, "no JSON object"},
+      {{"sh", "-c", "echo '{\"effects\": []}'"}, "malformed"},
+      {{"sh", "-c", "echo '{\"verdict\": \"NONE\", \"held_out\": [1]}'"}, "1 predictions"}};
+  for (const auto& [command, what] : failures) {
+    try {
+      run_loop_study(options, make_external_diagnosis(command));
+      FAIL() << what;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+      EXPECT_EQ(error.place(), "null//0/921");
+    }
+  }
 }
 
 TEST(LoopStudy, AFileOfSomethingElseIsRefused) {

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "harness/study/external_diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/diagnosis/diagnosis.hpp"
+#include "algorithms/diagnosis/held_out.hpp"
+#include "algorithms/external/scratch_folder.hpp"
+#include "foundation/child_process.hpp"
+#include "foundation/error.hpp"
+#include "problems/csv.hpp"
+
+namespace tribench {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kProtocol = 1;
+constexpr std::size_t kMaxOutputBytes = 1U << 24;  // a program that prints without end is stopped
+
+// The rows with keep[row] != 0; without the target where it is to be predicted.
+Dataset part_of(const Dataset& data, const std::vector<char>& keep, bool with_target) {
+  Dataset part;
+  part.name = data.name;
+  part.movement_names = data.movement_names;
+  for (const Channel& channel : data.channels) {
+    if (!with_target && channel.role == Role::friction_torque) continue;
+    Channel kept{channel.name, channel.unit, channel.role, {}};
+    for (std::size_t i = 0; i < data.rows(); ++i) {
+      if (keep[i] != 0) kept.values.push_back(channel.values[i]);
+    }
+    part.channels.push_back(std::move(kept));
+  }
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (keep[i] != 0) part.movement.push_back(data.movement[i]);
+  }
+  return part;
+}
+
+// Per row 1 for the movements that the loop itself holds out with this seed.
+std::vector<char> held_out_rows(const loop::Observations& data, std::uint64_t seed) {
+  const std::vector<int> test = loop::choose_test_movements(
+      data, loop::DiagnosisOptions().test_share, RandomStream(seed).split("test"));
+  std::vector<char> held_out(data.rows());
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    held_out[i] = std::ranges::binary_search(test, data.movement[i]) ? 1 : 0;
+  }
+  return held_out;
+}
+
+// Coulomb and viscous friction by direction, by plain least squares on the training rows.
+Eigen::VectorXd base_prediction(const loop::Observations& data, const std::vector<char>& train) {
+  const loop::Observations rows = data.select(train);
+  loop::LoopModel model;
+  model.base = loop::coulomb_viscous_base(data);
+  model.coefficients.setZero(static_cast<Eigen::Index>(model.base.linear_terms.size()));
+  const loop::Clusters clusters = loop::make_clusters(rows.movement, 1, RandomStream(0));
+  loop::Noise plain;
+  plain.within_sd = 1;
+  loop::fit_model(model, rows, clusters, plain, loop::FitScope::linear);
+  return loop::predict(model, data);
+}
+
+void write_request(const std::filesystem::path& folder, const LoopCase& one,
+                   const kuka::PlantedData& planted, const std::vector<char>& held_out,
+                   const std::vector<char>& train) {
+  write_csv(part_of(planted.data, train, true), folder / "train.csv");
+  write_csv(part_of(planted.data, held_out, false), folder / "held_out.csv");
+  json families = json::array();
+  for (const loop::EffectFamily& family : loop::builtin_effects()) families.push_back(family.name);
+  const json request = {{"protocol", kProtocol},
+                        {"train", "train.csv"},
+                        {"held_out", "held_out.csv"},
+                        {"target", planted.data.find(Role::friction_torque)->name},
+                        {"families", families},
+                        {"gear_ratio", kPlantedGearRatio},
+                        {"seed", one.seed}};
+  std::ofstream(folder / "request.json") << request.dump(1) << "\n";
+}
+
+// What the program printed; throws where it failed.
+std::string output_of(const std::vector<std::string>& command,
+                      const std::filesystem::path& request) {
+  ChildOptions options;
+  options.command = command;
+  options.command.push_back(request.string());
+  for (const char* name : {"OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"}) {
+    options.environment.push_back(fmt::format("{}=1", name));
+  }
+  ChildProcess program(options);
+  program.close_input();
+  std::string text;
+  std::string errors;
+  for (bool ended = false; !ended;) {
+    const ChildOutput output = program.read(1.0);
+    text += output.output;
+    errors += output.errors;
+    if (text.size() + errors.size() > kMaxOutputBytes) {
+      throw Error(ErrorKind::failed, "the program prints without end");
+    }
+    ended = output.ended;
+  }
+  const ChildExit exit = program.wait();
+  if (exit.ok()) return text;
+  const std::string how =
+      exit.signal != 0 ? signal_name(exit.signal) : fmt::format("status {}", exit.status);
+  throw Error(
+      ErrorKind::failed,
+      fmt::format("the program ended with {}: {}", how,
+                  errors.substr(errors.size() - std::min<std::size_t>(errors.size(), 400))));
+}
+
+// The last line that is a JSON object; the others are chatter.
+json object_in(const std::string& text) {
+  json found;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const json line = json::parse(text.substr(begin, end - begin), nullptr, false);
+    if (line.is_object()) found = line;
+    begin = end + 1;
+  }
+  if (!found.is_object()) throw Error(ErrorKind::failed, "the program printed no JSON object");
+  return found;
+}
+
+std::vector<LoopAnswer::Effect> effects_in(const json& object) {
+  std::vector<LoopAnswer::Effect> effects;
+  for (const json& effect : object.value("effects", json::array())) {
+    effects.push_back({effect.at("family").get<std::string>(), {}});
+    for (const json& alias : effect.value("alias", json::array())) {
+      effects.back().aliases.push_back(alias.at("family").get<std::string>());
+    }
+  }
+  return effects;
+}
+
+std::vector<LoopAnswer::Burst> bursts_in(const json& object, const Dataset& data) {
+  std::vector<LoopAnswer::Burst> bursts;
+  for (const json& event : object.value("events", json::array())) {
+    const auto name = event.at("movement_name").get<std::string>();
+    const auto found = std::ranges::find(data.movement_names, name);
+    if (found == data.movement_names.end()) {
+      throw Error(ErrorKind::failed, fmt::format("there is no movement '{}'", name));
+    }
+    bursts.push_back(
+        {static_cast<int>(found - data.movement_names.begin()), event.at("t0"), event.at("t1")});
+  }
+  return bursts;
+}
+
+LoopAnswer answer_in(const json& object, const kuka::PlantedData& planted,
+                     const loop::Observations& data, const std::vector<char>& held_out,
+                     const Eigen::VectorXd& before) {
+  LoopAnswer answer;
+  answer.effects = effects_in(object);
+  answer.bursts = bursts_in(object, planted.data);
+  answer.unknown = object.at("verdict") == "UNKNOWN";
+  if (object.contains("leftover")) {
+    for (const json& input : object.at("leftover").value("inputs", json::array())) {
+      answer.inputs.push_back(input.get<std::string>());
+    }
+  }
+  const auto rows = static_cast<std::size_t>(std::ranges::count(held_out, 1));
+  const json& predictions = object.at("held_out");
+  if (predictions.size() != rows) {
+    throw Error(ErrorKind::failed,
+                fmt::format("'held_out' has {} predictions for {} rows", predictions.size(), rows));
+  }
+  answer.before.assign(data.rows(), std::numeric_limits<double>::quiet_NaN());
+  answer.after = answer.before;
+  for (std::size_t i = 0, next = 0; i < data.rows(); ++i) {
+    if (held_out[i] == 0) continue;
+    answer.before[i] = before[static_cast<Eigen::Index>(i)];
+    answer.after[i] = predictions[next++].get<double>();
+  }
+  return answer;
+}
+
+}  // namespace
+
+LoopMethod make_external_diagnosis(std::vector<std::string> command) {
+  return [command = std::move(command)](const LoopCase& one, const kuka::PlantedData& planted) {
+    const loop::Observations data = loop::observe(planted.data);
+    const std::vector<char> held_out = held_out_rows(data, one.seed);
+    std::vector<char> train(held_out.size());
+    std::ranges::transform(held_out, train.begin(), [](char row) { return row == 0 ? 1 : 0; });
+    const ScratchFolder scratch;
+    write_request(scratch.path(), one, planted, held_out, train);
+    try {
+      const json object = object_in(output_of(command, scratch.path() / "request.json"));
+      return answer_in(object, planted, data, held_out, base_prediction(data, train));
+    } catch (const json::exception& error) {
+      throw Error(ErrorKind::failed,
+                  fmt::format("the program's answer is malformed: {}", error.what()), one.key());
+    } catch (const Error& error) {
+      throw Error(ErrorKind::failed, error.what(), one.key());
+    }
+  };
+}
+
+}  // namespace tribench

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+//
+// Anyone's own method of diagnosis in the study of the closed loop: a program in any language,
+// run once a case. The protocol is docs/closed_loop.md, "Your own method". It is judged like the
+// loop itself; it sees the training movements and the held-out ones without their target.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/study/loop_methods.hpp"
+
+namespace tribench {
+
+// command: the words to run; the path of the request is added as the last. Unusable answers and an
+// exit status other than 0 throw Error (failed) that names the case.
+LoopMethod make_external_diagnosis(std::vector<std::string> command);
+
+}  // namespace tribench
