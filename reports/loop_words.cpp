@@ -171,6 +171,9 @@ std::string closed_share(const json& error) {
 std::string verdict_sentence(const json& loop) {
   const std::string verdict = text_of(loop, "verdict");
   const std::size_t count = items_of(loop, "effects").size();
+  if (verdict == "NONE" && loop.contains("candidates") && items_of(loop, "candidates").empty()) {
+    return "Nothing is claimed: these data can test none of the effects.";
+  }
   if (verdict == "NONE") return "Nothing is missing: the residual shows no structure.";
   if (verdict == "EFFECTS") {
     return count == 1 ? "One effect was missing and has been added."

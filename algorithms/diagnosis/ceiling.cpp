@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "algorithms/diagnosis/smoothers.hpp"
 
@@ -177,8 +178,10 @@ void bound_ceiling(ErrorFinding& error, const Observations& judged, const Eigen:
   const auto closed = [](double from, double to, double best) {
     return std::min(1.0, (from - to) / (from - best));
   };
-  error.closed_fraction = closed(error.mae_before, error.mae_after, error.ceiling);
-  error.closed_fraction_high = closed(error.mae_before, error.mae_after, error.attainable);
+  // An error that grew makes the larger gap the smaller loss.
+  std::tie(error.closed_fraction, error.closed_fraction_high) =
+      std::minmax({closed(error.mae_before, error.mae_after, error.ceiling),
+                   closed(error.mae_before, error.mae_after, error.attainable)});
   const std::vector<UnitErrors> units = unit_errors(before, after, unit);
   std::vector<double> drawn;
   for (int b = 0; b < kBootstraps; ++b) {

@@ -19,6 +19,8 @@ TEST(LoopReport, IsByteForByteWhatWasAgreed) {
 }
 
 TEST(LoopReport, SaysPlainlyThatNothingIsMissing) {
+  EXPECT_THAT(loop_markdown(json{{"verdict", "NONE"}, {"candidates", json::array()}}, "x"),
+              HasSubstr("these data can test none of the effects"));
   EXPECT_THAT(loop_markdown(json{{"verdict", "NONE"}}, "x"),
               HasSubstr("Nothing is missing: the residual shows no structure."));
 }
