@@ -47,6 +47,7 @@ struct Pipe {
 
 std::vector<char*> pointers(std::vector<std::string>& words) {
   std::vector<char*> result;
+  result.reserve(words.size() + 1);
   for (std::string& word : words) result.push_back(word.data());
   result.push_back(nullptr);
   return result;
@@ -128,7 +129,7 @@ ChildProcess::~ChildProcess() {
   close_input();
   if (!reaped_) {
     kill();
-    wait();
+    reap();
   }
   for (const int stream : streams_) {
     if (stream >= 0) ::close(stream);
@@ -194,18 +195,23 @@ void ChildProcess::kill() {
   ::kill(own_group_ ? -pid_ : pid_, SIGKILL);
 }
 
-ChildExit ChildProcess::wait() {
+bool ChildProcess::reap() noexcept {
   while (!reaped_) {
     int status = 0;
     if (::waitpid(pid_, &status, 0) < 0) {
       if (errno == EINTR) continue;
-      throw_failed("cannot wait for a child process", errno);
+      return false;
     }
     reaped_ = true;
     if (own_group_) ::kill(-pid_, SIGKILL);  // what it has left behind
     if (WIFSIGNALED(status)) exit_.signal = WTERMSIG(status);
     if (WIFEXITED(status)) exit_.status = WEXITSTATUS(status);
   }
+  return true;
+}
+
+ChildExit ChildProcess::wait() {
+  if (!reap()) throw_failed("cannot wait for a child process", errno);
   return exit_;
 }
 

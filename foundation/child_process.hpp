@@ -63,6 +63,7 @@ class ChildProcess {
 
  private:
   void drain(int index, std::string& into);
+  bool reap() noexcept;  // false where the process cannot be waited for; errno says why
 
   pid_t pid_ = -1;
   bool own_group_ = true;

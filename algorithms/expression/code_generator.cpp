@@ -48,7 +48,7 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
   Loop loop(std::size_t root) {
     root_ = root;
     align(32);
-    const auto entry = reinterpret_cast<std::uintptr_t>(getCurr());
+    const auto entry = getCurr<Loop>();
     used_.clear();
     collect(root);
     std::sort(used_.begin(), used_.end());
@@ -72,7 +72,7 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
     vzeroupper();
     ret();
     emit_slow_divisions();
-    return reinterpret_cast<Loop>(entry);
+    return entry;
   }
 
  private:

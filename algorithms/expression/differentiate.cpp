@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kLanes = 8;  // rows of a cache line
 // Blocks are as long as a workspace of this many bytes allows (half of a small second-level
 // cache), within the two bounds: shorter ones pay for calls, longer ones for cache misses.
-constexpr std::size_t kWorkspaceBytes = 256 * 1024;
+constexpr std::size_t kWorkspaceBytes = std::size_t{256} * 1024;
 constexpr std::size_t kShortestBlock = 128;
 constexpr std::size_t kLongestBlock = 512;
 

@@ -166,6 +166,7 @@ class Parser {
 
   static std::vector<std::string> function_names() {
     std::vector<std::string> names;
+    names.reserve(kFunctions.size());
     for (const Op op : kFunctions) names.emplace_back(op_name(op));
     return names;
   }

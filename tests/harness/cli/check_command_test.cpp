@@ -2,14 +2,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace tribench {
 namespace {
@@ -19,17 +18,11 @@ struct Answer {
   std::string output;
 };
 
+// The arguments as a shell takes them; errors stand among the output.
 Answer run_check(const std::string& arguments) {
-  const std::string command = testing::program().string() + " check " + arguments + " 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
-  Answer answer;
-  std::array<char, 4096> buffer{};
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
-    answer.output.append(buffer.data(), n);
-  }
-  const int status = pclose(pipe);
-  answer.exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return answer;
+  const testing::ProgramRun run = testing::run_to_end(
+      {"sh", "-c", testing::program().string() + " check " + arguments + " 2>&1"});
+  return {run.status, run.output};
 }
 
 TEST(CheckCommand, exits_0_for_a_proof_1_for_a_refutation_and_2_for_bad_input) {
