@@ -11,15 +11,24 @@
 #include "foundation/error.hpp"
 
 namespace tribench {
+namespace {
+
+constexpr int kAttempts = 100;
+
+}  // namespace
 
 ScratchFolder::ScratchFolder() {
   const std::filesystem::path parent = external_scratch_folder(::getpid());
-  std::filesystem::create_directories(parent);
-  std::string name = (parent / "XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) {
-    throw Error(ErrorKind::failed, fmt::format("cannot make a folder in {}", parent.string()));
+  // Another thread that ends may take the parent away in between.
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    std::error_code ignored;
+    std::filesystem::create_directories(parent, ignored);
+    std::string name = (parent / "XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) continue;
+    path_ = name;
+    return;
   }
-  path_ = name;
+  throw Error(ErrorKind::failed, fmt::format("cannot make a folder in {}", parent.string()));
 }
 
 ScratchFolder::~ScratchFolder() {

@@ -13,7 +13,7 @@ namespace {
 void add_cases(std::vector<LoopCase>& cases, const std::string& group, double scale,
                const kuka::PlantedCase& planted, std::uint64_t first, int runs) {
   for (int run = 0; run < runs; ++run) {
-    cases.push_back({group, scale, planted, first + static_cast<std::uint64_t>(run)});
+    cases.push_back({group, scale, planted, first + cases.size()});
   }
 }
 
@@ -47,7 +47,7 @@ std::vector<LoopCase> make_loop_cases(int null_runs, int runs_per_cell, std::uin
   }
   for (const double scale : {0.5, 1.0, 2.0}) {
     for (int run = 0; run < 7 * runs_per_cell / 2; ++run) {
-      const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(run);
+      const std::uint64_t seed = first_seed + cases.size();
       cases.push_back({"pair", scale, kuka::draw_pair(scale, seed), seed});
     }
   }

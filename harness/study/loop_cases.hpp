@@ -25,7 +25,8 @@ struct LoopCase {
 
 // null_runs with ordinary noise, a fifth as many with hard noise and with constant velocities
 // only; runs_per_cell of each effect at each size, seven halves of that of pairs at each size,
-// twice that of bursts at each size. Seeds from first_seed on.
+// twice that of bursts at each size. Seeds from first_seed on, one for each case: shared noise
+// would make one unlucky campaign count in every cell, and the intervals too narrow.
 std::vector<LoopCase> make_loop_cases(int null_runs, int runs_per_cell, std::uint64_t first_seed);
 
 }  // namespace tribench
