@@ -26,7 +26,7 @@ class Writer {
   }
 
   std::string assign(const std::string& value) {
-    const std::string name = fmt::format("{}{}", prefix_, statements_.operations++);
+    std::string name = fmt::format("{}{}", prefix_, statements_.operations++);
     statements_.text += fmt::format("{}{}{} = {}{}\n", dialect_.indent, dialect_.declare, name,
                                     value, dialect_.terminate);
     return name;

@@ -91,7 +91,7 @@ std::string print_box(const NamedBox& box) {
 
 Expression parse_over(std::string_view formula, NamedBox& box) {
   std::vector<std::string> names = box.names;
-  const Expression parsed = parse_collecting_names(formula, names);
+  Expression parsed = parse_collecting_names(formula, names);
   for (std::size_t j = box.names.size(); j < names.size(); ++j) {
     const std::string& name = names[j];
     const auto base = name.starts_with(kSign)
