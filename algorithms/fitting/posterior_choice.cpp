@@ -54,11 +54,16 @@ bool all_finite(std::span<const double> values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
-// Values of the posterior mean; empty where no formula of the pool is finite.
-std::vector<double> posterior_mean(std::vector<WeighedFormula> pool, Sampler& sampler) {
+struct Posterior {
+  std::vector<double> mean;  // empty where no formula of the pool is finite
+  double spread = 0;
+};
+
+Posterior posterior_of(std::vector<WeighedFormula> pool, Sampler& sampler) {
   std::ranges::stable_sort(pool, {}, &WeighedFormula::against);
   std::vector<std::vector<double>> functions;
-  std::vector<double> mean;
+  std::vector<double> weights;
+  Posterior result;
   double total = 0;
   for (const WeighedFormula& member : pool) {
     if (!(member.against - pool.front().against <= kHeard)) break;
@@ -69,14 +74,17 @@ std::vector<double> posterior_mean(std::vector<WeighedFormula> pool, Sampler& sa
         })) {
       continue;
     }
-    const double weight = std::exp(pool.front().against - member.against);
-    mean.resize(values.size(), 0.0);
-    for (std::size_t r = 0; r < values.size(); ++r) mean[r] += weight * values[r];
-    total += weight;
+    weights.push_back(std::exp(pool.front().against - member.against));
+    total += weights.back();
+    result.mean.resize(values.size(), 0.0);
+    for (std::size_t r = 0; r < values.size(); ++r) result.mean[r] += weights.back() * values[r];
     functions.push_back(std::move(values));
   }
-  for (double& value : mean) value /= total;
-  return mean;
+  for (double& value : result.mean) value /= total;
+  for (std::size_t k = 0; k < functions.size(); ++k) {
+    result.spread += weights[k] / total * mean_square_between(functions[k], result.mean);
+  }
+  return result;
 }
 
 }  // namespace
@@ -85,15 +93,24 @@ PosteriorDistances distances_from_posterior_mean(std::span<const Expression> can
                                                  std::span<const WeighedFormula> pool,
                                                  const Inputs& inputs) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  PosteriorDistances result{std::vector<double>(candidates.size(), kInfinite), 0};
+  PosteriorDistances result{std::vector<double>(candidates.size(), kInfinite), 0, 0};
   Sampler sampler(inputs);
-  const std::vector<double> mean = posterior_mean({pool.begin(), pool.end()}, sampler);
-  for (std::size_t k = 0; k < candidates.size() && !mean.empty(); ++k) {
-    const double distance = mean_square_between(sampler.values_of(candidates[k]), mean);
+  const Posterior posterior = posterior_of({pool.begin(), pool.end()}, sampler);
+  result.spread = posterior.spread;
+  for (std::size_t k = 0; k < candidates.size() && !posterior.mean.empty(); ++k) {
+    const double distance = mean_square_between(sampler.values_of(candidates[k]), posterior.mean);
     if (std::isfinite(distance)) result.mean_square[k] = distance;
   }
   result.node_rows = sampler.spent();
   return result;
+}
+
+std::size_t simplest_typical(const PosteriorDistances& distances) {
+  const std::vector<double>& all = distances.mean_square;
+  const auto first =
+      std::ranges::find_if(all, [&](double distance) { return distance <= distances.spread; });
+  const auto chosen = first != all.end() ? first : std::ranges::min_element(all);
+  return static_cast<std::size_t>(chosen - all.begin());
 }
 
 }  // namespace tribench

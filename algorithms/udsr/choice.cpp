@@ -48,9 +48,8 @@ std::size_t least_bic(std::span<const Expression> front, const ScoringProblem& p
   return place_of_least(criteria);
 }
 
-std::size_t nearest_to_posterior_mean(std::span<const Expression> front,
-                                      std::span<const Candidate> pool,
-                                      const ScoringProblem& problem, Budget& budget) {
+std::size_t typical_of_posterior(std::span<const Expression> front, std::span<const Candidate> pool,
+                                 const ScoringProblem& problem, Budget& budget) {
   constexpr double kNodesAreFree = 0;
   double zero_loss = 0;
   for (const double y : problem.target()) zero_loss += y * y / static_cast<double>(problem.rows());
@@ -66,7 +65,7 @@ std::size_t nearest_to_posterior_mean(std::span<const Expression> front,
   const PosteriorDistances distances =
       distances_from_posterior_mean(front, weighed, problem.inputs());
   budget.spend(distances.node_rows);
-  return place_of_least(distances.mean_square);
+  return simplest_typical(distances);
 }
 
 // The first formula that is exact on every row; none where there is noise.
@@ -94,7 +93,7 @@ std::size_t choose(Choice rule, std::span<const Expression> front, std::span<con
   // Beyond the rows no criterion speaks: held-out edges do, even where the search spent everything.
   const bool beyond = reaches_beyond(problem.inputs(), box) && !budget.out_of_time();
   if (rule == Choice::posterior && !beyond) {
-    return nearest_to_posterior_mean(front, pool, problem, budget);
+    return typical_of_posterior(front, pool, problem, budget);
   }
   if (rule == Choice::bic || (budget.exhausted() && !beyond)) return least_bic(front, problem);
   const CrossValidation validation =

@@ -2,10 +2,11 @@
 //
 // Which formula of a front uDSR stands for.
 //
-// By default the one nearest to the posterior mean of everything the search has fitted
-// (fitting/posterior_choice.hpp), as in pysr. The one difference: a node costs nothing. pysr
-// chooses its formulas node by node; here nodes come with the constants that every term is given
-// and with products by signs, and are no choice.
+// By default the simplest that is typical of the posterior over everything the search has fitted
+// (fitting/posterior_choice.hpp). pysr takes the nearest to its mean instead, and charges for
+// nodes, since it chooses its formulas node by node. Here nodes come with the constants that every
+// term is given, and are no choice; and the front is a path of ever fewer terms, of which the
+// larger formulas differ from the mean by what has not been dropped yet.
 #pragma once
 
 #include <limits>

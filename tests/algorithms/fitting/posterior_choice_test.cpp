@@ -69,6 +69,19 @@ TEST(PosteriorChoice, AsksOnlyWhatHasEvidenceAndIsFinite) {
   EXPECT_TRUE(std::isinf(distances_from_posterior_mean(all, {}, f.inputs()).mean_square[0]));
 }
 
+TEST(PosteriorChoice, TakesTheSimplestThatIsTypicalAndTheNearestWhereNoneIs) {
+  EXPECT_EQ(simplest_typical({{9, 2, 1, 3}, 2, 0}), 1U);
+  EXPECT_EQ(simplest_typical({{9, 2, 1, 3}, 0.5, 0}), 2U);
+}
+
+TEST(PosteriorChoice, SpreadsAsFarAsItsFormsLieFromTheirMean) {
+  const Fixture f;
+  const std::vector<Expression> all = formulas({"v", "3*v"});
+  const std::vector<WeighedFormula> pool = {{&all[0], 0, 1e-3}, {&all[1], 0, 1e-3}};
+  const PosteriorDistances distances = distances_from_posterior_mean(all, pool, f.inputs());
+  EXPECT_NEAR(distances.spread, distances.mean_square[0], 1e-12);
+}
+
 TEST(Evidence, ChargesNumbersAndNodesByHand) {
   const Expression line = parse("2*v + 1", kNames);  // two numbers, five nodes
   const double n = 100;
