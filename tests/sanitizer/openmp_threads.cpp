@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A sum over threads: with a race (`race`), or by parts that are joined after a barrier (`barrier`).
+// A sum over threads: with a race (`race`), or by parts that are joined after a barrier
+// (`barrier`).
 #include <cstdio>
 #include <string_view>
 #include <vector>
