@@ -63,9 +63,9 @@ TEST(UdsrFigures, AveragedDatasetAIsFoundNearlyAsWellAsByTheTrueLawRefitted) {
   const double joint_2 = median_ratio("A/j2/no_load");
   const double joint_4 = median_ratio("A/j4/no_load");
   std::printf("median ratio of 20 seeds: joint 2 %.3f, joint 4 %.3f\n", joint_2, joint_4);
-  // Aimed at 1.25 for both; a median of 20 ratios scatters by a tenth.
+  // Aimed at 1.25 for both; joint 2 has been just above it.
   EXPECT_LT(joint_2, 1.35);
-  EXPECT_LT(joint_4, 1.35);
+  EXPECT_LT(joint_4, 1.25);
 }
 
 TEST(Pretraining, MakesTheShippedWeightsBitForBit) {

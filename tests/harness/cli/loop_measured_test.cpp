@@ -55,7 +55,7 @@ TEST_F(MeasuredLoop, emps_has_viscous_friction_that_differs_by_direction) {
   // An offset of the sensor would be the same in both directions at any speed.
   for (const Json& alias : all["effects"][0]["alias"]) EXPECT_NE(alias["family"], "sensor_offset");
   EXPECT_LT(error(all, "rmse_before"), 2.39);
-  EXPECT_LT(error(all, "rmse_after"), 1.80);
+  EXPECT_LT(error(all, "rmse_after"), 1.75);
   const Json moving = loop("emps/emps_estimation.csv", {base[0], base[1], "--min-speed", "0.005"});
   EXPECT_EQ(moving["effects"][0]["family"], "asymmetry");
   EXPECT_TRUE(moving["confirmed"]);
