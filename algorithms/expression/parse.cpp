@@ -33,7 +33,7 @@ class Parser {
   Expression run() {
     sum();
     skip_space();
-    if (at_ != text_.size()) fail(fmt::format("unexpected '{}'", text_[at_]), "write an operator");
+    if (at_ != text_.size()) fail(fmt::format("unexpected '{}'", character()), "write an operator");
     return Expression(std::move(tape_));
   }
 
@@ -125,7 +125,7 @@ class Parser {
       sum();
       expect_close();
     } else {
-      fail(fmt::format("'{}' where a number, a name or '(' is expected", text_[at_]), "mend it");
+      fail(fmt::format("'{}' where a number, a name or '(' is expected", character()), "mend it");
     }
   }
 
@@ -229,12 +229,24 @@ class Parser {
   void expect_close() {
     if (take(')')) return;
     fail(at_ == text_.size() ? std::string("a '(' is never closed")
-                             : fmt::format("'{}' where ')' is expected", text_[at_]),
+                             : fmt::format("'{}' where ')' is expected", character()),
          "add a ')'");
   }
 
+  // All bytes of the character at hand: formulas are typed and pasted in UTF-8.
+  std::string_view character() const {
+    std::size_t end = at_ + 1;
+    while (end < text_.size() && !begins_character(text_[end])) ++end;
+    return text_.substr(at_, end - at_);
+  }
+  static bool begins_character(char byte) {
+    return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;
+  }
+
   [[noreturn]] void fail(const std::string& what, const std::string& mend) const {
-    throw_bad_input(what, fmt::format("formula, character {}", at_ + 1), mend);
+    const std::string_view before = text_.substr(0, at_);
+    const auto place = std::count_if(before.begin(), before.end(), begins_character) + 1;
+    throw_bad_input(what, fmt::format("formula, character {}", place), mend);
   }
 
   std::string_view text_;

@@ -74,6 +74,8 @@ TEST(Parse, SaysWhereTheMistakeIsAndHowToMendIt) {
       {"v**2", "write ^"},
       {"1e999", "out of range"},
       {"v + $", "'$' where a number"},
+      {"v² + g", "character 2: unexpected '²'"},
+      {"v*g + √v", "character 7: '√' where a number"},
   };
   for (const BadFormula& bad : cases) {
     try {
