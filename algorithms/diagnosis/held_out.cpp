@@ -138,6 +138,7 @@ Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>&
   for (const Eigen::Index i : train) {
     if (std::abs(residual[i]) > 2 * sd) wild.push_back(i);
   }
+  if (wild.empty()) return residual;
   const Eigen::VectorXd lost = 1 - 2 * sd / residual(wild).array().abs();
   const Eigen::MatrixXd wild_rows = lost.cwiseSqrt().asDiagonal() * x(wild, Eigen::all);
   normal.selfadjointView<Eigen::Lower>().rankUpdate(wild_rows.transpose(), -1.0);

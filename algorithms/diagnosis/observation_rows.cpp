@@ -150,6 +150,14 @@ Observations steady_means(const Observations& data) {
   return out;
 }
 
+void check_varying(const Observations& data) {
+  if (data.rows() == 0) return;
+  const auto [low, high] = std::ranges::minmax(data.target);
+  if (low < high) return;
+  throw_bad_input(fmt::format("the value is {} in every row: nothing was measured", low),
+                  data.target_name, "name the column that holds the torque with --roles");
+}
+
 void check_sign(const Observations& data) {
   if (!data.rigid.empty()) return;  // inertia and gravity may dominate: no sign to be expected
   // Of rows in one direction the mean tells the sign, not how friction varies with the speed.

@@ -31,6 +31,9 @@ void drop_constant_signals(Observations& data);
 // standard error of their mean) takes no part; its shape would only stand for something else.
 void drop_negligible_load(Observations& data);
 
+// Throws Error (bad_input) where every row has the same target: a dead channel shows no friction.
+void check_varying(const Observations& data);
+
 // Throws Error (bad_input) where friction opposes the velocity.
 void check_sign(const Observations& data);
 

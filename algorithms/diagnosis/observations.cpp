@@ -266,6 +266,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   if (options.steady) out = steady_means(out);
   drop_constant_signals(out);
   drop_negligible_load(out);
+  check_varying(out);
   check_sign(out);
   return out;
 }

@@ -52,7 +52,7 @@ Sample friction_sample(std::size_t rows, double scale = 1) {
     sample.columns[1].push_back(s);
     sample.target.push_back(
         scale * (6 * s + 3 * v + 2 * s * std::exp(-5 * std::abs(v)) + 0.05 * random.normal()));
-    sample.movement.push_back(static_cast<int>(r / 4));
+    sample.movement.push_back(static_cast<int>(r / 8));
   }
   return sample;
 }
@@ -169,8 +169,33 @@ TEST_P(EveryMethod, AnswersDataWithNaN) {
 
 TEST_P(EveryMethod, AnswersAConstantTarget) {
   Sample sample = friction_sample(80);
-  for (double& value : sample.target) value = 3.25;
+  for (const double constant : {3.25, 0.0}) {
+    for (double& value : sample.target) value = constant;
+    expect_legal(run(registry_, GetParam(), sample).result, sample);
+  }
+}
+
+// Every residual has the same size: there is no largest one, and no smallest.
+TEST_P(EveryMethod, AnswersATargetOfTwoValues) {
+  Sample sample = friction_sample(80);
+  for (std::size_t r = 0; r < 80; ++r) sample.target[r] = r % 2 == 0 ? 1 : -1;
   expect_legal(run(registry_, GetParam(), sample).result, sample);
+}
+
+TEST_P(EveryMethod, AnswersInputsThatDoNotVary) {
+  Sample sample = friction_sample(80);
+  for (const double speed : {0.5, 0.0}) {
+    for (double& value : sample.columns[0]) value = speed;
+    for (double& value : sample.columns[1]) value = speed > 0 ? 1 : 0;
+    expect_legal(run(registry_, GetParam(), sample).result, sample);
+  }
+}
+
+TEST_P(EveryMethod, AnswersFewRows) {
+  for (const std::size_t rows : {2, 3, 5, 10, 20}) {
+    Sample sample = friction_sample(rows);
+    expect_legal(run(registry_, GetParam(), sample).result, sample);
+  }
 }
 
 TEST_P(EveryMethod, AnswersASingleRow) {

@@ -153,6 +153,17 @@ TEST(Diagnosis, SaysNothingAboutNoiseFreeDataOfItsBase) {
   EXPECT_EQ(diagnose(data, coulomb_viscous_base, options_of_planted(), 1).verdict, Verdict::none);
 }
 
+// Grids hand over whatever target they have: all residuals zero, or all of one size.
+TEST(Diagnosis, SaysNothingAboutATargetOfNoughtOrOfOneSize) {
+  Observations data = observe(kuka::make_planted({}, 1).data);
+  for (const double size : {0.0, 1.0}) {
+    for (std::size_t i = 0; i < data.rows(); ++i) data.target[i] = i % 2 == 0 ? size : -size;
+    const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options_of_planted(), 1);
+    EXPECT_TRUE(diagnosis.effects.empty()) << size;
+    EXPECT_TRUE(diagnosis.events.empty()) << size;
+  }
+}
+
 TEST(Observations, FrictionAgainstTheVelocityIsRefusedWithTheMend) {
   kuka::PlantedData planted = kuka::make_planted({}, 1);
   for (Channel& channel : planted.data.channels) {

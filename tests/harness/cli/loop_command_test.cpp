@@ -14,6 +14,7 @@
 namespace tribench {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
@@ -92,6 +93,14 @@ TEST(LoopCommand, bad_input_ends_with_status_2_and_says_how_to_mend_it) {
                           return std::to_string(m) + "," + std::to_string(speed_of(m)) + ",inf";
                         }),
               HasSubstr("friction_torque_Nm"));
+  for (const double dead : {0.0, 5.0}) {
+    EXPECT_THAT(
+        complaint("movement,velocity_rad_s,friction_torque_Nm",
+                  [&](int m, int) {
+                    return csv({1.0 * m, speed_of(m), dead});
+                  }),
+        AllOf(HasSubstr("friction_torque_Nm"), HasSubstr("in every row"), HasSubstr("--roles")));
+  }
   EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--min-speed", "99"}),
               HasSubstr("--min-speed"));
   EXPECT_THAT(
