@@ -9,6 +9,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "algorithms/diagnosis/score_test.hpp"
 #include "algorithms/diagnosis/smoothers.hpp"
 
 namespace tribench::loop {
@@ -24,16 +25,10 @@ constexpr std::array<double, 5> kPenalties = {10, 1, 0.1, 0.01, 0.001};
 Eigen::MatrixXd features_of(const Observations& data, RandomStream random) {
   std::vector<Smoother> single = make_smoothers(data, random);
   std::erase_if(single, [](const Smoother& s) { return s.signals.size() != 1; });
-  Eigen::Index columns = 0;
-  for (const Smoother& s : single) columns += s.columns.cols();
-  Eigen::MatrixXd all(static_cast<Eigen::Index>(data.rows()), columns);
-  Eigen::Index next = 0;
-  for (const Smoother& s : single) {
-    all.middleCols(next, s.columns.cols()) = s.columns.cast<double>();
-    next += s.columns.cols();
-  }
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(data.rows()), 0);
+  for (const Smoother& s : single) all = beside(all, with_direction(s, data));
   const double rows = std::sqrt(static_cast<double>(data.rows()));
-  for (Eigen::Index j = 0; j < columns; ++j) {
+  for (Eigen::Index j = 0; j < all.cols(); ++j) {
     const double norm = all.col(j).norm();
     if (norm > 0) all.col(j) *= rows / norm;
   }

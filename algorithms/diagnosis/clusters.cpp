@@ -72,58 +72,6 @@ double autocovariance(const Eigen::VectorXd& deviation, std::span<const RowRange
   return sum;
 }
 
-// The offset's direction in whitened rows: `first` in a movement's first row, `next` in the others.
-struct OffsetDirection {
-  double first;
-  double next;
-  double length;  // squared
-  double noise;   // variance along it, without the offset's own
-  double offset;  // the offset's own
-};
-
-OffsetDirection offset_direction(const Clusters& clusters, std::size_t m, const Noise& noise) {
-  OffsetDirection u;
-  u.first = std::sqrt(noise.row_variance()) / noise.within_sd;
-  u.next = 1 - noise.whitening;
-  u.length =
-      u.first * u.first + static_cast<double>(clusters.movements[m].size() - 1) * u.next * u.next;
-  u.noise = noise.row_variance() *
-            std::min(noise.row_inflation(), static_cast<double>(clusters.movements[m].size()));
-  const double between = noise.between_sd * clusters.weight_of(m);
-  u.offset = between * between * u.length;
-  return u;
-}
-
-// In place: the part along the offset's direction is shrunk to the variance of the other rows.
-template <typename Matrix>
-void whiten(Matrix& columns, const Clusters& clusters, const Noise& noise) {
-  using Scalar = typename Matrix::Scalar;
-  const double share = noise.whitening;
-  for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
-    const RowRange& range = clusters.movements[m];
-    auto block = columns.middleRows(static_cast<Eigen::Index>(range.begin),
-                                    static_cast<Eigen::Index>(range.size()));
-    const OffsetDirection u = offset_direction(clusters, m, noise);
-    const double kept = std::sqrt(noise.row_variance() / (u.noise + u.offset));
-    for (Eigen::Index j = 0; j < block.cols(); ++j) {
-      Scalar* column = block.col(j).data();
-      const auto rows = block.rows();
-      const auto part = static_cast<Scalar>(share);
-      // Backwards, so that each row finds the one before as it was.
-      for (Eigen::Index i = rows - 1; i > 0; --i) column[i] -= part * column[i - 1];
-      column[0] = static_cast<Scalar>(u.first * static_cast<double>(column[0]));
-      const auto rest = block.col(j).tail(rows - 1);
-      const double along =
-          u.first * static_cast<double>(column[0]) + u.next * static_cast<double>(rest.sum());
-      const double shift = (1 - kept) * along / u.length;
-      column[0] -= static_cast<Scalar>(shift * u.first);
-      block.col(j).tail(rows - 1).array() -= static_cast<Scalar>(shift * u.next);
-    }
-    const double weight = clusters.weight_of(m);
-    if (weight != 1) block *= static_cast<Scalar>(weight);
-  }
-}
-
 Eigen::VectorXd deviations(const Eigen::VectorXd& residual, std::span<const RowRange> movements) {
   Eigen::VectorXd out = residual;
   for (const RowRange& m : movements) {
@@ -187,14 +135,40 @@ Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters, 
   return noise;
 }
 
-Eigen::MatrixXd whitened(Eigen::MatrixXd columns, const Clusters& clusters, const Noise& noise) {
-  whiten(columns, clusters, noise);
-  return columns;
+OffsetDirection offset_direction(const Clusters& clusters, std::size_t m, const Noise& noise) {
+  OffsetDirection u;
+  u.first = std::sqrt(noise.row_variance()) / noise.within_sd;
+  u.next = 1 - noise.whitening;
+  u.length =
+      u.first * u.first + static_cast<double>(clusters.movements[m].size() - 1) * u.next * u.next;
+  u.noise = noise.row_variance() *
+            std::min(noise.row_inflation(), static_cast<double>(clusters.movements[m].size()));
+  const double between = noise.between_sd * clusters.weight_of(m);
+  u.offset = between * between * u.length;
+  u.kept = std::sqrt(noise.row_variance() / (u.noise + u.offset));
+  return u;
 }
 
-Eigen::MatrixXf whitened_features(Eigen::MatrixXf columns, const Clusters& clusters,
-                                  const Noise& noise) {
-  whiten(columns, clusters, noise);
+Eigen::MatrixXd whitened(Eigen::MatrixXd columns, const Clusters& clusters, const Noise& noise) {
+  for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
+    const RowRange& range = clusters.movements[m];
+    auto block = columns.middleRows(static_cast<Eigen::Index>(range.begin),
+                                    static_cast<Eigen::Index>(range.size()));
+    const OffsetDirection u = offset_direction(clusters, m, noise);
+    const auto rows = block.rows();
+    for (Eigen::Index j = 0; j < block.cols(); ++j) {
+      double* column = block.col(j).data();
+      // Backwards, so that each row finds the one before as it was.
+      for (Eigen::Index i = rows - 1; i > 0; --i) column[i] -= noise.whitening * column[i - 1];
+      column[0] *= u.first;
+      const auto rest = block.col(j).tail(rows - 1);
+      const double shift = (1 - u.kept) * (u.first * column[0] + u.next * rest.sum()) / u.length;
+      column[0] -= shift * u.first;
+      block.col(j).tail(rows - 1).array() -= shift * u.next;
+    }
+    const double weight = clusters.weight_of(m);
+    if (weight != 1) block *= weight;
+  }
   return columns;
 }
 

@@ -76,8 +76,17 @@ Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters, 
 // movement's offset shrunk by what is known of offsets; then the movement's weight. Noise of the
 // columns comes out with row_variance(), uncorrelated.
 Eigen::MatrixXd whitened(Eigen::MatrixXd columns, const Clusters& clusters, const Noise& noise);
-Eigen::MatrixXf whitened_features(Eigen::MatrixXf columns, const Clusters& clusters,
-                                  const Noise& noise);
+// A movement's offset in whitened rows, before they are weighed: `first` in its first row, `next`
+// in the others. The part of the rows along it is shrunk to the share `kept`.
+struct OffsetDirection {
+  double first;
+  double next;
+  double length;  // squared
+  double noise;   // variance along it, without the offset's own
+  double offset;  // the offset's own
+  double kept;
+};
+OffsetDirection offset_direction(const Clusters& clusters, std::size_t m, const Noise& noise);
 
 // ln of what the offsets add to the spread of each movement's mean, halved and shared out to its
 // stretches: the part of a negative log likelihood that says how well offsets are explained.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <set>
 
+#include "algorithms/diagnosis/feature_scores.hpp"
 #include "algorithms/diagnosis/search.hpp"
 
 namespace tribench::loop {
@@ -167,9 +168,10 @@ void Search::test_leftover() {
   const std::vector<Smoother> smoothers = make_smoothers(data_, random_.split("smoothers"));
   const std::vector<Modifier> products = modifiers();
   std::vector<BlockScores> blocks;
+  const FeatureScorer scorer(current_.basis, current_.residual, clusters_, current_.noise,
+                             direction_of(data_));
   for (const Smoother& smoother : smoothers) {
-    blocks.push_back(score_features(smoother.columns, current_.basis, current_.residual, clusters_,
-                                    current_.noise, kSmootherRidge));
+    blocks.push_back(scorer.score(smoother.features, kSmootherRidge));
   }
   for (const Modifier& modifier : products) blocks.push_back(score_modifier(modifier));
   double largest = 0;
@@ -194,10 +196,9 @@ void Search::locate_leftover(const std::vector<Smoother>& smoothers,
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     if (adjusted_p(blocks[k].test.score, maxima) > options_.alpha_leftover) continue;
     const bool smooth = k < smoothers.size();
-    const Eigen::MatrixXd features =
-        whitened(smooth ? Eigen::MatrixXd(smoothers[k].columns.cast<double>())
-                        : products[k - smoothers.size()].columns,
-                 clusters_, current_.noise);
+    const Eigen::MatrixXd features = whitened(
+        smooth ? with_direction(smoothers[k], data_) : products[k - smoothers.size()].columns,
+        clusters_, current_.noise);
     const Eigen::VectorXd losses =
         held_out_losses(beside(current_.x, features), current_.residual, clusters_, current_.noise,
                         features.cols(), smooth ? kSmootherRidge : 0);
@@ -273,7 +274,7 @@ void Search::drop_proxies(const Smoother& smoother, double leftover_nats) {
     const Gain own = paired_gain(held_out_losses(x, y, clusters_, current_.noise), current_.losses);
     if (own.nats > leftover_nats && own.nats > own.error) continue;
     rest.basis = orthonormal_basis(
-        beside(rest.x, whitened(smoother.columns.cast<double>(), clusters_, rest.noise)));
+        beside(rest.x, whitened(with_direction(smoother, data_), clusters_, rest.noise)));
     rest.residual = project_off(rest.residual, rest.basis);
     const Round round = test_all(rest);
     if (family_p_given_rest(one.family, rest, round, current_) <= options_.alpha_library) continue;

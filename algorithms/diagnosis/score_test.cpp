@@ -10,7 +10,7 @@ namespace tribench::loop {
 namespace {
 
 constexpr double kSmallestShare = 1e-3;  // of the sum of squares
-constexpr Eigen::Index kFlipsAtOnce = 250;
+constexpr std::size_t kFlipsAtOnce = 250;
 
 // Lower Cholesky factor of the Gram matrix of zt with a ridge; columns have unit length before
 // projection, so the tiny floor is relative.
@@ -29,9 +29,13 @@ void count_clusters(BlockTest& test, const Eigen::VectorXd& h) {
   test.carrying = static_cast<std::size_t>((h.array() > threshold).count());
 }
 
-// The matched null and the score, from the sums.
-void finish_scores(BlockScores& block) {
-  const Eigen::MatrixXd sums = block.whitened_sums.cast<double>();
+// The sums in the coordinates of the statistic, its matched null and the score.
+void finish_scores(BlockScores& block, const Eigen::MatrixXd& gram, const Eigen::MatrixXd& raw,
+                   double ridge) {
+  const Eigen::MatrixXd factor = factor_of(gram, ridge);
+  const Eigen::MatrixXd sums =
+      factor.triangularView<Eigen::Lower>().solve(raw.transpose()).transpose();
+  block.whitened_sums = sums.cast<float>();
   block.test.statistic = sums.colwise().sum().squaredNorm();
   // Moments of the flipped statistic |sum eps_c v_c|^2 over all flips.
   const Eigen::VectorXd lengths = sums.rowwise().squaredNorm();
@@ -42,7 +46,7 @@ void finish_scores(BlockScores& block) {
 }
 
 // The sums of all testable blocks: one product with the flips serves them all.
-Eigen::MatrixXf side_by_side(std::span<const BlockScores> blocks) {
+FloatRows side_by_side(std::span<const BlockScores> blocks) {
   Eigen::Index rows = 0;
   Eigen::Index columns = 0;
   for (const BlockScores& block : blocks) {
@@ -50,7 +54,7 @@ Eigen::MatrixXf side_by_side(std::span<const BlockScores> blocks) {
     rows = block.whitened_sums.rows();
     columns += block.whitened_sums.cols();
   }
-  Eigen::MatrixXf all(rows, columns);
+  FloatRows all(rows, columns);
   Eigen::Index column = 0;
   for (const BlockScores& block : blocks) {
     if (!block.test.testable) continue;
@@ -61,24 +65,6 @@ Eigen::MatrixXf side_by_side(std::span<const BlockScores> blocks) {
 }
 
 }  // namespace
-
-Eigen::MatrixXf make_flips(std::size_t flips, std::size_t clusters, RandomStream random) {
-  Eigen::MatrixXf signs(static_cast<Eigen::Index>(flips), static_cast<Eigen::Index>(clusters));
-  std::uint64_t word = 0;
-  int left = 0;
-  for (Eigen::Index b = 0; b < signs.rows(); ++b) {
-    for (Eigen::Index c = 0; c < signs.cols(); ++c) {
-      if (left == 0) {
-        word = random.next();
-        left = 64;
-      }
-      signs(b, c) = (word & 1) != 0 ? 1.0F : -1.0F;
-      word >>= 1;
-      --left;
-    }
-  }
-  return signs;
-}
 
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& x) {
   if (x.cols() == 0) return x;
@@ -132,72 +118,43 @@ BlockScores score_block(const Eigen::Ref<const Eigen::MatrixXd>& projected,
     h[c] = rows.squaredNorm();
   }
   count_clusters(out.test, h);
-  const Eigen::MatrixXd factor = factor_of(zt.transpose() * zt, ridge);
-  const Eigen::MatrixXd rotated =
-      factor.triangularView<Eigen::Lower>().solve(sums.transpose()).transpose();
-  out.whitened_sums = rotated.cast<float>();
-  finish_scores(out);
+  finish_scores(out, zt.transpose() * zt, sums, ridge);
   return out;
 }
 
-BlockScores score_features(Eigen::MatrixXf features, const Eigen::MatrixXd& basis,
-                           const Eigen::VectorXd& residual, const Clusters& clusters,
-                           const Noise& noise, double ridge) {
-  features = whitened_features(std::move(features), clusters, noise);
-  const Eigen::MatrixXf directions = basis.cast<float>();
-  features.noalias() -= directions * (directions.transpose() * features).eval();
+BlockScores score_sums(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& sums, double ridge) {
   BlockScores out;
   out.test.testable = true;
-  const Eigen::VectorXf target = residual.cast<float>();
-  const auto count = static_cast<Eigen::Index>(clusters.stretches.size());
-  Eigen::MatrixXf sums(features.cols(), count);
-  for (Eigen::Index c = 0; c < count; ++c) {
-    const RowRange& range = clusters.stretches[static_cast<std::size_t>(c)];
-    const auto begin = static_cast<Eigen::Index>(range.begin);
-    const auto size = static_cast<Eigen::Index>(range.size());
-    sums.col(c).noalias() =
-        features.middleRows(begin, size).transpose() * target.segment(begin, size);
-  }
-  Eigen::MatrixXf gram = Eigen::MatrixXf::Zero(features.cols(), features.cols());
-  gram.selfadjointView<Eigen::Lower>().rankUpdate(features.transpose());
-  const Eigen::MatrixXf whole = gram.selfadjointView<Eigen::Lower>();
-  const Eigen::MatrixXd factor = factor_of(whole.cast<double>(), ridge);
-  const Eigen::MatrixXd rotated =
-      factor.triangularView<Eigen::Lower>().solve(sums.cast<double>()).transpose();
-  out.whitened_sums = rotated.cast<float>();
-  finish_scores(out);
+  finish_scores(out, gram, sums, ridge);
   return out;
 }
 
-std::vector<double> flip_maxima(std::span<BlockScores> blocks, const Eigen::MatrixXf& flips,
+std::vector<double> flip_maxima(std::span<BlockScores> blocks, const Flips& flips,
                                 double stop_above, std::size_t stop_count) {
   std::vector<double> maxima;
-  maxima.reserve(static_cast<std::size_t>(flips.rows()));
+  maxima.reserve(flips.count());
   std::size_t exceeding = 0;
   for (BlockScores& block : blocks) {
     if (!block.test.testable) continue;
-    const double mean = block.whitened_sums.cast<double>().rowwise().squaredNorm().sum();
+    const double mean = block.whitened_sums.cast<double>().squaredNorm();
     block.gamma.tabulate(std::max(block.test.statistic, 12 * mean));
   }
-  const Eigen::MatrixXf all = side_by_side(blocks);
-  for (Eigen::Index first = 0; first < flips.rows(); first += kFlipsAtOnce) {
-    const Eigen::Index count = std::min(kFlipsAtOnce, flips.rows() - first);
-    const Eigen::MatrixXf sums = flips.middleRows(first, count) * all;
-    Eigen::VectorXd largest = Eigen::VectorXd::Zero(count);
-    Eigen::Index column = 0;
-    for (const BlockScores& block : blocks) {
-      if (!block.test.testable) continue;
-      const Eigen::Index width = block.whitened_sums.cols();
-      const Eigen::VectorXf statistics =
-          sums.middleCols(column, width).array().square().rowwise().sum();
-      column += width;
-      for (Eigen::Index b = 0; b < count; ++b) {
-        largest[b] = std::max(largest[b], block.gamma.fast_score(statistics[b]));
+  const FloatRows all = side_by_side(blocks);
+  for (std::size_t first = 0; first < flips.count(); first += kFlipsAtOnce) {
+    const FloatRows sums = flips.sums(all, first, std::min(kFlipsAtOnce, flips.count() - first));
+    for (Eigen::Index b = 0; b < sums.rows(); ++b) {
+      double largest = 0;
+      const float* next = sums.data() + b * sums.cols();
+      for (const BlockScores& block : blocks) {
+        if (!block.test.testable) continue;
+        float statistic = 0;
+        for (const float* end = next + block.whitened_sums.cols(); next < end; ++next) {
+          statistic += *next * *next;
+        }
+        largest = std::max(largest, block.gamma.fast_score(static_cast<double>(statistic)));
       }
-    }
-    for (Eigen::Index b = 0; b < count; ++b) {
-      maxima.push_back(largest[b]);
-      if (stop_count > 0 && largest[b] >= stop_above) ++exceeding;
+      maxima.push_back(largest);
+      if (stop_count > 0 && largest >= stop_above) ++exceeding;
     }
     if (stop_count > 0 && exceeding >= stop_count) break;
   }

@@ -13,18 +13,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "algorithms/diagnosis/clusters.hpp"
+#include "algorithms/diagnosis/flips.hpp"
 #include "algorithms/diagnosis/gamma_tail.hpp"
-#include "foundation/random.hpp"
 
 namespace tribench::loop {
-
-// flips x clusters, entries +-1: the same for all candidates and rounds of one diagnosis.
-Eigen::MatrixXf make_flips(std::size_t flips, std::size_t clusters, RandomStream random);
 
 // A block of `count` columns from `first` on.
 struct Block {
@@ -47,7 +43,7 @@ Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& x);
 // Sums over clusters of u_c = Zt_c' r_c in coordinates in which Zt'Zt (+ ridge) is the identity:
 // the statistic is the squared length of the sum over clusters.
 struct BlockScores {
-  Eigen::MatrixXf whitened_sums;  // clusters x columns kept
+  FloatRows whitened_sums;  // clusters x columns kept
   BlockTest test;
   MatchedGamma gamma{0, 0};
 };
@@ -62,18 +58,15 @@ BlockScores score_block(const Eigen::Ref<const Eigen::MatrixXd>& zt,
 // [a b]
 Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-// The same for a flexible basis of many features in single precision, which a ridge of per cents
-// forgives: whitens them with the noise and projects them off the basis first.
-BlockScores score_features(Eigen::MatrixXf features, const Eigen::MatrixXd& basis,
-                           const Eigen::VectorXd& residual, const Clusters& clusters,
-                           const Noise& noise, double ridge);
+// The same from the products: gram = Zt'Zt (the lower triangle is read), sums: clusters x columns.
+BlockScores score_sums(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& sums, double ridge);
 
 // z - basis basis' z
 Eigen::MatrixXd project_off(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis);
 
 // For each flip the largest score over all blocks. stop_above, stop_count: give up once so many
 // maxima (of the first flips) are at least stop_above; 0 never. Returns the maxima computed.
-std::vector<double> flip_maxima(std::span<BlockScores> blocks, const Eigen::MatrixXf& flips,
+std::vector<double> flip_maxima(std::span<BlockScores> blocks, const Flips& flips,
                                 double stop_above = 0, std::size_t stop_count = 0);
 
 // (1 + number of maxima >= score) / (1 + number of maxima)

@@ -52,7 +52,7 @@ Search::Search(const Observations& train, const BaseModel& base,
       random_(random),
       noise_floor_(quantisation_floor(train.target)) {
   instantiate_library();
-  flips_ = make_flips(options.flips, clusters.stretches.size(), random.split("flips"));
+  flips_ = Flips(options.flips, clusters.stretches.size(), random.split("flips"));
   LoopModel model;
   model.base = base;
   model.coefficients.setZero(static_cast<Eigen::Index>(base.linear_terms.size()));

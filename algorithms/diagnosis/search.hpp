@@ -136,7 +136,7 @@ class Search {
   std::vector<char> usable_;   // per atom: testable given the base, in enough clusters
   Eigen::MatrixXd columns_;    // the library's raw columns, unit rms
   std::vector<Block> blocks_;  // per atom, in columns_
-  Eigen::MatrixXf flips_;
+  Flips flips_;
   // Families that were added and did not stand in the same model: not to be tried again in it.
   std::vector<std::size_t> rejected_;
   FittedModel base_fit_;

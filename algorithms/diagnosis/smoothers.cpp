@@ -6,6 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "algorithms/expression/expression.hpp"
+#include "algorithms/expression/vector/kernels.hpp"
+#include "algorithms/expression/vector/level.hpp"
+
 namespace tribench::loop {
 namespace {
 
@@ -22,6 +26,11 @@ constexpr std::array<SignalPair, 5> kPairs = {
 constexpr Eigen::Index kFourierFeatures = 30;
 // Of the unit interval into which a signal is mapped.
 constexpr double kFourierLength = 0.22;
+
+// Of a radial function, in widths: 1e-10 is nothing, but products of such numbers are denormal,
+// which takes the processor thirty times as long.
+constexpr float kReach = 6.8F;
+constexpr float kNothing = -1000;  // its exponential is 0
 
 // The signal mapped to [0, 1]: |v|, log of the distance, anything else as it is. Empty where it
 // does not vary.
@@ -43,33 +52,40 @@ Eigen::ArrayXf unit_values(const Observations& data, std::string_view name) {
   return ((x - low) / (high - low)).max(-0.1).min(1.1).cast<float>();
 }
 
-Eigen::MatrixXf radial(const Eigen::ArrayXf& x, int centres) {
-  Eigen::MatrixXf out(x.size(), centres);
-  const float spacing = 1.0F / static_cast<float>(centres - 1);
-  for (int k = 0; k < centres; ++k) {
-    out.col(k) = (-0.5F * ((x - static_cast<float>(k) * spacing) / spacing).square()).exp();
+// The evaluator's own function of every element: fast, and the same bits on every machine.
+void apply(Op function, FloatRows& x) {
+  const auto n = static_cast<std::size_t>(x.size());
+  const int place = static_cast<int>(function) - static_cast<int>(Op::neg);
+  kernel_table<float>(vector_level()).function[place](x.data(), x.data(), nullptr, nullptr, n);
+}
+
+FloatRows radial(const Eigen::ArrayXf& x, int centres) {
+  FloatRows out(x.size(), centres);
+  const auto inverse_spacing = static_cast<float>(centres - 1);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const float place = x[i] * inverse_spacing;
+    float* row = out.row(i).data();
+    for (int k = 0; k < centres; ++k) {
+      const float apart = place - static_cast<float>(k);
+      row[k] = std::abs(apart) < kReach ? -0.5F * apart * apart : kNothing;
+    }
   }
+  apply(Op::exp, out);
   return out;
 }
 
-Eigen::MatrixXf fourier(const Eigen::ArrayXf& x, const Eigen::ArrayXf& y, RandomStream random) {
-  Eigen::MatrixXf out(x.size(), kFourierFeatures);
+FloatRows fourier(const Eigen::ArrayXf& x, const Eigen::ArrayXf& y, RandomStream random) {
+  Eigen::Matrix<float, 3, kFourierFeatures> waves;
   for (Eigen::Index k = 0; k < kFourierFeatures; ++k) {
-    const auto wx = static_cast<float>(random.normal() / kFourierLength);
-    const auto wy = static_cast<float>(random.normal() / kFourierLength);
-    const auto phase = static_cast<float>(random.uniform(0, 2 * std::numbers::pi));
-    out.col(k) = (wx * x + wy * y + phase).cos();
+    waves(0, k) = static_cast<float>(random.normal() / kFourierLength);
+    waves(1, k) = static_cast<float>(random.normal() / kFourierLength);
+    waves(2, k) = static_cast<float>(random.uniform(0, 2 * std::numbers::pi));
   }
-  return out;
-}
-
-Eigen::MatrixXf with_direction(const Eigen::MatrixXf& features, const Observations& data) {
-  const Signal* sign = data.find("sgn_v");
-  if (sign == nullptr) return features;
-  const Eigen::VectorXf s =
-      Eigen::Map<const Eigen::VectorXd>(sign->values.data(), features.rows()).cast<float>();
-  Eigen::MatrixXf out(features.rows(), 2 * features.cols());
-  out << features, s.asDiagonal() * features;
+  FloatRows out(x.size(), kFourierFeatures);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    out.row(i) = x[i] * waves.row(0) + y[i] * waves.row(1) + waves.row(2);
+  }
+  apply(Op::cos, out);
   return out;
 }
 
@@ -91,14 +107,29 @@ std::string input_name(const Observations& data, std::string_view signal) {
   return found->role == Role::none ? found->channel : std::string(role_name(found->role));
 }
 
+Eigen::VectorXf direction_of(const Observations& data) {
+  const Signal* sign = data.find("sgn_v");
+  if (sign == nullptr) return {};
+  return Eigen::Map<const Eigen::VectorXd>(sign->values.data(),
+                                           static_cast<Eigen::Index>(sign->values.size()))
+      .cast<float>();
+}
+
+Eigen::MatrixXd with_direction(const Smoother& smoother, const Observations& data) {
+  const Eigen::MatrixXd features = smoother.features.cast<double>();
+  const Eigen::VectorXd s = direction_of(data).cast<double>();
+  if (s.size() == 0) return features;
+  Eigen::MatrixXd out(features.rows(), 2 * features.cols());
+  out << features, s.asDiagonal() * features;
+  return out;
+}
+
 std::vector<Smoother> make_smoothers(const Observations& data, RandomStream random) {
   std::vector<Smoother> all;
   for (const OneSignal& single : kSingles) {
     const Eigen::ArrayXf x = unit_values(data, single.signal);
     if (x.size() == 0) continue;
-    all.push_back({{single.signal},
-                   {input_name(data, single.signal)},
-                   with_direction(radial(x, single.centres), data)});
+    all.push_back({{single.signal}, {input_name(data, single.signal)}, radial(x, single.centres)});
   }
   for (const auto& [first, second] : kPairs) {
     const Eigen::ArrayXf x = unit_values(data, first);
@@ -107,7 +138,7 @@ std::vector<Smoother> make_smoothers(const Observations& data, RandomStream rand
     const RandomStream part = random.split(std::string(first) + "*" + std::string(second));
     all.push_back({{std::string(first), std::string(second)},
                    {input_name(data, first), input_name(data, second)},
-                   with_direction(fourier(x, y, part), data)});
+                   fourier(x, y, part)});
   }
   return all;
 }

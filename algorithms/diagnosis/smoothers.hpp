@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "algorithms/diagnosis/flips.hpp"
 #include "algorithms/diagnosis/observations.hpp"
 #include "foundation/random.hpp"
 
@@ -20,11 +21,17 @@ namespace tribench::loop {
 struct Smoother {
   std::vector<std::string> signals;  // one or two
   std::vector<std::string> inputs;   // their role names: "velocity", "position", ...
-  Eigen::MatrixXf columns;           // rows x features, then the same times the direction
+  FloatRows features;                // rows x features
 };
 
 // All smoothers that the data have the signals for.
 std::vector<Smoother> make_smoothers(const Observations& data, RandomStream random);
+
+// The direction of motion, a row; empty where the data have none.
+Eigen::VectorXf direction_of(const Observations& data);
+
+// The features, then the same times the direction.
+Eigen::MatrixXd with_direction(const Smoother& smoother, const Observations& data);
 
 // The pairs of signals in which smoothers look for products.
 using SignalPair = std::array<std::string_view, 2>;

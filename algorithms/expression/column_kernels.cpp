@@ -5,18 +5,9 @@
 #include <cstring>
 
 #include "algorithms/expression/expression.hpp"
+#include "algorithms/expression/vector/each_level.hpp"
 #include "algorithms/expression/vector/kernels.hpp"
 #include "algorithms/expression/vector/level.hpp"
-
-// One copy of a function per instruction set; the loader picks. The thread sanitizer's start-up
-// cannot run such a choice, and other compilers and machines get the plain copy.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-#define TRIBENCH_EACH_LEVEL \
-  __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define TRIBENCH_EACH_LEVEL
-#endif
 
 namespace tribench::columns {
 namespace {

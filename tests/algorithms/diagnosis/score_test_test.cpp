@@ -47,7 +47,7 @@ Example clustered_example(std::uint64_t seed, double planted) {
 }
 
 // Smallest adjusted p over the candidates.
-std::vector<double> adjusted_ps(const Example& e, const Eigen::MatrixXf& flips) {
+std::vector<double> adjusted_ps(const Example& e, const Flips& flips) {
   const Eigen::MatrixXd basis = orthonormal_basis(e.x);
   const Eigen::VectorXd residual = project_off(e.y, basis);
   std::vector<BlockScores> blocks;
@@ -66,7 +66,7 @@ TEST(ScoreTest, RejectsTrueNullsAtTheNominalRateDespiteCorrelationWithinMovement
   constexpr int kRuns = 300;
   int rejected = 0;
   for (int run = 0; run < kRuns; ++run) {
-    const Eigen::MatrixXf flips = make_flips(399, kMovements, RandomStream(1000 + run));
+    const Flips flips(399, kMovements, RandomStream(1000 + run));
     const std::vector<double> ps = adjusted_ps(clustered_example(run, 0), flips);
     if (*std::min_element(ps.begin(), ps.end()) <= 0.05) ++rejected;
   }
@@ -76,7 +76,7 @@ TEST(ScoreTest, RejectsTrueNullsAtTheNominalRateDespiteCorrelationWithinMovement
 }
 
 TEST(ScoreTest, FindsAPlantedColumnAndNoOther) {
-  const Eigen::MatrixXf flips = make_flips(1999, kMovements, RandomStream(1));
+  const Flips flips(1999, kMovements, RandomStream(1));
   const std::vector<double> ps = adjusted_ps(clustered_example(7, 1.0), flips);
   EXPECT_LE(ps[2], 0.003);
   for (const std::size_t other : {0U, 1U, 3U, 4U, 5U}) EXPECT_GT(ps[other], 0.05) << other;
@@ -106,7 +106,7 @@ TEST(FlipMaxima, StopsOnceTheAnswerCannotBeSignificantAnyMore) {
   const Eigen::VectorXd before = e.candidates.colwise().squaredNorm();
   std::vector<BlockScores> blocks = {score_block(project_off(e.candidates, basis), before,
                                                  project_off(e.y, basis), e.clusters, 0)};
-  const Eigen::MatrixXf flips = make_flips(1999, kMovements, RandomStream(2));
+  const Flips flips(1999, kMovements, RandomStream(2));
   EXPECT_LT(flip_maxima(blocks, flips, 0.0, 4).size(), 1999U);
   EXPECT_EQ(flip_maxima(blocks, flips).size(), 1999U);
 }
