@@ -26,8 +26,11 @@ struct Column {
 };
 
 std::string cell_complaint(std::string_view cell) {
-  return cell.empty() ? std::string("the cell is empty")
-                      : fmt::format("'{}' is not a finite number", cell);
+  if (cell.empty()) return "the cell is empty";
+  double value = 0;
+  const bool too_large = read_cell(cell, value) == CellKind::missing && value != 0;
+  return fmt::format("'{}' is {}", cell,
+                     too_large ? "too large for what is measured" : "not a finite number");
 }
 
 std::string number_mend(std::string_view cell, char delimiter) {

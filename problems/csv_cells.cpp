@@ -140,7 +140,8 @@ void check_header(const std::vector<std::string>& header, std::string_view file)
 void check_width(const CsvLine& line, const CsvCells& cells, std::string_view file) {
   const std::size_t expected = cells.header.size();
   if (line.cells.size() == expected || line.blank()) return;
-  throw_bad_input(fmt::format("{} cells where the header has {}", line.cells.size(), expected),
+  throw_bad_input(fmt::format("{} cell{} where the header has {}", line.cells.size(),
+                              line.cells.size() == 1 ? "" : "s", expected),
                   csv_place(file, line.number),
                   line.cells.size() > expected && cells.delimiter == ','
                       ? "numbers need a decimal point, not a comma; quote a cell that holds a comma"
@@ -200,12 +201,13 @@ CellKind read_cell(std::string_view cell, double& value) {
   const char* end = digits.data() + digits.size();
   const auto [stop, code] = std::from_chars(digits.data(), end, value);
   if (stop != end) return CellKind::text;
+  // Too small is 0 to the last bit; too large has no double.
   if (code == std::errc::result_out_of_range) {
-    // Too small is 0 to the last bit; too large has no double.
     value = std::strtod(std::string(digits).c_str(), nullptr);
-    return std::isfinite(value) ? CellKind::number : CellKind::text;
+  } else if (code != std::errc()) {
+    return CellKind::text;
   }
-  return code == std::errc() ? CellKind::number : CellKind::text;
+  return std::abs(value) <= kLargestNumber ? CellKind::number : CellKind::missing;
 }
 
 }  // namespace tribench

@@ -30,9 +30,13 @@ CsvCells split_csv(std::string_view text, std::string_view file);
 std::string csv_place(std::string_view file, std::size_t line);
 std::string csv_place(std::string_view file, std::size_t line, std::string_view column);
 
-// A finite number that makes up the whole cell.
+// Sums of squares of larger numbers leave the range of doubles; nothing measured is as large, but
+// markers for missing values are (1.8e308).
+inline constexpr double kLargestNumber = 1e100;
+
 enum class CellKind { number, missing, text };
-// missing: empty, nan, na, inf in any case and sign. A number too large for a double is text.
+// number: a finite one that makes up the whole cell; missing: empty, nan, na, inf in any case and
+// sign, and numbers beyond kLargestNumber.
 CellKind read_cell(std::string_view cell, double& value);
 
 }  // namespace tribench
