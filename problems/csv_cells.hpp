@@ -30,9 +30,10 @@ CsvCells split_csv(std::string_view text, std::string_view file);
 std::string csv_place(std::string_view file, std::size_t line);
 std::string csv_place(std::string_view file, std::size_t line, std::string_view column);
 
-// Sums of squares of larger numbers leave the range of doubles; nothing measured is as large, but
-// markers for missing values are (1.8e308).
-inline constexpr double kLargestNumber = 1e100;
+// Fits square and multiply what they are given until larger numbers leave the range of doubles.
+// Nothing measured is as large (nanoseconds since 1970 are 2e18), but markers for missing values
+// are (3.4e38, 1.8e308).
+inline constexpr double kLargestNumber = 1e30;
 
 enum class CellKind { number, missing, text };
 // number: a finite one that makes up the whole cell; missing: empty, nan, na, inf in any case and
