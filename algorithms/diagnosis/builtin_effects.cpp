@@ -39,7 +39,7 @@ EffectFamily stribeck() {
                  {}};
   f.atoms = {{{"sgn_v*exp(-(abs(v)/vs)^delta)"},
               {"excess"},
-              {{"vs", "v", {0.02, 0.045, 0.09, 0.14}, 0.004, kStribeckLimit},
+              {{"vs", "v", {0.02, 0.045, 0.09, 0.14}, 0.004, kStribeckLimit, true},
                {"delta", "", {1, 2}, 0.5, 3}}}};
   f.sanity = {{"excess", 1, 0, 20, "breakaway friction below Coulomb friction"}};
   f.separate_by = {"R6"};

@@ -37,6 +37,7 @@ ShapeTemplate read_shape(const toml::table& table, const std::string& place) {
   }
   shape.low = table["low"].value_or(0.0);
   shape.high = table["high"].value_or(0.0);
+  shape.recorded = table["recorded"].value_or(false);
   if (shape.grid.empty()) throw_bad_input("a shape has no grid", place, "give it grid = [1.0]");
   return shape;
 }
@@ -118,7 +119,8 @@ std::string write_effects(std::span<const EffectFamily> effects) {
                                      {"scale", shape.scale},
                                      {"grid", std::move(grid)},
                                      {"low", shape.low},
-                                     {"high", shape.high}});
+                                     {"high", shape.high},
+                                     {"recorded", shape.recorded}});
       }
       if (!shapes.empty()) table.insert("shape", std::move(shapes));
       array.push_back(std::move(table));

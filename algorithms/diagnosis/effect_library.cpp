@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "algorithms/expression/text.hpp"
 
@@ -39,6 +40,16 @@ double scaled(const ShapeTemplate& shape, double value, const Observations& data
   return value * signal_scale(data, shape.scale);
 }
 
+// The least a shape may be in the data's units.
+double least(const ShapeTemplate& shape, const Observations& data) {
+  const double low = scaled(shape, shape.low, data);
+  const Signal* signal = data.find(shape.scale);
+  if (!shape.recorded || signal == nullptr) return low;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const double x : signal->values) smallest = std::min(smallest, std::abs(x));
+  return std::max(low, smallest);
+}
+
 std::vector<std::string> variables_of(const AtomTemplate& atom) {
   std::vector<std::string> names;
   for (const std::string& column : atom.columns) parse_collecting_names(column, names);
@@ -62,7 +73,7 @@ Atom make_atom(const AtomTemplate& source, std::size_t family, const Observation
     const double value = shape.name == "N" ? values[k] : scaled(shape, values[k], data);
     atom.shapes.push_back({shape.name,
                            value,
-                           fixed ? value : scaled(shape, shape.low, data),
+                           fixed ? value : least(shape, data),
                            fixed ? value : scaled(shape, shape.high, data),
                            {}});
   }
@@ -94,6 +105,7 @@ void expand(const AtomTemplate& source, std::size_t family, const Observations& 
   const std::span<const double> grid =
       shape.name == "N" ? gear_ratios : std::span<const double>(shape.grid);
   for (const double value : grid) {
+    if (shape.recorded && scaled(shape, value, data) < least(shape, data)) continue;
     values.push_back(value);
     expand(source, family, data, gear_ratios, values, out);
     values.pop_back();
@@ -148,6 +160,8 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
     if (lacking.empty()) {
       std::vector<double> values;
       expand(source, number, data, gear_ratios, values, atoms);
+      const bool faded = std::ranges::count(source.shapes, true, &ShapeTemplate::recorded) > 0;
+      if (atoms.empty() && faded) missing = {"slow rows"};
     } else if (missing.empty() || lacking.size() < missing.size()) {
       missing = lacking;
     }

@@ -28,6 +28,9 @@ struct ShapeTemplate {
   std::vector<double> grid;  // one atom for each value (the product over all shapes)
   double low = 0;            // bounds of the refinement; low == high: not refined
   double high = 0;
+  // No smaller than the smallest |signal| of the rows: an effect that has faded before the slowest
+  // row shows its tail alone, and a size at 0 made of a tail is worth nothing.
+  bool recorded = false;
 };
 
 struct AtomTemplate {
