@@ -155,7 +155,7 @@ EffectFamily output_ripple() {
 EffectFamily gear_ripple() {
   EffectFamily f{"gear_ripple",
                  "E9",
-                 "torque that repeats with the wave generator's turn",
+                 "torque that repeats with the turn of the wave generator, the motor or the screw",
                  "torque repeats with the motor's turn",
                  "Taghirad and Belanger 1998; Ghorbel et al. 2001",
                  {}};
@@ -165,7 +165,6 @@ EffectFamily gear_ripple() {
     f.atoms.push_back({{"cos(" + angle, "sin(" + angle}, {"cosine", "sine"}, {ratio}});
     f.atoms.push_back({{"sgn_v*cos(" + angle, "sgn_v*sin(" + angle}, {"cosine", "sine"}, {ratio}});
   }
-  f.angular = true;
   f.separate_by = {"R6"};
   return f;
 }

@@ -4,13 +4,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "algorithms/expression/text.hpp"
 
 namespace tribench::loop {
 namespace {
+
+constexpr std::array<double, 7> kUsualGearRatios = {50, 80, 100, 101, 120, 121, 160};
+constexpr std::array<double, 5> kUsualLeads = {0.040, 0.020, 0.010, 0.005, 0.0025};  // m
+
+bool is_linear_axis(const Observations& data) {
+  const Signal* position = data.find("q");
+  return position != nullptr && position->unit == "m";
+}
 
 double quantile(std::vector<double> values, double part) {
   const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
@@ -134,13 +144,20 @@ void Atom::set_shape(std::size_t shape, double value) {
   }
 }
 
+std::vector<double> gear_ratios_for(const Observations& data, std::span<const double> given) {
+  if (!given.empty()) return {given.begin(), given.end()};
+  if (!is_linear_axis(data)) return {kUsualGearRatios.begin(), kUsualGearRatios.end()};
+  std::vector<double> ratios;
+  for (const double lead : kUsualLeads) ratios.push_back(2 * std::numbers::pi / lead);
+  return ratios;
+}
+
 std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
                               const Observations& data, std::span<const double> gear_ratios,
                               std::vector<std::string>& missing) {
   missing.clear();
   std::vector<Atom> atoms;
-  const Signal* position = data.find("q");
-  if (family.angular && position != nullptr && position->unit == "m") {
+  if (family.angular && is_linear_axis(data)) {
     missing = {"an angle: the position is in m"};
     return atoms;
   }

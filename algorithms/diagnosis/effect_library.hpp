@@ -107,6 +107,10 @@ struct Atom {
   void set_shape(std::size_t shape, double value);
 };
 
+// Turns of the motor for one of the joint, or rad of the motor for a metre where the position is in
+// m: those given, else the usual ones. Of a screw the preferred leads of ISO 3408-2 (2.5 to 40 mm).
+std::vector<double> gear_ratios_for(const Observations& data, std::span<const double> given);
+
 // All atoms of a family that these data have the signals for; empty where none.
 // missing: receives the names of the signals that are not there (of the least demanding atom).
 std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,

@@ -35,7 +35,7 @@ std::vector<Rival> rivals_of(const Diagnosis& diagnosis, const Observations& tra
       std::vector<std::string> missing;
       const std::vector<Atom> atoms =
           instantiate(*family, static_cast<std::size_t>(family - diagnosis.families.begin()), train,
-                      diagnosis.options.gear_ratios, missing);
+                      gear_ratios_for(train, diagnosis.options.gear_ratios), missing);
       if (atoms.empty()) continue;
       LoopModel best;
       double least = 1e300;

@@ -220,10 +220,11 @@ void Search::locate_leftover(const std::vector<Smoother>& smoothers,
   for (const std::string& signal : leftover.signals) {
     leftover.inputs.push_back(input_name(data_, signal));
   }
+  if (!whole_) whole_ = WholeModel{current_, best.nats};
   const std::size_t before = found.size();
   const bool varies = drop_varying(products);
   const auto home = std::ranges::find(smoothers, leftover.signals, &Smoother::signals);
-  if (home != smoothers.end()) drop_proxies(*home, best.nats);
+  if (home != smoothers.end()) drop_proxies(*home);
   if (found.size() == before) return;
   // Without its proxies the leftover shows better where it lives; what an effect varies with is
   // known already.
@@ -233,8 +234,6 @@ void Search::locate_leftover(const std::vector<Smoother>& smoothers,
     leftover.inputs = known.inputs;
     leftover.signals = known.signals;
   }
-  leftover.proxies_removed.insert(leftover.proxies_removed.begin(), known.proxies_removed.begin(),
-                                  known.proxies_removed.end());
 }
 
 // An effect whose size varies with temperature is part of what is left over: c f(q) + d f(q) T is
@@ -261,33 +260,45 @@ bool Search::drop_varying(const std::vector<Modifier>& products) {
 
 // A family that the leftover's smoother makes superfluous is a proxy of what is left over, unless
 // it explains more than that: the smoother in v takes the place of any effect of v, the true one
-// too.
-void Search::drop_proxies(const Smoother& smoother, double leftover_nats) {
-  const std::vector<Found> before = found;
-  for (const Found& one : before) {
-    LoopModel without = current_.model;
-    remove_family(without, one.family);
-    FittedModel rest = fit(std::move(without), FitScope::linear);
-    const Eigen::MatrixXd x = whitened(tangent(rest.model, data_), clusters_, current_.noise);
-    const Eigen::VectorXd y =
-        whitened(target_vector(data_) - predict(rest.model, data_), clusters_, current_.noise);
-    const Gain own = paired_gain(held_out_losses(x, y, clusters_, current_.noise), current_.losses);
-    if (own.nats > leftover_nats && own.nats > own.error) continue;
+// too. What is left over is what the whole model leaves, and its proxies have to explain less
+// together: each one dropped leaves more for the smoother, which would make the next one look
+// superfluous. A family that asked for more columns than an effect has is not excused
+// (specification, 11.6: a defect at one place is absorbed by many harmonics).
+void Search::drop_proxies(const Smoother& smoother) {
+  const std::size_t before = found.size();
+  LoopModel model = current_.model;
+  const auto drop_if_superfluous = [&](std::size_t family, bool excused) {
+    LoopModel without = model;
+    remove_family(without, family);
+    FittedModel rest = fit(without, FitScope::linear);
+    if (excused && explains_more_than_is_left(rest)) return;
     rest.basis = orthonormal_basis(
         beside(rest.x, whitened(with_direction(smoother, data_), clusters_, rest.noise)));
     rest.residual = project_off(rest.residual, rest.basis);
     const Round round = test_all(rest);
-    if (family_p_given_rest(one.family, rest, round, current_) <= options_.alpha_library) continue;
-    leftover.proxies_removed.push_back(families_[one.family].name);
-    std::erase_if(found, [&](const Found& other) { return other.family == one.family; });
-  }
-  LoopModel model = current_.model;
-  for (const std::string& proxy : leftover.proxies_removed) {
-    for (std::size_t f = 0; f < families_.size(); ++f) {
-      if (families_[f].name == proxy) remove_family(model, f);
+    if (family_p_given_rest(family, rest, round, current_) <= options_.alpha_library) return;
+    leftover.proxies_removed.push_back(families_[family].name);
+    std::erase_if(found, [&](const Found& other) { return other.family == family; });
+    model = std::move(without);
+  };
+  for (const bool excused : {false, true}) {
+    for (const Found& one : std::vector<Found>(found)) {
+      const bool asked_more = std::ranges::count(asked_more_, one.family) > 0;
+      if (asked_more != excused) drop_if_superfluous(one.family, excused);
     }
+    if (!excused && found.size() < before) whole_->fit = fit(model, FitScope::everything);
   }
-  current_ = fit(std::move(model), FitScope::everything);
+  if (found.size() < before) current_ = fit(std::move(model), FitScope::everything);
+}
+
+// What the whole model has and `rest` has not, against what the whole model leaves over.
+bool Search::explains_more_than_is_left(const FittedModel& rest) const {
+  const Noise& noise = whole_->fit.noise;
+  const Eigen::MatrixXd x = whitened(tangent(rest.model, data_), clusters_, noise);
+  const Eigen::VectorXd y =
+      whitened(target_vector(data_) - predict(rest.model, data_), clusters_, noise);
+  const Gain own = paired_gain(held_out_losses(x, y, clusters_, noise), whole_->fit.losses);
+  return own.nats > whole_->leftover_nats && own.nats > own.error;
 }
 
 }  // namespace tribench::loop

@@ -5,7 +5,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -20,7 +19,6 @@ constexpr double kRescueGain = 12;
 constexpr std::size_t kAtomsTried = 3;  // of a family, best scores first
 constexpr std::size_t kMostAtoms = 2;   // of a family: more is a sign of something else
 constexpr double kCancelling = 0.1;     // of the columns' own sums of squares
-constexpr std::array<double, 7> kUsualGearRatios = {50, 80, 100, 101, 120, 121, 160};
 
 // Torque comes in steps: no residual is more certain than its quantisation allows.
 double quantisation_floor(const std::vector<double>& target) {
@@ -61,9 +59,7 @@ Search::Search(const Observations& train, const BaseModel& base,
 }
 
 void Search::instantiate_library() {
-  const std::span<const double> ratios = options_.gear_ratios.empty()
-                                             ? std::span<const double>(kUsualGearRatios)
-                                             : std::span<const double>(options_.gear_ratios);
+  const std::vector<double> ratios = gear_ratios_for(data_, options_.gear_ratios);
   std::vector<Expression> formulas;
   for (std::size_t f = 0; f < families_.size(); ++f) {
     std::vector<std::string> missing;
@@ -293,6 +289,7 @@ bool Search::add(const Candidate& winner, const Round& round) {
     if (std::ranges::count(notes, text) == 0) notes.push_back(std::move(text));
   };
   if (atoms_of(winner.family) >= kMostAtoms) {
+    asked_more_.push_back(winner.family);
     note_once(fmt::format(
         "more than {} columns of '{}' are asked for: a sign of something that only looks like it",
         kMostAtoms, families_[winner.family].name));

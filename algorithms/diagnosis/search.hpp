@@ -122,7 +122,8 @@ class Search {
                        const std::vector<Modifier>& products,
                        const std::vector<BlockScores>& blocks, const std::vector<double>& maxima);
   bool drop_varying(const std::vector<Modifier>& products);
-  void drop_proxies(const Smoother& smoother, double leftover_nats);
+  void drop_proxies(const Smoother& smoother);
+  bool explains_more_than_is_left(const FittedModel& rest) const;
   std::size_t atoms_of(std::size_t family) const;
   void remove_family(LoopModel& model, std::size_t family) const;
 
@@ -139,9 +140,16 @@ class Search {
   Flips flips_;
   // Families that were added and did not stand in the same model: not to be tried again in it.
   std::vector<std::size_t> rejected_;
+  std::vector<std::size_t> asked_more_;  // families that would have taken a third column
   FittedModel base_fit_;
   Round base_round_;  // of the base
   FittedModel current_;
+  // With all that was found, before the proxies of what it leaves over were dropped.
+  struct WholeModel {
+    FittedModel fit;
+    double leftover_nats;
+  };
+  std::optional<WholeModel> whole_;
 };
 
 }  // namespace tribench::loop

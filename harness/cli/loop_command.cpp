@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,7 @@ struct LoopArguments {
   std::vector<std::string> rigid;
   std::vector<std::string> effects;
   double gear_ratio = 0;
+  double screw_lead = 0;
   double alpha_library = 0.003;
   double alpha_leftover = 0.002;
   int flips = 1999;
@@ -178,6 +180,7 @@ loop::DiagnosisOptions diagnosis_options(const LoopArguments& arguments) {
   options.physical_vetoes = !arguments.any_sign;
   if (!arguments.learned.empty()) options.learned = loop::read_effects(arguments.learned);
   if (arguments.gear_ratio > 0) options.gear_ratios = {arguments.gear_ratio};
+  if (arguments.screw_lead > 0) options.gear_ratios = {2 * std::numbers::pi / arguments.screw_lead};
   return options;
 }
 
@@ -340,10 +343,17 @@ void add_loop_command(CLI::App& app, ExitStatus& /*status*/, const Registry& reg
                    "columns of the rigid body, fitted with the base and no effects")
       ->delimiter(',');
   command->add_option("--effects", arguments->effects, "test these families only")->delimiter(',');
+  CLI::Option* gear_ratio =
+      command
+          ->add_option("--gear-ratio", arguments->gear_ratio,
+                       "motor turns per turn of the joint; without it the usual ones are scanned")
+          ->check(CLI::PositiveNumber);
   command
-      ->add_option("--gear-ratio", arguments->gear_ratio,
-                   "motor turns per turn of the joint; without it the usual ones are scanned")
-      ->check(CLI::PositiveNumber);
+      ->add_option(
+          "--screw-lead", arguments->screw_lead,
+          "of a linear axis, m per turn of the screw; without it the usual ones are scanned")
+      ->check(CLI::PositiveNumber)
+      ->excludes(gear_ratio);
   command->add_option("--alpha", arguments->alpha_library, "false alarms of the library")
       ->check(CLI::Range(1e-6, 0.5))
       ->capture_default_str();

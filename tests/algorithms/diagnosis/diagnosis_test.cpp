@@ -100,6 +100,16 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"temperature_position",
                               std::vector<std::string>{"position", "temperature"}}));
 
+// A narrow bump needs more harmonics than a family has: none of them is claimed.
+TEST(Diagnosis, AFamilyThatAsksForEverMoreColumnsIsNotClaimed) {
+  for (const std::uint64_t seed : {930621U, 930623U, 930625U}) {
+    const Diagnosis diagnosis = diagnose_planted({.effects = {{"position_bump", 0.5}}}, seed);
+    EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
+    EXPECT_EQ(diagnosis.leftover.inputs, (std::vector<std::string>{"position"}));
+    EXPECT_TRUE(diagnosis.effects.empty());
+  }
+}
+
 // The mean temperature is not 0, so a ripple whose size varies with temperature looks like one
 // that does not, and something more.
 TEST(Diagnosis, ARippleThatVariesWithTemperatureIsNoRippleOfTheLibrary) {

@@ -55,11 +55,36 @@ TEST_F(MeasuredLoop, emps_has_viscous_friction_that_differs_by_direction) {
   // An offset of the sensor would be the same in both directions at any speed.
   for (const Json& alias : all["effects"][0]["alias"]) EXPECT_NE(alias["family"], "sensor_offset");
   EXPECT_LT(error(all, "rmse_before"), 2.39);
-  EXPECT_LT(error(all, "rmse_after"), 1.75);
+  EXPECT_LT(error(all, "rmse_after"), 1.51);
   const Json moving = loop("emps/emps_estimation.csv", {base[0], base[1], "--min-speed", "0.005"});
   EXPECT_EQ(moving["effects"][0]["family"], "asymmetry");
   EXPECT_TRUE(moving["confirmed"]);
-  EXPECT_LT(error(moving, "rmse_after"), 1.67);
+  EXPECT_LT(error(moving, "rmse_after"), 1.35);
+}
+
+// 0.9 N every 2.5 mm, found without being told a lead. The second recording of the same axis has it
+// too, other leads do not.
+TEST_F(MeasuredLoop, emps_has_a_ripple_every_two_and_a_half_millimetres_of_its_screw) {
+  for (const char* file : {"emps/emps_estimation.csv", "emps/emps_validation_pulses.csv"}) {
+    const auto found = [&](std::vector<std::string> more) {
+      std::vector<std::string> options = {"--model", "20*sgn_v + 200*v - 3"};
+      options.insert(options.end(), more.begin(), more.end());
+      return loop(file, options);
+    };
+    const Json scanned = found({});
+    const Json::const_iterator ripple = std::ranges::find_if(
+        scanned["effects"], [](const Json& effect) { return effect["family"] == "gear_ripple"; });
+    ASSERT_NE(ripple, scanned["effects"].end()) << file;
+    const double k = std::string((*ripple)["atom"]).at(4) - '0';  // "cos(1*N*q), ..."
+    EXPECT_NEAR(2 * std::numbers::pi / (k * double((*ripple)["params"].at(2)["value"])), 0.0025,
+                1e-9);
+    EXPECT_GT((*ripple)["cv_gain"], 20);
+    for (const char* lead : {"0.0023", "0.0027"}) {
+      for (const Json& effect : found({"--screw-lead", lead})["effects"]) {
+        if (effect["family"] == "gear_ripple") EXPECT_LT(effect["cv_gain"], 5) << file << lead;
+      }
+    }
+  }
 }
 
 TEST_F(MeasuredLoop, ur10e_joint_2_has_friction_that_grows_with_the_load) {
