@@ -12,6 +12,7 @@
 #include "foundation/error.hpp"
 #include "problems/channel_names.hpp"
 #include "problems/csv_cells.hpp"
+#include "problems/csv_checks.hpp"
 
 namespace tribench {
 namespace {
@@ -154,62 +155,6 @@ class MovementCounter {
 
 std::string stem_of(std::string_view file) { return std::filesystem::path(file).stem().string(); }
 
-void check_time(const Dataset& data, std::span<const std::size_t> lines, std::string_view file) {
-  const Channel* time = data.find(Role::time);
-  if (time == nullptr) return;
-  for (std::size_t r = 1; r < data.rows(); ++r) {
-    if (data.movement[r] != data.movement[r - 1] || time->values[r] >= time->values[r - 1]) {
-      continue;
-    }
-    throw_bad_input(
-        fmt::format("time runs back from {} to {}", time->values[r - 1], time->values[r]),
-        csv_place(file, lines[r], time->name),
-        data.movement_names.size() == 1
-            ? "sort the rows by time, or name the recordings in a column 'movement'"
-            : "sort the rows of a movement by time");
-  }
-}
-
-// A current beside torques in another unit is what the torques were computed from: it loses the
-// role that only its name gave it.
-void demote_current(const CsvOptions& options, DataFile& reading) {
-  for (Channel& current : reading.data.channels) {
-    if (current.role != Role::motor_current || options.roles.contains(current.name)) continue;
-    for (const Channel& other : reading.data.channels) {
-      if (!is_torque_like(other.role) || other.unit == "-" || other.unit == current.unit) continue;
-      current.role = Role::none;
-      reading.warnings.push_back(fmt::format("column '{}' is read without a role: '{}' is in {}",
-                                             current.name, other.name, other.unit));
-      break;
-    }
-  }
-}
-
-// A gravity torque may stand in its own unit beside a motor's volts or amperes: it is a load, and
-// the factor between the two is for the model to find.
-bool is_load_in_own_unit(const Dataset& data, const Channel& channel) {
-  const Channel* motor = data.find(Role::motor_torque);
-  return channel.role == Role::gravity_torque && channel.unit.starts_with("N") &&
-         motor != nullptr && (motor->unit == "V" || motor->unit == "A");
-}
-
-void check_torque_units(const Dataset& data, std::string_view file) {
-  const Channel* first = nullptr;
-  for (const Channel& channel : data.channels) {
-    if (!is_torque_like(channel.role) || channel.unit == "-") continue;
-    if (is_load_in_own_unit(data, channel)) continue;
-    if (first == nullptr) first = &channel;
-    if (channel.unit != first->unit) {
-      throw_bad_input(
-          fmt::format("'{}' is in {} and '{}' in {}", first->name, first->unit, channel.name,
-                      channel.unit),
-          file,
-          "bring all torque-like columns to one unit, or take the role away from one with "
-          "--roles COLUMN=none");
-    }
-  }
-}
-
 void fill_rows(const CsvCells& cells, const std::vector<Column>& columns, std::string_view file,
                const CsvOptions& options, DataFile& reading, std::vector<std::size_t>& kept_lines) {
   const auto movement = std::find_if(columns.begin(), columns.end(), [](const Column& column) {
@@ -270,7 +215,7 @@ DataFile parse_csv(std::string_view text, std::string_view file, const CsvOption
     throw_bad_input(fmt::format("all {} rows have missing values", reading.dropped_rows), file,
                     "remove the column that is empty");
   }
-  check_time(reading.data, lines, file);
+  check_time(reading, lines, file);
   demote_current(options, reading);
   check_torque_units(reading.data, file);
   return reading;

@@ -14,6 +14,7 @@
 namespace tribench {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 std::string complaint(std::string_view text, const CsvOptions& options = {}) {
@@ -123,6 +124,17 @@ TEST(Csv, MovementsStandTogetherAndTimeRunsForward) {
   // Running through the campaign and restarting with each movement are both fine.
   EXPECT_EQ(parse_csv("movement,t,v\na,0,1\na,1,1\nb,0,1\n", "d.csv").data.rows(), 3U);
   EXPECT_EQ(parse_csv("movement,t,v\na,0,1\na,1,1\nb,2,1\n", "d.csv").data.rows(), 3U);
+}
+
+TEST(Csv, WhereTimeBeginsAnewTheColumnThatNamesTheRecordingsIsProposed) {
+  const std::string numbers =
+      "drive,set_speed,time_s,y\n1,2,0,1\n1,2,1,1\n1,5,0,1\n1,5,1,2\n1,2,0,1\n";
+  EXPECT_THAT(complaint(numbers),
+              AllOf(HasSubstr("data.csv:4:time_s"), HasSubstr("--roles set_speed=movement")));
+  EXPECT_THAT(complaint("time_s,y,trial\n0,1,a\n1,2,a\n0,1,b\n"),
+              HasSubstr("--roles trial=movement"));
+  // A column that changes elsewhere too names nothing.
+  EXPECT_THAT(complaint("time_s,y\n0,1\n1,2\n0,3\n"), HasSubstr("in a column 'movement'"));
 }
 
 TEST(Csv, GivenRolesWinAndUnknownColumnsAreAnsweredWithTheNearest) {
