@@ -66,6 +66,17 @@ Expression polynomial(std::span<const Monomial> terms, std::span<const double> c
   return sum.empty() ? Expression::constant(0) : sum;
 }
 
+Eigen::VectorXd column_of(const Monomial& monomial, std::span<const double* const> columns,
+                          std::size_t rows) {
+  const auto n = static_cast<Eigen::Index>(rows);
+  Eigen::VectorXd column = Eigen::VectorXd::Ones(n);
+  for (std::size_t i = 0; i < monomial.size(); ++i) {
+    const Eigen::Map<const Eigen::VectorXd> input(columns[i], n);
+    for (int e = 0; e < monomial[i]; ++e) column.array() *= input.array();
+  }
+  return column;
+}
+
 PolynomialRegression::PolynomialRegression(std::span<const double* const> columns, std::size_t rows,
                                            std::span<const int> caps, int degree)
     : terms_(monomials(caps, degree)) {
@@ -73,12 +84,7 @@ PolynomialRegression::PolynomialRegression(std::span<const double* const> column
   design_.resize(n, static_cast<Eigen::Index>(terms_.size()));
   scale_.resize(design_.cols());
   for (Eigen::Index k = 0; k < design_.cols(); ++k) {
-    const Monomial& monomial = terms_[static_cast<std::size_t>(k)];
-    Eigen::VectorXd column = Eigen::VectorXd::Ones(n);
-    for (std::size_t i = 0; i < monomial.size(); ++i) {
-      const Eigen::Map<const Eigen::VectorXd> input(columns[i], n);
-      for (int e = 0; e < monomial[i]; ++e) column.array() *= input.array();
-    }
+    const Eigen::VectorXd column = column_of(terms_[static_cast<std::size_t>(k)], columns, rows);
     const double rms = std::sqrt(column.squaredNorm() / static_cast<double>(rows));
     scale_[k] = rms > 0 && std::isfinite(rms) ? rms : 1.0;
     design_.col(k) = column / scale_[k];

@@ -28,6 +28,10 @@ std::vector<Monomial> monomials(std::span<const int> caps, int degree);
 // sum_k coefficients[k] * monomials[k] as a formula; terms with coefficient 0 are left out.
 Expression polynomial(std::span<const Monomial> terms, std::span<const double> coefficients);
 
+// The monomial's value on every row; columns[i]: the rows of input i.
+Eigen::VectorXd column_of(const Monomial& monomial, std::span<const double* const> columns,
+                          std::size_t rows);
+
 class PolynomialRegression {
  public:
   // columns[i]: the rows of input i.

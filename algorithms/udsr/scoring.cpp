@@ -23,21 +23,6 @@ std::size_t position_of(const TokenLibrary& library, const Sequence& sequence, T
   return sequence.size();
 }
 
-// The square of a sign is 1: higher powers would only repeat it.
-bool is_sign(const Input& input) {
-  return input.sign_of || input.role == Role::velocity_sign || input.role == Role::gravity_sign;
-}
-
-// A load enters as itself and, times its sign, as its magnitude, like in every law of
-// load-dependent friction; its higher powers run away outside the loads that were seen.
-std::vector<int> exponent_caps(std::span<const Input> inputs, int degree) {
-  std::vector<int> caps;
-  for (const Input& input : inputs) {
-    caps.push_back(is_sign(input) || input.role == Role::gravity_torque ? 1 : degree);
-  }
-  return caps;
-}
-
 // x with op(x) = value, and d op / dx there.
 struct Inverse {
   double argument = 0;
@@ -84,6 +69,18 @@ Inverse invert_binary(Op op, double value, double known, bool unknown_left) {
 }
 
 }  // namespace
+
+bool is_sign(const Input& input) {
+  return input.sign_of || input.role == Role::velocity_sign || input.role == Role::gravity_sign;
+}
+
+std::vector<int> exponent_caps(std::span<const Input> inputs, int degree) {
+  std::vector<int> caps;
+  for (const Input& input : inputs) {
+    caps.push_back(is_sign(input) || input.role == Role::gravity_torque ? 1 : degree);
+  }
+  return caps;
+}
 
 ScoringProblem::ScoringProblem(const TrainingData& data, const TokenLibrary& library, int degree)
     : library_(&library),

@@ -18,6 +18,7 @@
 #include "algorithms/udsr/choice.hpp"
 #include "algorithms/udsr/pruning.hpp"
 #include "algorithms/udsr/simplification.hpp"
+#include "algorithms/udsr/term_selection.hpp"
 #include "algorithms/udsr/training.hpp"
 #include "algorithms/udsr/weights.hpp"
 #include "foundation/error.hpp"
@@ -166,7 +167,10 @@ class Search {
         pruner_(problem_),
         progress_(progress),
         threads_(threads),
-        admission_(operators, data.inputs) {}
+        admission_(operators, data.inputs),
+        wide_terms_(settings.tokens.linear
+                        ? udsr::wide_terms(data.inputs, 2 * settings.degree, problem_.rows())
+                        : std::vector<udsr::Monomial>()) {}
 
   std::size_t rows() const { return problem_.rows(); }
   const ScoringProblem& problem() const { return problem_; }
@@ -191,6 +195,7 @@ class Search {
     budget_.settle(searching);
     for (const auto& [complexity, entry] : scoreboard.front()) add(entry.formula, entry.nrmse);
     for (const Scoreboard::Entry& entry : scoreboard.promising()) offer_sparser(entry.sequence);
+    offer_polynomials();
   }
 
   // Fits the constants of a formula that came from elsewhere and adds it.
@@ -248,6 +253,14 @@ class Search {
     budget_.spend(cost);
   }
 
+  // The linear token by itself.
+  void offer_polynomials() {
+    std::uint64_t cost = 0;
+    const std::vector<Expression> polynomials = udsr::select_terms(wide_terms_, problem_, cost);
+    budget_.spend(cost);
+    for (const Expression& formula : polynomials) offer(formula);
+  }
+
   const Settings& settings_;
   udsr::TokenLibrary library_;
   ScoringProblem problem_;
@@ -258,6 +271,7 @@ class Search {
   Progress* progress_;
   int threads_;
   Admission admission_;
+  std::vector<udsr::Monomial> wide_terms_;
   std::map<int, Candidate> candidates_;
   std::vector<Candidate> pool_;
 };
