@@ -105,6 +105,8 @@ class Search {
   Candidate best_atom(std::size_t family, const Round& round, const FittedModel& state) const;
   void reconsider();
   bool swap_or_drop(std::size_t family);
+  bool renew(std::size_t family, const FittedModel& rest, const Round& round);
+  Gain lead_over_current(const FittedModel& other) const;
   double family_p_given_rest(std::size_t family, const FittedModel& rest, const Round& round,
                              const FittedModel& with) const;
   void check_exhaustively();

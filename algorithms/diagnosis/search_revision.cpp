@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+//
+// What the search makes of its earlier choices once more is known: families that are not needed any
+// more, others in their place, other columns of the same.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "algorithms/diagnosis/search.hpp"
+
+namespace tribench::loop {
+
+double Search::family_p_given_rest(std::size_t family, const FittedModel& rest, const Round& round,
+                                   const FittedModel& with) const {
+  std::vector<Expression> formulas;
+  for (const Atom& atom : with.model.atoms) {
+    if (atom.family != family) continue;
+    formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
+  }
+  const Eigen::MatrixXd z = whitened(evaluate_columns(formulas, data_), clusters_, rest.noise);
+  const Eigen::VectorXd before = z.colwise().squaredNorm();
+  const BlockScores block =
+      score_block(project_off(z, rest.basis), before, rest.residual, clusters_, 0);
+  return block.test.testable ? adjusted_p(block.test.score, round.maxima) : 1;
+}
+
+// By cross-validation, in the coordinates of the present noise.
+Gain Search::lead_over_current(const FittedModel& other) const {
+  const Eigen::VectorXd y =
+      whitened(target_vector(data_) - predict(other.model, data_), clusters_, current_.noise);
+  const Eigen::MatrixXd x = whitened(tangent(other.model, data_), clusters_, current_.noise);
+  return paired_gain(current_.losses, held_out_losses(x, y, clusters_, current_.noise));
+}
+
+// A family's columns were chosen when other effects were still missing and may have stood in for
+// them (harmonics of the position for a step of the load): they are chosen anew beside the rest.
+bool Search::renew(std::size_t family, const FittedModel& rest, const Round& round) {
+  std::vector<std::string> known;
+  for (const Atom& atom : current_.model.atoms) {
+    if (atom.family == family) known.push_back(atom.label);
+  }
+  LoopModel model = rest.model;
+  FittedModel other = rest;
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    const Round own = k == 0 ? round : test_all(other);
+    const Candidate best = best_atom(family, own, other);
+    if (!(best.gain.nats > best.gain.error)) return false;
+    if (k == 0 && std::ranges::count(known, library_[best.atom].label) > 0) return false;
+    model.add(library_[best_shape(best.atom, own, other)]);
+    other = fit(model, FitScope::everything);
+    const Gain lead = lead_over_current(other);
+    if (!(lead.nats > lead.error)) continue;
+    notes.push_back(fmt::format("'{}' predicts better by {:.1f} nats with other columns: taken",
+                                families_[family].name, lead.nats));
+    std::erase(asked_more_, family);
+    current_ = std::move(other);
+    return true;
+  }
+  return false;
+}
+
+bool Search::swap_or_drop(std::size_t family) {
+  LoopModel without = current_.model;
+  remove_family(without, family);
+  const FittedModel rest = fit(std::move(without), FitScope::linear);
+  const Round round = test_all(rest);
+  const auto entry = std::ranges::find(found, family, &Found::family);
+  const double p = family_p_given_rest(family, rest, round, current_);
+  if (p > (entry->few ? kRescueP : options_.alpha_library)) {
+    notes.push_back(
+        fmt::format("'{}' is not significant given the rest: removed", families_[family].name));
+    found.erase(entry);
+    current_ = fit(rest.model, FitScope::everything);
+    return true;
+  }
+  if (renew(family, rest, round)) return true;
+  std::vector<std::size_t> skip;
+  for (const Found& one : found) skip.push_back(one.family);
+  const std::vector<Candidate> rivals = admitted(round, rest, skip);
+  if (rivals.empty()) return false;
+  LoopModel swapped = rest.model;
+  swapped.add(library_[rivals.front().atom]);
+  FittedModel other = fit(std::move(swapped), FitScope::everything);
+  const Gain lead = lead_over_current(other);
+  if (!(lead.nats > lead.error)) return false;
+  const Candidate& rival = rivals.front();
+  notes.push_back(fmt::format("'{}' replaced by '{}', which predicts better by {:.1f} nats",
+                              families_[family].name, families_[rival.family].name, lead.nats));
+  *entry = {rival.family, round.family_p[rival.family], rival.gain, rival.rescued,
+            aliases_of(rival, round)};
+  current_ = std::move(other);
+  return true;
+}
+
+void Search::reconsider() {
+  if (found.size() < 2) return;
+  std::vector<std::size_t> families;
+  for (const Found& one : found) families.push_back(one.family);
+  for (const std::size_t family : families) {
+    if (found.size() < 2) return;
+    swap_or_drop(family);
+  }
+}
+
+}  // namespace tribench::loop
