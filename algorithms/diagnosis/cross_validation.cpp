@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace tribench::loop {
@@ -10,6 +11,8 @@ namespace {
 
 // Keeps a fold that lacks a column's excitation solvable; relative to unit diagonals.
 constexpr double kRidge = 1e-9;
+constexpr double kRounding = 1e-12;
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 // Gram matrices of [x y], one a fold.
 std::vector<Eigen::MatrixXd> fold_grams(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
@@ -30,9 +33,18 @@ std::vector<Eigen::MatrixXd> fold_grams(const Eigen::MatrixXd& x, const Eigen::V
   return grams;
 }
 
-Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& gram, Eigen::Index p,
+// `total` has the gram's diagonal over all folds: what the other folds have of a column that only
+// the one left out excites is rounding. Nothing can be predicted with it (NaN), unless it is
+// penalised: then it has no weight.
+Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& gram, const Eigen::VectorXd& total,
                              Eigen::Index penalised = 0, double ridge = 0) {
-  const Eigen::VectorXd scale = gram.diagonal().head(p).cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::Index p = total.size();
+  Eigen::VectorXd scale(p);
+  for (Eigen::Index j = 0; j < p; ++j) {
+    const bool excited = gram(j, j) > kRounding * total[j];
+    const bool may_be_absent = total[j] == 0 || j >= p - penalised;
+    scale[j] = excited ? 1 / std::sqrt(gram(j, j)) : may_be_absent ? 0 : kNotKnown;
+  }
   Eigen::MatrixXd normal = scale.asDiagonal() * gram.topLeftCorner(p, p) * scale.asDiagonal();
   normal.diagonal().array() += kRidge;
   normal.diagonal().tail(penalised).array() += ridge;
@@ -52,7 +64,7 @@ Eigen::VectorXd held_out_losses(const Eigen::MatrixXd& x, const Eigen::VectorXd&
   std::vector<Eigen::VectorXd> solutions;
   solutions.reserve(grams.size());
   for (const Eigen::MatrixXd& gram : grams) {
-    solutions.push_back(solve_scaled(total - gram, p, penalised, ridge));
+    solutions.push_back(solve_scaled(total - gram, total.diagonal().head(p), penalised, ridge));
   }
   const double unit = noise.unit();
   Eigen::VectorXd losses(static_cast<Eigen::Index>(clusters.stretches.size()));
@@ -73,6 +85,7 @@ SubsetLosses::SubsetLosses(const Eigen::MatrixXd& columns, const Eigen::VectorXd
   all << columns, y;
   others_.assign(static_cast<std::size_t>(clusters.folds), Eigen::MatrixXd::Zero(width_, width_));
   grams_.reserve(clusters.stretches.size());
+  squares_ = columns.colwise().squaredNorm();
   for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
     const auto rows = all.middleRows(static_cast<Eigen::Index>(clusters.stretches[c].begin),
                                      static_cast<Eigen::Index>(clusters.stretches[c].size()));
@@ -87,10 +100,12 @@ Eigen::VectorXd SubsetLosses::losses(std::span<const Eigen::Index> chosen) const
   std::vector<Eigen::Index> with_target(chosen.begin(), chosen.end());
   with_target.push_back(width_ - 1);
   const auto p = static_cast<Eigen::Index>(chosen.size());
+  const Eigen::VectorXd of_chosen =
+      squares_(std::vector<Eigen::Index>(chosen.begin(), chosen.end()));
   std::vector<Eigen::VectorXd> contrasts;  // (-solution, 1): the loss is its quadratic form
   for (const Eigen::MatrixXd& gram : others_) {
     Eigen::VectorXd contrast(p + 1);
-    contrast << -solve_scaled(gram(with_target, with_target), p), 1;
+    contrast << -solve_scaled(gram(with_target, with_target), of_chosen), 1;
     contrasts.push_back(std::move(contrast));
   }
   Eigen::VectorXd losses(static_cast<Eigen::Index>(grams_.size()));

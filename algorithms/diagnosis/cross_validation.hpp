@@ -17,6 +17,8 @@ namespace tribench::loop {
 // Per cluster: sum of squared held-out errors over the noise's unit, in nats. x: rows x columns,
 // y: rows, both whitened. Columns that depend on others are harmless.
 // Cost: rows x columns^2, and one small factorisation a fold.
+// NaN where a column is excited by one fold alone, which then has no prediction; with a ridge such a
+// column has no weight there.
 // ridge: on the last `penalised` columns, relative to their sums of squares.
 Eigen::VectorXd held_out_losses(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
                                 const Clusters& clusters, const Noise& noise,
@@ -35,6 +37,7 @@ class SubsetLosses {
   Eigen::Index width_;                   // columns, y is the last
   std::vector<Eigen::MatrixXd> grams_;   // per stretch
   std::vector<Eigen::MatrixXd> others_;  // per fold: of all rows but its own
+  Eigen::VectorXd squares_;              // of the columns, over all rows
 };
 
 struct Gain {

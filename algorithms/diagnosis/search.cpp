@@ -99,8 +99,8 @@ Round Search::test_all(const FittedModel& state) const {
     const auto count = static_cast<Eigen::Index>(blocks_[k].count);
     round.blocks[k] = score_block(projected.middleCols(first, count), before.segment(first, count),
                                   state.residual, clusters_, 0);
-    if (round.blocks[k].test.carrying < kFewestClusters) round.blocks[k].test.testable = false;
   }
+  count_carriers(round);
   round.maxima = flip_maxima(round.blocks, flips_);
   round.family_p.assign(families_.size(), 1);
   round.family_score.assign(families_.size(), 0);
@@ -115,6 +115,27 @@ Round Search::test_all(const FittedModel& state) const {
     }
   }
   return round;
+}
+
+// Atoms that too few clusters carry cannot be tested. A family that has no others may be rescued.
+void Search::count_carriers(Round& round) const {
+  std::vector<std::size_t> most(families_.size(), 0);
+  for (std::size_t k = 0; k < library_.size(); ++k) {
+    const BlockTest& test = round.blocks[k].test;
+    std::size_t& count = most[library_[k].family];
+    if (test.testable) count = std::max(count, test.carrying);
+  }
+  round.rescue_only.assign(families_.size(), 0);
+  for (std::size_t f = 0; f < families_.size(); ++f) {
+    round.rescue_only[f] = most[f] < kFewestClusters ? 1 : 0;
+  }
+  // Its gain has to be one on whole movements: pieces of a few say too little of each other.
+  const bool enough = clusters_.movements.size() >= kFewestClusters;
+  for (std::size_t k = 0; k < library_.size(); ++k) {
+    BlockTest& test = round.blocks[k].test;
+    const bool rescue_only = enough && round.rescue_only[library_[k].family] != 0;
+    if (test.carrying < (rescue_only ? kFewestToRescue : kFewestClusters)) test.testable = false;
+  }
 }
 
 Candidate Search::best_atom(std::size_t family, const Round& round,
@@ -248,7 +269,8 @@ std::vector<Candidate> Search::admitted(const Round& round, const FittedModel& s
   std::vector<Candidate> all;
   for (std::size_t f = 0; f < families_.size(); ++f) {
     if (std::ranges::count(skip, f) > 0 || !(round.family_score[f] > 0)) continue;
-    const bool significant = round.family_p[f] <= options_.alpha_library;
+    const bool significant =
+        round.rescue_only[f] == 0 && round.family_p[f] <= options_.alpha_library;
     if (!significant && round.family_p[f] >= kRescueP) continue;
     std::optional<Candidate> one = rescue(f, round, state);
     if (significant) {
@@ -303,6 +325,8 @@ bool Search::add(const Candidate& winner, const Round& round) {
                           families_[winner.family].name));
     return false;
   }
+  // One fold alone can tell of it: that it holds elsewhere too is beyond these data.
+  if (!extended.losses.allFinite()) return false;
   if (!again) {
     found.push_back({winner.family, round.family_p[winner.family], winner.gain, winner.rescued,
                      aliases_of(winner, round)});
@@ -359,6 +383,12 @@ void Search::run() {
   }
   if (!found.empty()) check_exhaustively();
   test_leftover();
+  // What its gain has rescued was testable after all.
+  for (const Found& one : found) {
+    std::erase_if(untestable, [&](const UntestableFinding& finding) {
+      return finding.family == families_[one.family].name;
+    });
+  }
 }
 
 }  // namespace tribench::loop

@@ -20,6 +20,8 @@ namespace tribench::loop {
 
 // A family excited in fewer clusters cannot reach a small p by sign flips (specification, 3.3).
 inline constexpr std::size_t kFewestClusters = 20;
+// Down to this many it may still be rescued by its gain: below, flips do not even reach kRescueP.
+inline constexpr std::size_t kFewestToRescue = 10;
 // Up to this p a family carried by few clusters may be rescued by its gain (specification, 6.4).
 inline constexpr double kRescueP = 0.15;
 
@@ -40,6 +42,7 @@ struct Round {
   std::vector<double> maxima;       // over all atoms, per flip
   std::vector<double> family_p;     // adjusted; 1 where untestable
   std::vector<double> family_score;
+  std::vector<char> rescue_only;  // carried by fewer clusters than a test by flips needs
 };
 
 struct Candidate {
@@ -85,6 +88,7 @@ class Search {
   std::vector<Candidate> admitted(const Round& round, const FittedModel& state,
                                   const std::vector<std::size_t>& skip) const;
   Round test_all(const FittedModel& state) const;
+  void count_carriers(Round& round) const;
 
  private:
   void instantiate_library();

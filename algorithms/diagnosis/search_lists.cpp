@@ -41,7 +41,7 @@ void Search::list_untestable(const Round& round) {
       share = std::max(share, round.blocks[k].test.share);
       carrying = std::max(carrying, round.blocks[k].test.carrying);
     }
-    if (!present || testable) continue;
+    if (!present || (testable && round.rescue_only[f] == 0)) continue;
     const bool collinear = share * share < 1e-3;
     untestable.push_back(
         {families_[f].name,

@@ -100,6 +100,18 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"temperature_position",
                               std::vector<std::string>{"position", "temperature"}}));
 
+// The other joint moves in fewer stretches than a test by flips needs; what its motion explains of
+// whole movements speaks for itself.
+TEST(Diagnosis, AnEffectInAFewStretchesIsRescuedByItsGain) {
+  for (const std::uint64_t seed : {954432U, 954494U}) {
+    const Diagnosis diagnosis = diagnose_planted({.effects = {{"coupling", 2.0}}}, seed);
+    EXPECT_EQ(families(diagnosis), std::vector<std::string>{"coupling"});
+    EXPECT_TRUE(diagnosis.effects.at(0).few_movements);
+    EXPECT_EQ(std::ranges::count(diagnosis.untestable, "coupling", &UntestableFinding::family), 0);
+    EXPECT_LT(diagnosis.error.mae_after, 0.7 * diagnosis.error.mae_before);
+  }
+}
+
 // A narrow bump needs more harmonics than a family has: none of them is claimed.
 TEST(Diagnosis, AFamilyThatAsksForEverMoreColumnsIsNotClaimed) {
   for (const std::uint64_t seed : {930621U, 930623U, 930625U}) {

@@ -311,21 +311,27 @@ TEST(LoopCommand, grows_an_effect_from_what_is_left_over_saves_it_and_reads_it_b
   EXPECT_THAT(broken.errors, HasSubstr("phrase"));
 }
 
-// The paper's own case: what the symmetric model lacks on raw data of joint 2, and nothing else.
+// The paper's own case: what the symmetric model lacks on raw data of joint 2, and nothing else. In
+// the third campaign harmonics of the position stand in for a step of the load until the step is
+// there.
 TEST(LoopCommand, closes_the_loop_on_the_papers_joint_2_down_to_its_noise) {
   const testing::TemporaryFolder folder;
-  const testing::ProgramRun run = tribench({"loop", generated(folder, "A/j2/load", "1"), "--model",
-                                            "symmetric", "--gear-ratio", "160", "--json"});
-  ASSERT_EQ(run.status, 0) << run.errors;
-  const Json loop = Json::parse(run.output);
-  EXPECT_EQ(loop["verdict"], "EFFECTS");
-  EXPECT_THAT(families(loop),
-              ::testing::IsSupersetOf({"asymmetry", "load_coulomb", "power_quadrant_gain",
-                                       "power_quadrant_step", "gear_ripple", "output_ripple"}));
-  // The noise is normal with 0.80 N m a row and 0.05 a movement: its mean magnitude is the ceiling.
-  const double ceiling = std::sqrt(2 / 3.14159265) * std::hypot(0.80, 0.05);
-  EXPECT_GT(loop["error"]["mae_before"].get<double>(), 5 * ceiling);
-  EXPECT_LT(loop["error"]["mae_after"].get<double>(), 1.03 * ceiling);
+  for (const char* seed : {"1", "3"}) {
+    const testing::ProgramRun run =
+        tribench({"loop", generated(folder, "A/j2/load", seed), "--model", "symmetric",
+                  "--gear-ratio", "160", "--json"});
+    ASSERT_EQ(run.status, 0) << run.errors;
+    const Json loop = Json::parse(run.output);
+    EXPECT_EQ(loop["verdict"], "EFFECTS") << seed;
+    EXPECT_THAT(families(loop), ::testing::UnorderedElementsAre(
+                                    "asymmetry", "load_coulomb", "power_quadrant_gain",
+                                    "power_quadrant_step", "gear_ripple", "output_ripple"));
+    // The noise is normal with 0.80 N m a row and 0.05 a movement: its mean magnitude is the
+    // ceiling.
+    const double ceiling = std::sqrt(2 / 3.14159265) * std::hypot(0.80, 0.05);
+    EXPECT_GT(loop["error"]["mae_before"].get<double>(), 5 * ceiling);
+    EXPECT_LT(loop["error"]["mae_after"].get<double>(), 1.03 * ceiling);
+  }
 }
 
 }  // namespace
