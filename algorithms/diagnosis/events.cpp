@@ -6,11 +6,11 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 
-#include "algorithms/diagnosis/clusters.hpp"
-#include "algorithms/diagnosis/student_law.hpp"
+#include "algorithms/diagnosis/burst_noise.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -18,9 +18,6 @@ namespace {
 constexpr std::size_t kMargin = 5;
 // Rows beyond this share are no events: the model is wrong.
 constexpr double kMostEvents = 0.05;
-constexpr double kMadToSd = 1.4826;
-constexpr double kLeastShare = 0.02;  // of the typical noise a row's noise is at least
-constexpr std::size_t kSpeeds = 8;    // groups of equal size
 
 // A pulse is a half sine (the standard form of a shock, IEC 60068-2-27), so many rows long and so
 // many robust standard deviations of the residual high: the lowest is that of which four rows
@@ -30,59 +27,16 @@ constexpr std::array<double, 5> kHeights = {6, 9, 14, 28, 80};
 constexpr std::size_t kLongestPulse = 15;  // rows it touches
 // Only where four neighbouring innovations, clipped, add up to this is the ratio worked out.
 constexpr double kClip = 4;
-constexpr double kLeastSum = 7;
+constexpr double kLeastSum = 5;
 constexpr std::size_t kSumRows = 4;
-constexpr std::size_t kDraws = 300;  // of the tail under the null
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), values.begin() + middle, values.end());
-  return values[static_cast<std::size_t>(middle)];
-}
-
-double median_magnitude(std::vector<double> values) {
-  for (double& x : values) x = std::abs(x);
-  return median(std::move(values));
-}
-
-std::vector<RowRange> ranges_of(const Observations& data) {
-  std::vector<RowRange> ranges;
-  for (std::size_t i = 0; i < data.rows(); ++i) {
-    if (i == 0 || data.movement[i] != data.movement[i - 1]) ranges.push_back({i, i});
-    ranges.back().end = i + 1;
-  }
-  return ranges;
-}
-
-// Correlation of neighbours; clipped, so that a burst does not count for more than it is.
-double neighbour_correlation(const std::vector<double>& deviation,
-                             const std::vector<RowRange>& ranges, double limit) {
-  double product = 0;
-  double square = 0;
-  for (const RowRange& m : ranges) {
-    double before = 0;
-    for (std::size_t i = m.begin; i < m.end; ++i) {
-      const double now = std::clamp(deviation[i], -limit, limit);
-      product += now * before;
-      square += now * now;
-      before = now;
-    }
-  }
-  return square > 0 ? std::clamp(product / square, 0.0, 0.998) : 0;
-}
+// Of the tail under the null: with pulses of the lowest heights, whose ratios come near the
+// threshold.
+constexpr std::size_t kDraws = 512;
+constexpr std::size_t kDrawnHeights = 2;
 
 class BurstScan {
  public:
-  BurstScan(const Observations& data, const Eigen::VectorXd& residual)
-      : ranges_(ranges_of(data)), deviation_(data.rows()), scale_(data.rows(), 1.0) {
-    centre(residual);
-    robust_sd_ = kMadToSd * median_magnitude(deviation_);
-    if (!(robust_sd_ > 0)) return;
-    scale_by_speed(data);
-    innovate();
-    scale_by_movement();
-    law_ = fit_student(z_);
+  BurstScan(const Observations& data, const Eigen::VectorXd& residual) : noise_(data, residual) {
     make_pulses();
   }
 
@@ -96,18 +50,19 @@ class BurstScan {
   // overlapping ones once.
   std::vector<Burst> find(RandomStream random) const {
     std::vector<Burst> starts;
-    if (!(robust_sd_ > 0)) return starts;
-    for (const RowRange& m : ranges_) {
-      for (std::size_t i = m.begin; i < m.end; ++i) {
-        if (!worth_a_look(i, m.end)) continue;
-        const Burst burst = ratio_at(i, &z_[i], m.end, law_);
+    if (!(noise_.robust_sd() > 0)) return starts;
+    for (std::size_t m = 0; m < noise_.movements().size(); ++m) {
+      const RowRange& range = noise_.movements()[m];
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        if (!worth_a_look(i, range.end)) continue;
+        const Burst burst = burst_at(m, i);
         if (burst.log_ratio > 0) starts.push_back(burst);
       }
     }
     if (starts.empty()) return starts;
     const double wanted = threshold(std::move(random));
     std::erase_if(starts, [&](const Burst& one) {
-      return one.log_ratio < wanted || peak(one) < kHeights[0] * robust_sd_;
+      return one.log_ratio < wanted || peak(one) < kHeights[0] * noise_.robust_sd();
     });
     std::ranges::stable_sort(
         starts, [](const Burst& a, const Burst& b) { return a.log_ratio > b.log_ratio; });
@@ -125,121 +80,15 @@ class BurstScan {
   double peak(const Burst& burst) const {
     double most = 0;
     for (std::size_t i = burst.begin; i < burst.end; ++i) {
-      most = std::max(most, std::abs(deviation_[i]));
+      most = std::max(most, std::abs(noise_.deviation()[i]));
     }
     return most;
   }
 
-  const std::vector<RowRange>& ranges() const { return ranges_; }
+  const BurstNoise& noise() const { return noise_; }
 
  private:
-  // From the movement's median, as far as offsets are more than what correlated noise makes of it.
-  void centre(const Eigen::VectorXd& residual) {
-    std::vector<double> middles;
-    for (const RowRange& m : ranges_) {
-      middles.push_back(
-          median(std::vector<double>(residual.data() + m.begin, residual.data() + m.end)));
-      for (std::size_t i = m.begin; i < m.end; ++i) {
-        deviation_[i] = residual[static_cast<Eigen::Index>(i)] - middles.back();
-      }
-    }
-    const double sd = kMadToSd * median_magnitude(deviation_);
-    rho_ = neighbour_correlation(deviation_, ranges_, 3 * sd);
-    double spread = 0;
-    double sampling = 0;
-    for (std::size_t m = 0; m < ranges_.size(); ++m) {
-      const auto rows = static_cast<double>(ranges_[m].size());
-      spread += middles[m] * middles[m];
-      // Of a median of normal rows, correlated by rho.
-      sampling += std::numbers::pi / 2 * sd * sd * std::min((1 + rho_) / (1 - rho_), rows) / rows;
-    }
-    const double shrunk = spread > 0 ? std::clamp(sampling / spread, 0.0, 1.0) : 0;
-    for (std::size_t m = 0; m < ranges_.size(); ++m) {
-      for (std::size_t i = ranges_[m].begin; i < ranges_[m].end; ++i) {
-        deviation_[i] += shrunk * middles[m];
-      }
-    }
-  }
-
-  void innovate() {
-    z_.resize(deviation_.size());
-    for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = deviation_[i] / scale_[i];
-    rho_ = neighbour_correlation(z_, ranges_, 3);
-    for (const RowRange& m : ranges_) {
-      for (std::size_t i = m.end; i-- > m.begin + 1;) z_[i] -= rho_ * z_[i - 1];
-      z_[m.begin] *= std::sqrt(1 - rho_ * rho_);
-    }
-  }
-
-  // The noise at the row's speed; between the middles of the groups its logarithm is straight.
-  void scale_by_speed(const Observations& data) {
-    const Signal* v = data.find("v");
-    const std::size_t n = data.rows();
-    std::ranges::fill(scale_, robust_sd_);
-    if (v == nullptr || n < 4 * kSpeeds) return;
-    std::vector<std::pair<double, double>> rows(n);  // speed, magnitude
-    for (std::size_t i = 0; i < n; ++i) {
-      rows[i] = {std::abs(v->values[i]), std::abs(deviation_[i])};
-    }
-    std::ranges::sort(rows, {}, &std::pair<double, double>::first);
-    std::array<double, kSpeeds> middle{};
-    std::array<double, kSpeeds> level{};
-    for (std::size_t g = 0; g < kSpeeds; ++g) {
-      std::vector<double> magnitudes;
-      for (std::size_t i = n * g / kSpeeds; i < n * (g + 1) / kSpeeds; ++i) {
-        magnitudes.push_back(rows[i].second);
-      }
-      middle[g] = rows[n * (2 * g + 1) / (2 * kSpeeds)].first;
-      level[g] =
-          std::log(std::max(kMadToSd * median(std::move(magnitudes)), kLeastShare * robust_sd_));
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      const double speed = std::abs(v->values[i]);
-      std::size_t g = 1;
-      while (g + 1 < kSpeeds && speed > middle[g]) ++g;
-      const double width = middle[g] - middle[g - 1];
-      const double part = width > 0 ? std::clamp((speed - middle[g - 1]) / width, -0.5, 1.5) : 1;
-      scale_[i] = std::exp(level[g - 1] + part * (level[g] - level[g - 1]));
-    }
-  }
-
-  // The movements' own noise, as far as their rows tell it from the others'.
-  void scale_by_movement() {
-    const auto count = static_cast<double>(ranges_.size());
-    const double typical = std::max(median_magnitude(z_), 1e-9);
-    std::vector<double> logs;
-    double mean = 0;
-    double sampling = 0;
-    for (const RowRange& m : ranges_) {
-      // Clipped, so that a burst does not hide in the noise it makes.
-      const double limit = kClip * typical;
-      double sum = 0;
-      double squares = 0;
-      for (std::size_t i = m.begin; i < m.end; ++i) {
-        const double size = std::min(std::abs(z_[i]), limit);
-        sum += size;
-        squares += size * size;
-      }
-      const auto n = static_cast<double>(m.size());
-      const double own = std::max(sum / n, kLeastShare * typical);
-      logs.push_back(std::log(own));
-      mean += logs.back() / count;
-      sampling += std::max(0.0, squares / n - own * own) / (own * own) / n / count;
-    }
-    double spread = 0;
-    for (const double x : logs) spread += (x - mean) * (x - mean) / std::max(1.0, count - 1);
-    const double kept = spread > 0 ? std::clamp(1 - sampling / spread, 0.0, 1.0) : 0;
-    scale_error_ = std::sqrt(kept * sampling);
-    for (std::size_t m = 0; m < ranges_.size(); ++m) {
-      const double own = std::exp(mean + kept * (logs[m] - mean));
-      for (std::size_t i = ranges_[m].begin; i < ranges_[m].end; ++i) {
-        z_[i] /= own;
-        scale_[i] *= own;
-      }
-    }
-  }
-
-  // Half sines with a zero before and after.
+  // Half sines with a zero after.
   void make_pulses() {
     for (const std::size_t rows : kLengths) {
       std::vector<double> pulse;
@@ -254,104 +103,193 @@ class BurstScan {
 
   // What a pulse of unit height from row `first` on adds to the innovation k rows later.
   double added(const std::vector<double>& pulse, std::size_t first, std::size_t k) const {
-    return pulse[k] / scale_[first + k] -
-           (k > 0 ? rho_ * pulse[k - 1] / scale_[first + k - 1] : 0.0);
+    const std::vector<double>& unit = noise_.unit();
+    return pulse[k] / unit[first + k] -
+           (k > 0 ? noise_.rho() * pulse[k - 1] / unit[first + k - 1] : 0.0);
   }
 
   bool worth_a_look(std::size_t first, std::size_t end) const {
     double sum = 0;
     for (std::size_t i = first; i < std::min(first + kSumRows, end); ++i) {
-      sum += std::clamp(z_[i], -kClip, kClip);
+      sum += std::clamp(noise_.innovation()[i], -kClip, kClip);
     }
     return std::abs(sum) >= kLeastSum;
   }
 
-  // Of the innovations z as if they stood from row `first` on; rows from `end` on are another
-  // movement's.
-  Burst ratio_at(std::size_t first, const double* z, std::size_t end, const StudentLaw& law) const {
-    const std::size_t reach = std::min(kLongestPulse, end - first);
-    std::array<double, kLongestPulse> null{};
-    double towards = 0;
-    for (std::size_t k = 0; k < reach; ++k) {
-      null[k] = 1 / law.kernel(z[k]);
-      if (k < kSumRows) towards += z[k];
+  // A movement's noise is known but for a factor: five values stand for what it may be (Gauss and
+  // Hermite's, of a normal logarithm).
+  struct Levels {
+    static constexpr std::array<double, 5> kNodes = {-2.856970013872806, -1.355626179974266, 0,
+                                                     1.355626179974266, 2.856970013872806};
+    static constexpr std::array<double, 5> kWeights = {0.011257411327721, 0.222075922005613,
+                                                       0.533333333333333, 0.222075922005613,
+                                                       0.011257411327721};
+    std::array<double, kNodes.size()> factor{};
+    Levels(double middle, double error) {
+      for (std::size_t q = 0; q < kNodes.size(); ++q) {
+        factor[q] = middle * std::exp(kNodes[q] * error);
+      }
     }
-    const double side = towards > 0 ? robust_sd_ : -robust_sd_;
-    Burst burst{first, first + 1, 0};
+    double draw(RandomStream& random) const {
+      double left = random.uniform();
+      std::size_t q = 0;
+      while (q + 1 < kWeights.size() && left >= kWeights[q]) left -= kWeights[q++];
+      return factor[q];
+    }
+  };
+
+  // How likely the rows' innovations are less a pulse of that height, over the levels that the
+  // noise may have; in units of what `kernels` are the inverse kernels of.
+  double likelihood(const double* z, const double* unit, double height, std::size_t rows,
+                    const Levels& levels, const double* kernels) const {
+    double sum = 0;
+    for (std::size_t q = 0; q < levels.factor.size(); ++q) {
+      const double inverse = 1 / (levels.factor[q] * noise_.law().scale);
+      double product = 1;
+      double scales = 1;
+      for (std::size_t k = 0; k < rows; ++k) {
+        const double x = (z[k] - height * unit[k]) * inverse;
+        product *= (1 + x * x / noise_.law().freedom) * kernels[k];
+        scales *= inverse * noise_.law().scale;
+      }
+      sum += Levels::kWeights[q] * scales * power(product);
+    }
+    return sum;
+  }
+
+  // x to the power -(freedom + 1) / 2, of which twice is an integer.
+  double power(double x) const {
+    const auto twice = static_cast<int>(noise_.law().freedom) + 1;
+    double base = 1 / x;
+    double result = twice % 2 == 0 ? 1 : std::sqrt(base);
+    for (int n = twice / 2; n > 0; n /= 2, base *= base) {
+      if (n % 2 == 1) result *= base;
+    }
+    return result;
+  }
+
+  // How much likelier pulses make the innovations z, as if they stood from row `first` on.
+  struct Ratios {
+    double all = 0;             // log of the average
+    double drawn = 0;           // ... over the heights that are drawn for the threshold
+    std::size_t likeliest = 0;  // pulse
+  };
+  // Rows from `end` on are another movement's; levels: the noise, a pulse, with its rows left out.
+  Ratios ratios_at(std::size_t first, const double* z, std::size_t end,
+                   std::span<const Levels> levels) const {
+    const std::size_t reach = std::min(kLongestPulse, end - first);
+    double towards = 0;
+    for (std::size_t k = 0; k < std::min(reach, kSumRows); ++k) towards += z[k];
+    const double side = towards > 0 ? noise_.robust_sd() : -noise_.robust_sd();
+    Ratios out;
     double best = -1;
     double sum = 0;
-    for (const std::vector<double>& pulse : pulses_) {
-      const std::size_t rows = std::min(pulse.size(), reach);
+    double drawn = 0;
+    for (std::size_t p = 0; p < pulses_.size(); ++p) {
+      const std::size_t rows = std::min(pulses_[p].size(), reach);
       std::array<double, kLongestPulse> unit{};
-      for (std::size_t k = 0; k < rows; ++k) unit[k] = side * added(pulse, first, k);
-      for (const double height : kHeights) {
-        double kernels = 1;
-        for (std::size_t k = 0; k < rows; ++k) {
-          kernels *= law.kernel(z[k] - height * unit[k]) * null[k];
-        }
-        const double ratio = std::pow(kernels, -0.5 * (law.freedom + 1));
-        sum += std::min(ratio, 1e250);
+      std::array<double, kLongestPulse> kernels{};
+      for (std::size_t k = 0; k < rows; ++k) {
+        unit[k] = side * added(pulses_[p], first, k);
+        kernels[k] = 1 / noise_.law().kernel(z[k]);
+      }
+      const auto of_height = [&](double height) {
+        return likelihood(z, unit.data(), height, rows, levels[p], kernels.data());
+      };
+      const double null = of_height(0);
+      for (std::size_t h = 0; h < kHeights.size(); ++h) {
+        const double ratio = std::min(of_height(kHeights[h]) / null, 1e250);
+        sum += ratio;
+        if (h < kDrawnHeights) drawn += ratio;
         if (ratio > best) {
           best = ratio;
-          burst.end = std::min(first + pulse.size() - 1, end);
+          out.likeliest = p;
         }
       }
     }
     // Half the weight is the other side's, whose ratios are next to nothing.
-    burst.log_ratio = std::log(sum / (2.0 * static_cast<double>(pulses_.size() * kHeights.size())));
-    return burst;
+    const auto pulses = static_cast<double>(pulses_.size());
+    out.all = std::log(sum / (2 * pulses * static_cast<double>(kHeights.size())));
+    out.drawn = std::log(drawn / (2 * pulses * static_cast<double>(kDrawnHeights)));
+    return out;
+  }
+
+  Burst burst_at(std::size_t movement, std::size_t first) const {
+    const std::size_t end = noise_.movements()[movement].end;
+    std::vector<Levels> levels;
+    for (const std::vector<double>& pulse : pulses_) {
+      const std::size_t rows = std::min(pulse.size(), end - first);
+      levels.emplace_back(noise_.level_without(movement, first, rows),
+                          noise_.level_error(movement, rows));
+    }
+    const Ratios ratios = ratios_at(first, &noise_.innovation()[first], end, levels);
+    return {first, std::min(first + kLengths[ratios.likeliest], end), ratios.all};
+  }
+
+  // One recording of a pulse, drawn: what there is to see from a row before it on.
+  struct Draw {
+    std::size_t first;
+    std::size_t from;
+    std::size_t end;
+    std::array<double, kLongestPulse + 2> z;
+    std::vector<Levels> levels;
+    Ratios ratios;
+  };
+
+  Draw draw(std::size_t number, RandomStream& random) const {
+    const std::size_t rows = noise_.innovation().size();
+    Draw out{};
+    // Spread evenly over the rows, the pulses and the heights.
+    out.first = (rows * number + random.below(rows)) / kDraws;
+    const std::size_t movement = noise_.movement_at(out.first);
+    const RowRange& range = noise_.movements()[movement];
+    const std::size_t drawn = number % pulses_.size();
+    const std::vector<double>& pulse = pulses_[drawn];
+    for (const std::vector<double>& one : pulses_) {
+      out.levels.emplace_back(1, noise_.level_error(movement, one.size()));
+    }
+    const double height =
+        random.sign() * noise_.robust_sd() * kHeights[number / pulses_.size() % kDrawnHeights];
+    StudentLaw own = noise_.law();
+    own.scale *= out.levels[drawn].draw(random);
+    out.from = std::max(range.begin + 1, out.first) - 1;
+    out.end = range.end;
+    for (std::size_t i = out.from; i < std::min(out.end, out.first + kLongestPulse + 1); ++i) {
+      out.z[i - out.from] = own.draw(random);
+      const bool inside = i >= out.first && i < out.first + pulse.size();
+      if (inside) out.z[i - out.from] += height * added(pulse, out.first, i - out.first);
+    }
+    out.ratios = ratios_of(out, out.first);
+    return out;
+  }
+
+  Ratios ratios_of(const Draw& draw, std::size_t first) const {
+    return ratios_at(first, &draw.z[first - draw.from], draw.end, draw.levels);
   }
 
   // The log ratio that all rows together exceed with probability kFalseBursts at most. The tail of
   // one start under the null is the mean of 1 / ratio over draws with a pulse there (importance
   // sampling), and rows add up. Of neighbouring starts only the likeliest counts.
   double threshold(RandomStream random) const {
-    struct Draw {
-      double taken;  // the ratio under the law as it is taken for
-      double ratio;  // and as it is: a movement's noise is not known exactly
-    };
     std::vector<Draw> draws;
-    for (std::size_t d = 0; d < kDraws; ++d) {
-      const std::size_t first = random.below(z_.size());
-      const RowRange& m = *std::prev(
-          std::ranges::upper_bound(ranges_, first, std::ranges::less(), &RowRange::begin));
-      const std::vector<double>& pulse = pulses_[random.below(pulses_.size())];
-      const double height = random.sign() * robust_sd_ * kHeights[random.below(kHeights.size())];
-      const StudentLaw own{law_.freedom, law_.scale * std::exp(scale_error_ * random.normal())};
-      const std::size_t from = std::max(m.begin + 1, first) - 1;
-      std::array<double, kLongestPulse + 2> z{};  // from row `from` on
-      for (std::size_t i = from; i < std::min(m.end, first + kLongestPulse + 1); ++i) {
-        z[i - from] = own.draw(random);
-        const bool inside = i >= first && i < first + pulse.size();
-        if (inside) z[i - from] += height * added(pulse, first, i - first);
-      }
-      const auto ratio = [&](std::size_t start, const StudentLaw& law) {
-        return ratio_at(start, &z[start - from], m.end, law).log_ratio;
-      };
-      const double taken = ratio(first, law_);
-      const bool before = first > from && ratio(first - 1, law_) > taken;
-      const bool after = first + 1 < m.end && ratio(first + 1, law_) > taken;
-      if (!before && !after) draws.push_back({taken, ratio(first, own)});
-    }
-    std::ranges::sort(draws, std::greater<>(), &Draw::taken);
+    for (std::size_t d = 0; d < kDraws; ++d) draws.push_back(draw(d, random));
+    std::ranges::stable_sort(draws, std::greater<>(),
+                             [](const Draw& one) { return one.ratios.all; });
     // Downwards from the largest: the sum of 1 / ratio beyond each.
-    const double each = static_cast<double>(z_.size()) / static_cast<double>(kDraws);
+    const double each =
+        static_cast<double>(noise_.innovation().size()) / static_cast<double>(kDraws);
     double expected = 0;
-    for (const Draw& draw : draws) {
-      expected += each * std::exp(-draw.ratio);
-      if (expected > kFalseBursts) return draw.taken;
+    for (const Draw& one : draws) {
+      const double largest = one.ratios.all;
+      if (one.first > one.from && ratios_of(one, one.first - 1).all > largest) continue;
+      if (one.first + 1 < one.end && ratios_of(one, one.first + 1).all > largest) continue;
+      expected += each * std::exp(-one.ratios.drawn);
+      if (expected > kFalseBursts) return largest;
     }
     return 0;
   }
 
-  std::vector<RowRange> ranges_;
-  std::vector<double> deviation_;  // from the movement's offset
-  std::vector<double> z_;          // innovations in units of their own noise
-  std::vector<double> scale_;      // that noise
-  double robust_sd_ = 0;
-  double rho_ = 0;
-  double scale_error_ = 0;  // sd of the logarithm of a movement's noise, given its rows
-  StudentLaw law_;
+  BurstNoise noise_;
   std::vector<std::vector<double>> pulses_;  // one row of zero at the end
 };
 
@@ -371,8 +309,7 @@ std::vector<EventFinding> find_events(const Observations& data, const Eigen::Vec
                           : data.movement_names[static_cast<std::size_t>(movement)],
                       data.time[burst.begin], data.time[burst.end - 1], scan.peak(burst)});
     flagged += burst.end - burst.begin;
-    const RowRange& m = *std::ranges::find_if(
-        scan.ranges(), [&](const RowRange& range) { return burst.begin < range.end; });
+    const RowRange& m = scan.noise().movements()[scan.noise().movement_at(burst.begin)];
     const std::size_t from = std::max(m.begin + kMargin, burst.begin) - kMargin;
     for (std::size_t i = from; i < std::min(m.end, burst.end + kMargin); ++i) masked[i] = 1;
   }

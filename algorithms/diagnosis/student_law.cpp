@@ -9,6 +9,19 @@ namespace {
 
 constexpr std::array<double, 6> kDegreesOfFreedom = {3, 4, 5, 7, 12, 40};
 
+// Of the kernels; a logarithm of the product of eight takes the time of one.
+double sum_of_logs(std::span<const double> z, const StudentLaw& law) {
+  double sum = 0;
+  double product = 1;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    product *= law.kernel(z[i]);
+    if (i % 8 < 7 && i + 1 < z.size() && product < 1e30) continue;
+    sum += std::log(product);
+    product = 1;
+  }
+  return sum;
+}
+
 }  // namespace
 
 StudentLaw fit_student(std::span<const double> z) {
@@ -26,7 +39,7 @@ StudentLaw fit_student(std::span<const double> z) {
     const StudentLaw law{freedom, std::sqrt(variance)};
     double likelihood = n * (std::lgamma((freedom + 1) / 2) - std::lgamma(freedom / 2) -
                              0.5 * std::log(freedom) - std::log(law.scale));
-    for (const double x : z) likelihood -= 0.5 * (freedom + 1) * std::log(law.kernel(x));
+    likelihood -= 0.5 * (freedom + 1) * sum_of_logs(z, law);
     if (likelihood > most) {
       most = likelihood;
       best = law;

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/burst_noise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tribench::loop {
+namespace {
+
+constexpr std::size_t kMovements = 200;
+constexpr std::size_t kRows = 40;
+constexpr double kSpread = 0.2;  // of the movements' levels
+constexpr double kRho = 0.6;
+
+// Student noise with 5 degrees of freedom, a level a movement, twice as wide at full speed as at 0.
+struct Example {
+  Observations data;
+  Eigen::VectorXd residual;
+  std::vector<double> unit;  // the truth: the scale of each row's innovation
+};
+
+Example example(RandomStream random) {
+  Example e;
+  const StudentLaw law{5, 1};
+  Signal speed;
+  speed.name = "v";
+  e.residual.resize(static_cast<Eigen::Index>(kMovements * kRows));
+  for (std::size_t m = 0; m < kMovements; ++m) {
+    const double level = std::exp(kSpread * random.normal());
+    double state = 0;
+    for (std::size_t i = 0; i < kRows; ++i) {
+      const double v = static_cast<double>((m + i) % kRows) / kRows;
+      state = kRho * state + law.draw(random) * (i == 0 ? 1 / std::sqrt(1 - kRho * kRho) : 1);
+      e.unit.push_back(level * (0.5 + 0.5 * v));
+      e.residual[static_cast<Eigen::Index>(e.unit.size() - 1)] = e.unit.back() * state;
+      speed.values.push_back(v);
+      e.data.target.push_back(0);
+      e.data.time.push_back(static_cast<double>(i));
+      e.data.movement.push_back(static_cast<int>(m));
+    }
+  }
+  e.data.signals.push_back(std::move(speed));
+  return e;
+}
+
+TEST(BurstNoise, KnowsEachMovementsLevelAsWellAsItSays) {
+  const Example e = example(RandomStream(1));
+  const BurstNoise noise(e.data, e.residual);
+  EXPECT_EQ(noise.law().freedom, 5);
+  EXPECT_NEAR(noise.rho(), kRho, 0.03);
+  double squares = 0;
+  for (std::size_t m = 0; m < kMovements; ++m) {
+    const std::size_t row = m * kRows + 10;
+    const double taken = noise.unit()[row] * noise.law().scale * noise.level_without(m, row, 7);
+    const double off = std::log(taken / e.unit[row]) / noise.level_error(m, 7);
+    squares += off * off;
+  }
+  // 1 is expected; its standard error is 0.1.
+  EXPECT_NEAR(squares / static_cast<double>(kMovements), 1, 0.35);
+}
+
+TEST(BurstNoise, ABurstDoesNotHideInTheNoiseThatItMakes) {
+  Example e = example(RandomStream(2));
+  constexpr std::size_t kMovement = 17;
+  constexpr std::size_t kFirst = kMovement * kRows + 15;
+  const BurstNoise without(e.data, e.residual);
+  for (std::size_t k = 0; k < 6; ++k) {
+    e.residual[static_cast<Eigen::Index>(kFirst + k)] += 8 * std::sin(0.5236 * (k + 0.5));
+  }
+  const BurstNoise with(e.data, e.residual);
+  const double as_taken = with.unit()[kFirst] / without.unit()[kFirst];
+  EXPECT_GT(as_taken, 1.05);
+  const double left_out = with.unit()[kFirst] * with.level_without(kMovement, kFirst, 7) /
+                          (without.unit()[kFirst] * without.level_without(kMovement, kFirst, 7));
+  EXPECT_NEAR(left_out, 1, 0.02);
+}
+
+}  // namespace
+}  // namespace tribench::loop
