@@ -25,9 +25,10 @@ constexpr double kMostEvents = 0.05;
 constexpr std::array<std::size_t, 4> kLengths = {4, 6, 9, 14};
 constexpr std::array<double, 5> kHeights = {6, 9, 14, 28, 80};
 constexpr std::size_t kLongestPulse = 15;  // rows it touches
-// Only where four neighbouring innovations, clipped, add up to this is the ratio worked out.
+// A start counts only where four neighbouring innovations, clipped, add up to this: no single row
+// and no slow drift passes for a pulse.
 constexpr double kClip = 4;
-constexpr double kLeastSum = 5;
+constexpr double kLeastSum = 7;
 constexpr std::size_t kSumRows = 4;
 // Of the tail under the null: with pulses of the lowest heights, whose ratios come near the
 // threshold.
@@ -54,7 +55,7 @@ class BurstScan {
     for (std::size_t m = 0; m < noise_.movements().size(); ++m) {
       const RowRange& range = noise_.movements()[m];
       for (std::size_t i = range.begin; i < range.end; ++i) {
-        if (!worth_a_look(i, range.end)) continue;
+        if (!rises(&noise_.innovation()[i], range.end - i)) continue;
         const Burst burst = burst_at(m, i);
         if (burst.log_ratio > 0) starts.push_back(burst);
       }
@@ -108,10 +109,10 @@ class BurstScan {
            (k > 0 ? noise_.rho() * pulse[k - 1] / unit[first + k - 1] : 0.0);
   }
 
-  bool worth_a_look(std::size_t first, std::size_t end) const {
+  static bool rises(const double* z, std::size_t rows) {
     double sum = 0;
-    for (std::size_t i = first; i < std::min(first + kSumRows, end); ++i) {
-      sum += std::clamp(noise_.innovation()[i], -kClip, kClip);
+    for (std::size_t k = 0; k < std::min(kSumRows, rows); ++k) {
+      sum += std::clamp(z[k], -kClip, kClip);
     }
     return std::abs(sum) >= kLeastSum;
   }
@@ -259,7 +260,6 @@ class BurstScan {
       const bool inside = i >= out.first && i < out.first + pulse.size();
       if (inside) out.z[i - out.from] += height * added(pulse, out.first, i - out.first);
     }
-    out.ratios = ratios_of(out, out.first);
     return out;
   }
 
@@ -267,12 +267,23 @@ class BurstScan {
     return ratios_at(first, &draw.z[first - draw.from], draw.end, draw.levels);
   }
 
+  // Whether a neighbouring start would be taken in its place.
+  bool gives_way(const Draw& draw, std::size_t to) const {
+    return rises(&draw.z[to - draw.from], draw.end - to) &&
+           ratios_of(draw, to).all > draw.ratios.all;
+  }
+
   // The log ratio that all rows together exceed with probability kFalseBursts at most. The tail of
   // one start under the null is the mean of 1 / ratio over draws with a pulse there (importance
   // sampling), and rows add up. Of neighbouring starts only the likeliest counts.
   double threshold(RandomStream random) const {
     std::vector<Draw> draws;
-    for (std::size_t d = 0; d < kDraws; ++d) draws.push_back(draw(d, random));
+    for (std::size_t d = 0; d < kDraws; ++d) {
+      Draw one = draw(d, random);
+      if (!rises(&one.z[one.first - one.from], one.end - one.first)) continue;
+      one.ratios = ratios_of(one, one.first);
+      draws.push_back(std::move(one));
+    }
     std::ranges::stable_sort(draws, std::greater<>(),
                              [](const Draw& one) { return one.ratios.all; });
     // Downwards from the largest: the sum of 1 / ratio beyond each.
@@ -280,11 +291,10 @@ class BurstScan {
         static_cast<double>(noise_.innovation().size()) / static_cast<double>(kDraws);
     double expected = 0;
     for (const Draw& one : draws) {
-      const double largest = one.ratios.all;
-      if (one.first > one.from && ratios_of(one, one.first - 1).all > largest) continue;
-      if (one.first + 1 < one.end && ratios_of(one, one.first + 1).all > largest) continue;
+      if (one.first > one.from && gives_way(one, one.first - 1)) continue;
+      if (one.first + 1 < one.end && gives_way(one, one.first + 1)) continue;
       expected += each * std::exp(-one.ratios.drawn);
-      if (expected > kFalseBursts) return largest;
+      if (expected > kFalseBursts) return one.ratios.all;
     }
     return 0;
   }
