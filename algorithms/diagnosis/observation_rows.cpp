@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algorithms/diagnosis/effect_library.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench::loop {
@@ -82,6 +83,42 @@ void drop_slow_rows(Observations& data, double min_speed) {
   }
   data.warnings.push_back(
       fmt::format("{} of {} rows are slower than {}: left out", all - data.rows(), all, min_speed));
+}
+
+void drop_rows_at_rest(Observations& data) {
+  constexpr double kGettingAnywhere = 0.01;  // of the top speed
+  constexpr double kEnoughRows = 0.05;       // of all: fewer do not bend a fit
+  const std::vector<double>& v = data.find("v")->values;
+  const double top = signal_scale(data, "v");
+  std::vector<double> resting;
+  for (std::size_t begin = 0; begin < v.size();) {
+    std::size_t end = begin + 1;
+    double fastest = std::abs(v[begin]);
+    const auto goes_on = [&](std::size_t i) {
+      return data.movement[i] == data.movement[begin] && sign_of(v[i]) == sign_of(v[begin]);
+    };
+    for (; end < v.size() && goes_on(end); ++end) fastest = std::max(fastest, std::abs(v[end]));
+    if (fastest < kGettingAnywhere * top) {
+      for (std::size_t i = begin; i < end; ++i) resting.push_back(std::abs(v[i]));
+    }
+    begin = end;
+  }
+  const auto all = static_cast<double>(data.rows());
+  if (resting.size() < 2 || static_cast<double>(resting.size()) < kEnoughRows * all) return;
+  const auto at = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(resting.size() - 1));
+  std::ranges::nth_element(resting, resting.begin() + at);
+  const double speed = resting[static_cast<std::size_t>(at)];
+  std::vector<char> keep(data.rows());
+  for (std::size_t i = 0; i < data.rows(); ++i) keep[i] = std::abs(v[i]) > speed ? 1 : 0;
+  Observations moving = data.select(keep);
+  if (moving.rows() == 0) return;  // nothing ever moves: other checks say so
+  moving.warnings.push_back(fmt::format(
+      "the axis stands still in {:.0f} % of the rows, where the direction of friction is not "
+      "known: "
+      "{:.0f} % of the rows, slower than {:.2g} {}, are left out (--min-speed 0 keeps them)",
+      100 * static_cast<double>(resting.size()) / all,
+      100 * (1 - static_cast<double>(moving.rows()) / all), speed, data.find("v")->unit));
+  data = std::move(moving);
 }
 
 void settle_directions(Observations& data) {

@@ -16,6 +16,13 @@ void drop_rows_not_finite(Observations& data);
 // Rows slower than min_speed, in the velocity's unit. Throws Error (bad_input) where none is left.
 void drop_slow_rows(Observations& data, double min_speed);
 
+// Rows that say as little of the direction of friction as those at rest: an axis that holds still
+// lets its measured velocity change sign over and over without getting anywhere (a hundredth of the
+// top speed). Where that is a twentieth of the rows or more, rows slower than they are (99 %
+// quantile) are left out, and the speed and the share are said. A reversal on the way is none of
+// these.
+void drop_rows_at_rest(Observations& data);
+
 // A handful of rows the other way (noise around standstill) fixes no branch of its own: Coulomb and
 // viscous friction there would be fitted to next to nothing. Leaves rows of one direction then.
 void settle_directions(Observations& data);

@@ -261,7 +261,8 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   add_distance(out);
   out.time = out.find("t")->values;
   if (options.unordered) out.take_away("t", "the movements' order says nothing");
-  if (options.min_speed > 0) drop_slow_rows(out, options.min_speed);
+  if (options.min_speed.value_or(0) > 0) drop_slow_rows(out, *options.min_speed);
+  if (!options.min_speed && !options.steady) drop_rows_at_rest(out);
   settle_directions(out);
   if (options.steady) out = steady_means(out);
   drop_constant_signals(out);

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -92,8 +93,9 @@ struct ObservationOptions {
   // the rigid-body part that nobody has subtracted.
   std::vector<std::string> rigid = {};
   // Rows slower than this (in the velocity's unit) are left out: the direction of friction at
-  // standstill is not known, and a filtered velocity says little there.
-  double min_speed = 0;
+  // standstill is not known, and a filtered velocity says little there. Without it the speed is
+  // found from stretches at rest (drop_rows_at_rest); 0 keeps every row.
+  std::optional<double> min_speed = {};
   // The order of the movements is not that of the campaign: nothing is said about drift.
   bool unordered = false;
   // Every movement holds one speed: it is averaged to kRowsOfSteadyMovement rows. What the measured

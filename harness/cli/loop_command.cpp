@@ -48,7 +48,7 @@ struct LoopArguments {
   bool flip_sign = false;
   bool drop_missing = false;
   bool any_sign = false;
-  double min_speed = 0;
+  std::optional<double> min_speed;
   bool unordered = false;
   bool steady = false;
   std::string where;
@@ -364,8 +364,10 @@ void add_loop_command(CLI::App& app, ExitStatus& /*status*/, const Registry& reg
       ->check(CLI::Range(99, 99999))
       ->capture_default_str();
   command
-      ->add_option("--min-speed", arguments->min_speed,
-                   "leave out slower rows: the direction of friction is not known there")
+      ->add_option(
+          "--min-speed", arguments->min_speed,
+          "leave out slower rows: the direction of friction is not known there; without it "
+          "the speed is found from rows at rest")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--where", arguments->where, "COLUMN=NUMBER: use these rows only");
   command->add_option("--leave-out", arguments->leave_out,

@@ -113,5 +113,32 @@ TEST(Observations, friction_that_falls_with_speed_in_one_direction_is_not_taken_
   EXPECT_THROW(observe(data), Error);
 }
 
+// A sine, and a hold of the same length in which the measured velocity is noise below 0.005 rad/s.
+double sine_and_hold(int m, int i) {
+  if (i >= 100) return 0.005 * std::cos(2.3 * i + m);
+  return std::sin(0.1 * (i + 0.5) + m);
+}
+
+TEST(Observations, RowsAtRestAreFoundAndLeftOutWithAWord) {
+  const Dataset data = movements_of(10, 200, sine_and_hold);
+  const Observations moving = observe(data);
+  EXPECT_LT(moving.rows(), 1010U);
+  EXPECT_GT(moving.rows(), 980U);
+  EXPECT_THAT(moving.warnings, ::testing::Contains(::testing::HasSubstr("50 % of the rows")));
+  // The user knows better.
+  EXPECT_EQ(observe(data, {.min_speed = 0.0}).rows(), 2000U);
+  const Observations told = observe(data, {.min_speed = 0.5});
+  EXPECT_THAT(told.warnings,
+              ::testing::Not(::testing::Contains(::testing::HasSubstr("stands still"))));
+}
+
+TEST(Observations, ReversalsAndSlowMovementsAreNoRest) {
+  const Dataset sines = movements_of(10, 200, [](int m, int i) { return std::sin(0.1 * i + m); });
+  EXPECT_EQ(observe(sines).rows(), 2000U);
+  const Dataset slow = movements_of(
+      10, 200, [](int m, int i) { return (i % 40 < 20 ? 1 : -1) * (m < 9 ? 0.02 : 1.0); });
+  EXPECT_EQ(observe(slow).rows(), 2000U);
+}
+
 }  // namespace
 }  // namespace tribench::loop
