@@ -61,7 +61,7 @@ class BurstScan {
       }
     }
     if (starts.empty()) return starts;
-    const double wanted = threshold(std::move(random));
+    const double wanted = threshold(random);
     std::erase_if(starts, [&](const Burst& one) {
       return one.log_ratio < wanted || peak(one) < kHeights[0] * noise_.robust_sd();
     });

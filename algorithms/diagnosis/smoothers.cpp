@@ -116,7 +116,7 @@ Eigen::VectorXf direction_of(const Observations& data) {
 }
 
 Eigen::MatrixXd with_direction(const Smoother& smoother, const Observations& data) {
-  const Eigen::MatrixXd features = smoother.features.cast<double>();
+  Eigen::MatrixXd features = smoother.features.cast<double>();
   const Eigen::VectorXd s = direction_of(data).cast<double>();
   if (s.size() == 0) return features;
   Eigen::MatrixXd out(features.rows(), 2 * features.cols());
