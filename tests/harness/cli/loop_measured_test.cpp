@@ -142,7 +142,7 @@ TEST_F(MeasuredLoop, bam_servo_has_friction_that_grows_with_the_load) {
 }
 
 // Told nothing of a slowest speed, the loop finds from the rows at rest where the direction of
-// friction is not known: kept, they would hide everything (1.09 -> 1.07 V).
+// friction is not known: kept, they would hide everything (1.12 -> 1.10 V).
 TEST_F(MeasuredLoop, bam_servo_stands_still_in_a_third_of_the_rows_and_the_loop_says_so) {
   const Json json =
       loop("bam-xl330/xl330_pendulum.csv", {"--roles", "motor_voltage_V=motor_torque,run=movement",
@@ -150,8 +150,8 @@ TEST_F(MeasuredLoop, bam_servo_stands_still_in_a_third_of_the_rows_and_the_loop_
   EXPECT_THAT(json["warnings"].dump(), ::testing::HasSubstr("the axis stands still in 36 %"));
   EXPECT_TRUE(json["confirmed"]);
   EXPECT_EQ(json["effects"][0]["family"], "load_coulomb");
-  EXPECT_LT(error(json, "rmse_before"), 0.66);
-  EXPECT_LT(error(json, "rmse_after"), 0.46);
+  EXPECT_LT(error(json, "rmse_before"), 0.69);
+  EXPECT_LT(error(json, "rmse_after"), 0.52);
 }
 
 // The ripple at twice a motor turn that the sine's recordings of joints 4, 5 and 6 show: 6 to 16
