@@ -83,11 +83,12 @@ BENCHMARK(fitted_children)->Arg(200)->Threads(2)->UseRealTime()->Unit(benchmark:
 void ranked_growth(benchmark::State& state) {
   const pysr::Rows rows = friction_rows(static_cast<std::size_t>(state.range(0)));
   const OperatorSet& operators = find_operator_set("paper");
-  const pysr::TermLibrary library = pysr::make_term_library(rows, operators);
+  const pysr::Form form(kInputs.size());
+  const pysr::TermLibraries libraries = pysr::make_term_libraries(form, rows, operators);
   const pysr::Options options = pysr::profile_options(pysr::Profile::native);
   const pysr::Validator validator(options, operators, kInputs);
   pysr::Scorer scorer(validator, {});
-  pysr::Grower grower(operators, library);
+  pysr::Grower grower(operators, form, libraries);
   Budget budget = unlimited();
   RandomStream random(key_of("growth"));
   // (a v + b s) exp(c v^2): what is missing is |v| in the exponent.

@@ -229,6 +229,10 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
     fit = fit_stages(problem, method, task, budget, trace);
   } catch (const std::bad_alloc&) {
     throw;
+  } catch (const Error& error) {
+    // A method reads some parameters only beside the data: a template's names are the inputs'.
+    fit.failure = fmt::format(
+        "{} ({})", error.kind() == ErrorKind::bad_input ? "unsupported" : "error", error.what());
   } catch (const std::exception& error) {
     fit.failure = fmt::format("error ({})", error.what());
   }

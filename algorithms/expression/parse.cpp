@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
@@ -27,8 +28,9 @@ std::optional<Op> function_of(std::string_view name) {
 // Recursive descent that appends to a postfix tape.
 class Parser {
  public:
-  Parser(std::string_view text, std::vector<std::string>& names, bool collect)
-      : text_(text), names_(names), collect_(collect) {}
+  Parser(std::string_view text, std::vector<std::string>& names, bool collect,
+         std::vector<Hole>* holes = nullptr)
+      : text_(text), names_(names), collect_(collect), holes_(holes) {}
 
   Expression run() {
     sum();
@@ -135,6 +137,7 @@ class Parser {
     const std::optional<Op> function = function_of(name);
     if (peek() == '(') {
       if (!function) {
+        if (holes_ != nullptr) return hole(name, start);
         at_ = start;
         fail(fmt::format("'{}' is not a function", name), suggestion(name, function_names()));
       }
@@ -162,6 +165,36 @@ class Parser {
       found = names_.end() - 1;
     }
     tape_.push_back(Node::input(static_cast<std::size_t>(found - names_.begin())));
+  }
+
+  // name(a, b): the arguments leave the tape, and a variable beyond the names stays.
+  void hole(std::string_view name, std::size_t start) {
+    const auto refuse = [&](const char* what, const char* mend) {
+      at_ = start;
+      fail(fmt::format("'{}' {}", name, what), mend);
+    };
+    if (inside_hole_) refuse("stands inside another part", "let that part find its inner form");
+    if (std::ranges::count(*holes_, name, &Hole::name) > 0) {
+      refuse("stands twice", "give every part a name of its own");
+    }
+    if (std::ranges::count(names_, name) > 0) {
+      refuse("is an input, which takes no arguments", "give the part another name");
+    }
+    Hole hole{std::string(name), {}};
+    std::vector<Node> outside = std::exchange(tape_, {});
+    inside_hole_ = true;
+    take('(');
+    if (peek() != ')') {
+      do {
+        sum();
+        hole.arguments.emplace_back(std::exchange(tape_, {}));
+      } while (take(','));
+    }
+    expect_close();
+    inside_hole_ = false;
+    tape_ = std::move(outside);
+    tape_.push_back(Node::input(names_.size() + holes_->size()));
+    holes_->push_back(std::move(hole));
   }
 
   static std::vector<std::string> function_names() {
@@ -246,12 +279,16 @@ class Parser {
   [[noreturn]] void fail(const std::string& what, const std::string& mend) const {
     const std::string_view before = text_.substr(0, at_);
     const auto place = std::count_if(before.begin(), before.end(), begins_character) + 1;
-    throw_bad_input(what, fmt::format("formula, character {}", place), mend);
+    throw_bad_input(
+        what, fmt::format("{}, character {}", holes_ == nullptr ? "formula" : "template", place),
+        mend);
   }
 
   std::string_view text_;
   std::vector<std::string>& names_;
   bool collect_;
+  std::vector<Hole>* holes_;  // null where a formula has none
+  bool inside_hole_ = false;
   std::size_t at_ = 0;
   int depth_ = 0;
   std::vector<Node> tape_;
@@ -262,6 +299,13 @@ class Parser {
 Expression parse(std::string_view text, std::span<const std::string> names) {
   std::vector<std::string> known(names.begin(), names.end());
   return Parser(text, known, false).run();
+}
+
+Expression parse_with_holes(std::string_view text, std::span<const std::string> names,
+                            std::vector<Hole>& holes) {
+  std::vector<std::string> known(names.begin(), names.end());
+  holes.clear();
+  return Parser(text, known, false, &holes).run();
 }
 
 Expression parse_collecting_names(std::string_view text, std::vector<std::string>& names) {

@@ -30,6 +30,17 @@ Expression parse(std::string_view text, std::span<const std::string> names);
 // As above; names that are not in `names` are added to it in order of appearance.
 Expression parse_collecting_names(std::string_view text, std::vector<std::string>& names);
 
+// A name that is called like a function and is none: f(v, abs(w)), or p() without arguments.
+struct Hole {
+  std::string name;
+  std::vector<Expression> arguments;  // over the names; none holds a hole itself
+};
+
+// As parse, of a formula with holes: hole k, in order of appearance, is the variable
+// names.size() + k. Refuses a hole inside another's arguments, and one that stands twice.
+Expression parse_with_holes(std::string_view text, std::span<const std::string> names,
+                            std::vector<Hole>& holes);
+
 // Throws Error (failed) where a column has no name.
 std::string print(const Expression& formula, std::span<const std::string> names);
 

@@ -24,17 +24,17 @@ constexpr int kMostVisits = 3;
 }  // namespace
 
 Climber::Climber(const Options& options, const OperatorSet& operators, const Validator& validator,
-                 const Rows& rows, const TermLibrary& library, const ScoreRule& rule)
+                 const Rows& rows, const TermLibraries& libraries, const ScoreRule& rule)
     : options_(options),
-      alphabet_{operators, rows.columns.size()},
+      operators_(operators),
       validator_(validator),
       rows_(rows),
       zero_loss_(zero_loss(rows)),
       scorer_(validator, rule),
-      grower_(operators, library) {}
+      grower_(operators, validator.form(), libraries) {}
 
 std::optional<Fitted> Climber::fitted(Expression formula, int steps, Budget& budget) {
-  formula = simplified(formula);
+  formula = validator_.form().simplified(formula);
   if (!validator_.admits(formula, options_.max_size)) return std::nullopt;
   Memory& memory = memory_[structure_hash(formula)];
   if (memory.visits >= kMostVisits) return memory.best;
@@ -62,12 +62,15 @@ std::vector<Fitted> Climber::best_of(std::span<const Proposal> proposals, std::s
 }
 
 std::optional<Fitted> Climber::construct(RandomStream& random, Budget& budget) {
+  const Form& form = validator_.form();
   std::optional<Fitted> current;
   for (int attempt = 0; attempt < options_.attempts && !current; ++attempt) {
-    const int operators = static_cast<int>(random.below(3));
-    current = fitted(Expression::binary(Op::mul, Expression::constant(0.9),
-                                        random_formula(operators, alphabet_, random)),
-                     kSteps, budget);
+    const auto start = [&](std::size_t part) {
+      const int operators = static_cast<int>(random.below(3));
+      return Expression::binary(Op::mul, Expression::constant(0.9),
+                                random_part(form, part, operators, operators_, random));
+    };
+    current = fitted(form.assembled(start), kSteps, budget);
     if (budget.exhausted()) return current;
   }
   if (!current) return current;

@@ -43,7 +43,7 @@ struct ClimbEffort {
 class Climber {
  public:
   Climber(const Options& options, const OperatorSet& operators, const Validator& validator,
-          const Rows& rows, const TermLibrary& library, const ScoreRule& rule);
+          const Rows& rows, const TermLibraries& libraries, const ScoreRule& rule);
 
   // Called with every formula fitted on the way.
   void on_fitted(std::function<void(const Fitted&)> sink) { sink_ = std::move(sink); }
@@ -67,7 +67,7 @@ class Climber {
                                  RandomStream& random, Budget& budget);
 
   const Options& options_;
-  Alphabet alphabet_;
+  const OperatorSet& operators_;
   const Validator& validator_;
   const Rows& rows_;
   double zero_loss_;

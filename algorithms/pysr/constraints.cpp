@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "algorithms/pysr/text_pieces.hpp"
@@ -48,8 +49,9 @@ std::array<std::string_view, 2> halves(std::string_view text, char separator,
 }  // namespace
 
 Validator::Validator(const Options& options, const OperatorSet& operators,
-                     std::span<const Input> inputs)
+                     std::span<const Input> inputs, Form form)
     : operators_(&operators),
+      form_(std::move(form)),
       max_depth_(options.max_depth),
       constant_size_(options.constant_size),
       variable_size_(options.variable_size),
@@ -86,10 +88,37 @@ Validator::Validator(const Options& options, const OperatorSet& operators,
                               find_operator(inner, "nested_limits"),
                               static_cast<int>(read_number(most, "nested_limits"))});
   }
-  if (units_ != Units::off) {
-    for (const Input& input : inputs) input_dimensions_.push_back(parse_unit(input.unit));
-    if (!options.target_unit.empty()) target_dimension_ = parse_unit(options.target_unit);
+  read_part_sizes(options.part_sizes);
+  if (units_ != Units::off) read_units(options, inputs);
+}
+
+void Validator::read_part_sizes(const std::string& text) {
+  std::vector<std::string> names;
+  for (std::size_t part = 0; part < form_.parts(); ++part) names.push_back(form_.name(part));
+  for (const std::string_view piece : split(text, ';')) {
+    const auto [name, value] = halves(piece, '=', "part_sizes", "f=9; g=15");
+    const auto part = std::ranges::find(names, name);
+    if (part == names.end()) {
+      throw_bad_input(fmt::format("the template has no part '{}'", name), "part_sizes",
+                      fmt::format("use one of {}", fmt::join(names, " ")));
+    }
+    part_size_.resize(names.size(), std::numeric_limits<int>::max());
+    part_size_[static_cast<std::size_t>(part - names.begin())] =
+        static_cast<int>(read_number(value, "part_sizes"));
   }
+}
+
+void Validator::read_units(const Options& options, std::span<const Input> inputs) {
+  for (const Input& input : inputs) input_dimensions_.push_back(parse_unit(input.unit));
+  for (const Expression& column : form_.further_columns()) {
+    const std::optional<Dimension> dimension = dimension_of(column, input_dimensions_);
+    if (!dimension) {
+      throw_bad_input("the template adds or takes functions of what has other units", "template",
+                      "mend its units, or leave the parameter units off");
+    }
+    input_dimensions_.push_back(*dimension);
+  }
+  if (!options.target_unit.empty()) target_dimension_ = parse_unit(options.target_unit);
 }
 
 double Validator::node_size(const Node& node) const {
@@ -112,12 +141,25 @@ bool Validator::admits(const Expression& formula, int max_size) const {
       static_cast<int>(formula.depth()) > max_depth_) {
     return false;
   }
-  if (!operators_->admits(formula)) return false;
-  if (has_argument_limits_ && !arguments_fit(formula)) return false;
-  for (const NestedLimit& limit : nested_limits_) {
-    if (!nesting_fits(formula, limit)) return false;
-  }
+  if (!form_.fits(formula)) return false;
+  if (form_.is_whole() ? !keeps_limits(formula) : !parts_fit(formula)) return false;
   return units_ != Units::hard || units_agree(formula, input_dimensions_, target_dimension_);
+}
+
+bool Validator::keeps_limits(const Expression& part) const {
+  if (!operators_->admits(part)) return false;
+  if (has_argument_limits_ && !arguments_fit(part)) return false;
+  return std::ranges::all_of(nested_limits_,
+                             [&](const NestedLimit& limit) { return nesting_fits(part, limit); });
+}
+
+bool Validator::parts_fit(const Expression& formula) const {
+  for (std::size_t k = 0; k < form_.parts(); ++k) {
+    const Expression part = formula.subtree(form_.place(formula, k));
+    if (!part_size_.empty() && size(part) > part_size_[k]) return false;
+    if (!keeps_limits(part)) return false;
+  }
+  return true;
 }
 
 bool Validator::arguments_fit(const Expression& formula) const {

@@ -8,7 +8,6 @@
 #include "algorithms/fitting/cholesky.hpp"
 #include "algorithms/fitting/evidence.hpp"
 #include "algorithms/fitting/shape_dimension.hpp"
-#include "algorithms/pysr/simplify.hpp"
 #include "algorithms/pysr/tape_edit.hpp"
 
 namespace tribench::pysr {
@@ -41,16 +40,19 @@ Expression constant_of(double value) { return Expression::constant(value); }
 
 std::vector<Grower::Probe> Grower::probes_of(const Expression& formula) const {
   std::vector<Probe> probes;
-  for (std::size_t i = 0; i < formula.size(); ++i) {
-    if (is_exponent(formula, i)) continue;
-    const Node& node = formula.node(i);
-    const std::size_t parent = parent_of(formula, i);
-    const bool is_root = parent == formula.size();
-    // A sum is grown as a whole, not each of its parts; so is a product.
-    const bool additive = is_root || !is_sum(formula.node(parent).op);
-    const bool multiplicative =
-        !node.is_constant() && (is_root || !is_product(formula.node(parent).op));
-    if (additive || multiplicative) probes.push_back({i, additive, multiplicative});
+  for (std::size_t part = 0; part < form_->parts(); ++part) {
+    const std::size_t root = form_->place(formula, part);
+    for (std::size_t i = formula.begin(root); i <= root; ++i) {
+      if (is_exponent(formula, i)) continue;
+      const bool is_root = i == root;
+      const Op above = is_root ? Op::constant : formula.node(parent_of(formula, i)).op;
+      // A sum is grown as a whole, not each of its terms; so is a product.
+      const bool additive = is_root || !is_sum(above);
+      const bool multiplicative = !formula.node(i).is_constant() && (is_root || !is_product(above));
+      if (additive || multiplicative) {
+        probes.push_back({i, &(*libraries_)[part], additive, multiplicative});
+      }
+    }
   }
   return probes;
 }
@@ -121,11 +123,10 @@ void Grower::load_probe(std::size_t probe, bool multiplicative, std::size_t rows
   columns::mul(slope.data(), slope.data(), loaded_.data() + (basis_size_ + 1) * rows, rows);
 }
 
-Grower::Candidate Grower::rate(std::size_t probe, std::size_t term, bool multiplicative,
+Grower::Candidate Grower::rate(std::size_t probe, const Term& term, bool multiplicative,
                                std::size_t rows) const {
-  const Term& t = library_->terms[term];
   const double before =
-      columns::dot(loaded_.data() + (basis_size_ + 1) * rows, t.squares.data(), rows);
+      columns::dot(loaded_.data() + (basis_size_ + 1) * rows, term.squares.data(), rows);
   double after = before;
   double along = 0;
   for (std::size_t first = 0; first <= basis_size_; first += 4) {
@@ -134,7 +135,7 @@ Grower::Candidate Grower::rate(std::size_t probe, std::size_t term, bool multipl
     for (std::size_t k = 0; k < 4; ++k) {
       block[k] = loaded_.data() + std::min(first + k, basis_size_) * rows;
     }
-    columns::dot4(t.values.data(), block, rows, sums);
+    columns::dot4(term.values.data(), block, rows, sums);
     for (std::size_t k = 0; k < 4 && first + k <= basis_size_; ++k) {
       if (first + k == basis_size_) {
         along = sums[k];
@@ -144,18 +145,18 @@ Grower::Candidate Grower::rate(std::size_t probe, std::size_t term, bool multipl
     }
   }
   if (!std::isfinite(after) || !(after > kDependent * before)) {
-    return {probe, term, multiplicative, 0, 0, 0};
+    return {probe, &term, multiplicative, 0, 0, 0};
   }
-  return {probe, term, multiplicative, along / after, along * along / after, 0};
+  return {probe, &term, multiplicative, along / after, along * along / after, 0};
 }
 
 void Grower::build(const Expression& formula, const Candidate& candidate,
                    std::span<const Probe> probes, std::vector<Proposal>& proposals) const {
   const std::size_t place = probes[candidate.probe].place;
   const Expression below = formula.subtree(place);
-  const Term& term = library_->terms[candidate.term];
+  const Term& term = *candidate.term;
   Expression step = constant_of(candidate.coefficient);
-  if (candidate.term != 0) step = Expression::binary(Op::mul, step, term.formula);
+  if (!term.is_one()) step = Expression::binary(Op::mul, step, term.formula);
   const auto offer = [&](const Expression& grown) {
     proposals.push_back({with_replaced(formula, place, grown.nodes()), candidate.decrease});
   };
@@ -193,20 +194,20 @@ std::vector<Proposal> Grower::grow(const Expression& formula, const Rows& rows, 
 std::vector<Grower::Candidate> Grower::ranked(std::span<const Probe> probes, std::size_t samples,
                                               std::size_t rows, RandomStream& random) {
   std::vector<Candidate> candidates;
-  const std::size_t terms = library_->terms.size();
   // Each term has the same chance at each place.
-  const double share =
-      samples == 0 ? 1
-                   : static_cast<double>(samples) / static_cast<double>(2 * probes.size() * terms);
+  std::size_t pairs = 0;
+  for (const Probe& probe : probes) pairs += 2 * probe.library->terms.size();
+  const double share = samples == 0 ? 1 : static_cast<double>(samples) / static_cast<double>(pairs);
   for (std::size_t probe = 0; probe < probes.size(); ++probe) {
     for (const bool multiplicative : {false, true}) {
       if (multiplicative ? !probes[probe].multiplicative : !probes[probe].additive) continue;
       bool loaded = false;
-      for (std::size_t term = multiplicative ? 1 : 0; term < terms; ++term) {
+      const std::vector<Term>& terms = probes[probe].library->terms;
+      for (std::size_t term = multiplicative ? 1 : 0; term < terms.size(); ++term) {
         if (share < 1 && !random.chance(share)) continue;
         if (!loaded) load_probe(probe, multiplicative, rows);
         loaded = true;
-        const Candidate candidate = rate(probe, term, multiplicative, rows);
+        const Candidate candidate = rate(probe, terms[term], multiplicative, rows);
         if (candidate.decrease > 0) candidates.push_back(candidate);
       }
     }
@@ -236,11 +237,12 @@ std::vector<Grower::Candidate> Grower::distinct(std::vector<Candidate> candidate
 }
 
 double Grower::price_of(const Candidate& candidate) const {
-  const Expression& term = library_->terms[candidate.term].formula;
+  const Expression& term = candidate.term->formula;
   // 1 + c t costs two nodes more than c t.
   double nodes = static_cast<double>(term.size()) + (candidate.multiplicative ? 5 : 3);
-  if (candidate.term == 0) nodes = 2;
-  const double constants = candidate.term == 0 ? 1 : static_cast<double>(shape_dimension(term));
+  if (candidate.term->is_one()) nodes = 2;
+  const double constants =
+      candidate.term->is_one() ? 1 : static_cast<double>(shape_dimension(term));
   return kNodePrice * nodes + 0.5 * constants * std::log(static_cast<double>(residual_.size()));
 }
 
@@ -270,7 +272,7 @@ std::vector<Proposal> Grower::prune(const Expression& formula, const Rows& rows,
       Expression pruned = formula;
       const double change = formula.node(i).value - value;
       pruned.set_constant(i, value);
-      pruned = simplified(pruned);
+      pruned = form_->simplified(pruned);
       if (pruned.size() < formula.size()) {
         proposals.push_back({std::move(pruned), -change * change / unit[k]});
       }

@@ -21,6 +21,7 @@
 #include "algorithms/expression/differentiate.hpp"
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/expression/operator_set.hpp"
+#include "algorithms/pysr/form.hpp"
 #include "algorithms/pysr/rows.hpp"
 #include "foundation/random.hpp"
 
@@ -32,6 +33,8 @@ struct Term {
   Expression formula;
   std::vector<double> values;
   std::vector<double> squares;  // of the values
+
+  bool is_one() const { return formula.size() == 1 && formula.node(0).is_constant(); }
 };
 
 struct TermLibrary {
@@ -39,6 +42,10 @@ struct TermLibrary {
 };
 
 TermLibrary make_term_library(const Rows& rows, const OperatorSet& operators);
+
+// One library for each part of the form: terms of the part's arguments.
+using TermLibraries = std::vector<TermLibrary>;
+TermLibraries make_term_libraries(const Form& form, const Rows& rows, const OperatorSet& operators);
 
 // A grown or pruned copy of a formula, its constants at their first-order estimate.
 struct Proposal {
@@ -49,11 +56,12 @@ struct Proposal {
 // One per thread.
 class Grower {
  public:
-  Grower(const OperatorSet& operators, const TermLibrary& library)
-      : operators_(&operators), library_(&library) {}
+  Grower(const OperatorSet& operators, const Form& form, const TermLibraries& libraries)
+      : operators_(&operators), form_(&form), libraries_(&libraries) {}
 
-  // The best `count` of `samples` drawn places and terms, best first; all pairs where samples is
-  // 0. Fewer, or none, where the formula is not finite with its derivatives, or the budget ends.
+  // The best `count` of `samples` drawn places and terms, best first, within the parts of the form;
+  // all pairs where samples is 0. Fewer, or none, where the formula is not finite with its
+  // derivatives, or the budget ends.
   std::vector<Proposal> grow(const Expression& formula, const Rows& rows, std::size_t samples,
                              std::size_t count, RandomStream& random, Budget& budget);
 
@@ -63,12 +71,13 @@ class Grower {
  private:
   struct Probe {
     std::size_t place;
+    const TermLibrary* library;  // of the part that holds the place
     bool additive;
     bool multiplicative;
   };
   struct Candidate {
     std::size_t probe;
-    std::size_t term;
+    const Term* term;
     bool multiplicative;
     double coefficient;
     double decrease;  // of the sum of squares, to first order
@@ -80,7 +89,7 @@ class Grower {
                      Budget& budget);
   void orthonormalise(std::size_t rows);
   void load_probe(std::size_t probe, bool multiplicative, std::size_t rows);
-  Candidate rate(std::size_t probe, std::size_t term, bool multiplicative, std::size_t rows) const;
+  Candidate rate(std::size_t probe, const Term& term, bool multiplicative, std::size_t rows) const;
   std::vector<Candidate> ranked(std::span<const Probe> probes, std::size_t samples,
                                 std::size_t rows, RandomStream& random);
   std::vector<Candidate> distinct(std::vector<Candidate> candidates) const;
@@ -92,7 +101,8 @@ class Grower {
   }
 
   const OperatorSet* operators_;
-  const TermLibrary* library_;
+  const Form* form_;
+  const TermLibraries* libraries_;
   Differentiator differentiator_;
   std::size_t constants_ = 0;     // columns of J that belong to constants
   std::vector<double> jacobian_;  // then, per probe: its value times its adjoint, its adjoint

@@ -34,8 +34,9 @@ constexpr double kCompoundChance = 0.25;
 
 Island::Island(const Shared& shared)
     : shared_(shared),
+      form_(shared.validator.form()),
       scorer_(shared.validator, shared.rule),
-      grower_(shared.operators, shared.library),
+      grower_(shared.operators, form_, shared.libraries),
       best_seen_(shared.options.max_size) {
   success_.fill(1);
 }
@@ -43,19 +44,23 @@ Island::Island(const Shared& shared)
 void Island::populate(RandomStream random, Budget& budget) {
   const Options& options = shared_.options;
   if (options.constructions > 0) construct(random, budget);
-  const Alphabet alphabet{shared_.operators, shared_.rows.columns.size()};
   const SizeFrequencies frequencies(options.max_size);
   const EpochState state{frequencies, best_seen_, options.max_size};
   const Step step{state, shared_.rows, 1};
   while (static_cast<int>(members_.size()) < options.population_size) {
     std::optional<Member> member;
     for (int attempt = 0; attempt < options.attempts && !member; ++attempt) {
-      Expression formula = random_formula(options.initial_operators, alphabet, random);
+      Expression formula = form_.assembled([&](std::size_t part) {
+        return random_part(form_, part, options.initial_operators, shared_.operators, random);
+      });
       if (!shared_.validator.admits(formula, options.max_size)) continue;
       member = scored(std::move(formula), step, true, budget);
       if (budget.exhausted()) return;
     }
-    if (!member) member = scored(Expression::constant(0), step, true, budget);
+    if (!member) {
+      const auto zero = [](std::size_t) { return Expression::constant(0); };
+      member = scored(form_.assembled(zero), step, true, budget);
+    }
     if (!member) return;
     member->birth = clock_++;
     best_seen_.offer(*member);
@@ -65,7 +70,7 @@ void Island::populate(RandomStream random, Budget& budget) {
 
 void Island::construct(RandomStream& random, Budget& budget) {
   const Options& options = shared_.options;
-  Climber climber(options, shared_.operators, shared_.validator, shared_.rows, shared_.library,
+  Climber climber(options, shared_.operators, shared_.validator, shared_.rows, shared_.libraries,
                   shared_.rule);
   climber.on_fitted([this](const Fitted& fitted) {
     best_seen_.offer(scorer_.member_of(fitted.formula, fitted.loss));
@@ -133,10 +138,14 @@ void Island::event(const Step& step, RandomStream& random, Budget& budget) {
   }
 }
 
-MutationKind Island::draw_mutation(const Member& parent, const Step& step, RandomStream& random) {
+Alphabet Island::alphabet_of(std::size_t part) const {
+  return {shared_.operators, form_.arguments(part).size()};
+}
+
+MutationKind Island::draw_mutation(const Subject& subject, const Step& step, RandomStream& random) {
   const Options& options = shared_.options;
-  MutationWeights weights = conditioned(options.weights, parent.formula, parent.size,
-                                        step.state.max_size, shared_.rows.columns.size());
+  MutationWeights weights = conditioned(options.weights, subject.formula, subject.parent.size,
+                                        step.state.max_size, form_.arguments(subject.part).size());
   if (options.adaptive_weights) {
     for (std::size_t k = 0; k < kMutationKinds; ++k) {
       weights[k] *= std::max(success_[k], kSuccessFloor);
@@ -150,9 +159,11 @@ void Island::mutation_event(const Step& step, RandomStream& random, Budget& budg
   const Member parent = members_[run_tournament(members_, step.state.frequencies, options, random)];
   const int attempts = options.mutation_burst ? 1 + kBurstRetries : 1;
   for (int attempt = 0; attempt < attempts; ++attempt) {
-    const MutationKind kind = draw_mutation(parent, step, random);
+    const std::size_t part = form_.draw_part(random);
+    const Subject subject{parent, part, form_.part(parent.formula, part)};
+    const MutationKind kind = draw_mutation(subject, step, random);
     if (kind == MutationKind::do_nothing) return replace_oldest(parent, step);
-    std::optional<Member> child = accepted_child(kind, parent, step, random, budget);
+    std::optional<Member> child = accepted_child(kind, subject, step, random, budget);
     if (budget.exhausted()) return;
     learn(kind, child && child->cost < parent.cost);
     if (!child) continue;
@@ -162,13 +173,14 @@ void Island::mutation_event(const Step& step, RandomStream& random, Budget& budg
   if (!options.skip_failures) replace_oldest(parent, step);
 }
 
-std::optional<Member> Island::accepted_child(MutationKind kind, const Member& parent,
+std::optional<Member> Island::accepted_child(MutationKind kind, const Subject& subject,
                                              const Step& step, RandomStream& random,
                                              Budget& budget) {
+  const Member& parent = subject.parent;
   if (kind == MutationKind::backsolve) return solved_back(parent, step, random, budget);
   const bool exempt = kind == MutationKind::simplify || kind == MutationKind::optimize;
   std::optional<Member> best;
-  for (Expression& child : propose(kind, parent, step, random, budget)) {
+  for (Expression& child : propose(kind, subject, step, random, budget)) {
     std::optional<Member> member = scored(std::move(child), step, exempt, budget);
     if (budget.exhausted()) return std::nullopt;
     if (!member) continue;
@@ -190,7 +202,7 @@ std::optional<Member> Island::solved_back(const Member& parent, const Step& step
       backsolve(parent.formula, members_, shared_.rows,
                 static_cast<std::size_t>(step.state.max_size), random, budget);
   if (!child) return std::nullopt;
-  if (shared_.options.fit_children) *child = simplified(*child);
+  if (shared_.options.fit_children) *child = form_.simplified(*child);
   if (!shared_.validator.admits(*child, step.state.max_size)) return std::nullopt;
   std::optional<Member> member = scored(std::move(*child), whole, false, budget);
   if (!member) return std::nullopt;
@@ -207,8 +219,13 @@ void Island::crossover_event(const Step& step, RandomStream& random, Budget& bud
   const SizeFrequencies& frequencies = step.state.frequencies;
   const Member a = members_[run_tournament(members_, frequencies, options, random)];
   const Member b = members_[run_tournament(members_, frequencies, options, random)];
+  const std::size_t part = form_.draw_part(random);
+  const Expression part_a = form_.part(a.formula, part);
+  const Expression part_b = form_.part(b.formula, part);
   for (int attempt = 0; attempt < options.attempts; ++attempt) {
-    auto [first, second] = cross(a.formula, b.formula, random);
+    auto [first, second] = cross(part_a, part_b, random);
+    first = form_.with_part(a.formula, part, std::move(first));
+    second = form_.with_part(b.formula, part, std::move(second));
     if (!shared_.validator.admits(first, step.state.max_size) ||
         !shared_.validator.admits(second, step.state.max_size)) {
       continue;
@@ -222,20 +239,23 @@ void Island::crossover_event(const Step& step, RandomStream& random, Budget& bud
   }
 }
 
-std::vector<Expression> Island::structural(MutationKind kind, const Member& parent,
+std::vector<Expression> Island::structural(MutationKind kind, const Subject& subject,
                                            const Step& step, RandomStream& random) {
   const Options& options = shared_.options;
-  const Alphabet alphabet{shared_.operators, shared_.rows.columns.size()};
+  const Alphabet alphabet = alphabet_of(subject.part);
+  const auto outside = static_cast<int>(subject.parent.formula.size() - subject.formula.size());
   const MutationSettings settings{step.temperature, options.perturbation_factor,
-                                  options.negate_probability, options.compat, step.state.max_size};
+                                  options.negate_probability, options.compat,
+                                  std::max(step.state.max_size - outside, 1)};
   for (int attempt = 0; attempt < options.attempts; ++attempt) {
-    std::optional<Expression> child = mutate(kind, parent.formula, alphabet, settings, random);
+    std::optional<Expression> child = mutate(kind, subject.formula, alphabet, settings, random);
     if (!child) return {};
     if (options.mutation_burst && random.chance(kCompoundChance)) {
       const MutationKind second = draw_kind(options.weights, random);
       if (auto further = mutate(second, *child, alphabet, settings, random)) child = further;
     }
     if (options.fit_children) *child = simplified(*child);
+    *child = form_.with_part(subject.parent.formula, subject.part, std::move(*child));
     if (!shared_.validator.admits(*child, step.state.max_size)) continue;
     // Another draw of the same kind rather than a structure that has been fitted before.
     if (options.novelty && kind != MutationKind::mutate_constant &&
@@ -247,8 +267,9 @@ std::vector<Expression> Island::structural(MutationKind kind, const Member& pare
   return {};
 }
 
-std::vector<Expression> Island::propose(MutationKind kind, const Member& parent, const Step& step,
+std::vector<Expression> Island::propose(MutationKind kind, const Subject& subject, const Step& step,
                                         RandomStream& random, Budget& budget) {
+  const Member& parent = subject.parent;
   std::vector<Expression> children;
   if (kind == MutationKind::grow || kind == MutationKind::prune) {
     std::vector<Proposal> proposals = kind == MutationKind::grow
@@ -256,7 +277,7 @@ std::vector<Expression> Island::propose(MutationKind kind, const Member& parent,
                                                          2 * kGrowthChildren, random, budget)
                                           : grower_.prune(parent.formula, step.rows, budget);
     for (Proposal& proposal : proposals) {
-      Expression child = simplified(proposal.formula);
+      Expression child = form_.simplified(proposal.formula);
       if (!shared_.validator.admits(child, step.state.max_size)) continue;
       if (shared_.options.novelty && seen_.contains(structure_hash(child))) continue;
       children.push_back(std::move(child));
@@ -265,14 +286,15 @@ std::vector<Expression> Island::propose(MutationKind kind, const Member& parent,
     return children;
   }
   if (kind == MutationKind::simplify || kind == MutationKind::optimize) {
-    Expression child = kind == MutationKind::simplify ? simplified(parent.formula) : parent.formula;
+    Expression child =
+        kind == MutationKind::simplify ? form_.simplified(parent.formula) : parent.formula;
     if (kind == MutationKind::optimize) {
       scorer_.fit(child, step.rows, shared_.options.optimize_iterations, budget);
     }
     if (shared_.validator.admits(child, step.state.max_size)) children.push_back(std::move(child));
     return children;
   }
-  return structural(kind, parent, step, random);
+  return structural(kind, subject, step, random);
 }
 
 bool Island::is_new(const Expression& child) { return seen_.insert(structure_hash(child)).second; }
@@ -356,7 +378,7 @@ void Island::tidy(const EpochState& state, RandomStream& random, Budget& budget)
   const Options& options = shared_.options;
   for (Member& member : members_) {
     if (budget.exhausted()) return;
-    Expression simpler = simplified(member.formula);
+    Expression simpler = form_.simplified(member.formula);
     const bool shorter =
         simpler.size() < member.formula.size() && shared_.validator.admits(simpler, state.max_size);
     const bool batched = options.batching == Batching::on;

@@ -23,7 +23,7 @@ struct Shared {
   const OperatorSet& operators;
   const Validator& validator;
   const Rows& rows;  // what the search sees
-  const TermLibrary& library;
+  const TermLibraries& libraries;
   ScoreRule rule;
 };
 
@@ -59,33 +59,41 @@ class Island {
     const Rows& rows;  // the batch, or all
     double temperature;
   };
+  // What a mutation works on: one part of a member's form, as a formula of its arguments.
+  struct Subject {
+    const Member& parent;
+    std::size_t part;
+    Expression formula;
+  };
 
   void construct(RandomStream& random, Budget& budget);
   void event(const Step& step, RandomStream& random, Budget& budget);
   void mutation_event(const Step& step, RandomStream& random, Budget& budget);
-  MutationKind draw_mutation(const Member& parent, const Step& step, RandomStream& random);
+  MutationKind draw_mutation(const Subject& subject, const Step& step, RandomStream& random);
   // What takes a place in the population; none where nothing is accepted.
-  std::optional<Member> accepted_child(MutationKind kind, const Member& parent, const Step& step,
+  std::optional<Member> accepted_child(MutationKind kind, const Subject& subject, const Step& step,
                                        RandomStream& random, Budget& budget);
   std::optional<Member> solved_back(const Member& parent, const Step& step, RandomStream& random,
                                     Budget& budget);
   void crossover_event(const Step& step, RandomStream& random, Budget& budget);
   // Children that the kind proposes and the validator admits.
-  std::vector<Expression> propose(MutationKind kind, const Member& parent, const Step& step,
+  std::vector<Expression> propose(MutationKind kind, const Subject& subject, const Step& step,
                                   RandomStream& random, Budget& budget);
-  std::vector<Expression> structural(MutationKind kind, const Member& parent, const Step& step,
+  std::vector<Expression> structural(MutationKind kind, const Subject& subject, const Step& step,
                                      RandomStream& random);
   std::optional<Member> scored(Expression child, const Step& step, bool exempt, Budget& budget);
   std::optional<double> fitted_loss(Expression& child, const Step& step, Budget& budget);
   std::optional<double> scaled_loss(Expression& child, const Step& step, double loss,
                                     Budget& budget);
   bool is_new(const Expression& child);
+  Alphabet alphabet_of(std::size_t part) const;
   void replace_oldest(Member child, const Step& step);
   void tidy(const EpochState& state, RandomStream& random, Budget& budget);
   void optimise(Member& member, RandomStream& random, Budget& budget);
   void learn(MutationKind kind, bool success);
 
   const Shared& shared_;
+  const Form& form_;
   Scorer scorer_;
   Grower grower_;
   std::vector<Member> members_;

@@ -210,6 +210,12 @@ std::vector<ParameterSpec> parameter_specs() {
        {"profile", "off", "on", "auto"}},
       whole("batch_size", "rows of a batch; 0: by the number of rows", 1e6),
       whole("search_rows", "rows of a fixed sample that the search sees; 0: all", 1e7),
+      {"template",
+       "outer form of every formula, as in 'sgn_v*f(abs(v)) + g(load)': f and g are searched for, "
+       "p() "
+       "is a number to be fitted",
+       std::string()},
+      {"part_sizes", "largest size of a part of the template, as in 'f=9; g=15'", std::string()},
       {"argument_limits", "largest size of an operator's arguments, as in '^:-1,3; exp:9'",
        std::string()},
       {"nested_limits", "how often an operator may stand below another, as in 'exp>exp=0'",
@@ -271,6 +277,8 @@ Options options_from(const Parameters& parameters) {
   options.batching = batching_of(parameters.text("batching"), options.batching);
   set(options.batch_size, parameters, "batch_size");
   set(options.search_rows, parameters, "search_rows");
+  options.form = parameters.text("template");
+  options.part_sizes = parameters.text("part_sizes");
   options.argument_limits = parameters.text("argument_limits");
   options.nested_limits = parameters.text("nested_limits");
   options.operator_sizes = parameters.text("operator_sizes");

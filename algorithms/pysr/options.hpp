@@ -109,6 +109,10 @@ struct Options {
   int batch_size = 0;   // 0: 128 below 5 000 rows, 256 below 50 000, 512 above
   int search_rows = 0;  // a fixed sample that the search sees; 0: all
 
+  // The outer form, empty for none; see form.hpp.
+  std::string form;
+  std::string part_sizes;
+
   // Constraints, as texts; see constraints.hpp.
   std::string argument_limits;
   std::string nested_limits;

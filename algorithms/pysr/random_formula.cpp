@@ -48,6 +48,14 @@ Expression random_formula(int operators, const Alphabet& alphabet, RandomStream&
   return formula;
 }
 
+Expression random_part(const Form& form, std::size_t part, int operators,
+                       const OperatorSet& operator_set, RandomStream& random) {
+  const std::size_t arguments = form.arguments(part).size();
+  // A form of the whole may have no inputs to offer; a part without arguments has none by intent.
+  if (arguments == 0 && !form.is_whole()) operators = 0;
+  return random_formula(operators, {operator_set, arguments}, random);
+}
+
 Expression random_formula_of_size(int nodes, const Alphabet& alphabet, RandomStream& random) {
   Expression formula({random_leaf(alphabet, random)});
   std::vector<Op> fitting;

@@ -9,6 +9,7 @@
 
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/expression/operator_set.hpp"
+#include "algorithms/pysr/form.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench::pysr {
@@ -31,5 +32,9 @@ Expression random_formula(int operators, const Alphabet& alphabet, RandomStream&
 
 // A formula of `nodes` nodes, or one less where only binary operators would fit.
 Expression random_formula_of_size(int nodes, const Alphabet& alphabet, RandomStream& random);
+
+// As random_formula, of the arguments of a part; a number where it has none.
+Expression random_part(const Form& form, std::size_t part, int operators,
+                       const OperatorSet& operator_set, RandomStream& random);
 
 }  // namespace tribench::pysr

@@ -52,8 +52,8 @@ void describe(std::vector<Candidate>& front, std::span<const Candidate> pool, co
 
 }  // namespace
 
-std::vector<Candidate> refined_front(Climber& climber, const Options& options, const Rows& rows,
-                                     const std::vector<Member>& members,
+std::vector<Candidate> refined_front(Climber& climber, const Options& options, const Form& form,
+                                     const Rows& rows, const std::vector<Member>& members,
                                      const std::function<bool(const Expression&)>& admitted,
                                      RandomStream random, Budget& budget) {
   std::vector<Candidate> candidates;
@@ -61,7 +61,7 @@ std::vector<Candidate> refined_front(Climber& climber, const Options& options, c
     Candidate candidate{fitted.formula, {}};
     candidate.point.loss = fitted.loss;
     candidate.point.evidence_against = fitted.against;
-    candidate.point.size = paper_complexity(fitted.formula);
+    candidate.point.size = paper_complexity(form.written_out(fitted.formula));
     candidates.push_back(std::move(candidate));
   };
   climber.on_fitted(enter);

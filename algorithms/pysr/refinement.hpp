@@ -15,14 +15,15 @@ namespace tribench::pysr {
 
 struct Candidate {
   Expression formula;
-  FrontPoint point;  // size is the paper's complexity
+  FrontPoint point;  // size is the paper's complexity, of the formula written out
 };
 
-// `climber` works on all rows. `admitted` says whether a formula may enter the front beyond what
-// the validator says (a proof); empty where all may. The result is reduced to what no other beats
-// in both complexity and loss, by increasing complexity. Deterministic; ends early with the budget.
-std::vector<Candidate> refined_front(Climber& climber, const Options& options, const Rows& rows,
-                                     const std::vector<Member>& members,
+// `climber` works on all rows; the formulas are of `form`, over its columns. `admitted` says
+// whether a formula may enter the front beyond what the validator says (a proof); empty where all
+// may. The result is reduced to what no other beats in both complexity and loss, by increasing
+// complexity. Deterministic; ends early with the budget.
+std::vector<Candidate> refined_front(Climber& climber, const Options& options, const Form& form,
+                                     const Rows& rows, const std::vector<Member>& members,
                                      const std::function<bool(const Expression&)>& admitted,
                                      RandomStream random, Budget& budget);
 

@@ -19,7 +19,7 @@
 #include "algorithms/pysr/island.hpp"
 #include "algorithms/pysr/migration.hpp"
 #include "algorithms/pysr/refinement.hpp"
-#include "algorithms/pysr/simplify.hpp"
+#include "foundation/error.hpp"
 
 namespace tribench::pysr {
 namespace {
@@ -40,39 +40,51 @@ int automatic_batch(std::size_t rows) {
   return rows < 50'000 ? 256 : 512;
 }
 
-// Options with what depends on the data decided.
-Options settled(Options options, std::size_t rows) {
+// Options with what depends on the data and the form decided.
+Options settled(Options options, const Form& form, std::size_t rows) {
   if (options.batching == Batching::automatic) {
     options.batching = rows > 1000 ? Batching::on : Batching::off;
   }
   if (options.batch_size == 0) options.batch_size = automatic_batch(rows);
   options.max_depth = std::min(options.max_depth, options.max_size);
+  if (!form.is_whole()) {
+    // Both put something above the whole formula, where the template stands.
+    options.linear_scaling = false;
+    if (options.weights[index_of(MutationKind::backsolve)] > 0) {
+      throw_bad_input("backsolve replaces what a template holds", "mutation_weights",
+                      "leave backsolve at 0, or the template empty");
+    }
+  }
   return options;
 }
 
-ScoreRule rule_of(const Options& options, const Rows& rows, const OperatorSet& operators) {
+ScoreRule rule_of(const Options& options, const Form& form, const Rows& rows,
+                  const OperatorSet& operators) {
   const bool native = options.profile == Profile::native;
   return {loss_norm(rows, native ? 0.0 : 0.01), options.parsimony,
-          options.evidence_cost ? rows.size() : 0, operators.allows(Op::pow)};
+          options.evidence_cost ? rows.size() : 0,
+          operators.allows(Op::pow) && !form.has_fixed_exponent()};
 }
 
 class Search {
  public:
-  Search(const Options& options, FitContext& context, const Rows& all, const Rows& sample)
+  Search(const Options& options, const Form& form, FitContext& context, const Rows& all,
+         const Rows& sample)
       : options_(options),
         context_(context),
         all_(all),
         rows_(sample),
-        validator_(options, context.operators, context.data.inputs),
-        library_(make_term_library(rows_, context.operators)),
+        validator_(options, context.operators, context.data.inputs, form),
+        libraries_(make_term_libraries(form, rows_, context.operators)),
         shared_{options_, context.operators, validator_,
-                rows_,    library_,          rule_of(options, rows_, context.operators)},
+                rows_,    libraries_,        rule_of(options, form, rows_, context.operators)},
         hall_(options.max_size),
         frequencies_(options.max_size) {}
 
   FitResult run();
 
  private:
+  void refuse_what_cannot_start() const;
   void start();
   void run_epoch(int epoch);
   void meet(int epoch);
@@ -90,7 +102,7 @@ class Search {
   const Rows& all_;
   const Rows& rows_;
   Validator validator_;
-  TermLibrary library_;
+  TermLibraries libraries_;
   Shared shared_;
   std::vector<std::unique_ptr<Island>> islands_;
   HallOfFame hall_;
@@ -119,6 +131,18 @@ void Search::on_all_islands(Work work) {
   for (const Budget& share : shares) context_.budget.settle(share);
 }
 
+// The template with numbers for its parts is the smallest formula there is.
+void Search::refuse_what_cannot_start() const {
+  const Form& form = validator_.form();
+  if (form.is_whole()) return;
+  const Expression least = form.assembled([](std::size_t) { return Expression::constant(0); });
+  if (validator_.admits(least, options_.max_size)) return;
+  throw_bad_input(
+      fmt::format("no formula of the template is allowed: alone it has size {} and {} levels",
+                  validator_.size(least), least.depth()),
+      "template", "raise max_size or max_depth, or look at units and part_sizes");
+}
+
 void Search::start() {
   for (int i = 0; i < options_.populations; ++i) {
     islands_.push_back(std::make_unique<Island>(shared_));
@@ -138,11 +162,15 @@ void Search::offer_guesses() {
   std::string_view rest = options_.guesses;
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find(';'), rest.size());
-    Expression guess = parse(rest.substr(0, end), names);
+    std::optional<Expression> guess = validator_.form().read(parse(rest.substr(0, end), names));
+    if (!guess) {
+      throw_bad_input(fmt::format("'{}' has not the form of the template", rest.substr(0, end)),
+                      "guesses", "write it as the template with its parts put in");
+    }
     rest.remove_prefix(std::min(end + 1, rest.size()));
-    const auto loss = scorer.fit(guess, rows_, 30, context_.budget);
-    if (!loss || !validator_.admits(guess, options_.max_size)) continue;
-    guesses_.push_back(scorer.member_of(std::move(guess), *loss));
+    const auto loss = scorer.fit(*guess, rows_, 30, context_.budget);
+    if (!loss || !validator_.admits(*guess, options_.max_size)) continue;
+    guesses_.push_back(scorer.member_of(std::move(*guess), *loss));
     hall_.offer(guesses_.back());
   }
 }
@@ -204,6 +232,7 @@ bool Search::has_converged() {
 }
 
 FitResult Search::run() {
+  refuse_what_cannot_start();
   start();
   report();
   for (int epoch = 0; epoch < options_.iterations; ++epoch) {
@@ -216,22 +245,18 @@ FitResult Search::run() {
     if (context_.budget.spent() == before) break;
     if (has_converged()) break;
   }
-  const TermLibrary* library = &library_;
-  TermLibrary full_library;
-  if (&all_ != &rows_) {
-    full_library = make_term_library(all_, context_.operators);
-    library = &full_library;
-  }
-  Climber climber(options_, context_.operators, validator_, all_, *library, shared_.rule);
+  const Form& form = validator_.form();
+  if (&all_ != &rows_) libraries_ = make_term_libraries(form, all_, context_.operators);
+  Climber climber(options_, context_.operators, validator_, all_, libraries_, shared_.rule);
   const InputBox box = input_box(context_.data.inputs);
   std::function<bool(const Expression&)> admitted;
   if (options_.safe || context_.operators.proved_free_only()) {
-    admitted = [&box](const Expression& formula) {
-      return prove_free(formula, box).verdict == Verdict::proved_free;
+    admitted = [&](const Expression& formula) {
+      return prove_free(form.written_out(formula), box).verdict == Verdict::proved_free;
     };
   }
   const std::vector<Candidate> front =
-      refined_front(climber, options_, all_, hall_.front(), admitted,
+      refined_front(climber, options_, form, all_, hall_.front(), admitted,
                     context_.random.split("refine"), context_.budget);
   return result_of(front, box);
 }
@@ -257,7 +282,7 @@ FitResult Search::result_of(const std::vector<Candidate>& front, const InputBox&
   std::vector<std::size_t> places;
   for (const Candidate& candidate : front) {
     places.push_back(result.front.size());
-    result.front.push_back(candidate.formula);
+    result.front.push_back(validator_.form().written_out(candidate.formula));
     points.push_back(candidate.point);
   }
   // The formula the method stands for must not be wrong between the training points: the next
@@ -279,29 +304,43 @@ FitResult Search::result_of(const std::vector<Candidate>& front, const InputBox&
   return result;
 }
 
-FitResult constant_result(const Rows& rows, StopReason reason, std::string note) {
+// Without a search: the mean, or the template with nothing in it.
+FitResult unsearched(const Form& form, const Rows& rows, std::string note) {
   double mean = 0;
   for (const double value : rows.target) mean += value / static_cast<double>(rows.size());
-  return {{Expression::constant(mean)}, 0, reason, std::move(note)};
+  if (!form.is_whole()) mean = 0;
+  const auto part = [mean](std::size_t) { return Expression::constant(mean); };
+  return {{form.written_out(form.assembled(part))}, 0, StopReason::budget, std::move(note)};
+}
+
+Form form_of(const Options& options, std::span<const Input> inputs) {
+  if (options.form.empty()) return Form(inputs.size());
+  std::vector<std::string> names;
+  for (const Input& input : inputs) names.push_back(input.name);
+  return {options.form, names};
 }
 
 }  // namespace
 
 FitResult search(const Options& given, FitContext& context) {
-  const Rows all = complete_rows(context.data);
+  const Form form = form_of(given, context.data.inputs);
+  const Rows all = form.extended(complete_rows(context.data));
   if (all.size() == 0) return FitResult::unsupported("no row has a finite target and inputs");
-  if (std::ranges::adjacent_find(all.target, std::ranges::not_equal_to{}) == all.target.end()) {
+  if (form.is_whole() &&
+      std::ranges::adjacent_find(all.target, std::ranges::not_equal_to{}) == all.target.end()) {
     return {{Expression::constant(all.target[0])}, 0, StopReason::converged, "constant target"};
   }
   if (context.budget.remaining() == 0 || context.operators.operators().empty()) {
-    return constant_result(all, StopReason::budget, "no budget");
+    return unsearched(form, all, "no budget");
   }
-  const Options options = settled(given, all.size());
+  const Options options = settled(given, form, all.size());
   const auto wanted = static_cast<std::size_t>(options.search_rows);
-  if (wanted == 0 || wanted >= all.size()) return Search(options, context, all, all).run();
+  if (wanted == 0 || wanted >= all.size()) {
+    return Search(options, form, context, all, all).run();
+  }
   RandomStream random = context.random.split("sample");
   const Rows sample = draw_sample(all, wanted, random);
-  return Search(options, context, all, sample).run();
+  return Search(options, form, context, all, sample).run();
 }
 
 }  // namespace tribench::pysr

@@ -123,4 +123,18 @@ TermLibrary make_term_library(const Rows& rows, const OperatorSet& operators) {
   return Builder(rows, operators).build();
 }
 
+TermLibraries make_term_libraries(const Form& form, const Rows& rows,
+                                  const OperatorSet& operators) {
+  TermLibraries libraries;
+  for (std::size_t part = 0; part < form.parts(); ++part) {
+    std::vector<std::vector<double>> arguments;
+    for (const std::size_t column : form.arguments(part)) {
+      arguments.push_back(rows.columns[column]);
+    }
+    libraries.push_back(make_term_library({std::move(arguments), rows.target}, operators));
+    for (Term& term : libraries.back().terms) term.formula = form.over_columns(term.formula, part);
+  }
+  return libraries;
+}
+
 }  // namespace tribench::pysr

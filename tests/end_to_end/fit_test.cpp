@@ -78,6 +78,9 @@ TEST_F(FitTest, RefusesBadInputWithPlaceAndMend) {
   EXPECT_THAT(refused({"--target", "friction_torque_Nm", "--inputs", "velocity_rad_s", "--method",
                        "linear", "--operators", "papr"}),
               HasSubstr("did you mean paper?"));
+  EXPECT_THAT(refused({"--target", "friction_torque_Nm", "--inputs", "velocity_rad_s", "--method",
+                       "pysr", "--parameter", "template=f(velocity_rad)"}),
+              HasSubstr("template, character 3: 'velocity_rad' is not an input; did you mean"));
   EXPECT_EQ(fit({"--target", "x", "--inputs", "y", "--method", "linear", "--seed", "-1"}).status,
             2);
 }

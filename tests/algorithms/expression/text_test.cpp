@@ -98,6 +98,21 @@ TEST(Parse, RefusesEndlessNestingButAcceptsTheLimit) {
   EXPECT_THROW(parse(std::string(100000, '-') + "v", kNames), Error);
 }
 
+TEST(Parse, LeavesHolesForWhatIsCalledAndNoFunction) {
+  std::vector<std::string> names = {"v", "g"};
+  std::vector<Hole> holes;
+  const Expression formula = parse_with_holes("v*f(abs(v), g + 1)^2 - p()*exp(g)", names, holes);
+  ASSERT_EQ(holes.size(), 2u);
+  EXPECT_EQ(holes[0].name, "f");
+  EXPECT_EQ(holes[0].arguments,
+            (std::vector<Expression>{parse("abs(v)", names), parse("g + 1", names)}));
+  EXPECT_TRUE(holes[1].arguments.empty());
+  names.insert(names.end(), {"f", "p"});
+  EXPECT_EQ(print(formula, names), "v*f^2 - p*exp(g)");
+  EXPECT_THROW(parse_with_holes("f(v) + f(g)", std::vector<std::string>{"v", "g"}, holes), Error);
+  EXPECT_THROW(parse("f(v)", std::vector<std::string>{"v"}), Error);
+}
+
 TEST(Parse, CollectsNamesInOrderOfAppearance) {
   std::vector<std::string> names;
   parse_collecting_names("b + a*b", names);
