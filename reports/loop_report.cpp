@@ -22,6 +22,12 @@ std::string loop_html(const nlohmann::json& loop, const std::string& title) {
       {"title", heading},
       {"verdict", verdict_sentence(loop)},
       {"sentences", std::move(sentences)},
+      {"lists",
+       {{{"title", "What these data cannot show"}, {"lines", untestable_sentences(loop)}},
+        {{"title", "What these data cannot tell apart"}, {"lines", aliased_sentences(loop)}},
+        {{"title", "Bursts, left out of every fit and no friction"},
+         {"lines", event_sentences(loop)}},
+        {{"title", "Remarks"}, {"lines", remarks(loop)}}}},
       {"loop", loop.is_object() ? loop : nlohmann::json::object()}};
   return html_page(heading, PageKind::loop, data);
 }

@@ -75,36 +75,40 @@ std::string candidates_of(const json& loop) {
   return "\n## What was considered\n\n" + table.text();
 }
 
-std::string untestable_of(const json& loop) {
+std::string list_of(const char* title, const std::vector<std::string>& lines) {
   std::string text;
-  for (const json& item : items_of(loop, "untestable")) {
-    text += fmt::format("- {}: {}", family_words(text_of(item, "family")), text_of(item, "reason"));
-    const std::string ask = text_of(item, "ask");
-    text += ask.empty() ? ".\n" : fmt::format(". To test it: {}.\n", movement_words(ask));
-  }
-  return text.empty() ? text : "\n## What these data cannot show\n\n" + text;
+  for (const std::string& line : lines) text += fmt::format("- {}\n", line);
+  return text.empty() ? text : fmt::format("\n## {}\n\n{}", title, text);
 }
 
-std::string events_of(const json& loop) {
-  std::string text;
-  for (const json& event : items_of(loop, "events")) {
-    text += fmt::format("- movement {}, {} to {} s, peak {}\n", text_of(event, "movement"),
-                        figure(number_of(event, "t0")), figure(number_of(event, "t1")),
-                        figure(number_of(event, "peak")));
+std::string next_movements_of(const json& loop) {
+  MarkdownTable table({{"order", Align::right},
+                       {"movement"},
+                       {"velocity", Align::right},
+                       {"from", Align::right},
+                       {"to", Align::right},
+                       {"load", Align::right},
+                       {"tells apart"},
+                       {"by", Align::right}});
+  std::size_t order = 0;
+  for (const json& one : items_of(loop, "next_movements")) {
+    const auto place = [&](const char* key) { return figure(number_of(one, key)); };
+    table.add({std::to_string(++order), text_of(one, "kind"), place("velocity"), place("from"),
+               place("to"), place("load_factor"), text_of(one, "between"), place("separation")});
   }
-  return text.empty() ? text
-                      : "\n## Events left out of every fit\n\nBursts (contact, collision, "
-                        "glitch), never counted as friction.\n\n" +
-                            text;
+  if (table.empty()) return {};
+  return "\n## Next movements\n\nBest first; `load` is the factor on the gravity torque (another "
+         "payload or posture), `by` the mean squared difference of the two explanations over the "
+         "noise's variance. `next_movements.csv` has durations and tones too.\n\n" +
+         table.text();
 }
 
 std::string movements_of(const json& loop) {
   const json pictures = member_of(loop, "pictures");
-  MarkdownTable table(
-      {{"movement"}, {"held out"}, {"MAE before", Align::right}, {"MAE after", Align::right}});
+  MarkdownTable table({{"movement"}, {"MAE before", Align::right}, {"MAE after", Align::right}});
   for (const json& movement : items_of(pictures, "movements")) {
     if (!flag_of(movement, "test")) continue;
-    table.add({text_of(movement, "name"), "yes", figure(number_of(movement, "mae_before")),
+    table.add({text_of(movement, "name"), figure(number_of(movement, "mae_before")),
                figure(number_of(movement, "mae_after"))});
   }
   return table.empty() ? std::string() : "\n## Held-out movements\n\n" + table.text();
@@ -122,7 +126,11 @@ std::string loop_markdown(const json& loop, const std::string& title) {
   if (!leftover.empty()) text += fmt::format("- {}\n", leftover);
   text += "\n## Error before and after\n\n" + errors_of(loop);
   if (!effects.empty()) text += "\n## The effects\n\n" + effects_table(effects);
-  text += candidates_of(loop) + untestable_of(loop) + events_of(loop) + movements_of(loop);
+  text += list_of("What these data cannot show", untestable_sentences(loop));
+  text += list_of("What these data cannot tell apart", aliased_sentences(loop));
+  text += list_of("Bursts, left out of every fit and no friction", event_sentences(loop));
+  text += list_of("Remarks", remarks(loop));
+  text += next_movements_of(loop) + candidates_of(loop) + movements_of(loop);
   const std::string formula = text_of(loop, "formula");
   if (!formula.empty()) text += fmt::format("\n## The model now\n\n    {}\n", formula);
   return text;

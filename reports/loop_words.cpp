@@ -174,17 +174,26 @@ std::string verdict_sentence(const json& loop) {
   if (verdict == "NONE" && loop.contains("candidates") && items_of(loop, "candidates").empty()) {
     return "Nothing is claimed: these data can test none of the effects.";
   }
-  if (verdict == "NONE") return "Nothing is missing: the residual shows no structure.";
+  if (verdict == "NONE") {
+    return items_of(loop, "untestable").empty()
+               ? "Nothing is missing: the residual shows no structure."
+               : "Nothing is missing that these data can show: the residual has no structure.";
+  }
+  const json error = member_of(loop, "error");
+  const bool denied = error.contains("confirmed") && !flag_of(error, "confirmed");
+  const std::string doubt = denied ? " The held-out movements do not confirm it." : "";
   if (verdict == "EFFECTS") {
-    return count == 1 ? "One effect was missing and has been added."
-                      : fmt::format("{} effects were missing and have been added.", count);
+    return (count == 1 ? "One effect was missing and has been added."
+                       : fmt::format("{} effects were missing and have been added.", count)) +
+           doubt;
   }
   if (verdict == "UNKNOWN") {
     return count == 0 ? "Something is missing that is none of the known effects."
                       : fmt::format(
                             "{} added, and something is still missing that is none of the "
                             "known effects.",
-                            count == 1 ? "One effect was" : fmt::format("{} effects were", count));
+                            count == 1 ? "One effect was" : fmt::format("{} effects were", count)) +
+                            doubt;
   }
   return verdict.empty() ? "No verdict was reached." : fmt::format("Verdict: {}.", verdict);
 }
@@ -198,8 +207,14 @@ std::string effect_sentence(const json& effect, const json& loop) {
   if (!parameters.empty()) text += fmt::format(", with {} at 95 %", parameters);
   const double p = number_of(effect, "p_adj");
   if (!std::isnan(p)) text += fmt::format("; p = {} after correction for the search", figure(p, 2));
-  if (flag_of(effect, "provisional")) {
+  const std::string objection = text_of(effect, "not_physical");
+  if (!objection.empty()) {
+    text += fmt::format("; not physical ({}), so that it stands for something else", objection);
+  } else if (flag_of(effect, "provisional")) {
     text += "; provisional, because it shares an input with what is still unexplained";
+  }
+  for (const json& note : items_of(effect, "notes")) {
+    if (note.is_string()) text += "; " + note.get<std::string>();
   }
   return text + '.' + alias_clause(effect) + request_clause(effect);
 }
@@ -212,8 +227,63 @@ std::string leftover_sentence(const json& loop) {
   for (const json& input : inputs) {
     if (input.is_string()) names.push_back(input.get<std::string>());
   }
+  const double p = number_of(leftover, "p");
+  // An effect whose parameters are not physical fits there, and so leaves nothing to be tested.
+  if (p > number_of(member_of(loop, "alpha"), "gen")) {
+    return fmt::format(
+        "What is missing depends on **{}**: an effect fits there that cannot be "
+        "physical.",
+        fmt::join(names, " and "));
+  }
   return fmt::format("What is still unexplained depends on **{}** (p = {}).",
-                     fmt::join(names, " and "), figure(number_of(leftover, "p"), 2));
+                     fmt::join(names, " and "), figure(p, 2));
+}
+
+std::vector<std::string> untestable_sentences(const json& loop) {
+  std::vector<std::string> all;
+  for (const json& item : items_of(loop, "untestable")) {
+    const std::string ask = text_of(item, "ask");
+    all.push_back(
+        fmt::format("{}: {}.{}", family_words(text_of(item, "family")), text_of(item, "reason"),
+                    ask.empty() ? "" : fmt::format(" To test it: {}.", movement_words(ask))));
+  }
+  return all;
+}
+
+std::vector<std::string> aliased_sentences(const json& loop) {
+  std::vector<std::string> all;
+  for (const json& item : items_of(loop, "aliased")) {
+    const json families = items_of(item, "families");
+    if (families.size() != 2 || !families[0].is_string() || !families[1].is_string()) continue;
+    const std::string ask = text_of(item, "separate_by");
+    all.push_back(fmt::format(
+        "{} and {} (correlation {}).{}", family_words(families[0].get<std::string>()),
+        family_words(families[1].get<std::string>()), figure(number_of(item, "corr")),
+        ask.empty() ? "" : fmt::format(" To tell them apart: {}.", movement_words(ask))));
+  }
+  return all;
+}
+
+std::vector<std::string> event_sentences(const json& loop) {
+  std::vector<std::string> all;
+  for (const json& event : items_of(loop, "events")) {
+    const std::string name = text_of(event, "movement_name");
+    all.push_back(fmt::format("movement {}, {} to {} s, peak {} {}",
+                              name.empty() ? text_of(event, "movement") : name,
+                              figure(number_of(event, "t0")), figure(number_of(event, "t1")),
+                              figure(number_of(event, "peak")), unit_of(loop)));
+  }
+  return all;
+}
+
+std::vector<std::string> remarks(const json& loop) {
+  std::vector<std::string> all;
+  for (const char* key : {"warnings", "notes"}) {
+    for (const json& remark : items_of(loop, key)) {
+      if (remark.is_string()) all.push_back(remark.get<std::string>() + '.');
+    }
+  }
+  return all;
 }
 
 }  // namespace tribench

@@ -9,6 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tribench {
 
@@ -38,5 +39,12 @@ std::string verdict_sentence(const nlohmann::json& loop);
 std::string effect_sentence(const nlohmann::json& effect, const nlohmann::json& loop);
 // Empty where nothing was left over.
 std::string leftover_sentence(const nlohmann::json& loop);
+
+// What the data cannot show, cannot tell apart, and the bursts left out: one line each.
+std::vector<std::string> untestable_sentences(const nlohmann::json& loop);
+std::vector<std::string> aliased_sentences(const nlohmann::json& loop);
+std::vector<std::string> event_sentences(const nlohmann::json& loop);
+// The warnings about the data, then the notes of the search.
+std::vector<std::string> remarks(const nlohmann::json& loop);
 
 }  // namespace tribench

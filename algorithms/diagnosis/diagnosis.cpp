@@ -74,7 +74,7 @@ void apply_vetoes(Diagnosis& diagnosis, const Observations& train) {
     const std::string objection = physical_objection(finding, *family);
     if (objection.empty()) continue;
     finding.provisional = true;
-    finding.notes.push_back("not physical: " + objection);
+    finding.objection = objection;
     diagnosis.notes.push_back(
         fmt::format("'{}' fits but is not physical ({}): something else is missing", finding.family,
                     objection));

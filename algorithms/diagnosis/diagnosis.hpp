@@ -70,7 +70,8 @@ struct EffectFinding {
   std::vector<AliasFinding> aliases;
   std::vector<std::string> separate_by;
   bool few_movements = false;  // carried by few movements: ask for more of them
-  bool provisional = false;    // shares an input with the leftover
+  bool provisional = false;    // shares an input with the leftover, or is not physical
+  std::string objection;       // why it is not physical; empty where it is
   std::vector<std::string> notes;
 };
 

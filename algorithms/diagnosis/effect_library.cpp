@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "algorithms/expression/text.hpp"
 
@@ -122,6 +123,23 @@ void expand(const AtomTemplate& source, std::size_t family, const Observations& 
   }
 }
 
+// A signal's name for those who have not read a formula yet.
+std::string signal_words(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kWords = {{
+      {"v", "velocity"},
+      {"a", "acceleration"},
+      {"q", "position"},
+      {"g", "gravity torque"},
+      {"T", "temperature"},
+      {"t", "time through the campaign"},
+      {"d", "reversal"},
+      {"v2", "other joint's velocity"},
+      {"a2", "other joint's acceleration"},
+  }};
+  const auto known = std::ranges::find(kWords, name, [](const auto& pair) { return pair.first; });
+  return std::string(known == kWords.end() ? name : known->second);
+}
+
 }  // namespace
 
 double signal_scale(const Observations& data, std::string_view name) {
@@ -158,7 +176,7 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
   missing.clear();
   std::vector<Atom> atoms;
   if (family.angular && is_linear_axis(data)) {
-    missing = {"an angle: the position is in m"};
+    missing = {"no angle: the position is in m"};
     return atoms;
   }
   const bool rigid_load =
@@ -169,16 +187,16 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
     for (const std::string& name : variables_of(source)) {
       const auto withheld = std::ranges::find(data.withheld, name, &WithheldSignal::name);
       if (withheld != data.withheld.end()) {
-        lacking.push_back(fmt::format("{} ({})", name, withheld->why));
+        lacking.push_back(fmt::format("{}: {}", signal_words(name), withheld->why));
       } else if (data.find(name) == nullptr) {
-        lacking.push_back(name);
+        lacking.push_back("no " + signal_words(name));
       }
     }
     if (lacking.empty()) {
       std::vector<double> values;
       expand(source, number, data, gear_ratios, values, atoms);
       const bool faded = std::ranges::count(source.shapes, true, &ShapeTemplate::recorded) > 0;
-      if (atoms.empty() && faded) missing = {"slow rows"};
+      if (atoms.empty() && faded) missing = {"no slow rows"};
     } else if (missing.empty() || lacking.size() < missing.size()) {
       missing = lacking;
     }

@@ -112,7 +112,8 @@ struct Atom {
 std::vector<double> gear_ratios_for(const Observations& data, std::span<const double> given);
 
 // All atoms of a family that these data have the signals for; empty where none.
-// missing: receives the names of the signals that are not there (of the least demanding atom).
+// missing: receives what is not there (of the least demanding atom), in words: "no temperature",
+// "temperature: it is constant".
 std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
                               const Observations& data, std::span<const double> gear_ratios,
                               std::vector<std::string>& missing);

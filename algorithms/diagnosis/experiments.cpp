@@ -12,7 +12,9 @@
 namespace tribench::loop {
 namespace {
 
-constexpr std::size_t kRows = 60;
+constexpr std::size_t kRows = 600;     // enough for what happens just after a reversal
+constexpr double kPeriods = 3;         // of the first tone
+constexpr double kLongest = 120;       // s; nobody records a longer one by the dozen
 constexpr double kTwoToneRatio = 1.9;  // of the second tone's frequency to the first's
 
 struct Rival {
@@ -83,7 +85,7 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
   Observations out;
   out.movement_names = {"proposed"};
   const double stroke = movement.to - movement.from;
-  const double rate = std::abs(movement.velocity) / std::max(1e-12, 0.5 * std::abs(stroke));
+  const double middle = 0.5 * (movement.from + movement.to);
   for (const Signal& signal : data.signals) {
     Signal copy{signal.name, signal.channel, signal.unit, signal.role, signal.recipe, {}};
     copy.values.assign(kRows, middle_of(signal));
@@ -95,25 +97,27 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
     }
   };
   double distance = 0;
-  double before = 0;
+  double v_before = 0;
+  double q_before = movement.kind == "two_tone" ? middle : movement.from;
   for (std::size_t i = 0; i < kRows; ++i) {
     const double part = (static_cast<double>(i) + 0.5) / kRows;
     double v = movement.velocity;
     double a = 0;
-    double q = v > 0 ? movement.from + stroke * part : movement.to - stroke * part;
+    double q = movement.from + stroke * part;
     if (movement.kind == "two_tone") {
-      const double w = rate;
-      const double time = 2 * std::numbers::pi / w * part * 3;
-      const double second = kTwoToneRatio * w * time;
-      v = movement.velocity * (0.6 * std::cos(w * time) + 0.4 * std::cos(second));
-      a = -movement.velocity * w *
-          (0.6 * std::sin(w * time) + 0.4 * kTwoToneRatio * std::sin(second));
-      q = 0.5 * (movement.from + movement.to) +
-          0.5 * stroke * (0.6 * std::sin(w * time) + 0.4 / kTwoToneRatio * std::sin(second));
+      v = 0;
+      q = middle;
+      for (const Tone& tone : movement.tones) {
+        const double w = 2 * std::numbers::pi * tone.frequency;
+        const double angle = w * movement.duration * part;
+        q += tone.amplitude * std::sin(angle);
+        v += tone.amplitude * w * std::cos(angle);
+        a -= tone.amplitude * w * w * std::sin(angle);
+      }
     }
-    const double step = std::abs(stroke) / kRows;
-    distance = v * before < 0 ? 0 : distance + step;
-    before = v;
+    distance = v * v_before < 0 ? 0 : distance + std::abs(q - q_before);
+    v_before = v;
+    q_before = q;
     const double g =
         movement.load_factor * (gravity[0] * std::sin(q) + gravity[1] * std::cos(q)) + gravity[2];
     const double sign = v > 0 ? 1 : -1;
@@ -121,7 +125,7 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
     set("sgn_v", i, sign);
     set("a", i, a);
     set("q", i, q);
-    set("d", i, distance);
+    if (std::isfinite(distance)) set("d", i, distance);
     if (gravity.norm() > 0) {
       set("g", i, g);
       set("sgn_g", i, g > 0 ? 1 : -1);
@@ -131,6 +135,33 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
   out.movement.assign(kRows, 0);
   out.time.assign(kRows, 0);
   return out;
+}
+
+ProposedMovement constant(double velocity, double low, double high, double load_factor) {
+  ProposedMovement movement;
+  movement.kind = "constant";
+  movement.velocity = velocity;
+  movement.from = velocity > 0 ? low : high;
+  movement.to = velocity > 0 ? high : low;
+  movement.load_factor = load_factor;
+  movement.duration = std::abs((high - low) / velocity);
+  return movement;
+}
+
+// Both tones at their fastest at the start, where the speed is `peak`.
+ProposedMovement two_tone(double peak, double low, double high, double load_factor) {
+  ProposedMovement movement;
+  movement.kind = "two_tone";
+  movement.velocity = peak;
+  movement.from = low;
+  movement.to = high;
+  movement.load_factor = load_factor;
+  const double half = 0.5 * (high - low);
+  const double frequency = peak / half / (2 * std::numbers::pi);
+  movement.tones = {
+      {{0.6 * half, frequency}, {0.4 / kTwoToneRatio * half, kTwoToneRatio * frequency}}};
+  movement.duration = kPeriods / frequency;
+  return movement;
 }
 
 std::vector<ProposedMovement> candidates(const Observations& data) {
@@ -145,17 +176,23 @@ std::vector<ProposedMovement> candidates(const Observations& data) {
     high = range.max;
   }
   std::vector<ProposedMovement> all;
+  const auto add = [&](const ProposedMovement& movement) {
+    if (!(movement.duration > kLongest)) all.push_back(movement);
+  };
   const double centre = 0.5 * (low + high);
+  const double narrow = 0.0625 * (high - low);
   const bool loaded = data.find("g") != nullptr;
   for (const double part : {0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0}) {
     for (const double factor : {1.0, 1.5, 0.5}) {
       if (!loaded && factor != 1.0) continue;
       for (const double direction : {1.0, -1.0}) {
-        all.push_back({"constant", direction * part * top, low, high, factor, 0, {}});
-        all.push_back({"constant", direction * part * top, low, centre, factor, 0, {}});
+        add(constant(direction * part * top, low, high, factor));
+        add(constant(direction * part * top, low, centre, factor));
+        add(constant(direction * part * top, centre - narrow, centre + narrow, factor));
       }
       if (data.find("a") != nullptr && q != nullptr) {
-        all.push_back({"two_tone", part * top, low, high, factor, 0, {}});
+        add(two_tone(part * top, low, high, factor));
+        add(two_tone(part * top, centre - narrow, centre + narrow, factor));
       }
     }
   }
@@ -208,13 +245,31 @@ std::vector<ProposedMovement> propose_movements(const Diagnosis& diagnosis,
   return chosen;
 }
 
-std::string movements_csv(const std::vector<ProposedMovement>& movements) {
-  std::string text = "order,kind,velocity,from,to,load_factor,separation,between\n";
+std::string movements_csv(const std::vector<ProposedMovement>& movements,
+                          const Observations& data) {
+  // As the project's files name their columns: rad/s is _rad_s.
+  const auto suffix = [&](std::string_view signal) {
+    const Signal* found = data.find(signal);
+    std::string text = found == nullptr || found->unit.empty() ? "" : "_" + found->unit;
+    std::ranges::replace(text, '/', '_');
+    std::erase(text, '^');
+    return text;
+  };
+  const std::string q = suffix("q");
+  std::string text = fmt::format(
+      "order,kind,velocity{0},from{1},to{1},load_factor,duration_s,tone1{1},tone1_Hz,tone2{1},"
+      "tone2_Hz,separation,between\n",
+      suffix("v"), q);
+  const auto place = [](double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : ""; };
   for (std::size_t i = 0; i < movements.size(); ++i) {
     const ProposedMovement& m = movements[i];
-    const auto place = [](double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : ""; };
-    text += fmt::format("{},{},{:.6g},{},{},{:.3g},{:.4g},{}\n", i + 1, m.kind, m.velocity,
-                        place(m.from), place(m.to), m.load_factor, m.separation, m.between);
+    text += fmt::format("{},{},{:.6g},{},{},{:.3g},{}", i + 1, m.kind, m.velocity, place(m.from),
+                        place(m.to), m.load_factor, place(m.duration));
+    for (const Tone& tone : m.tones) {
+      text += m.kind == "two_tone" ? fmt::format(",{:.6g},{:.6g}", tone.amplitude, tone.frequency)
+                                   : ",,";
+    }
+    text += fmt::format(",{:.4g},{}\n", m.separation, m.between);
   }
   return text;
 }

@@ -45,6 +45,7 @@ Json effect_json(const EffectFinding& effect) {
                {"alias", Json::array()},
                {"separate_by", effect.separate_by},
                {"provisional", effect.provisional},
+               {"not_physical", effect.objection},
                {"few_movements", effect.few_movements},
                {"notes", effect.notes}};
   for (const ParameterFinding& p : effect.parameters) json["params"].push_back(parameter_json(p));
@@ -127,6 +128,14 @@ Json lists_json(const Diagnosis& diagnosis) {
   return lists;
 }
 
+// Amplitude and frequency in Hz; none of a movement at constant speed.
+Json tones_json(const ProposedMovement& movement) {
+  Json tones = Json::array();
+  if (movement.kind != "two_tone") return tones;
+  for (const Tone& tone : movement.tones) tones.push_back({tone.amplitude, tone.frequency});
+  return tones;
+}
+
 void add_extras(Json& json, const LoopExtras& extras) {
   json["learned"] = Json::array();
   for (const LearnedEffect& one : extras.learned) {
@@ -145,6 +154,8 @@ void add_extras(Json& json, const LoopExtras& extras) {
                                       {"from", number(one.from)},
                                       {"to", number(one.to)},
                                       {"load_factor", number(one.load_factor)},
+                                      {"duration_s", number(one.duration)},
+                                      {"tones", tones_json(one)},
                                       {"separation", number(one.separation)},
                                       {"between", one.between}});
   }

@@ -33,7 +33,8 @@ void drop_constant_signals(Observations& data) {
     const auto [low, high] = std::ranges::minmax(signal.values);
     const double scale = std::max(std::abs(low), std::abs(high));
     if (high - low > 1e-12 * scale) continue;
-    if (signal.recipe.empty() && signal.role != Role::velocity_sign) {
+    const bool sign = name.starts_with("sgn_");  // of a channel that was named already
+    if (signal.recipe.empty() && !sign) {
       data.warnings.push_back(
           fmt::format("the channel '{}' is constant ({}) and left out", signal.channel, low));
     }
@@ -135,9 +136,9 @@ void settle_directions(Observations& data) {
     keep[i] = (v[i] > 0) == (forward > backward) ? 1 : 0;
   data = data.select(keep);
   data.warnings.push_back(fmt::format(
-      "all movement is in one direction ({} rows the other way are left out): direction asymmetry "
-      "and whatever needs both directions cannot be told from the base",
-      fewer));
+      "all movement is in one direction{}: direction asymmetry and whatever needs both directions "
+      "cannot be told from the base",
+      fewer == 0 ? "" : fmt::format(" ({} rows the other way are left out)", fewer)));
 }
 
 Observations steady_means(const Observations& data) {

@@ -69,8 +69,7 @@ void Search::instantiate_library() {
       library_.push_back(std::move(atom));
     }
     if (!missing.empty()) {
-      untestable.push_back({families_[f].name, fmt::format("no {}", fmt::join(missing, ", no ")), 0,
-                            0,
+      untestable.push_back({families_[f].name, fmt::format("{}", fmt::join(missing, ", ")), 0, 0,
                             families_[f].separate_by.empty() ? "" : families_[f].separate_by[0]});
     }
   }

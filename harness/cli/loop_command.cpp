@@ -191,7 +191,11 @@ std::string one_line(const loop::EffectFinding& effect, const std::string& unit)
   for (const loop::ParameterFinding& p : effect.parameters) {
     text += fmt::format("\n       {} = {:.4g} ({:.4g} .. {:.4g})", p.name, p.value, p.low, p.high);
   }
-  if (effect.provisional) text += "\n       provisional: it shares an input with what is left over";
+  if (!effect.objection.empty()) {
+    text += "\n       not physical: " + effect.objection;
+  } else if (effect.provisional) {
+    text += "\n       provisional: it shares an input with what is left over";
+  }
   for (const std::string& note : effect.notes) text += "\n       " + note;
   return text;
 }
@@ -237,13 +241,21 @@ std::string title_of(const LoopArguments& arguments) {
   return title;
 }
 
-void print_extras(const loop::LoopExtras& extras) {
+void print_extras(const LoopArguments& arguments, const loop::LoopExtras& extras,
+                  const loop::Observations& data) {
   for (const loop::LearnedEffect& one : extras.learned) {
     fmt::print("  learned ({}; p = {:.2g} on {} movements it was not found on): {}\n",
                one.accepted ? "accepted" : "not confirmed", one.p, one.tested_on, one.formula);
   }
+  const bool saved = std::ranges::any_of(extras.learned, &loop::LearnedEffect::accepted);
+  if (!arguments.save_effect.empty() && !saved) {
+    fmt::print("  no effect was learned: {} is not written\n", arguments.save_effect);
+  }
   if (!extras.suggestions.empty()) {
-    fmt::print("  next movements:\n{}", loop::movements_csv(extras.suggestions));
+    fmt::print("  next movements:\n{}", loop::movements_csv(extras.suggestions, data));
+  } else if (arguments.suggest > 0) {
+    fmt::print(
+        "  no next movement: no explanations are left that a movement of this axis tells apart\n");
   }
 }
 
@@ -292,6 +304,13 @@ loop::Observations read_observations(const LoopArguments& arguments) {
 }
 
 void close_loop(const LoopArguments& arguments, const Registry& registry) {
+  // Before any work: a name that is known to nobody, and a file that nothing would be written to.
+  if (arguments.learn != "none") {
+    registry.make(arguments.learn);
+  } else if (!arguments.save_effect.empty()) {
+    throw_bad_input("there is no effect to save without --learn", "--save-effect",
+                    "name a method: --learn pysr");
+  }
   const loop::Observations data = read_observations(arguments);
   std::unique_ptr<Regressor> method;
   Budget budget(BudgetLimits{.evaluations = arguments.evaluations});
@@ -312,8 +331,10 @@ void close_loop(const LoopArguments& arguments, const Registry& registry) {
     std::filesystem::create_directories(folder);
     write_file(folder / "loop.json", json);
     write_loop_report(nlohmann::json::parse(json), title_of(arguments), folder);
-    if (arguments.suggest > 0) {
-      write_file(folder / "next_movements.csv", loop::movements_csv(extras.suggestions));
+    if (extras.suggestions.empty()) {
+      std::filesystem::remove(folder / "next_movements.csv");  // an earlier run's
+    } else {
+      write_file(folder / "next_movements.csv", loop::movements_csv(extras.suggestions, data));
     }
   }
   if (arguments.json) {
@@ -321,7 +342,7 @@ void close_loop(const LoopArguments& arguments, const Registry& registry) {
     return;
   }
   print_findings(diagnosis, data);
-  print_extras(extras);
+  print_extras(arguments, extras, data);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(LoopReport, IsByteForByteWhatWasAgreed) {
   expect_golden(loop_markdown(sample_loop(), "joint 2"), "reports/loop.md");
@@ -23,6 +24,52 @@ TEST(LoopReport, SaysPlainlyThatNothingIsMissing) {
               HasSubstr("these data can test none of the effects"));
   EXPECT_THAT(loop_markdown(json{{"verdict", "NONE"}}, "x"),
               HasSubstr("Nothing is missing: the residual shows no structure."));
+}
+
+TEST(LoopReport, DoesNotPassSilenceOfTheDataForAnAnswer) {
+  json loop = {{"verdict", "NONE"},
+               {"candidates", {{{"family", "lag"}}}},
+               {"untestable", {{{"family", "lag"}, {"reason", "no acceleration"}}}},
+               {"warnings", {"all movement is in one direction"}},
+               {"notes", {"there are 4 movements"}}};
+  const std::string text = loop_markdown(loop, "x");
+  EXPECT_THAT(text, HasSubstr("Nothing is missing that these data can show"));
+  EXPECT_THAT(text, HasSubstr("no acceleration"));
+  EXPECT_THAT(text, HasSubstr("- all movement is in one direction."));
+  EXPECT_THAT(text, HasSubstr("- there are 4 movements."));
+}
+
+TEST(LoopReport, SaysWhatSpeaksAgainstAFinding) {
+  json loop = sample_loop();
+  loop["error"]["confirmed"] = false;
+  EXPECT_THAT(loop_markdown(loop, "x"), HasSubstr("held-out movements do not confirm"));
+  loop["effects"][1]["not_physical"] = "a share of the load above 20 %";
+  loop["effects"][1]["notes"] = {"carried by few movements"};
+  loop["leftover"]["p"] = 0.7;
+  const std::string text = loop_markdown(loop, "x");
+  EXPECT_THAT(text, HasSubstr("not physical (a share of the load above 20 %)"));
+  EXPECT_THAT(text, HasSubstr("; carried by few movements."));
+  EXPECT_THAT(text, HasSubstr("an effect fits there that cannot be physical"));
+  EXPECT_THAT(text, Not(HasSubstr("p = 0.70")));
+}
+
+TEST(LoopReport, ListsWhatCannotBeToldApartBurstsAndTheNextMovements) {
+  json loop = sample_loop();
+  loop["aliased"] = {
+      {{"families", {"payload", "power_quadrant_gain"}}, {"corr", 0.999}, {"separate_by", "R3"}}};
+  loop["next_movements"] = {{{"kind", "constant"},
+                             {"velocity", 0.1},
+                             {"from", -1},
+                             {"to", 1},
+                             {"load_factor", 1.5},
+                             {"separation", 3.2},
+                             {"between", "payload | power_quadrant_gain"}}};
+  const std::string text = loop_markdown(loop, "x");
+  EXPECT_THAT(text, HasSubstr("cannot tell apart"));
+  EXPECT_THAT(text, HasSubstr("a known payload (R3)"));
+  EXPECT_THAT(text, HasSubstr("movement 17, 1.20 to 1.30 s"));
+  EXPECT_THAT(text, HasSubstr("## Next movements"));
+  EXPECT_THAT(text, HasSubstr("| constant |"));
 }
 
 TEST(LoopReport, SurvivesEveryKeyOfAnotherKind) {

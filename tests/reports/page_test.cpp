@@ -226,13 +226,16 @@ TEST(Page, OfALoopDrawsItsPictures) {
     await new Promise((done) => setTimeout(done, 300));
     const marks = {};
     for (const plot of document.querySelectorAll('.plot')) marks[plot.id] = plot.querySelectorAll('svg path').length;
-    window.answer = {ready: document.documentElement.dataset.ready, errors: window.pageErrors, marks};
+    const lists = [...document.querySelectorAll('.card li')].map((line) => line.textContent).join();
+    window.answer = {ready: document.documentElement.dataset.ready, errors: window.pageErrors, marks, lists};
   )");
   ASSERT_TRUE(answer.is_object());
   EXPECT_EQ(answer["ready"], "yes");
   EXPECT_EQ(answer["errors"], json::array());
   EXPECT_GT(answer["marks"]["residual-0"], 300);
   EXPECT_GT(answer["marks"]["movements"], 25);
+  EXPECT_THAT(answer["lists"].get<std::string>(), HasSubstr("no acceleration in the data"));
+  EXPECT_THAT(answer["lists"].get<std::string>(), HasSubstr("movement 17"));
 }
 
 TEST(Page, OfALoopSaysNothingOfFiguresThatAreNotThere) {

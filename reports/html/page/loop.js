@@ -71,6 +71,23 @@ function effectsTable() {
     {name: "evidence, nats", key: "cv_gain", number: true}, {name: "could also be", key: "alias"}], rows, {label: "effects"});
 }
 
+// What the data cannot say, bursts, remarks: a list each where there is one.
+function listCards() {
+  return list(data.lists).filter((part) => part.lines.length).map((part) => el("section", {class: "card"},
+    el("h3", {}, part.title), el("ul", {}, part.lines.map((line) => el("li", {}, line)))));
+}
+
+function nextMovements() {
+  const rows = list(loop.next_movements).map((m, i) => ({...m, order: i + 1}));
+  return rows.length ? [el("h2", {id: "next"}, "Next movements"),
+    el("p", {class: "soft"}, "Those at which the explanations left differ most, best first; next_movements.csv has them with durations and tones."),
+    dataTable([{name: "order", key: "order", count: true}, {name: "movement", key: "kind"},
+      {name: "velocity", key: "velocity", number: true}, {name: "from", key: "from", number: true},
+      {name: "to", key: "to", number: true}, {name: "load factor", key: "load_factor", number: true},
+      {name: "tells apart", key: "between"}, {name: "by, noise variances", key: "separation", number: true}], rows,
+      {label: "next movements"})] : [];
+}
+
 function closedShare(error) {
   const low = Math.round(100 * error.closed_fraction);
   const high = Math.round(100 * (error.closed_fraction_high ?? error.closed_fraction));
@@ -100,7 +117,8 @@ function buildLoop() {
       card("movements", "Error of each movement", "Below the dashed line: better than before."),
       card("evidence", "Candidates", "What each would have gained by itself on movements left out; coloured: added. p is corrected for the search."),
       card("aliases", "What could be mistaken for what", "Absolute correlation of two effects in these data, base removed."),
-      card("leftover", "Left over", "Structure that none of the effects explains.")),
+      card("leftover", "Left over", "Structure that none of the effects explains."), listCards()),
+    ...nextMovements(),
     el("h2", {id: "model"}, "The model now"), loop.formula ? el("div", {class: "card"}, formulaElement(loop.formula),
       el("div", {class: "code"}, loop.formula)) : el("p", {}, "No formula."));
   window.drawAll = drawLoop;

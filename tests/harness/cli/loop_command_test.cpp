@@ -119,6 +119,11 @@ TEST(LoopCommand, bad_input_ends_with_status_2_and_says_how_to_mend_it) {
   EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good,
                         {"--leave-out", "friction_torque_Nm"}),
               HasSubstr("changes within a movement"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good,
+                        {"--save-effect", (folder / "effect.toml").string()}),
+              HasSubstr("--learn"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--learn", "pysir"}),
+              HasSubstr("pysr"));
 }
 
 TEST(LoopCommand, poor_input_is_warned_of_and_nothing_is_claimed) {
@@ -250,7 +255,11 @@ TEST(LoopCommand, writes_its_three_files_and_the_next_movements) {
     EXPECT_GT(std::filesystem::file_size(folder / name), 1000U) << name;
   }
   EXPECT_THAT(testing::read_text(folder / "out/next_movements.csv"),
-              HasSubstr("order,kind,velocity,from,to,load_factor,separation,between"));
+              HasSubstr("order,kind,velocity_rad_s,from_rad,to_rad,load_factor,duration_s"));
+  EXPECT_THAT(testing::read_text(folder / "out/loop.md"), HasSubstr("## Next movements"));
+  // Not asked for again: what an earlier run proposed is no answer to this one.
+  EXPECT_EQ(tribench({"loop", data, "--out", out}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/next_movements.csv"));
 }
 
 // derived_channels_test.cpp compiles such code and holds it to the loop's own values.
