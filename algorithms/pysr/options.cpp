@@ -210,6 +210,11 @@ std::vector<ParameterSpec> parameter_specs() {
        {"profile", "off", "on", "auto"}},
       whole("batch_size", "rows of a batch; 0: by the number of rows", 1e6),
       whole("search_rows", "rows of a fixed sample that the search sees; 0: all", 1e7),
+      {"denoise",
+       "let the search see the target smoothed by a Gaussian process; polish, choice and errors "
+       "are "
+       "of the measured rows",
+       false},
       {"template",
        "outer form of every formula, as in 'sgn_v*f(abs(v)) + g(load)': f and g are searched for, "
        "p() "
@@ -277,6 +282,7 @@ Options options_from(const Parameters& parameters) {
   options.batching = batching_of(parameters.text("batching"), options.batching);
   set(options.batch_size, parameters, "batch_size");
   set(options.search_rows, parameters, "search_rows");
+  options.denoise = parameters.flag("denoise");
   options.form = parameters.text("template");
   options.part_sizes = parameters.text("part_sizes");
   options.argument_limits = parameters.text("argument_limits");

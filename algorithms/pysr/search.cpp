@@ -16,6 +16,7 @@
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/evidence.hpp"
+#include "algorithms/pysr/denoise.hpp"
 #include "algorithms/pysr/island.hpp"
 #include "algorithms/pysr/migration.hpp"
 #include "algorithms/pysr/refinement.hpp"
@@ -320,6 +321,17 @@ Form form_of(const Options& options, std::span<const Input> inputs) {
   return {options.form, names};
 }
 
+// Smooths the target of the rows that the search sees; returns what a record should say of it.
+std::string smooth(Rows& seen, const Rows& all, FitContext& context) {
+  std::vector<std::size_t> columns(context.data.inputs.size());
+  std::iota(columns.begin(), columns.end(), std::size_t{0});
+  std::optional<Denoised> smoothed =
+      denoised(all, seen, columns, context.random.split("denoise"), context.budget);
+  if (!smoothed) return "not denoised: the budget does not reach, or no covariance fits";
+  seen.target = std::move(smoothed->target);
+  return fmt::format("denoised: noise {:.3g}", smoothed->noise);
+}
+
 }  // namespace
 
 FitResult search(const Options& given, FitContext& context) {
@@ -335,12 +347,16 @@ FitResult search(const Options& given, FitContext& context) {
   }
   const Options options = settled(given, form, all.size());
   const auto wanted = static_cast<std::size_t>(options.search_rows);
-  if (wanted == 0 || wanted >= all.size()) {
+  if (!options.denoise && (wanted == 0 || wanted >= all.size())) {
     return Search(options, form, context, all, all).run();
   }
   RandomStream random = context.random.split("sample");
-  const Rows sample = draw_sample(all, wanted, random);
-  return Search(options, form, context, all, sample).run();
+  Rows seen = draw_sample(all, wanted, random);
+  std::string note;
+  if (options.denoise) note = smooth(seen, all, context);
+  FitResult result = Search(options, form, context, all, seen).run();
+  result.note = std::move(note);
+  return result;
 }
 
 }  // namespace tribench::pysr

@@ -2,21 +2,12 @@
 #include "algorithms/udsr/smoother.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <vector>
 
 namespace tribench::udsr {
 namespace {
-
-Eigen::MatrixXd squared_distances(const Eigen::MatrixXd& points) {
-  const Eigen::VectorXd norms = points.rowwise().squaredNorm();
-  Eigen::MatrixXd distances = -2 * points * points.transpose();
-  distances.colwise() += norms;
-  distances.rowwise() += norms.transpose();
-  return distances.cwiseMax(0);
-}
 
 std::vector<std::size_t> drawn_rows(std::size_t rows, RandomStream& random) {
   std::vector<std::size_t> order(rows);
@@ -51,13 +42,8 @@ Smoother::Smoother(const Inputs& inputs, std::span<const double> target, RandomS
     }
     target_[i] = target[row];
   }
-  center_ = raw_.colwise().mean().transpose();
-  points_ = raw_.rowwise() - center_.transpose();
-  spread_ = (points_.colwise().squaredNorm() / static_cast<double>(n)).cwiseSqrt().transpose();
-  for (double& s : spread_) {
-    if (!(s > 0)) s = 1;
-  }
-  points_ = points_.array().rowwise() / spread_.transpose().array();
+  scale_.emplace(raw_);
+  points_ = scale_->rows(raw_);
   mean_ = target_.mean();
 
   double best_length = 1;
@@ -79,32 +65,14 @@ Smoother::Smoother(const Inputs& inputs, std::span<const double> target, RandomS
 }
 
 void Smoother::train(double length, double noise) {
-  length_ = length;
-  Eigen::MatrixXd kernel =
-      (squared_distances(points_).array() * (-0.5 / (length * length))).exp().matrix();
-  kernel.diagonal().array() += noise;
-  const Eigen::LLT<Eigen::MatrixXd> factor(kernel);
-  if (factor.info() != Eigen::Success) {
-    held_out_error_ = std::numeric_limits<double>::infinity();
-    return;
-  }
   const Eigen::VectorXd centred = target_.array() - mean_;
-  weights_ = factor.solve(centred);
-  const Eigen::MatrixXd inverse =
-      factor.solve(Eigen::MatrixXd::Identity(kernel.rows(), kernel.cols()));
-  std::vector<double> errors;
-  for (Eigen::Index i = 0; i < weights_.size(); ++i) {
-    errors.push_back(std::abs(weights_[i] / inverse(i, i)));
-  }
-  held_out_error_ = median_of(std::move(errors));
+  held_out_error_ = process_.train(points_, centred, length, noise)
+                        ? median_of(process_.leave_one_out_errors())
+                        : std::numeric_limits<double>::infinity();
 }
 
 double Smoother::predict(const Eigen::VectorXd& point) const {
-  const Eigen::VectorXd standardised = (point - center_).cwiseQuotient(spread_);
-  const Eigen::VectorXd distances =
-      (points_.rowwise() - standardised.transpose()).rowwise().squaredNorm();
-  const Eigen::ArrayXd kernel = (distances.array() * (-0.5 / (length_ * length_))).exp();
-  return mean_ + kernel.matrix().dot(weights_);
+  return mean_ + process_.mean_at(scale_->point(point));
 }
 
 }  // namespace tribench::udsr

@@ -4,15 +4,16 @@
 // regression with a squared-exponential kernel on at most kMaxRows rows. Recursive simplification
 // asks it for values where there are no data.
 //
-// Source: Rasmussen & Williams 2006, equations 2.25 and 5.12 (leave-one-out in closed form).
-// AI-Feynman trains a network here, whose held-out error nobody knows.
+// Length and noise are those of the least held-out error on a grid (fitting/gaussian_process.hpp
+// has it in closed form). AI-Feynman trains a network here, whose held-out error nobody knows.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 
 #include "algorithms/expression/evaluate.hpp"
+#include "algorithms/fitting/gaussian_process.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench::udsr {
@@ -42,11 +43,9 @@ class Smoother {
   Eigen::MatrixXd raw_;
   Eigen::MatrixXd points_;  // standardised
   Eigen::VectorXd target_;
-  Eigen::VectorXd center_;
-  Eigen::VectorXd spread_;
-  Eigen::VectorXd weights_;
+  std::optional<Standardisation> scale_;
+  GaussianProcess process_;
   double mean_ = 0;
-  double length_ = 1;
   double held_out_error_ = 0;
 };
 
