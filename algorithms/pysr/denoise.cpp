@@ -37,9 +37,10 @@ std::optional<Denoised> denoised(const Rows& measured, const Rows& wanted,
   const std::uint64_t n = training.size();
   const std::uint64_t m = few.size();
   if (columns.empty() || m < 2) return std::nullopt;
-  if (!budget.spend(most_likelihoods(kRestarts) * m * m * m + n * n * n / 3 + n * wanted.size())) {
-    return std::nullopt;
-  }
+  // A likelihood and its gradient take as long as m^3 / 2 node-rows.
+  const std::uint64_t cost =
+      most_likelihoods(kRestarts) * m * m * m / 2 + n * n * n / 6 + n * wanted.size();
+  if (cost > budget.remaining() || !budget.spend(cost)) return std::nullopt;
   const Standardisation inputs(points_of(training, columns));
   const Standardisation output(target_of(training));
   const auto outputs = [&](const Rows& rows) -> Eigen::VectorXd {

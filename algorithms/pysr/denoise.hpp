@@ -28,7 +28,7 @@ struct Denoised {
 };
 
 // Trained on `measured`, asked at `wanted`, as a function of the columns named. None where the
-// budget does not reach (rows^3 node-rows a likelihood) or no covariance can be factored.
+// budget does not reach (then nothing is spent) or no covariance can be factored.
 std::optional<Denoised> denoised(const Rows& measured, const Rows& wanted,
                                  std::span<const std::size_t> columns, RandomStream random,
                                  Budget& budget);

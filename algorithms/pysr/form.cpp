@@ -25,12 +25,22 @@ bool is_same(const Node& a, const Node& b) {
   return a.op == b.op && a.variable == b.variable && a.value == b.value;
 }
 
+std::vector<std::size_t> first_columns(std::size_t count) {
+  std::vector<std::size_t> columns(count);
+  std::iota(columns.begin(), columns.end(), std::size_t{0});
+  return columns;
+}
+
 }  // namespace
 
-Form::Form(std::size_t inputs)
-    : inputs_(inputs), outer_(Expression::variable(kFirstPart)), drawn_{0}, takes_all_(true) {
-  parts_.push_back({"f", std::vector<std::size_t>(inputs)});
-  std::iota(parts_[0].arguments.begin(), parts_[0].arguments.end(), std::size_t{0});
+Form::Form(std::size_t inputs) : Form(inputs, first_columns(inputs)) {}
+
+Form::Form(std::size_t inputs, std::vector<std::size_t> arguments)
+    : inputs_(inputs),
+      outer_(Expression::variable(kFirstPart)),
+      drawn_{0},
+      takes_all_(arguments == first_columns(inputs)) {
+  parts_.push_back({"f", std::move(arguments)});
 }
 
 Form::Form(std::string_view text, std::span<const std::string> names)

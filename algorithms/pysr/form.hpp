@@ -36,6 +36,8 @@ class Form {
  public:
   // One part: any formula of the inputs.
   explicit Form(std::size_t inputs);
+  // One part: any formula of the inputs named by their columns.
+  Form(std::size_t inputs, std::vector<std::size_t> arguments);
   // As the template says; names[i] is input i. Throws Error (bad_input) where it cannot be read,
   // names no part, or a name is unknown.
   Form(std::string_view text, std::span<const std::string> names);

@@ -210,6 +210,9 @@ std::vector<ParameterSpec> parameter_specs() {
        {"profile", "off", "on", "auto"}},
       whole("batch_size", "rows of a batch; 0: by the number of rows", 1e6),
       whole("search_rows", "rows of a fixed sample that the search sees; 0: all", 1e7),
+      {"select_features",
+       "inputs that the search sees, those that matter most to a random forest; 0: all",
+       std::int64_t{0}, 0, 1000},
       {"denoise",
        "let the search see the target smoothed by a Gaussian process; polish, choice and errors "
        "are "
@@ -282,9 +285,14 @@ Options options_from(const Parameters& parameters) {
   options.batching = batching_of(parameters.text("batching"), options.batching);
   set(options.batch_size, parameters, "batch_size");
   set(options.search_rows, parameters, "search_rows");
+  options.select_features = static_cast<int>(parameters.integer("select_features"));
   options.denoise = parameters.flag("denoise");
   options.form = parameters.text("template");
   options.part_sizes = parameters.text("part_sizes");
+  if (!options.form.empty() && options.select_features > 0) {
+    throw_bad_input("a template says itself which inputs its parts see", "select_features",
+                    "leave out select_features or the template");
+  }
   options.argument_limits = parameters.text("argument_limits");
   options.nested_limits = parameters.text("nested_limits");
   options.operator_sizes = parameters.text("operator_sizes");

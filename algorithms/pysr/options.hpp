@@ -106,9 +106,10 @@ struct Options {
 
   // Data.
   Batching batching = Batching::automatic;
-  int batch_size = 0;    // 0: 128 below 5 000 rows, 256 below 50 000, 512 above
-  int search_rows = 0;   // a fixed sample that the search sees; 0: all
-  bool denoise = false;  // the search sees a smoothed target; the polish sees the measured one
+  int batch_size = 0;       // 0: 128 below 5 000 rows, 256 below 50 000, 512 above
+  int search_rows = 0;      // a fixed sample that the search sees; 0: all
+  int select_features = 0;  // inputs that the search sees, the most important; 0: all
+  bool denoise = false;     // the search sees a smoothed target; the polish sees the measured one
 
   // The outer form, empty for none; see form.hpp.
   std::string form;

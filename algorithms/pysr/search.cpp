@@ -16,9 +16,9 @@
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/evidence.hpp"
-#include "algorithms/pysr/denoise.hpp"
 #include "algorithms/pysr/island.hpp"
 #include "algorithms/pysr/migration.hpp"
+#include "algorithms/pysr/preparation.hpp"
 #include "algorithms/pysr/refinement.hpp"
 #include "foundation/error.hpp"
 
@@ -165,8 +165,9 @@ void Search::offer_guesses() {
     const std::size_t end = std::min(rest.find(';'), rest.size());
     std::optional<Expression> guess = validator_.form().read(parse(rest.substr(0, end), names));
     if (!guess) {
-      throw_bad_input(fmt::format("'{}' has not the form of the template", rest.substr(0, end)),
-                      "guesses", "write it as the template with its parts put in");
+      throw_bad_input(fmt::format("'{}' has not the form that is searched", rest.substr(0, end)),
+                      "guesses",
+                      "write it as the template with its parts put in, of the inputs selected");
     }
     rest.remove_prefix(std::min(end + 1, rest.size()));
     const auto loss = scorer.fit(*guess, rows_, 30, context_.budget);
@@ -314,30 +315,14 @@ FitResult unsearched(const Form& form, const Rows& rows, std::string note) {
   return {{form.written_out(form.assembled(part))}, 0, StopReason::budget, std::move(note)};
 }
 
-Form form_of(const Options& options, std::span<const Input> inputs) {
-  if (options.form.empty()) return Form(inputs.size());
-  std::vector<std::string> names;
-  for (const Input& input : inputs) names.push_back(input.name);
-  return {options.form, names};
-}
-
-// Smooths the target of the rows that the search sees; returns what a record should say of it.
-std::string smooth(Rows& seen, const Rows& all, FitContext& context) {
-  std::vector<std::size_t> columns(context.data.inputs.size());
-  std::iota(columns.begin(), columns.end(), std::size_t{0});
-  std::optional<Denoised> smoothed =
-      denoised(all, seen, columns, context.random.split("denoise"), context.budget);
-  if (!smoothed) return "not denoised: the budget does not reach, or no covariance fits";
-  seen.target = std::move(smoothed->target);
-  return fmt::format("denoised: noise {:.3g}", smoothed->noise);
-}
-
 }  // namespace
 
 FitResult search(const Options& given, FitContext& context) {
-  const Form form = form_of(given, context.data.inputs);
-  const Rows all = form.extended(complete_rows(context.data));
-  if (all.size() == 0) return FitResult::unsupported("no row has a finite target and inputs");
+  Rows complete = complete_rows(context.data);
+  if (complete.size() == 0) return FitResult::unsupported("no row has a finite target and inputs");
+  std::string note;
+  const Form form = prepare_form(given, complete, context, note);
+  const Rows all = form.extended(std::move(complete));
   if (form.is_whole() &&
       std::ranges::adjacent_find(all.target, std::ranges::not_equal_to{}) == all.target.end()) {
     return {{Expression::constant(all.target[0])}, 0, StopReason::converged, "constant target"};
@@ -347,14 +332,13 @@ FitResult search(const Options& given, FitContext& context) {
   }
   const Options options = settled(given, form, all.size());
   const auto wanted = static_cast<std::size_t>(options.search_rows);
+  FitResult result;
   if (!options.denoise && (wanted == 0 || wanted >= all.size())) {
-    return Search(options, form, context, all, all).run();
+    result = Search(options, form, context, all, all).run();
+  } else {
+    const Rows seen = prepare_rows(options, form, all, context, note);
+    result = Search(options, form, context, all, seen).run();
   }
-  RandomStream random = context.random.split("sample");
-  Rows seen = draw_sample(all, wanted, random);
-  std::string note;
-  if (options.denoise) note = smooth(seen, all, context);
-  FitResult result = Search(options, form, context, all, seen).run();
   result.note = std::move(note);
   return result;
 }

@@ -67,6 +67,7 @@ TEST(Denoise, AsksTheBudgetFirst) {
   const Bump data(100);
   Budget budget{BudgetLimits{1000}};
   EXPECT_FALSE(denoised(data.rows, data.rows, kBoth, RandomStream(1), budget).has_value());
+  EXPECT_FALSE(budget.exhausted());  // what is there is the search's
 }
 
 TEST(Denoise, ChangesWhatIsFoundAndFitsItToTheMeasuredRows) {
