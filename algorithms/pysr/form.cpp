@@ -224,6 +224,17 @@ Expression Form::written_out(const Expression& formula) const {
   return Expression(std::move(tape));
 }
 
+std::string Form::parts_of(const Expression& formula) const {
+  if (names_.empty()) return {};
+  const std::optional<Expression> own = read(formula);
+  std::string text;
+  for (std::size_t k = 0; own && k < parts_.size(); ++k) {
+    const Expression part = written_out(own->subtree(place(*own, k)));
+    text += fmt::format("{}{} = {}", k == 0 ? "" : "; ", parts_[k].name, print(part, names_));
+  }
+  return text;
+}
+
 std::optional<Expression> Form::read(const Expression& formula) const {
   if (takes_all_) return formula;
   std::vector<Node> reversed;  // postfix from its end

@@ -79,6 +79,9 @@ class Form {
   Expression written_out(const Expression& formula) const;
   // The inverse: a formula of the inputs read as one of this form; none where it has another.
   std::optional<Expression> read(const Expression& formula) const;
+  // What a formula of the inputs, written out, puts in for the parts: "f = 2*abs(v); p = 0.3".
+  // Empty without a template and for a formula of another form.
+  std::string parts_of(const Expression& formula) const;
 
  private:
   struct Part {

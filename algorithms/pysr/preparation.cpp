@@ -13,11 +13,6 @@
 namespace tribench::pysr {
 namespace {
 
-void tell(std::string& note, const std::string& what) {
-  if (!note.empty()) note += "; ";
-  note += what;
-}
-
 std::vector<std::string> names_of(std::span<const Input> inputs) {
   std::vector<std::string> names;
   for (const Input& input : inputs) names.push_back(input.name);
@@ -25,6 +20,11 @@ std::vector<std::string> names_of(std::span<const Input> inputs) {
 }
 
 }  // namespace
+
+void add_to_note(std::string& note, const std::string& what) {
+  if (!note.empty() && !what.empty()) note += "; ";
+  note += what;
+}
 
 Form prepare_form(const Options& options, const Rows& rows, FitContext& context,
                   std::string& note) {
@@ -35,13 +35,13 @@ Form prepare_form(const Options& options, const Rows& rows, FitContext& context,
   const std::vector<double> importances =
       forest_importances(rows, names.size(), context.random.split("forest"), context.budget);
   if (importances.empty()) {
-    tell(note, "no inputs selected: the budget does not reach");
+    add_to_note(note, "no inputs selected: the budget does not reach");
     return Form(names.size());
   }
   std::vector<std::size_t> chosen = most_important(importances, wanted);
   std::string text;
   for (const std::size_t j : chosen) text += " " + names[j];
-  tell(note, "inputs selected:" + text);
+  add_to_note(note, "inputs selected:" + text);
   return {names.size(), std::move(chosen)};
 }
 
@@ -56,11 +56,11 @@ Rows prepare_rows(const Options& options, const Form& form, const Rows& all, Fit
   std::optional<Denoised> smoothed =
       denoised(all, seen, columns, context.random.split("denoise"), context.budget);
   if (!smoothed) {
-    tell(note, "not denoised: the budget does not reach, or no covariance fits");
+    add_to_note(note, "not denoised: the budget does not reach, or no covariance fits");
     return seen;
   }
   seen.target = std::move(smoothed->target);
-  tell(note, fmt::format("denoised: noise {:.3g}", smoothed->noise));
+  add_to_note(note, fmt::format("denoised: noise {:.3g}", smoothed->noise));
   return seen;
 }
 

@@ -75,6 +75,7 @@ class Search {
         context_(context),
         all_(all),
         rows_(sample),
+        box_(input_box(context.data.inputs)),
         validator_(options, context.operators, context.data.inputs, form),
         libraries_(make_term_libraries(form, rows_, context.operators)),
         shared_{options_, context.operators, validator_,
@@ -92,9 +93,9 @@ class Search {
   void offer_guesses();
   void report();
   bool has_converged();
-  FitResult result_of(const std::vector<Candidate>& front, const InputBox& box) const;
-  std::optional<std::size_t> choice_beyond(std::span<const Expression> front,
-                                           const InputBox& box) const;
+  std::vector<Candidate> polished_front();
+  FitResult result_of(const std::vector<Candidate>& front) const;
+  std::optional<std::size_t> choice_beyond(std::span<const Expression> front) const;
   template <typename Work>
   void on_all_islands(Work work);
 
@@ -102,6 +103,7 @@ class Search {
   FitContext& context_;
   const Rows& all_;
   const Rows& rows_;
+  InputBox box_;
   Validator validator_;
   TermLibraries libraries_;
   Shared shared_;
@@ -247,37 +249,38 @@ FitResult Search::run() {
     if (context_.budget.spent() == before) break;
     if (has_converged()) break;
   }
+  return result_of(polished_front());
+}
+
+std::vector<Candidate> Search::polished_front() {
   const Form& form = validator_.form();
   if (&all_ != &rows_) libraries_ = make_term_libraries(form, all_, context_.operators);
   Climber climber(options_, context_.operators, validator_, all_, libraries_, shared_.rule);
-  const InputBox box = input_box(context_.data.inputs);
   std::function<bool(const Expression&)> admitted;
   if (options_.safe || context_.operators.proved_free_only()) {
     admitted = [&](const Expression& formula) {
-      return prove_free(form.written_out(formula), box).verdict == Verdict::proved_free;
+      return prove_free(form.written_out(formula), box_).verdict == Verdict::proved_free;
     };
   }
-  const std::vector<Candidate> front =
-      refined_front(climber, options_, form, all_, hall_.front(), admitted,
-                    context_.random.split("refine"), context_.budget);
-  return result_of(front, box);
+  return refined_front(climber, options_, form, all_, hall_.front(), admitted,
+                       context_.random.split("refine"), context_.budget);
 }
 
 // The choice where the formula will be used beyond the rows it was found on, which no measure of
 // size can speak for; none where it will not. Made even where the search has spent everything: it
-// costs a few hundredths of that, and is counted.
-std::optional<std::size_t> Search::choice_beyond(std::span<const Expression> front,
-                                                 const InputBox& box) const {
+// costs a few hundredths of that, and is counted. A template's own constants are fitted along here:
+// each fold asks how well the shape continues.
+std::optional<std::size_t> Search::choice_beyond(std::span<const Expression> front) const {
   if (!options_.refine || context_.budget.out_of_time()) return {};
   const FiniteRows rows(context_.data);
-  if (!reaches_beyond(rows.table(), box)) return {};
+  if (!reaches_beyond(rows.table(), box_)) return {};
   const CrossValidation validation =
-      cross_validate(front, rows.table(), rows.target, rows.movement, box);
+      cross_validate(front, rows.table(), rows.target, rows.movement, box_);
   context_.budget.spend(validation.node_rows);
   return validation.chosen;
 }
 
-FitResult Search::result_of(const std::vector<Candidate>& front, const InputBox& box) const {
+FitResult Search::result_of(const std::vector<Candidate>& front) const {
   FitResult result;
   result.reason = context_.budget.exhausted() ? StopReason::budget : StopReason::converged;
   std::vector<FrontPoint> points;
@@ -291,11 +294,11 @@ FitResult Search::result_of(const std::vector<Candidate>& front, const InputBox&
   // choice takes the place of one that is refuted.
   std::vector<Expression> left = result.front;
   while (!left.empty()) {
-    const std::optional<std::size_t> beyond = choice_beyond(left, box);
+    const std::optional<std::size_t> beyond = choice_beyond(left);
     const std::size_t choice = beyond ? *beyond : select(points, options_.selection);
     result.chosen = places[choice];
     if (!options_.refine || left.size() == 1 ||
-        prove_free(left[choice], box).verdict != Verdict::refuted) {
+        prove_free(left[choice], box_).verdict != Verdict::refuted) {
       break;
     }
     const auto place = static_cast<std::ptrdiff_t>(choice);
@@ -339,6 +342,7 @@ FitResult search(const Options& given, FitContext& context) {
     const Rows seen = prepare_rows(options, form, all, context, note);
     result = Search(options, form, context, all, seen).run();
   }
+  if (!result.front.empty()) add_to_note(note, form.parts_of(result.front[result.chosen]));
   result.note = std::move(note);
   return result;
 }

@@ -60,6 +60,9 @@ TEST(Form, ReadsWhatItHasWrittenAndNothingElse) {
     EXPECT_EQ(form.read(form.written_out(whole)), whole);
     EXPECT_TRUE(form.fits(form.simplified(whole)));
   }
+  EXPECT_EQ(form.parts_of(formula("2*abs(v)^2 - exp(-load)*(load + 1)/3")),
+            "f = abs(v); g = load + 1; p = 3");
+  EXPECT_EQ(form.parts_of(formula("load")), "");
   EXPECT_FALSE(form.read(formula("2*v^2 - exp(-load)*load/3")).has_value());
   EXPECT_FALSE(form.read(formula("2*load^2 - exp(-load)*abs(v)/3")).has_value());
   EXPECT_FALSE(form.read(formula("2*load^3 - exp(-load)*load/3")).has_value());
@@ -199,7 +202,9 @@ TEST(Template, LeavesItsOwnConstantsAndFitsItsNumbers) {
   const FitResult result = fit(problem, with_template("p()*sgn_v + 1.25*f(load)^2 + q()*v"));
   const Form form("p()*sgn_v + 1.25*f(load)^2 + q()*v", kNames);
   for (const Expression& found : result.front) EXPECT_TRUE(form.read(found).has_value());
-  const Expression numbers = fit(problem, with_template("p()*sgn_v + q()*v")).front.back();
+  const FitResult two = fit(problem, with_template("p()*sgn_v + q()*v"));
+  EXPECT_EQ(two.note.substr(0, 4), "p = ");
+  const Expression numbers = two.front.back();
   EXPECT_EQ(numbers.constant_positions().size(), 2u);
   EXPECT_LT(error_of_truth(numbers, problem), 1.5);
 }
