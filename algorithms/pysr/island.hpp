@@ -87,7 +87,7 @@ class Island {
                                     Budget& budget);
   bool is_new(const Expression& child);
   Alphabet alphabet_of(std::size_t part) const;
-  void replace_oldest(Member child, const Step& step);
+  void replace_oldest(Member child);
   void tidy(const EpochState& state, RandomStream& random, Budget& budget);
   void optimise(Member& member, RandomStream& random, Budget& budget);
   void learn(MutationKind kind, bool success);
