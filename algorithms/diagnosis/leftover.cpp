@@ -108,7 +108,7 @@ void Search::check_exhaustively() {
       return;
     }
   }
-  notes.push_back(fmt::format(
+  note(fmt::format(
       "the search over all subsets predicts better by {:.1f} nats than the stepwise choice: taken",
       lead.nats));
   found = std::move(members);
@@ -159,7 +159,7 @@ BlockScores Search::score_modifier(const Modifier& modifier) const {
 
 void Search::test_leftover() {
   if (clusters_.stretches.size() < kFewestClusters) {
-    notes.push_back(fmt::format(
+    note(fmt::format(
         "{} stretches of movement are too few to tell whether anything is left over; {} "
         "are needed",
         clusters_.stretches.size(), kFewestClusters));
@@ -247,9 +247,8 @@ bool Search::drop_varying(const std::vector<Modifier>& products) {
     if (!own[0].test.testable) continue;
     if (adjusted_p(own[0].test.score, flip_maxima(own, flips_)) > options_.alpha_library) continue;
     leftover.proxies_removed.push_back(families_[product.family].name);
-    notes.push_back(fmt::format("the size of '{}' varies with {}: it is part of what is left over",
-                                families_[product.family].name,
-                                fmt::join(leftover.inputs, " or ")));
+    note(fmt::format("the size of '{}' varies with {}: it is part of what is left over",
+                     families_[product.family].name, fmt::join(leftover.inputs, " or ")));
     std::erase_if(found, [&](const Found& one) { return one.family == product.family; });
     remove_family(model, product.family);
   }

@@ -303,25 +303,27 @@ bool Search::add_best(const Round& round) {
   return false;
 }
 
+void Search::note(std::string text) {
+  if (std::ranges::count(notes, text) == 0) notes.push_back(std::move(text));
+}
+
 // False where the family has had its share already: the next best may still be needed.
 bool Search::add(const Candidate& winner, const Round& round) {
   const bool again = atoms_of(winner.family) > 0;
-  const auto note_once = [&](std::string text) {
-    if (std::ranges::count(notes, text) == 0) notes.push_back(std::move(text));
-  };
   if (atoms_of(winner.family) >= kMostAtoms) {
     asked_more_.push_back(winner.family);
-    note_once(fmt::format(
+    note(fmt::format(
         "more than {} columns of '{}' are asked for: a sign of something that only looks like it",
         kMostAtoms, families_[winner.family].name));
     return false;
   }
+  if (std::ranges::count(one_column_, winner.family) > 0 && again) return false;
   LoopModel model = current_.model;
   model.add(library_[best_shape(winner.atom, round, current_)]);
   FittedModel extended = fit(std::move(model), FitScope::everything);
   if (again && cancels_itself(extended.model, winner.family)) {
-    note_once(fmt::format("a second column of '{}' only cancels the first: left out",
-                          families_[winner.family].name));
+    note(fmt::format("a second column of '{}' only cancels the first: left out",
+                     families_[winner.family].name));
     return false;
   }
   // One fold alone can tell of it: that it holds elsewhere too is beyond these data.
@@ -355,7 +357,7 @@ void Search::run() {
   const Eigen::VectorXd raw = target_vector(data_) - predict(base_fit_.model, data_);
   const double scale = target_vector(data_).norm();
   if (!(raw.norm() > 1e-9 * scale)) {
-    notes.push_back("the base model leaves no residual");
+    note("the base model leaves no residual");
     return;
   }
   base_round_ = test_all(base_fit_);
@@ -372,6 +374,7 @@ void Search::run() {
     const bool grew = found.size() > before.size();
     const std::size_t added = found.back().family;
     reconsider();
+    leave_out_cancelling();
     const bool stayed = std::ranges::count(found, added, &Found::family) > 0;
     if (!grew || stayed) {
       rejected_.clear();
@@ -381,7 +384,9 @@ void Search::run() {
     round = test_all(current_);
   }
   if (!found.empty()) check_exhaustively();
+  leave_out_cancelling();
   test_leftover();
+  leave_out_cancelling();  // the fit without proxies is another
   // What its gain has rescued was testable after all.
   for (const Found& one : found) {
     std::erase_if(untestable, [&](const UntestableFinding& finding) {

@@ -99,6 +99,8 @@ class Search {
   bool add_best(const Round& round);
   bool add(const Candidate& winner, const Round& round);
   bool cancels_itself(const LoopModel& model, std::size_t family) const;
+  void leave_out_cancelling();
+  void note(std::string text);
   std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round) const;
   double carriers(const Round& round, std::size_t atom, const FittedModel& state) const;
   bool differs_between_movements(std::size_t atom, const FittedModel& state) const;
@@ -147,6 +149,7 @@ class Search {
   // Families that were added and did not stand in the same model: not to be tried again in it.
   std::vector<std::size_t> rejected_;
   std::vector<std::size_t> asked_more_;  // families that would have taken a third column
+  std::vector<std::size_t> one_column_;  // families whose second column came to cancel the first
   FittedModel base_fit_;
   Round base_round_;  // of the base
   FittedModel current_;

@@ -50,8 +50,8 @@ bool Search::renew(std::size_t family, const FittedModel& rest, const Round& rou
     other = fit(model, FitScope::everything);
     const Gain lead = lead_over_current(other);
     if (!(lead.nats > lead.error)) continue;
-    notes.push_back(fmt::format("'{}' predicts better by {:.1f} nats with other columns: taken",
-                                families_[family].name, lead.nats));
+    note(fmt::format("'{}' predicts better by {:.1f} nats with other columns: taken",
+                     families_[family].name, lead.nats));
     std::erase(asked_more_, family);
     current_ = std::move(other);
     return true;
@@ -67,8 +67,7 @@ bool Search::swap_or_drop(std::size_t family) {
   const auto entry = std::ranges::find(found, family, &Found::family);
   const double p = family_p_given_rest(family, rest, round, current_);
   if (p > (entry->few ? kRescueP : options_.alpha_library)) {
-    notes.push_back(
-        fmt::format("'{}' is not significant given the rest: removed", families_[family].name));
+    note(fmt::format("'{}' is not significant given the rest: removed", families_[family].name));
     found.erase(entry);
     current_ = fit(rest.model, FitScope::everything);
     return true;
@@ -84,12 +83,40 @@ bool Search::swap_or_drop(std::size_t family) {
   const Gain lead = lead_over_current(other);
   if (!(lead.nats > lead.error)) return false;
   const Candidate& rival = rivals.front();
-  notes.push_back(fmt::format("'{}' replaced by '{}', which predicts better by {:.1f} nats",
-                              families_[family].name, families_[rival.family].name, lead.nats));
+  note(fmt::format("'{}' replaced by '{}', which predicts better by {:.1f} nats",
+                   families_[family].name, families_[rival.family].name, lead.nats));
   *entry = {rival.family, round.family_p[rival.family], rival.gain, rival.rescued,
             aliases_of(rival, round)};
   current_ = std::move(other);
   return true;
+}
+
+// The rule for a second column holds for the model as it stands: two that stood for something when
+// the second came can grow together and against each other in a later fit. The better one stays,
+// and its family gets no second one again.
+void Search::leave_out_cancelling() {
+  for (const Found& one : found) {
+    const std::size_t family = one.family;
+    if (atoms_of(family) < 2 || !cancels_itself(current_.model, family)) continue;
+    one_column_.push_back(family);
+    LoopModel rest = current_.model;
+    remove_family(rest, family);
+    std::optional<FittedModel> best;
+    double most = 0;
+    for (const Atom& atom : current_.model.atoms) {
+      if (atom.family != family) continue;
+      LoopModel model = rest;
+      model.add(atom);
+      FittedModel other = fit(std::move(model), FitScope::everything);
+      const double lead = lead_over_current(other).nats;
+      if (best && !(lead > most)) continue;
+      most = lead;
+      best = std::move(other);
+    }
+    current_ = std::move(*best);
+    note(fmt::format("a second column of '{}' only cancels the first: left out",
+                     families_[family].name));
+  }
 }
 
 void Search::reconsider() {

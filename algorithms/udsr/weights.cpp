@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
@@ -156,7 +157,8 @@ std::string write_weights(const Policy& policy, const DataEncoder* encoder,
   file["provenance"] = {{"command", provenance.command},
                         {"seed", provenance.seed},
                         {"sequences", provenance.sequences},
-                        {"loss_per_token", provenance.loss_per_token}};
+                        // No more digits than hold on every machine: the file is the same on all.
+                        {"loss_per_token", std::round(1e6 * provenance.loss_per_token) / 1e6}};
   file["hash"] = digest(tokens, parameters, encoding);
   file["operations"] = library.operations();
   file["tokens"] = std::move(tokens);

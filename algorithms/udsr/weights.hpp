@@ -39,8 +39,8 @@ DataEncoder read_encoder(std::string_view text, std::string_view place);
 
 namespace tribench::embedded {
 
-// The weights shipped with the program: weights.json, made by `tribench pretrain` with its
-// defaults.
+// The weights shipped with the program: weights.json, byte for byte what `tribench pretrain` writes
+// with its defaults.
 std::string_view udsr_weights();
 
 }  // namespace tribench::embedded

@@ -12,6 +12,7 @@
 #include "problems/csv.hpp"
 #include "problems/data_problem.hpp"
 #include "problems/kuka/planted.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -44,7 +45,7 @@ TEST(Diagnosis, SaysNothingWhereNothingIsMissing) {
   }
 }
 
-class PlantedEffect : public testing::TestWithParam<const char*> {};
+class PlantedEffect : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(PlantedEffect, IsNamedAndClosesTheLoopOnMovementsNobodyTouched) {
   const Diagnosis diagnosis = diagnose_planted({.effects = {{GetParam(), 1.0}}}, 2);
@@ -55,11 +56,11 @@ TEST_P(PlantedEffect, IsNamedAndClosesTheLoopOnMovementsNobodyTouched) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, PlantedEffect,
-                         testing::Values("stribeck", "nonlinear_viscous", "load_coulomb",
-                                         "load_viscous", "power_quadrant_gain",
-                                         "power_quadrant_step", "payload", "output_ripple",
-                                         "gear_ripple", "temperature", "drift", "hysteresis", "lag",
-                                         "inertia", "coupling"));
+                         ::testing::Values("stribeck", "nonlinear_viscous", "load_coulomb",
+                                           "load_viscous", "power_quadrant_gain",
+                                           "power_quadrant_step", "payload", "output_ripple",
+                                           "gear_ripple", "temperature", "drift", "hysteresis",
+                                           "lag", "inertia", "coupling"));
 
 TEST(Diagnosis, RefinesShapesOffItsGrid) {
   const Diagnosis diagnosis = diagnose_planted({.effects = {{"stribeck", 2.0}}}, 4);
@@ -84,7 +85,7 @@ TEST(Diagnosis, ChoosesTheShapeThatLeavesTheLeastBetweenMovements) {
 }
 
 class OutsideTheLibrary
-    : public testing::TestWithParam<std::pair<const char*, std::vector<std::string>>> {};
+    : public ::testing::TestWithParam<std::pair<const char*, std::vector<std::string>>> {};
 
 TEST_P(OutsideTheLibrary, IsUnknownAndLocated) {
   const auto& [effect, inputs] = GetParam();
@@ -95,10 +96,10 @@ TEST_P(OutsideTheLibrary, IsUnknownAndLocated) {
 
 INSTANTIATE_TEST_SUITE_P(
     Leftovers, OutsideTheLibrary,
-    testing::Values(std::pair{"velocity_bump", std::vector<std::string>{"velocity"}},
-                    std::pair{"position_bump", std::vector<std::string>{"position"}},
-                    std::pair{"temperature_position",
-                              std::vector<std::string>{"position", "temperature"}}));
+    ::testing::Values(std::pair{"velocity_bump", std::vector<std::string>{"velocity"}},
+                      std::pair{"position_bump", std::vector<std::string>{"position"}},
+                      std::pair{"temperature_position",
+                                std::vector<std::string>{"position", "temperature"}}));
 
 // The other joint moves in fewer stretches than a test by flips needs; what its motion explains of
 // whole movements speaks for itself.
@@ -132,6 +133,32 @@ TEST(Diagnosis, ARippleThatVariesWithTemperatureIsNoRippleOfTheLibrary) {
     EXPECT_TRUE(diagnosis.effects.empty());
     EXPECT_EQ(diagnosis.leftover.inputs, (std::vector<std::string>{"position", "temperature"}));
   }
+}
+
+// One sine of a UR10e's joint: presliding of less than a thousandth of the stroke, below the grid.
+TEST(Diagnosis, ReportsNoTwoColumnsThatOnlyCancelEachOther) {
+  const auto folder = tribench::testing::shared_data();
+  if (!folder) GTEST_SKIP() << tribench::testing::kNoSharedData;
+  const Observations data =
+      observe(read_csv(*folder / "ur10e-jointwise/joint6.csv").data).thinned(6000);
+  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, {}, 1);
+  const auto is_known = [&](const char* name) {
+    return std::ranges::count(diagnosis.effects, name, &EffectFinding::family) > 0;
+  };
+  ASSERT_TRUE(is_known("hysteresis"));
+  EXPECT_LT(diagnosis.error.mae_after, 0.85 * diagnosis.error.mae_before);
+  for (const EffectFinding& effect : diagnosis.effects) {
+    double largest = 0;
+    for (const ParameterFinding& p : effect.parameters) {
+      if (p.name == "presliding") largest = std::max(largest, std::abs(p.value));
+    }
+    // The Coulomb friction there is 0.25 A: nothing builds up to more than that.
+    EXPECT_LT(largest, 0.3) << effect.family;
+  }
+  // Nothing is said twice.
+  std::vector<std::string> notes = diagnosis.notes;
+  std::ranges::sort(notes);
+  EXPECT_TRUE(std::ranges::adjacent_find(notes) == notes.end());
 }
 
 TEST(Diagnosis, NamesTwoEffects) {

@@ -109,5 +109,30 @@ TEST(Udsr, EveryPartCanBeSwitchedAndMatters) {
   }
 }
 
+// Two inputs that add up: the recursion has something to reduce, and its parts enter the front.
+TEST(Udsr, TheRecursionCanBeSwitchedOffAndMatters) {
+  std::vector<double> v, g, y;
+  std::vector<int> movement;
+  RandomStream random(43);
+  for (int i = 0; i < 120; ++i) {
+    v.push_back(random.uniform(-1, 1));
+    g.push_back(random.uniform(-1, 1));
+    y.push_back(std::exp(1.5 * v.back()) + 2 * std::sin(3 * g.back()) + 0.02 * random.normal());
+    movement.push_back(i);
+  }
+  const std::vector<Input> inputs = {{"v", "rad/s", Role::velocity, -1, 1, std::nullopt},
+                                     {"g", "N m", Role::gravity_torque, -1, 1, std::nullopt}};
+  const std::vector<const double*> columns = {v.data(), g.data()};
+  const TrainingData data{inputs, columns, y, movement};
+  const auto front = [&](bool recursion) {
+    Given parameters = kSmall;
+    parameters["recursion"] = recursion;
+    Budget budget({200'000'000, INFINITY});
+    FitContext context{data, find_operator_set("full"), budget, RandomStream(7)};
+    return Registry().make("udsr", parameters)->fit(context).front;
+  };
+  EXPECT_NE(front(true), front(false));
+}
+
 }  // namespace
 }  // namespace tribench
