@@ -160,6 +160,17 @@ std::string why_no_formula(const FitResult& result) {
                      result.note.empty() ? "the method returned an empty front" : result.note);
 }
 
+// Some parameters can be judged only beside the data (a template names the stage's inputs): what a
+// method refuses there it does not support, like any other data that it cannot use.
+FitResult fit_or_refuse(const Regressor& method, FitContext& context) {
+  try {
+    return method.fit(context);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::bad_input) throw;
+    return FitResult::unsupported(error.what());
+  }
+}
+
 StagesResult fit_stages(const Problem& problem, const Regressor& method, const CellTask& task,
                         Budget& budget, Trace& trace) {
   StagesResult result;
@@ -173,7 +184,7 @@ StagesResult fit_stages(const Problem& problem, const Regressor& method, const C
     Budget part = budget.share(budget.remaining() / (problem.stages.size() - s));
     FitContext context{data, task.operators, part, random.split(s), task.threads, &trace};
     trace.start_stage(budget.spent());
-    const FitResult fit = method.fit(context);
+    const FitResult fit = fit_or_refuse(method, context);
     budget.settle(part);
     if (!fit.note.empty()) {
       if (!result.note.empty()) result.note += "; ";
@@ -229,10 +240,6 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
     fit = fit_stages(problem, method, task, budget, trace);
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (const Error& error) {
-    // A method reads some parameters only beside the data: a template's names are the inputs'.
-    fit.failure = fmt::format(
-        "{} ({})", error.kind() == ErrorKind::bad_input ? "unsupported" : "error", error.what());
   } catch (const std::exception& error) {
     fit.failure = fmt::format("error ({})", error.what());
   }

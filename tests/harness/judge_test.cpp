@@ -92,6 +92,34 @@ TEST(FitAndJudge, AddsTheStagesFormulasAndCountsTheAdaptationApart) {
   EXPECT_EQ(again.mae_test, record.mae_test);
 }
 
+// Refuses data of which the first input has another name.
+class ParticularMethod : public LineMethod {
+ public:
+  explicit ParticularMethod(std::string wanted) : wanted_(std::move(wanted)) {}
+  FitResult fit(FitContext& context) const override {
+    if (context.data.inputs[0].name != wanted_) {
+      throw_bad_input("'" + wanted_ + "' is not an input", "template");
+    }
+    return LineMethod::fit(context);
+  }
+
+ private:
+  std::string wanted_;
+};
+
+TEST(FitAndJudge, TakesWhatAMethodRefusesBesideTheDataForUnsupported) {
+  const Problem problem = two_stage_problem();
+  CellTask task;
+  task.cell = {problem.name, "particular", "paper", 1};
+  task.operators = find_operator_set("paper");
+  const Record first = fit_and_judge(problem, ParticularMethod("v"), task).record;
+  EXPECT_EQ(first.status, "ok") << first.reason;
+  EXPECT_EQ(first.note, "no adapt: template: 'v' is not an input");
+  EXPECT_EQ(first.complexity_adaptation, 0);
+  const Record none = fit_and_judge(problem, ParticularMethod("g"), task).record;
+  EXPECT_EQ(none.reason, "unsupported (template: 'g' is not an input)");
+}
+
 TEST(FitAndJudge, ShowsAMethodNoInputThatDoesNotVaryInItsRows) {
   // The line method divides by the spread of the first input it sees: of a constant that is zero.
   Problem problem = two_stage_problem();
