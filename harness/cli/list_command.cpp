@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "algorithms/diagnosis/effect_library.hpp"
@@ -25,6 +26,7 @@ namespace {
 struct Listed {
   std::string name;
   std::string summary;
+  nlohmann::json more = nlohmann::json::object();  // beside them in JSON
 };
 
 std::vector<Listed> listed_problems() {
@@ -34,9 +36,39 @@ std::vector<Listed> listed_problems() {
   return all;
 }
 
+nlohmann::json json_of(const ParameterValue& value) {
+  return std::visit([](const auto& v) { return nlohmann::json(v); }, value);
+}
+
+// What a method accepts; the text says the default and the choices too.
+std::vector<Listed> listed_parameters(const AlgorithmEntry& method) {
+  std::vector<Listed> all;
+  for (const ParameterSpec& spec : method.parameters) {
+    nlohmann::json more = {{"default", json_of(spec.default_value)}};
+    const bool is_number = spec.default_value.index() == 1 || spec.default_value.index() == 2;
+    if (is_number) more.update({{"low", spec.low}, {"high", spec.high}});
+    if (!spec.choices.empty()) more["choices"] = spec.choices;
+    all.push_back({spec.name, spec.summary, std::move(more)});
+  }
+  return all;
+}
+
+nlohmann::json array_of(const std::vector<Listed>& all) {
+  nlohmann::json array = nlohmann::json::array();
+  for (const Listed& item : all) {
+    nlohmann::json object = {{"name", item.name}, {"summary", item.summary}};
+    object.update(item.more);
+    array.push_back(std::move(object));
+  }
+  return array;
+}
+
 std::vector<Listed> listed_methods(const Registry& registry) {
   std::vector<Listed> all;
-  for (const AlgorithmEntry& entry : registry.entries()) all.push_back({entry.name, entry.summary});
+  for (const AlgorithmEntry& entry : registry.entries()) {
+    all.push_back(
+        {entry.name, entry.summary, {{"parameters", array_of(listed_parameters(entry))}}});
+  }
   return all;
 }
 
@@ -68,15 +100,17 @@ std::vector<Listed> listed_grids() {
 
 void print_list(const std::vector<Listed>& all, bool json) {
   if (json) {
-    nlohmann::json array = nlohmann::json::array();
-    for (const Listed& item : all)
-      array.push_back({{"name", item.name}, {"summary", item.summary}});
-    fmt::print("{}\n", array.dump(2));
+    fmt::print("{}\n", array_of(all).dump(2));
     return;
   }
   std::size_t width = 0;
   for (const Listed& item : all) width = std::max(width, item.name.size());
-  for (const Listed& item : all) fmt::print("{:<{}}  {}\n", item.name, width, item.summary);
+  for (const Listed& item : all) {
+    fmt::print("{:<{}}  {}", item.name, width, item.summary);
+    if (item.more.contains("choices")) fmt::print("; one of {}", item.more["choices"].dump());
+    if (item.more.contains("default")) fmt::print(" [{}]", item.more["default"].dump());
+    fmt::print("\n");
+  }
 }
 
 void add_kind(CLI::App& list, const char* name, const char* summary,
@@ -87,6 +121,19 @@ void add_kind(CLI::App& list, const char* name, const char* summary,
   kind->callback([json, items = std::move(items)] { print_list(items(), *json); });
 }
 
+void add_methods(CLI::App& list, const Registry& registry) {
+  CLI::App* kind = list.add_subcommand(
+      "methods", "Every algorithm a grid can name; with a name, its parameters");
+  auto name = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  kind->add_option("name", *name, "the method whose parameters are listed");
+  kind->add_flag("--json", *json, "an array of {name, summary}; of methods, with parameters");
+  kind->callback([name, json, &registry] {
+    print_list(name->empty() ? listed_methods(registry) : listed_parameters(registry.find(*name)),
+               *json);
+  });
+}
+
 }  // namespace
 
 void add_list_command(CLI::App& app, ExitStatus& /*status*/, const Registry& registry) {
@@ -94,8 +141,7 @@ void add_list_command(CLI::App& app, ExitStatus& /*status*/, const Registry& reg
   list->footer("Example: tribench list problems --json");
   list->require_subcommand(1);
   add_kind(*list, "problems", "Every problem of the catalogue", listed_problems);
-  add_kind(*list, "methods", "Every algorithm a grid can name",
-           [&registry] { return listed_methods(registry); });
+  add_methods(*list, registry);
   add_kind(*list, "effects", "What the closed loop can find", listed_effects);
   add_kind(*list, "operators", "The operator sets", listed_operators);
   add_kind(*list, "data", "The measured sets", listed_data);
