@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 using Words = std::pair<std::string_view, std::string_view>;
 
-constexpr std::array<Words, 17> kFamilies = {{
+constexpr std::array<Words, 18> kFamilies = {{
     {"asymmetry", "a difference between the two directions"},
     {"stribeck", "the Stribeck effect (friction falls as motion starts)"},
     {"nonlinear_viscous", "viscous friction that is not linear in velocity"},
@@ -39,6 +39,7 @@ constexpr std::array<Words, 17> kFamilies = {{
     {"inertia", "an error of inertia"},
     {"coupling", "coupling to other joints"},
     {"offset", "a constant offset"},
+    {"backlash", "backlash of the gear"},
 }};
 
 constexpr std::array<Words, 9> kMovements = {{

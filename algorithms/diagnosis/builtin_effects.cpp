@@ -210,6 +210,8 @@ EffectFamily hysteresis() {
   f.atoms = {{{"sgn_v*exp(-d/lambda)"},
               {"presliding"},
               {{"lambda", "d", {0.004, 0.01, 0.03}, 0.001, 0.1}}}};
+  // Both are transients over the path since the torque on the gear turned.
+  f.known_aliases = {{"backlash", "load the joint so that its gear stays on one flank (R3)"}};
   f.separate_by = {"R4"};
   return f;
 }

@@ -84,6 +84,11 @@ class ClosedLoop : public Regressor {
         throw_bad_input("the closed loop cannot be its own base", "base",
                         "use coulomb_viscous, symmetric or another method");
       }
+      const bool formula = base_name_.find_first_of("*+/(") != std::string::npos;
+      if (formula) {
+        throw_bad_input(fmt::format("'{}' is no method's name", base_name_), "base",
+                        fmt::format("a formula is given as formula:{}", base_name_));
+      }
       method_ = registry.make(base_name_);
     }
   }

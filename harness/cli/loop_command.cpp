@@ -220,7 +220,7 @@ void print_findings(const loop::Diagnosis& diagnosis, const loop::Observations& 
   if (!std::isnan(error.ceiling)) {
     fmt::print("  the noise lies between {:.4g} and {:.4g} {} (mean magnitude)", error.ceiling,
                error.attainable, data.target_unit);
-    if (!std::isnan(error.closed_fraction)) {
+    if (!std::isnan(error.closed_fraction) && !diagnosis.effects.empty()) {
       fmt::print("; {:.0f} to {:.0f} % of the gap above it is closed", 100 * error.closed_fraction,
                  100 * error.closed_fraction_high);
     }
@@ -421,7 +421,9 @@ void add_loop_command(CLI::App& app, ExitStatus& /*status*/, const Registry& reg
   command->add_option("--learn-evaluations", arguments->learn_evaluations, "what it may spend")
       ->capture_default_str();
   command->add_option("--save-effect", arguments->save_effect, "write a learned effect to a file");
-  command->add_option("--learned", arguments->learned, "test the effects of such a file too")
+  command
+      ->add_option("--learned", arguments->learned,
+                   "test the effects of such a file (or of one made by hand) too")
       ->check(CLI::ExistingFile);
   command->add_flag("--json", arguments->json, "print loop.json");
   command->add_option("--out", arguments->out, "folder for loop.json, loop.md, loop.html");

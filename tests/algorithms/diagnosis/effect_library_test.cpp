@@ -5,13 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "algorithms/diagnosis/diagnosis.hpp"
+#include "foundation/error.hpp"
 #include "problems/kuka/planted.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -73,6 +77,83 @@ TEST(EffectLibrary, TheLoopFindsTheRippleOfAScrewWithoutBeingToldItsLead) {
     period = 2 * std::numbers::pi / (harmonic * p.value);
   }
   EXPECT_NEAR(period, 0.01, 1e-12);
+}
+
+bool same(const AtomTemplate& a, const AtomTemplate& b) {
+  const auto same_shape = [](const ShapeTemplate& x, const ShapeTemplate& y) {
+    return x.name == y.name && x.scale == y.scale && x.grid == y.grid && x.low == y.low &&
+           x.high == y.high && x.recorded == y.recorded;
+  };
+  return a.columns == b.columns && a.coefficients == b.coefficients &&
+         a.rigid_load == b.rigid_load && std::ranges::equal(a.shapes, b.shapes, same_shape);
+}
+
+bool same(const EffectFamily& a, const EffectFamily& b) {
+  const auto same_sanity = [](const Sanity& x, const Sanity& y) {
+    return x.coefficient == y.coefficient && x.sign == y.sign && x.largest == y.largest &&
+           x.excused_nats == y.excused_nats && x.why == y.why;
+  };
+  const auto same_alias = [](const KnownAlias& x, const KnownAlias& y) {
+    return x.name == y.name && x.separate_by == y.separate_by && x.coefficient == y.coefficient;
+  };
+  const auto same_atom = [](const AtomTemplate& x, const AtomTemplate& y) { return same(x, y); };
+  return a.name == b.name && a.id == b.id && a.summary == b.summary && a.phrase == b.phrase &&
+         a.source == b.source && a.angular == b.angular && a.separate_by == b.separate_by &&
+         std::ranges::equal(a.atoms, b.atoms, same_atom) &&
+         std::ranges::equal(a.sanity, b.sanity, same_sanity) &&
+         std::ranges::equal(a.known_aliases, b.known_aliases, same_alias);
+}
+
+TEST(EffectFile, HoldsAllThatABuiltInEffectHas) {
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "tribench_effects.toml";
+  std::ofstream(file) << write_effects(builtin_effects());
+  const std::vector<EffectFamily> read = read_effects(file);
+  ASSERT_EQ(read.size(), builtin_effects().size());
+  for (std::size_t f = 0; f < read.size(); ++f) {
+    EXPECT_TRUE(same(read[f], builtin_effects()[f])) << read[f].name;
+  }
+}
+
+TEST(EffectFile, SaysWhereAnEffectIsIncomplete) {
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "tribench_bad_effects.toml";
+  const auto complaint = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    try {
+      read_effects(file);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  const std::string head = "[[effect]]\nname = \"x\"\nphrase = \"y\"\n";
+  EXPECT_NE(complaint(head).find("no columns"), std::string::npos);
+  EXPECT_NE(complaint(head + "columns = [\"v^2\"]\ncoefficients = [\"a\", \"b\"]\n")
+                .find("as many coefficients"),
+            std::string::npos);
+  EXPECT_NE(complaint(head + "columns = [\"exp(-d/l)\"]\nshape = [{name = \"l\"}]\n")
+                .find("'l' has no grid"),
+            std::string::npos);
+}
+
+TEST(EffectFile, OfTheExamplesFindsWhatTheBuiltInLibraryLacks) {
+  Observations data = observe(kuka::make_planted({}, 5).data);
+  const std::vector<double> q = data.find("q")->values;
+  const std::vector<double> sign = data.find("sgn_v")->values;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    data.target[i] += 0.3 * sign[i] * std::cos(2 * q[i] + 0.7);
+  }
+  DiagnosisOptions options;
+  options.gear_ratios = {160};
+  EXPECT_EQ(diagnose(data, coulomb_viscous_base, options, 5).verdict, Verdict::unknown);
+  options.learned =
+      read_effects(tribench::testing::source_dir() / "examples/effects/transmission.toml");
+  EXPECT_EQ(options.learned.size(), 3U);
+  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options, 5);
+  EXPECT_EQ(diagnosis.verdict, Verdict::effects);
+  ASSERT_EQ(diagnosis.effects.size(), 1U);
+  EXPECT_EQ(diagnosis.effects[0].family, "friction_ripple");
 }
 
 }  // namespace
