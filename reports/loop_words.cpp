@@ -66,7 +66,13 @@ std::string alias_clause(const json& effect) {
   std::vector<std::string> exact;
   std::vector<std::string> near;
   for (const json& alias : items_of(effect, "alias")) {
-    (flag_of(alias, "exact") ? exact : near).push_back(family_words(text_of(alias, "family")));
+    const std::string words = family_words(text_of(alias, "family"));
+    const bool is_exact = flag_of(alias, "exact");
+    const std::string ask = is_exact ? text_of(alias, "separate_by") : std::string();
+    (is_exact ? exact : near)
+        .push_back(ask.empty()
+                       ? words
+                       : fmt::format("{} (to settle that: {})", words, movement_words(ask)));
   }
   std::string text;
   if (!exact.empty()) {

@@ -66,6 +66,12 @@ TEST(LoopReport, ListsWhatCannotBeToldApartBurstsAndTheNextMovements) {
                              {"between", "payload | power_quadrant_gain"}}};
   const std::string text = loop_markdown(loop, "x");
   EXPECT_THAT(text, HasSubstr("cannot tell apart"));
+  loop["effects"][0]["alias"] = {{{"family", "sensor_offset"},
+                                  {"exact", true},
+                                  {"separate_by", "read the torque with the drive unpowered"}}};
+  EXPECT_THAT(loop_markdown(loop, "x"),
+              HasSubstr("cannot be told from sensor_offset (to settle that: read the torque with "
+                        "the drive unpowered) at all"));
   EXPECT_THAT(text, HasSubstr("a known payload (R3)"));
   EXPECT_THAT(text, HasSubstr("movement 17, 1.20 to 1.30 s"));
   EXPECT_THAT(text, HasSubstr("## Next movements"));
