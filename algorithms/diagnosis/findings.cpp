@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/findings.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -77,6 +79,12 @@ void add_parameters(EffectFinding& finding, const FittedModel& fit, const Covari
       found.low = std::max(found.low, shape.low);
       found.high = std::min(found.high, shape.high);
       finding.parameters.push_back(found);
+      const double margin = 1e-3 * (shape.high - shape.low);
+      if (shape.value < shape.low + margin || shape.value > shape.high - margin) {
+        finding.notes.push_back(
+            fmt::format("{} has come to the end of the range that is looked at: it may lie beyond",
+                        shape.name));
+      }
       ++j;
     } else {
       finding.parameters.push_back({shape.name, shape.value, shape.value, shape.value});

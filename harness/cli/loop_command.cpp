@@ -221,8 +221,10 @@ void print_findings(const loop::Diagnosis& diagnosis, const loop::Observations& 
     fmt::print("  the noise lies between {:.4g} and {:.4g} {} (mean magnitude)", error.ceiling,
                error.attainable, data.target_unit);
     if (!std::isnan(error.closed_fraction) && !diagnosis.effects.empty()) {
-      fmt::print("; {:.0f} to {:.0f} % of the gap above it is closed", 100 * error.closed_fraction,
-                 100 * error.closed_fraction_high);
+      const std::string least = fmt::format("{:.0f}", 100 * error.closed_fraction);
+      const std::string most = fmt::format("{:.0f}", 100 * error.closed_fraction_high);
+      fmt::print("; {} % of the gap above it is closed",
+                 least == most ? least : fmt::format("{} to {}", least, most));
     }
     fmt::print("\n");
   }
