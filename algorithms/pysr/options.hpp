@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
 // Everything that can be set in `pysr`: the three profiles of defaults and the parameters that
-// override them.
+// override them (parameters.cpp).
 //
 // `v1` and `v2` are the defaults of PySR 1.x and 2.x (Cranmer 2023; PySR 2.0.0 beta,
-// pysr/sr.py and src/Options.jl); `native` is ours. A parameter left at "as the profile has it"
-// (0 or -1, the specification says which) takes the profile's value.
+// pysr/sr.py and src/Options.jl); `native` is ours. A parameter left at -1 or "profile" takes the
+// profile's value.
 #pragma once
 
 #include <array>
