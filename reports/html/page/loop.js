@@ -55,10 +55,11 @@ function drawLoop() {
     ({a, b, correlation: (map.correlation[i] || [])[j], size: Math.abs((map.correlation[i] || [])[j])})))
     .filter((c) => isFinite(c.size));
   draw("aliases", cells.length ? aliasPlot(cells, lookFor([], widthOf("aliases")), map.families) : null);
+  const left = list((loop.leftover || {}).inputs);
   const leftover = list((loop.leftover || {}).curve).map((p) => ({x: p[0], y: p[1], curve: "leftover", method: "leftover", series: "l"}));
   draw("leftover", leftover.length ? curvePlot(leftover, lookFor(["leftover"], widthOf("leftover")),
        [list(loop.leftover.inputs).join(", "), "residual, " + unit], "What is left over") : null,
-       {empty: "Nothing was left over that could be drawn."});
+       {empty: left.length ? `It depends on ${left.join(" and ")}: no curve over one input shows it.` : "Nothing was left over."});
 }
 
 function effectsTable() {
