@@ -196,6 +196,41 @@ void check_varying(const Observations& data) {
                   data.target_name, "name the column that holds the torque with --roles");
 }
 
+void check_moving(const Observations& data) {
+  constexpr double kAgainst = 0.1;  // of what is travelled: less is the position's noise
+  const Signal& v = *data.find("v");
+  const auto [low, high] = std::ranges::minmax(v.values);
+  if (low < high) return;
+  constexpr const char* kMend = "name the column that holds the velocity with --roles";
+  if (high == 0) {
+    throw_bad_input("the velocity is 0 in every row: an axis at rest shows no friction", v.channel,
+                    kMend);
+  }
+  const Signal* q = data.find("q");
+  if (q == nullptr) return;
+  double travelled = 0;
+  double against = 0;
+  for (std::size_t begin = 0; begin < data.rows();) {
+    double farthest = sign_of(high) * q->values[begin];
+    double nearest = farthest;
+    double back = 0;
+    std::size_t i = begin;
+    for (; i < data.rows() && data.movement[i] == data.movement[begin]; ++i) {
+      const double place = sign_of(high) * q->values[i];
+      farthest = std::max(farthest, place);
+      nearest = std::min(nearest, place);
+      back = std::max(back, farthest - place);
+    }
+    travelled += farthest - nearest;
+    against += back;
+    begin = i;
+  }
+  if (against <= kAgainst * travelled) return;
+  throw_bad_input(
+      fmt::format("the velocity is {} in every row, while '{}' moves against it", high, q->channel),
+      v.channel, kMend);
+}
+
 void check_sign(const Observations& data) {
   if (!data.rigid.empty()) return;  // inertia and gravity may dominate: no sign to be expected
   // Of rows in one direction the mean tells the sign, not how friction varies with the speed.

@@ -41,6 +41,10 @@ void drop_negligible_load(Observations& data);
 // Throws Error (bad_input) where every row has the same target: a dead channel shows no friction.
 void check_varying(const Observations& data);
 
+// Throws Error (bad_input) where the velocity is the same in every row and cannot be: 0, or against
+// what the position does.
+void check_moving(const Observations& data);
+
 // Throws Error (bad_input) where friction opposes the velocity.
 void check_sign(const Observations& data);
 

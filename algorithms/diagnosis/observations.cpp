@@ -260,6 +260,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   add_campaign_time(out);
   add_distance(out);
   out.time = out.find("t")->values;
+  check_moving(out);
   if (options.unordered) out.take_away("t", "the movements' order says nothing");
   if (options.min_speed.value_or(0) > 0) drop_slow_rows(out, *options.min_speed);
   if (!options.min_speed && !options.steady) drop_rows_at_rest(out);

@@ -119,6 +119,28 @@ double sine_and_hold(int m, int i) {
   return std::sin(0.1 * (i + 0.5) + m);
 }
 
+// A column that is stuck, or that holds something else than the velocity.
+TEST(Observations, a_velocity_that_never_changes_is_believed_only_if_the_position_says_the_same) {
+  Dataset data = movements_of(6, 50, steady_speed);
+  const auto stuck_at = [&](double value) {
+    Dataset stuck = data;
+    stuck.channels[0].values.assign(data.rows(), value);
+    return stuck;
+  };
+  EXPECT_THAT([&] { observe(stuck_at(0.5), {}); },
+              ::testing::ThrowsMessage<Error>(::testing::HasSubstr(
+                  "the velocity is 0.5 in every row, while 'q' moves against it")));
+  EXPECT_THAT([&] { observe(stuck_at(0), {}); },
+              ::testing::ThrowsMessage<Error>(::testing::HasSubstr("0 in every row")));
+  // Forward only, with a position that trembles by less than a tenth of the way.
+  Dataset one_speed = movements_of(6, 50, [](int, int) { return 1.0; });
+  for (std::size_t i = 0; i < one_speed.rows(); ++i) {
+    one_speed.channels[2].values[i] += 0.01 * std::sin(3.0 * static_cast<double>(i));
+    one_speed.channels[1].values[i] += 0.1 * std::sin(static_cast<double>(i));
+  }
+  EXPECT_EQ(observe(one_speed, {}).rows(), one_speed.rows());
+}
+
 TEST(Observations, RowsAtRestAreFoundAndLeftOutWithAWord) {
   const Dataset data = movements_of(10, 200, sine_and_hold);
   const Observations moving = observe(data);
