@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "algorithms/diagnosis/score_test.hpp"
 #include "algorithms/diagnosis/smoothers.hpp"
+#include "algorithms/fitting/symmetric_system.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -57,7 +57,7 @@ Normal normal_of(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
 Eigen::VectorXd solve(const Normal& normal, double penalty) {
   Eigen::MatrixXd gram = normal.gram;
   gram.diagonal().array() += penalty * std::max(1.0, normal.rows);
-  return gram.ldlt().solve(normal.right);
+  return solve_symmetric(gram, normal.right);
 }
 
 // Rows by fold: whole movements in turn.

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/cross_validation.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "algorithms/fitting/symmetric_system.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -49,7 +50,7 @@ Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& gram, const Eigen::VectorXd&
   normal.diagonal().array() += kRidge;
   normal.diagonal().tail(penalised).array() += ridge;
   const Eigen::VectorXd right = scale.cwiseProduct(gram.col(p).head(p));
-  return scale.cwiseProduct(normal.ldlt().solve(right));
+  return scale.cwiseProduct(solve_symmetric(normal, right));
 }
 
 }  // namespace

@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "algorithms/fitting/symmetric_system.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -26,8 +27,7 @@ Covariance covariance_of(const FittedModel& fit, const Clusters& clusters) {
   const Eigen::MatrixXd x = fit.x * norms.cwiseInverse().asDiagonal();
   Eigen::MatrixXd normal = x.transpose() * x;
   normal.diagonal().array() += 1e-10;
-  const Eigen::MatrixXd inverse =
-      normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+  const Eigen::MatrixXd inverse = inverse_symmetric(normal);
   const bool by_movement = clusters.movements.size() >= kEnoughMovements;
   const std::vector<RowRange>& groups = by_movement ? clusters.movements : clusters.stretches;
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(x.cols(), x.cols());

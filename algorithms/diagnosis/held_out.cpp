@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/held_out.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "algorithms/fitting/symmetric_system.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -128,7 +129,7 @@ Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>&
   const auto residual_of = [&] {
     Eigen::MatrixXd loaded = normal;
     loaded.diagonal().array() += kRidge * normal.trace() / static_cast<double>(normal.rows());
-    return Eigen::VectorXd(y - x * loaded.ldlt().solve(right));
+    return Eigen::VectorXd(y - x * solve_symmetric(loaded, right));
   };
   const Eigen::VectorXd residual = residual_of();
   // Huber's weights keep bursts from bending the model; few rows have one below 1.

@@ -108,6 +108,19 @@ std::vector<Expression> linear_columns(const LoopModel& model) {
   return all;
 }
 
+Eigen::VectorXd basic_solution_of(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
+                                  const Eigen::VectorXd& target) {
+  const Eigen::Index rank = qr.rank();
+  Eigen::VectorXd rotated = target;
+  rotated.applyOnTheLeft(qr.householderQ().adjoint());
+  Eigen::VectorXd ordered = Eigen::VectorXd::Zero(qr.cols());
+  ordered.head(rank) = qr.matrixQR()
+                           .topLeftCorner(rank, rank)
+                           .triangularView<Eigen::Upper>()
+                           .solve(rotated.head(rank));
+  return qr.colsPermutation() * ordered;
+}
+
 // Solves for the linear coefficients at the current shapes; the sum of squares that is left.
 // keeps the whitened columns and the residual for the Jacobian.
 struct LinearFit {
@@ -132,7 +145,7 @@ LinearFit solve_linear(LoopModel& model, const Observations& data, const Cluster
     const Eigen::MatrixXd scaled = x * norms.cwiseInverse().asDiagonal();
     fit.qr.setThreshold(1e-9);
     fit.qr.compute(scaled);
-    const Eigen::VectorXd solution = basic_solution(fit.qr, target);
+    const Eigen::VectorXd solution = basic_solution_of(fit.qr, target);
     model.coefficients = solution.cwiseQuotient(norms);
     fit.residual = target - scaled * solution;
   }
@@ -248,17 +261,12 @@ std::size_t LoopModel::first_column(std::size_t atom) const {
   return first;
 }
 
-Eigen::VectorXd basic_solution(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
-                               const Eigen::VectorXd& target) {
-  const Eigen::Index rank = qr.rank();
-  Eigen::VectorXd rotated = target;
-  rotated.applyOnTheLeft(qr.householderQ().adjoint());
-  Eigen::VectorXd ordered = Eigen::VectorXd::Zero(qr.cols());
-  ordered.head(rank) = qr.matrixQR()
-                           .topLeftCorner(rank, rank)
-                           .triangularView<Eigen::Upper>()
-                           .solve(rotated.head(rank));
-  return qr.colsPermutation() * ordered;
+Eigen::VectorXd basic_solution(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target,
+                               double threshold) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(threshold);
+  qr.compute(columns);
+  return basic_solution_of(qr, target);
 }
 
 Eigen::MatrixXd evaluate_columns(std::span<const Expression> formulas, const Observations& data) {

@@ -9,7 +9,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <functional>
 #include <string>
 #include <vector>
@@ -47,10 +46,10 @@ struct LoopModel {
   std::size_t first_column(std::size_t atom) const;  // of its coefficients
 };
 
-// Least squares in which columns beyond the rank get no weight (Eigen's own solve divides by their
-// pivots, however small).
-Eigen::VectorXd basic_solution(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
-                               const Eigen::VectorXd& target);
+// Least squares in which columns beyond the rank, pivots below that share of the largest, get no
+// weight (Eigen's own solve divides by them, however small).
+Eigen::VectorXd basic_solution(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target,
+                               double threshold);
 
 // Values of formulas, one a column.
 Eigen::MatrixXd evaluate_columns(std::span<const Expression> formulas, const Observations& data);

@@ -18,10 +18,7 @@ bool whitening_is_safe(const LoopModel& model, const Observations& data, const C
   const auto solution = [&](const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
     const Eigen::VectorXd norms = columns.colwise().norm().cwiseMax(1e-300);
     const Eigen::MatrixXd scaled = columns * norms.cwiseInverse().asDiagonal();
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-    qr.setThreshold(1e-9);
-    qr.compute(scaled);
-    return Eigen::VectorXd(basic_solution(qr, target).cwiseQuotient(norms));
+    return Eigen::VectorXd(basic_solution(scaled, target, 1e-9).cwiseQuotient(norms));
   };
   Noise plain;
   plain.within_sd = 1;

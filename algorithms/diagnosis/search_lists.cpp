@@ -4,9 +4,10 @@
 // that these data cannot tell apart.
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "algorithms/fitting/symmetric_system.hpp"
 
 #include "algorithms/diagnosis/search.hpp"
 
@@ -23,7 +24,7 @@ double canonical_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b)
   if (qa.cols() == 0 || qb.cols() == 0) return 0;
   const Eigen::MatrixXd cross = qa.transpose() * qb;
   const Eigen::MatrixXd gram = cross.transpose() * cross;
-  return std::sqrt(std::min(1.0, gram.selfadjointView<Eigen::Lower>().operatorNorm()));
+  return std::sqrt(std::min(1.0, spectral_norm_symmetric(gram)));
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/fitting/linear_least_squares.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/QR>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/parfam/elimination.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "algorithms/fitting/symmetric_system.hpp"
 
 namespace tribench::parfam {
 namespace {
@@ -132,7 +134,7 @@ std::vector<double> Eliminator::worth_of(const TrainedModel& model, Projection& 
     a.col(k).setZero();
     a(k, k) = 1;
   }
-  const Eigen::MatrixXd inverse = a.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+  const Eigen::MatrixXd inverse = inverse_symmetric(a);
   const double freedom =
       std::max<double>(1.0, static_cast<double>(y_.size()) - static_cast<double>(p));
   const double variance = std::max(model.sum_squares, 1e-300) / freedom;

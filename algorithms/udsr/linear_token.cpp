@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/udsr/linear_token.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "algorithms/fitting/symmetric_system.hpp"
 
 namespace tribench::udsr {
 namespace {
@@ -110,7 +111,7 @@ PolynomialRegression::Normal PolynomialRegression::normal_equations(
 Eigen::VectorXd PolynomialRegression::solve(const Eigen::VectorXd& target,
                                             const Eigen::VectorXd& weights) const {
   const Normal normal = normal_equations(target, weights);
-  const Eigen::VectorXd solution = normal.gram.ldlt().solve(normal.moment);
+  const Eigen::VectorXd solution = solve_symmetric(normal.gram, normal.moment);
   return solution.cwiseQuotient(scale_);
 }
 

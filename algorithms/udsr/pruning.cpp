@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/udsr/pruning.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
+
+#include "algorithms/fitting/symmetric_system.hpp"
 
 namespace tribench::udsr {
 namespace {
@@ -139,7 +140,7 @@ std::size_t Pruner::least_needed(const Expression& formula, std::uint64_t& node_
   const Eigen::VectorXd scale = curvature.diagonal().cwiseSqrt().cwiseMax(1e-150);
   curvature = scale.cwiseInverse().asDiagonal() * curvature * scale.cwiseInverse().asDiagonal();
   curvature.diagonal().array() += 1e-10;
-  const Eigen::MatrixXd inverse = curvature.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+  const Eigen::MatrixXd inverse = inverse_symmetric(curvature);
   std::size_t least = formula.size();
   double smallest = std::numeric_limits<double>::infinity();
   for (Eigen::Index k = 0; k < p; ++k) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/udsr/term_selection.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/udsr/linear_token.hpp"
 
 namespace tribench::udsr {
@@ -49,7 +49,7 @@ class Subsets {
   Eigen::VectorXd coefficients(const Subset& subset) const {
     const Eigen::VectorXd moment = moment_(subset);
     const Eigen::MatrixXd gram = gram_(subset, subset);
-    return gram.ldlt().solve(moment);
+    return solve_symmetric(gram, moment);
   }
   double sum_squares(const Subset& subset) const {
     return std::max(size_ - coefficients(subset).dot(moment_(subset)), kRounding * size_);

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+//
+// Dense systems with a symmetric matrix, by Eigen's LDL^T and QL. For a handful to some hundreds of
+// unknowns; not for sparse ones. Only the lower triangle is read. A singular matrix gives numbers
+// that mean nothing, or NaN: load the diagonal where that can be. O(p^3).
+//
+// One place, since every file that instantiates a factorisation compiles it again, three seconds
+// each.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace tribench {
+
+// x of a x = b; a (p x p) positive or negative semidefinite.
+Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+
+Eigen::MatrixXd inverse_symmetric(const Eigen::MatrixXd& a);
+
+// The largest magnitude of an eigenvalue.
+double spectral_norm_symmetric(const Eigen::MatrixXd& a);
+
+}  // namespace tribench
