@@ -19,6 +19,7 @@
 
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/interrupt.hpp"
 #include "harness/curves.hpp"
 #include "harness/grid.hpp"
 #include "harness/machine.hpp"
@@ -34,15 +35,6 @@
 
 namespace tribench {
 namespace {
-
-// Set by Ctrl-C and looked at by the run; a signal handler can reach nothing else.
-std::atomic<bool> stop_requested{false};
-
-// The first signal lets the run close its files; a second one ends the program at once.
-extern "C" void request_stop(int signal) {
-  stop_requested = true;
-  std::signal(signal, SIG_DFL);
-}
 
 struct RunArguments {
   std::string grid = "quick";
@@ -117,10 +109,10 @@ void run_to_the_end(const Grid& grid, const RunOptions& options, ExitStatus& sta
   const RunIdentity identity{print_grid(grid), code_identity(), data_identity(grid, options.data)};
   // A full disk or a limit on file sizes is an error of write(), not a reason to die.
   std::signal(SIGXFSZ, SIG_IGN);
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
+  // The first signal lets the run close its files.
+  const std::atomic<bool>& stop = stop_requested_by({SIGINT, SIGTERM});
   RunSession session{utc_now(), {}, own_command_line(), options, {}};
-  session.tally = run_grid(grid, options, identity, stop_requested);
+  session.tally = run_grid(grid, options, identity, stop);
   session.ended = utc_now();
   const JournalContents journal = read_journal(options.out / "cells.jsonl");
   write_result_files(options.out, journal.results);
@@ -177,7 +169,8 @@ void verify(const RunArguments& arguments, const Registry& registry, ExitStatus&
   const Grid grid = load_grid(folder / "grid.toml", registry, catalogue_of(options));
   const ScratchRun scratch;
   options.out = scratch.path() / "run";
-  const VerifyResult verdict = verify_run(grid, journal, arguments.sample, options, stop_requested);
+  const std::atomic<bool> never{false};
+  const VerifyResult verdict = verify_run(grid, journal, arguments.sample, options, never);
   if (journal.identity.code != code_identity()) {
     fmt::print("made by {}, verified by {}\n", journal.identity.code, code_identity());
   }

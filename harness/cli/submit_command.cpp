@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <csignal>
 #include <filesystem>
 #include <memory>
@@ -13,6 +12,7 @@
 
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/interrupt.hpp"
 #include "harness/shipped_grids.hpp"
 #include "harness/slurm.hpp"
 #include "problems/measured/data_folder.hpp"
@@ -20,13 +20,6 @@
 
 namespace tribench {
 namespace {
-
-std::atomic<bool> stop_requested{false};  // set by Ctrl-C: the jobs go on, following them ends
-
-extern "C" void stop_following(int signal) {
-  stop_requested = true;
-  std::signal(signal, SIG_DFL);
-}
 
 struct SubmitArguments {
   std::string grid;
@@ -64,8 +57,7 @@ void submit(const SubmitArguments& arguments, const Registry& registry, ExitStat
   fmt::print("array {}, merge {}; logs in {}\n", jobs.array, jobs.merge,
              (options.out / "log").string());
   if (arguments.detach) return;
-  std::signal(SIGINT, stop_following);
-  if (!follow_slurm(jobs, stop_requested)) {
+  if (!follow_slurm(jobs, stop_requested_by({SIGINT}))) {
     fmt::print(stderr, "no longer following; the jobs go on\n");
     status = ExitStatus::undecided;
     return;
