@@ -17,9 +17,9 @@ namespace tribench::loop {
 // Per cluster: sum of squared held-out errors over the noise's unit, in nats. x: rows x columns,
 // y: rows, both whitened. Columns that depend on others are harmless.
 // Cost: rows x columns^2, and one small factorisation a fold.
-// NaN where a column is excited by one fold alone, which then has no prediction; with a ridge such a
-// column has no weight there.
-// ridge: on the last `penalised` columns, relative to their sums of squares.
+// NaN where a column is excited by one fold alone, which then has no prediction; with a ridge such
+// a column has no weight there. ridge: on the last `penalised` columns, relative to their sums of
+// squares.
 Eigen::VectorXd held_out_losses(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
                                 const Clusters& clusters, const Noise& noise,
                                 Eigen::Index penalised = 0, double ridge = 0);
