@@ -78,8 +78,8 @@ const std::vector<EffectFamily>& builtin_effects();
 // What R1 ... R9 ask for, in words.
 std::string experiment_text(std::string_view rule);
 
-// A TOML file with [[effect]] tables, as --save-effect writes it; what is written is read back to the
-// same families. examples/effects/ holds one made by hand. Throws Error (bad_input).
+// A TOML file with [[effect]] tables, as --save-effect writes it; what is written is read back to
+// the same families. examples/effects/ holds one made by hand. Throws Error (bad_input).
 std::vector<EffectFamily> read_effects(const std::filesystem::path& file);
 std::string write_effects(std::span<const EffectFamily> effects);
 
