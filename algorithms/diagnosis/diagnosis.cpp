@@ -23,7 +23,13 @@ constexpr std::size_t kPiecesOfOneMovement = 5;
 
 std::vector<EffectFamily> chosen_families(const DiagnosisOptions& options) {
   std::vector<EffectFamily> all = builtin_effects();
-  all.insert(all.end(), options.learned.begin(), options.learned.end());
+  for (const EffectFamily& family : options.learned) {
+    if (std::ranges::count(all, family.name, &EffectFamily::name) > 0) {
+      throw_bad_input(fmt::format("there are two effects named '{}'", family.name), "--learned",
+                      "give the one in the file another name");
+    }
+    all.push_back(family);
+  }
   if (options.families.empty()) return all;
   std::vector<std::string> names;
   for (const EffectFamily& family : all) names.push_back(family.name);
@@ -66,6 +72,26 @@ Verdict verdict_of(const Diagnosis& diagnosis) {
   return diagnosis.effects.empty() ? Verdict::none : Verdict::effects;
 }
 
+// The role names of what the family's columns in the model are functions of, signs left out.
+std::vector<std::string> inputs_of(const LoopModel& model,
+                                   const std::vector<EffectFamily>& families,
+                                   const EffectFamily& family, const Observations& data) {
+  std::vector<std::string> names;
+  for (const Atom& atom : model.atoms) {
+    if (&families[atom.family] != &family) continue;
+    for (const Expression& column : atom.columns) {
+      for (const Node& node : column.nodes()) {
+        if (!node.is_variable()) continue;
+        const Signal& signal = data.signals[node.variable];
+        const std::string name = input_name(data, signal.name);
+        const bool sign = signal.role == Role::velocity_sign || signal.role == Role::gravity_sign;
+        if (!sign && std::ranges::count(names, name) == 0) names.push_back(name);
+      }
+    }
+  }
+  return names;
+}
+
 // A finding that is not physical is no finding: the verdict becomes UNKNOWN in its inputs.
 void apply_vetoes(Diagnosis& diagnosis, const Observations& train) {
   for (std::size_t k = 0; k < diagnosis.effects.size(); ++k) {
@@ -79,19 +105,8 @@ void apply_vetoes(Diagnosis& diagnosis, const Observations& train) {
         fmt::format("'{}' fits but is not physical ({}): something else is missing", finding.family,
                     objection));
     if (!diagnosis.leftover.inputs.empty()) continue;
-    std::vector<std::string> names;
-    for (const AtomTemplate& atom : family->atoms) {
-      for (const Atom& used : diagnosis.after.atoms) {
-        if (used.label.find(atom.columns[0]) == std::string::npos) continue;
-        for (const Node& node : used.columns[0].nodes()) {
-          if (!node.is_variable()) continue;
-          const std::string name = input_name(train, train.signals[node.variable].name);
-          const bool sign = train.signals[node.variable].role == Role::velocity_sign;
-          if (!sign && std::ranges::count(names, name) == 0) names.push_back(name);
-        }
-      }
-      if (!names.empty()) break;
-    }
+    const std::vector<std::string> names =
+        inputs_of(diagnosis.after, diagnosis.families, *family, train);
     diagnosis.leftover.inputs = names.empty() ? std::vector<std::string>{"velocity"} : names;
   }
 }

@@ -51,7 +51,8 @@ void Search::check_exhaustively() {
       if (atom.family == f) block.atoms.push_back(atom);
     }
     if (block.atoms.empty() && round.family_score[f] > 0) {
-      block.atoms.push_back(library_[best_atom(f, round, base_fit_).atom]);
+      const std::optional<Candidate> best = best_atom(f, round, base_fit_);
+      if (best) block.atoms.push_back(library_[best->atom]);
     }
     if (block.atoms.empty()) continue;
     for (const Atom& atom : block.atoms) {

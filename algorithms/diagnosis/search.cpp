@@ -136,8 +136,8 @@ void Search::count_carriers(Round& round) const {
   }
 }
 
-Candidate Search::best_atom(std::size_t family, const Round& round,
-                            const FittedModel& state) const {
+std::optional<Candidate> Search::best_atom(std::size_t family, const Round& round,
+                                           const FittedModel& state) const {
   std::vector<std::size_t> atoms;
   for (std::size_t k = 0; k < library_.size(); ++k) {
     if (library_[k].family == family && round.blocks[k].test.testable) atoms.push_back(k);
@@ -152,16 +152,17 @@ Candidate Search::best_atom(std::size_t family, const Round& round,
   };
   if (!std::ranges::all_of(atoms, holds_known_column)) std::erase_if(atoms, holds_known_column);
   if (atoms.size() > kAtomsTried) atoms.resize(kAtomsTried);
-  Candidate best;
-  best.family = family;
-  best.gain.nats = -1e300;
+  std::optional<Candidate> best;
   for (const std::size_t k : atoms) {
     const Eigen::MatrixXd x =
         beside(state.x, round.columns.middleCols(static_cast<Eigen::Index>(blocks_[k].first),
                                                  static_cast<Eigen::Index>(blocks_[k].count)));
     Eigen::VectorXd losses = held_out_losses(x, state.residual, clusters_, state.noise);
     const Gain gain = paired_gain(state.losses, losses);
-    if (gain.nats > best.gain.nats) best = {family, k, gain, std::move(losses), false};
+    if (!std::isfinite(gain.nats)) continue;  // one fold alone excites it
+    if (!best || gain.nats > best->gain.nats) {
+      best = Candidate{family, k, gain, std::move(losses), false};
+    }
   }
   return best;
 }
@@ -274,8 +275,8 @@ std::vector<Candidate> Search::admitted(const Round& round, const FittedModel& s
     if (significant) {
       // What few movements carry gains by their offsets, significant or not: a smaller p must not
       // make it harder to be admitted.
-      Candidate plain = best_atom(f, round, state);
-      if (!one || plain.gain.nats >= one->gain.nats) one = std::move(plain);
+      std::optional<Candidate> plain = best_atom(f, round, state);
+      if (!one || (plain && plain->gain.nats >= one->gain.nats)) one = std::move(plain);
     }
     if (one) all.push_back(std::move(*one));
   }

@@ -108,7 +108,10 @@ class Search {
   std::size_t best_shape(std::size_t atom, const Round& round, const FittedModel& state) const;
   std::optional<Candidate> rescue(std::size_t family, const Round& round,
                                   const FittedModel& state) const;
-  Candidate best_atom(std::size_t family, const Round& round, const FittedModel& state) const;
+  // None where no atom of the family can be judged: none is testable, or the folds of the
+  // cross-validation do not know its columns.
+  std::optional<Candidate> best_atom(std::size_t family, const Round& round,
+                                     const FittedModel& state) const;
   void reconsider();
   bool swap_or_drop(std::size_t family);
   bool renew(std::size_t family, const FittedModel& rest, const Round& round);

@@ -139,7 +139,9 @@ void Search::list_candidates(const Round& round) {
       }
     }
     if (finding.adjusted_p < kNearAliasP) {
-      finding.gain = best_atom(f, round, base_fit_).gain.nats;
+      if (const std::optional<Candidate> best = best_atom(f, round, base_fit_)) {
+        finding.gain = best->gain.nats;
+      }
     }
     candidates.push_back(std::move(finding));
   }
@@ -157,9 +159,10 @@ std::vector<AliasFinding> Search::aliases_of(const Candidate& winner, const Roun
   for (std::size_t f = 0; f < families_.size(); ++f) {
     if (f == winner.family || round.family_p[f] > (winner.rescued ? kRescueP : kNearAliasP))
       continue;
-    const Candidate rival = best_atom(f, round, current_);
-    const double r = canonical_correlation(columns(winner.atom), columns(rival.atom));
-    const Gain lead = paired_gain(rival.losses, winner.losses);
+    const std::optional<Candidate> rival = best_atom(f, round, current_);
+    if (!rival) continue;
+    const double r = canonical_correlation(columns(winner.atom), columns(rival->atom));
+    const Gain lead = paired_gain(rival->losses, winner.losses);
     const bool exact = r > kExactCorrelation;
     if (!exact && lead.nats >= 2 * lead.error) continue;
     aliases.push_back({families_[f].name, r, lead.nats, lead.error, exact,

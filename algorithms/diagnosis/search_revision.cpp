@@ -43,10 +43,10 @@ bool Search::renew(std::size_t family, const FittedModel& rest, const Round& rou
   FittedModel other = rest;
   for (std::size_t k = 0; k < known.size(); ++k) {
     const Round own = k == 0 ? round : test_all(other);
-    const Candidate best = best_atom(family, own, other);
-    if (!(best.gain.nats > best.gain.error)) return false;
-    if (k == 0 && std::ranges::count(known, library_[best.atom].label) > 0) return false;
-    model.add(library_[best_shape(best.atom, own, other)]);
+    const std::optional<Candidate> best = best_atom(family, own, other);
+    if (!best || !(best->gain.nats > best->gain.error)) return false;
+    if (k == 0 && std::ranges::count(known, library_[best->atom].label) > 0) return false;
+    model.add(library_[best_shape(best->atom, own, other)]);
     other = fit(model, FitScope::everything);
     const Gain lead = lead_over_current(other);
     if (!(lead.nats > lead.error)) continue;

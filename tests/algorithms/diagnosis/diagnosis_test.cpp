@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/diagnosis.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "foundation/random.hpp"
 #include "problems/csv.hpp"
 #include "problems/data_problem.hpp"
 #include "problems/kuka/planted.hpp"
@@ -227,6 +229,71 @@ TEST(Diagnosis, ClaimsNoFallWithSpeedBelowTheSlowestRow) {
     if (slowest < 0.2) continue;
     EXPECT_EQ(std::ranges::count(diagnosis.untestable, "stribeck", &UntestableFinding::family), 1);
   }
+}
+
+// A recording of a few long movements, in some of which a channel says something and in the others
+// nothing. `effect`: what is missing, whatever the channel does.
+Observations partly_excited(int movements, int excited, const std::string& channel,
+                            std::uint64_t seed) {
+  RandomStream random(seed);
+  std::string text = "movement,time_s,q,v,a," + channel + ",friction_torque_Nm\n";
+  double noise = 0;
+  for (int m = 0; m < movements; ++m) {
+    const double slow = random.uniform(0.5, 1.0);
+    const double fast = slow * random.uniform(1.7, 2.3);
+    for (int i = 0; i < 700; ++i) {
+      const double t = 0.01 * i;
+      const double q = 0.5 * std::sin(slow * t) + 0.3 * std::sin(fast * t);
+      const double v = 0.5 * slow * std::cos(slow * t) + 0.3 * fast * std::cos(fast * t);
+      const double a =
+          -0.5 * slow * slow * std::sin(slow * t) - 0.3 * fast * fast * std::sin(fast * t);
+      const double x = m < excited ? 10 * std::cos(q + 0.3) : 0;
+      noise = 0.6 * noise + 0.24 * random.normal();
+      const double s = v > 0 ? 1 : -1;
+      const double y =
+          8 * s + 14 * v + 2 * s * std::exp(-std::abs(v) / 0.1) + 0.05 * s * std::abs(x) + noise;
+      text += fmt::format("{},{},{},{},{},{},{}\n", m, 7 * m + t, q, v, a, x, y);
+    }
+  }
+  return observe(parse_csv(text, "partly.csv").data);
+}
+
+// What one or two movements alone excite is known to no fold of the cross-validation but their own.
+TEST(Diagnosis, LivesWithAChannelThatSaysSomethingInOneMovementOnly) {
+  for (const char* channel : {"gravity_torque_Nm", "other_velocity_rad_s"}) {
+    for (int movements = 2; movements <= 6; ++movements) {
+      for (int excited = 1; excited <= std::min(2, movements - 1); ++excited) {
+        const Observations data =
+            partly_excited(movements, excited, channel, static_cast<std::uint64_t>(movements));
+        const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, {}, 1);
+        EXPECT_NE(diagnosis.verdict, Verdict::none) << channel << movements;
+        for (const EffectFinding& effect : diagnosis.effects) {
+          EXPECT_TRUE(std::isfinite(effect.gain)) << effect.family;
+          for (const AliasFinding& alias : effect.aliases) {
+            EXPECT_TRUE(std::isfinite(alias.gain_difference)) << alias.family;
+          }
+        }
+        for (const CandidateFinding& candidate : diagnosis.candidates) {
+          EXPECT_TRUE(std::isnan(candidate.gain) || std::abs(candidate.gain) < 1e12)
+              << candidate.family << candidate.gain;
+        }
+      }
+    }
+  }
+}
+
+// A gain of the load is not physical beyond a fifth; what is missing then lives in the load, not in
+// whatever other column has a "g" in its formula.
+TEST(Diagnosis, AnUnphysicalEffectIsLeftOverInItsOwnInputs) {
+  Observations data = observe(kuka::make_planted({.effects = {{"stribeck", 2.0}}}, 4).data);
+  const std::vector<double>& g = data.find("g")->values;
+  for (std::size_t i = 0; i < data.rows(); ++i) data.target[i] += 0.5 * g[i];
+  DiagnosisOptions options = options_of_planted();
+  options.physical_vetoes = true;
+  options.families = {"stribeck", "power_quadrant_gain"};
+  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options, 4);
+  EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
+  EXPECT_EQ(diagnosis.leftover.inputs, (std::vector<std::string>{"gravity_torque"}));
 }
 
 // Grids hand over whatever target they have: all residuals zero, or all of one size.

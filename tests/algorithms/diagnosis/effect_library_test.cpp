@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/effect_library.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -135,6 +136,74 @@ TEST(EffectFile, SaysWhereAnEffectIsIncomplete) {
   EXPECT_NE(complaint(head + "columns = [\"exp(-d/l)\"]\nshape = [{name = \"l\"}]\n")
                 .find("'l' has no grid"),
             std::string::npos);
+}
+
+// What a file says is used or refused, with the line.
+TEST(EffectFile, RefusesWhatItDoesNotKnow) {
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "tribench_strict_effects.toml";
+  const std::string head = "[[effect]]\nname = \"x\"\nphrase = \"y\"\n";
+  const auto complaint = [&](const std::string& text) {
+    std::ofstream(file) << head << text;
+    try {
+      read_effects(file);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+      EXPECT_NE(error.place().find("tribench_strict_effects.toml"), std::string::npos);
+      return fmt::format("{} | {}", error.what(), error.mend());
+    }
+    return std::string("none");
+  };
+  const std::string columns = "columns = [\"v^2\"]\n";
+  const std::string shaped = "columns = [\"exp(-d/l)\"]\n";
+  EXPECT_EQ(complaint(columns), "none");
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {columns + "colunms = [\"v\"]\n", "did you mean 'columns'"},
+      {columns + "sumary = 'z'\n", "did you mean 'summary'"},
+      {columns + "summary = 3\n", "'summary' is no text"},
+      {columns + "angular = 1\n", "'angular' is no true or false"},
+      {"columns = \"v^2\"\n", "'columns' is no list"},
+      {"columns = [1]\n", "'columns' is no text"},
+      {shaped + "shape = [{name = 'l', grid = ['a']}]\n", "'grid' is no finite number"},
+      {shaped + "shape = [{name = 'l', grid = [nan]}]\n", "'grid' is no finite number"},
+      {shaped + "shape = [{name = 'l', grid = [1.0], hihg = 2}]\n", "did you mean 'high'"},
+      {shaped + "shape = [{name = 'l', grid = [1.0], low = 2, high = 1}]\n", "above high"},
+      {shaped + "shape = {name = 'l', grid = [1.0]}\n", "'shape' is no list"},
+      {shaped + "shape = [{name = 'k', grid = [1.0]}]\n", "no column holds the shape 'k'"},
+      {"columns = [\"cos(N*q)\"]\nshape = [{name = 'N', grid = [7.0]}]\n", "is the gear ratio"},
+      {columns + "sanity = [{coefficient = 'c1', sign = 2}]\n", "'sign' is 2"},
+      {columns + "[[efect]]\nname = 'z'\n", "did you mean 'effect'"}};
+  for (const auto& [text, wanted] : cases) {
+    EXPECT_NE(complaint(text).find(wanted), std::string::npos) << text << complaint(text);
+  }
+}
+
+// A file of a few hundred bytes whose grids multiply is refused before any column is made.
+TEST(EffectFile, RefusesGridsThatMultiply) {
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "tribench_large_effects.toml";
+  std::string grid;
+  for (int k = 1; k <= 40; ++k) grid += fmt::format("{}{}.0", k > 1 ? ", " : "", k);
+  std::ofstream(file)
+      << "[[effect]]\nname = 'x'\nphrase = 'y'\ncolumns = ['exp(-a1*v-b1*v-c1*v)']\n"
+      << fmt::format(
+             "shape = [{{name = 'a1', grid = [{0}]}}, {{name = 'b1', grid = "
+             "[{0}]}}, {{name = 'c1', grid = [{0}]}}]\n",
+             grid);
+  try {
+    read_effects(file);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("more than 2000 columns"), std::string::npos);
+  }
+}
+
+// Findings are told apart by their names.
+TEST(EffectFile, RefusesASecondEffectOfOneName) {
+  DiagnosisOptions options;
+  options.learned = {family("stribeck")};
+  EXPECT_THROW(diagnose(observe(kuka::make_planted({}, 1).data), coulomb_viscous_base, options, 1),
+               Error);
 }
 
 TEST(EffectFile, OfTheExamplesFindsWhatTheBuiltInLibraryLacks) {
