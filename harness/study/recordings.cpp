@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "harness/study/recordings.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <sstream>
+
+#include "foundation/error.hpp"
+#include "foundation/random.hpp"
+#include "harness/study/loop_cases.hpp"
+#include "harness/study/loop_methods.hpp"
+#include "harness/toml_table.hpp"
+#include "problems/csv.hpp"
+#include "reports/csv.hpp"
+
+namespace tribench {
+
+namespace embedded {
+std::string_view measured_recordings();
+}
+
+namespace {
+
+constexpr double kSmallestScale = 0.5;  // below, finding it is a matter of luck
+
+std::string csv_text(const CsvCells& cells) {
+  std::string text;
+  append_csv_row(text, cells.header);
+  for (const CsvLine& line : cells.lines) {
+    if (!line.blank()) append_csv_row(text, line.cells);
+  }
+  return text;
+}
+
+Recording recording_of(const LoopCase& one) {
+  std::ostringstream text;
+  write_csv(kuka::make_planted(one.planted, one.seed).data, text);
+  // Planted signs are random, as the study of the loop has them.
+  return {one.key(),
+          {{"recording.csv", split_csv(text.str(), "recording.csv")}},
+          {"--gear-ratio", fmt::format("{}", kPlantedGearRatio), "--any-sign"},
+          one.seed};
+}
+
+Recording recording_of(const TomlTable& table, const std::filesystem::path& folder) {
+  for (const char* key : {"name", "files"}) table.require(key);
+  Recording recording;
+  std::vector<std::string> files;
+  table.read("name", recording.name);
+  table.read("files", files);
+  table.read("options", recording.options);
+  for (const std::string& file : files) {
+    std::ifstream in(folder / file, std::ios::binary);
+    if (!in) return recording;
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    recording.files.push_back(
+        {std::filesystem::path(file).filename().string(), split_csv(text, file)});
+  }
+  return recording;
+}
+
+}  // namespace
+
+std::vector<Recording> planted_recordings(int count, std::uint64_t first_seed,
+                                          std::string_view only) {
+  // Twice as many null runs as single ones of an effect: something near a tenth of the draw.
+  std::vector<LoopCase> cases = make_loop_cases(8, 2, first_seed);
+  std::erase_if(cases, [&](const LoopCase& one) {
+    return !one.key().starts_with(only) || (one.scale != 0 && one.scale < kSmallestScale);
+  });
+  if (cases.empty()) {
+    throw_bad_input(fmt::format("no planted campaign begins with '{}'", only), "--only",
+                    "as in the lines printed: single/stribeck, null, pair");
+  }
+  RandomStream(key_of("recordings/planted")).split(first_seed).shuffle(std::span(cases));
+  cases.resize(std::min(cases.size(), static_cast<std::size_t>(count)));
+  std::vector<Recording> recordings;
+  for (const LoopCase& one : cases) recordings.push_back(recording_of(one));
+  return recordings;
+}
+
+RecordingList read_recordings(std::string_view toml, const std::string& name,
+                              const std::filesystem::path& folder) {
+  toml::table root;
+  try {
+    root = toml::parse(toml, name);
+  } catch (const toml::parse_error& error) {
+    throw_bad_input(
+        std::string(error.description()),
+        fmt::format("{}:{}:{}", name, error.source().begin.line, error.source().begin.column));
+  }
+  const TomlTable file(root, name, "", {"recording"});
+  RecordingList list;
+  for (const TomlTable& table : file.array_of_tables("recording", {"name", "files", "options"})) {
+    Recording recording = recording_of(table, folder);
+    if (recording.files.empty()) {
+      list.missing.push_back(recording.name);
+    } else {
+      list.recordings.push_back(std::move(recording));
+    }
+  }
+  return list;
+}
+
+std::string_view measured_recordings_toml() { return embedded::measured_recordings(); }
+
+std::vector<std::string> write_recording(const Recording& recording,
+                                         const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  std::vector<std::string> words = {"loop"};
+  for (const RecordingFile& file : recording.files) {
+    words.push_back((folder / file.name).string());
+    std::ofstream out(words.back(), std::ios::binary);
+    out << csv_text(file.cells);
+    if (!out.flush()) throw Error(ErrorKind::failed, "cannot write", words.back());
+  }
+  words.insert(words.end(), recording.options.begin(), recording.options.end());
+  words.insert(words.end(), {"--seed", fmt::format("{}", recording.seed)});
+  return words;
+}
+
+}  // namespace tribench
