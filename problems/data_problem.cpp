@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "foundation/error.hpp"
-#include "problems/channel_names.hpp"
+#include "problems/reading/channel_names.hpp"
 #include "problems/table.hpp"
 
 namespace tribench {

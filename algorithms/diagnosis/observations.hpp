@@ -1,81 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// What the loop looks at: the channels of a data set under the short names in which effects are
-// written, with those that follow from others (signs, distance since reversal, campaign time)
-// computed here and nowhere else.
-//
-//   v sgn_v  velocity and its sign        T       temperature
-//   a        acceleration                 t       time through the campaign
-//   q        position                     v2 a2   the other joint's velocity and acceleration
-//   g sgn_g  gravity torque and its sign  d       distance since the last reversal
-//
-// NaN policy: rows in which a used channel or the target is not finite are dropped and counted in
-// the warnings. Bad input that no one can mend silently is an Error (bad_input).
+// The observations of a recording (problems/preparation) as the evaluator and the methods see them.
 #pragma once
 
-#include <cstddef>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "algorithms/expression/evaluate.hpp"
-#include "problems/dataset.hpp"
-#include "problems/problem.hpp"
+#include "problems/preparation/observations.hpp"
 
 namespace tribench {
 struct TrainingData;
 }
 
-// The room's words are common ones (Atom, Noise, Search): they have a namespace of their own.
 namespace tribench::loop {
-
-struct Signal {
-  std::string name;     // as in formulas: "v", "sgn_v", "d", or the channel's own name
-  std::string channel;  // the column it comes from
-  std::string unit;
-  Role role = Role::none;
-  std::string recipe;  // how it is computed where it is no column of the data, else empty
-  std::vector<double> values;
-};
-
-// A signal in which no effect can be tested, and why: "there is one movement".
-struct WithheldSignal {
-  std::string name;
-  std::string why;
-};
-
-// Rows of one movement stand together, in the order of the campaign.
-struct Observations {
-  std::vector<Signal> signals;
-  std::vector<double> target;  // friction, positive with velocity
-  std::string target_name;
-  std::string target_unit;
-  std::vector<int> movement;                // per row: index into movement_names
-  std::vector<std::string> movement_names;  // all of the data set's, used or not
-  // Per movement: those with one number are left out together when the models are judged (one
-  // trajectory at several gains says little of the others). Empty: each movement by itself.
-  std::vector<int> group;
-  std::string group_name;
-  std::vector<double> time;        // per row, within the campaign or the row's number
-  std::vector<std::string> rigid;  // signals whose coefficient is fitted with the base (see below)
-  std::vector<WithheldSignal> withheld;  // of those in `signals`, or taken from them
-  std::vector<std::string> warnings;
-
-  std::size_t rows() const { return target.size(); }
-  const Signal* find(std::string_view name) const;
-  std::vector<std::string> names() const;
-  // Takes a signal away (if it is there) and remembers why.
-  void take_away(std::string_view name, std::string why);
-  // The rows for which keep[row] != 0.
-  Observations select(const std::vector<char>& keep) const;
-  // Every k-th row of each movement, so that at most about `rows` are left. Neighbouring rows of a
-  // fast recording say the same; a diagnosis loses next to nothing by it.
-  Observations thinned(std::size_t rows) const;
-  // The numbers of the movements that occur, in order.
-  std::vector<int> movements() const;
-};
 
 // Pointers to the columns of the signals, for the evaluator. Valid as long as the observations.
 class SignalTable {
@@ -88,36 +25,8 @@ class SignalTable {
   std::size_t rows_;
 };
 
-struct ObservationOptions {
-  // Channels, beside those found, whose coefficients are fitted with the base and are no effects:
-  // the rigid-body part that nobody has subtracted.
-  std::vector<std::string> rigid = {};
-  // Rows slower than this (in the velocity's unit) are left out: the direction of friction at
-  // standstill is not known, and a filtered velocity says little there. Without it the speed is
-  // found from stretches at rest (drop_rows_at_rest); 0 keeps every row.
-  std::optional<double> min_speed = {};
-  // The order of the movements is not that of the campaign: nothing is said about drift.
-  bool unordered = false;
-  // Every movement holds one speed: it is averaged to kRowsOfSteadyMovement rows. What the measured
-  // velocity does within such a movement is the controller's and the encoder's doing; row by row
-  // it would pass for friction (errors in variables) and bend the fit at low speed.
-  bool steady = false;
-};
-
-// The fewest that still tell noise within a movement from noise between movements.
-inline constexpr std::size_t kRowsOfSteadyMovement = 5;
-
-// From a data set with roles. The target is friction_torque, or motor_torque (motor_current)
-// minus gravity_torque where the units agree. Where gravity has another unit than the target its
-// column becomes `rigid`, and so does the acceleration where a motor torque comes without gravity.
-// Throws Error (bad_input): no velocity, no target, friction against velocity, no usable rows.
-Observations observe(const Dataset& data, const ObservationOptions& options = {});
-
 // From a problem's table: the inputs' roles, the target as it stands. Nothing is thrown away but
 // rows that are not finite; an input named sgn_X is its own signal.
 Observations observe(const TrainingData& data);
-
-// Pearson's correlation of two columns; 0 where one of them is constant.
-double correlation(std::span<const double> x, std::span<const double> y);
 
 }  // namespace tribench::loop

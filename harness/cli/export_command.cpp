@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/diagnosis/derived_channels.hpp"
 #include "algorithms/expression/export.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
+#include "problems/preparation/derived_channels.hpp"
 #include "reports/record_csv.hpp"
 
 namespace tribench {

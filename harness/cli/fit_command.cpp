@@ -19,8 +19,8 @@
 #include "harness/cli/commands.hpp"
 #include "harness/machine.hpp"
 #include "harness/run_cell.hpp"
-#include "problems/csv.hpp"
 #include "problems/data_problem.hpp"
+#include "problems/reading/csv.hpp"
 
 namespace tribench {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "harness/cli/commands.hpp"
 #include "problems/catalogue.hpp"
-#include "problems/csv.hpp"
+#include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
 
 namespace tribench {

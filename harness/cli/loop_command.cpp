@@ -23,8 +23,8 @@
 #include "algorithms/diagnosis/loop_json.hpp"
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
-#include "problems/csv.hpp"
 #include "problems/data_problem.hpp"
+#include "problems/reading/csv.hpp"
 #include "reports/loop_report.hpp"
 #include "reports/record_csv.hpp"
 

@@ -13,7 +13,7 @@
 #include "algorithms/external/scratch_folder.hpp"
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
-#include "problems/csv.hpp"
+#include "problems/reading/csv.hpp"
 
 namespace tribench {
 namespace {

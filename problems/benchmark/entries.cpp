@@ -8,7 +8,7 @@
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
 #include "problems/benchmark/nguyen.hpp"
-#include "problems/csv.hpp"
+#include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
 
 namespace tribench::benchmark {

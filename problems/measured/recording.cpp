@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "foundation/error.hpp"
-#include "problems/csv.hpp"
 #include "problems/measured/decimate.hpp"
+#include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
 
 namespace tribench::measured {

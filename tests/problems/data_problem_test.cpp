@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/error.hpp"
-#include "problems/csv.hpp"
+#include "problems/reading/csv.hpp"
 
 namespace tribench {
 namespace {

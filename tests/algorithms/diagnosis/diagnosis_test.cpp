@@ -11,9 +11,9 @@
 
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
-#include "problems/csv.hpp"
 #include "problems/data_problem.hpp"
 #include "problems/kuka/planted.hpp"
+#include "problems/reading/csv.hpp"
 #include "tests/support/paths.hpp"
 
 namespace tribench::loop {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "problems/csv.hpp"
+#include "problems/reading/csv.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 

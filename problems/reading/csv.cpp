@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "problems/csv.hpp"
+#include "problems/reading/csv.hpp"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include <set>
 
 #include "foundation/error.hpp"
-#include "problems/channel_names.hpp"
-#include "problems/csv_cells.hpp"
-#include "problems/csv_checks.hpp"
+#include "problems/reading/channel_names.hpp"
+#include "problems/reading/csv_cells.hpp"
+#include "problems/reading/csv_checks.hpp"
 
 namespace tribench {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "problems/csv.hpp"
+#include "problems/reading/csv.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

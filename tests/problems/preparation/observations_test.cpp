@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/observations.hpp"
+#include "problems/preparation/observations.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

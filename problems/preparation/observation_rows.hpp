@@ -4,7 +4,7 @@
 // observations and says what it did in their warnings. Internal to the room.
 #pragma once
 
-#include "algorithms/diagnosis/observations.hpp"
+#include "problems/preparation/observations.hpp"
 
 namespace tribench::loop {
 

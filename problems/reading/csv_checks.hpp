@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-#include "problems/csv.hpp"
+#include "problems/reading/csv.hpp"
 
 namespace tribench {
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/observation_rows.hpp"
+#include "problems/preparation/observation_rows.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/diagnosis/effect_library.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench::loop {
@@ -22,6 +21,14 @@ double cosine(const std::vector<double>& x, const std::vector<double>& y) {
     xy += x[i] * y[i];
   }
   return xx > 0 && yy > 0 ? xy / std::sqrt(xx * yy) : 0;
+}
+
+// 99 % quantile of the magnitudes.
+double top_speed(std::vector<double> v) {
+  for (double& x : v) x = std::abs(x);
+  const auto at = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(v.size() - 1));
+  std::ranges::nth_element(v, v.begin() + at);
+  return v[static_cast<std::size_t>(at)];
 }
 
 }  // namespace
@@ -90,7 +97,7 @@ void drop_rows_at_rest(Observations& data) {
   constexpr double kGettingAnywhere = 0.01;  // of the top speed
   constexpr double kEnoughRows = 0.05;       // of all: fewer do not bend a fit
   const std::vector<double>& v = data.find("v")->values;
-  const double top = signal_scale(data, "v");
+  const double top = top_speed(v);
   std::vector<double> resting;
   for (std::size_t begin = 0; begin < v.size();) {
     std::size_t end = begin + 1;

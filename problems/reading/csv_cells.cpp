@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "problems/csv_cells.hpp"
+#include "problems/reading/csv_cells.hpp"
 
 #include <fmt/format.h>
 

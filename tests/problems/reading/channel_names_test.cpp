@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "problems/channel_names.hpp"
+#include "problems/reading/channel_names.hpp"
 
 #include <gtest/gtest.h>
 

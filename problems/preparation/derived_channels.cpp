@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/derived_channels.hpp"
+#include "problems/preparation/derived_channels.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "problems/csv_checks.hpp"
+#include "problems/reading/csv_checks.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "foundation/error.hpp"
-#include "problems/channel_names.hpp"
-#include "problems/csv_cells.hpp"
+#include "problems/reading/channel_names.hpp"
+#include "problems/reading/csv_cells.hpp"
 
 namespace tribench {
 namespace {

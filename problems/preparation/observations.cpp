@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+#include "problems/preparation/observations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "foundation/error.hpp"
+#include "problems/preparation/derived_channels.hpp"
+#include "problems/preparation/observation_rows.hpp"
+
+namespace tribench::loop {
+namespace {
+
+constexpr std::array<std::pair<Role, std::string_view>, 10> kSignalNames = {{
+    {Role::velocity, "v"},
+    {Role::velocity_sign, "sgn_v"},
+    {Role::acceleration, "a"},
+    {Role::gravity_torque, "g"},
+    {Role::gravity_sign, "sgn_g"},
+    {Role::position, "q"},
+    {Role::temperature, "T"},
+    {Role::time, "t"},
+    {Role::other_velocity, "v2"},
+    {Role::other_acceleration, "a2"},
+}};
+
+void add_sign(Observations& data, std::string_view of, Role role) {
+  const std::string name = "sgn_" + std::string(of);
+  const Signal* source = data.find(of);
+  if (source == nullptr || data.find(name) != nullptr) return;
+  Signal signal{name, source->channel, "-", role, {}, source->values};
+  for (double& x : signal.values) x = sign_of(x);
+  data.signals.push_back(std::move(signal));
+}
+
+// Time through the campaign. Where it restarts with the movements, they follow one another in the
+// order of the file; without a time, a movement's number stands for it.
+void add_campaign_time(Observations& data) {
+  const auto found = std::ranges::find(data.signals, "t", &Signal::name);
+  if (found == data.signals.end()) {
+    Signal signal{"t", "", "movement", Role::time, "number of the movement in the file", {}};
+    for (const int m : data.movement) signal.values.push_back(m);
+    data.signals.push_back(std::move(signal));
+    return;
+  }
+  double offset = 0;
+  bool restarts = false;
+  for (std::size_t i = 1; i < data.rows(); ++i) {
+    const double before = found->values[i - 1];
+    if (data.movement[i] != data.movement[i - 1] && found->values[i] + offset < before) {
+      offset = before - found->values[i];
+      restarts = true;
+    }
+    found->values[i] += offset;
+  }
+  if (restarts) found->recipe = "time of the movements laid end to end";
+}
+
+// Some movement turns or starts from standstill: else nobody knows how far back the last reversal
+// lies, and "distance" would be a name for the place within a recording.
+bool knows_a_reversal(const Observations& data, const std::vector<double>& v) {
+  constexpr double kStandstill = 0.05;  // of the movement's top speed
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i <= v.size(); ++i) {
+    if (i < v.size() && data.movement[i] == data.movement[begin]) {
+      if (v[i] * v[begin] < 0) return true;
+      continue;
+    }
+    double top = 0;
+    for (std::size_t k = begin; k < i; ++k) top = std::max(top, std::abs(v[k]));
+    if (std::abs(v[begin]) < kStandstill * top) return true;
+    begin = i;
+  }
+  return false;
+}
+
+// Path since the velocity last changed its sign; starts at 0 with every movement.
+void add_distance(Observations& data) {
+  if (data.find("d") != nullptr) return;
+  const Signal* v = data.find("v");
+  const Signal* q = data.find("q");
+  const Signal* t = data.find("t");
+  const bool timed = t != nullptr && t->recipe != "number of the movement in the file";
+  if (v == nullptr || (q == nullptr && !timed) || !knows_a_reversal(data, v->values)) return;
+  Signal signal{"d", "", q != nullptr ? q->unit : v->unit + " s", Role::none, {}, {}};
+  signal.recipe = distance_recipe();
+  DistanceSinceReversal distance(q != nullptr ? PathFrom::position : PathFrom::velocity);
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    const bool starts = i == 0 || data.movement[i] != data.movement[i - 1];
+    if (starts) distance.start_movement();
+    const double dt = timed && !starts ? t->values[i] - t->values[i - 1] : 0;
+    signal.values.push_back(distance.next(v->values[i], q != nullptr ? q->values[i] : 0, dt));
+  }
+  data.signals.push_back(std::move(signal));
+}
+
+const Channel& needed_target(const Dataset& data) {
+  for (const Role role : {Role::friction_torque, Role::motor_torque, Role::motor_current}) {
+    if (const Channel* channel = data.find(role)) return *channel;
+  }
+  throw_bad_input("there is no friction or motor torque among the columns", data.name,
+                  "name it: --roles COLUMN=friction_torque or COLUMN=motor_torque");
+}
+
+void set_target(Observations& out, const Dataset& data) {
+  const Channel& target = needed_target(data);
+  out.target = target.values;
+  out.target_name = target.name;
+  out.target_unit = target.unit;
+  const Channel* gravity = data.find(Role::gravity_torque);
+  if (target.role != Role::friction_torque) {
+    if (gravity != nullptr && gravity->unit == target.unit) {
+      for (std::size_t i = 0; i < out.target.size(); ++i) out.target[i] -= gravity->values[i];
+      out.target_name = fmt::format("{} - {}", target.name, gravity->name);
+    } else {
+      if (gravity != nullptr) out.rigid.push_back("g");
+      if (data.find(Role::acceleration) != nullptr) out.rigid.push_back("a");
+    }
+  }
+}
+
+}  // namespace
+
+std::string signal_name(Role role, std::string_view channel) {
+  for (const auto& [known, name] : kSignalNames) {
+    if (known == role) return std::string(name);
+  }
+  return std::string(channel);
+}
+
+void complete_signals(Observations& data) {
+  drop_rows_not_finite(data);
+  if (data.rows() == 0) {
+    throw_bad_input("no row has a finite value in every channel", data.target_name,
+                    "check the columns for gaps");
+  }
+  add_sign(data, "v", Role::velocity_sign);
+  add_sign(data, "g", Role::gravity_sign);
+}
+
+double correlation(std::span<const double> x, std::span<const double> y) {
+  const auto n = static_cast<double>(x.size());
+  double mean_x = 0;
+  double mean_y = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    mean_x += x[i] / n;
+    mean_y += y[i] / n;
+  }
+  double xx = 0;
+  double yy = 0;
+  double xy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mean_x) * (x[i] - mean_x);
+    yy += (y[i] - mean_y) * (y[i] - mean_y);
+    xy += (x[i] - mean_x) * (y[i] - mean_y);
+  }
+  return xx > 0 && yy > 0 ? xy / std::sqrt(xx * yy) : 0;
+}
+
+const Signal* Observations::find(std::string_view name) const {
+  const auto found = std::ranges::find(signals, name, &Signal::name);
+  return found == signals.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> Observations::names() const {
+  std::vector<std::string> names;
+  for (const Signal& signal : signals) names.push_back(signal.name);
+  return names;
+}
+
+void Observations::take_away(std::string_view name, std::string why) {
+  if (std::erase_if(signals, [&](const Signal& signal) { return signal.name == name; }) > 0) {
+    withheld.push_back({std::string(name), std::move(why)});
+  }
+}
+
+std::vector<int> Observations::movements() const {
+  std::vector<int> numbers;
+  for (const int m : movement) {
+    if (numbers.empty() || numbers.back() != m) numbers.push_back(m);
+  }
+  return numbers;
+}
+
+Observations Observations::select(const std::vector<char>& keep) const {
+  const auto chosen = [&](const auto& values) {
+    std::decay_t<decltype(values)> out;
+    if (values.empty()) return out;
+    out.reserve(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (keep[i] != 0) out.push_back(values[i]);
+    }
+    return out;
+  };
+  Observations out;
+  out.target = chosen(target);
+  out.movement = chosen(movement);
+  out.time = chosen(time);
+  for (const Signal& signal : signals) {
+    Signal copy{signal.name, signal.channel, signal.unit, signal.role, signal.recipe, {}};
+    copy.values = chosen(signal.values);
+    out.signals.push_back(std::move(copy));
+  }
+  out.target_name = target_name;
+  out.target_unit = target_unit;
+  out.movement_names = movement_names;
+  out.group = group;
+  out.group_name = group_name;
+  out.rigid = rigid;
+  out.withheld = withheld;
+  out.warnings = warnings;
+  return out;
+}
+
+Observations Observations::thinned(std::size_t most) const {
+  if (rows() <= most) return *this;
+  const std::size_t step = (rows() + most - 1) / most;
+  std::vector<char> keep(rows(), 0);
+  for (std::size_t i = 0, place = 0; i < rows(); ++i, ++place) {
+    if (i > 0 && movement[i] != movement[i - 1]) place = 0;
+    keep[i] = place % step == 0 ? 1 : 0;
+  }
+  return select(keep);
+}
+
+Observations observe(const Dataset& data, const ObservationOptions& options) {
+  if (data.rows() == 0) throw_bad_input("the file has no rows", data.name);
+  if (data.find(Role::velocity) == nullptr) {
+    throw_bad_input("there is no velocity among the columns", data.name,
+                    "name it: --roles COLUMN=velocity");
+  }
+  Observations out;
+  set_target(out, data);
+  out.movement = data.movement;
+  out.movement_names = data.movement_names;
+  for (const Channel& channel : data.channels) {
+    if (channel.values.size() != data.rows()) continue;  // a text column: movement
+    const std::string name = signal_name(channel.role, channel.name);
+    const bool wanted = std::ranges::count(kSignalNames, channel.role,
+                                           &std::pair<Role, std::string_view>::first) > 0 ||
+                        channel.name.starts_with("distance_since_reversal");
+    const bool rigid = std::ranges::count(options.rigid, channel.name) > 0;
+    if ((!wanted && !rigid) || out.find(name) != nullptr) continue;
+    const bool distance = channel.name.starts_with("distance_since_reversal");
+    out.signals.push_back(
+        {distance ? "d" : name, channel.name, channel.unit, channel.role, {}, channel.values});
+    if (rigid) out.rigid.push_back(name);
+  }
+  for (const std::string& name : options.rigid) data.at(name);
+  complete_signals(out);
+  add_campaign_time(out);
+  add_distance(out);
+  out.time = out.find("t")->values;
+  check_moving(out);
+  if (options.unordered) out.take_away("t", "the movements' order says nothing");
+  if (options.min_speed.value_or(0) > 0) drop_slow_rows(out, *options.min_speed);
+  if (!options.min_speed && !options.steady) drop_rows_at_rest(out);
+  settle_directions(out);
+  if (options.steady) out = steady_means(out);
+  drop_constant_signals(out);
+  drop_negligible_load(out);
+  check_varying(out);
+  check_sign(out);
+  return out;
+}
+
+}  // namespace tribench::loop
