@@ -15,7 +15,7 @@
 #include "harness/study/loop_cases.hpp"
 #include "harness/study/loop_methods.hpp"
 #include "harness/toml_table.hpp"
-#include "problems/csv.hpp"
+#include "problems/reading/csv.hpp"
 #include "reports/csv.hpp"
 
 namespace tribench {

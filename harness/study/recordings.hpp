@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "problems/csv_cells.hpp"
+#include "problems/reading/csv_cells.hpp"
 
 namespace tribench {
 

@@ -13,7 +13,7 @@
 #include <span>
 
 #include "foundation/error.hpp"
-#include "problems/channel_names.hpp"
+#include "problems/reading/channel_names.hpp"
 
 namespace tribench {
 namespace {

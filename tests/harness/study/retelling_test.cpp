@@ -11,7 +11,7 @@
 
 #include "foundation/error.hpp"
 #include "harness/study/retelling_study.hpp"
-#include "problems/csv.hpp"
+#include "problems/reading/csv.hpp"
 #include "tests/support/paths.hpp"
 
 namespace tribench {
