@@ -10,7 +10,17 @@ foreach(room foundation problems algorithms reports harness)
     FILES_MATCHING PATTERN "*.hpp")
 endforeach()
 install(DIRECTORY grids adapters examples DESTINATION ${CMAKE_INSTALL_DATADIR}/tribench
-  USE_SOURCE_PERMISSIONS)
+  USE_SOURCE_PERMISSIONS
+  PATTERN "*.in" EXCLUDE PATTERN "__pycache__" EXCLUDE PATTERN "*.timer" EXCLUDE)
+install(FILES examples/nightly/tribench-nightly.timer DESTINATION lib/systemd/system)
+install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Two steps, since the program's path is a generator expression and @-variables are none.
+configure_file(cmake/InstallDescription.cmake.in
+  ${PROJECT_BINARY_DIR}/install/description.cmake.in @ONLY)
+file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/install/description.cmake
+  INPUT ${PROJECT_BINARY_DIR}/install/description.cmake.in)
+install(SCRIPT ${PROJECT_BINARY_DIR}/install/description.cmake)
 install(EXPORT tribench NAMESPACE tribench:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tribench
   FILE tribenchTargets.cmake)
 configure_package_config_file(cmake/tribenchConfig.cmake.in

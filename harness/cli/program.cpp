@@ -29,6 +29,11 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
                "tribench");
   app.set_version_flag("--version", version_with_commit());
   app.require_subcommand(1);
+  app.footer(
+      "Every subcommand has --help with an example.\n"
+      "Exit status: 0 done, 1 found what it was asked to look for (a regression, a singularity), 2 "
+      "bad "
+      "input, 3 failed, 4 undecided.");
   ExitStatus status = ExitStatus::done;
   add_run_command(app, status, registry);
   add_fit_command(app, status, registry);
@@ -44,6 +49,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_list_command(app, status, registry);
   add_study_command(app, status);
   add_submit_command(app, status, registry);
+  add_describe_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

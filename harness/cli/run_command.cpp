@@ -212,7 +212,7 @@ void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry
       "Without a file the built-in grid 'quick' runs. Ctrl-C leaves a run that --resume goes on "
       "with.");
   auto arguments = std::make_shared<RunArguments>();
-  command->add_option("grid", arguments->grid, "a grid file, or the name of a shipped grid")
+  command->add_option("grid", arguments->grid, "a grid file, or a name of `tribench list grids`")
       ->capture_default_str();
   command->add_option("--out", arguments->out, "the run's folder (default: run-NAME)");
   command->add_option("--jobs", arguments->jobs, "worker processes at a time (default: all cores)")
