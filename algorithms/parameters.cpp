@@ -5,6 +5,7 @@
 
 #include "algorithms/regressor.hpp"
 #include "foundation/error.hpp"
+#include "foundation/number_text.hpp"
 
 namespace tribench {
 namespace {
@@ -22,6 +23,31 @@ const ParameterSpec& spec_of(const std::vector<ParameterSpec>& specs, const std:
                                   : fmt::format("known: {}", fmt::join(names, ", ")));
 }
 
+const char* kind_name(const ParameterSpec& spec) {
+  static constexpr const char* kKinds[] = {"true or false", "a whole number", "a number", "a text"};
+  return kKinds[spec.default_value.index()];
+}
+
+bool is_number(const ParameterSpec& spec) {
+  return std::holds_alternative<std::int64_t>(spec.default_value) ||
+         std::holds_alternative<double>(spec.default_value);
+}
+
+// What the parameter takes: "a whole number from 1 to 1000, or -1".
+std::string accepted(const ParameterSpec& spec) {
+  if (!spec.choices.empty()) return fmt::format("one of: {}", fmt::join(spec.choices, ", "));
+  if (!is_number(spec)) return kind_name(spec);
+  return fmt::format("{} from {} to {}{}", kind_name(spec), spec.low, spec.high,
+                     spec.besides ? fmt::format(", or {}", *spec.besides) : std::string());
+}
+
+template <typename Value>
+[[noreturn]] void refuse(const ParameterSpec& spec, const Value& value,
+                         std::string_view how = "cannot be used") {
+  throw_bad_input(fmt::format("parameter '{}' = '{}' {}", spec.name, value, how), {},
+                  "use " + accepted(spec));
+}
+
 // The value in the kind of the default: an integer stands for a number, nothing else converts.
 ParameterValue converted(const ParameterSpec& spec, const ParameterValue& given) {
   if (std::holds_alternative<double>(spec.default_value) &&
@@ -29,31 +55,41 @@ ParameterValue converted(const ParameterSpec& spec, const ParameterValue& given)
     return static_cast<double>(std::get<std::int64_t>(given));
   }
   if (spec.default_value.index() != given.index()) {
-    static constexpr const char* kKinds[] = {"true or false", "an integer", "a number", "a text"};
-    throw_bad_input(
-        fmt::format("parameter '{}' must be {}", spec.name, kKinds[spec.default_value.index()]));
+    std::visit([&spec](const auto& value) { refuse(spec, value); }, given);
   }
   return given;
 }
 
 void check_range(const ParameterSpec& spec, const ParameterValue& value) {
-  const auto check_number = [&](double number) {
-    if (number >= spec.low && number <= spec.high) return;
-    throw_bad_input(fmt::format("parameter '{}' = {} is out of range", spec.name, number), {},
-                    fmt::format("use {} to {}", spec.low, spec.high));
+  const auto check_number = [&](auto number) {
+    const auto real = static_cast<double>(number);
+    if ((real >= spec.low && real <= spec.high) || (spec.besides && real == *spec.besides)) return;
+    refuse(spec, number, "is out of range");
   };
   if (const auto* integer = std::get_if<std::int64_t>(&value)) {
-    check_number(static_cast<double>(*integer));
+    check_number(*integer);
   } else if (const auto* number = std::get_if<double>(&value)) {
     check_number(*number);
   } else if (const auto* text = std::get_if<std::string>(&value)) {
-    if (spec.choices.empty() || std::ranges::count(spec.choices, *text) > 0) return;
-    throw_bad_input(fmt::format("parameter '{}' = '{}' is unknown", spec.name, *text), {},
-                    fmt::format("use one of: {}", fmt::join(spec.choices, ", ")));
+    if (!spec.choices.empty() && std::ranges::count(spec.choices, *text) == 0) refuse(spec, *text);
   }
 }
 
 }  // namespace
+
+ParameterValue parameter_from_text(const std::vector<ParameterSpec>& specs, const std::string& name,
+                                   std::string_view text) {
+  const ParameterSpec& spec = spec_of(specs, name);
+  if (std::holds_alternative<std::string>(spec.default_value)) return std::string(text);
+  if (std::holds_alternative<bool>(spec.default_value)) {
+    if (text == "true" || text == "false") return text == "true";
+  } else if (std::holds_alternative<std::int64_t>(spec.default_value)) {
+    if (const auto whole = read_number<std::int64_t>(text)) return *whole;
+  } else if (const auto number = read_number<double>(text)) {
+    return *number;
+  }
+  refuse(spec, text);
+}
 
 Parameters::Parameters(const std::vector<ParameterSpec>& specs,
                        const std::map<std::string, ParameterValue>& given) {

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -51,7 +52,14 @@ struct ParameterSpec {
   double low = -1e308;  // for numbers
   double high = 1e308;
   std::vector<std::string> choices = {};  // for texts; empty means any
+  // A number outside the range that has a meaning of its own, which the summary says.
+  std::optional<double> besides = {};
 };
+
+// What a command line says, in the kind of the parameter's default; the range is Parameters' to
+// check. Throws Error (bad_input) where the text is no such value.
+ParameterValue parameter_from_text(const std::vector<ParameterSpec>& specs, const std::string& name,
+                                   std::string_view text);
 
 // Defaults overridden by what the grid says. Lookups of a name that has no spec are a bug.
 class Parameters {

@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "foundation/error.hpp"
+#include "foundation/number_text.hpp"
 
 namespace tribench {
 namespace {
@@ -18,23 +19,19 @@ constexpr double kNodeRowsPerSecond = 3e8;
 // Starting values, fixed forms and judging: what a cell costs before its budget counts.
 constexpr double kBaseSeconds = 0.05;
 
-bool parse_number(std::string_view text, std::size_t& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
 }  // namespace
 
 Shard parse_shard(std::string_view text) {
   const std::size_t slash = text.find('/');
-  Shard shard;
-  if (slash == std::string_view::npos || !parse_number(text.substr(0, slash), shard.index) ||
-      !parse_number(text.substr(slash + 1), shard.count) || shard.index < 1 ||
-      shard.index > shard.count) {
+  const auto index = read_number<std::size_t>(text.substr(0, slash));
+  const auto count = slash == std::string_view::npos
+                         ? std::nullopt
+                         : read_number<std::size_t>(text.substr(slash + 1));
+  if (!index || !count || *index < 1 || *index > *count) {
     throw_bad_input(fmt::format("'{}' is no shard", text), "--shard",
                     "use K/N with K from 1 to N, as in 3/8");
   }
-  return shard;
+  return {*index, *count};
 }
 
 double predict_seconds(const Grid& grid, const Cell& cell, const MeasuredCosts& costs) {

@@ -10,6 +10,8 @@ std::string_view paper_grid();
 std::string_view measured_grid();
 std::string_view nightly_grid();
 std::string_view nguyen_grid();
+std::string_view peer_grid();
+std::string_view parfam_optimizers_grid();
 std::string_view udsr_ablation_grid();
 std::string_view udsr_ablation_nguyen_grid();
 std::string_view paper_reference();
@@ -42,6 +44,8 @@ const std::vector<ShippedGrid>& shipped_grids() {
       shipped("measured", embedded::measured_grid()),
       shipped("nightly", embedded::nightly_grid()),
       shipped("nguyen", embedded::nguyen_grid()),
+      shipped("peer", embedded::peer_grid()),
+      shipped("parfam_optimizers", embedded::parfam_optimizers_grid()),
       shipped("udsr_ablation", embedded::udsr_ablation_grid()),
       shipped("udsr_ablation_nguyen", embedded::udsr_ablation_nguyen_grid())};
   return kGrids;

@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "algorithms/pysr/text_pieces.hpp"
 #include "foundation/error.hpp"
+#include "foundation/number_text.hpp"
 
 namespace tribench::pysr {
 namespace {
@@ -26,13 +27,25 @@ Op find_operator(std::string_view name, std::string_view place) {
                   fmt::format("use one of {}", fmt::join(names, " ")));
 }
 
-double read_number(std::string_view text, std::string_view place) {
-  double value = 0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (read.ec != std::errc() || read.ptr != text.data() + text.size()) {
-    throw_bad_input(fmt::format("'{}' is not a number", text), place);
+constexpr int kLargestLimit = 1000;  // beyond the largest formula there can be
+
+double size_in(std::string_view text, std::string_view place) {
+  const std::optional<double> size = read_number<double>(text);
+  if (!size || *size < 0 || *size > kLargestLimit) {
+    throw_bad_input(fmt::format("'{}' is no size", text), place,
+                    fmt::format("use a number from 0 to {}", kLargestLimit));
   }
-  return value;
+  return *size;
+}
+
+// `least`: -1 where that stands for no limit.
+int limit_in(std::string_view text, std::string_view place, int least = 0) {
+  const std::optional<int> limit = read_number<int>(text);
+  if (!limit || *limit < least || *limit > kLargestLimit) {
+    throw_bad_input(fmt::format("'{}' is no limit", text), place,
+                    fmt::format("use a whole number from {} to {}", least, kLargestLimit));
+  }
+  return *limit;
 }
 
 // "left SEPARATOR right"; throws where the separator is missing.
@@ -62,7 +75,7 @@ Validator::Validator(const Options& options, const OperatorSet& operators,
   for (const std::string_view piece : split(options.operator_sizes, ';')) {
     const auto [name, value] = halves(piece, '=', "operator_sizes", "exp=2; ^=3");
     op_size_[static_cast<std::size_t>(find_operator(name, "operator_sizes"))] =
-        read_number(value, "operator_sizes");
+        size_in(value, "operator_sizes");
   }
   plain_sizes_ = constant_size_ == 1 && variable_size_ == 1 &&
                  std::ranges::all_of(op_size_, [](double size) { return size == 1; });
@@ -76,8 +89,7 @@ Validator::Validator(const Options& options, const OperatorSet& operators,
           "argument_limits");
     }
     for (std::size_t k = 0; k < limits.size(); ++k) {
-      argument_limit_[static_cast<std::size_t>(op)][k] =
-          static_cast<int>(read_number(limits[k], "argument_limits"));
+      argument_limit_[static_cast<std::size_t>(op)][k] = limit_in(limits[k], "argument_limits", -1);
     }
     has_argument_limits_ = true;
   }
@@ -86,7 +98,7 @@ Validator::Validator(const Options& options, const OperatorSet& operators,
     const auto [outer, inner] = halves(pair, '>', "nested_limits", "exp>exp=0; exp>sqrt=1");
     nested_limits_.push_back({find_operator(outer, "nested_limits"),
                               find_operator(inner, "nested_limits"),
-                              static_cast<int>(read_number(most, "nested_limits"))});
+                              limit_in(most, "nested_limits")});
   }
   read_part_sizes(options.part_sizes);
   if (units_ != Units::off) read_units(options, inputs);
@@ -103,8 +115,7 @@ void Validator::read_part_sizes(const std::string& text) {
                       fmt::format("use one of {}", fmt::join(names, " ")));
     }
     part_size_.resize(names.size(), std::numeric_limits<int>::max());
-    part_size_[static_cast<std::size_t>(part - names.begin())] =
-        static_cast<int>(read_number(value, "part_sizes"));
+    part_size_[static_cast<std::size_t>(part - names.begin())] = limit_in(value, "part_sizes");
   }
 }
 

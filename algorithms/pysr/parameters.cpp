@@ -3,14 +3,14 @@
 // The parameters of `pysr`, each once: what a grid may say, and what it sets.
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "algorithms/pysr/options.hpp"
 #include "algorithms/pysr/text_pieces.hpp"
 #include "foundation/error.hpp"
+#include "foundation/number_text.hpp"
 
 namespace tribench::pysr {
 namespace {
@@ -23,8 +23,15 @@ struct Setting {
   std::function<void(const Parameters&, Options&)> apply;
 };
 
-Setting whole(std::string name, int Options::*option, const std::string& summary, double high) {
-  return {{name, summary + "; -1: as the profile has it", std::int64_t{-1}, -1, high},
+// A parameter that a profile gives a value of its own unless the grid does.
+ParameterSpec of_profile(const std::string& name, const std::string& summary, ParameterValue left,
+                         double low, double high) {
+  return {name, summary + "; -1: as the profile has it", std::move(left), low, high, {}, -1};
+}
+
+Setting whole(std::string name, int Options::*option, const std::string& summary, double low,
+              double high) {
+  return {of_profile(name, summary, std::int64_t{-1}, low, high),
           [name, option](const Parameters& given, Options& options) {
             const std::int64_t value = given.integer(name);
             if (value >= 0) options.*option = static_cast<int>(value);
@@ -32,7 +39,7 @@ Setting whole(std::string name, int Options::*option, const std::string& summary
 }
 
 Setting number(std::string name, double Options::*option, const std::string& summary, double high) {
-  return {{name, summary + "; -1: as the profile has it", -1.0, -1, high},
+  return {of_profile(name, summary, -1.0, 0, high),
           [name, option](const Parameters& given, Options& options) {
             const double value = given.number(name);
             if (value >= 0) options.*option = value;
@@ -101,13 +108,9 @@ void read_weights(std::string_view text, MutationWeights& weights) {
       ++kind;
     }
     const std::string_view number = trimmed(piece.substr(at + 1));
-    double weight = -1;
-    const auto read = std::from_chars(number.data(), number.data() + number.size(), weight);
-    if (kind == kMutationKinds || read.ec != std::errc() ||
-        read.ptr != number.data() + number.size() || !(weight >= 0) || !std::isfinite(weight)) {
-      refuse(piece);
-    }
-    weights[kind] = weight;
+    const std::optional<double> weight = read_number<double>(number);
+    if (kind == kMutationKinds || !weight || *weight < 0) refuse(piece);
+    weights[kind] = *weight;
   }
 }
 
@@ -122,7 +125,7 @@ Setting weights() {
 
 // As deep as it is large, unless something else is said.
 Setting depth() {
-  Setting setting = whole("max_depth", &Options::max_depth, "deepest nesting", 500);
+  Setting setting = whole("max_depth", &Options::max_depth, "deepest nesting", 1, 500);
   setting.apply = [set = std::move(setting.apply)](const Parameters& given, Options& options) {
     options.max_depth = options.max_size;
     set(given, options);
@@ -137,16 +140,17 @@ std::vector<Setting> make_settings() {
       choice<Profile>("profile", &O::profile, "defaults: native (ours), v1 or v2 (the original's)",
                       "native",
                       {{"native", Profile::native}, {"v1", Profile::v1}, {"v2", Profile::v2}}),
-      whole("iterations", &O::iterations, "epochs", 1e6),
-      whole("populations", &O::populations, "islands", 1000),
-      whole("population_size", &O::population_size, "members of an island", 10'000),
-      whole("cycles", &O::cycles, "tournament rounds of an island in an epoch", 1e6),
-      whole("patience", &O::patience, "epochs without headway before it stops; 0: never", 1e6),
-      whole("max_size", &O::max_size, "largest number of nodes", 500),
+      whole("iterations", &O::iterations, "epochs", 1, 1e6),
+      whole("populations", &O::populations, "islands", 1, 1000),
+      whole("population_size", &O::population_size, "members of an island", 1, 10'000),
+      whole("cycles", &O::cycles, "tournament rounds of an island in an epoch", 1, 1e6),
+      whole("patience", &O::patience, "epochs without headway before it stops; 0: never", 0, 1e6),
+      whole("max_size", &O::max_size, "largest number of nodes", 1, 500),
       depth(),
       share("warm_up", &O::warm_up, "share of the epochs over which max_size grows from 3"),
-      whole("initial_operators", &O::initial_operators, "operators of a random first member", 100),
-      whole("tournament_size", &O::tournament_size, "members in a tournament", 10'000),
+      whole("initial_operators", &O::initial_operators, "operators of a random first member", 0,
+            100),
+      whole("tournament_size", &O::tournament_size, "members in a tournament", 1, 10'000),
       share("tournament_probability", &O::tournament_probability,
             "chance that a tournament's best wins"),
       number("parsimony", &O::parsimony, "cost of a node", 1e6),
@@ -177,19 +181,20 @@ std::vector<Setting> make_settings() {
             "share of members replaced from the hall of fame in an epoch"),
       share("replaced_by_guesses", &O::replaced_by_guesses,
             "share of members replaced from the guesses in an epoch"),
-      whole("top_n", &O::top_n, "best members of an island that others may take over", 10'000),
+      whole("top_n", &O::top_n, "best members of an island that others may take over", 0, 10'000),
       share("optimize_probability", &O::optimize_probability,
             "chance that a member's constants are fitted after an epoch"),
-      whole("optimize_iterations", &O::optimize_iterations, "steps of such a fit", 10'000),
-      whole("optimize_restarts", &O::optimize_restarts, "further starts of such a fit", 1000),
+      whole("optimize_iterations", &O::optimize_iterations, "steps of such a fit", 0, 10'000),
+      whole("optimize_restarts", &O::optimize_restarts, "further starts of such a fit", 0, 1000),
       choice<Batching>(
           "batching", &O::batching, "score children on a random batch of rows", kProfile,
           {{"off", Batching::off}, {"on", Batching::on}, {"auto", Batching::automatic}}),
-      whole("batch_size", &O::batch_size, "rows of a batch; 0: by the number of rows", 1e6),
+      whole("batch_size", &O::batch_size, "rows of a batch; 0: by the number of rows", 0, 1e6),
       whole("search_rows", &O::search_rows, "rows of a fixed sample that the search sees; 0: all",
-            1e7),
+            0, 1e7),
       whole("select_features", &O::select_features,
-            "inputs that the search sees, those that matter most to a random forest; 0: all", 1000),
+            "inputs that the search sees, those that matter most to a random forest; 0: all", 0,
+            1000),
       flag("denoise", &O::denoise,
            "let the search see the target smoothed by a Gaussian process; polish, choice and "
            "errors are of the measured rows"),
@@ -224,9 +229,9 @@ std::vector<Setting> make_settings() {
       on_off("fit_children", &O::fit_children, "fit the constants of every child"),
       on_off("novelty", &O::novelty, "fit no structure twice on an island"),
       on_off("linear_scaling", &O::linear_scaling, "give a child the scale and offset it lacks"),
-      whole("constructions", &O::constructions, "greedy starts of an island; 0: random members",
+      whole("constructions", &O::constructions, "greedy starts of an island; 0: random members", 0,
             10'000),
-      whole("climbs", &O::climbs, "of them, those brought to where no exchange helps", 10'000),
+      whole("climbs", &O::climbs, "of them, those brought to where no exchange helps", 0, 10'000),
       on_off("evidence_cost", &O::evidence_cost, "charge constants and nodes as the evidence does"),
       flag("safe", &O::safe,
            "only formulas proved free of singularities on the input box enter the front"),

@@ -71,7 +71,7 @@ std::vector<ParameterSpec> parameter_specs() {
        0,
        0,
        {"quantile", "moving_mean", "moving_quantile", "combined"}},
-      {"batch", "formulas sampled a step", std::int64_t{500}, 1, 100000},
+      {"batch", "formulas sampled a step", std::int64_t{500}, 1, 10000},
       {"steps", "most steps of training", std::int64_t{200}, 0, 100000},
       {"patience", "steps without a better formula before stopping", std::int64_t{60}, 1, 100000},
       {"epsilon", "share of a batch that trains the policy", 0.05, 1e-4, 1},

@@ -19,6 +19,7 @@
 #include "algorithms/expression/property.hpp"
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/number_options.hpp"
 
 namespace tribench {
 namespace {
@@ -217,8 +218,10 @@ void add_check_command(CLI::App& app, ExitStatus& status) {
                     "finite, bounded (|f| <= --limit), dissipative (f*v >= 0), monotone (f grows "
                     "with v for |v| >= --from), odd (f(-v) = -f(v))");
   check->add_option("--velocity", options->velocity, "The input that is the velocity (v)");
-  check->add_option("--limit", options->limit, "For bounded, in the formula's unit");
-  check->add_option("--from", options->from, "For monotone, in the velocity's unit (0)");
+  check->add_option("--limit", options->limit, "For bounded, in the formula's unit")
+      ->transform(real_number(0, 1e308));
+  check->add_option("--from", options->from, "For monotone, in the velocity's unit (0)")
+      ->transform(real_number(0, 1e308));
   check->add_option("--certificate", options->certificate,
                     "Writes a proof (finite, bounded, dissipative) that --verify checks");
   check->add_option("--verify", options->verify, "Checks a certificate by itself");

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "harness/cli/commands.hpp"
+#include "harness/cli/number_options.hpp"
 #include "harness/study/comparison_study.hpp"
 #include "reports/figures.hpp"
 #include "reports/statistics/intervals.hpp"
@@ -39,12 +40,12 @@ void add_comparison_study(CLI::App& study, ExitStatus& status) {
   command->footer("Example: tribench study compare --comparisons 200 --seeds 20");
   auto options = std::make_shared<ComparisonStudyOptions>();
   command->add_option("--comparisons", options->comparisons, "of each kind")
-      ->check(CLI::Range(1, 100000));
-  command->add_option("--seeds", options->seeds, "of every run")->check(CLI::Range(1, 1000));
+      ->transform(whole_number(1, 100000));
+  command->add_option("--seeds", options->seeds, "of every run")->transform(whole_number(1, 1000));
   command
       ->add_option("--run-spread", options->run_spread,
                    "how much two runs of identical code differ in error (log)")
-      ->check(CLI::Range(0.0, 1.0));
+      ->transform(real_number(0.0, 1.0));
   command->callback([options, &status] {
     const std::vector<ComparisonStudyFigure> figures = run_comparison_study(*options);
     print_comparison_study(figures, *options);

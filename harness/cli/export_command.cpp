@@ -17,6 +17,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/number_options.hpp"
 #include "problems/preparation/derived_channels.hpp"
 #include "reports/record_csv.hpp"
 
@@ -124,7 +125,7 @@ void add_export_command(CLI::App& app, ExitStatus& /*status*/) {
   command
       ->add_option("--digits", arguments->options.digits,
                    "significant digits of constants in LaTeX; 0: all")
-      ->check(CLI::Range(0, 17));
+      ->transform(whole_number(0, 17));
   command->add_option("--out", arguments->out, "a file instead of the screen");
   command->callback([arguments] { write_export(*arguments); });
 }

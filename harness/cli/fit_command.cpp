@@ -17,6 +17,7 @@
 #include "algorithms/registry.hpp"
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/number_options.hpp"
 #include "harness/machine.hpp"
 #include "harness/run_cell.hpp"
 #include "problems/data_problem.hpp"
@@ -49,19 +50,6 @@ std::pair<std::string, std::string> name_and_value(const std::string& text, cons
     throw_bad_input(fmt::format("'{}' is not name=value", text), option);
   }
   return {text.substr(0, equals), text.substr(equals + 1)};
-}
-
-// A text in the kind that the algorithm's parameter has.
-ParameterValue parameter_from_text(const AlgorithmEntry& entry, const std::string& name,
-                                   const std::string& text) {
-  const nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
-  for (const ParameterSpec& spec : entry.parameters) {
-    if (spec.name == name && std::holds_alternative<std::string>(spec.default_value)) return text;
-  }
-  if (value.is_boolean()) return value.get<bool>();
-  if (value.is_number_integer()) return value.get<std::int64_t>();
-  if (value.is_number()) return value.get<double>();
-  return text;
 }
 
 Dataset read_data(const std::string& file, const FitArguments& arguments) {
@@ -145,7 +133,7 @@ void fit(const FitArguments& arguments, const Registry& registry) {
   std::map<std::string, ParameterValue> parameters;
   for (const std::string& text : arguments.parameters) {
     const auto [name, value] = name_and_value(text, "--parameter");
-    parameters[name] = parameter_from_text(entry, name, value);
+    parameters[name] = parameter_from_text(entry.parameters, name, value);
   }
   const std::unique_ptr<Regressor> method = registry.make(arguments.method, parameters);
   const Dataset train = read_data(arguments.data, arguments);
@@ -185,13 +173,13 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
   command->add_option("--parameter", arguments->parameters, "name=value of the method; repeatable");
   command->add_option("--roles", arguments->roles, "column=role,...")->delimiter(',');
   command->add_option("--seed", arguments->seed, "same seed, same result")
-      ->check(CLI::NonNegativeNumber)
+      ->transform(whole_number(0))
       ->capture_default_str();
   command->add_option("--evaluations", arguments->evaluations, "budget in node-rows")
-      ->check(CLI::NonNegativeNumber)
+      ->transform(whole_number(0))
       ->capture_default_str();
   command->add_option("--seconds", arguments->seconds, "budget in CPU seconds")
-      ->check(CLI::Range(0.0, 1e9))
+      ->transform(real_number(0.0, 1e9))
       ->capture_default_str();
   command->add_option("--test", arguments->test, "other data to judge by");
   command->add_flag("--drop-missing", arguments->drop_missing, "drop and count incomplete rows");

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "harness/cli/commands.hpp"
+#include "harness/cli/number_options.hpp"
 #include "problems/catalogue.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
@@ -44,7 +45,7 @@ void add_generate_command(CLI::App& app, ExitStatus& /*status*/) {
   command->add_option("PROBLEM", options->problem, "a name of `tribench list problems`")
       ->required();
   command->add_option("--seed", options->seed, "same seed, same data")
-      ->check(CLI::NonNegativeNumber)
+      ->transform(whole_number(0))
       ->capture_default_str();
   command->add_option("--out", options->out, "the file to write")->required();
   command->add_option("--data", options->data, "the folder with the measured sets");

@@ -47,6 +47,7 @@ std::vector<Listed> listed_parameters(const AlgorithmEntry& method) {
     nlohmann::json more = {{"default", json_of(spec.default_value)}};
     const bool is_number = spec.default_value.index() == 1 || spec.default_value.index() == 2;
     if (is_number) more.update({{"low", spec.low}, {"high", spec.high}});
+    if (spec.besides) more["besides"] = *spec.besides;
     if (!spec.choices.empty()) more["choices"] = spec.choices;
     all.push_back({spec.name, spec.summary, std::move(more)});
   }
@@ -107,6 +108,9 @@ void print_list(const std::vector<Listed>& all, bool json) {
   for (const Listed& item : all) width = std::max(width, item.name.size());
   for (const Listed& item : all) {
     fmt::print("{:<{}}  {}", item.name, width, item.summary);
+    if (item.more.contains("high")) {
+      fmt::print("; {} to {}", item.more["low"].dump(), item.more["high"].dump());
+    }
     if (item.more.contains("choices")) fmt::print("; one of {}", item.more["choices"].dump());
     if (item.more.contains("default")) fmt::print(" [{}]", item.more["default"].dump());
     fmt::print("\n");

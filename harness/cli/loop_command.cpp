@@ -22,7 +22,9 @@
 #include "algorithms/diagnosis/diagnosis.hpp"
 #include "algorithms/diagnosis/loop_json.hpp"
 #include "foundation/error.hpp"
+#include "foundation/number_text.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/number_options.hpp"
 #include "problems/data_problem.hpp"
 #include "problems/reading/csv.hpp"
 #include "reports/loop_report.hpp"
@@ -102,16 +104,18 @@ loop::BaseMaker base_of(const LoopArguments& arguments, const Registry& registry
 // Keeps the rows in which a column has a value: "torque_enabled=1".
 void keep_rows_where(Dataset& data, const std::string& condition) {
   const std::size_t equals = condition.find('=');
-  char* end = nullptr;
-  const double value =
-      equals == std::string::npos ? 0 : std::strtod(condition.c_str() + equals + 1, &end);
-  if (equals == std::string::npos || end == condition.c_str() + equals + 1) {
-    throw_bad_input(fmt::format("'{}' is no COLUMN=NUMBER", condition), "--where");
+  const std::optional<double> value =
+      equals == std::string::npos
+          ? std::nullopt
+          : read_number<double>(std::string_view(condition).substr(equals + 1));
+  if (!value) {
+    throw_bad_input(fmt::format("'{}' is no COLUMN=NUMBER", condition), "--where",
+                    "write for example --where torque_enabled=1");
   }
   const std::vector<double> column = data.at(condition.substr(0, equals)).values;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < column.size(); ++i) {
-    if (column[i] != value) continue;
+    if (column[i] != *value) continue;
     for (Channel& channel : data.channels) channel.values[kept] = channel.values[i];
     data.movement[kept++] = data.movement[i];
   }
@@ -370,28 +374,28 @@ void add_loop_command(CLI::App& app, ExitStatus& /*status*/, const Registry& reg
       command
           ->add_option("--gear-ratio", arguments->gear_ratio,
                        "motor turns per turn of the joint; without it the usual ones are scanned")
-          ->check(CLI::PositiveNumber);
+          ->transform(real_number(0, 1e6, LowEnd::above));
   command
       ->add_option(
           "--screw-lead", arguments->screw_lead,
           "of a linear axis, m per turn of the screw; without it the usual ones are scanned")
-      ->check(CLI::PositiveNumber)
+      ->transform(real_number(0, 1e6, LowEnd::above))
       ->excludes(gear_ratio);
   command->add_option("--alpha", arguments->alpha_library, "false alarms of the library")
-      ->check(CLI::Range(1e-6, 0.5))
+      ->transform(real_number(1e-6, 0.5))
       ->capture_default_str();
   command->add_option("--alpha-leftover", arguments->alpha_leftover, "false alarms of UNKNOWN")
-      ->check(CLI::Range(1e-6, 0.5))
+      ->transform(real_number(1e-6, 0.5))
       ->capture_default_str();
   command->add_option("--flips", arguments->flips, "sign flips of the null distribution")
-      ->check(CLI::Range(99, 99999))
+      ->transform(whole_number(99, 99999))
       ->capture_default_str();
   command
       ->add_option(
           "--min-speed", arguments->min_speed,
           "leave out slower rows: the direction of friction is not known there; without it "
           "the speed is found from rows at rest")
-      ->check(CLI::NonNegativeNumber);
+      ->transform(real_number(0, 1e6));
   command->add_option("--where", arguments->where, "COLUMN=NUMBER: use these rows only");
   command->add_option("--leave-out", arguments->leave_out,
                       "COLUMN: judge by leaving out, in turn, all movements that share its value");
@@ -401,12 +405,13 @@ void add_loop_command(CLI::App& app, ExitStatus& /*status*/, const Registry& reg
       "--steady", arguments->steady,
       "each movement holds one speed: average it, its velocity's noise is not friction");
   command->add_option("--rows", arguments->rows, "thin a longer recording evenly to about so many")
-      ->check(CLI::Range(100, 10'000'000))
+      ->transform(whole_number(100, 10'000'000))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "same seed, same answer")
-      ->check(CLI::NonNegativeNumber)
+      ->transform(whole_number(0))
       ->capture_default_str();
   command->add_option("--evaluations", arguments->evaluations, "what a searched base may spend")
+      ->transform(whole_number(0))
       ->capture_default_str();
   command->add_flag("--flip-sign", arguments->flip_sign, "the file's torques oppose the velocity");
   command->add_flag("--drop-missing", arguments->drop_missing, "drop rows with missing values");
@@ -415,12 +420,13 @@ void add_loop_command(CLI::App& app, ExitStatus& /*status*/, const Registry& reg
   command
       ->add_option("--suggest", arguments->suggest,
                    "propose so many next movements that tell the rivals left apart")
-      ->check(CLI::Range(0, 1000));
+      ->transform(whole_number(0, 1000));
   command
       ->add_option("--learn", arguments->learn,
                    "method that learns a new effect from what is left over, or none")
       ->capture_default_str();
   command->add_option("--learn-evaluations", arguments->learn_evaluations, "what it may spend")
+      ->transform(whole_number(0))
       ->capture_default_str();
   command->add_option("--save-effect", arguments->save_effect, "write a learned effect to a file");
   command

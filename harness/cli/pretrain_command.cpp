@@ -15,6 +15,7 @@
 #include "algorithms/udsr/pretraining.hpp"
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/number_options.hpp"
 
 namespace tribench {
 namespace {
@@ -65,12 +66,13 @@ void add_pretrain_command(CLI::App& app, ExitStatus& /*status*/) {
   command->footer("Example: tribench pretrain --sequences 50000 --out weights.json");
   command->add_option("--out", arguments->out, "the weight file to write")->required();
   command->add_option("--seed", arguments->options.seed, "of the corpus and the first weights")
+      ->transform(whole_number(0))
       ->capture_default_str();
   command->add_option("--sequences", arguments->options.sequences, "formulas in the corpus")
-      ->check(CLI::Range(100, 10'000'000))
+      ->transform(whole_number(100, 10'000'000))
       ->capture_default_str();
   command->add_option("--epochs", arguments->options.epochs, "passes over the corpus")
-      ->check(CLI::Range(1, 1000))
+      ->transform(whole_number(1, 1000))
       ->capture_default_str();
   command->add_flag("--encoder", arguments->encoder,
                     "train a data encoder along; used by udsr with encoder = true");

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
@@ -18,10 +20,63 @@ namespace {
 
 int exit_code(ExitStatus status) { return static_cast<int>(status); }
 
+// "tribench list".
+std::string command_path(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return parent == nullptr ? command.get_name() : command_path(*parent) + " " + command.get_name();
+}
+
+// The innermost subcommand that was given.
+const CLI::App& innermost(const CLI::App& app) {
+  const std::vector<CLI::App*> given = app.get_subcommands();
+  return given.empty() ? app : innermost(*given.back());
+}
+
+// Names that may stand where an unknown word stands: options for one that begins with a minus,
+// else subcommands.
+std::vector<std::string> names_like(const CLI::App& command, const std::string& word) {
+  std::vector<std::string> names;
+  if (word.starts_with("-")) {
+    for (const CLI::Option* option : command.get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+  } else {
+    for (const CLI::App* each : command.get_subcommands({})) names.push_back(each->get_name());
+  }
+  return names;
+}
+
+// A word that the command line does not know, said with the nearest one that it does; empty where
+// there is no such word.
+std::string unknown_word(const CLI::App& app) {
+  const CLI::App& command = innermost(app);
+  const std::vector<std::string> left = command.remaining();
+  if (left.empty()) return {};
+  const std::string word = left.front().substr(0, left.front().find('='));
+  const std::vector<std::string> names = names_like(command, word);
+  const std::string near = nearest_name(word, names);
+  const bool is_option = word.starts_with("-");
+  return fmt::format("tribench: there is no {} '{}'; {}\n",
+                     is_option       ? "option"
+                     : names.empty() ? "further argument"
+                                     : "subcommand",
+                     word,
+                     !near.empty() ? fmt::format("did you mean {}?", near)
+                     : is_option || names.empty()
+                         ? fmt::format("see: {} --help", command_path(command))
+                         : fmt::format("known: {}", fmt::join(names, ", ")));
+}
+
 // Usage errors are bad input (2); --help and --version are done (0).
 int report_usage(const CLI::App& app, const CLI::ParseError& error) {
-  const int code = app.exit(error);
-  return exit_code(code == 0 ? ExitStatus::done : ExitStatus::bad_input);
+  const bool is_usage = error.get_exit_code() != 0;
+  const std::string unknown = is_usage ? unknown_word(app) : std::string();
+  if (!unknown.empty()) {
+    fmt::print(stderr, "{}", unknown);
+  } else {
+    app.exit(error);
+  }
+  return exit_code(is_usage ? ExitStatus::bad_input : ExitStatus::done);
 }
 
 int run_command_line(int argc, char** argv, const Registry& registry) {

@@ -20,6 +20,7 @@
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
+#include "harness/cli/number_options.hpp"
 #include "harness/curves.hpp"
 #include "harness/grid.hpp"
 #include "harness/machine.hpp"
@@ -216,7 +217,7 @@ void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry
       ->capture_default_str();
   command->add_option("--out", arguments->out, "the run's folder (default: run-NAME)");
   command->add_option("--jobs", arguments->jobs, "worker processes at a time (default: all cores)")
-      ->check(CLI::Range(1, 4096));
+      ->transform(whole_number(1, 4096));
   command->add_option("--shard", arguments->shard, "K/N: the K-th of N parts of the grid");
   command->add_option("--data", arguments->data, "folder of the measured sets");
   command->add_flag("--resume", arguments->resume, "run what the folder does not have yet");
@@ -229,6 +230,7 @@ void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry
   command->add_option("--verify", arguments->verify,
                       "run some cells of this finished run again and compare them bit for bit");
   command->add_option("--sample", arguments->sample, "with --verify: how many cells")
+      ->transform(whole_number(1))
       ->capture_default_str();
   command->add_flag("--quiet", arguments->quiet, "no progress line");
   command->add_flag("--json", arguments->json, "with --dry-run: as JSON");

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/commands.hpp"
+#include "harness/cli/number_options.hpp"
 #include "harness/cli/study_loop.hpp"
 #include "harness/cli/study_retellings.hpp"
 #include "harness/study/external_torque_study.hpp"
@@ -53,7 +54,7 @@ void add_generator_study(CLI::App& study, ExitStatus& status) {
   command->footer("Example: tribench study generator --seeds 10");
   auto seeds = std::make_shared<int>(10);
   auto json = std::make_shared<bool>(false);
-  command->add_option("--seeds", *seeds, "seeds 1 to N")->check(CLI::Range(1, 10000));
+  command->add_option("--seeds", *seeds, "seeds 1 to N")->transform(whole_number(1, 10000));
   command->add_flag("--json", *json, "an array of figures");
   command->callback([seeds, json, &status] {
     const std::vector<GeneratorFigure> figures = run_generator_study(*seeds);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "harness/cli/number_options.hpp"
 #include "harness/study/external_diagnosis.hpp"
 #include "harness/study/loop_study.hpp"
 
@@ -51,18 +52,18 @@ void add_loop_study(CLI::App& study, ExitStatus& status) {
   auto options = std::make_shared<LoopStudyOptions>();
   auto json = std::make_shared<bool>(false);
   command->add_option("--runs", options->null_runs, "runs in which nothing is missing")
-      ->check(CLI::Range(1, 1'000'000))
+      ->transform(whole_number(1, 1'000'000))
       ->capture_default_str();
   command->add_option("--per-cell", options->runs_per_cell, "runs of each effect at each size")
-      ->check(CLI::Range(1, 100'000))
+      ->transform(whole_number(1, 100'000))
       ->capture_default_str();
   command->add_option("--seed", options->first_seed, "of the first run")
-      ->check(CLI::NonNegativeNumber)
+      ->transform(whole_number(0))
       ->capture_default_str();
   command->add_option("--only", options->only,
                       "the cases of runs.csv that begin so: null, single/stribeck, pair");
   command->add_option("--jobs", options->threads, "threads; the figures are the same for any")
-      ->check(CLI::Range(0, 1024));
+      ->transform(whole_number(0, 1024));
   command->add_option("--out", options->out,
                       "folder for runs.csv, a line a run; a study that was stopped goes on there");
   command->add_flag("--json", *json, "an array of figures");

@@ -13,6 +13,7 @@
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
+#include "harness/cli/number_options.hpp"
 #include "harness/shipped_grids.hpp"
 #include "harness/slurm.hpp"
 #include "problems/measured/data_folder.hpp"
@@ -85,12 +86,13 @@ void add_submit_command(CLI::App& app, ExitStatus& status, const Registry& regis
   command
       ->add_option("--shards", arguments->shards,
                    "elements of the array (default: of about five minutes each)")
-      ->check(CLI::Range(1, 10'000'000));
+      ->transform(whole_number(1, 10'000'000));
   command->add_option("--jobs", arguments->jobs, "worker processes an element")
-      ->check(CLI::Range(1, 1024))
+      ->transform(whole_number(1, 1024))
       ->capture_default_str();
   command->add_option("--partition", arguments->partition, "the cluster's partition");
   command->add_option("--largest-array", arguments->largest_array, "what the site allows")
+      ->transform(whole_number(1, 10'000'000))
       ->capture_default_str();
   command->add_option("--data", arguments->data, "folder of the measured sets");
   command->add_flag("--detach", arguments->detach, "submit and leave");

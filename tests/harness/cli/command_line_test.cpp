@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+//
+// What every subcommand's line must keep to: numbers are read strictly, unknown words are answered
+// with the nearest known one. Subcommands and options are taken from the program's own help, so
+// that none is forgotten.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace tribench::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+using Words = std::vector<std::string>;
+
+ProgramRun tribench(Words words) {
+  words.insert(words.begin(), program().string());
+  return run_to_end(words);
+}
+
+Words with(Words words, const std::string& more) {
+  words.push_back(more);
+  return words;
+}
+
+// Subcommands below `command`, and theirs.
+std::vector<Words> commands_below(const Words& command) {
+  std::vector<Words> all;
+  std::istringstream help(tribench(with(command, "--help")).output);
+  const std::regex line_of_command("^  ([a-z][a-z-]*) .*");
+  bool below = false;
+  for (std::string line; std::getline(help, line);) {
+    std::smatch match;
+    if (line == "Subcommands:") below = true;
+    if (!below || !std::regex_match(line, match, line_of_command)) continue;
+    all.push_back(with(command, match[1]));
+    const std::vector<Words> deeper = commands_below(all.back());
+    all.insert(all.end(), deeper.begin(), deeper.end());
+  }
+  return all;
+}
+
+Words numeric_options(const Words& command) {
+  Words options;
+  std::istringstream help(tribench(with(command, "--help")).output);
+  const std::regex line_of_option("^  (?:-., *)?(--[a-z-]+) (?:INT|UINT|FLOAT).*");
+  for (std::string line; std::getline(help, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, line_of_option)) options.push_back(match[1]);
+  }
+  return options;
+}
+
+TEST(CommandLine, EveryNumberIsReadStrictly) {
+  std::size_t asked = 0;
+  for (const Words& command : commands_below({})) {
+    for (const std::string& option : numeric_options(command)) {
+      for (const char* text : {"nan", "inf", "1xyz", "0x10", "1'000", "1e999", "-1", "text"}) {
+        const ProgramRun run = tribench(with(with(command, option), text));
+        EXPECT_EQ(run.status, 2) << command.back() << " " << option << " " << text;
+        EXPECT_EQ(run.signal, 0) << command.back() << " " << option << " " << text;
+        EXPECT_THAT(run.errors, HasSubstr("cannot be used; use a"))
+            << command.back() << " " << option << " " << text;
+        ++asked;
+      }
+    }
+  }
+  EXPECT_GT(asked, 200U);
+}
+
+TEST(CommandLine, BudgetsMayBeWrittenWithAnExponent) {
+  const ProgramRun run = tribench({"fit", "no-such-file.csv", "--target", "t", "--inputs", "v",
+                                   "--method", "linear", "--evaluations", "1e11"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("no-such-file.csv"));
+}
+
+TEST(CommandLine, UnknownWordsAreAnsweredWithTheNearest) {
+  const auto expect = [](const Words& words, const char* said) {
+    const ProgramRun run = tribench(words);
+    EXPECT_EQ(run.status, 2) << words.back();
+    EXPECT_THAT(run.errors, HasSubstr(said));
+  };
+  expect({"frobnicate"}, "there is no subcommand 'frobnicate'; known: run, fit");
+  expect({"lisst"}, "did you mean list?");
+  expect({"list", "problms"}, "did you mean problems?");
+  expect({"fit", "--metod", "x"}, "there is no option '--metod'; did you mean --method?");
+  expect({"run", "--jbos=3"}, "there is no option '--jbos'; did you mean --jobs?");
+  expect({"run", "quick", "more"}, "there is no further argument 'more'");
+  expect({}, "A subcommand is required");
+}
+
+}  // namespace
+}  // namespace tribench::testing
