@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "foundation/error.hpp"
+#include "harness/cli/number_options.hpp"
 #include "harness/study/retelling_study.hpp"
 #include "problems/measured/data_folder.hpp"
 
@@ -162,10 +163,10 @@ void add_retelling_study(CLI::App& study, ExitStatus& status) {
       "         tribench study retellings --measured --data ../shared/data");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("--campaigns", arguments->campaigns, "so many planted campaigns")
-      ->check(CLI::Range(1, 100'000))
+      ->transform(whole_number(1, 100'000))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "of the first planted campaign")
-      ->check(CLI::NonNegativeNumber)
+      ->transform(whole_number(0))
       ->capture_default_str();
   command->add_option("--only", arguments->only,
                       "recordings whose names begin so: single/stribeck, 'kinova 2'");
@@ -183,7 +184,7 @@ void add_retelling_study(CLI::App& study, ExitStatus& status) {
       ->allow_extra_args(false)
       ->take_all();
   command->add_option("--jobs", arguments->study.threads, "threads; the figures are the same")
-      ->check(CLI::Range(0, 1024));
+      ->transform(whole_number(0, 1024));
   command->add_option("--out", arguments->out, "folder for the files of the stories that changed");
   command->add_flag("--json", arguments->json, "figures and changed stories");
   command->callback([arguments, &status] {
