@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -28,9 +30,41 @@ void print_table(const std::vector<LoopFigure>& figures) {
   }
 }
 
-void print_json(const std::vector<LoopFigure>& figures) {
+void print_answers(const std::vector<CauseAnswers>& answers) {
+  if (answers.empty()) return;
+  fmt::print("\n| cause | k | runs |");
+  for (const Says says : kSays) fmt::print(" {} |", says_name(says));
+  fmt::print(" error / noise |\n|---|--:|--:|");
+  for (std::size_t i = 0; i < kSays.size(); ++i) fmt::print("--:|");
+  fmt::print("--:|\n");
+  for (const CauseAnswers& one : answers) {
+    fmt::print("| {} | {} | {} |", one.cause, one.scale, one.runs);
+    for (const std::size_t count : one.counts) {
+      fmt::print(" {} |", count == 0 ? "" : fmt::format("{}", count));
+    }
+    fmt::print(" {} |\n",
+               std::isnan(one.error_ratio) ? "-" : fmt::format("{:.3f}", one.error_ratio));
+  }
+}
+
+nlohmann::ordered_json answers_json(const CauseAnswers& one) {
+  nlohmann::ordered_json counts;
+  for (const Says says : kSays) {
+    counts[std::string(says_name(says))] = one.counts[static_cast<std::size_t>(says)];
+  }
+  return {{"name", fmt::format("answers to {} at {}", one.cause, one.scale)},
+          {"summary", "how often each answer was given"},
+          {"cause", one.cause},
+          {"scale", one.scale},
+          {"runs", one.runs},
+          {"answers", counts},
+          {"error_ratio", std::isnan(one.error_ratio) ? nlohmann::ordered_json()
+                                                      : nlohmann::ordered_json(one.error_ratio)}};
+}
+
+void print_json(const LoopStudy& study) {
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
-  for (const LoopFigure& figure : figures) {
+  for (const LoopFigure& figure : study.figures) {
     array.push_back({{"name", figure.name},
                      {"summary", fmt::format("target {}", figure.target)},
                      {"value", figure.value},
@@ -40,10 +74,22 @@ void print_json(const std::vector<LoopFigure>& figures) {
                      {"trials", figure.trials},
                      {"met", figure.met}});
   }
+  for (const CauseAnswers& one : study.answers) array.push_back(answers_json(one));
   fmt::print("{}\n", array.dump(2));
 }
 
 }  // namespace
+
+void add_generator_option(CLI::App& command, LoopGenerator& generator) {
+  static const std::map<std::string, LoopGenerator> kGenerators = {
+      {"planted", LoopGenerator::planted}, {"simulated", LoopGenerator::simulated}};
+  command
+      .add_option("--generator", generator,
+                  "planted: effects as columns; simulated: physics integrated in time, other "
+                  "motions and kinds of noise")
+      ->transform(CLI::CheckedTransformer(kGenerators))
+      ->default_str("planted");
+}
 
 void add_loop_study(CLI::App& study, ExitStatus& status) {
   CLI::App* command = study.add_subcommand(
@@ -51,7 +97,10 @@ void add_loop_study(CLI::App& study, ExitStatus& status) {
   command->footer("Example: tribench study loop --runs 2000 --per-cell 20");
   auto options = std::make_shared<LoopStudyOptions>();
   auto json = std::make_shared<bool>(false);
-  command->add_option("--runs", options->null_runs, "runs in which nothing is missing")
+  add_generator_option(*command, options->generator);
+  command
+      ->add_option("--runs", options->null_runs,
+                   "runs in which nothing is missing (simulated: of each kind of noise)")
       ->transform(whole_number(1, 1'000'000))
       ->capture_default_str();
   command->add_option("--per-cell", options->runs_per_cell, "runs of each effect at each size")
@@ -73,16 +122,16 @@ void add_loop_study(CLI::App& study, ExitStatus& status) {
                       "shell once a case (docs/closed_loop.md)");
   command->callback([options, json, command_line, &status] {
     options->quiet = false;
-    const std::vector<LoopFigure> figures =
+    const LoopStudy done =
         run_loop_study(*options, command_line->empty() ? LoopMethod(diagnose_case)
-                                                       : make_external_diagnosis(*command_line))
-            .figures;
+                                                       : make_external_diagnosis(*command_line));
     if (*json) {
-      print_json(figures);
+      print_json(done);
     } else {
-      print_table(figures);
+      print_table(done.figures);
+      print_answers(done.answers);
     }
-    if (!std::ranges::all_of(figures, &LoopFigure::met)) status = ExitStatus::found;
+    if (!std::ranges::all_of(done.figures, &LoopFigure::met)) status = ExitStatus::found;
   });
 }
 

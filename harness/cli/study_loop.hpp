@@ -6,9 +6,12 @@
 #include <CLI/App.hpp>
 
 #include "harness/cli/commands.hpp"
+#include "harness/study/loop_cases.hpp"
 
 namespace tribench {
 
+// --generator planted|simulated
+void add_generator_option(CLI::App& command, LoopGenerator& generator);
 void add_loop_study(CLI::App& study, ExitStatus& status);
 
 }  // namespace tribench

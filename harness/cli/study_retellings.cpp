@@ -14,6 +14,7 @@
 
 #include "foundation/error.hpp"
 #include "harness/cli/number_options.hpp"
+#include "harness/cli/study_loop.hpp"
 #include "harness/study/retelling_study.hpp"
 #include "problems/measured/data_folder.hpp"
 
@@ -21,6 +22,7 @@ namespace tribench {
 namespace {
 
 struct Arguments {
+  LoopGenerator generator = LoopGenerator::planted;
   int campaigns = 60;
   std::uint64_t seed = 1;
   std::string only;
@@ -60,7 +62,8 @@ std::vector<Recording> chosen_recordings(const Arguments& arguments) {
   std::vector<Recording> recordings =
       arguments.measured || !arguments.list.empty()
           ? listed_recordings(arguments)
-          : planted_recordings(arguments.campaigns, arguments.seed, arguments.only);
+          : planted_recordings(arguments.generator, arguments.campaigns, arguments.seed,
+                               arguments.only);
   for (Recording& one : recordings) {
     one.options.insert(one.options.end(), arguments.more.begin(), arguments.more.end());
   }
@@ -162,6 +165,7 @@ void add_retelling_study(CLI::App& study, ExitStatus& status) {
       "Example: tribench study retellings --campaigns 60\n"
       "         tribench study retellings --measured --data ../shared/data");
   auto arguments = std::make_shared<Arguments>();
+  add_generator_option(*command, arguments->generator);
   command->add_option("--campaigns", arguments->campaigns, "so many planted campaigns")
       ->transform(whole_number(1, 100'000))
       ->capture_default_str();

@@ -67,7 +67,7 @@ Eigen::VectorXd base_prediction(const loop::Observations& data, const std::vecto
 }
 
 void write_request(const std::filesystem::path& folder, const LoopCase& one,
-                   const kuka::PlantedData& planted, const std::vector<char>& held_out,
+                   const PlantedData& planted, const std::vector<char>& held_out,
                    const std::vector<char>& train) {
   write_csv(part_of(planted.data, train, true), folder / "train.csv");
   write_csv(part_of(planted.data, held_out, false), folder / "held_out.csv");
@@ -78,7 +78,7 @@ void write_request(const std::filesystem::path& folder, const LoopCase& one,
                         {"held_out", "held_out.csv"},
                         {"target", planted.data.find(Role::friction_torque)->name},
                         {"families", families},
-                        {"gear_ratio", kPlantedGearRatio},
+                        {"gear_ratio", one.gear_ratio},
                         {"seed", one.seed}};
   std::ofstream(folder / "request.json") << request.dump(1) << "\n";
 }
@@ -153,9 +153,8 @@ std::vector<LoopAnswer::Burst> bursts_in(const json& object, const Dataset& data
   return bursts;
 }
 
-LoopAnswer answer_in(const json& object, const kuka::PlantedData& planted,
-                     const loop::Observations& data, const std::vector<char>& held_out,
-                     const Eigen::VectorXd& before) {
+LoopAnswer answer_in(const json& object, const PlantedData& planted, const loop::Observations& data,
+                     const std::vector<char>& held_out, const Eigen::VectorXd& before) {
   LoopAnswer answer;
   answer.effects = effects_in(object);
   answer.bursts = bursts_in(object, planted.data);
@@ -184,7 +183,7 @@ LoopAnswer answer_in(const json& object, const kuka::PlantedData& planted,
 }  // namespace
 
 LoopMethod make_external_diagnosis(std::vector<std::string> command) {
-  return [command = std::move(command)](const LoopCase& one, const kuka::PlantedData& planted) {
+  return [command = std::move(command)](const LoopCase& one, const PlantedData& planted) {
     const loop::Observations data = loop::observe(planted.data);
     const std::vector<char> held_out = held_out_rows(data, one.seed);
     std::vector<char> train(held_out.size());

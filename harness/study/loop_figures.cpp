@@ -3,87 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <functional>
-
+#include "harness/study/figure_table.hpp"
 #include "problems/friction/planted_effects.hpp"
-#include "reports/statistics/intervals.hpp"
 
 namespace tribench {
 namespace {
 
-constexpr double kConfidence = 0.95;
-
-using Choice = std::function<bool(const LoopOutcome&)>;
-
-struct Target {
-  double value;
-  bool at_least;  // else at most
-  std::string text() const { return fmt::format("{} {:.4g} %", at_least ? ">=" : "<=", value); }
-};
-
-class FigureTable {
- public:
-  explicit FigureTable(const std::vector<LoopOutcome>& outcomes) : outcomes_(outcomes) {}
-
-  void rate(const std::string& name, const Choice& among, const Choice& hit, Target target) {
-    std::size_t hits = 0;
-    std::size_t trials = 0;
-    for (const LoopOutcome& one : outcomes_) {
-      if (!among(one)) continue;
-      ++trials;
-      hits += hit(one) ? 1 : 0;
-    }
-    add_rate(name, hits, trials, target);
-  }
-
-  // Hits and trials are sums of counts.
-  void share(const std::string& name, const Choice& among,
-             const std::function<std::size_t(const LoopOutcome&)>& hit,
-             const std::function<std::size_t(const LoopOutcome&)>& trial, Target target) {
-    std::size_t hits = 0;
-    std::size_t trials = 0;
-    for (const LoopOutcome& one : outcomes_) {
-      if (!among(one)) continue;
-      hits += hit(one);
-      trials += trial(one);
-    }
-    add_rate(name, hits, trials, target);
-  }
-
-  void ratio(const std::string& name, const Choice& among,
-             const std::function<double(const LoopOutcome&)>& above,
-             const std::function<double(const LoopOutcome&)>& below, double factor, Target target) {
-    double a = 0;
-    double b = 0;
-    for (const LoopOutcome& one : outcomes_) {
-      if (!among(one)) continue;
-      a += above(one);
-      b += below(one);
-    }
-    if (b == 0) return;
-    LoopFigure figure;
-    figure.name = name;
-    figure.value = figure.low = figure.high = factor * a / b;
-    figure.target = fmt::format("{} {:.4g}", target.at_least ? ">=" : "<=", target.value);
-    figure.met = target.at_least ? figure.value >= target.value : figure.value <= target.value;
-    figures.push_back(figure);
-  }
-
-  std::vector<LoopFigure> figures;
-
- private:
-  void add_rate(const std::string& name, std::size_t hits, std::size_t trials, Target target) {
-    if (trials == 0) return;
-    const ConfidenceInterval interval = wilson(hits, trials, kConfidence);
-    LoopFigure figure{name,          hits, trials, 0, 100 * interval.low, 100 * interval.high,
-                      target.text(), true};
-    figure.value = 100 * static_cast<double>(hits) / static_cast<double>(trials);
-    figure.met = target.at_least ? figure.value >= target.value : figure.value <= target.value;
-    figures.push_back(figure);
-  }
-
-  const std::vector<LoopOutcome>& outcomes_;
-};
+using Choice = FigureTable::Choice;
 
 Choice in_group(std::string group) {
   return [group = std::move(group)](const LoopOutcome& o) { return o.group == group; };
@@ -185,8 +111,8 @@ void add_other_figures(FigureTable& table) {
   };
   table.rate("UNKNOWN found, bumps and interaction, k >= 0.5", sharp,
              [](const LoopOutcome& o) { return o.unknown; }, {99, true});
-  table.rate("UNKNOWN located, the same", sharp,
-             [](const LoopOutcome& o) { return o.is_located(); }, {93, true});
+  table.rate("UNKNOWN located, the same", sharp, [](const LoopOutcome& o) { return o.located; },
+             {93, true});
   table.rate(
       "UNKNOWN found, slow oscillation, k >= 1",
       [slow](const LoopOutcome& o) { return o.group == "outside" && o.scale >= 1 && slow(o); },

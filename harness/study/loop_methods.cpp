@@ -8,11 +8,11 @@
 
 namespace tribench {
 
-LoopAnswer diagnose_case(const LoopCase& one, const kuka::PlantedData& planted) {
+LoopAnswer diagnose_case(const LoopCase& one, const PlantedData& planted) {
   const loop::Observations data = loop::observe(planted.data);
   loop::DiagnosisOptions options;
-  options.physical_vetoes = false;
-  options.gear_ratios = {kPlantedGearRatio};
+  options.physical_vetoes = !one.any_sign;
+  options.gear_ratios = {one.gear_ratio};
   const loop::Diagnosis diagnosis =
       loop::diagnose(data, loop::coulomb_viscous_base, options, one.seed);
   LoopAnswer answer;

@@ -11,14 +11,10 @@
 
 namespace tribench {
 
-// The gear ratio of every planted campaign; methods are told.
-inline constexpr double kPlantedGearRatio = 160;
-
 // Answers one planted case. Called from several threads at once.
-using LoopMethod = std::function<LoopAnswer(const LoopCase&, const kuka::PlantedData&)>;
+using LoopMethod = std::function<LoopAnswer(const LoopCase&, const PlantedData&)>;
 
-// The closed loop itself, from Coulomb and viscous friction by direction. Planted signs are random,
-// so the physical vetoes are off.
-LoopAnswer diagnose_case(const LoopCase& one, const kuka::PlantedData& planted);
+// The closed loop itself, from Coulomb and viscous friction by direction.
+LoopAnswer diagnose_case(const LoopCase& one, const PlantedData& planted);
 
 }  // namespace tribench

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "foundation/error.hpp"
-#include "problems/friction/planted_effects.hpp"
 #include "reports/csv.hpp"
 
 namespace tribench {
@@ -18,18 +17,72 @@ bool contains(const std::vector<std::string>& names, std::string_view name) {
   return std::ranges::find(names, name) != names.end();
 }
 
-bool overlaps(const LoopAnswer::Burst& claim, const kuka::PlantedCollision& burst,
+bool overlaps(const LoopAnswer::Burst& claim, const PlantedCollision& burst,
               const std::vector<double>& time) {
   return claim.movement == burst.movement && claim.begin_s <= time[burst.last_row] &&
          claim.end_s >= time[burst.first_row];
 }
 
-std::size_t in_library(const std::vector<std::string>& planted) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      planted, [](const std::string& family) { return find_planted_shape(family).in_library; }));
+bool names(const PlantedEffect& effect, const std::string& family) {
+  return contains(effect.names, family);
 }
 
-void judge_errors(LoopOutcome& out, const LoopAnswer& answer, const kuka::PlantedData& planted) {
+// The planted effects that a library has and that none of the families names.
+std::size_t count_unnamed(const std::vector<PlantedEffect>& effects,
+                          const std::vector<std::string>& families) {
+  return static_cast<std::size_t>(std::ranges::count_if(effects, [&](const PlantedEffect& effect) {
+    return effect.in_library() &&
+           std::ranges::none_of(families, [&](const auto& f) { return names(effect, f); });
+  }));
+}
+
+bool belongs(const std::vector<PlantedEffect>& effects, const std::string& family) {
+  return std::ranges::any_of(effects, [&](const PlantedEffect& effect) {
+    return names(effect, family) || contains(effect.beside, family);
+  });
+}
+
+Says judge_claims(const LoopAnswer& answer, const LoopOutcome& out,
+                  const std::vector<PlantedEffect>& effects) {
+  const bool outside = !std::ranges::all_of(effects, &PlantedEffect::in_library);
+  const bool none_wrong =
+      std::ranges::all_of(out.claimed, [&](const auto& f) { return belongs(effects, f); });
+  const std::size_t unnamed = count_unnamed(effects, out.claimed);
+  if (unnamed == 0 && none_wrong && answer.unknown == outside) {
+    const bool shaped = std::ranges::none_of(answer.effects, &LoopAnswer::Effect::another_shape);
+    return shaped ? Says::exact : Says::another_shape;
+  }
+  const bool any_named = effects.size() > unnamed && !out.claimed.empty() && !outside;
+  if (unnamed == 0 && any_named) return none_wrong ? Says::with_unknown : Says::with_more;
+  if (answer.unknown) return Says::unknown;
+  if (out.claimed.empty()) return Says::nothing;
+  if (none_wrong) return Says::partly;
+  std::vector<std::string> covered = out.claimed;
+  covered.insert(covered.end(), out.aliases.begin(), out.aliases.end());
+  return count_unnamed(effects, covered) == 0 && !outside && !effects.empty() ? Says::alias
+                                                                              : Says::wrong;
+}
+
+// UNKNOWN in exactly the inputs in which the one effect lives.
+bool is_located(const LoopAnswer& answer, const std::vector<PlantedEffect>& effects) {
+  if (!answer.unknown || effects.size() != 1) return false;
+  std::vector<std::string> wanted;
+  for (const Role role : effects[0].lives_in) wanted.emplace_back(role_name(role));
+  std::vector<std::string> named = answer.inputs;
+  std::ranges::sort(wanted);
+  std::ranges::sort(named);
+  return wanted == named;
+}
+
+Says find_says(std::string_view name) {
+  for (const Says says : kSays) {
+    if (says_name(says) == name) return says;
+  }
+  throw_bad_input(fmt::format("'{}' is no answer of this study", name), "runs.csv",
+                  "give --out a folder of its own");
+}
+
+void judge_errors(LoopOutcome& out, const LoopAnswer& answer, const PlantedData& planted) {
   const std::vector<double>& target = planted.data.find(Role::friction_torque)->values;
   double rows = 0;
   for (std::size_t i = 0; i < target.size(); ++i) {
@@ -78,33 +131,25 @@ bool LoopOutcome::is_first_right() const {
   return !claimed.empty() && contains(planted, claimed[0]);
 }
 
-bool LoopOutcome::is_exact() const {
-  const std::size_t known = in_library(planted);
-  return right() == known && claimed.size() == known && unknown == (known < planted.size());
-}
-
 bool LoopOutcome::is_wrong() const { return claimed.size() > right() && !is_covered() && !unknown; }
 
-bool LoopOutcome::is_located() const {
-  if (!unknown || planted.size() != 1) return false;
-  std::vector<std::string> wanted;
-  for (const Role role : find_planted_shape(planted[0]).lives_in) {
-    wanted.emplace_back(role_name(role));
-  }
-  std::vector<std::string> named = inputs;
-  std::ranges::sort(wanted);
-  std::ranges::sort(named);
-  return wanted == named;
+std::string_view says_name(Says says) {
+  constexpr std::array<std::string_view, kSays.size()> kNames = {
+      "exact", "another_shape", "with_unknown", "with_more", "partly",
+      "alias", "wrong",         "unknown",      "nothing"};
+  return kNames[static_cast<std::size_t>(says)];
 }
 
 LoopOutcome judge_answer(const LoopCase& one, const LoopAnswer& answer,
-                         const kuka::PlantedData& planted) {
+                         const PlantedData& planted) {
   LoopOutcome out;
   out.key = one.key();
   out.group = one.group;
+  out.noise = one.noise;
+  out.design = one.design;
   out.scale = one.scale;
   out.seed = one.seed;
-  for (const kuka::PlantedEffect& effect : planted.truth.effects) {
+  for (const PlantedEffect& effect : planted.truth.effects) {
     out.planted.push_back(effect.family);
   }
   for (const LoopAnswer::Effect& effect : answer.effects) {
@@ -113,10 +158,12 @@ LoopOutcome judge_answer(const LoopCase& one, const LoopAnswer& answer,
   }
   out.unknown = answer.unknown;
   out.inputs = answer.inputs;
+  out.says = judge_claims(answer, out, planted.truth.effects);
+  out.located = is_located(answer, planted.truth.effects);
   out.events = answer.bursts.size();
   out.bursts = planted.truth.collisions.size();
   const std::vector<double>& time = planted.data.find(Role::time)->values;
-  for (const kuka::PlantedCollision& burst : planted.truth.collisions) {
+  for (const PlantedCollision& burst : planted.truth.collisions) {
     const bool found = std::ranges::any_of(answer.bursts, [&](const LoopAnswer::Burst& claim) {
       return overlaps(claim, burst, time);
     });
@@ -130,6 +177,8 @@ std::string outcome_row(const LoopOutcome& o) {
   const auto flag = [](bool value) { return std::string(value ? "1" : "0"); };
   const std::vector<std::string> fields = {o.key,
                                            o.group,
+                                           o.noise,
+                                           o.design,
                                            csv_number(o.scale),
                                            std::to_string(o.seed),
                                            fmt::format("{}", fmt::join(o.planted, ";")),
@@ -145,7 +194,8 @@ std::string outcome_row(const LoopOutcome& o) {
                                            csv_number(o.mae_noise),
                                            flag(o.naive.f_test),
                                            flag(o.naive.bic),
-                                           flag(o.is_exact()),
+                                           std::string(says_name(o.says)),
+                                           flag(o.located),
                                            csv_number(o.cpu_s)};
   std::string row;
   append_csv_row(row, fields);
@@ -159,22 +209,26 @@ LoopOutcome read_outcome(std::span<const std::string_view> fields) {
   LoopOutcome o;
   o.key = fields[0];
   o.group = fields[1];
-  o.scale = number_in(fields[2]);
-  o.seed = count(3);
-  o.planted = split_list(fields[4]);
-  o.claimed = split_list(fields[5]);
-  o.aliases = split_list(fields[6]);
-  o.unknown = fields[7] == "1";
-  o.inputs = split_list(fields[8]);
-  o.events = count(9);
-  o.bursts = count(10);
-  o.bursts_found = count(11);
-  o.mae_before = number_in(fields[12]);
-  o.mae_after = number_in(fields[13]);
-  o.mae_noise = number_in(fields[14]);
-  o.naive.f_test = fields[15] == "1";
-  o.naive.bic = fields[16] == "1";
-  o.cpu_s = number_in(fields[18]);
+  o.noise = fields[2];
+  o.design = fields[3];
+  o.scale = number_in(fields[4]);
+  o.seed = count(5);
+  o.planted = split_list(fields[6]);
+  o.claimed = split_list(fields[7]);
+  o.aliases = split_list(fields[8]);
+  o.unknown = fields[9] == "1";
+  o.inputs = split_list(fields[10]);
+  o.events = count(11);
+  o.bursts = count(12);
+  o.bursts_found = count(13);
+  o.mae_before = number_in(fields[14]);
+  o.mae_after = number_in(fields[15]);
+  o.mae_noise = number_in(fields[16]);
+  o.naive.f_test = fields[17] == "1";
+  o.naive.bic = fields[18] == "1";
+  o.says = find_says(fields[19]);
+  o.located = fields[20] == "1";
+  o.cpu_s = number_in(fields[21]);
   return o;
 }
 

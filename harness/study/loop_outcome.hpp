@@ -24,6 +24,7 @@ struct LoopAnswer {
   struct Effect {
     std::string family;
     std::vector<std::string> aliases;  // what else it could be
+    bool another_shape = false;        // this cause, but no shape of the library is its own
   };
   struct Burst {
     int movement = 0;
@@ -39,9 +40,28 @@ struct LoopAnswer {
   std::vector<double> after;
 };
 
+// What an answer is worth against the truth.
+enum class Says {
+  exact,          // the planted causes and nothing else, UNKNOWN where no library has it
+  another_shape,  // the same, a cause of them as "this cause, another shape"
+  with_unknown,   // the planted causes, and UNKNOWN beside them
+  with_more,      // the planted causes, and a wrong one beside them
+  partly,         // some of the planted causes, nothing wrong
+  alias,          // a wrong name whose aliases hold the truth
+  wrong,          // a wrong name, the truth among no aliases, nothing UNKNOWN
+  unknown,        // UNKNOWN, where a library has it
+  nothing,        // something is missing, and the answer is NONE
+};
+std::string_view says_name(Says says);
+inline constexpr std::array kSays = {Says::exact,     Says::another_shape, Says::with_unknown,
+                                     Says::with_more, Says::partly,        Says::alias,
+                                     Says::wrong,     Says::unknown,       Says::nothing};
+
 struct LoopOutcome {
   std::string key;
   std::string group;
+  std::string noise;  // of simulated campaigns
+  std::string design;
   double scale = 0;
   std::uint64_t seed = 0;
   std::vector<std::string> planted;
@@ -56,6 +76,8 @@ struct LoopOutcome {
   double mae_after = 0;
   double mae_noise = 0;  // the ceiling: of the noise on the rows that were judged
   NaiveFindings naive;   // of the null runs
+  Says says = Says::exact;
+  bool located = false;  // UNKNOWN in the inputs in which the one effect lives
   double cpu_s = 0;
 
   // The one effect that was planted; empty where it was none or two.
@@ -64,19 +86,20 @@ struct LoopOutcome {
   std::size_t right() const;    // planted effects that are claimed
   bool is_covered() const;      // each planted effect is claimed or an alias of a claim
   bool is_first_right() const;  // the first claim was planted
-  bool is_exact() const;        // the claims are what was planted, UNKNOWN where it should be
-  bool is_wrong() const;        // a wrong claim, the truth in no alias set, no UNKNOWN
-  bool is_located() const;      // UNKNOWN in the inputs in which the one effect lives
+  bool is_exact() const { return says == Says::exact; }
+  bool is_wrong() const;  // a wrong claim, the truth in no alias set, no UNKNOWN
+  // A simulated campaign's cause; of others what was planted.
+  std::string_view cause() const { return planted.empty() ? "none" : std::string_view(planted[0]); }
 };
 
-LoopOutcome judge_answer(const LoopCase& one, const LoopAnswer& answer,
-                         const kuka::PlantedData& planted);
+LoopOutcome judge_answer(const LoopCase& one, const LoopAnswer& answer, const PlantedData& planted);
 
 // One line of CSV an outcome.
-inline constexpr std::array<std::string_view, 19> kOutcomeColumns = {
-    "case",      "group",        "scale",     "seed",   "planted",      "claimed",    "aliases",
-    "unknown",   "inputs",       "events",    "bursts", "bursts_found", "mae_before", "mae_after",
-    "mae_noise", "naive_f_test", "naive_bic", "exact",  "cpu_s"};
+inline constexpr std::array<std::string_view, 22> kOutcomeColumns = {
+    "case",      "group",        "noise",      "design",    "scale",     "seed",
+    "planted",   "claimed",      "aliases",    "unknown",   "inputs",    "events",
+    "bursts",    "bursts_found", "mae_before", "mae_after", "mae_noise", "naive_f_test",
+    "naive_bic", "says",         "located",    "cpu_s"};
 std::string outcome_row(const LoopOutcome& outcome);
 // Throws Error (bad_input) where a field is no number.
 LoopOutcome read_outcome(std::span<const std::string_view> fields);

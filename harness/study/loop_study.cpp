@@ -28,14 +28,14 @@ double thread_cpu_s() {
 }
 
 LoopOutcome run_case(const LoopCase& one, const LoopMethod& method) {
-  const kuka::PlantedData planted = make_planted(one.planted, one.seed);
+  const PlantedData planted = one.make();
   const double start_s = thread_cpu_s();
   const LoopAnswer answer = method(one, planted);
   const double cpu_s = thread_cpu_s() - start_s;
   LoopOutcome out = judge_answer(one, answer, planted);
   out.cpu_s = cpu_s;
   if (one.group == "null") {
-    out.naive = test_naively(loop::observe(planted.data), kPlantedGearRatio);
+    out.naive = test_naively(loop::observe(planted.data), one.gear_ratio);
   }
   return out;
 }
@@ -103,8 +103,9 @@ class RunsFile {
 }  // namespace
 
 LoopStudy run_loop_study(const LoopStudyOptions& options, const LoopMethod& method) {
-  std::vector<LoopCase> cases =
-      make_loop_cases(options.null_runs, options.runs_per_cell, options.first_seed);
+  const bool simulated = options.generator == LoopGenerator::simulated;
+  std::vector<LoopCase> cases = (simulated ? make_simulated_cases : make_loop_cases)(
+      options.null_runs, options.runs_per_cell, options.first_seed);
   std::erase_if(cases, [&](const LoopCase& one) { return !one.key().starts_with(options.only); });
   if (cases.empty()) {
     throw_bad_input(fmt::format("no case begins with '{}'", options.only), "--only",
@@ -139,7 +140,8 @@ LoopStudy run_loop_study(const LoopStudyOptions& options, const LoopMethod& meth
     }
   }
   if (failure) std::rethrow_exception(failure);
-  study.figures = loop_figures(study.outcomes);
+  study.figures = simulated ? simulated_figures(study.outcomes) : loop_figures(study.outcomes);
+  if (simulated) study.answers = cause_answers(study.outcomes);
   return study;
 }
 

@@ -14,11 +14,13 @@
 
 #include "harness/study/loop_figures.hpp"
 #include "harness/study/loop_methods.hpp"
+#include "harness/study/simulated_figures.hpp"
 
 namespace tribench {
 
 struct LoopStudyOptions {
-  int null_runs = 200;     // ordinary noise; a fifth as many with hard noise and with A only
+  LoopGenerator generator = LoopGenerator::planted;
+  int null_runs = 200;     // as make_loop_cases and make_simulated_cases have it
   int runs_per_cell = 10;  // of each effect at each size
   std::uint64_t first_seed = 1;
   std::string only;  // cases whose key begins so, as "single/stribeck"; empty: all
@@ -32,6 +34,7 @@ struct LoopStudyOptions {
 struct LoopStudy {
   std::vector<LoopOutcome> outcomes;  // in the order of the test matrix
   std::vector<LoopFigure> figures;
+  std::vector<CauseAnswers> answers;  // of simulated campaigns
 };
 
 // Throws what the method throws, once the runs in progress have ended.

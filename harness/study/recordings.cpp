@@ -13,7 +13,6 @@
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
 #include "harness/study/loop_cases.hpp"
-#include "harness/study/loop_methods.hpp"
 #include "harness/toml_table.hpp"
 #include "problems/reading/csv.hpp"
 #include "reports/csv.hpp"
@@ -39,12 +38,13 @@ std::string csv_text(const CsvCells& cells) {
 
 Recording recording_of(const LoopCase& one) {
   std::ostringstream text;
-  write_csv(kuka::make_planted(one.planted, one.seed).data, text);
-  // Planted signs are random, as the study of the loop has them.
-  return {one.key(),
-          {{"recording.csv", split_csv(text.str(), "recording.csv")}},
-          {"--gear-ratio", fmt::format("{}", kPlantedGearRatio), "--any-sign"},
-          one.seed};
+  write_csv(one.make().data, text);
+  Recording recording{one.key(),
+                      {{"recording.csv", split_csv(text.str(), "recording.csv")}},
+                      {"--gear-ratio", fmt::format("{}", one.gear_ratio)},
+                      one.seed};
+  if (one.any_sign) recording.options.emplace_back("--any-sign");
+  return recording;
 }
 
 Recording recording_of(const TomlTable& table, const std::filesystem::path& folder) {
@@ -66,10 +66,12 @@ Recording recording_of(const TomlTable& table, const std::filesystem::path& fold
 
 }  // namespace
 
-std::vector<Recording> planted_recordings(int count, std::uint64_t first_seed,
-                                          std::string_view only) {
-  // Twice as many null runs as single ones of an effect: something near a tenth of the draw.
-  std::vector<LoopCase> cases = make_loop_cases(8, 2, first_seed);
+std::vector<Recording> planted_recordings(LoopGenerator generator, int count,
+                                          std::uint64_t first_seed, std::string_view only) {
+  // So few null runs that they are near a tenth of the draw.
+  std::vector<LoopCase> cases = generator == LoopGenerator::simulated
+                                    ? make_simulated_cases(1, 2, first_seed)
+                                    : make_loop_cases(8, 2, first_seed);
   std::erase_if(cases, [&](const LoopCase& one) {
     return !one.key().starts_with(only) || (one.scale != 0 && one.scale < kSmallestScale);
   });

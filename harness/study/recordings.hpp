@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/study/loop_cases.hpp"
 #include "problems/reading/csv_cells.hpp"
 
 namespace tribench {
@@ -31,8 +32,8 @@ struct Recording {
 // Planted campaigns: `count` of the study's cases whose key begins with `only` (empty: any), drawn
 // with the seed among those that are not at the limit of what can be found (0.5 times the noise and
 // more, or nothing planted). Throws Error (bad_input) where no key begins so.
-std::vector<Recording> planted_recordings(int count, std::uint64_t first_seed,
-                                          std::string_view only);
+std::vector<Recording> planted_recordings(LoopGenerator generator, int count,
+                                          std::uint64_t first_seed, std::string_view only);
 
 struct RecordingList {
   std::vector<Recording> recordings;

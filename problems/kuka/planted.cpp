@@ -96,7 +96,8 @@ JointState state_at(const LoopCampaign& campaign, std::size_t row) {
 PlantedEffect plant(const Plant& wanted, const LoopCampaign& campaign, double noise_sd,
                     RandomStream random) {
   const PlantedShape& shape = find_planted_shape(wanted.family);
-  PlantedEffect effect{wanted.family, wanted.scale, 0, shape.in_library, shape.lives_in, {}};
+  PlantedEffect effect{wanted.family, wanted.scale, 0, {}, {}, shape.lives_in, {}};
+  if (shape.in_library) effect.names.push_back(wanted.family);
   for (std::size_t r = 0; r < campaign.data.rows(); ++r) {
     effect.values.push_back(shape.at(state_at(campaign, r)));
   }
@@ -133,14 +134,6 @@ void add_collisions(const PlantedCase& planted, const Dataset& data, RandomStrea
 }
 
 }  // namespace
-
-std::vector<double> PlantedTruth::noise_free() const {
-  std::vector<double> sum = base;
-  for (const PlantedEffect& effect : effects) {
-    for (std::size_t r = 0; r < sum.size(); ++r) sum[r] += effect.values[r];
-  }
-  return sum;
-}
 
 PlantedData make_planted(const PlantedCase& planted, std::uint64_t seed) {
   const RandomStream random = RandomStream(key_of("kuka/planted")).split(seed);

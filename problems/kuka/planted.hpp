@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "problems/dataset.hpp"
+#include "problems/friction/planted_data.hpp"
 
 namespace tribench::kuka {
 
@@ -41,38 +41,7 @@ struct PlantedCase {
   double collision_scale = 8;  // peak, in units of the noise's standard deviation
 };
 
-struct PlantedEffect {
-  std::string family;
-  double scale = 0;
-  double coefficient = 0;  // of the shape's formula; its sign is drawn
-  bool in_library = true;
-  std::vector<Role> lives_in;
-  std::vector<double> values;  // [N m], per row
-};
-
-struct PlantedCollision {
-  int movement = 0;
-  std::size_t first_row = 0;
-  std::size_t last_row = 0;
-  double peak_nm = 0;
-};
-
-struct PlantedTruth {
-  std::vector<double> base;   // [N m], per row
-  std::vector<double> noise;  // movement offsets and collisions included
-  double noise_sd = 0;        // of the rows' noise alone
-  std::vector<PlantedEffect> effects;
-  std::vector<PlantedCollision> collisions;
-
-  // base + effects: what a perfect model gives.
-  std::vector<double> noise_free() const;
-};
-
-struct PlantedData {
-  Dataset data;  // loop_campaign.hpp's channels and friction_torque_Nm
-  PlantedTruth truth;
-};
-
+// Channels of loop_campaign.hpp and friction_torque_Nm.
 PlantedData make_planted(const PlantedCase& planted, std::uint64_t seed);
 
 // Two different families of the library, drawn with the seed, both at `scale`.

@@ -203,7 +203,7 @@ TEST(Diagnosis, IsTheSameForTheSameSeed) {
 }
 
 TEST(Diagnosis, SaysNothingAboutNoiseFreeDataOfItsBase) {
-  kuka::PlantedData planted = kuka::make_planted({}, 1);
+  PlantedData planted = kuka::make_planted({}, 1);
   for (Channel& channel : planted.data.channels) {
     if (channel.role == Role::friction_torque) channel.values = planted.truth.base;
   }
@@ -308,7 +308,7 @@ TEST(Diagnosis, SaysNothingAboutATargetOfNoughtOrOfOneSize) {
 }
 
 TEST(Observations, FrictionAgainstTheVelocityIsRefusedWithTheMend) {
-  kuka::PlantedData planted = kuka::make_planted({}, 1);
+  PlantedData planted = kuka::make_planted({}, 1);
   for (Channel& channel : planted.data.channels) {
     if (channel.role != Role::friction_torque) continue;
     for (double& y : channel.values) y = -y;
@@ -324,7 +324,7 @@ TEST(Observations, FrictionAgainstTheVelocityIsRefusedWithTheMend) {
 }
 
 TEST(Observations, AFewRowsTheOtherWayAreLeftOutAndSaid) {
-  kuka::PlantedData planted = kuka::make_planted({.trajectories = 0}, 1);
+  PlantedData planted = kuka::make_planted({.trajectories = 0}, 1);
   const auto values = [&](Role role) -> std::vector<double>& {
     return std::ranges::find(planted.data.channels, role, &Channel::role)->values;
   };
@@ -377,7 +377,7 @@ TEST(Observations, ColumnsNamedLikeSignalsAreTheirSignals) {
 }
 
 TEST(Observations, RowsThatAreNotFiniteAreDroppedAndCounted) {
-  kuka::PlantedData planted = kuka::make_planted({}, 1);
+  PlantedData planted = kuka::make_planted({}, 1);
   planted.data.channels[1].values[7] = std::numeric_limits<double>::quiet_NaN();
   const Observations data = observe(planted.data);
   EXPECT_EQ(data.rows(), planted.data.rows() - 1);

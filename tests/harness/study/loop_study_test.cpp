@@ -28,7 +28,7 @@ const LoopFigure& figure(const LoopStudy& study, const std::string& name) {
   return *found;
 }
 
-LoopAnswer says_nothing(const LoopCase& /*one*/, const kuka::PlantedData& planted) {
+LoopAnswer says_nothing(const LoopCase& /*one*/, const PlantedData& planted) {
   LoopAnswer answer;
   answer.before = planted.truth.base;
   answer.after = planted.truth.base;
@@ -36,20 +36,20 @@ LoopAnswer says_nothing(const LoopCase& /*one*/, const kuka::PlantedData& plante
 }
 
 // Knows the truth: what the best of methods would say.
-LoopAnswer knows_all(const LoopCase& /*one*/, const kuka::PlantedData& planted) {
+LoopAnswer knows_all(const LoopCase& /*one*/, const PlantedData& planted) {
   LoopAnswer answer;
   answer.before = planted.truth.base;
   answer.after = planted.truth.noise_free();
-  for (const kuka::PlantedEffect& effect : planted.truth.effects) {
-    if (effect.in_library) {
-      answer.effects.push_back({effect.family, {}});
+  for (const PlantedEffect& effect : planted.truth.effects) {
+    if (effect.in_library()) {
+      answer.effects.push_back({effect.names.front(), {}});
       continue;
     }
     answer.unknown = true;
     for (const Role role : effect.lives_in) answer.inputs.emplace_back(role_name(role));
   }
   const std::vector<double>& time = planted.data.find(Role::time)->values;
-  for (const kuka::PlantedCollision& burst : planted.truth.collisions) {
+  for (const PlantedCollision& burst : planted.truth.collisions) {
     answer.bursts.push_back({burst.movement, time[burst.first_row], time[burst.last_row]});
   }
   return answer;
@@ -87,7 +87,7 @@ TEST(LoopStudy, AStudyThatWasStoppedGoesOnWhereItWas) {
   LoopStudyOptions options = small_study();
   options.only = "single/stribeck";
   options.out = out;
-  const LoopMethod counting = [&calls](const LoopCase& one, const kuka::PlantedData& planted) {
+  const LoopMethod counting = [&calls](const LoopCase& one, const PlantedData& planted) {
     if (++calls > 6) throw_bad_input("enough");
     return knows_all(one, planted);
   };
@@ -106,6 +106,64 @@ TEST(LoopStudy, AStudyThatWasStoppedGoesOnWhereItWas) {
     EXPECT_EQ(resumed.outcomes[i].mae_before, whole.outcomes[i].mae_before);
   }
   EXPECT_EQ(read_text(out / "runs.csv").find(",sing\n"), std::string::npos);
+}
+
+LoopStudyOptions small_simulated_study() {
+  return {
+      .generator = LoopGenerator::simulated, .null_runs = 2, .runs_per_cell = 2, .first_seed = 950};
+}
+
+TEST(LoopStudy, OnSimulatedCampaignsTheTruthMeetsEveryTargetAndSilenceIsNeverWrong) {
+  const LoopStudy best = run_loop_study(small_simulated_study(), knows_all);
+  for (const LoopFigure& one : best.figures) EXPECT_TRUE(one.met) << one.name;
+  EXPECT_EQ(figure(best, "named, k >= 1").trials, 76U);
+  EXPECT_EQ(figure(best, "false alarm, noise skewed").trials, 2U);
+  for (const CauseAnswers& one : best.answers) EXPECT_EQ(one.counts[0], one.runs) << one.cause;
+  const LoopStudy silent = run_loop_study(small_simulated_study(), says_nothing);
+  EXPECT_EQ(figure(silent, "named, k >= 1").hits, 0U);
+  EXPECT_EQ(figure(silent, "confidently wrong").hits, 0U);
+  EXPECT_EQ(figure(silent, "false alarm, noise bursty").hits, 0U);
+}
+
+// Every worth an answer can have, against one cause and against two.
+TEST(LoopStudy, AnAnswerIsWorthWhatItNames) {
+  PlantedData planted;
+  planted.data.channels = {{"t", "s", Role::time, {0}}, {"f", "N m", Role::friction_torque, {0}}};
+  planted.truth = {{0}, {0}, 1, {}, {}};
+  PlantedEffect lag;
+  lag.family = "lag_of_velocity";
+  lag.names = {"lag", "inertia"};
+  lag.beside = {"hysteresis"};
+  planted.truth.effects = {lag};
+  LoopCase one;
+  const auto says = [&](std::vector<LoopAnswer::Effect> effects, bool unknown) {
+    LoopAnswer answer;
+    answer.effects = std::move(effects);
+    answer.unknown = unknown;
+    answer.before = answer.after = {0};
+    return judge_answer(one, answer, planted).says;
+  };
+  EXPECT_EQ(says({{"lag", {}}}, false), Says::exact);
+  EXPECT_EQ(says({{"inertia", {}}, {"hysteresis", {}}}, false), Says::exact);
+  EXPECT_EQ(says({{"lag", {}, true}}, false), Says::another_shape);
+  EXPECT_EQ(says({{"lag", {}}}, true), Says::with_unknown);
+  EXPECT_EQ(says({{"lag", {}}, {"drift", {}}}, false), Says::with_more);
+  EXPECT_EQ(says({{"hysteresis", {}}}, false), Says::partly);
+  EXPECT_EQ(says({{"drift", {"lag"}}}, false), Says::alias);
+  EXPECT_EQ(says({{"drift", {"payload"}}}, false), Says::wrong);
+  EXPECT_EQ(says({{"drift", {}}}, true), Says::unknown);
+  EXPECT_EQ(says({}, true), Says::unknown);
+  EXPECT_EQ(says({}, false), Says::nothing);
+  PlantedEffect notch;
+  notch.family = "position_notch";
+  notch.lives_in = {Role::position};
+  planted.truth.effects = {notch};
+  EXPECT_EQ(says({}, true), Says::exact);
+  EXPECT_EQ(says({{"drift", {"lag"}}}, false), Says::wrong);
+  planted.truth.effects = {};
+  EXPECT_EQ(says({}, false), Says::exact);
+  EXPECT_EQ(says({{"drift", {}}}, false), Says::wrong);
+  EXPECT_EQ(says({}, true), Says::unknown);
 }
 
 // A program of one's own that knows a single effect.

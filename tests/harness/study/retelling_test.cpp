@@ -162,7 +162,7 @@ TEST(RetellingStudy, ColumnsInAnotherOrderAndOtherNamesChangeNoBit) {
   RetellingStudyOptions options;
   options.retellings = {"columns", "renamed"};
   const RetellingStudy study =
-      run_retelling_study(planted_recordings(3, 5, ""),
+      run_retelling_study(planted_recordings(LoopGenerator::planted, 3, 5, ""),
                           make_loop_teller(tribench::testing::program().string()), options);
   ASSERT_EQ(study.outcomes.size(), 6U);
   for (const RetellingOutcome& one : study.outcomes) {
@@ -183,11 +183,12 @@ TEST(Recordings, TheListOfMeasuredOnesReadsAndNamesWhatIsMissing) {
 }
 
 TEST(Recordings, PlantedOnesAreDrawnByTheSeed) {
-  const std::vector<Recording> drawn = planted_recordings(5, 3, "single/lag");
+  const std::vector<Recording> drawn =
+      planted_recordings(LoopGenerator::planted, 5, 3, "single/lag");
   ASSERT_EQ(drawn.size(), 5U);
   for (const Recording& one : drawn) EXPECT_TRUE(one.name.starts_with("single/lag"));
-  EXPECT_EQ(planted_recordings(5, 3, "single/lag")[4].name, drawn[4].name);
-  EXPECT_THROW(planted_recordings(5, 3, "single/lagg"), Error);
+  EXPECT_EQ(planted_recordings(LoopGenerator::planted, 5, 3, "single/lag")[4].name, drawn[4].name);
+  EXPECT_THROW(planted_recordings(LoopGenerator::planted, 5, 3, "single/lagg"), Error);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST(Planted, EveryEffectHasTheSizeAskedFor) {
     const PlantedData run = make_planted(planted, 8);
     const PlantedEffect& effect = run.truth.effects.front();
     EXPECT_NEAR(root_mean_square(effect.values), 0.5 * run.truth.noise_sd, 1e-9) << shape.family;
-    EXPECT_EQ(effect.in_library, shape.in_library);
+    EXPECT_EQ(effect.in_library(), shape.in_library);
   }
 }
 
