@@ -176,7 +176,8 @@ EffectFamily temperature() {
                  "friction changes with temperature",
                  "Bittencourt 2012; Wolf and Iskandar 2018",
                  {}};
-  const ShapeTemplate reference{"T0", "T", {0}, 0, 0};  // the mean temperature
+  const ShapeTemplate reference{
+      .name = "T0", .scale = "T", .grid = {0}, .low = 0, .high = 0, .reference = true};
   f.atoms = {
       {{"v*(T - T0)"}, {"viscous_slope"}, {reference}},
       {{"sgn_v*(T - T0)"}, {"coulomb_slope"}, {reference}},
@@ -194,8 +195,11 @@ EffectFamily drift() {
                  "friction changes through the campaign",
                  "Bittencourt and Axelsson 2013",
                  {}};
-  f.atoms = {
-      {{"sgn_v*t"}, {"coulomb_rate"}}, {{"v*t"}, {"viscous_rate"}}, {{"t"}, {"offset_rate"}}};
+  const ShapeTemplate reference{
+      .name = "t0", .scale = "t", .grid = {0}, .low = 0, .high = 0, .reference = true};
+  f.atoms = {{{"sgn_v*(t - t0)"}, {"coulomb_rate"}, {reference}},
+             {{"v*(t - t0)"}, {"viscous_rate"}, {reference}},
+             {{"t - t0"}, {"offset_rate"}, {reference}}};
   f.separate_by = {"R1", "R5"};
   return f;
 }

@@ -21,11 +21,14 @@ constexpr int kIterationsWithout = 4;  // from the level with the rows
 constexpr std::size_t kNegligible = 50;
 constexpr std::size_t kFewestRows = 3;
 
+// Of an even number of values the mean of the two middle ones: the median of the negated values is
+// the negated median.
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
-  const auto middle = static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), values.begin() + middle, values.end());
-  return values[static_cast<std::size_t>(middle)];
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
 double median_magnitude(std::vector<double> values) {
@@ -141,7 +144,7 @@ void BurstNoise::group_by_speed(const Observations& data) {
     for (const std::size_t i : rows_of_speed(g)) magnitudes.push_back(std::abs(deviation_[i]));
     const double sd = kMadToSd * median(std::move(magnitudes));
     middle_speed_.push_back(speed_[by_speed_[n * (2 * g + 1) / (2 * kSpeeds)]]);
-    speed_level_.push_back(std::log(std::max(sd, kLeastShare * robust_sd_)));
+    speed_level_.push_back(std::log(std::max(sd / robust_sd_, kLeastShare)));
   }
 }
 
@@ -160,7 +163,8 @@ void BurstNoise::scale_by_speed() {
     const double width = middle_speed_[g] - middle_speed_[g - 1];
     const double part =
         width > 0 ? std::clamp((speed_[i] - middle_speed_[g - 1]) / width, -0.5, 1.5) : 1;
-    unit_[i] = std::exp(speed_level_[g - 1] + part * (speed_level_[g] - speed_level_[g - 1]));
+    unit_[i] =
+        robust_sd_ * std::exp(speed_level_[g - 1] + part * (speed_level_[g] - speed_level_[g - 1]));
   }
 }
 

@@ -64,7 +64,7 @@ class BurstNoise {
   std::vector<double> speed_;
   std::vector<std::size_t> by_speed_;  // rows, slowest first
   std::vector<double> middle_speed_;   // per group
-  std::vector<double> speed_level_;    // ... the logarithm of its noise
+  std::vector<double> speed_level_;    // ... the logarithm of its noise over the robust sd
   double robust_sd_ = 0;
   double rho_ = 0;
   double mean_log_level_ = 0;

@@ -130,7 +130,7 @@ class ClosedLoop : public Regressor {
   FitResult base_alone(FitContext& context, const Observations& data) const {
     Noise noise;
     noise.within_sd = 1;
-    const Clusters clusters = make_clusters(data.movement, 1, context.random.split("clusters"));
+    const Clusters clusters = make_clusters(data.movement, 1);
     LoopModel model;
     model.base = base_maker(context)(data);
     model.coefficients.setZero(static_cast<Eigen::Index>(model.base.linear_terms.size()));

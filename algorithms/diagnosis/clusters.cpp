@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace tribench::loop {
 namespace {
@@ -40,7 +39,7 @@ void cut(Clusters& clusters, std::size_t m, double rows_per_stretch) {
   }
 }
 
-void assign_folds(Clusters& clusters, RandomStream random) {
+void assign_folds(Clusters& clusters) {
   const std::size_t movements = clusters.movements.size();
   if (movements == 1) {
     const auto n = static_cast<int>(clusters.stretches.size());
@@ -49,14 +48,9 @@ void assign_folds(Clusters& clusters, RandomStream random) {
     return;
   }
   clusters.folds = std::min(kFolds, static_cast<int>(movements));
-  std::vector<std::size_t> order(movements);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  random.shuffle(std::span(order));
-  std::vector<int> fold(movements);
-  for (std::size_t i = 0; i < movements; ++i) {
-    fold[order[i]] = static_cast<int>(i) % clusters.folds;
+  for (const std::size_t m : clusters.movement_of) {
+    clusters.fold_of.push_back(static_cast<int>(m) % clusters.folds);
   }
-  for (const std::size_t m : clusters.movement_of) clusters.fold_of.push_back(fold[m]);
 }
 
 // Sums over neighbours `lag` rows apart, within movements, of deviations from the movement's mean.
@@ -84,14 +78,13 @@ Eigen::VectorXd deviations(const Eigen::VectorXd& residual, std::span<const RowR
 
 }  // namespace
 
-Clusters make_clusters(std::span<const int> movement, double correlation_time,
-                       RandomStream random) {
+Clusters make_clusters(std::span<const int> movement, double correlation_time) {
   Clusters clusters;
   clusters.rows = movement.size();
   clusters.movements = movement_ranges(movement);
   const double rows_per_stretch = std::max(kStretchRows, kStretchTimes * correlation_time);
   for (std::size_t m = 0; m < clusters.movements.size(); ++m) cut(clusters, m, rows_per_stretch);
-  assign_folds(clusters, random);
+  assign_folds(clusters);
   return clusters;
 }
 
@@ -205,7 +198,7 @@ std::vector<double> movement_weights(const Eigen::VectorXd& residual, const Clus
                                .segment(static_cast<Eigen::Index>(range.begin),
                                         static_cast<Eigen::Index>(range.size()))
                                .squaredNorm();
-    logs[m] = std::log(std::max(squares / std::max(1.0, n - 1), 1e-6 * variance));
+    logs[m] = std::log(std::max(squares / std::max(1.0, n - 1) / variance, 1e-6));
     mean += logs[m] / static_cast<double>(count);
     sampling += (kurtosis - 1) * (1 + square) / (1 - square) / n / static_cast<double>(count);
   }

@@ -40,9 +40,9 @@ struct Clusters {
 };
 
 // Stretches hold at least 30 rows and 10 correlation times (in rows); a movement of up to 45 rows
-// is one stretch. Ten folds of movements, fewer where there are fewer movements; five folds of
-// neighbouring stretches where there is one movement.
-Clusters make_clusters(std::span<const int> movement, double correlation_time, RandomStream random);
+// is one stretch. Ten folds of movements in turn, fewer where there are fewer movements; five folds
+// of neighbouring stretches where there is one movement.
+Clusters make_clusters(std::span<const int> movement, double correlation_time);
 
 struct Noise {
   double within_sd = 0;   // sw

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "algorithms/diagnosis/canonical.hpp"
 #include "algorithms/diagnosis/ceiling.hpp"
 #include "algorithms/diagnosis/events.hpp"
 #include "algorithms/diagnosis/findings.hpp"
@@ -180,9 +181,9 @@ Diagnosis diagnose_training(const Observations& data, const std::vector<int>& te
   for (std::size_t i = 0; i < data.rows(); ++i) {
     if (kept[i] != 0) train_rich[next++] = rich[static_cast<Eigen::Index>(i)];
   }
-  const Clusters uncut = make_clusters(train.movement, 1, random);
+  const Clusters uncut = make_clusters(train.movement, 1);
   out.correlation_rows = correlation_time(train_rich, uncut.movements);
-  Clusters clusters = make_clusters(train.movement, out.correlation_rows, random.split("folds"));
+  Clusters clusters = make_clusters(train.movement, out.correlation_rows);
   clusters.weight = movement_weights(train_rich, clusters);
   Search search(train, base, out.families, options, clusters, random.split("search"));
   search.run();
@@ -208,7 +209,7 @@ Diagnosis diagnose_training(const Observations& data, const std::vector<int>& te
 
 // Pieces of each movement, as independent of one another as rows ten correlation times apart.
 std::vector<int> pieces(const Observations& data, double correlation_rows) {
-  const Clusters clusters = make_clusters(data.movement, correlation_rows, RandomStream(0));
+  const Clusters clusters = make_clusters(data.movement, correlation_rows);
   std::vector<int> unit(data.rows());
   for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
     for (std::size_t i = clusters.stretches[c].begin; i < clusters.stretches[c].end; ++i) {
@@ -220,15 +221,15 @@ std::vector<int> pieces(const Observations& data, double correlation_rows) {
 
 // The movements that are left out at once, each set in ascending order.
 std::vector<std::vector<int>> left_out_together(const Observations& data) {
-  std::map<int, std::vector<int>> sets;
-  for (const int m : data.movements()) {
-    sets[data.group.empty() ? m : data.group[static_cast<std::size_t>(m)]].push_back(m);
-  }
+  std::map<int, std::size_t> place;  // of a group's number, in the order of their first movements
   std::vector<std::vector<int>> all;
-  for (auto& [number, movements] : sets) {
-    std::ranges::sort(movements);
-    all.push_back(std::move(movements));
+  for (const int m : data.movements()) {
+    const int number = data.group.empty() ? m : data.group[static_cast<std::size_t>(m)];
+    const auto [known, is_new] = place.try_emplace(number, all.size());
+    if (is_new) all.emplace_back();
+    all[known->second].push_back(m);
   }
+  for (std::vector<int>& movements : all) std::ranges::sort(movements);
   return all;
 }
 
@@ -277,8 +278,9 @@ ErrorFinding judge_in_turn(const Observations& data, const BaseMaker& base, cons
   for (Eigen::VectorXd* one : {&all.before, &all.after, &all.corrected}) {
     one->setZero(static_cast<Eigen::Index>(data.rows()));
   }
+  std::uint64_t turn = 0;
   for (const std::vector<int>& left : left_out_together(data)) {
-    const RandomStream own = random.split(static_cast<std::uint64_t>(left.front()));
+    const RandomStream own = random.split(turn++);
     const Diagnosis without = diagnose_training(data, left, base, whole.options, own);
     const LeftOut models = left_out_predictions(data, without, left, own.split("smooth"));
     const std::vector<char> rows = rows_of(data, left, true, {});
@@ -310,18 +312,15 @@ Observations cut_in_pieces(const Observations& data) {
   return out;
 }
 
-}  // namespace
-
-Diagnosis diagnose(const Observations& data, const BaseMaker& base, const DiagnosisOptions& options,
-                   std::uint64_t seed) {
-  const RandomStream random(seed);
+Diagnosis diagnose_canonical(const Observations& data, const BaseMaker& base,
+                             const DiagnosisOptions& options) {
+  const RandomStream random(key_of("diagnosis"));
   const std::size_t movements = data.movements().size();
   const bool hold_out = options.test_share > 0;
   if (hold_out && (movements < kFewMovements || !data.group.empty())) {
     const bool single = movements == 1;
     const Observations cut = single ? cut_in_pieces(data) : data;
     Diagnosis out = diagnose_training(cut, {}, base, options, random);
-    out.seed = seed;
     out.error = judge_in_turn(cut, base, out, random.split("in turn"));
     out.error.how = single ? "pieces of the one movement left out in turn"
                     : cut.group.empty()
@@ -340,10 +339,8 @@ Diagnosis diagnose(const Observations& data, const BaseMaker& base, const Diagno
     }
     return out;
   }
-  const std::vector<int> test =
-      choose_test_movements(data, options.test_share, random.split("test"));
+  const std::vector<int> test = choose_test_movements(data, options.test_share);
   Diagnosis out = diagnose_training(data, test, base, options, random);
-  out.seed = seed;
   out.error.how = "none held out";
   const std::vector<char> judged = rows_of(data, test, true, out.masked);
   if (std::ranges::count(judged, 1) > 0) {
@@ -353,6 +350,17 @@ Diagnosis diagnose(const Observations& data, const BaseMaker& base, const Diagno
     out.error.how = "held out";
     out.error.confirmed = out.effects.empty() || out.error.difference_low > 0;
   }
+  return out;
+}
+
+}  // namespace
+
+Diagnosis diagnose(const Observations& data, const BaseMaker& base, const DiagnosisOptions& options,
+                   std::uint64_t seed) {
+  const Canonical told = canonical(data);
+  Diagnosis out = diagnose_canonical(told.data, base, options);
+  out.masked = told.as_told(out.masked);
+  out.seed = seed;
   return out;
 }
 

@@ -129,6 +129,7 @@ ShapeTemplate read_shape(const Entry& entry) {
   shape.low = entry.find<double>("low").value_or(0);
   shape.high = entry.find<double>("high").value_or(0);
   shape.recorded = entry.find<bool>("recorded").value_or(false);
+  shape.reference = entry.find<bool>("reference").value_or(false);
   const bool plain = shape.grid.empty() && shape.scale.empty() && shape.low == 0 && shape.high == 0;
   if (shape.name == "N" && !plain) {
     throw_bad_input("the shape 'N' is the gear ratio and takes no grid, scale, low or high",
@@ -175,7 +176,7 @@ AtomTemplate read_atom(const Entry& entry) {
   AtomTemplate atom;
   atom.columns = entry.list<std::string>("columns");
   for (const Entry& shape :
-       entry.entries("shape", {"name", "scale", "grid", "low", "high", "recorded"})) {
+       entry.entries("shape", {"name", "scale", "grid", "low", "high", "recorded", "reference"})) {
     atom.shapes.push_back(read_shape(shape));
   }
   check_columns(atom, entry.place());
@@ -292,7 +293,8 @@ toml::table table_of(const AtomTemplate& atom) {
                                  {"grid", std::move(grid)},
                                  {"low", shape.low},
                                  {"high", shape.high},
-                                 {"recorded", shape.recorded}});
+                                 {"recorded", shape.recorded},
+                                 {"reference", shape.reference}});
   }
   if (!shapes.empty()) table.insert("shape", std::move(shapes));
   return table;

@@ -16,6 +16,8 @@ namespace tribench::loop {
 namespace {
 
 constexpr std::array<double, 7> kUsualGearRatios = {50, 80, 100, 101, 120, 121, 160};
+// Of a signal's values: those beyond its scale.
+constexpr double kBeyond = 0.01;
 constexpr std::array<double, 5> kUsualLeads = {0.040, 0.020, 0.010, 0.005, 0.0025};  // m
 
 bool is_linear_axis(const Observations& data) {
@@ -23,9 +25,10 @@ bool is_linear_axis(const Observations& data) {
   return position != nullptr && position->unit == "m";
 }
 
-double quantile(std::vector<double> values, double part) {
+// The value that the share `part` of the others exceeds.
+double upper_quantile(std::vector<double> values, double part) {
   const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
+  std::ranges::nth_element(values, values.begin() + at, std::ranges::greater());
   return values[static_cast<std::size_t>(at)];
 }
 
@@ -46,8 +49,7 @@ double scaled(const ShapeTemplate& shape, double value, const Observations& data
   }
   const Signal* signal = data.find(shape.scale);
   if (signal == nullptr) return value;
-  // A reference (T0) is a place on the axis, not a width.
-  if (shape.name == "T0") return mean(signal->values);
+  if (shape.reference) return mean(signal->values);
   return value * signal_scale(data, shape.scale);
 }
 
@@ -148,11 +150,13 @@ double signal_scale(const Observations& data, std::string_view name) {
   // A distance since reversal is measured against the range of the joint.
   if (name == "d" && data.find("q") != nullptr) return signal_scale(data, "q");
   if (name == "q" || name == "T" || name == "t") {
-    return quantile(signal->values, 0.99) - quantile(signal->values, 0.01);
+    std::vector<double> turned = signal->values;
+    for (double& x : turned) x = -x;
+    return upper_quantile(signal->values, kBeyond) + upper_quantile(std::move(turned), kBeyond);
   }
   std::vector<double> magnitudes = signal->values;
   for (double& x : magnitudes) x = std::abs(x);
-  return quantile(std::move(magnitudes), 0.99);
+  return upper_quantile(std::move(magnitudes), kBeyond);
 }
 
 void Atom::set_shape(std::size_t shape, double value) {

@@ -31,6 +31,9 @@ struct ShapeTemplate {
   // No smaller than the smallest |signal| of the rows: an effect that has faded before the slowest
   // row shows its tail alone, and a size at 0 made of a tail is worth nothing.
   bool recorded = false;
+  // Its one value is the mean of the signal `scale`: the place on an axis whose origin says nothing
+  // (a temperature, a time).
+  bool reference = false;
 };
 
 struct AtomTemplate {
@@ -119,7 +122,7 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
                               const Observations& data, std::span<const double> gear_ratios,
                               std::vector<std::string>& missing);
 
-// The scale of a signal: 99 % quantile of |x|; span (1 % to 99 %) of q, T, t and d.
+// The scale of a signal: what 1 % of |x| exceed; span between 1 % and 99 % of q, T, t and d.
 double signal_scale(const Observations& data, std::string_view name);
 
 }  // namespace tribench::loop

@@ -217,7 +217,7 @@ std::vector<ProposedMovement> propose_movements(const Diagnosis& diagnosis,
         !masked && !std::ranges::binary_search(diagnosis.test_movements, data.movement[i]) ? 1 : 0;
   }
   const Observations train = data.select(keep);
-  const Clusters clusters = make_clusters(train.movement, 1, RandomStream(diagnosis.seed));
+  const Clusters clusters = make_clusters(train.movement, 1);
   const std::vector<Rival> rivals = rivals_of(diagnosis, train, clusters);
   const Eigen::Vector3d gravity = gravity_of_position(train);
   const double variance = diagnosis.noise.within_sd * diagnosis.noise.within_sd;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "algorithms/diagnosis/canonical.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 
 namespace tribench::loop {
@@ -12,10 +13,10 @@ namespace {
 
 constexpr int kBootstraps = 2000;
 
-// Speed and direction of a movement: the strata of the split.
+// The strata of the split: movements in one direction or in both, by speed.
 struct Kind {
   int movement;
-  int direction;  // -1, 0 (both), 1
+  bool one_way;
   double speed;
 };
 
@@ -26,12 +27,13 @@ std::vector<Kind> kinds(const Observations& data) {
   for (const int m : data.movements()) {
     double sum = 0;
     double magnitude = 0;
+    const std::size_t begin = i;
     for (; i < data.rows() && data.movement[i] == m; ++i) {
       sum += v == nullptr ? 0 : v->values[i];
       magnitude += v == nullptr ? 0 : std::abs(v->values[i]);
     }
     const bool one_way = std::abs(sum) > 0.9 * magnitude;
-    all.push_back({m, !one_way ? 0 : sum > 0 ? 1 : -1, magnitude});
+    all.push_back({m, one_way, magnitude / static_cast<double>(i - begin)});
   }
   return all;
 }
@@ -68,22 +70,22 @@ double root_mean_square(const std::vector<MovementError>& all, double MovementEr
 
 }  // namespace
 
-std::vector<int> choose_test_movements(const Observations& data, double share,
-                                       RandomStream random) {
-  std::vector<Kind> all = kinds(data);
+std::vector<int> choose_test_movements(const Observations& data, double share) {
+  std::vector<Kind> all = kinds(canonical(data).data);
   const auto wanted =
       static_cast<std::size_t>(std::lround(share * static_cast<double>(all.size())));
   if (share <= 0 || all.size() < 2) return {};
   std::ranges::stable_sort(all, [](const Kind& a, const Kind& b) {
-    return a.direction != b.direction ? a.direction < b.direction : a.speed < b.speed;
+    return a.one_way != b.one_way ? b.one_way
+                                  : static_cast<float>(a.speed) < static_cast<float>(b.speed);
   });
-  // One out of every run of neighbours, so that each direction and speed is held out alike.
+  // The middle one of every run of neighbours, so that every speed is held out alike.
   const std::size_t count = std::max<std::size_t>(1, wanted);
   std::vector<int> chosen;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t begin = all.size() * k / count;
     const std::size_t end = all.size() * (k + 1) / count;
-    chosen.push_back(all[begin + random.below(end - begin)].movement);
+    chosen.push_back(all[(begin + end) / 2].movement);
   }
   std::ranges::sort(chosen);
   return chosen;

@@ -11,9 +11,9 @@
 
 namespace tribench::loop {
 
-// share of the movements, spread over directions and speeds; at least one, and none where fewer
-// than two movements would be left.
-std::vector<int> choose_test_movements(const Observations& data, double share, RandomStream random);
+// share of the movements, spread over speeds; at least one, and none where fewer than two movements
+// would be left. However the recording is told, they are the same.
+std::vector<int> choose_test_movements(const Observations& data, double share);
 
 // Residual of every row under the richest model there is (base and all effects, a small ridge),
 // fitted to the training rows: what is left is noise and events, so it says how long noise lasts.

@@ -82,7 +82,7 @@ Eigen::VectorXd moved_part(const LoopModel& model, const Nonlinear& p, const Sig
 
 Eigen::VectorXd derivative(LoopModel& model, const Nonlinear& p, const SignalTable& table) {
   const double value = value_of(model, p);
-  const double step = kRelativeStep * std::max(std::abs(value), 1e-3);
+  const double step = kRelativeStep * (value != 0 ? std::abs(value) : 1e-3);
   const double above = std::min(value + step, p.high);
   const double below = std::max(value - step, p.low);
   set_value(model, p, above);
@@ -189,7 +189,7 @@ double take_step(LoopModel& model, const std::vector<Nonlinear>& parameters,
     if (!std::isfinite(change)) continue;
     set_value(model, parameters[j], before + change);
     const double after = value_of(model, parameters[j]);
-    largest = std::max(largest, std::abs(after - before) / std::max(std::abs(before), 1e-6));
+    largest = std::max(largest, std::abs(after - before) / (before != 0 ? std::abs(before) : 1.0));
   }
   return largest;
 }

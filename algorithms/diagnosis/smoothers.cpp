@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "algorithms/diagnosis/canonical.hpp"
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/expression/vector/kernels.hpp"
 #include "algorithms/expression/vector/level.hpp"
@@ -32,15 +33,17 @@ constexpr double kFourierLength = 0.22;
 constexpr float kReach = 6.8F;
 constexpr float kNothing = -1000;  // its exponential is 0
 
-// The signal mapped to [0, 1]: |v|, log of the distance, anything else as it is. Empty where it
-// does not vary.
+// The signal mapped to [0, 1]: |v|, log of the distance, anything else as it is, in the direction
+// that is the first (mirror_sign). Empty where it does not vary.
 Eigen::ArrayXf unit_values(const Observations& data, std::string_view name) {
   const Signal* signal = data.find(name);
   if (signal == nullptr || signal->values.empty()) return {};
   Eigen::ArrayXd x = Eigen::Map<const Eigen::ArrayXd>(
       signal->values.data(), static_cast<Eigen::Index>(signal->values.size()));
   if (name == "v") x = x.abs();
-  if (name == "d") x = (x + 1e-3 * x.maxCoeff() + 1e-12).log();
+  constexpr std::array<std::string_view, 4> kSigned = {"q", "g", "a", "v2"};
+  if (std::ranges::count(kSigned, name) > 0) x *= mirror_sign(data);
+  if (name == "d" && x.maxCoeff() > 0) x = (x / x.maxCoeff() + 1e-3).log();
   // The bulk of the values spans the interval: one far-off row must not flatten the rest.
   std::vector<double> values(x.begin(), x.end());
   const auto edge = static_cast<std::ptrdiff_t>(values.size() / 200);
@@ -110,9 +113,9 @@ std::string input_name(const Observations& data, std::string_view signal) {
 Eigen::VectorXf direction_of(const Observations& data) {
   const Signal* sign = data.find("sgn_v");
   if (sign == nullptr) return {};
-  return Eigen::Map<const Eigen::VectorXd>(sign->values.data(),
-                                           static_cast<Eigen::Index>(sign->values.size()))
-      .cast<float>();
+  const Eigen::Map<const Eigen::VectorXd> s(sign->values.data(),
+                                            static_cast<Eigen::Index>(sign->values.size()));
+  return (mirror_sign(data) * s).cast<float>();
 }
 
 Eigen::MatrixXd with_direction(const Smoother& smoother, const Observations& data) {

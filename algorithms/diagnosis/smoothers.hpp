@@ -27,7 +27,8 @@ struct Smoother {
 // All smoothers that the data have the signals for.
 std::vector<Smoother> make_smoothers(const Observations& data, RandomStream random);
 
-// The direction of motion, a row; empty where the data have none.
+// The direction of motion, a row, the first one positive (mirror_sign); empty where the data have
+// none.
 Eigen::VectorXf direction_of(const Observations& data);
 
 // The features, then the same times the direction.

@@ -42,10 +42,10 @@ Dataset part_of(const Dataset& data, const std::vector<char>& keep, bool with_ta
   return part;
 }
 
-// Per row 1 for the movements that the loop itself holds out with this seed.
-std::vector<char> held_out_rows(const loop::Observations& data, std::uint64_t seed) {
-  const std::vector<int> test = loop::choose_test_movements(
-      data, loop::DiagnosisOptions().test_share, RandomStream(seed).split("test"));
+// Per row 1 for the movements that the loop itself holds out.
+std::vector<char> held_out_rows(const loop::Observations& data) {
+  const std::vector<int> test =
+      loop::choose_test_movements(data, loop::DiagnosisOptions().test_share);
   std::vector<char> held_out(data.rows());
   for (std::size_t i = 0; i < data.rows(); ++i) {
     held_out[i] = std::ranges::binary_search(test, data.movement[i]) ? 1 : 0;
@@ -59,7 +59,7 @@ Eigen::VectorXd base_prediction(const loop::Observations& data, const std::vecto
   loop::LoopModel model;
   model.base = loop::coulomb_viscous_base(data);
   model.coefficients.setZero(static_cast<Eigen::Index>(model.base.linear_terms.size()));
-  const loop::Clusters clusters = loop::make_clusters(rows.movement, 1, RandomStream(0));
+  const loop::Clusters clusters = loop::make_clusters(rows.movement, 1);
   loop::Noise plain;
   plain.within_sd = 1;
   loop::fit_model(model, rows, clusters, plain, loop::FitScope::linear);
@@ -185,7 +185,7 @@ LoopAnswer answer_in(const json& object, const PlantedData& planted, const loop:
 LoopMethod make_external_diagnosis(std::vector<std::string> command) {
   return [command = std::move(command)](const LoopCase& one, const PlantedData& planted) {
     const loop::Observations data = loop::observe(planted.data);
-    const std::vector<char> held_out = held_out_rows(data, one.seed);
+    const std::vector<char> held_out = held_out_rows(data);
     std::vector<char> train(held_out.size());
     std::ranges::transform(held_out, train.begin(), [](char row) { return row == 0 ? 1 : 0; });
     const ScratchFolder scratch;

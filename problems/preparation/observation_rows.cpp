@@ -140,7 +140,7 @@ void settle_directions(Observations& data) {
   if (fewer >= std::max(kFewestRows, (forward + backward) / 100)) return;
   std::vector<char> keep(data.rows());
   for (std::size_t i = 0; i < data.rows(); ++i)
-    keep[i] = (v[i] > 0) == (forward > backward) ? 1 : 0;
+    keep[i] = (forward > backward ? v[i] > 0 : v[i] < 0) ? 1 : 0;
   data = data.select(keep);
   data.warnings.push_back(fmt::format(
       "all movement is in one direction{}: direction asymmetry and whatever needs both directions "

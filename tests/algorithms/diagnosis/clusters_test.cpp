@@ -19,7 +19,7 @@ Clusters many_movements() {
   for (std::size_t m = 0; m < kMovements; ++m) {
     movement.insert(movement.end(), kRows, static_cast<int>(m));
   }
-  return make_clusters(movement, 1, RandomStream(1));
+  return make_clusters(movement, 1);
 }
 
 // AR(1) of unit variance, an offset a movement; odd movements are `louder` times as loud.

@@ -22,7 +22,7 @@ Case make_case() {
   std::vector<int> movement(200);
   for (std::size_t i = 0; i < movement.size(); ++i) movement[i] = static_cast<int>(i / 20);
   Case c;
-  c.clusters = make_clusters(movement, 1, RandomStream(1));
+  c.clusters = make_clusters(movement, 1);
   c.x = Eigen::MatrixXd::Ones(200, 2);
   c.x.col(1).tail(180).setZero();
   RandomStream random(2);

@@ -44,7 +44,7 @@ Example example(double whitening, bool with_direction) {
     e.model.row(i) << 1, random.normal(), static_cast<double>(direction[i]);
     e.target[i] = random.normal() + 0.2 * static_cast<double>(e.features(i, 4));
   }
-  e.clusters = make_clusters(movement, 1, RandomStream(6));
+  e.clusters = make_clusters(movement, 1);
   e.clusters.weight = movement_weights(e.target, e.clusters);
   e.noise = estimate_noise(e.target, e.clusters, 3, 0);
   e.noise.rho = 0.4;

@@ -42,7 +42,7 @@ Example clustered_example(std::uint64_t seed, double planted) {
       e.y[row] = 2 + 0.5 * e.x(row, 1) + planted * levels[2] + offset + random.normal();
     }
   }
-  e.clusters = make_clusters(movement, 1, RandomStream(seed));
+  e.clusters = make_clusters(movement, 1);
   return e;
 }
 

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+//
+// One recording told in many ways has one diagnosis.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "algorithms/diagnosis/canonical.hpp"
+#include "algorithms/diagnosis/diagnosis.hpp"
+#include "foundation/random.hpp"
+#include "problems/kuka/planted.hpp"
+#include "problems/reading/csv.hpp"
+#include "tests/support/paths.hpp"
+
+namespace tribench::loop {
+namespace {
+
+std::vector<std::string> story(const Diagnosis& diagnosis) {
+  std::vector<std::string> all = {std::string(verdict_name(diagnosis.verdict))};
+  for (const EffectFinding& effect : diagnosis.effects) all.push_back(effect.family);
+  all.insert(all.end(), diagnosis.leftover.inputs.begin(), diagnosis.leftover.inputs.end());
+  return all;
+}
+
+std::vector<double>& values_of(Dataset& data, Role role) {
+  return std::ranges::find(data.channels, role, &Channel::role)->values;
+}
+
+// Every signed quantity negated.
+void mirror(Dataset& data) {
+  for (Channel& channel : data.channels) {
+    const bool even = channel.role == Role::time || channel.role == Role::temperature ||
+                      channel.role == Role::movement || channel.role == Role::none;
+    if (even) continue;
+    for (double& x : channel.values) x = -x;
+  }
+}
+
+void scale(Dataset& data, const std::vector<Role>& roles, double factor) {
+  for (const Role role : roles) {
+    if (data.find(role) == nullptr) continue;
+    for (double& x : values_of(data, role)) x *= factor;
+  }
+}
+
+const std::vector<Role> kTorques = {Role::friction_torque, Role::motor_torque, Role::motor_current,
+                                    Role::gravity_torque};
+
+void shift_time(Dataset& data, double seconds) {
+  if (data.find(Role::time) == nullptr) return;
+  for (double& t : values_of(data, Role::time)) t += seconds;
+}
+
+// Movements in another order, under other names.
+void shuffle_movements(Dataset& data) {
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (i == 0 || data.movement[i] != data.movement[i - 1]) begins.push_back(i);
+  }
+  begins.push_back(data.rows());
+  std::vector<std::size_t> order(begins.size() - 1);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  RandomStream random(11);
+  random.shuffle(std::span(order));
+  const Dataset before = data;
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    for (std::size_t i = begins[order[k]]; i < begins[order[k] + 1]; ++i, ++next) {
+      data.movement[next] = static_cast<int>(k);
+      for (std::size_t j = 0; j < data.channels.size(); ++j) {
+        if (before.channels[j].values.empty()) continue;
+        data.channels[j].values[next] = before.channels[j].values[i];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < order.size(); ++k) data.movement_names[k] = "m" + std::to_string(k);
+}
+
+void reverse_columns(Dataset& data) { std::ranges::reverse(data.channels); }
+
+struct Retelling {
+  const char* name;
+  std::function<void(Dataset&)> tell;
+  double error_factor;  // of the errors
+  double tolerance;     // of the errors, relative; 0: the same bits
+};
+
+const std::vector<Retelling>& retellings() {
+  static const std::vector<Retelling> kAll = {
+      {"mirrored", mirror, 1, 0},
+      {"torque in 1/8", [](Dataset& d) { scale(d, kTorques, 8); }, 8, 0},
+      {"time in units of 4 s",
+       [](Dataset& d) {
+         scale(d, {Role::time}, 0.25);
+         scale(d, {Role::velocity, Role::other_velocity}, 4);
+         scale(d, {Role::acceleration, Role::other_acceleration}, 16);
+       },
+       1, 0},
+      {"torque in m", [](Dataset& d) { scale(d, kTorques, 1000); }, 1000, 1e-9},
+      {"from 1970", [](Dataset& d) { shift_time(d, 1.76e9); }, 1, 1e-9},
+      {"columns turned", reverse_columns, 1, 0}};
+  return kAll;
+}
+
+Diagnosis diagnosed(const Dataset& data, const ObservationOptions& observing, std::uint64_t seed) {
+  DiagnosisOptions options;
+  options.physical_vetoes = false;
+  return diagnose(observe(data, observing), coulomb_viscous_base, options, seed);
+}
+
+void expect_one_story(const Dataset& data, const ObservationOptions& observing,
+                      const std::string& what) {
+  const Diagnosis plain = diagnosed(data, observing, 1);
+  EXPECT_EQ(story(plain), story(diagnosed(data, observing, 2))) << what << ", another seed";
+  std::vector<Retelling> all = retellings();
+  // Movements laid end to end: their rows' times are rounded elsewhere.
+  if (observing.unordered) all.push_back({"shuffled", shuffle_movements, 1, 1e-9});
+  for (const Retelling& retelling : all) {
+    Dataset told = data;
+    retelling.tell(told);
+    const Diagnosis other = diagnosed(told, observing, 1);
+    EXPECT_EQ(story(plain), story(other)) << what << ", " << retelling.name;
+    const double bound = retelling.tolerance * retelling.error_factor;
+    EXPECT_NEAR(plain.error.mae_after * retelling.error_factor, other.error.mae_after,
+                bound * plain.error.mae_after)
+        << what << ", " << retelling.name;
+    EXPECT_NEAR(plain.error.mae_before * retelling.error_factor, other.error.mae_before,
+                bound * plain.error.mae_before)
+        << what << ", " << retelling.name;
+  }
+}
+
+TEST(Retelling, OfAPlantedCampaignChangesNothing) {
+  const std::vector<std::vector<kuka::Plant>> cases = {{},
+                                                       {{"stribeck", 1.0}},
+                                                       {{"load_coulomb", 0.5}, {"drift", 1.0}},
+                                                       {{"output_ripple", 0.5}},
+                                                       {{"temperature_position", 1.0}},
+                                                       {{"slow_oscillation", 1.0}}};
+  std::uint64_t seed = 31;
+  for (const std::vector<kuka::Plant>& effects : cases) {
+    const kuka::PlantedData planted = kuka::make_planted({.effects = effects}, seed);
+    const std::string what = effects.empty() ? "nothing" : effects[0].family;
+    expect_one_story(planted.data, {}, what);
+    expect_one_story(planted.data, {.unordered = true}, what + " unordered");
+    ++seed;
+  }
+}
+
+TEST(Retelling, OfAMeasuredSetChangesNothing) {
+  const auto folder = tribench::testing::shared_data();
+  if (!folder) GTEST_SKIP() << tribench::testing::kNoSharedData;
+  for (const char* joint : {"joint2", "joint6"}) {
+    CsvOptions options;
+    options.roles = {{"model_torque_Nm", Role::gravity_torque}};
+    const Dataset data =
+        read_csv(*folder / "kinova-gen3" / (std::string(joint) + ".csv"), options).data;
+    expect_one_story(data, {}, joint);
+  }
+}
+
+}  // namespace
+}  // namespace tribench::loop
