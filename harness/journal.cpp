@@ -12,6 +12,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -29,10 +30,6 @@ constexpr std::string_view kBetween = "\",\"body\":";
 constexpr std::size_t kCheckDigits = 16;
 constexpr std::size_t kBodyStart = kBeforeCheck.size() + kCheckDigits + kBetween.size();
 constexpr double kSecondsBetweenSyncs = 1.0;
-
-std::string print_line(std::string_view body) {
-  return fmt::format("{}{:016x}{}{}}}\n", kBeforeCheck, key_of(body), kBetween, body);
-}
 
 // The body of a good line, empty for any other. Without the line's end.
 std::string_view body_of(std::string_view line) {
@@ -77,9 +74,23 @@ std::string identity_body(const RunIdentity& identity) {
       .dump();
 }
 
-RunIdentity parse_identity(std::string_view body) {
-  const json object = json::parse(body).at("identity");
-  return {object.at("grid"), object.at("code"), object.at("data")};
+RunIdentity parse_identity(std::string_view body, const std::filesystem::path& file) {
+  try {
+    const json object = json::parse(body).at("identity");
+    return {object.at("grid"), object.at("code"), object.at("data")};
+  } catch (const json::exception&) {  // an empty body, or one that nobody of ours wrote
+    throw_bad_input("this is not a run's journal", file.string());
+  }
+}
+
+// Nothing where the body is none or says something else: another version may have written it.
+std::optional<CellResult> result_of(std::string_view body) {
+  if (body.empty()) return std::nullopt;
+  try {
+    return parse_result(body);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
 }
 
 // The lines that are in one text and not in the other.
@@ -106,6 +117,10 @@ std::string line_difference(const std::string& before, const std::string& after)
 
 }  // namespace
 
+std::string journal_line(std::string_view body) {
+  return fmt::format("{}{:016x}{}{}}}\n", kBeforeCheck, key_of(body), kBetween, body);
+}
+
 std::string RunIdentity::difference(const RunIdentity& other) const {
   std::string text;
   if (grid != other.grid) {
@@ -129,20 +144,18 @@ JournalContents read_journal(const std::filesystem::path& file) {
     offset += line.size() + (has_end ? 1 : 0);
     const std::string_view body = has_end ? body_of(line) : std::string_view();
     if (number == 1) {
-      if (body.empty()) throw_bad_input("this is not a run's journal", file.string());
-      contents.identity = parse_identity(body);
-    } else if (body.empty()) {
+      contents.identity = parse_identity(body, file);
+    } else if (std::optional<CellResult> result = result_of(body); !result) {
       contents.damage.push_back(
           fmt::format("line {} is {}; its cell is missing", number, has_end ? "damaged" : "torn"));
       continue;
     } else {
-      CellResult result = parse_result(body);
       const auto [place, is_new] =
-          place_of_cell.try_emplace(result.record.cell, contents.results.size());
+          place_of_cell.try_emplace(result->record.cell, contents.results.size());
       if (is_new) {
-        contents.results.push_back(std::move(result));
+        contents.results.push_back(std::move(*result));
       } else {
-        contents.results[place->second] = std::move(result);
+        contents.results[place->second] = std::move(*result);
       }
     }
     contents.good_bytes = offset;
@@ -186,7 +199,7 @@ Journal Journal::resume(const std::filesystem::path& file, const JournalContents
 }
 
 void Journal::write_line(const std::string& body) {
-  const std::string line = print_line(body);
+  const std::string line = journal_line(body);
   std::size_t written = 0;
   while (written < line.size()) {
     const ssize_t count = ::write(descriptor_, line.data() + written, line.size() - written);

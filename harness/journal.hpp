@@ -14,6 +14,7 @@
 #include <functional>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/cell_task.hpp"
@@ -29,6 +30,9 @@ struct RunIdentity {
   // Empty where equal; else what differs, as text for people.
   std::string difference(const RunIdentity& other) const;
 };
+
+// A line of the journal with this body (JSON): its checksum and its end included.
+std::string journal_line(std::string_view body);
 
 struct JournalContents {
   RunIdentity identity;

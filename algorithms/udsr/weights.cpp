@@ -26,12 +26,6 @@ struct Stored {
 
 constexpr const char* kMend = "make one with: tribench pretrain --out FILE";
 
-// encoder: null where there is none.
-std::string digest(const Json& tokens, const Json& parameters, const Json& encoder) {
-  return fmt::format("{:016x}", key_of(tokens.dump() + parameters.dump() +
-                                       (encoder.is_null() ? "" : encoder.dump())));
-}
-
 Json in_single_precision(const Eigen::VectorXd& values) {
   Json list = Json::array();
   for (const double value : values) list.push_back(static_cast<float>(value));
@@ -69,7 +63,7 @@ Json parse_checked(std::string_view text, std::string_view place) {
   if (!file.contains("tokens") || !file.contains("parameters") || !file.contains("operations") ||
       file.contains("encoder") != (version == kWeightsVersionWithEncoder) ||
       file.value("hash", "") !=
-          digest(file["tokens"], file["parameters"], file.value("encoder", Json()))) {
+          weights_hash(file["tokens"], file["parameters"], file.value("encoder", Json()))) {
     throw_bad_input("the weight file is damaged: its hash does not match", place, kMend);
   }
   return file;
@@ -141,6 +135,11 @@ class Transfer {
 
 }  // namespace
 
+std::string weights_hash(const Json& tokens, const Json& parameters, const Json& encoder) {
+  return fmt::format("{:016x}", key_of(tokens.dump() + parameters.dump() +
+                                       (encoder.is_null() ? "" : encoder.dump())));
+}
+
 std::string write_weights(const Policy& policy, const DataEncoder* encoder,
                           const WeightsProvenance& provenance) {
   const TokenLibrary& library = policy.library();
@@ -159,7 +158,7 @@ std::string write_weights(const Policy& policy, const DataEncoder* encoder,
                         {"sequences", provenance.sequences},
                         // No more digits than hold on every machine: the file is the same on all.
                         {"loss_per_token", std::round(1e6 * provenance.loss_per_token) / 1e6}};
-  file["hash"] = digest(tokens, parameters, encoding);
+  file["hash"] = weights_hash(tokens, parameters, encoding);
   file["operations"] = library.operations();
   file["tokens"] = std::move(tokens);
   file["parameters"] = std::move(parameters);

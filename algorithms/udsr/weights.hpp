@@ -5,6 +5,7 @@
 // fewer tokens takes the rows and columns that it needs, by name.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -23,6 +24,11 @@ struct WeightsProvenance {
   std::uint64_t sequences = 0;
   double loss_per_token = 0;  // nats, on held-out sequences
 };
+
+// What stands under "hash" in a file of this content; encoder: null where there is none.
+std::string weights_hash(const nlohmann::ordered_json& tokens,
+                         const nlohmann::ordered_json& parameters,
+                         const nlohmann::ordered_json& encoder);
 
 // encoder: null where there is none.
 std::string write_weights(const Policy& policy, const DataEncoder* encoder,

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// A data file either is refused with a place, or is read whole; what is written of it is read again
+// to the same numbers.
+#include <sstream>
+
+#include "problems/reading/csv.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+
+namespace {
+
+using namespace tribench;
+
+void expect_same(const Dataset& before, const Dataset& after) {
+  fuzz::expect(before.channels.size() == after.channels.size(), "a channel is lost");
+  for (std::size_t c = 0; c < before.channels.size(); ++c) {
+    fuzz::expect(before.channels[c].name == after.channels[c].name, "a name changes");
+    fuzz::expect(before.channels[c].values == after.channels[c].values, "a number changes");
+  }
+  fuzz::expect(before.movement == after.movement, "movements change");
+}
+
+void read(std::string_view text, bool drop_missing) {
+  CsvOptions options;
+  options.drop_missing = drop_missing;
+  DataFile file;
+  if (!fuzz::reads([&] { file = parse_csv(text, "data.csv", options); })) return;
+  for (const Channel& channel : file.data.channels) {
+    fuzz::expect(channel.values.size() == file.data.rows(), "a channel has other rows");
+    options.roles[channel.name] = channel.role;
+  }
+  std::ostringstream written;
+  write_csv(file.data, written);
+  expect_same(file.data, parse_csv(written.str(), "written.csv", options).data);
+}
+
+}  // namespace
+
+TRIBENCH_FUZZ_TARGET(csv) {
+  read(input, false);
+  read(input, true);
+}
