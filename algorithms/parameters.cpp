@@ -6,6 +6,7 @@
 #include "algorithms/regressor.hpp"
 #include "foundation/error.hpp"
 #include "foundation/number_text.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench {
 namespace {
@@ -16,11 +17,9 @@ const ParameterSpec& spec_of(const std::vector<ParameterSpec>& specs, const std:
     if (spec.name == name) return spec;
     names.push_back(spec.name);
   }
-  const std::string near = nearest_name(name, names);
-  throw_bad_input(fmt::format("unknown parameter '{}'", name), {},
-                  !near.empty()   ? fmt::format("did you mean {}?", near)
-                  : names.empty() ? std::string("this algorithm has no parameters")
-                                  : fmt::format("known: {}", fmt::join(names, ", ")));
+  throw_bad_input(
+      fmt::format("unknown parameter '{}'", name), {},
+      names.empty() ? std::string("this algorithm has no parameters") : did_you_mean(name, names));
 }
 
 const char* kind_name(const ParameterSpec& spec) {

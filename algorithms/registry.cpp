@@ -12,6 +12,7 @@
 #include "algorithms/pysr/pysr.hpp"
 #include "algorithms/udsr/udsr.hpp"
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench {
 
@@ -34,10 +35,7 @@ const AlgorithmEntry& Registry::find(std::string_view name) const {
     if (entry.name == name) return entry;
     names.push_back(entry.name);
   }
-  const std::string near = nearest_name(name, names);
-  throw_bad_input(fmt::format("there is no algorithm '{}'", name), {},
-                  near.empty() ? fmt::format("known: {}", fmt::join(names, ", "))
-                               : fmt::format("did you mean {}?", near));
+  throw_bad_input(fmt::format("there is no algorithm '{}'", name), {}, did_you_mean(name, names));
 }
 
 std::unique_ptr<Regressor> Registry::make(

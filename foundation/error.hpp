@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace tribench {
 
@@ -38,9 +37,5 @@ class Error : public std::runtime_error {
 // Throws an Error of kind bad_input.
 [[noreturn]] void throw_bad_input(std::string_view what, std::string_view place = {},
                                   std::string_view mend = {});
-
-// The candidate closest to `word` by edit distance, for "did you mean"; empty where none is near
-// (more than a third of the word's length, at least 2, would have to change).
-std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace tribench

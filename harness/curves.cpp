@@ -11,9 +11,10 @@
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/order_statistics.hpp"
+#include "foundation/sign.hpp"
 #include "problems/kuka/trials.hpp"
 #include "reports/record_csv.hpp"
-#include "reports/statistics/descriptive.hpp"
 
 namespace tribench {
 namespace {
@@ -21,8 +22,6 @@ namespace {
 constexpr int kFrictionPoints = 42;  // even: 0, where friction jumps, is left out
 constexpr std::size_t kErrorPoints = 60;
 constexpr std::size_t kProfileStep = 10;  // of the profile's 1001 rows
-
-double sign(double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0); }
 
 // Which formula, in whose name.
 struct Drawn {

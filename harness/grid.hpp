@@ -96,7 +96,4 @@ Grid load_grid(const std::filesystem::path& file, const Registry& registry,
 // Published figures are named as they lie beside it in a run's folder.
 std::string print_grid(const Grid& grid);
 
-// * any text, ? one character.
-bool glob_matches(std::string_view glob, std::string_view text);
-
 }  // namespace tribench

@@ -10,8 +10,11 @@
 #include <sstream>
 
 #include "foundation/error.hpp"
+#include "foundation/glob.hpp"
+#include "foundation/suggestion.hpp"
+#include "foundation/text.hpp"
+#include "foundation/toml_table.hpp"
 #include "harness/grid.hpp"
-#include "harness/toml_table.hpp"
 #include "reports/published.hpp"
 
 namespace tribench {
@@ -117,10 +120,8 @@ std::vector<std::string> pick(const TomlTable& table, std::string_view key,
       found = true;
     }
     if (found) continue;
-    const std::string near = nearest_name(glob, known);
     throw_bad_input(fmt::format("there is no {} '{}'", what, glob), table.place(key),
-                    near.empty() ? fmt::format("known: {}", fmt::join(known, ", "))
-                                 : fmt::format("did you mean {}?", near));
+                    did_you_mean(glob, known));
   }
   std::vector<std::string> ordered;
   std::ranges::copy_if(known, std::back_inserter(ordered),
@@ -134,7 +135,7 @@ Method read_method(const TomlTable& table, const Registry& registry) {
   table.read("name", method.name);
   method.algorithm = method.name;
   table.read("algorithm", method.algorithm);
-  method.parameters = table.parameters("parameters");
+  method.parameters = table.values("parameters");
   const std::string place = table.has("parameters") ? table.place("parameters") : table.place();
   at_place(place, [&] { return registry.make(method.algorithm, method.parameters); });
   method.fixed_form = registry.find(method.algorithm).fixed_form;
@@ -149,7 +150,7 @@ Method read_external(const TomlTable& table, const std::vector<std::string>& set
   table.read("name", method.name);
   table.read("command", method.command);
   if (method.command.empty()) throw_bad_input("'command' is empty", table.place("command"));
-  method.parameters = table.parameters("parameters");
+  method.parameters = table.values("parameters");
   table.read("fixed_form", method.fixed_form);
   method.operators = set_names;
   if (table.has("operators"))
@@ -286,26 +287,11 @@ bool is_built_in(const OperatorSet& set) {
       operator_sets(), [&](const OperatorSet& built_in) { return built_in.name() == set.name(); });
 }
 
-std::optional<std::string> text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return std::nullopt;
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 }  // namespace
 
 Grid parse_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
                 const Catalogue& catalogue) {
-  toml::table root;
-  try {
-    root = toml::parse(toml, file_name);
-  } catch (const toml::parse_error& error) {
-    throw_bad_input(
-        std::string(error.description()),
-        fmt::format("{}:{}:{}", file_name, error.source().begin.line, error.source().begin.column));
-  }
+  const toml::table root = parse_toml(toml, file_name);
   const TomlTable file(root, file_name, "",
                        {"grid", "budget", "retry", "method", "external", "operator_set"});
   file.require("grid");
@@ -329,7 +315,7 @@ Grid parse_grid(std::string_view toml, const std::string& file_name, const Regis
 
 Grid load_grid(const std::filesystem::path& file, const Registry& registry,
                const Catalogue& catalogue) {
-  const auto text = text_of(file);
+  const auto text = read_file_if_there(file);
   if (!text) {
     throw_bad_input("the grid file cannot be read", file.string(),
                     "give the path of a TOML file, or a name from: tribench list grids");
@@ -337,7 +323,7 @@ Grid load_grid(const std::filesystem::path& file, const Registry& registry,
   Grid grid = parse_grid(*text, file.string(), registry, catalogue);
   if (grid.reference_file.empty()) return grid;
   const std::filesystem::path reference = file.parent_path() / grid.reference_file;
-  const auto figures = text_of(reference);
+  const auto figures = read_file_if_there(reference);
   if (!figures) {
     throw_bad_input("the published figures cannot be read", reference.string(),
                     "'reference' is a path from the grid file's folder");

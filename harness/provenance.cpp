@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "foundation/random.hpp"
+#include "foundation/text.hpp"
 #include "harness/build_info.hpp"
 #include "harness/machine.hpp"
 #include "reports/record_csv.hpp"
@@ -105,10 +106,7 @@ void write_all(const std::filesystem::path& folder, const RunIdentity& identity,
 }
 
 std::string hash_of_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << stream.rdbuf();
-  return fmt::format("{:016x}", key_of(bytes.str()));
+  return fmt::format("{:016x}", key_of(read_file_if_there(file).value_or("")));
 }
 
 }  // namespace

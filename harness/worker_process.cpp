@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "algorithms/external/scratch_folder.hpp"
 #include "foundation/error.hpp"
+#include "foundation/scratch_folder.hpp"
 
 namespace tribench {
 namespace {
@@ -65,17 +65,17 @@ WorkerProcess::~WorkerProcess() { renew(); }
 
 void WorkerProcess::renew() {
   if (!process_) return;
-  const pid_t pid = process_->pid();
   process_.reset();
+  scratch_.reset();  // only once nothing writes there any more
   cells_run_ = 0;
-  std::error_code ignored;
-  std::filesystem::remove_all(external_scratch_folder(pid), ignored);
 }
 
 void WorkerProcess::ensure_process() {
   if (cells_run_ >= options_.cells_per_worker) renew();
   if (process_) return;
-  process_ = std::make_unique<ChildProcess>(ChildOptions{options_.command, {}, {}, true});
+  scratch_.emplace();
+  process_ = std::make_unique<ChildProcess>(ChildOptions{
+      options_.command, {fmt::format("TMPDIR={}", scratch_->path().string())}, {}, true});
   ++started_;
   if (options_.cpu) {
     cpu_set_t set;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "foundation/child_process.hpp"
+#include "foundation/scratch_folder.hpp"
 #include "harness/cell_task.hpp"
 
 namespace tribench {
@@ -58,6 +59,7 @@ class WorkerProcess {
   void finish_failed(const CellTask& task, Reading& reading, CellOutcome& outcome);
 
   WorkerOptions options_;
+  std::optional<ScratchFolder> scratch_;  // the worker's temporary files, removed with it
   std::unique_ptr<ChildProcess> process_;
   int cells_run_ = 0;
   int started_ = 0;

@@ -21,8 +21,6 @@ class Catalogue {
   const std::vector<ProblemEntry>& entries() const { return entries_; }
   // Throws Error (bad_input) with the nearest name.
   const ProblemEntry& find(std::string_view name) const;
-  // Entries whose name matches a glob (* any text, ? one character); throws where none does.
-  std::vector<const ProblemEntry*> match(std::string_view glob) const;
 
  private:
   std::vector<ProblemEntry> entries_;

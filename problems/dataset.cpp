@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench {
 namespace {
@@ -54,10 +55,7 @@ Role find_role(std::string_view name) {
     if (known == name) return role;
     names.emplace_back(known);
   }
-  const std::string near = nearest_name(name, names);
-  throw_bad_input(fmt::format("there is no role '{}'", name), {},
-                  near.empty() ? fmt::format("known: {}", fmt::join(names, ", "))
-                               : fmt::format("did you mean {}?", near));
+  throw_bad_input(fmt::format("there is no role '{}'", name), {}, did_you_mean(name, names));
 }
 
 const Channel* Dataset::find(std::string_view channel_name) const {
@@ -78,10 +76,8 @@ const Channel& Dataset::at(std::string_view channel_name) const {
   if (const Channel* channel = find(channel_name)) return *channel;
   std::vector<std::string> names;
   for (const Channel& channel : channels) names.push_back(channel.name);
-  const std::string near = nearest_name(channel_name, names);
   throw_bad_input(fmt::format("there is no column '{}'", channel_name), name,
-                  near.empty() ? fmt::format("columns: {}", fmt::join(names, ", "))
-                               : fmt::format("did you mean {}?", near));
+                  did_you_mean(channel_name, names));
 }
 
 }  // namespace tribench

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <string>
 
+#include "foundation/sign.hpp"
+
 namespace tribench {
 namespace {
 
 constexpr std::string_view kSignPrefix = "sgn_";
-
-double sign(double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : x == 0 ? 0.0 : x); }
 
 }  // namespace
 

@@ -10,9 +10,9 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "foundation/order_statistics.hpp"
 #include "foundation/random.hpp"
 #include "reports/record_csv.hpp"
-#include "reports/statistics/descriptive.hpp"
 #include "reports/statistics/rank_tests.hpp"
 
 namespace tribench {

@@ -9,10 +9,10 @@
 #include <numeric>
 #include <tuple>
 
+#include "foundation/order_statistics.hpp"
 #include "foundation/random.hpp"
 #include "reports/figures.hpp"
 #include "reports/markdown.hpp"
-#include "reports/statistics/descriptive.hpp"
 #include "reports/statistics/rank_tests.hpp"
 
 namespace tribench {

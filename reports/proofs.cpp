@@ -10,11 +10,11 @@
 #include <unordered_map>
 #include <utility>
 
+#include "foundation/order_statistics.hpp"
 #include "foundation/random.hpp"
 #include "reports/figures.hpp"
 #include "reports/markdown.hpp"
 #include "reports/record_csv.hpp"
-#include "reports/statistics/descriptive.hpp"
 #include "reports/statistics/rank_tests.hpp"
 #include "reports/summary.hpp"
 

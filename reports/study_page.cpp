@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 #include "reports/figures.hpp"
 #include "reports/leaderboard.hpp"
 #include "reports/markdown.hpp"
@@ -31,13 +32,6 @@ std::string portable(const std::string& command_line) {
     text += (text.empty() ? "" : " ") + word;
   }
   return text;
-}
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
 }
 
 double number_at(const RunFolder& run, const std::string& key) {
@@ -74,7 +68,7 @@ std::string how_it_was_made(const RunFolder& run, const RunSummary& summary) {
 }
 
 std::string settings(const RunFolder& run) {
-  const std::string grid = text_of(run.path / "grid.toml");
+  const std::string grid = read_file_if_there(run.path / "grid.toml").value_or("");
   return grid.empty() ? grid
                       : fmt::format(
                             "\n## Settings\n\nThe grid as it took effect; a method's parameters "

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
+#include "foundation/order_statistics.hpp"
 #include "reports/record.hpp"
 #include "reports/run_folder.hpp"
-#include "reports/statistics/descriptive.hpp"
 #include "reports/statistics/intervals.hpp"
 #include "reports/statistics/rank_tests.hpp"
 

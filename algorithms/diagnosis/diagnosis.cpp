@@ -14,6 +14,7 @@
 #include "algorithms/diagnosis/held_out.hpp"
 #include "algorithms/diagnosis/search.hpp"
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -38,10 +39,8 @@ std::vector<EffectFamily> chosen_families(const DiagnosisOptions& options) {
   for (const std::string& wanted : options.families) {
     const auto found = std::ranges::find(all, wanted, &EffectFamily::name);
     if (found == all.end()) {
-      const std::string near = nearest_name(wanted, names);
       throw_bad_input(fmt::format("there is no effect '{}'", wanted), {},
-                      near.empty() ? std::string("see: tribench list effects")
-                                   : fmt::format("did you mean {}?", near));
+                      did_you_mean(wanted, names, "see: tribench list effects"));
     }
     chosen.push_back(*found);
   }

@@ -16,6 +16,7 @@
 #include "algorithms/diagnosis/effect_library.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -35,10 +36,8 @@ class Entry {
     for (const auto& [key, node] : table) {
       const std::string name(key.str());
       if (std::ranges::count(known_, name) > 0) continue;
-      const std::string near = nearest_name(name, known_);
       throw_bad_input(fmt::format("an effect has no '{}'", name), place(node),
-                      near.empty() ? fmt::format("known here: {}", fmt::join(known_, ", "))
-                                   : fmt::format("did you mean '{}'?", near));
+                      did_you_mean(name, known_));
     }
   }
 

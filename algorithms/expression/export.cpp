@@ -10,6 +10,7 @@
 #include "algorithms/expression/export_forms.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench {
 namespace {
@@ -92,10 +93,7 @@ CodeForm find_code_form(std::string_view name) {
   const auto& names = code_form_names();
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
-    const std::string nearest = nearest_name(name, names);
-    throw_bad_input(fmt::format("there is no form '{}'", name), "--as",
-                    nearest.empty() ? "choose c, python, latex, sympy or matlab"
-                                    : fmt::format("did you mean '{}'?", nearest));
+    throw_bad_input(fmt::format("there is no form '{}'", name), "--as", did_you_mean(name, names));
   }
   return static_cast<CodeForm>(found - names.begin());
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench {
 
@@ -63,10 +64,8 @@ const OperatorSet& find_operator_set(std::string_view name) {
     if (set.name() == name) return set;
     names.push_back(set.name());
   }
-  const std::string near = nearest_name(name, names);
   throw_bad_input(fmt::format("there is no operator set '{}'", name), {},
-                  near.empty() ? fmt::format("known: {}", fmt::join(names, ", "))
-                               : fmt::format("did you mean {}?", near));
+                  did_you_mean(name, names));
 }
 
 }  // namespace tribench

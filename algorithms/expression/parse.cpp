@@ -11,6 +11,7 @@
 
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench {
 namespace {
@@ -205,10 +206,7 @@ class Parser {
   }
 
   static std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
-    const std::string near = nearest_name(word, known);
-    if (!near.empty()) return fmt::format("did you mean {}?", near);
-    return known.empty() ? std::string("there are no names")
-                         : fmt::format("known: {}", fmt::join(known, ", "));
+    return known.empty() ? "there are no names" : did_you_mean(word, known);
   }
 
   bool starts_number() const {

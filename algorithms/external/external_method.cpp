@@ -11,9 +11,9 @@
 
 #include "algorithms/admission.hpp"
 #include "algorithms/expression/text.hpp"
-#include "algorithms/external/scratch_folder.hpp"
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
+#include "foundation/scratch_folder.hpp"
 
 namespace tribench {
 namespace {

@@ -5,14 +5,13 @@
 
 #include "algorithms/expression/column_kernels.hpp"
 #include "foundation/error.hpp"
+#include "foundation/sign.hpp"
 
 namespace tribench::parfam {
 namespace {
 
 const double kExpCeiling = std::exp(10.0);
 constexpr double kLogFloor = 1e-6;
-
-double sign(double x) { return static_cast<double>(x > 0) - static_cast<double>(x < 0); }
 
 double log_floor(Convention convention) {
   return convention == Convention::published ? kLogFloor : 0;

@@ -6,6 +6,8 @@
 #include <functional>
 #include <limits>
 
+#include "foundation/order_statistics.hpp"
+
 namespace tribench::udsr {
 namespace {
 
@@ -38,7 +40,7 @@ Eigen::VectorXd reference_point(const Smoother& smoother) {
   for (Eigen::Index j = 0; j < medians.size(); ++j) {
     std::vector<double> column;
     for (std::size_t r = 0; r < n; ++r) column.push_back(smoother.point(r)[j]);
-    medians[j] = median_of(std::move(column));
+    medians[j] = upper_median(std::move(column));
   }
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -181,11 +183,11 @@ bool is_accepted(const Smoother& smoother, Reduction& reduction, RandomStream& r
   for (std::size_t r = 0; r < order.size(); ++r) order[r] = r;
   Errors own = errors(order);
   if (own.size() < smoother.rows() / 4) return false;
-  reduction.error = median_of(std::move(own));
+  reduction.error = upper_median(std::move(own));
   if (!(reduction.error <= kErrorFactor * smoother.held_out_error())) return false;
   for (int p = 0; p < kPermutations; ++p) {
     random.shuffle(std::span(order));
-    if (median_of(errors(order)) <= reduction.error) return false;
+    if (upper_median(errors(order)) <= reduction.error) return false;
   }
   return true;
 }

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <vector>
 
+#include "foundation/order_statistics.hpp"
+
 namespace tribench::udsr {
 namespace {
 
@@ -21,13 +23,6 @@ std::vector<std::size_t> drawn_rows(std::size_t rows, RandomStream& random) {
 }
 
 }  // namespace
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 Smoother::Smoother(const Inputs& inputs, std::span<const double> target, RandomStream random) {
   const std::vector<std::size_t> rows = drawn_rows(inputs.rows, random);
@@ -67,7 +62,7 @@ Smoother::Smoother(const Inputs& inputs, std::span<const double> target, RandomS
 void Smoother::train(double length, double noise) {
   const Eigen::VectorXd centred = target_.array() - mean_;
   held_out_error_ = process_.train(points_, centred, length, noise)
-                        ? median_of(process_.leave_one_out_errors())
+                        ? upper_median(process_.leave_one_out_errors())
                         : std::numeric_limits<double>::infinity();
 }
 

@@ -49,7 +49,4 @@ class Smoother {
   double held_out_error_ = 0;
 };
 
-// The median; 0 of nothing.
-double median_of(std::vector<double> values);
-
 }  // namespace tribench::udsr

@@ -22,6 +22,7 @@
 #include "algorithms/udsr/training.hpp"
 #include "algorithms/udsr/weights.hpp"
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 
 namespace tribench {
 namespace {
@@ -99,15 +100,6 @@ udsr::Baseline baseline_of(const std::string& name) {
   if (name == "moving_mean") return udsr::Baseline::moving_mean;
   if (name == "moving_quantile") return udsr::Baseline::moving_quantile;
   return name == "combined" ? udsr::Baseline::combined : udsr::Baseline::quantile;
-}
-
-std::string read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    throw_bad_input("the weight file cannot be opened", path,
-                    "make one with: tribench pretrain --out FILE");
-  }
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 Settings settings_from(const Parameters& parameters) {

@@ -18,6 +18,7 @@
 #include "algorithms/expression/input_box.hpp"
 #include "algorithms/expression/property.hpp"
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
 
@@ -153,11 +154,7 @@ void save_certificate(const Expression& formula, const NamedBox& box, const Cert
 }
 
 ExitStatus verify(const CheckOptions& options) {
-  std::ifstream file(options.verify);
-  if (!file) throw_bad_input("cannot be read", options.verify, "name a certificate's file");
-  std::ostringstream text;
-  text << file.rdbuf();
-  const CertificateCheck check = check_certificate(text.str());
+  const CertificateCheck check = check_certificate(read_file(options.verify));
   if (options.json) {
     const Json json = {{"accepted", check.accepted}, {"reason", check.reason},
                        {"formula", check.formula},   {"box", check.box},

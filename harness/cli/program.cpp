@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/provenance.hpp"
 #include "harness/worker.hpp"

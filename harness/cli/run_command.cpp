@@ -18,6 +18,8 @@
 #include <utility>
 
 #include "foundation/error.hpp"
+#include "foundation/scratch_folder.hpp"
+#include "foundation/text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
@@ -84,8 +86,7 @@ void print_dry_run(const Grid& grid, const std::vector<PlannedWork>& work, int j
 
 // As it was typed, words separated by blanks.
 std::string own_command_line() {
-  std::ifstream stream("/proc/self/cmdline", std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  std::string text = read_file_if_there("/proc/self/cmdline").value_or("");
   if (!text.empty()) text.pop_back();
   std::ranges::replace(text, '\0', ' ');
   return text;
@@ -141,34 +142,12 @@ RunOptions options_of(const RunArguments& arguments) {
   return options;
 }
 
-// A folder of its own that is removed at the end.
-class ScratchRun {
- public:
-  ScratchRun() {
-    std::string name = (std::filesystem::temp_directory_path() / "tribench-verify-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw Error(ErrorKind::failed, "cannot make a temporary folder", name);
-    }
-    path_ = name;
-  }
-  ~ScratchRun() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchRun(const ScratchRun&) = delete;
-  ScratchRun& operator=(const ScratchRun&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 void verify(const RunArguments& arguments, const Registry& registry, ExitStatus& status) {
   const std::filesystem::path folder = arguments.verify;
   RunOptions options = options_of(arguments);
   const JournalContents journal = read_journal(folder / "cells.jsonl");
   const Grid grid = load_grid(folder / "grid.toml", registry, catalogue_of(options));
-  const ScratchRun scratch;
+  const ScratchFolder scratch;
   options.out = scratch.path() / "run";
   const std::atomic<bool> never{false};
   const VerifyResult verdict = verify_run(grid, journal, arguments.sample, options, never);

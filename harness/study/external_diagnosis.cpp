@@ -10,9 +10,9 @@
 
 #include "algorithms/diagnosis/diagnosis.hpp"
 #include "algorithms/diagnosis/held_out.hpp"
-#include "algorithms/external/scratch_folder.hpp"
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
+#include "foundation/scratch_folder.hpp"
 #include "problems/reading/csv.hpp"
 
 namespace tribench {

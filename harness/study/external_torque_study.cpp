@@ -12,9 +12,9 @@
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/order_statistics.hpp"
 #include "problems/kuka/trials.hpp"
 #include "reports/record_csv.hpp"
-#include "reports/statistics/descriptive.hpp"
 
 namespace tribench {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
+#include "foundation/toml_table.hpp"
 #include "harness/study/loop_cases.hpp"
-#include "harness/toml_table.hpp"
 #include "problems/reading/csv.hpp"
 #include "reports/csv.hpp"
 
@@ -88,14 +88,7 @@ std::vector<Recording> planted_recordings(LoopGenerator generator, int count,
 
 RecordingList read_recordings(std::string_view toml, const std::string& name,
                               const std::filesystem::path& folder) {
-  toml::table root;
-  try {
-    root = toml::parse(toml, name);
-  } catch (const toml::parse_error& error) {
-    throw_bad_input(
-        std::string(error.description()),
-        fmt::format("{}:{}:{}", name, error.source().begin.line, error.source().begin.column));
-  }
+  const toml::table root = parse_toml(toml, name);
   const TomlTable file(root, name, "", {"recording"});
   RecordingList list;
   for (const TomlTable& table : file.array_of_tables("recording", {"name", "files", "options"})) {

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "foundation/error.hpp"
+#include "foundation/order_statistics.hpp"
 #include "reports/record_csv.hpp"
 
 namespace tribench {
@@ -21,12 +22,6 @@ struct Cells {
 // "nguyen/10" -> 10
 int number_of(const std::string& problem) {
   return std::stoi(problem.substr(problem.find('/') + 1));
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  const std::size_t n = values.size();
-  return n == 0 ? 0 : 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <span>
 
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
 #include "problems/reading/channel_names.hpp"
 
 namespace tribench {
@@ -297,10 +298,8 @@ const Retelling& find_retelling(std::string_view name) {
     if (one.name == name) return one;
     names.emplace_back(one.name);
   }
-  const std::string near = nearest_name(name, names);
   throw_bad_input(fmt::format("there is no retelling '{}'", name), "--retellings",
-                  near.empty() ? fmt::format("known: {}", fmt::join(names, ", "))
-                               : fmt::format("did you mean {}?", near));
+                  did_you_mean(name, names));
 }
 
 Recording unordered(Recording recording) {

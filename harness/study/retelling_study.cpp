@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "algorithms/external/scratch_folder.hpp"
+#include "foundation/scratch_folder.hpp"
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
 #include "harness/progress_line.hpp"

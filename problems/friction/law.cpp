@@ -5,10 +5,10 @@
 
 #include <cmath>
 
+#include "foundation/sign.hpp"
+
 namespace tribench {
 namespace {
-
-double sign(double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0); }
 
 // Half the sum and half the difference of the two directions: with s = +-1,
 // s F(direction) = even s + odd.

@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "foundation/error.hpp"
+#include "foundation/sign.hpp"
+#include "foundation/suggestion.hpp"
 #include "problems/friction/law.hpp"
 
 namespace tribench {
 namespace {
-
-double sign(double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0); }
 
 double bump(double x, double centre, double width) {
   const double z = (x - centre) / width;
@@ -98,10 +98,8 @@ const PlantedShape& find_planted_shape(std::string_view family) {
     if (shape.family == family) return shape;
     names.emplace_back(shape.family);
   }
-  const std::string near = nearest_name(family, names);
   throw_bad_input(fmt::format("there is no effect '{}' to plant", family), {},
-                  near.empty() ? fmt::format("known: {}", fmt::join(names, ", "))
-                               : fmt::format("did you mean {}?", near));
+                  did_you_mean(family, names));
 }
 
 }  // namespace tribench

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench::simulation {
 namespace {
@@ -303,10 +304,8 @@ const Cause& find_cause(std::string_view name) {
     if (cause.name == name) return cause;
     names.emplace_back(cause.name);
   }
-  const std::string near = nearest_name(name, names);
   throw_bad_input(fmt::format("there is no cause '{}' to simulate", name), {},
-                  near.empty() ? fmt::format("known: {}", fmt::join(names, ", "))
-                               : fmt::format("did you mean {}?", near));
+                  did_you_mean(name, names));
 }
 
 }  // namespace tribench::simulation

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "foundation/random.hpp"
+#include "foundation/sign.hpp"
 
 namespace tribench::kuka {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 constexpr double kPauseBetweenMovements_s = 2.0;
 constexpr std::size_t kAveragingInstants = 6000;
 constexpr double kDurationB_s = 43.0;
-
-double sign(double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0); }
 
 RandomStream stream_of(const Joint& joint, std::uint64_t seed) {
   return RandomStream(key_of(fmt::format("kuka/j{}", joint.number))).split(seed);

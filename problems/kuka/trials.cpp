@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/sign.hpp"
 #include "problems/kuka/entries.hpp"
 
 namespace tribench::kuka {
@@ -12,8 +13,6 @@ namespace {
 constexpr double kPeak_rad_s = 0.6;
 constexpr double kPeriod_s = 10;
 constexpr int kProfileRows = 1001;
-
-double sign(double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0); }
 
 double largest_magnitude(const std::vector<double>& values) {
   double largest = 0;

@@ -8,6 +8,8 @@
 #include <set>
 
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
+#include "foundation/toml_table.hpp"
 
 namespace tribench::embedded {
 std::string_view manifest_bam_xl330();
@@ -91,9 +93,8 @@ class Reader {
     for (const auto& [key, node] : table_) {
       const std::string name(key.str());
       if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-      const std::string near = nearest_name(name, known_);
       throw_bad_input(fmt::format("unknown key '{}'", name), place(node),
-                      near.empty() ? "" : fmt::format("did you mean {}?", near));
+                      did_you_mean(name, known_));
     }
   }
 
@@ -230,12 +231,7 @@ std::vector<ProblemPlan> read_problem(Reader& table, const Columns& columns) {
 }  // namespace
 
 Manifest parse_manifest(std::string_view text, std::string_view file) {
-  toml::table root;
-  try {
-    root = toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    throw_bad_input(error.description(), fmt::format("{}:{}", file, error.source().begin.line));
-  }
+  const toml::table root = parse_toml(text, file);
   Reader reader(root, file);
   Manifest manifest;
   manifest.name = reader.text("name");
@@ -279,10 +275,8 @@ const Manifest& find_manifest(std::string_view name) {
     if (manifest.name == name) return manifest;
     names.push_back(manifest.name);
   }
-  const std::string near = nearest_name(name, names);
   throw_bad_input(fmt::format("there is no measured set '{}'", name), {},
-                  near.empty() ? fmt::format("known: {}", fmt::join(names, ", "))
-                               : fmt::format("did you mean {}?", near));
+                  did_you_mean(name, names));
 }
 
 }  // namespace tribench::measured

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "foundation/error.hpp"
+#include "foundation/sign.hpp"
 #include "problems/measured/decimate.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
@@ -18,8 +19,6 @@ namespace {
 // Slower than this part of the top speed, a velocity has no sign: noise at standstill is no
 // reversal.
 constexpr double kStandstill = 0.01;
-
-double sign(double x) { return x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0); }
 
 CsvOptions options_of(const ProblemPlan& plan) {
   CsvOptions options;

@@ -10,6 +10,8 @@
 #include <set>
 
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
+#include "foundation/text.hpp"
 #include "problems/reading/channel_names.hpp"
 #include "problems/reading/csv_cells.hpp"
 #include "problems/reading/csv_checks.hpp"
@@ -45,11 +47,8 @@ void check_roles_name_columns(const CsvCells& cells, const CsvOptions& options,
                               std::string_view file) {
   for (const auto& [column, role] : options.roles) {
     if (std::find(cells.header.begin(), cells.header.end(), column) != cells.header.end()) continue;
-    const std::string near = nearest_name(column, cells.header);
     throw_bad_input(fmt::format("a role is given for column '{}', which is not there", column),
-                    file,
-                    near.empty() ? fmt::format("columns: {}", fmt::join(cells.header, ", "))
-                                 : fmt::format("did you mean {}?", near));
+                    file, did_you_mean(column, cells.header));
   }
 }
 
@@ -226,11 +225,7 @@ DataFile read_csv(const std::filesystem::path& file, const CsvOptions& options) 
   if (std::filesystem::is_directory(file, code)) {
     throw_bad_input("this is a folder", file.string(), "give a CSV file");
   }
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw_bad_input("cannot read the file", file.string(), "check the path");
-  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (in.bad()) throw Error(ErrorKind::failed, "reading stopped half way", file.string());
-  return parse_csv(text, file.string(), options);
+  return parse_csv(read_file(file), file.string(), options);
 }
 
 namespace {

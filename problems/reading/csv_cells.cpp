@@ -11,18 +11,12 @@
 #include <cstdlib>
 
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 
 namespace tribench {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
 
 // The delimiter the header has most of; comma where it has none.
 char find_delimiter(std::string_view text) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "reports/statistics/descriptive.hpp"
+#include "foundation/order_statistics.hpp"
 #include "reports/statistics/distributions.hpp"
 
 namespace tribench {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "reports/statistics/descriptive.hpp"
+#include "foundation/order_statistics.hpp"
 #include "reports/statistics/distributions.hpp"
 
 namespace tribench {

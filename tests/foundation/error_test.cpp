@@ -12,12 +12,5 @@ TEST(Error, SaysWhereWhatAndHowToMendIt) {
   EXPECT_EQ(error.kind(), ErrorKind::bad_input);
 }
 
-TEST(NearestName, FindsATypoAndNothingWhenNothingIsNear) {
-  const std::vector<std::string> names = {"symmetric", "asymmetric", "pysr"};
-  EXPECT_EQ(nearest_name("symetric", names), "symmetric");
-  EXPECT_EQ(nearest_name("pyrs", names), "pysr");
-  EXPECT_EQ(nearest_name("zzzzzzzz", names), "");
-}
-
 }  // namespace
 }  // namespace tribench

@@ -31,11 +31,5 @@ TEST(Catalogue, AMisspeltNameIsAnsweredWithTheNearest) {
   }
 }
 
-TEST(Catalogue, GlobsMatchAndAnEmptyMatchIsAnError) {
-  const Catalogue catalogue;
-  EXPECT_EQ(catalogue.match("A/j?/no_load").size(), 2U);
-  EXPECT_THROW(catalogue.match("Z/*"), Error);
-}
-
 }  // namespace
 }  // namespace tribench

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "reports/statistics/descriptive.hpp"
+#include "foundation/order_statistics.hpp"
 
 namespace tribench {
 namespace {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "foundation/order_statistics.hpp"
 #include "foundation/random.hpp"
-#include "reports/statistics/descriptive.hpp"
 #include "reports/statistics/distributions.hpp"
 
 namespace tribench {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "reports/statistics/descriptive.hpp"
+#include "foundation/order_statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +33,18 @@ double quantile_of_sorted(const std::vector<double>& sorted, double level) {
 
 double quantile(std::span<const double> values, double level) {
   return quantile_of_sorted(sorted_without_nan(values), level);
+}
+
+double upper_median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+double upper_median_magnitude(std::vector<double> values) {
+  for (double& value : values) value = std::abs(value);
+  return upper_median(std::move(values));
 }
 
 Spread spread_of(std::span<const double> values) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/toml_table.hpp"
+#include "foundation/toml_table.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench {
 namespace {
@@ -16,15 +17,23 @@ std::string place_of(const std::string& file, const toml::source_region& source)
   return fmt::format("{}:{}:{}", file, source.begin.line, source.begin.column);
 }
 
-ParameterValue parameter_value(const toml::node& node, const std::string& place) {
+TomlValue plain_value(const toml::node& node, const std::string& place) {
   if (const auto flag = node.as_boolean()) return flag->get();
   if (const auto integer = node.as_integer()) return integer->get();
   if (const auto number = node.as_floating_point()) return number->get();
   if (const auto text = node.as_string()) return text->get();
-  throw_bad_input("a parameter must be true or false, a number or a text", place);
+  throw_bad_input("the value must be true or false, a number or a text", place);
 }
 
 }  // namespace
+
+toml::table parse_toml(std::string_view text, std::string_view file_name) {
+  try {
+    return toml::parse(text, file_name);
+  } catch (const toml::parse_error& error) {
+    throw_bad_input(error.description(), place_of(std::string(file_name), error.source()));
+  }
+}
 
 TomlTable::TomlTable(const toml::table& table, std::string file_name, std::string where,
                      const std::vector<std::string>& known_keys)
@@ -32,12 +41,9 @@ TomlTable::TomlTable(const toml::table& table, std::string file_name, std::strin
   for (const auto& [key, node] : *table_) {
     const std::string name(key.str());
     if (std::ranges::count(known_keys, name) > 0) continue;
-    const std::string near = nearest_name(name, known_keys);
     throw_bad_input(
         fmt::format("unknown key '{}' in {}", name, where_.empty() ? "the file" : where_),
-        place_of(file_name_, key.source()),
-        near.empty() ? fmt::format("known: {}", fmt::join(known_keys, ", "))
-                     : fmt::format("did you mean {}?", near));
+        place_of(file_name_, key.source()), did_you_mean(name, known_keys));
   }
 }
 
@@ -114,13 +120,13 @@ void TomlTable::require(std::string_view key) const {
                   place());
 }
 
-std::map<std::string, ParameterValue> TomlTable::parameters(std::string_view key) const {
-  std::map<std::string, ParameterValue> values;
+std::map<std::string, TomlValue> TomlTable::values(std::string_view key) const {
+  std::map<std::string, TomlValue> values;
   if (!has(key)) return values;
   const toml::table* inner = table_->get(key)->as_table();
   if (inner == nullptr) refuse(key, "a table, as in { islands = 8 }");
   for (const auto& [name, node] : *inner) {
-    values[std::string(name.str())] = parameter_value(node, place_of(file_name_, node.source()));
+    values[std::string(name.str())] = plain_value(node, place_of(file_name_, node.source()));
   }
   return values;
 }

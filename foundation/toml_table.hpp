@@ -2,19 +2,25 @@
 //
 // One table of a TOML file, read strictly: a key that is not known is refused with the nearest
 // name, a value of another kind with what is wanted, both with file, line and column.
-// Private to the harness's readers.
 #pragma once
 
 #include <toml++/toml.h>
+
 #include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
-#include "algorithms/regressor.hpp"
-
 namespace tribench {
+
+// A value that stands for itself: no table, array or date.
+using TomlValue = std::variant<bool, std::int64_t, double, std::string>;
+
+// Throws Error (bad_input) with file, line and column where it is no TOML. The table's places name
+// `file_name`.
+toml::table parse_toml(std::string_view text, std::string_view file_name);
 
 class TomlTable {
  public:
@@ -33,7 +39,8 @@ class TomlTable {
   void read(std::string_view key, std::vector<std::string>& value) const;
   // Throws where the key is missing.
   void require(std::string_view key) const;
-  std::map<std::string, ParameterValue> parameters(std::string_view key) const;
+  // Every key with its value, of an inner table that may have any keys.
+  std::map<std::string, TomlValue> values(std::string_view key) const;
   // An inner table, with its own keys; empty where the key is missing.
   TomlTable table(std::string_view key, const std::vector<std::string>& known_keys) const;
   std::vector<TomlTable> array_of_tables(std::string_view key,

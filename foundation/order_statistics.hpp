@@ -14,6 +14,14 @@ namespace tribench {
 double quantile(std::span<const double> values, double level);
 inline double median(std::span<const double> values) { return quantile(values, 0.5); }
 
+// The order statistic n / 2, counted from 0: of an even count the upper of the two in the middle,
+// so always one of the values. Linear time. No NaN allowed; 0 where there are none.
+double upper_median(std::vector<double> values);
+// The same of the magnitudes; times kMadToSd a robust estimate of a normal law's standard
+// deviation.
+double upper_median_magnitude(std::vector<double> values);
+inline constexpr double kMadToSd = 1.4826;  // 1 / (the normal law's upper quartile)
+
 struct Spread {
   std::size_t count = 0;  // values that are not NaN
   double low = 0;         // smallest

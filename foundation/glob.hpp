@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+//
+// Patterns over names: of problems, methods, cells.
+#pragma once
+
+#include <string_view>
+
+namespace tribench {
+
+// '*' stands for any number of characters, '?' for one; everything else for itself. Cost: at worst
+// the product of the lengths.
+bool glob_matches(std::string_view glob, std::string_view text);
+
+}  // namespace tribench

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "foundation/suggestion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+namespace tribench {
+namespace {
+
+constexpr std::size_t kShown = 30;  // names of a list that a person still reads
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::size_t limit = std::max<std::size_t>(2, word.size() / 3);
+  std::string best;
+  std::size_t best_distance = limit + 1;
+  for (const std::string& candidate : candidates) {
+    // Lengths that differ by more cannot be nearer.
+    const std::size_t longer = std::max(candidate.size(), word.size());
+    if (longer - std::min(candidate.size(), word.size()) >= best_distance) continue;
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates,
+                         std::string_view otherwise) {
+  const std::string near = nearest_name(word, candidates);
+  if (!near.empty()) return fmt::format("did you mean {}?", near);
+  if (!otherwise.empty()) return std::string(otherwise);
+  if (candidates.empty()) return {};
+  const std::span shown = std::span(candidates).first(std::min(kShown, candidates.size()));
+  const std::size_t hidden = candidates.size() - shown.size();
+  return fmt::format("known: {}{}", fmt::join(shown, ", "),
+                     hidden == 0 ? std::string() : fmt::format(" and {} more", hidden));
+}
+
+}  // namespace tribench
