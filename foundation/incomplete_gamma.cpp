@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench {
 namespace {
 
@@ -11,7 +13,9 @@ constexpr int kMaxTerms = 10000;
 constexpr double kTolerance = 1e-14;
 
 // log of x^a e^-x / Gamma(a), the factor both expansions share.
-double log_prefactor(double a, double x) { return a * std::log(x) - x - std::lgamma(a); }
+double log_prefactor(double a, double x) {
+  return a * elementary::log(x) - x - elementary::lgamma(a);
+}
 
 // P(a, x) by its power series; for x < a + 1.
 double lower_tail_series(double a, double x) {
@@ -22,7 +26,7 @@ double lower_tail_series(double a, double x) {
     sum += term;
     if (term < kTolerance * sum) break;
   }
-  return sum * std::exp(log_prefactor(a, x));
+  return sum * elementary::exp(log_prefactor(a, x));
 }
 
 // log Q(a, x) by Lentz's continued fraction; for x >= a + 1.
@@ -44,7 +48,7 @@ double log_upper_tail_fraction(double a, double x) {
     h *= factor;
     if (std::abs(factor - 1) < kTolerance) break;
   }
-  return log_prefactor(a, x) + std::log(h);
+  return log_prefactor(a, x) + elementary::log(h);
 }
 
 }  // namespace
@@ -52,7 +56,7 @@ double log_upper_tail_fraction(double a, double x) {
 double log_gamma_upper_tail(double a, double x) {
   if (!(x > 0)) return 0;
   if (std::isinf(x)) return -std::numeric_limits<double>::infinity();
-  if (x < a + 1) return std::log1p(-lower_tail_series(a, x));
+  if (x < a + 1) return elementary::log1p(-lower_tail_series(a, x));
   return log_upper_tail_fraction(a, x);
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench {
 namespace {
 
@@ -67,8 +69,8 @@ double RandomStream::uniform(double low, double high) { return low + (high - low
 
 double RandomStream::normal() {
   // 1 - u is in (0, 1], so the logarithm is finite.
-  const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-  return radius * std::cos(2.0 * std::numbers::pi * uniform());
+  const double radius = std::sqrt(-2.0 * elementary::log(1.0 - uniform()));
+  return radius * elementary::cos(2.0 * std::numbers::pi * uniform());
 }
 
 std::uint64_t RandomStream::below(std::uint64_t bound) {
@@ -87,7 +89,7 @@ std::uint64_t RandomStream::below(std::uint64_t bound) {
 }
 
 std::uint64_t RandomStream::poisson(double mean) {
-  const double limit = std::exp(-mean);
+  const double limit = elementary::exp(-mean);
   std::uint64_t count = 0;
   for (double product = uniform(); product > limit; product *= uniform()) ++count;
   return count;

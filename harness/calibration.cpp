@@ -6,6 +6,8 @@
 #include <cmath>
 #include <ctime>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench {
 namespace {
 
@@ -22,7 +24,7 @@ double arithmetic() {
   double sum = 0;
   for (int i = 0; i < 200'000; ++i) {
     x = 3.7 * x * (1 - x);
-    sum += std::exp(-x * x) + std::sqrt(x + 1);
+    sum += elementary::exp(-x * x) + std::sqrt(x + 1);
   }
   return sum;
 }

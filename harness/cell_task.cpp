@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 
 namespace tribench {
 namespace {
@@ -21,9 +22,7 @@ double number(const json& object, const char* key) {
 }
 
 // Text that came from outside may not be UTF-8; JSON must be.
-std::string dump(const json& object) {
-  return object.dump(-1, ' ', false, json::error_handler_t::replace);
-}
+std::string dump(const json& object) { return write_json(object); }
 
 json parameters_json(const std::map<std::string, ParameterValue>& parameters) {
   json object = json::object();
@@ -177,8 +176,13 @@ json trace_json(const TraceRecord& t) {
 
 template <typename Parse>
 auto parse_or_throw(std::string_view text, Parse parse) {
+  std::string reason;
+  const json message = read_json<json>(text, &reason);
+  if (message.is_discarded()) {
+    throw Error(ErrorKind::failed, fmt::format("a malformed message: {}", reason));
+  }
   try {
-    return parse(json::parse(text));
+    return parse(message);
   } catch (const json::exception& error) {
     throw Error(ErrorKind::failed, fmt::format("a malformed message: {}", error.what()));
   }

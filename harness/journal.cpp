@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench {
@@ -76,7 +77,7 @@ std::string identity_body(const RunIdentity& identity) {
 
 RunIdentity parse_identity(std::string_view body, const std::filesystem::path& file) {
   try {
-    const json object = json::parse(body).at("identity");
+    const json object = read_json<json>(body).at("identity");
     return {object.at("grid"), object.at("code"), object.at("data")};
   } catch (const json::exception&) {  // an empty body, or one that nobody of ours wrote
     throw_bad_input("this is not a run's journal", file.string());

@@ -48,11 +48,6 @@ double measure_ns_per_row(const Expression& formula, const Table& table) {
 // For a formula of the front that is not the cell's own: a tenth of the default effort.
 constexpr ProofLimits kFrontProof{200'000, 0};
 
-SingularityResult prove(const Problem& problem, const Expression& formula,
-                        const ProofLimits& limits = {}) {
-  return prove_free(formula, input_box(problem.inputs), limits);
-}
-
 // Physics is asked of finite formulas alone, and beyond the Stribeck range for the slope.
 constexpr ProofLimits kPhysicsProof{200'000, 0};
 constexpr double kStribeckShare = 0.25;  // of the largest speed
@@ -131,13 +126,13 @@ void judge_formula(const Problem& problem, const StagedFormula& staged, Record& 
 }
 
 std::vector<FrontRecord> judge_front(const Problem& problem, const std::vector<Expression>& front,
-                                     std::size_t chosen, const std::string& cell) {
+                                     std::size_t chosen, const Record& judged) {
   TableEvaluator evaluator;
   const std::vector<std::string> names = problem.input_names();
   std::vector<FrontRecord> all;
   for (std::size_t i = 0; i < front.size(); ++i) {
     FrontRecord entry;
-    entry.cell = cell;
+    entry.cell = judged.cell;
     entry.complexity = paper_complexity(front[i]);
     entry.nodes = node_count(front[i]);
     const Table& train = fitted_rows(problem);
@@ -153,8 +148,10 @@ std::vector<FrontRecord> judge_front(const Problem& problem, const std::vector<E
     const bool beaten = std::ranges::any_of(
         all, [&](const FrontRecord& other) { return dominates(other, all[i]); });
     if (beaten && !all[i].chosen) continue;
-    const ProofLimits limits = all[i].chosen ? ProofLimits() : kFrontProof;
-    all[i].singularity = verdict_name(prove(problem, front[i], limits).verdict);
+    all[i].singularity =
+        all[i].chosen
+            ? judged.singularity
+            : verdict_name(prove_free(front[i], input_box(problem.inputs), kFrontProof).verdict);
     kept.push_back(all[i]);
   }
   std::ranges::stable_sort(kept, {}, &FrontRecord::complexity);

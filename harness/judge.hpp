@@ -23,8 +23,9 @@ struct StagedFormula {
 void judge_formula(const Problem& problem, const StagedFormula& formula, Record& record);
 
 // The cell's front: formulas that none of the others beats in both training error and complexity,
-// by increasing complexity; the chosen one is always among them.
+// by increasing complexity; the chosen one is always among them, with what `judged`, the cell's
+// record, says of its singularity: it is not proved again.
 std::vector<FrontRecord> judge_front(const Problem& problem, const std::vector<Expression>& front,
-                                     std::size_t chosen, const std::string& cell);
+                                     std::size_t chosen, const Record& judged);
 
 }  // namespace tribench

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "foundation/json_text.hpp"
 #include "foundation/random.hpp"
 #include "foundation/text.hpp"
 #include "harness/build_info.hpp"
@@ -88,7 +89,7 @@ ordered_json session_json(const RunSession& session) {
 // The sessions of a folder so far; none where there are none or the file is damaged.
 ordered_json earlier_sessions(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  const ordered_json before = ordered_json::parse(stream, nullptr, false);
+  const ordered_json before = read_json<ordered_json>(stream);
   if (!before.is_object() || !before.contains("sessions")) return ordered_json::array();
   return before.at("sessions");
 }
@@ -102,7 +103,7 @@ void write_all(const std::filesystem::path& folder, const RunIdentity& identity,
       {"data_hash", identity.data}, {"cells", results.size()},
       {"failed", failed},           {"fingerprint", fingerprint(results)},
       {"sessions", sessions}};
-  write_file(folder / "provenance.json", all.dump(2) + "\n");
+  write_file(folder / "provenance.json", write_json(all, 2) + "\n");
 }
 
 std::string hash_of_file(const std::filesystem::path& file) {

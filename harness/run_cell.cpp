@@ -13,7 +13,9 @@
 #include <optional>
 
 #include "algorithms/external/external_method.hpp"
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "harness/judge.hpp"
 #include "harness/table_evaluator.hpp"
 
@@ -47,7 +49,8 @@ class Trace : public Progress {
  private:
   static int bucket_of(std::uint64_t evaluations) {
     constexpr double kPointsPerDecade = 10;
-    return static_cast<int>(kPointsPerDecade * std::log10(1.0 + static_cast<double>(evaluations)));
+    return static_cast<int>(kPointsPerDecade *
+                            elementary::log10(1.0 + static_cast<double>(evaluations)));
   }
 
   std::string cell_;
@@ -140,7 +143,7 @@ class StageView {
 Expression over_problem(const Expression& formula, std::span<const std::size_t> places) {
   std::vector<Node> nodes(formula.nodes().begin(), formula.nodes().end());
   for (Node& node : nodes) {
-    if (node.is_variable()) node.variable = static_cast<std::uint16_t>(places[node.variable]);
+    if (node.is_variable()) node = Node::input(places[node.variable]);
   }
   return Expression(std::move(nodes));
 }
@@ -256,7 +259,7 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
     return result;
   }
   judge_formula(problem, fit.chosen, record);
-  result.front = judge_front(problem, fit.front, fit.chosen_place, record.cell);
+  result.front = judge_front(problem, fit.front, fit.chosen_place, record);
   if (budget.out_of_time()) {
     record.note +=
         std::string(record.note.empty() ? "" : "; ") + "ended by the clock: not reproducible";

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "foundation/elementary.hpp"
 #include "foundation/order_statistics.hpp"
 #include "foundation/random.hpp"
 #include "reports/record_csv.hpp"
@@ -42,7 +43,7 @@ double time_of(const Record& record) { return is_ok(record) ? record.fit_cpu_s :
 // log(new / base); 0 for equal figures, infinite where only one of them failed, NaN for no pair.
 double log_ratio(double base, double now) {
   if (base == now) return std::isinf(base) ? kMissing : 0.0;
-  return std::log(now / base);
+  return elementary::log(now / base);
 }
 
 using Figure = double (*)(const Record&);
@@ -71,7 +72,7 @@ ComparisonRow row_of(const MethodKey& key, const std::string& problem,
   row.problem = problem;
   row.pairs = all.size();
   row.equal = static_cast<std::size_t>(std::count(all.begin(), all.end(), 0.0));
-  row.ratio = std::exp(median(all));
+  row.ratio = elementary::exp(median(all));
   const SignedRankTest test = wilcoxon_signed_rank(all);
   row.p = test.p;
   row.effect = test.effect;
@@ -83,7 +84,7 @@ ComparisonRow row_of(const MethodKey& key, const std::string& problem,
   const ConfidenceInterval logs = two_level_bootstrap(
       by_problem, [](std::span<const double> values) { return median(values); }, kConfidence,
       options.rounds, random);
-  row.interval = {std::exp(logs.low), std::exp(logs.high)};
+  row.interval = {elementary::exp(logs.low), elementary::exp(logs.high)};
   return row;
 }
 
@@ -166,7 +167,7 @@ std::vector<ComparisonRow> compare_time(const std::vector<Pair>& pairs, const Ru
                                         const RunFolder& now, const ComparisonOptions& options) {
   Groups groups = log_ratios(pairs, time_of);
   // A machine that was slower throughout is no slower code.
-  const double pace = std::log(median(calibration_of(now)) / median(calibration_of(base)));
+  const double pace = elementary::log(median(calibration_of(now)) / median(calibration_of(base)));
   for (auto& [key, problems] : groups) {
     for (auto& [problem, values] : problems) {
       for (double& value : values) value -= pace;
@@ -187,8 +188,8 @@ double sign_test(std::size_t worse, std::size_t better) {
   for (std::size_t k = std::max(worse, better); k <= n; ++k) {
     const auto all = static_cast<double>(n);
     const auto hits = static_cast<double>(k);
-    tail += std::exp(std::lgamma(all + 1) - std::lgamma(hits + 1) - std::lgamma(all - hits + 1) -
-                     all * std::log(2.0));
+    tail += elementary::exp(elementary::lgamma(all + 1) - elementary::lgamma(hits + 1) -
+                            elementary::lgamma(all - hits + 1) - all * elementary::log(2.0));
   }
   return std::min(1.0, 2 * tail);
 }

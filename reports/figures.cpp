@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench {
 
 std::string figure(double value, int digits) {
@@ -12,8 +14,8 @@ std::string figure(double value, int digits) {
   if (value == 0) return "0";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   // Rounded first, so that 9.996 counts as 10.0 and not as 10.00.
-  const int exponent = static_cast<int>(
-      std::floor(std::log10(std::stod(fmt::format("{:.{}e}", std::abs(value), digits - 1)))));
+  const int exponent = static_cast<int>(std::floor(
+      elementary::log10(std::stod(fmt::format("{:.{}e}", std::abs(value), digits - 1)))));
   if (exponent < -4 || exponent > 6) return fmt::format("{:.{}e}", value, digits - 1);
   const int decimals = digits - 1 - exponent;
   return fmt::format("{:.{}f}", value, decimals > 0 ? decimals : 0);

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "foundation/elementary.hpp"
 #include "foundation/order_statistics.hpp"
 #include "foundation/random.hpp"
 #include "reports/figures.hpp"
@@ -98,7 +99,7 @@ std::map<SeriesKey, std::vector<double>> log_medians(const RunFolder& run) {
   for (const Record& record : run.records) {
     if (is_ok(record) && record.mae_test > 0 && std::isfinite(record.mae_test)) {
       errors[{record.method, record.operators, record.problem}].push_back(
-          std::log(record.mae_test));
+          elementary::log(record.mae_test));
     }
   }
   for (auto& [key, values] : errors) values = {median(values)};
@@ -131,9 +132,9 @@ Change find_change(const std::vector<double>& series, const HistoryOptions& opti
   change.p = std::min(1.0, 2 * static_cast<double>(std::min(steps, drifts)) / all);
   change.kind = is_drift ? Change::Kind::drift : Change::Kind::step;
   change.at = is_drift ? 0 : split.at;
-  change.ratio =
-      is_drift ? std::exp(slope * static_cast<double>(series.size() - 1))
-               : std::exp(mean_of(series, split.at, series.size()) - mean_of(series, 0, split.at));
+  change.ratio = is_drift ? elementary::exp(slope * static_cast<double>(series.size() - 1))
+                          : elementary::exp(mean_of(series, split.at, series.size()) -
+                                            mean_of(series, 0, split.at));
   return change;
 }
 
@@ -160,10 +161,10 @@ std::vector<SeriesChange> find_changes(const std::vector<RunFolder>& runs,
   for (std::size_t i = 0; i < changes.size(); ++i) changes[i].change.p = adjusted[i];
   std::erase_if(changes, [&](const SeriesChange& each) {
     return each.change.p > options.level ||
-           std::abs(std::log(each.change.ratio)) <= std::log1p(options.equivalence);
+           std::abs(elementary::log(each.change.ratio)) <= elementary::log1p(options.equivalence);
   });
   std::stable_sort(changes.begin(), changes.end(), [](const auto& a, const auto& b) {
-    return std::abs(std::log(a.change.ratio)) > std::abs(std::log(b.change.ratio));
+    return std::abs(elementary::log(a.change.ratio)) > std::abs(elementary::log(b.change.ratio));
   });
   return changes;
 }

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "foundation/elementary.hpp"
 #include "foundation/order_statistics.hpp"
 #include "foundation/random.hpp"
 #include "reports/figures.hpp"
@@ -138,7 +139,7 @@ std::map<std::string, std::vector<double>> log_ratios(const Errors::mapped_type&
   for (const auto& [key, error] : ours) {
     const auto other = theirs.find(key);
     if (other == theirs.end() || (std::isinf(error) && std::isinf(other->second))) continue;
-    const double ratio = error == other->second ? 0.0 : std::log(error / other->second);
+    const double ratio = error == other->second ? 0.0 : elementary::log(error / other->second);
     ratios[key.first].push_back(ratio);
   }
   return ratios;
@@ -155,11 +156,11 @@ OperatorPrice price_of(const std::string& method, const char* operators, const c
   }
   price.pairs = all.size();
   if (all.empty()) return price;
-  price.ratio = std::exp(median(all));
+  price.ratio = elementary::exp(median(all));
   const ConfidenceInterval logs = two_level_bootstrap(
       groups, [](std::span<const double> values) { return median(values); }, kConfidence, kRounds,
       RandomStream(key_of(fmt::format("price|{}|{}|{}", method, operators, against))));
-  price.interval = {std::exp(logs.low), std::exp(logs.high)};
+  price.interval = {elementary::exp(logs.low), elementary::exp(logs.high)};
   price.p = wilcoxon_signed_rank(all).p;
   return price;
 }

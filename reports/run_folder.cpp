@@ -10,6 +10,7 @@
 #include <unordered_set>
 
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "reports/record_csv.hpp"
 
 namespace tribench {
@@ -72,7 +73,7 @@ void flatten(const std::string& prefix, const nlohmann::ordered_json& value,
       flatten(fmt::format("{}.{}", prefix, i), value[i], out);
     }
   } else {
-    out.emplace_back(prefix, value.is_string() ? value.get<std::string>() : value.dump());
+    out.emplace_back(prefix, value.is_string() ? value.get<std::string>() : write_json(value));
   }
 }
 
@@ -82,7 +83,7 @@ void read_provenance(RunFolder& run) {
     run.complaints.push_back("provenance.json is missing: what made this run is not known");
     return;
   }
-  const auto json = nlohmann::ordered_json::parse(in, nullptr, false);
+  const auto json = read_json<nlohmann::ordered_json>(in);
   if (json.is_discarded()) {
     run.complaints.push_back("provenance.json is damaged: what made this run is not known");
     return;

@@ -7,6 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench {
 namespace {
 
@@ -106,7 +108,7 @@ std::vector<double> log_ratios(const Cells& cells, const Cells& best) {
     const double a = placing_error(*record);
     const double b = placing_error(**other);
     if (std::isinf(a) && std::isinf(b)) continue;
-    ratios.push_back(a == b ? 0.0 : std::log(a / b));
+    ratios.push_back(a == b ? 0.0 : elementary::log(a / b));
   }
   return ratios;
 }
@@ -133,7 +135,7 @@ void hold_against_best(std::vector<MethodRow>& rows, const std::vector<const Cel
   for (std::size_t i = 1; i < rows.size(); ++i) {
     ratios[i] = log_ratios(*cells[i], *cells[0]);
     rows[i].pairs = ratios[i].size();
-    rows[i].ratio = std::exp(median(ratios[i]));
+    rows[i].ratio = elementary::exp(median(ratios[i]));
     if (!std::isinf(rows[i].placed_by)) p[i] = wilcoxon_signed_rank(ratios[i]).p;
   }
   const std::vector<double> adjusted = holm(p);

@@ -8,6 +8,8 @@
 #include <span>
 #include <utility>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::loop {
 namespace {
 
@@ -144,7 +146,7 @@ void BurstNoise::group_by_speed(const Observations& data) {
     for (const std::size_t i : rows_of_speed(g)) magnitudes.push_back(std::abs(deviation_[i]));
     const double sd = kMadToSd * median(std::move(magnitudes));
     middle_speed_.push_back(speed_[by_speed_[n * (2 * g + 1) / (2 * kSpeeds)]]);
-    speed_level_.push_back(std::log(std::max(sd / robust_sd_, kLeastShare)));
+    speed_level_.push_back(elementary::log(std::max(sd / robust_sd_, kLeastShare)));
   }
 }
 
@@ -163,8 +165,8 @@ void BurstNoise::scale_by_speed() {
     const double width = middle_speed_[g] - middle_speed_[g - 1];
     const double part =
         width > 0 ? std::clamp((speed_[i] - middle_speed_[g - 1]) / width, -0.5, 1.5) : 1;
-    unit_[i] =
-        robust_sd_ * std::exp(speed_level_[g - 1] + part * (speed_level_[g] - speed_level_[g - 1]));
+    unit_[i] = robust_sd_ * elementary::exp(speed_level_[g - 1] +
+                                            part * (speed_level_[g] - speed_level_[g - 1]));
   }
 }
 
@@ -173,7 +175,7 @@ void BurstNoise::refine_speeds() {
   for (std::size_t g = 0; g < speed_level_.size(); ++g) {
     std::vector<double> z;
     for (const std::size_t i : rows_of_speed(g)) z.push_back(innovation_[i]);
-    speed_level_[g] += std::log(std::max(level_of(z, law_, 1, kIterations), kLeastShare));
+    speed_level_[g] += elementary::log(std::max(level_of(z, law_, 1, kIterations), kLeastShare));
   }
 }
 
@@ -193,7 +195,8 @@ void BurstNoise::innovate() {
 BurstNoise::Level BurstNoise::shrunk_level(double own, double rows) const {
   const double sampling = (law_.freedom + 3) / (2 * law_.freedom * rows);
   const double kept = spread_ > 0 ? spread_ / (spread_ + sampling) : 0;
-  return {std::exp(mean_log_level_ + kept * (std::log(own) - mean_log_level_)), kept * sampling};
+  return {elementary::exp(mean_log_level_ + kept * (elementary::log(own) - mean_log_level_)),
+          kept * sampling};
 }
 
 // Of the logarithm of a speed's noise: its rows tell it, and the movements they are in.
@@ -221,12 +224,12 @@ void BurstNoise::scale_by_movement() {
     own.push_back(
         level_of(std::span(innovation_).subspan(movements_[m].begin, movements_[m].size()), law_, 1,
                  kIterations));
-    mean_log_level_ += std::log(own.back()) / count;
+    mean_log_level_ += elementary::log(own.back()) / count;
     sampling += (law_.freedom + 3) / (2 * law_.freedom * rows) / count;
   }
   double spread = 0;
   for (const double x : own) {
-    const double apart = std::log(x) - mean_log_level_;
+    const double apart = elementary::log(x) - mean_log_level_;
     spread += apart * apart / std::max(1.0, count - 1);
   }
   spread_ = std::max(0.0, spread - sampling);
@@ -240,7 +243,7 @@ void BurstNoise::scale_by_movement() {
   }
   const double before = law_.scale;
   law_ = fit_student(innovation_);
-  mean_log_level_ += std::log(before / law_.scale);
+  mean_log_level_ += elementary::log(before / law_.scale);
 }
 
 double BurstNoise::level_error(std::size_t movement, std::size_t rows) const {
@@ -255,7 +258,7 @@ double BurstNoise::level_without(std::size_t movement, std::size_t first, std::s
   const std::size_t all = movements_[movement].size();
   if (rows * kNegligible < all) return 1;
   const double taken = level_[movement];
-  if (all < rows + kFewestRows) return std::exp(mean_log_level_) / taken;
+  if (all < rows + kFewestRows) return elementary::exp(mean_log_level_) / taken;
   const RowRange& range = movements_[movement];
   std::vector<double> others(innovation_.data() + range.begin, innovation_.data() + first);
   others.insert(others.end(), innovation_.data() + first + rows, innovation_.data() + range.end);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::loop {
 namespace {
 
@@ -172,7 +174,7 @@ Eigen::VectorXd offset_nats(const Clusters& clusters, const Noise& noise) {
   for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
     const std::size_t m = clusters.movement_of[c];
     const OffsetDirection u = offset_direction(clusters, m, noise);
-    nats[static_cast<Eigen::Index>(c)] = 0.5 * std::log1p(u.offset / u.noise) / stretches[m];
+    nats[static_cast<Eigen::Index>(c)] = 0.5 * elementary::log1p(u.offset / u.noise) / stretches[m];
   }
   return nats;
 }
@@ -198,7 +200,7 @@ std::vector<double> movement_weights(const Eigen::VectorXd& residual, const Clus
                                .segment(static_cast<Eigen::Index>(range.begin),
                                         static_cast<Eigen::Index>(range.size()))
                                .squaredNorm();
-    logs[m] = std::log(std::max(squares / std::max(1.0, n - 1) / variance, 1e-6));
+    logs[m] = elementary::log(std::max(squares / std::max(1.0, n - 1) / variance, 1e-6));
     mean += logs[m] / static_cast<double>(count);
     sampling += (kurtosis - 1) * (1 + square) / (1 - square) / n / static_cast<double>(count);
   }
@@ -207,7 +209,7 @@ std::vector<double> movement_weights(const Eigen::VectorXd& residual, const Clus
   const double kept = spread > 0 ? std::clamp(1 - sampling / spread, 0.0, 1.0) : 0.0;
   double squares = 0;
   for (std::size_t m = 0; m < count; ++m) {
-    weights[m] = std::exp(-0.5 * kept * (logs[m] - mean));
+    weights[m] = elementary::exp(-0.5 * kept * (logs[m] - mean));
     squares += weights[m] * weights[m] / static_cast<double>(count);
   }
   for (double& w : weights) w /= std::sqrt(squares);
@@ -229,7 +231,7 @@ double correlation_time(const Eigen::VectorXd& residual, std::span<const RowRang
     if (rho < kFaded) break;
     sum += rho;
   }
-  return std::max({1.0, first > 0 ? -1 / std::log(first) : 0.0, sum});
+  return std::max({1.0, first > 0 ? -1 / elementary::log(first) : 0.0, sum});
 }
 
 }  // namespace tribench::loop

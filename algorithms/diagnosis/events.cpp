@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "algorithms/diagnosis/burst_noise.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -94,8 +95,8 @@ class BurstScan {
     for (const std::size_t rows : kLengths) {
       std::vector<double> pulse;
       for (std::size_t k = 0; k < rows; ++k) {
-        pulse.push_back(std::sin(std::numbers::pi * (static_cast<double>(k) + 0.5) /
-                                 static_cast<double>(rows)));
+        pulse.push_back(elementary::sin(std::numbers::pi * (static_cast<double>(k) + 0.5) /
+                                        static_cast<double>(rows)));
       }
       pulse.push_back(0);
       pulses_.push_back(std::move(pulse));
@@ -128,7 +129,7 @@ class BurstScan {
     std::array<double, kNodes.size()> factor{};
     Levels(double middle, double error) {
       for (std::size_t q = 0; q < kNodes.size(); ++q) {
-        factor[q] = middle * std::exp(kNodes[q] * error);
+        factor[q] = middle * elementary::exp(kNodes[q] * error);
       }
     }
     double draw(RandomStream& random) const {
@@ -210,8 +211,8 @@ class BurstScan {
     }
     // Half the weight is the other side's, whose ratios are next to nothing.
     const auto pulses = static_cast<double>(pulses_.size());
-    out.all = std::log(sum / (2 * pulses * static_cast<double>(kHeights.size())));
-    out.drawn = std::log(drawn / (2 * pulses * static_cast<double>(kDrawnHeights)));
+    out.all = elementary::log(sum / (2 * pulses * static_cast<double>(kHeights.size())));
+    out.drawn = elementary::log(drawn / (2 * pulses * static_cast<double>(kDrawnHeights)));
     return out;
   }
 
@@ -293,7 +294,7 @@ class BurstScan {
     for (const Draw& one : draws) {
       if (one.first > one.from && gives_way(one, one.first - 1)) continue;
       if (one.first + 1 < one.end && gives_way(one, one.first + 1)) continue;
-      expected += each * std::exp(-one.ratios.drawn);
+      expected += each * elementary::exp(-one.ratios.drawn);
       if (expected > kFalseBursts) return one.ratios.all;
     }
     return 0;

@@ -9,6 +9,8 @@
 
 #include <Eigen/QR>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::loop {
 namespace {
 
@@ -68,7 +70,8 @@ Eigen::Vector3d gravity_of_position(const Observations& data) {
   const auto n = static_cast<Eigen::Index>(data.rows());
   const Eigen::Map<const Eigen::ArrayXd> angle(q->values.data(), n);
   Eigen::MatrixXd x(n, 3);
-  x << angle.sin().matrix(), angle.cos().matrix(), Eigen::VectorXd::Ones(n);
+  x << angle.unaryExpr(&elementary::sin).matrix(), angle.unaryExpr(&elementary::cos).matrix(),
+      Eigen::VectorXd::Ones(n);
   return x.colPivHouseholderQr().solve(Eigen::Map<const Eigen::VectorXd>(g->values.data(), n));
 }
 
@@ -110,16 +113,17 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
       for (const Tone& tone : movement.tones) {
         const double w = 2 * std::numbers::pi * tone.frequency;
         const double angle = w * movement.duration * part;
-        q += tone.amplitude * std::sin(angle);
-        v += tone.amplitude * w * std::cos(angle);
-        a -= tone.amplitude * w * w * std::sin(angle);
+        q += tone.amplitude * elementary::sin(angle);
+        v += tone.amplitude * w * elementary::cos(angle);
+        a -= tone.amplitude * w * w * elementary::sin(angle);
       }
     }
     distance = v * v_before < 0 ? 0 : distance + std::abs(q - q_before);
     v_before = v;
     q_before = q;
     const double g =
-        movement.load_factor * (gravity[0] * std::sin(q) + gravity[1] * std::cos(q)) + gravity[2];
+        movement.load_factor * (gravity[0] * elementary::sin(q) + gravity[1] * elementary::cos(q)) +
+        gravity[2];
     const double sign = v > 0 ? 1 : -1;
     set("v", i, v);
     set("sgn_v", i, sign);

@@ -10,6 +10,7 @@
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/expression/vector/kernels.hpp"
 #include "algorithms/expression/vector/level.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -43,7 +44,7 @@ Eigen::ArrayXf unit_values(const Observations& data, std::string_view name) {
   if (name == "v") x = x.abs();
   constexpr std::array<std::string_view, 4> kSigned = {"q", "g", "a", "v2"};
   if (std::ranges::count(kSigned, name) > 0) x *= mirror_sign(data);
-  if (name == "d" && x.maxCoeff() > 0) x = (x / x.maxCoeff() + 1e-3).log();
+  if (name == "d" && x.maxCoeff() > 0) x = (x / x.maxCoeff() + 1e-3).unaryExpr(&elementary::log);
   // The bulk of the values spans the interval: one far-off row must not flatten the rest.
   std::vector<double> values(x.begin(), x.end());
   const auto edge = static_cast<std::ptrdiff_t>(values.size() / 200);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::loop {
 namespace {
 
@@ -16,7 +18,7 @@ double sum_of_logs(std::span<const double> z, const StudentLaw& law) {
   for (std::size_t i = 0; i < z.size(); ++i) {
     product *= law.kernel(z[i]);
     if (i % 8 < 7 && i + 1 < z.size() && product < 1e30) continue;
-    sum += std::log(product);
+    sum += elementary::log(product);
     product = 1;
   }
   return sum;
@@ -37,8 +39,9 @@ StudentLaw fit_student(std::span<const double> z) {
       variance = std::max(sum / n, 1e-12);
     }
     const StudentLaw law{freedom, std::sqrt(variance)};
-    double likelihood = n * (std::lgamma((freedom + 1) / 2) - std::lgamma(freedom / 2) -
-                             0.5 * std::log(freedom) - std::log(law.scale));
+    double likelihood =
+        n * (elementary::lgamma((freedom + 1) / 2) - elementary::lgamma(freedom / 2) -
+             0.5 * elementary::log(freedom) - elementary::log(law.scale));
     likelihood -= 0.5 * (freedom + 1) * sum_of_logs(z, law);
     if (likelihood > most) {
       most = likelihood;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <span>
 
+#include "foundation/elementary.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench::loop {
@@ -20,7 +21,8 @@ struct StudentLaw {
   double draw(RandomStream& random) const {
     const double u = 1 - random.uniform();
     const double angle = random.uniform(0, 2 * std::numbers::pi);
-    return scale * std::sqrt(freedom * (std::pow(u, -2 / freedom) - 1)) * std::cos(angle);
+    return scale * std::sqrt(freedom * (elementary::pow(u, -2 / freedom) - 1)) *
+           elementary::cos(angle);
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/vector/kernels.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 namespace {
@@ -36,7 +37,7 @@ double apply(Op operation, double a, double b) {
     default:
       break;
   }
-  if (!is_product_power(b)) return std::pow(a, b);
+  if (!is_product_power(b)) return elementary::pow(a, b);
   double result = 0;
   kernels().integer_power(&result, &a, &b, nullptr, 1);
   return result;

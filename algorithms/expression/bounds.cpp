@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench {
 namespace {
 
@@ -177,7 +179,8 @@ double FormulaBounds::binary_error(std::size_t i) const {
   double moved = 0;
   if (ea > 0) moved += b.magnitude() * magnitude / a.mignitude() * ea;
   if (eb > 0) {
-    const double logs = std::max(std::abs(std::log(a.low)), std::abs(std::log(a.high)));
+    const double logs =
+        std::max(std::abs(elementary::log(a.low)), std::abs(elementary::log(a.high)));
     moved += (logs + 1e-9) * magnitude * eb;
   }
   return moved;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "algorithms/expression/apply.hpp"
 #include "algorithms/expression/evaluate.hpp"
 
 namespace tribench {
@@ -216,7 +217,7 @@ bool Canonicalizer::leads_negative(const Item& item) const {
 // False where the product stays a factor of its own: folding its constant would overflow, or it is
 // a power of a quotient (1/(1/x) is not x where x is 0).
 bool Canonicalizer::add_product_factors(const Item& product, int exponent, double& coefficient) {
-  const double scale = std::pow(product.value, exponent);
+  const double scale = apply(Op::pow, product.value, exponent);
   if (product.value != 1 && !folds(coefficient, scale)) return false;
   for (std::uint32_t p = product.first; p < product.first + product.count; ++p) {
     const double number = parts_[p].number * exponent;
@@ -233,7 +234,7 @@ bool Canonicalizer::add_product_factors(const Item& product, int exponent, doubl
 void Canonicalizer::add_factors(std::uint32_t index, int exponent, double& coefficient) {
   const Item item = items_[index];
   if (item.kind == Kind::constant) {
-    const double scale = exponent == -1 ? 1 / item.value : std::pow(item.value, exponent);
+    const double scale = exponent == -1 ? 1 / item.value : apply(Op::pow, item.value, exponent);
     if (exponent == -1 && folds(coefficient, scale)) {
       coefficient /= item.value;
       return;

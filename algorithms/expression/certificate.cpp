@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/expression/text.hpp"
+#include "foundation/json_text.hpp"
 
 namespace tribench {
 namespace {
@@ -17,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 class Writer {
  public:
-  Writer(const Expression& formula, const NamedBox& box, const CertificateClaim& claim,
+  Writer(const ClaimedFormula& formula, const ClaimedBox& box, const CertificateClaim& claim,
          std::size_t max_pieces)
       : formula_(formula),
         box_(box),
@@ -26,8 +27,8 @@ class Writer {
         max_pieces_(max_pieces) {
     // A claim about the velocity is cut at its sign even where the formula has no such input.
     if (claim.kind == CertificateClaim::Kind::dissipative) columns_.push_back(velocity_);
-    for (const Node& node : formula.nodes()) {
-      if (node.is_variable()) columns_.push_back(node.variable);
+    for (const ClaimedNode& node : formula) {
+      if (node.op == Op::variable) columns_.push_back(node.input);
     }
     std::sort(columns_.begin(), columns_.end());
     columns_.erase(std::unique(columns_.begin(), columns_.end()), columns_.end());
@@ -104,8 +105,8 @@ class Writer {
     return lower + (proving_bounds(half) ? 1 : 0);
   }
 
-  const Expression& formula_;
-  const NamedBox& box_;
+  const ClaimedFormula& formula_;
+  const ClaimedBox& box_;
   const CertificateClaim& claim_;
   std::size_t velocity_;
   std::size_t max_pieces_;
@@ -131,19 +132,20 @@ std::optional<std::string> write_certificate(const Expression& original, const N
                                              const CertificateClaim& claim) {
   check_box(original, named.ranges);
   // As the checker will read them: signs that the formula does not use are gone.
-  NamedBox box = parse_box(print_box(named));
-  const Expression formula = parse_over(print(original, named.names), box);
+  const std::string text = print(original, named.names);
+  ClaimedBox box = read_claimed_box(print_box(named));
+  const ClaimedFormula formula = read_claimed_formula(text, box);
   Writer writer(formula, box, claim, max_pieces);
-  for (const Piece& cell : certificate_cells(formula, box.ranges)) {
+  for (const Piece& cell : certificate_cells(formula, box)) {
     if (!writer.cover(cell)) return std::nullopt;
   }
   Json json = {{"format", "tribench certificate 2"},
-               {"formula", print(formula, box.names)},
-               {"box", print_box(box)},
+               {"formula", text},
+               {"box", print_box(named)},
                {"claim", claim_json(claim)},
                {"entries", writer.take_entries()}};
-  json["digest"] = certificate_digest(json.dump());
-  return json.dump(1);
+  json["digest"] = certificate_digest(write_json(json));
+  return write_json(json, 1);
 }
 
 }  // namespace tribench

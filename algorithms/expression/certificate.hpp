@@ -3,10 +3,12 @@
 // A proof that can be checked by someone who does not trust the prover: the box cut into pieces, on
 // each of which plain interval arithmetic shows that every node of the formula is finite and, where
 // that is claimed, that the value keeps to a limit or does not drive the joint (f v >= 0). The
-// checker (certificate_check.cpp) shares no interval code with the prover: it rounds by the
-// processor's rounding modes, knows no derivative and no mean-value form, and covers the box by
-// construction. What it trusts: the parser, the processor's rounding of + - * / sqrt, the C
-// library's exp log sin cos tanh pow to 8 ulp, and the evaluator's kernels likewise.
+// checker (certificate_check.cpp) shares no code with the prover: it reads formula and box by
+// itself (certificate_formula.hpp), rounds by the processor's rounding modes, knows no derivative
+// and no mean-value form, and covers the box by construction. What it trusts: the processor's
+// rounding of
+// + - * / sqrt, the C library's exp log sin cos tanh pow to 8 ulp, and the evaluator's kernels
+// likewise.
 //
 // Not for monotony and oddness: the first needs derivatives, the second algebra, and the checker is
 // kept to a size that can be read in one go.
@@ -24,6 +26,7 @@
 #include <string_view>
 #include <vector>
 
+#include "algorithms/expression/certificate_formula.hpp"
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/expression/input_box.hpp"
 
@@ -57,22 +60,16 @@ struct CertificateCheck {
 CertificateCheck check_certificate(std::string_view text);
 
 // What the two sides share: how the box falls into cells, and the bounds on one piece.
-struct PieceRange {
-  double low = 0;
-  double high = 0;
-  bool operator==(const PieceRange&) const = default;
-};
-using Piece = std::vector<PieceRange>;  // per input of the box
-std::vector<Piece> certificate_cells(const Expression& formula, const InputBox& box);
+std::vector<Piece> certificate_cells(const ClaimedFormula& formula, const ClaimedBox& box);
 // The formula's range on the piece by natural interval extension; nothing where a node may not be
 // finite.
-std::optional<PieceRange> piece_bounds(const Expression& formula, const Piece& piece);
+std::optional<PieceRange> piece_bounds(const ClaimedFormula& formula, const Piece& piece);
 // Whether a value within `bounds` on the piece keeps the claim; `velocity` is its input.
 bool claim_holds(const CertificateClaim& claim, std::size_t velocity, const Piece& piece,
                  const PieceRange& bounds);
 // The place of the claim's velocity; 0 where it has none. Throws Error (bad_input) on a name that
 // is not in the box.
-std::size_t claim_velocity(const CertificateClaim& claim, const NamedBox& box);
+std::size_t claim_velocity(const CertificateClaim& claim, const ClaimedBox& box);
 // Over the certificate's content without its digest.
 std::string certificate_digest(std::string_view content);
 

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/expression/certificate.hpp"
-#include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 
 namespace tribench {
 namespace {
@@ -199,7 +199,7 @@ Range apply(Op op, const Range& a, const Range& b) {
 // Reads the entries of a certificate against the cells they must cover.
 class Reader {
  public:
-  Reader(const Expression& formula, const NamedBox& box, const CertificateClaim& claim,
+  Reader(const ClaimedFormula& formula, const ClaimedBox& box, const CertificateClaim& claim,
          const Json& entries)
       : formula_(formula),
         box_(box),
@@ -209,7 +209,7 @@ class Reader {
 
   // Empty where the entries prove the claim.
   std::string run() {
-    for (const Piece& cell : certificate_cells(formula_, box_.ranges)) {
+    for (const Piece& cell : certificate_cells(formula_, box_)) {
       if (std::string reason = cover(cell, 0); !reason.empty()) return reason;
     }
     return next_ == entries_.size() ? "" : "entries are left over";
@@ -222,17 +222,15 @@ class Reader {
     const Json& entry = entries_[next_++];
     const std::string place = " (entry " + std::to_string(next_) + ")";
     if (!entry.contains("cut")) return close(piece, entry, place);
-    const auto name = std::find(box_.names.begin(), box_.names.end(), entry["cut"].at(0));
+    const auto axis = box_.place_of(entry["cut"].at(0).get<std::string>());
     const double at = entry["cut"].at(1);
-    const auto axis = static_cast<std::size_t>(name - box_.names.begin());
-    if (name == box_.names.end() || depth > 5000 || !(piece[axis].low < at) ||
-        !(at < piece[axis].high)) {
+    if (!axis || depth > 5000 || !(piece[*axis].low < at) || !(at < piece[*axis].high)) {
       return "a cut does not lie inside its piece" + place;
     }
     Piece lower = piece;
     Piece upper = piece;
-    lower[axis].high = at;
-    upper[axis].low = at;
+    lower[*axis].high = at;
+    upper[*axis].low = at;
     if (std::string reason = cover(lower, depth + 1); !reason.empty()) return reason;
     return cover(upper, depth + 1);
   }
@@ -258,8 +256,8 @@ class Reader {
     return "";
   }
 
-  const Expression& formula_;
-  const NamedBox& box_;
+  const ClaimedFormula& formula_;
+  const ClaimedBox& box_;
   const CertificateClaim& claim_;
   std::size_t velocity_;
   const Json& entries_;
@@ -277,7 +275,7 @@ CertificateClaim read_claim(const Json& json) {
 std::string claim_text(const CertificateClaim& claim) {
   switch (claim.kind) {
     case CertificateClaim::Kind::bounded:
-      return "finite and within +-" + Json(claim.limit).dump();
+      return "finite and within +-" + write_json(Json(claim.limit));
     case CertificateClaim::Kind::dissipative:
       return "finite and of no other sign than " + claim.velocity;
     default:
@@ -294,13 +292,12 @@ void check_content(Json json, CertificateCheck& check) {
   }
   check.formula = json.at("formula");
   check.box = json.at("box");
-  if (json.size() != 5 || certificate_digest(json.dump()) != digest) {
+  if (json.size() != 5 || certificate_digest(write_json(json)) != digest) {
     check.reason = "the digest does not fit the content";
     return;
   }
-  NamedBox box = parse_box(check.box);
-  const Expression formula = parse_over(check.formula, box);
-  check_box(formula, box.ranges);
+  ClaimedBox box = read_claimed_box(check.box);
+  const ClaimedFormula formula = read_claimed_formula(check.formula, box);
   const CertificateClaim claim = read_claim(json.at("claim"));
   check.claim = claim_text(claim);
   Reader reader(formula, box, claim, json.at("entries"));
@@ -311,23 +308,25 @@ void check_content(Json json, CertificateCheck& check) {
 
 }  // namespace
 
-std::vector<Piece> certificate_cells(const Expression& formula, const InputBox& box) {
-  std::vector<bool> looks_at_sign(box.size(), false);
+std::vector<Piece> certificate_cells(const ClaimedFormula& formula, const ClaimedBox& box) {
+  const std::size_t inputs = box.names.size();
+  std::vector<bool> looks_at_sign(inputs, false);
   for (std::size_t i = 0; i < formula.size(); ++i) {
-    const Node& node = formula.node(i);
-    if (!node.is_variable()) continue;
-    if (box[node.variable].sign_of) looks_at_sign[*box[node.variable].sign_of] = true;
-    const Op above = i + 1 < formula.size() ? formula.node(i + 1).op : Op::constant;
-    if (above == Op::abs || above == Op::sgn) looks_at_sign[node.variable] = true;
+    if (formula[i].op != Op::variable) continue;
+    const std::size_t input = formula[i].input;
+    if (box.sign_of[input]) looks_at_sign[*box.sign_of[input]] = true;
+    const Op above = i + 1 < formula.size() ? formula[i + 1].op : Op::constant;
+    if (above == Op::abs || above == Op::sgn) looks_at_sign[input] = true;
   }
-  std::vector<Piece> cells = {Piece(box.size())};
-  for (std::size_t j = 0; j < box.size(); ++j) {
-    if (box[j].sign_of) continue;
-    std::vector<Range> parts = {{box[j].low, box[j].high}};
+  std::vector<Piece> cells = {Piece(inputs)};
+  for (std::size_t j = 0; j < inputs; ++j) {
+    if (box.sign_of[j]) continue;
+    const Range& side = box.ranges[j];
+    std::vector<Range> parts = {side};
     if (looks_at_sign[j]) {
-      parts = {{box[j].low, std::min(box[j].high, -kTiny)},
-               {std::max(box[j].low, 0.0), std::min(box[j].high, 0.0)},
-               {std::max(box[j].low, kTiny), box[j].high}};
+      parts = {{side.low, std::min(side.high, -kTiny)},
+               {std::max(side.low, 0.0), std::min(side.high, 0.0)},
+               {std::max(side.low, kTiny), side.high}};
     }
     std::vector<Piece> finer;
     for (const Piece& cell : cells) {
@@ -335,8 +334,8 @@ std::vector<Piece> certificate_cells(const Expression& formula, const InputBox& 
         if (part.low > part.high) continue;
         finer.push_back(cell);
         finer.back()[j] = part;
-        for (std::size_t s = 0; s < box.size(); ++s) {
-          if (box[s].sign_of == j) finer.back()[s] = sign(part);
+        for (std::size_t s = 0; s < inputs; ++s) {
+          if (box.sign_of[s] == j) finer.back()[s] = sign(part);
         }
       }
     }
@@ -345,13 +344,13 @@ std::vector<Piece> certificate_cells(const Expression& formula, const InputBox& 
   return cells;
 }
 
-std::optional<PieceRange> piece_bounds(const Expression& formula, const Piece& piece) {
+std::optional<PieceRange> piece_bounds(const ClaimedFormula& formula, const Piece& piece) {
   const UpwardRounding upward;
   std::vector<Range> stack;
-  for (const Node& node : formula.nodes()) {
-    if (node.is_variable()) {
-      stack.push_back(piece[node.variable]);
-    } else if (node.is_constant()) {
+  for (const ClaimedNode& node : formula) {
+    if (node.op == Op::variable) {
+      stack.push_back(piece[node.input]);
+    } else if (node.op == Op::constant) {
       stack.push_back({node.value, node.value});
     } else if (arity(node.op) == 1) {
       stack.back() = apply(node.op, stack.back());
@@ -376,14 +375,14 @@ bool claim_holds(const CertificateClaim& claim, std::size_t velocity, const Piec
   return (v.low >= 0 && bounds.low >= 0) || (v.high <= 0 && bounds.high <= 0);
 }
 
-std::size_t claim_velocity(const CertificateClaim& claim, const NamedBox& box) {
+std::size_t claim_velocity(const CertificateClaim& claim, const ClaimedBox& box) {
   if (claim.kind != CertificateClaim::Kind::dissipative) return 0;
-  const auto name = std::find(box.names.begin(), box.names.end(), claim.velocity);
-  if (name == box.names.end()) {
+  const auto place = box.place_of(claim.velocity);
+  if (!place || box.sign_of[*place]) {
     throw_bad_input("'" + claim.velocity + "' is not an input of the box", "claim",
                     "name the velocity");
   }
-  return static_cast<std::size_t>(name - box.names.begin());
+  return *place;
 }
 
 std::string certificate_digest(std::string_view content) {
@@ -397,7 +396,9 @@ std::string certificate_digest(std::string_view content) {
 CertificateCheck check_certificate(std::string_view text) {
   CertificateCheck check;
   try {
-    check_content(Json::parse(text), check);
+    check_content(read_json_or_throw<Json>(text, "certificate"), check);
+  } catch (const nlohmann::detail::exception&) {
+    check.reason = "the certificate cannot be read: a field is missing or of another kind";
   } catch (const std::exception& error) {
     check.reason = std::string("the certificate cannot be read: ") + error.what();
   }

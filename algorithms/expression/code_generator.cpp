@@ -253,7 +253,7 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
     kDouble ? vfnmadd231pd(to, a, b) : vfnmadd231ps(to, a, b);
   }
 
-  // divide_by_multiplying of vector/lanes.hpp.
+  // divide_by_multiplying of foundation/elementary/lanes.hpp.
   void emit_quotient(int result, int in_a, int in_b) {
     const Xmm a = vector(in_a);
     const Xmm b = vector(in_b);

@@ -86,7 +86,7 @@ void sin(const double* a, double* out, std::size_t n) { apply(Op::sin, a, out, n
 void cos(const double* a, double* out, std::size_t n) { apply(Op::cos, a, out, n); }
 void tanh(const double* a, double* out, std::size_t n) { apply(Op::tanh, a, out, n); }
 void pow(const double* a, const double* b, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = std::pow(a[i], b[i]);
+  kernels().power[kFormVV](out, a, b, nullptr, n);
 }
 
 TRIBENCH_EACH_LEVEL void combine(const double* const* columns, const double* coefficients,

@@ -7,6 +7,7 @@
 
 #include "algorithms/expression/column_kernels.hpp"
 #include "algorithms/expression/differentiate.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 namespace {
@@ -24,9 +25,9 @@ double scalar_derivative(Op op, double a, double v) {
     case Op::abs:
       return std::isnan(a) ? a : static_cast<double>(a > 0) - static_cast<double>(a < 0);
     case Op::sin:
-      return std::cos(a);
+      return elementary::cos(a);
     case Op::cos:
-      return -std::sin(a);
+      return -elementary::sin(a);
     case Op::tanh:
       return 1 - v * v;
     default:
@@ -145,7 +146,7 @@ void Differentiator::backward_base(std::size_t place, std::size_t n) {
     if (step.whole_power && step.exponent != 0) {
       columns::integer_power(&scalars_[step.a], step.exponent - 1, &power, 1);
     } else if (!step.whole_power) {
-      power = std::pow(scalars_[step.a], exponent - 1);
+      power = elementary::pow(scalars_[step.a], exponent - 1);
     }
     base = {adjoint.data, adjoint.scale * exponent * power};
     return;
@@ -178,7 +179,7 @@ void Differentiator::backward_exponent(std::size_t place, std::size_t n) {
   const Adjoint adjoint = adjoints_[place];
   if (is_scalar(place)) {
     const double v = scalars_[place];
-    const double partial = v == 0 ? 0 : v * std::log(scalars_[step.a]);
+    const double partial = v == 0 ? 0 : v * elementary::log(scalars_[step.a]);
     adjoints_[step.b] = {adjoint.data, adjoint.scale * partial};
     return;
   }

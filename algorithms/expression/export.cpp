@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
+#include <set>
 
 #include "algorithms/expression/export_forms.hpp"
+#include "algorithms/expression/reserved_words.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/formula_name.hpp"
 #include "foundation/suggestion.hpp"
 
 namespace tribench {
@@ -17,43 +18,30 @@ namespace {
 
 constexpr std::string_view kSign = "sgn_";
 
-// Reserved by C, Python or MATLAB, or used by the code around the formula.
-constexpr std::array<std::string_view, 97> kReserved = {
-    "auto",      "break",  "case",       "char",     "const",    "continue", "default",  "do",
-    "double",    "else",   "enum",       "extern",   "float",    "for",      "goto",     "if",
-    "inline",    "int",    "long",       "register", "restrict", "return",   "short",    "signed",
-    "sizeof",    "static", "struct",     "switch",   "typedef",  "union",    "unsigned", "void",
-    "volatile",  "while",  "and",        "as",       "assert",   "async",    "await",    "class",
-    "def",       "del",    "elif",       "except",   "finally",  "from",     "global",   "import",
-    "in",        "is",     "lambda",     "nonlocal", "not",      "or",       "pass",     "raise",
-    "try",       "with",   "yield",      "None",     "True",     "False",    "end",      "function",
-    "otherwise", "parfor", "persistent", "spmd",     "catch",    "classdef", "elseif",   "np",
-    "sp",        "pi",     "NaN",        "Inf",      "main",     "y0",       "y1",       "yn",
-    "j0",        "j1",     "jn",         "exp",      "log",      "sqrt",     "abs",      "sgn",
-    "sin",       "cos",    "tanh",       "pow",      "fabs",     "sign",     "gamma",    "beta",
-    "eye"};
-
-bool is_identifier(std::string_view name) {
-  if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0) return false;
-  return std::all_of(name.begin(), name.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-  });
-}
-
-std::string safe_name(const std::string& name, const std::string& function) {
-  const bool taken =
-      name == function || std::find(kReserved.begin(), kReserved.end(), name) != kReserved.end();
-  return taken ? fmt::format("{}_", name) : name;
-}
-
 // Adds an argument unless it is there; returns its place.
-std::size_t argument_place(CodeInputs& inputs, const std::string& name,
-                           const std::string& function) {
+std::size_t argument_place(CodeInputs& inputs, const std::string& name) {
   for (std::size_t i = 0; i < inputs.arguments.size(); ++i) {
     if (inputs.arguments[i].name == name) return i;
   }
-  inputs.arguments.push_back({name, safe_name(name, function), {}});
+  require_formula_name(name, "export");
+  inputs.arguments.push_back({name, {}, {}});
   return inputs.arguments.size() - 1;
+}
+
+// Names for the code that no language reserves and no two arguments share: of `if` and `if_` the
+// first becomes if__.
+void name_arguments(CodeInputs& inputs, const std::string& function) {
+  std::set<std::string> taken = {function};
+  for (CodeInputs::Argument& argument : inputs.arguments) {
+    if (is_reserved_word(argument.name) || argument.name == function) continue;
+    argument.code_name = argument.name;
+    taken.insert(argument.name);
+  }
+  for (CodeInputs::Argument& argument : inputs.arguments) {
+    if (!argument.code_name.empty()) continue;
+    argument.code_name = unreserved(argument.name);
+    while (!taken.insert(argument.code_name).second) argument.code_name += '_';
+  }
 }
 
 CodeInputs inputs_of(const Expression& formula, std::span<const std::string> names,
@@ -62,7 +50,7 @@ CodeInputs inputs_of(const Expression& formula, std::span<const std::string> nam
   if (options.box) {
     for (std::size_t i = 0; i < options.box->names.size(); ++i) {
       if (options.box->names[i].starts_with(kSign)) continue;
-      const std::size_t at = argument_place(inputs, options.box->names[i], options.function);
+      const std::size_t at = argument_place(inputs, options.box->names[i]);
       inputs.arguments[at].range = options.box->ranges[i];
     }
   }
@@ -73,11 +61,14 @@ CodeInputs inputs_of(const Expression& formula, std::span<const std::string> nam
     CodeInputs::Column& column = inputs.columns[node.variable];
     column.is_sign = name.starts_with(kSign) && name.size() > kSign.size();
     const std::string base = column.is_sign ? name.substr(kSign.size()) : name;
-    column.argument = argument_place(inputs, base, options.function);
-    column.name = column.is_sign
-                      ? fmt::format("{}{}", kSign, inputs.arguments[column.argument].name)
-                      : inputs.arguments[column.argument].code_name;
+    column.argument = argument_place(inputs, base);
     column.is_used = true;
+  }
+  name_arguments(inputs, options.function);
+  for (CodeInputs::Column& column : inputs.columns) {
+    if (!column.is_used) continue;
+    const std::string& called = inputs.arguments[column.argument].code_name;
+    column.name = column.is_sign ? fmt::format("{}{}", kSign, called) : called;
   }
   return inputs;
 }
@@ -110,7 +101,7 @@ std::vector<std::string> export_arguments(const Expression& formula,
 
 std::string export_code(const Expression& formula, std::span<const std::string> names,
                         CodeForm form, const ExportOptions& options) {
-  if (!is_identifier(options.function) || safe_name(options.function, "") != options.function) {
+  if (!is_identifier(options.function) || is_reserved_word(options.function)) {
     throw_bad_input(fmt::format("'{}' cannot name a function", options.function), "--function",
                     "use letters, digits and _, and no word that a language reserves");
   }

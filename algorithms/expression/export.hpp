@@ -42,8 +42,9 @@ std::vector<std::string> export_arguments(const Expression& formula,
                                           std::span<const std::string> names,
                                           const ExportOptions& options = {});
 
-// names[i] is column i. A name that the target reserves gets a trailing underscore. Throws Error
-// (bad_input) where the function's name is no identifier.
+// names[i] is column i. A name that a language reserves gets a trailing underscore
+// (reserved_words.hpp). Throws Error (bad_input) where a name is no formula's
+// (foundation/formula_name.hpp) or the function's name no identifier.
 std::string export_code(const Expression& formula, std::span<const std::string> names,
                         CodeForm form, const ExportOptions& options = {});
 

@@ -15,6 +15,11 @@ std::string_view op_name(Op op) {
   return kNames[static_cast<std::size_t>(op)];
 }
 
+void throw_too_many_inputs() {
+  throw_bad_input("a formula has more inputs than the 65536 it can name", "formula",
+                  "leave out inputs that it does not use");
+}
+
 bool assign_lengths(std::span<Node> postfix) {
   std::size_t available = 0;  // complete subtrees to the left
   for (std::size_t i = 0; i < postfix.size(); ++i) {

@@ -50,6 +50,10 @@ constexpr int arity(Op op) {
 // As written in a formula: "+", "exp", ...; "constant" and "variable" for leaves.
 std::string_view op_name(Op op);
 
+// Columns that a tape can name. More are refused, never folded onto others.
+inline constexpr std::size_t kMaxInputs = 65'536;
+[[noreturn]] void throw_too_many_inputs();
+
 struct Node {
   double value = 0;            // of a constant
   std::uint32_t length = 1;    // nodes of the subtree that ends here, this one included
@@ -57,7 +61,9 @@ struct Node {
   Op op = Op::constant;
 
   static Node constant(double value) { return {value, 1, 0, Op::constant}; }
+  // Throws Error (bad_input) where column >= kMaxInputs.
   static Node input(std::size_t column) {
+    if (column >= kMaxInputs) throw_too_many_inputs();
     return {0, 1, static_cast<std::uint16_t>(column), Op::variable};
   }
   bool is_constant() const { return op == Op::constant; }

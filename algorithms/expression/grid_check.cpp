@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "algorithms/expression/evaluate.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 namespace {
@@ -30,7 +31,7 @@ bool is_finite_on_grid(const Expression& formula, const InputBox& box, std::size
   std::size_t rows = 1;
   if (!axes.empty()) {
     const double root =
-        std::pow(static_cast<double>(points), 1.0 / static_cast<double>(axes.size()));
+        elementary::pow(static_cast<double>(points), 1.0 / static_cast<double>(axes.size()));
     along = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(root)));
     for (std::size_t k = 0; k < axes.size(); ++k) rows *= along;
   }

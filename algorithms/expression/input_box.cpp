@@ -9,6 +9,7 @@
 
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/formula_name.hpp"
 
 namespace tribench {
 namespace {
@@ -47,8 +48,13 @@ void add_range(std::string_view part, NamedBox& box) {
     throw_bad_input(fmt::format("'{}' is not NAME=LOW:HIGH", part), "--box", kExample);
   }
   const std::string name(trimmed(part.substr(0, equals)));
-  if (name.empty() || place_of(box.names, name)) {
-    throw_bad_input(fmt::format("the name '{}' is empty or given twice", name), "--box", kExample);
+  require_formula_name(name, "--box");
+  if (place_of(box.names, name)) {
+    throw_bad_input(fmt::format("the name '{}' is given twice", name), "--box", kExample);
+  }
+  if (box.names.size() == kMaxInputs) {
+    throw_bad_input(fmt::format("more than {} inputs", kMaxInputs), "--box",
+                    "leave out what the formula does not use");
   }
   InputRange range{number_in(part.substr(equals + 1, colon - equals - 1), part),
                    number_in(part.substr(colon + 1), part)};

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench {
 namespace {
 
@@ -217,8 +219,8 @@ DecoratedInterval real_power(const DecoratedInterval& x, const DecoratedInterval
   // 0^0 is 1 to the C library: defined, but not continuous.
   if (x.range.low == 0 && y.range.low <= 0) decoration = least(decoration, Decoration::defined);
   const std::array corners = {
-      std::pow(x.range.low, y.range.low), std::pow(x.range.low, y.range.high),
-      std::pow(x.range.high, y.range.low), std::pow(x.range.high, y.range.high)};
+      elementary::pow(x.range.low, y.range.low), elementary::pow(x.range.low, y.range.high),
+      elementary::pow(x.range.high, y.range.low), elementary::pow(x.range.high, y.range.high)};
   const auto [least_corner, greatest_corner] = std::minmax_element(corners.begin(), corners.end());
   const double low = std::max(kernel_down(std::min(*least_corner, kMax)), 0.0);
   return decorate({low, kernel_up(*greatest_corner)}, decoration);
@@ -238,7 +240,7 @@ DecoratedInterval power(const DecoratedInterval& x, const DecoratedInterval& y) 
 DecoratedInterval exponential(const DecoratedInterval& x) {
   const auto bound_low = [](double t) {
     if (t == 0) return 1.0;
-    const double y = std::exp(t);
+    const double y = elementary::exp(t);
     // A kernel may flush results below the normal range to zero.
     if (y < 1e-307) return 0.0;
     const double low = kernel_down(std::min(y, kMax));
@@ -246,7 +248,7 @@ DecoratedInterval exponential(const DecoratedInterval& x) {
   };
   const auto bound_high = [](double t) {
     if (t == 0) return 1.0;
-    const double high = kernel_up(std::exp(t));
+    const double high = kernel_up(elementary::exp(t));
     return t < 0 ? std::min(high, 1.0) : high;
   };
   return decorate({bound_low(x.range.low), bound_high(x.range.high)}, x.decoration);
@@ -255,7 +257,7 @@ DecoratedInterval exponential(const DecoratedInterval& x) {
 DecoratedInterval logarithm(const DecoratedInterval& x) {
   const auto bound = [](double t, bool is_low) {
     if (t == 1) return 0.0;
-    const double y = std::log(t);
+    const double y = elementary::log(t);
     const double moved = is_low ? kernel_down(y) : kernel_up(y);
     return t > 1 ? std::max(moved, 0.0) : std::min(moved, 0.0);
   };
@@ -278,7 +280,7 @@ DecoratedInterval sign(const DecoratedInterval& x) {
 
 DecoratedInterval hyperbolic_tangent(const DecoratedInterval& x) {
   const auto low = [](double t) {
-    const double moved = std::max(kernel_down(std::tanh(t)), -1.0);
+    const double moved = std::max(kernel_down(elementary::tanh(t)), -1.0);
     return t >= 0 ? std::max(moved, 0.0) : moved;
   };
   return {{low(x.range.low), -low(-x.range.high)}, x.decoration};
@@ -297,8 +299,8 @@ Interval sine_range(const Interval& x, int shift) {
   const double guard = 1e-12 * (1 + x.magnitude());
   const double low_turn = x.low * kQuarterTurns + shift - guard;
   const double high_turn = x.high * kQuarterTurns + shift + guard;
-  const double a = shift == 0 ? std::sin(x.low) : std::cos(x.low);
-  const double b = shift == 0 ? std::sin(x.high) : std::cos(x.high);
+  const double a = shift == 0 ? elementary::sin(x.low) : elementary::cos(x.low);
+  const double b = shift == 0 ? elementary::sin(x.high) : elementary::cos(x.high);
   // Close to a zero of the function a kernel's error is absolute: that of its reduced argument.
   const double slack = 0x1p-58 * (1 + x.magnitude());
   Interval range{kernel_down(std::min(a, b)) - slack, kernel_up(std::max(a, b)) + slack};

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -11,19 +10,17 @@
 
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/formula_name.hpp"
 #include "foundation/suggestion.hpp"
 
 namespace tribench {
 namespace {
 
-constexpr std::array kFunctions = {Op::exp, Op::log, Op::sqrt, Op::abs,
-                                   Op::sgn, Op::sin, Op::cos,  Op::tanh};
-
+// kFunctionNames are in the order of Op.
 std::optional<Op> function_of(std::string_view name) {
-  for (const Op op : kFunctions) {
-    if (op_name(op) == name) return op;
-  }
-  return std::nullopt;
+  const auto found = std::ranges::find(kFunctionNames, name);
+  if (found == kFunctionNames.end()) return std::nullopt;
+  return static_cast<Op>(static_cast<int>(Op::exp) + (found - kFunctionNames.begin()));
 }
 
 // Recursive descent that appends to a postfix tape.
@@ -165,6 +162,11 @@ class Parser {
       names_.emplace_back(name);
       found = names_.end() - 1;
     }
+    if (found - names_.begin() >= static_cast<std::ptrdiff_t>(kMaxInputs)) {
+      at_ = start;
+      fail(fmt::format("'{}' is an input beyond the {} that a formula can name", name, kMaxInputs),
+           "leave out inputs that it does not use");
+    }
     tape_.push_back(Node::input(static_cast<std::size_t>(found - names_.begin())));
   }
 
@@ -199,10 +201,7 @@ class Parser {
   }
 
   static std::vector<std::string> function_names() {
-    std::vector<std::string> names;
-    names.reserve(kFunctions.size());
-    for (const Op op : kFunctions) names.emplace_back(op_name(op));
-    return names;
+    return {kFunctionNames.begin(), kFunctionNames.end()};
   }
 
   static std::string suggestion(std::string_view word, const std::vector<std::string>& known) {

@@ -6,6 +6,7 @@
 #include "algorithms/expression/infix.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/formula_name.hpp"
 
 namespace tribench {
 namespace {
@@ -35,6 +36,7 @@ std::string print(const Expression& formula, std::span<const std::string> names)
     if (node.variable >= names.size()) {
       throw Error(ErrorKind::failed, fmt::format("column {} has no name", node.variable));
     }
+    require_formula_name(names[node.variable], "formula");
     return {names[node.variable], kAtom};
   };
   return write_pieces(formula, leaf, print_unary, print_binary);

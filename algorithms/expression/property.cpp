@@ -260,6 +260,11 @@ void check_question(const InputBox& box, const PropertyQuestion& question) {
     throw_bad_input("the start of a range and a limit are not negative", "property");
   }
   const InputRange& v = box[question.velocity];
+  if (question.property == Property::monotone && !(question.from < std::max(v.high, -v.low))) {
+    throw_bad_input(fmt::format("no speed of the box {}:{} lies beyond {}: nothing is asked", v.low,
+                                v.high, question.from),
+                    "--from", "start below the largest speed");
+  }
   if (question.property == Property::odd && !(v.low < 0 && v.high > 0)) {
     throw_bad_input("oddness needs a velocity range with both signs", "--box",
                     "let the velocity's range hold 0 inside");

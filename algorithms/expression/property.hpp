@@ -44,7 +44,8 @@ struct PropertyResult {
   std::size_t boxes = 0;
 };
 
-// Throws Error (bad_input) on a box that is none, or a velocity that is no input with a range.
+// Throws Error (bad_input) on a box that is none, a velocity that is no input with a range, or a
+// question about no point of the box (monotone from beyond the largest speed).
 PropertyResult prove_property(const Expression& formula, const InputBox& box,
                               const PropertyQuestion& question, const ProofLimits& limits = {});
 

@@ -41,7 +41,8 @@ struct Hole {
 Expression parse_with_holes(std::string_view text, std::span<const std::string> names,
                             std::vector<Hole>& holes);
 
-// Throws Error (failed) where a column has no name.
+// Throws Error (failed) where a column has no name, (bad_input) where its name is none that a
+// formula can hold (foundation/formula_name.hpp).
 std::string print(const Expression& formula, std::span<const std::string> names);
 
 // The shortest text that reads back as the same double.

@@ -13,6 +13,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "foundation/scratch_folder.hpp"
 
 namespace tribench {
@@ -135,7 +136,7 @@ class AnswerReader {
   // Lines that are no JSON object are the program's own chatter.
   void take_line(const std::string& line) {
     const json object =
-        line.starts_with('{') ? json::parse(line, nullptr, false) : json(json::value_t::discarded);
+        line.starts_with('{') ? read_json<json>(line) : json(json::value_t::discarded);
     if (!object.is_object()) {
       if (other_output_.empty()) other_output_ = excerpt(line);
       return;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench {
 namespace {
 
@@ -13,7 +15,7 @@ bool succeeded(const Minimum& minimum) { return minimum.status == MinimizeStatus
 bool accepts(const Minimum& candidate, const Minimum& current, double temperature, double uniform) {
   const double rise = candidate.value - current.value;
   const double exponent = rise <= 0 ? 0 : temperature > 0 ? -rise / temperature : -HUGE_VAL;
-  return std::exp(exponent) >= uniform && (succeeded(candidate) || !succeeded(current));
+  return elementary::exp(exponent) >= uniform && (succeeded(candidate) || !succeeded(current));
 }
 
 bool is_better(const Minimum& candidate, const Minimum& best, BestRule rule) {

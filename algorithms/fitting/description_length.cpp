@@ -7,6 +7,7 @@
 #include <set>
 
 #include "algorithms/expression/edit.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 namespace {
@@ -36,14 +37,14 @@ double description_length(const Expression& formula, const Inputs& inputs,
   for (double y : target) size += y * y;
   const double floor = kLeastRelativeError * kLeastRelativeError * std::max(size, 1e-300);
   const double variance = std::max(sums.sum_squares, floor) / n;
-  double length = 0.5 * n * std::log(variance);
+  double length = 0.5 * n * elementary::log(variance);
   length += static_cast<double>(formula.size()) *
-            std::log(static_cast<double>(std::max<std::size_t>(symbols_of(formula), 2)));
+            elementary::log(static_cast<double>(std::max<std::size_t>(symbols_of(formula), 2)));
   for (std::size_t k = 0; k < places.size(); ++k) {
     const double information = sums.curvature[k * places.size() + k] / variance;
     const double value = std::abs(formula.node(places[k]).value);
     if (!(information > 0) || value == 0) continue;
-    length += std::max(0.0, std::log(value) + 0.5 * std::log(information / 3));
+    length += std::max(0.0, elementary::log(value) + 0.5 * elementary::log(information / 3));
   }
   return length;
 }

@@ -7,6 +7,7 @@
 
 #include "algorithms/expression/edit.hpp"
 #include "algorithms/fitting/shape_dimension.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 namespace {
@@ -21,14 +22,15 @@ double evidence_price(const Expression& formula, std::size_t rows, double node_p
   for (std::size_t i = 0; i < formula.size(); ++i) {
     if (!is_exponent(formula, i)) ++nodes;
   }
-  return 0.5 * static_cast<double>(shape_dimension(formula)) * std::log(static_cast<double>(rows)) +
+  return 0.5 * static_cast<double>(shape_dimension(formula)) *
+             elementary::log(static_cast<double>(rows)) +
          node_price * static_cast<double>(nodes);
 }
 
 double evidence_against(const Expression& formula, double mean_square, double zero_loss,
                         std::size_t rows, double node_price) {
   const double square = std::max({mean_square, kRounding * zero_loss, 1e-300});
-  return 0.5 * static_cast<double>(rows) * (std::log(2 * std::numbers::pi * square) + 1) +
+  return 0.5 * static_cast<double>(rows) * (elementary::log(2 * std::numbers::pi * square) + 1) +
          evidence_price(formula, rows, node_price);
 }
 

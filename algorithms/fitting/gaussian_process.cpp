@@ -7,6 +7,7 @@
 #include <span>
 
 #include "algorithms/fitting/nlopt_minimizer.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 namespace {
@@ -32,24 +33,29 @@ Eigen::MatrixXd squared_distances(const Eigen::MatrixXd& points) {
 }
 
 Eigen::MatrixXd correlations(const Eigen::MatrixXd& points, double length) {
-  return (squared_distances(points).array() * (-0.5 / (length * length))).exp().matrix();
+  return (squared_distances(points).array() * (-0.5 / (length * length)))
+      .unaryExpr(&elementary::exp)
+      .matrix();
 }
 
 // The logarithms that the likelihood is searched over.
 Covariance covariance_of(std::span<const double> logs) {
   const auto d = static_cast<Eigen::Index>(logs.size()) - 2;
-  Covariance covariance{Eigen::VectorXd(d), std::exp(logs[logs.size() - 2]), std::exp(logs.back())};
+  Covariance covariance{Eigen::VectorXd(d), elementary::exp(logs[logs.size() - 2]),
+                        elementary::exp(logs.back())};
   for (Eigen::Index j = 0; j < d; ++j) {
-    covariance.lengths[j] = std::exp(logs[static_cast<std::size_t>(j)]);
+    covariance.lengths[j] = elementary::exp(logs[static_cast<std::size_t>(j)]);
   }
   return covariance;
 }
 
 Bounds bounds_of(std::size_t inputs) {
-  Bounds bounds{std::vector<double>(inputs, std::log(kShortest)),
-                std::vector<double>(inputs, std::log(kLongest))};
-  bounds.low.insert(bounds.low.end(), {std::log(kLeastNoise), std::log(kLeastConstant)});
-  bounds.high.insert(bounds.high.end(), {std::log(kMostNoise), std::log(kMostConstant)});
+  Bounds bounds{std::vector<double>(inputs, elementary::log(kShortest)),
+                std::vector<double>(inputs, elementary::log(kLongest))};
+  bounds.low.insert(bounds.low.end(),
+                    {elementary::log(kLeastNoise), elementary::log(kLeastConstant)});
+  bounds.high.insert(bounds.high.end(),
+                     {elementary::log(kMostNoise), elementary::log(kMostConstant)});
   return bounds;
 }
 
@@ -91,7 +97,8 @@ bool GaussianProcess::train(const Eigen::MatrixXd& points, const Eigen::VectorXd
 
 double GaussianProcess::mean_at(const Eigen::VectorXd& point) const {
   const Eigen::VectorXd distances = (points_.rowwise() - point.transpose()).rowwise().squaredNorm();
-  const Eigen::ArrayXd kernel = (distances.array() * (-0.5 / (length_ * length_))).exp();
+  const Eigen::ArrayXd kernel =
+      (distances.array() * (-0.5 / (length_ * length_))).unaryExpr(&elementary::exp);
   return kernel.matrix().dot(weights_) + constant_ * weights_.sum();
 }
 
@@ -116,7 +123,8 @@ double log_likelihood(const Eigen::MatrixXd& points, const Eigen::VectorXd& targ
   if (factor.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
   const Eigen::VectorXd weights = factor.solve(target);
   const double variance = target.dot(weights) / static_cast<double>(n);
-  const double log_determinant = 2 * factor.matrixLLT().diagonal().array().log().sum();
+  const double log_determinant =
+      2 * factor.matrixLLT().diagonal().array().unaryExpr(&elementary::log).sum();
   if (gradient != nullptr) {
     // dL / dtheta = tr((w w' / variance - K^-1) dK / dtheta) / 2, equation 5.9.
     Eigen::MatrixXd slope = weights * weights.transpose() / variance;
@@ -132,7 +140,7 @@ double log_likelihood(const Eigen::MatrixXd& points, const Eigen::VectorXd& targ
     (*gradient)[d] = 0.5 * covariance.noise * slope.trace();
     (*gradient)[d + 1] = 0.5 * covariance.constant * slope.sum();
   }
-  return -0.5 * (static_cast<double>(n) * std::log(variance) + log_determinant);
+  return -0.5 * (static_cast<double>(n) * elementary::log(variance) + log_determinant);
 }
 
 Covariance most_likely_covariance(const Eigen::MatrixXd& points, const Eigen::VectorXd& target,
@@ -155,7 +163,7 @@ Covariance most_likely_covariance(const Eigen::MatrixXd& points, const Eigen::Ve
   std::vector<Start> starts;
   for (int i = 0; i <= restarts; ++i) {
     std::vector<double> logs(inputs, 0.0);
-    logs.insert(logs.end(), {std::log(0.1), 0.0});
+    logs.insert(logs.end(), {elementary::log(0.1), 0.0});
     for (std::size_t k = 0; i > 0 && k < logs.size(); ++k) {
       logs[k] = random.uniform(bounds.low[k], bounds.high[k]);
     }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench {
 namespace {
 
@@ -74,7 +76,7 @@ Posterior posterior_of(std::vector<WeighedFormula> pool, Sampler& sampler) {
         })) {
       continue;
     }
-    weights.push_back(std::exp(pool.front().against - member.against));
+    weights.push_back(elementary::exp(pool.front().against - member.against));
     total += weights.back();
     result.mean.resize(values.size(), 0.0);
     for (std::size_t r = 0; r < values.size(); ++r) result.mean[r] += weights.back() * values[r];

@@ -7,6 +7,7 @@
 
 #include "algorithms/fitting/ipopt_minimizer.hpp"
 #include "algorithms/fitting/linear_least_squares.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 namespace {
@@ -58,8 +59,8 @@ class ShapeSearch {
   void refine(std::vector<Candidate>& chosen, double& best);
   void write(std::span<const Candidate> chosen, StribeckModel& model) const;
   std::size_t branches() const { return model_.branches.size(); }
-  double low_log() const { return std::log(highest_ * kLeastVelocityShare); }
-  double high_log() const { return std::log(highest_); }
+  double low_log() const { return elementary::log(highest_ * kLeastVelocityShare); }
+  double high_log() const { return elementary::log(highest_); }
 
   const StribeckRows& rows_;
   const StribeckModel& model_;
@@ -104,7 +105,7 @@ Candidate ShapeSearch::make_candidate(std::size_t branch, const Shape& shape) {
     stopped_ = true;
     return candidate;
   }
-  const double velocity = std::exp(shape.log_velocity);
+  const double velocity = elementary::exp(shape.log_velocity);
   for (std::size_t row = 0; row < rows_.size(); ++row) {
     if (rows_.branch[row] != branch) continue;
     const double value =
@@ -211,9 +212,10 @@ void ShapeSearch::write(std::span<const Candidate> chosen, StribeckModel& model)
   std::vector<double> solution;
   solve(all, solution);
   for (std::size_t branch = 0; branch < branches(); ++branch) {
-    model.branches[branch] = {solution[2 * branch], solution[fixed_.size() + branch],
-                              std::min(std::exp(chosen[branch].shape.log_velocity), highest_),
-                              chosen[branch].shape.exponent, solution[2 * branch + 1]};
+    model.branches[branch] = {
+        solution[2 * branch], solution[fixed_.size() + branch],
+        std::min(elementary::exp(chosen[branch].shape.log_velocity), highest_),
+        chosen[branch].shape.exponent, solution[2 * branch + 1]};
   }
   std::size_t next = 2 * branches();
   if (model.has_offset) model.offset = solution[next++];

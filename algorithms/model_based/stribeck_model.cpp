@@ -5,11 +5,12 @@
 #include <cmath>
 
 #include "algorithms/expression/build.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 
 double stribeck_decay(double velocity, double stribeck_velocity, double exponent) {
-  return std::exp(-std::pow(std::abs(velocity / stribeck_velocity), exponent));
+  return elementary::exp(-elementary::pow(std::abs(velocity / stribeck_velocity), exponent));
 }
 
 std::vector<double> StribeckModel::parameters() const {
@@ -51,8 +52,8 @@ double StribeckModel::sum_squares(const StribeckRows& rows, std::span<double> gr
     const StribeckBranch& b = branches[which];
     const double v = rows.velocity[row];
     const double ratio = std::abs(v / b.stribeck_velocity);
-    const double power = std::pow(ratio, b.exponent);
-    const double decay = std::exp(-power);
+    const double power = elementary::pow(ratio, b.exponent);
+    const double decay = elementary::exp(-power);
     double error = rows.sign[row] * (b.coulomb + b.breakaway_excess * decay) + b.viscous * v -
                    rows.target[row];
     if (has_offset) error += offset;
@@ -67,7 +68,7 @@ double StribeckModel::sum_squares(const StribeckRows& rows, std::span<double> gr
     g[1] += twice * rows.sign[row] * decay;
     if (power > 0 && std::isfinite(power)) {
       g[2] += slope * power * b.exponent / b.stribeck_velocity;
-      g[3] -= slope * power * std::log(ratio);
+      g[3] -= slope * power * elementary::log(ratio);
     }
     g[4] += twice * v;
     std::size_t next = kBranchParameters * branches.size();

@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "algorithms/expression/column_kernels.hpp"
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/sign.hpp"
 
 namespace tribench::parfam {
 namespace {
 
-const double kExpCeiling = std::exp(10.0);
+const double kExpCeiling = elementary::exp(10.0);
 constexpr double kLogFloor = 1e-6;
 
 double log_floor(Convention convention) {

@@ -12,6 +12,7 @@
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/description_length.hpp"
 #include "algorithms/parfam/pole_guard.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench::parfam {
 namespace {
@@ -121,8 +122,8 @@ void Front::enter(Member member) {
       description_length(member.formula, data_.table(), data_.target, differentiator_);
   const auto n = static_cast<double>(data_.rows());
   const double variance = std::max(member.sum_squares, kLeastVariance * target_squares_) / n;
-  member.bic = 0.5 * n * std::log(variance) +
-               (0.5 * std::log(n) + kChoiceCost) *
+  member.bic = 0.5 * n * elementary::log(variance) +
+               (0.5 * elementary::log(n) + kChoiceCost) *
                    static_cast<double>(parameter_places(member.formula).size());
   std::erase_if(members_, [&](const Member& other) {
     return other.complexity >= member.complexity && other.sum_squares >= member.sum_squares;

@@ -8,6 +8,7 @@
 #include "algorithms/fitting/basin_hopping.hpp"
 #include "algorithms/fitting/ipopt_minimizer.hpp"
 #include "algorithms/fitting/nlopt_minimizer.hpp"
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench::parfam {
@@ -80,7 +81,8 @@ Minimum hop(const Objective& objective, std::size_t rows, std::span<const double
   settings.max_evaluations = kHopEvaluations;
   const LocalMinimizer local = [&](std::span<const double> x) {
     Minimum minimum = minimize_nlopt(NloptMethod::lbfgs, objective, x, {}, settings);
-    minimum.value = 0.5 * static_cast<double>(rows) * std::log(std::max(minimum.value, 1e-300));
+    minimum.value =
+        0.5 * static_cast<double>(rows) * elementary::log(std::max(minimum.value, 1e-300));
     return minimum;
   };
   const Minimum first = local(start);

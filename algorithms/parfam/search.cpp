@@ -12,6 +12,7 @@
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/parfam/elimination.hpp"
 #include "algorithms/parfam/subset.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench::parfam {
 namespace {
@@ -205,7 +206,7 @@ std::vector<Structure> Search::structures() const {
 double promise(const TrainedModel& model, std::size_t rows, double floor) {
   const auto n = static_cast<double>(rows);
   const auto p = static_cast<double>(model.coefficients.size() + model.inner.size());
-  return n * std::log(std::max(model.sum_squares, floor) / n) + p * std::log(n);
+  return n * elementary::log(std::max(model.sum_squares, floor) / n) + p * elementary::log(n);
 }
 
 void Search::add_families() {

@@ -10,6 +10,7 @@
 #include "algorithms/fitting/linear_least_squares.hpp"
 #include "algorithms/pysr/simplify.hpp"
 #include "algorithms/pysr/tape_edit.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench::pysr {
 namespace {
@@ -32,12 +33,13 @@ double invert_binary(Op op, double target, double other, bool on_right, double c
     case Op::div:
       return on_right ? other / target : target * other;
     case Op::pow: {
-      if (on_right) return std::log(target) / std::log(other);
-      if (std::fmod(other, 2) == 0) return std::copysign(std::pow(target, 1 / other), current);
+      if (on_right) return elementary::log(target) / elementary::log(other);
+      if (std::fmod(other, 2) == 0)
+        return std::copysign(elementary::pow(target, 1 / other), current);
       if (std::floor(other) == other) {
-        return std::copysign(std::pow(std::abs(target), 1 / other), target);
+        return std::copysign(elementary::pow(std::abs(target), 1 / other), target);
       }
-      return std::pow(target, 1 / other);
+      return elementary::pow(target, 1 / other);
     }
     default:
       return kUndefined;
@@ -49,15 +51,15 @@ double invert_unary(Op op, double target, double current) {
     case Op::neg:
       return -target;
     case Op::exp:
-      return std::log(target);
+      return elementary::log(target);
     case Op::log:
-      return std::exp(target);
+      return elementary::exp(target);
     case Op::sqrt:
       return target < 0 ? kUndefined : target * target;
     case Op::abs:
       return target < 0 ? kUndefined : std::copysign(target, current);
     case Op::tanh:
-      return std::atanh(target);
+      return elementary::atanh(target);
     default:
       return kUndefined;
   }

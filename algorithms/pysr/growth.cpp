@@ -9,6 +9,7 @@
 #include "algorithms/fitting/evidence.hpp"
 #include "algorithms/fitting/shape_dimension.hpp"
 #include "algorithms/pysr/tape_edit.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench::pysr {
 namespace {
@@ -222,8 +223,9 @@ std::vector<Grower::Candidate> Grower::distinct(std::vector<Candidate> candidate
   std::vector<Candidate> kept;
   double last = 0;
   for (Candidate& candidate : candidates) {
-    candidate.gain = -0.5 * n * std::log1p(-std::min(candidate.decrease / before, kAllExplained)) -
-                     price_of(candidate);
+    candidate.gain =
+        -0.5 * n * elementary::log1p(-std::min(candidate.decrease / before, kAllExplained)) -
+        price_of(candidate);
     // What explains the same is the same to first order; the cheapest stands for all.
     if (kept.empty() || candidate.decrease < (1 - kSameDecrease) * last) {
       kept.push_back(candidate);
@@ -243,7 +245,8 @@ double Grower::price_of(const Candidate& candidate) const {
   if (candidate.term->is_one()) nodes = 2;
   const double constants =
       candidate.term->is_one() ? 1 : static_cast<double>(shape_dimension(term));
-  return kNodePrice * nodes + 0.5 * constants * std::log(static_cast<double>(residual_.size()));
+  return kNodePrice * nodes +
+         0.5 * constants * elementary::log(static_cast<double>(residual_.size()));
 }
 
 std::vector<Proposal> Grower::prune(const Expression& formula, const Rows& rows, Budget& budget) {

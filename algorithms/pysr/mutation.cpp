@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "algorithms/pysr/tape_edit.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench::pysr {
 namespace {
@@ -176,7 +177,7 @@ MutationKind draw_kind(const MutationWeights& weights, RandomStream& random) {
 
 double constant_factor(const MutationSettings& settings, RandomStream& random) {
   const double largest = settings.perturbation_factor * settings.temperature + 1.1;
-  double factor = std::pow(largest, random.uniform());
+  double factor = elementary::pow(largest, random.uniform());
   if (random.chance(0.5)) factor = 1 / factor;
   // The original compares the other way round and so nearly always flips the sign.
   const bool drawn = random.chance(settings.negate_probability);

@@ -6,6 +6,7 @@
 
 #include "algorithms/expression/column_kernels.hpp"
 #include "algorithms/fitting/evidence.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench::pysr {
 namespace {
@@ -61,7 +62,7 @@ Member Scorer::member_of(Expression formula, double mean_square) const {
   member.cost = member.loss / rule_.norm + rule_.parsimony * member.size;
   if (rule_.evidence_rows > 0) {
     const double price = evidence_price(formula, rule_.evidence_rows);
-    member.cost *= std::exp(2 * price / static_cast<double>(rule_.evidence_rows));
+    member.cost *= elementary::exp(2 * price / static_cast<double>(rule_.evidence_rows));
   }
   member.formula = std::move(formula);
   return member;

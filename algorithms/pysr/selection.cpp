@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::pysr {
 namespace {
 
@@ -17,7 +19,7 @@ std::vector<double> front_scores(std::span<const FrontPoint> front) {
   for (std::size_t i = 1; i < front.size(); ++i) {
     const double steps = front[i].size - front[i - 1].size;
     if (!(steps > 0) || !(front[i - 1].loss > 0)) continue;
-    const double fall = std::log(front[i - 1].loss) - std::log(front[i].loss);
+    const double fall = elementary::log(front[i - 1].loss) - elementary::log(front[i].loss);
     scores[i] = std::max(0.0, fall / steps);
   }
   return scores;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::pysr {
 namespace {
 
@@ -18,7 +20,7 @@ double frequency_or_floor(const SizeFrequencies& frequencies, int size) {
 }  // namespace
 
 std::size_t draw_rank(std::size_t contestants, double p, RandomStream& random) {
-  const double total = 1 - std::pow(1 - p, static_cast<double>(contestants));
+  const double total = 1 - elementary::pow(1 - p, static_cast<double>(contestants));
   double left = random.uniform() * total;
   double share = p;
   for (std::size_t rank = 0; rank + 1 < contestants; ++rank) {
@@ -45,7 +47,7 @@ std::size_t run_tournament(std::span<const Member> members, const SizeFrequencie
     const Member& member = members[order[k]];
     double cost = member.cost;
     if (options.use_frequency_in_tournament) {
-      cost *= std::exp(options.adaptive_parsimony * frequencies.normalised(member.size));
+      cost *= elementary::exp(options.adaptive_parsimony * frequencies.normalised(member.size));
     }
     field[k] = {cost, order[k]};
   }
@@ -67,7 +69,7 @@ double acceptance(double cost_child, double cost_parent, int size_child, int siz
                   double temperature, const SizeFrequencies& frequencies, const Options& options) {
   double probability = 1;
   if (options.annealing) {
-    probability *= std::exp(-(cost_child - cost_parent) / (temperature * options.alpha));
+    probability *= elementary::exp(-(cost_child - cost_parent) / (temperature * options.alpha));
   }
   if (options.use_frequency) {
     probability *=

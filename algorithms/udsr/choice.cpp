@@ -13,6 +13,7 @@
 #include "algorithms/fitting/evidence.hpp"
 #include "algorithms/fitting/posterior_choice.hpp"
 #include "algorithms/udsr/pruning.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench::udsr {
 namespace {
@@ -43,7 +44,8 @@ std::size_t least_bic(std::span<const Expression> front, const ScoringProblem& p
   std::vector<double> criteria;
   for (const Expression& formula : front) {
     const auto constants = static_cast<double>(movable_constants(formula).size());
-    criteria.push_back(2 * n * std::log(scorer.nrmse(formula) + kExact) + constants * std::log(n));
+    criteria.push_back(2 * n * elementary::log(scorer.nrmse(formula) + kExact) +
+                       constants * elementary::log(n));
   }
   return place_of_least(criteria);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "algorithms/expression/column_kernels.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench::udsr {
 namespace {
@@ -150,8 +151,8 @@ void Adam::step(const VectorXd& gradient, VectorXd& parameters) {
   ++steps_;
   mean_ = kMeanDecay * mean_ + (1 - kMeanDecay) * gradient;
   square_ = kSquareDecay * square_ + (1 - kSquareDecay) * gradient.cwiseAbs2();
-  const double mean_scale = 1 / (1 - std::pow(kMeanDecay, steps_));
-  const double square_scale = 1 / (1 - std::pow(kSquareDecay, steps_));
+  const double mean_scale = 1 / (1 - elementary::pow(kMeanDecay, steps_));
+  const double square_scale = 1 / (1 - elementary::pow(kSquareDecay, steps_));
   parameters.array() -= learning_rate_ * (mean_scale * mean_.array()) /
                         ((square_scale * square_.array()).sqrt() + kEpsilon);
 }

@@ -7,6 +7,7 @@
 
 #include "algorithms/expression/column_kernels.hpp"
 #include "algorithms/udsr/policy.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench::udsr {
 namespace {
@@ -140,7 +141,7 @@ void Policy::add_output_gradient(const Unrolled& run, std::size_t t, StepErrors&
   Eigen::Map<MatrixXd> d_output(gradient.data() + at.output, outputs(), kH);
   Eigen::Map<VectorXd> d_output_bias(gradient.data() + at.output_bias, outputs());
   const ConstMatrix output(parameters_.data() + at.output, outputs(), kH);
-  const double discount = std::pow(errors.gamma, static_cast<double>(t));
+  const double discount = elementary::pow(errors.gamma, static_cast<double>(t));
   const MatrixXd& log_p = run.log_p[t];
   MatrixXd p(log_p.rows(), log_p.cols());
   columns::exp(log_p.data(), p.data(), static_cast<std::size_t>(p.size()));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench::udsr {
@@ -76,7 +77,7 @@ Prior::Prior(const TokenLibrary& library, const PriorOptions& options, const Dat
     by_children_[token.children] |= set_of(id);
     by_kind_[static_cast<int>(token.kind)] |= set_of(id);
     const auto alike = static_cast<double>(library.count_with_children(token.children));
-    arity_shift_.push_back(options.uniform_arity ? -std::log(alike) : 0.0);
+    arity_shift_.push_back(options.uniform_arity ? -elementary::log(alike) : 0.0);
   }
   if (options.inverse) {
     const TokenSet exp = operations(library, {Op::exp});

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::udsr {
 namespace {
 
@@ -34,16 +36,16 @@ Inverse invert_unary(Op op, double value) {
     case Op::neg:
       return {-value, -1};
     case Op::exp:
-      return {std::log(value), value};
+      return {elementary::log(value), value};
     case Op::log: {
-      const double x = std::exp(value);
+      const double x = elementary::exp(value);
       return {x, 1 / x};
     }
     case Op::sqrt:
       if (value < 0) break;
       return {value * value, 0.5 / value};
     case Op::tanh:
-      return {std::atanh(value), 1 - value * value};
+      return {elementary::atanh(value), 1 - value * value};
     default:
       break;
   }

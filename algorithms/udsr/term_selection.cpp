@@ -7,6 +7,7 @@
 
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/udsr/linear_token.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench::udsr {
 namespace {
@@ -123,8 +124,8 @@ std::vector<Expression> select_terms(std::span<const Monomial> terms, const Scor
   for (std::size_t size = 1; size <= std::min(kMostTerms, terms.size()); ++size) {
     beam = next_level(beam, subsets);
     for (const Rated& rated : beam) {
-      const double against =
-          0.5 * n * std::log(rated.sum_squares) + 0.5 * static_cast<double>(size) * std::log(n);
+      const double against = 0.5 * n * elementary::log(rated.sum_squares) +
+                             0.5 * static_cast<double>(size) * elementary::log(n);
       all.push_back({against, rated});
     }
     node_rows += kBeam * terms.size() * size * size;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::udsr {
 namespace {
 
@@ -150,7 +152,7 @@ class Trainer {
     std::vector<WeightedSequence> items = weighted(mini, b);
     const std::vector<double> now = policy_.log_probabilities(mini.sequences, prior_);
     for (std::size_t i = 0; i < items.size(); ++i) {
-      const double ratio = std::exp(now[i] - old[i]);
+      const double ratio = elementary::exp(now[i] - old[i]);
       const bool improves = items[i].advantage > 0;
       const bool is_clipped =
           improves ? ratio > 1 + options_.ppo_clip : ratio < 1 - options_.ppo_clip;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 
 namespace tribench::udsr {
 namespace {
@@ -50,8 +51,8 @@ std::optional<std::size_t> place_of(const std::vector<std::string>& names,
 
 // A weight file whose hash matches.
 Json parse_checked(std::string_view text, std::string_view place) {
-  Json file = Json::parse(text, nullptr, false);
-  if (file.is_discarded() || file.value("format", "") != kFormat) {
+  Json file = read_json<Json>(text);
+  if (!file.is_object() || file.value("format", "") != kFormat) {
     throw_bad_input("this is not a policy's weight file", place, kMend);
   }
   const int version = file.value("version", 0);

@@ -18,6 +18,7 @@
 #include "algorithms/expression/input_box.hpp"
 #include "algorithms/expression/property.hpp"
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "foundation/text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
@@ -100,7 +101,7 @@ void print_json(const Expression& formula, const NamedBox& box, Property propert
   if (result.verdict == Verdict::undecided) {
     json["undecided_box"] = ranges_json(result.undecided_box, box);
   }
-  fmt::print("{}\n", json.dump(2));
+  fmt::print("{}\n", write_json(json, 2));
 }
 
 void print_text(const NamedBox& box, Property property, const PropertyResult& result,
@@ -159,7 +160,7 @@ ExitStatus verify(const CheckOptions& options) {
     const Json json = {{"accepted", check.accepted}, {"reason", check.reason},
                        {"formula", check.formula},   {"box", check.box},
                        {"claim", check.claim},       {"pieces", check.pieces}};
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", write_json(json, 2));
   } else if (check.accepted) {
     fmt::print("accepted: {} is {} everywhere on {}  ({} pieces)\n", check.formula, check.claim,
                check.box, check.pieces);

@@ -16,6 +16,7 @@
 #include "algorithms/expression/export.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
 #include "problems/preparation/derived_channels.hpp"
@@ -41,8 +42,8 @@ struct LoopFormula {
 
 LoopFormula read_loop(const std::string& file) {
   std::ifstream in(file);
-  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
-  if (!in || json.is_discarded() || !json.contains("formula") || !json.contains("symbols")) {
+  const nlohmann::json json = read_json<nlohmann::json>(in);
+  if (!json.is_object() || !json.contains("formula") || !json.contains("symbols")) {
     throw_bad_input("this is no loop.json: it has no formula and symbols", file,
                     "give a formula, or the loop.json that 'tribench loop --out' writes");
   }

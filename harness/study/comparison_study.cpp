@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "foundation/elementary.hpp"
 #include "foundation/random.hpp"
 #include "reports/comparison.hpp"
 #include "reports/run_folder.hpp"
@@ -44,11 +45,11 @@ RunFolder made_up_run(const std::string& name, const ComparisonStudyOptions& opt
         RandomStream own(key_of(record.cell));
         RandomStream noise(key_of(record.cell + name));
         const bool is_planted = method == kPlantedMethod;
-        record.mae_test =
-            std::exp(options.seed_spread * own.normal() + options.run_spread * noise.normal()) *
-            (is_planted ? planted.error : 1);
+        record.mae_test = elementary::exp(options.seed_spread * own.normal() +
+                                          options.run_spread * noise.normal()) *
+                          (is_planted ? planted.error : 1);
         record.fit_cpu_s =
-            std::exp(options.time_spread * noise.normal()) * (is_planted ? planted.time : 1);
+            elementary::exp(options.time_spread * noise.normal()) * (is_planted ? planted.time : 1);
         run.records.push_back(record);
       }
     }

@@ -12,6 +12,7 @@
 #include "algorithms/diagnosis/held_out.hpp"
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "foundation/scratch_folder.hpp"
 #include "problems/reading/csv.hpp"
 
@@ -120,7 +121,7 @@ json object_in(const std::string& text) {
   json found;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const json line = json::parse(text.substr(begin, end - begin), nullptr, false);
+    const json line = read_json<json>(std::string_view(text).substr(begin, end - begin));
     if (line.is_object()) found = line;
     begin = end + 1;
   }

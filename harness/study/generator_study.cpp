@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 
+#include "foundation/elementary.hpp"
 #include "problems/kuka/campaign.hpp"
 #include "problems/kuka/entries.hpp"
 
@@ -96,7 +97,7 @@ std::vector<double> asymmetric(const Table& table, std::size_t r) {
 
 std::vector<double> quartic(const Table& table, std::size_t r) {
   const double speed = std::abs(table.columns[0][r]);
-  return by_direction(table.columns[1][r], {1.0, speed, std::pow(speed, 4)});
+  return by_direction(table.columns[1][r], {1.0, speed, elementary::pow(speed, 4)});
 }
 
 std::vector<double> true_form(const Table& table, std::size_t r) {
@@ -104,7 +105,7 @@ std::vector<double> true_form(const Table& table, std::size_t r) {
   const double g = table.columns[2][r];
   row.push_back(table.columns[1][r] * std::abs(g));
   row.push_back(g);
-  row.push_back(std::tanh(g / 0.5));
+  row.push_back(elementary::tanh(g / 0.5));
   return row;
 }
 
@@ -114,13 +115,14 @@ double stribeck_error(const Table& table) {
   double least = std::numeric_limits<double>::infinity();
   double mae = 0;
   for (int i = 0; i <= 20; ++i) {
-    const double stribeck_velocity = 0.1 * std::pow(15.0, i / 20.0);  // 0.1 .. 1.5 rad/s
+    const double stribeck_velocity = 0.1 * elementary::pow(15.0, i / 20.0);  // 0.1 .. 1.5 rad/s
     for (int j = 1; j <= 18; ++j) {
       const double exponent = 0.5 * j;
       const LinearFit fit = fit_and_judge(table, table, [&](const Table& rows, std::size_t r) {
         const double speed = std::abs(rows.columns[0][r]);
-        return by_direction(rows.columns[1][r],
-                            {1.0, speed, std::exp(-std::pow(speed / stribeck_velocity, exponent))});
+        return by_direction(
+            rows.columns[1][r],
+            {1.0, speed, elementary::exp(-elementary::pow(speed / stribeck_velocity, exponent))});
       });
       if (fit.squares < least) {
         least = fit.squares;

@@ -8,6 +8,7 @@
 #include "algorithms/diagnosis/effect_library.hpp"
 #include "algorithms/diagnosis/loop_model.hpp"
 #include "algorithms/diagnosis/score_test.hpp"
+#include "foundation/elementary.hpp"
 #include "foundation/incomplete_gamma.hpp"
 
 namespace tribench {
@@ -51,8 +52,9 @@ NaiveFindings test_naively(const loop::Observations& data, double gear_ratio) {
       const auto p = static_cast<double>(own.cols());
       // With thousands of rows p F is chi-squared with p degrees of freedom.
       const double chi = explained / ((before - explained) / (n - p));
-      smallest = std::min(smallest, std::exp(log_gamma_upper_tail(p / 2, chi / 2)));
-      if (n * std::log((before - explained) / before) + p * std::log(n) < 0) findings.bic = true;
+      smallest = std::min(smallest, elementary::exp(log_gamma_upper_tail(p / 2, chi / 2)));
+      if (n * elementary::log((before - explained) / before) + p * elementary::log(n) < 0)
+        findings.bic = true;
     }
     family_p.push_back(smallest);
   }

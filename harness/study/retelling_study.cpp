@@ -12,9 +12,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "foundation/scratch_folder.hpp"
 #include "foundation/child_process.hpp"
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
+#include "foundation/scratch_folder.hpp"
 #include "harness/progress_line.hpp"
 #include "reports/statistics/intervals.hpp"
 
@@ -109,7 +110,7 @@ RetellingFigure figure_of(const Retelling& way, const std::vector<RetellingOutco
     figure.same += one.same ? 1 : 0;
     figure.bits += one.same_bits ? 1 : 0;
     if (std::isfinite(one.error_ratio) && one.error_ratio > 0) {
-      logs.push_back(std::log(one.error_ratio));
+      logs.push_back(elementary::log(one.error_ratio));
     }
   }
   if (figure.told == 0) return figure;
@@ -126,10 +127,10 @@ RetellingFigure figure_of(const Retelling& way, const std::vector<RetellingOutco
   };
   const ConfidenceInterval ratio =
       bootstrap(logs, mean, kConfidence, 999, RandomStream(key_of("retellings")).split(way.name));
-  figure.ratio = std::exp(mean(logs));
-  figure.ratio_low = std::exp(ratio.low);
-  figure.ratio_high = std::exp(ratio.high);
-  figure.ratio_largest = std::exp(
+  figure.ratio = elementary::exp(mean(logs));
+  figure.ratio_low = elementary::exp(ratio.low);
+  figure.ratio_high = elementary::exp(ratio.high);
+  figure.ratio_largest = elementary::exp(
       *std::ranges::max_element(logs, {}, [](double log_ratio) { return std::abs(log_ratio); }));
   return figure;
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
 #include "problems/benchmark/nguyen.hpp"
@@ -33,7 +34,7 @@ constexpr PeerLaw kPeerLaws[] = {
      0.05,
      [](double v, double s, double) {
        return (3.66 * v + 8.52 * s - 0.44) *
-              std::exp(-0.78 * v * v + 1.26 * v * s + 0.02 * v - 0.02 * s);
+              elementary::exp(-0.78 * v * v + 1.26 * v * s + 0.02 * v - 0.02 * s);
      }},
     {"load4d", "8*sgn_v*(1 + 0.012*g*sgn_g) + 12*v - 3*v^3/3.6 + 0.05*g*sgn_v*sgn_g", true, 5000,
      0.3,
@@ -82,7 +83,7 @@ Table test_grid(const PeerLaw& law) {
   for (int k = 0; k < kGridPoints; ++k) {
     const double v = -kFastest + 2 * kFastest * k / (kGridPoints - 1);
     if (2 * k == kGridPoints - 1) continue;
-    append(law, v, kLargestLoad * std::sin(kTurn * 37 * k / kGridPoints + 0.3), 0, table);
+    append(law, v, kLargestLoad * elementary::sin(kTurn * 37 * k / kGridPoints + 0.3), 0, table);
   }
   return table;
 }

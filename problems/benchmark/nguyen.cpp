@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "foundation/elementary.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench::benchmark {
@@ -32,16 +33,17 @@ constexpr std::array<NguyenLaw, 12> kLaws = {{
     {"x^6 + x^5 + x^4 + x^3 + x^2 + x", -1, 1, 1,
      [](double x, double) { return (((((x + 1) * x + 1) * x + 1) * x + 1) * x + 1) * x; }},
     {"sin(x^2)*cos(x) - 1", -1, 1, 1,
-     [](double x, double) { return std::sin(x * x) * std::cos(x) - 1; }},
+     [](double x, double) { return elementary::sin(x * x) * elementary::cos(x) - 1; }},
     {"sin(x) + sin(x + x^2)", -1, 1, 1,
-     [](double x, double) { return std::sin(x) + std::sin(x + x * x); }},
+     [](double x, double) { return elementary::sin(x) + elementary::sin(x + x * x); }},
     {"log(x + 1) + log(x^2 + 1)", 0, 2, 1,
-     [](double x, double) { return std::log(x + 1) + std::log(x * x + 1); }},
+     [](double x, double) { return elementary::log(x + 1) + elementary::log(x * x + 1); }},
     {"sqrt(x)", 0, 4, 1, [](double x, double) { return std::sqrt(x); }},
     {"sin(x) + sin(y^2)", 0, 1, 2,
-     [](double x, double y) { return std::sin(x) + std::sin(y * y); }},
-    {"2*sin(x)*cos(y)", 0, 1, 2, [](double x, double y) { return 2 * std::sin(x) * std::cos(y); }},
-    {"x^y", 0, 1, 2, [](double x, double y) { return std::pow(x, y); }},
+     [](double x, double y) { return elementary::sin(x) + elementary::sin(y * y); }},
+    {"2*sin(x)*cos(y)", 0, 1, 2,
+     [](double x, double y) { return 2 * elementary::sin(x) * elementary::cos(y); }},
+    {"x^y", 0, 1, 2, [](double x, double y) { return elementary::pow(x, y); }},
     {"x^4 - x^3 + 0.5*y^2 - y", 0, 1, 2,
      [](double x, double y) { return x * x * x * x - x * x * x + 0.5 * y * y - y; }},
 }};

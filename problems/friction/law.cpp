@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "foundation/elementary.hpp"
 #include "foundation/sign.hpp"
 
 namespace tribench {
@@ -35,7 +36,8 @@ double FrictionLaw::averaged_at(double velocity_rad_s) const {
 double FrictionLaw::at(double velocity_rad_s, double gravity_nm) const {
   const double s = sign(velocity_rad_s);
   return averaged_at(velocity_rad_s) + s * load_coulomb * (std::abs(gravity_nm) - mean_load_nm) +
-         quadrant_gain * gravity_nm + quadrant_step_nm * std::tanh(gravity_nm / quadrant_width_nm);
+         quadrant_gain * gravity_nm +
+         quadrant_step_nm * elementary::tanh(gravity_nm / quadrant_width_nm);
 }
 
 std::string FrictionLaw::formula(bool with_load, double offset_nm) const {
@@ -55,7 +57,8 @@ std::string FrictionLaw::formula(bool with_load, double offset_nm) const {
 double ripple_at(std::span<const Harmonic> harmonics, double position_rad) {
   double sum = 0;
   for (const Harmonic& harmonic : harmonics) {
-    sum += harmonic.amplitude_nm * std::cos(harmonic.order * position_rad + harmonic.phase_rad);
+    sum +=
+        harmonic.amplitude_nm * elementary::cos(harmonic.order * position_rad + harmonic.phase_rad);
   }
   return sum;
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/sign.hpp"
 #include "foundation/suggestion.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 double bump(double x, double centre, double width) {
   const double z = (x - centre) / width;
-  return std::exp(-z * z);
+  return elementary::exp(-z * z);
 }
 
 double stribeck(const JointState& x) {
@@ -28,21 +29,21 @@ double nonlinear_viscous(const JointState& x) {
 double load_coulomb(const JointState& x) { return sign(x.velocity_rad_s) * std::abs(x.gravity_nm); }
 double load_viscous(const JointState& x) { return x.velocity_rad_s * std::abs(x.gravity_nm); }
 double quadrant_gain(const JointState& x) { return x.gravity_nm; }
-double quadrant_step(const JointState& x) { return std::tanh(x.gravity_nm / 0.8); }
+double quadrant_step(const JointState& x) { return elementary::tanh(x.gravity_nm / 0.8); }
 double payload(const JointState& x) {
-  return std::sin(x.position_rad) + 0.3 * std::cos(x.position_rad);
+  return elementary::sin(x.position_rad) + 0.3 * elementary::cos(x.position_rad);
 }
-double output_ripple(const JointState& x) { return std::cos(3 * x.position_rad + 0.7); }
-double gear_ripple(const JointState& x) { return std::cos(160 * x.position_rad + 0.7); }
+double output_ripple(const JointState& x) { return elementary::cos(3 * x.position_rad + 0.7); }
+double gear_ripple(const JointState& x) { return elementary::cos(160 * x.position_rad + 0.7); }
 double temperature(const JointState& x) {
-  return x.velocity_rad_s * std::exp(-(x.temperature_degc - 24) / 12);
+  return x.velocity_rad_s * elementary::exp(-(x.temperature_degc - 24) / 12);
 }
 double drift(const JointState& x) { return sign(x.velocity_rad_s) * x.campaign_part; }
 double hysteresis(const JointState& x) {
-  return sign(x.velocity_rad_s) * std::exp(-x.distance_rad / 0.05);
+  return sign(x.velocity_rad_s) * elementary::exp(-x.distance_rad / 0.05);
 }
 double lag(const JointState& x) {
-  return sign(x.acceleration_rad_s2) * std::exp(-std::abs(x.velocity_rad_s) / 0.12);
+  return sign(x.acceleration_rad_s2) * elementary::exp(-std::abs(x.velocity_rad_s) / 0.12);
 }
 double inertia(const JointState& x) { return x.acceleration_rad_s2; }
 double coupling(const JointState& x) { return x.other_velocity_rad_s; }
@@ -52,10 +53,10 @@ double velocity_bump(const JointState& x) {
 }
 double position_bump(const JointState& x) { return bump(x.position_rad, 0.6, 0.15); }
 double temperature_position(const JointState& x) {
-  return (x.temperature_degc - 32) / 8 * std::cos(2 * x.position_rad + 0.4);
+  return (x.temperature_degc - 32) / 8 * elementary::cos(2 * x.position_rad + 0.4);
 }
 double slow_oscillation(const JointState& x) {
-  return std::sin(2 * kPi * 3.3 * x.campaign_part + 1.1);
+  return elementary::sin(2 * kPi * 3.3 * x.campaign_part + 1.1);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/suggestion.hpp"
 
@@ -22,7 +23,7 @@ class Lag {
  public:
   explicit Lag(double constant_s) : constant_s_(constant_s) {}
   double next(double input, double dt_s) {
-    value_ = started_ ? input + (value_ - input) * std::exp(-dt_s / constant_s_) : input;
+    value_ = started_ ? input + (value_ - input) * elementary::exp(-dt_s / constant_s_) : input;
     started_ = true;
     return value_;
   }
@@ -41,7 +42,7 @@ class Bristles {
   double next(const Instant& now, double dt_s, double height = 1) {
     const double goal = now.sign() * height;
     const double path = std::abs(velocity(now)) * dt_s;
-    deflection_ = goal + (deflection_ - goal) * std::exp(-path / (length_rad_ * height));
+    deflection_ = goal + (deflection_ - goal) * elementary::exp(-path / (length_rad_ * height));
     return deflection_;
   }
 
@@ -50,11 +51,11 @@ class Bristles {
   double deflection_ = 0;
 };
 
-double bump(double x, double width) { return std::exp(-(x / width) * (x / width)); }
+double bump(double x, double width) { return elementary::exp(-(x / width) * (x / width)); }
 
 Response exponential_stribeck(RandomStream random) {
   return [vs = random.uniform(0.04, 0.09)](const Instant& now, double) {
-    return now.sign() * std::exp(-std::abs(velocity(now)) / vs);
+    return now.sign() * elementary::exp(-std::abs(velocity(now)) / vs);
   };
 }
 
@@ -66,7 +67,7 @@ Response stribeck_forwards(RandomStream random) {
 
 Response curved_viscous(RandomStream random) {
   return [power = random.uniform(1.6, 2.6)](const Instant& now, double) {
-    return now.sign() * std::pow(std::abs(velocity(now)), power);
+    return now.sign() * elementary::pow(std::abs(velocity(now)), power);
   };
 }
 
@@ -86,7 +87,7 @@ Response coupling(RandomStream /*random*/) {
 Response lagging_velocity(RandomStream random) {
   return [lag = Lag(random.uniform(0.03, 0.1)), width = random.uniform(0.06, 0.15)](
              const Instant& now, double dt_s) mutable {
-    const auto friction = [width](double v) { return std::tanh(v / width) + 0.5 * v; };
+    const auto friction = [width](double v) { return elementary::tanh(v / width) + 0.5 * v; };
     return friction(lag.next(velocity(now), dt_s)) - friction(velocity(now));
   };
 }
@@ -94,7 +95,7 @@ Response lagging_velocity(RandomStream random) {
 Response lagging_friction(RandomStream random) {
   return [lag = Lag(random.uniform(0.03, 0.1)), width = random.uniform(0.06, 0.15)](
              const Instant& now, double dt_s) mutable {
-    const double friction = std::tanh(velocity(now) / width) + 0.5 * velocity(now);
+    const double friction = elementary::tanh(velocity(now) / width) + 0.5 * velocity(now);
     return lag.next(friction, dt_s) - friction;
   };
 }
@@ -120,13 +121,13 @@ Response lugre(RandomStream random) {
 
 Response exponential_run_in(RandomStream random) {
   return [constant = random.uniform(0.15, 0.5)](const Instant& now, double) {
-    return now.sign() * std::exp(-now.part / constant);
+    return now.sign() * elementary::exp(-now.part / constant);
   };
 }
 
 Response logarithmic_run_in(RandomStream random) {
   return [start = random.uniform(0.02, 0.1)](const Instant& now, double) {
-    return -now.sign() * std::log1p(now.part / start);
+    return -now.sign() * elementary::log1p(now.part / start);
   };
 }
 
@@ -139,8 +140,8 @@ Response ripple(double first, double drift, bool harmonics, RandomStream random)
   const double third = harmonics ? random.uniform(0.2, 0.4) : 0;
   return [=](const Instant& now, double) {
     const double angle = first * now.joint.position_rad + drift * now.part;
-    return std::cos(angle + phases[0]) + second * std::cos(2 * angle + phases[1]) +
-           third * std::cos(3 * angle + phases[2]);
+    return elementary::cos(angle + phases[0]) + second * elementary::cos(2 * angle + phases[1]) +
+           third * elementary::cos(3 * angle + phases[2]);
   };
 }
 
@@ -162,7 +163,7 @@ Response gear_drifting(RandomStream random) {
 // Viscosity falls with the lubricant's temperature, which nobody measures.
 Response warm_oil(RandomStream random) {
   return [scale = random.uniform(8, 20)](const Instant& now, double) {
-    return velocity(now) * std::exp(-(now.oil_degc - kCoolest_degc) / scale);
+    return velocity(now) * elementary::exp(-(now.oil_degc - kCoolest_degc) / scale);
   };
 }
 
@@ -170,7 +171,7 @@ Response warm_oil(RandomStream random) {
 Response wrong_gravity(RandomStream random) {
   return [turned = random.uniform(-0.3, 0.3)](const Instant& now, double) {
     return now.gravity_amplitude_nm *
-           std::sin(now.joint.position_rad + now.gravity_phase_rad + turned);
+           elementary::sin(now.joint.position_rad + now.gravity_phase_rad + turned);
   };
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::simulation {
 namespace {
 
@@ -37,7 +39,7 @@ Layout layout_of(Design design) {
 
 // Slow and fast speeds are equally frequent on a logarithmic scale.
 double draw_speed(RandomStream& random) {
-  return kSlowest_rad_s * std::pow(kFastest_rad_s / kSlowest_rad_s, random.uniform());
+  return kSlowest_rad_s * elementary::pow(kFastest_rad_s / kSlowest_rad_s, random.uniform());
 }
 
 Movement make_sines(double duration_s, RandomStream& random) {
@@ -122,8 +124,8 @@ MotionState Movement::at(double t_s) const {
 
 MotionState motion_of(const Sine& sine, double t_s) {
   const double angle = sine.rate_rad_s * t_s + sine.phase_rad;
-  const double position = sine.amplitude_rad * std::sin(angle);
-  return {position, sine.amplitude_rad * sine.rate_rad_s * std::cos(angle),
+  const double position = sine.amplitude_rad * elementary::sin(angle);
+  return {position, sine.amplitude_rad * sine.rate_rad_s * elementary::cos(angle),
           -sine.rate_rad_s * sine.rate_rad_s * position};
 }
 

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::simulation {
 namespace {
 
@@ -10,7 +12,7 @@ constexpr double kTopSpeed_rad_s = 0.8;
 
 // Gamma with shape 2: a sum of two exponentials, mean 2 and variance 2.
 double skewed(RandomStream& random) {
-  const double sum = -std::log((1 - random.uniform()) * (1 - random.uniform()));
+  const double sum = -elementary::log((1 - random.uniform()) * (1 - random.uniform()));
   return (sum - 2) / std::sqrt(2.0);
 }
 
@@ -73,7 +75,7 @@ std::vector<double> movement_noise(NoiseKind kind, std::span<const double> veloc
   if (kind == NoiseKind::bursty) add_bursts(noise, level);
   if (kind == NoiseKind::correlated) correlate(noise);
   if (kind == NoiseKind::heteroscedastic) {
-    grow_with_speed(noise, velocity, std::exp(0.4 * level.normal()));
+    grow_with_speed(noise, velocity, elementary::exp(0.4 * level.normal()));
   }
   return noise;
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <span>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::simulation {
 namespace {
 
@@ -31,8 +33,8 @@ class Thermal {
         housing_s_(campaign_s * random.uniform(0.04, 0.1)) {}
   void advance(double speed_rad_s, double dt_s) {
     const double goal = kCoolest_degc + kWarming_degc * speed_rad_s / kUsualSpeed_rad_s;
-    oil_ += (goal - oil_) * -std::expm1(-dt_s / oil_s_);
-    housing_ += (oil_ - housing_) * -std::expm1(-dt_s / housing_s_);
+    oil_ += (goal - oil_) * -elementary::expm1(-dt_s / oil_s_);
+    housing_ += (oil_ - housing_) * -elementary::expm1(-dt_s / housing_s_);
   }
   double oil_degc() const { return oil_; }
   double sensor_degc() const { return kSensorStep_degc * std::round(housing_ / kSensorStep_degc); }
@@ -104,8 +106,8 @@ Dataset run_campaign(const SimulatedCase& wanted, const std::vector<Movement>& m
       now.other = motion_of(movement.other, t_s);
       now.gravity_amplitude_nm = movement.gravity_nm;
       now.gravity_phase_rad = movement.gravity_phase_rad;
-      now.gravity_nm =
-          movement.gravity_nm * std::sin(now.joint.position_rad + movement.gravity_phase_rad);
+      now.gravity_nm = movement.gravity_nm *
+                       elementary::sin(now.joint.position_rad + movement.gravity_phase_rad);
       thermal.advance(std::abs(now.joint.velocity_rad_s), kStep_s);
       now.oil_degc = thermal.oil_degc();
       const double value = response ? response(now, kStep_s) : 0;

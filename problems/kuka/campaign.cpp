@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "foundation/elementary.hpp"
 #include "foundation/random.hpp"
 #include "foundation/sign.hpp"
 
@@ -89,8 +90,8 @@ DwellMotion make_dwell_motion(RandomStream& random) {
 
 // Gravity torque of B for 1 N m of amplitude: the other joints' motion shifts and scales it.
 double posture_factor(double position_rad, double time_s, double phase_rad) {
-  return std::sin(position_rad + 0.6 * std::sin(0.25 * time_s + phase_rad)) *
-         (1 - 0.08 * std::cos(0.17 * time_s));
+  return elementary::sin(position_rad + 0.6 * elementary::sin(0.25 * time_s + phase_rad)) *
+         (1 - 0.08 * elementary::cos(0.17 * time_s));
 }
 
 // The rows of one movement of B.
@@ -158,7 +159,7 @@ KnownDataset make_a_raw(const Joint& joint, std::uint64_t seed, std::size_t samp
           std::floor(part * static_cast<double>(crossing.samples)) / kSampleRate_hz;
       const double q = crossing.position_at(time_s);
       const double v = crossing.velocity_rad_s;
-      const double g = joint.gravity_amplitude_nm * std::sin(q);
+      const double g = joint.gravity_amplitude_nm * elementary::sin(q);
       const double truth = joint.law.at(v, g);
       const double friction =
           truth + ripple_at(joint.ripple, q) + offset + joint.sample_noise_nm * random.normal();
@@ -188,7 +189,8 @@ KnownDataset make_a_averaged(const Joint& joint, std::uint64_t seed) {
       const double q =
           crossing.position_at((static_cast<double>(i) + 0.5) / static_cast<double>(instants) *
                                static_cast<double>(crossing.samples) / kSampleRate_hz);
-      sum += joint.law.at(v, joint.gravity_amplitude_nm * std::sin(q)) + ripple_at(joint.ripple, q);
+      sum += joint.law.at(v, joint.gravity_amplitude_nm * elementary::sin(q)) +
+             ripple_at(joint.ripple, q);
     }
     const double noise =
         joint.movement_noise_nm * random.normal() +

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
 
@@ -61,7 +62,7 @@ Joint make_joint(int number, std::uint64_t seed) {
   Joint joint = number == 2 ? joint_two() : joint_four();
   // gbar = G mean|sin q| over [-e, e] = G (1 - cos e) / e.
   joint.law.mean_load_nm =
-      joint.gravity_amplitude_nm * (1 - std::cos(kStrokeEnd_rad)) / kStrokeEnd_rad;
+      joint.gravity_amplitude_nm * (1 - elementary::cos(kStrokeEnd_rad)) / kStrokeEnd_rad;
   RandomStream random =
       RandomStream(key_of(fmt::format("kuka/j{}", number))).split(seed).split("ripple");
   for (Harmonic& harmonic : joint.ripple) harmonic.phase_rad = random.uniform(0, 2 * kPi);
@@ -82,7 +83,8 @@ double Joint::mean_ripple_nm() const {
   double mean = 0;
   for (const Harmonic& harmonic : ripple) {
     const double reach = harmonic.order * kStrokeEnd_rad;
-    mean += harmonic.amplitude_nm * std::cos(harmonic.phase_rad) * std::sin(reach) / reach;
+    mean += harmonic.amplitude_nm * elementary::cos(harmonic.phase_rad) * elementary::sin(reach) /
+            reach;
   }
   return mean;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <span>
 
+#include "foundation/elementary.hpp"
 #include "problems/kuka/joint.hpp"
 
 namespace tribench::kuka {
@@ -53,8 +54,8 @@ struct Motion {
 
 State at(const Tone& tone, double t) {
   const double angle = tone.rate * t + tone.phase;
-  const double sine = tone.amplitude * std::sin(angle);
-  return {sine, tone.amplitude * tone.rate * std::cos(angle), -tone.rate * tone.rate * sine};
+  const double sine = tone.amplitude * elementary::sin(angle);
+  return {sine, tone.amplitude * tone.rate * elementary::cos(angle), -tone.rate * tone.rate * sine};
 }
 
 State at(const Motion& motion, double t) {
@@ -159,7 +160,7 @@ struct Thermal {
   double temperature_after(double moving_s) const {
     const double range = kWarmest_degc - kCoolest_degc;
     const auto missing = [&](double seconds) {
-      return std::exp(-seconds / (kThermalConstant * total_s));
+      return elementary::exp(-seconds / (kThermalConstant * total_s));
     };
     if (moving_s < pause_start_s()) return kWarmest_degc - range * missing(moving_s);
     const double before_pause = range * (1 - missing(pause_start_s()));
@@ -201,7 +202,7 @@ void record(const Motion& motion, double start_s, const Thermal& thermal, Random
         state.position,
         state.velocity,
         state.acceleration,
-        motion.posture.gravity_nm * std::sin(state.position + motion.posture.phase_rad),
+        motion.posture.gravity_nm * elementary::sin(state.position + motion.posture.phase_rad),
         thermal.temperature_after(start_s + instants[i]),
         other.velocity,
         other.acceleration};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "foundation/elementary.hpp"
 #include "foundation/random.hpp"
 #include "problems/friction/planted_effects.hpp"
 #include "problems/kuka/joint.hpp"
@@ -62,7 +63,8 @@ void add_noise(const Dataset& data, NoiseKind kind, const RandomStream& random,
   for (std::size_t m = 0, r = 0; m < data.movement_names.size(); ++m) {
     RandomStream draw = random.split(m);
     offsets.push_back(settings.movement_sd_nm * draw.normal());
-    const double level = settings.row_sd_nm * std::exp(settings.movement_factor * draw.normal());
+    const double level =
+        settings.row_sd_nm * elementary::exp(settings.movement_factor * draw.normal());
     double state = 0;
     for (bool first = true; r < data.rows() && data.movement[r] == static_cast<int>(m); ++r) {
       const double fresh = student(draw, settings.degrees_of_freedom);
@@ -127,7 +129,7 @@ void add_collisions(const PlantedCase& planted, const Dataset& data, RandomStrea
     const double peak = random.sign() * planted.collision_scale * truth.noise_sd;
     for (std::size_t k = 0; k < kCollisionRows; ++k) {
       const double part = (static_cast<double>(k) + 0.5) / kCollisionRows;
-      truth.noise[first + k] += peak * std::sin(kPi * part);
+      truth.noise[first + k] += peak * elementary::sin(kPi * part);
     }
     truth.collisions.push_back({movements[i], first, first + kCollisionRows - 1, peak});
   }

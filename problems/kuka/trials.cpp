@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/elementary.hpp"
 #include "foundation/sign.hpp"
 #include "problems/kuka/entries.hpp"
 
@@ -51,9 +52,9 @@ VelocityProfile make_velocity_profile(const Joint& joint) {
   const double rate = 2 * kPi / kPeriod_s;
   for (int k = 0; k < kProfileRows; ++k) {
     const double time = kPeriod_s * k / (kProfileRows - 1);
-    const double velocity = kPeak_rad_s * std::sin(rate * time);
-    const double position = -kPeak_rad_s / rate * std::cos(rate * time);
-    const double gravity = joint.gravity_amplitude_nm * std::sin(position);
+    const double velocity = kPeak_rad_s * elementary::sin(rate * time);
+    const double position = -kPeak_rad_s / rate * elementary::cos(rate * time);
+    const double gravity = joint.gravity_amplitude_nm * elementary::sin(position);
     const double friction = joint.law.at(velocity, gravity);
     profile.time_s.push_back(time);
     profile.rows.columns[0].push_back(velocity);

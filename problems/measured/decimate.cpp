@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::measured {
 namespace {
 
@@ -25,14 +27,14 @@ struct Section {
 
 // Poles of the analogue prototype (Parks and Burrus 1987), moved by the bilinear transform.
 std::array<Section, kOrder / 2> design_sections(int factor) {
-  const double epsilon = std::sqrt(std::pow(10, kRipple_db / 10) - 1);
-  const double mu = std::asinh(1 / epsilon) / kOrder;
-  const double edge = 2 * std::tan(std::numbers::pi * kCutOff / factor / 2);
+  const double epsilon = std::sqrt(elementary::pow(10, kRipple_db / 10) - 1);
+  const double mu = elementary::log((1 + std::sqrt(1 + epsilon * epsilon)) / epsilon) / kOrder;
+  const double edge = 2 * elementary::tan(std::numbers::pi * kCutOff / factor / 2);
   std::array<Section, kOrder / 2> sections{};
   for (std::size_t k = 0; k < sections.size(); ++k) {
     const double theta = std::numbers::pi * (2 * static_cast<double>(k) + 1) / (2 * kOrder);
-    const std::complex<double> pole(-edge * std::sinh(mu) * std::sin(theta),
-                                    edge * std::cosh(mu) * std::cos(theta));
+    const std::complex<double> pole(-edge * elementary::sinh(mu) * elementary::sin(theta),
+                                    edge * elementary::cosh(mu) * elementary::cos(theta));
     const std::complex<double> z = (2.0 + pole) / (2.0 - pole);
     const double a1 = -2 * z.real();
     const double a2 = std::norm(z);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <unordered_set>
 
+#include "foundation/json_text.hpp"
 #include "reports/figures.hpp"
 #include "reports/html/page_series.hpp"
 
@@ -93,7 +94,7 @@ ordered_json rankings_json(const RunSummary& summary) {
 
 // The witness's coordinates; of two neighbouring points the first.
 ordered_json witness_point(const std::string& witness) {
-  ordered_json point = ordered_json::parse(witness, nullptr, false);
+  ordered_json point = read_json<ordered_json>(witness);
   if (point.is_object() && point.contains("between") && point["between"].is_array() &&
       !point["between"].empty()) {
     point = ordered_json(point["between"][0]);

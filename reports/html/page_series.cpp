@@ -10,6 +10,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "foundation/elementary.hpp"
 #include "reports/record_csv.hpp"
 
 namespace tribench {
@@ -114,7 +115,7 @@ std::vector<double> log_grid(const std::vector<const CellTrace*>& group, bool cp
   if (!(low <= high)) return grid;
   if (low == high) high = low * 1.01;
   for (std::size_t i = 0; i < kGridPoints; ++i) {
-    grid.push_back(low * std::pow(high / low, static_cast<double>(i) / (kGridPoints - 1)));
+    grid.push_back(low * elementary::pow(high / low, static_cast<double>(i) / (kGridPoints - 1)));
   }
   grid.back() = high;
   return grid;

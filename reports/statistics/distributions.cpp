@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "foundation/elementary.hpp"
 #include "foundation/incomplete_gamma.hpp"
 
 namespace tribench {
@@ -22,14 +23,18 @@ double root_of(F increasing, double low, double high) {
 
 }  // namespace
 
-double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+// The error function is the incomplete gamma function with a = 1/2.
+double normal_cdf(double z) {
+  const double tail = 0.5 * elementary::exp(log_gamma_upper_tail(0.5, z * z / 2));
+  return z < 0 ? tail : 1 - tail;
+}
 
 double normal_quantile(double p) {
   return root_of([p](double z) { return normal_cdf(z) - p; }, -40, 40);
 }
 
 double chi_squared_tail(double x, double degrees) {
-  return std::exp(log_gamma_upper_tail(degrees / 2, x / 2));
+  return elementary::exp(log_gamma_upper_tail(degrees / 2, x / 2));
 }
 
 double normal_range_cdf(double q, int k) {
@@ -42,8 +47,8 @@ double normal_range_cdf(double q, int k) {
   double sum = 0;
   for (int i = 0; i <= kSteps; ++i) {
     const double z = start + i * step;
-    const double density = std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
-    const double value = density * std::pow(normal_cdf(z + q) - normal_cdf(z), k - 1);
+    const double density = elementary::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
+    const double value = density * elementary::pow(normal_cdf(z + q) - normal_cdf(z), k - 1);
     sum += value * (i == 0 || i == kSteps ? 1 : (i % 2 == 1 ? 4 : 2));
   }
   return k * sum * step / 3;

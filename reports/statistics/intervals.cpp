@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "foundation/elementary.hpp"
 #include "foundation/order_statistics.hpp"
 #include "reports/statistics/distributions.hpp"
 
@@ -40,8 +41,8 @@ ConfidenceInterval median_interval(std::span<const double> values, double confid
   std::size_t k = 0;
   for (; k < n; ++k) {
     const auto hits = static_cast<double>(k);
-    below += std::exp(std::lgamma(size + 1) - std::lgamma(hits + 1) - std::lgamma(size - hits + 1) -
-                      size * std::log(2.0));
+    below += elementary::exp(elementary::lgamma(size + 1) - elementary::lgamma(hits + 1) -
+                             elementary::lgamma(size - hits + 1) - size * elementary::log(2.0));
     if (below > (1 - confidence) / 2) break;
   }
   if (k == 0) return kNone;

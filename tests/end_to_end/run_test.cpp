@@ -57,6 +57,33 @@ TEST_F(RunTest, OneAndTwoThreadsGiveTheSameResults) {
   EXPECT_EQ(read_text(folder_ / "one" / "front.csv"), read_text(folder_ / "two" / "front.csv"));
 }
 
+// The C library picks its kernels by the processor: exp, log, pow, sin ... of a machine without a
+// fused multiply-add have other last bits. GLIBC_TUNABLES makes this machine such a one.
+TEST_F(RunTest, OtherKernelsOfTheCLibraryGiveTheSameResults) {
+  write_text(folder_ / "every.toml", R"([grid]
+name = "every_method"
+problems = ["A/j2/no_load", "B/j2/load", "nguyen/7", "nguyen/11"]
+methods = ["*"]
+operators = ["full"]
+seeds = { first = 1, count = 1 }
+
+[budget]
+evaluations = 2_000_000
+seconds = 60
+)");
+  const auto run_every = [&](const std::string& out, const std::vector<std::string>& environment) {
+    return run_to_end({program().string(), "run", (folder_ / "every.toml").string(), "--out",
+                       (folder_ / out).string(), "--quiet"},
+                      environment)
+        .status;
+  };
+  ASSERT_EQ(run_every("usual", {}), 0);
+  ASSERT_EQ(run_every("plain", {"GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4"}), 0);
+  EXPECT_GE(column_of(folder_ / "usual", "status").size(), 28U);
+  EXPECT_EQ(timeless_results(folder_ / "usual"), timeless_results(folder_ / "plain"));
+  EXPECT_EQ(read_text(folder_ / "usual" / "front.csv"), read_text(folder_ / "plain" / "front.csv"));
+}
+
 TEST_F(RunTest, TwoShardsMergedInAnyOrderGiveTheSameResults) {
   ASSERT_EQ(run("whole").status, 0);
   ASSERT_EQ(run("first", {"--shard", "1/2"}).status, 0);

@@ -156,12 +156,17 @@ TEST(JudgeFront, KeepsWhatNoOtherBeatsAndTheChosenOne) {
       parse("1.9 * v + g * v", names),    // beaten by the one above
       parse("v * v * v", names),          // beaten, but chosen
   };
-  const std::vector<FrontRecord> kept = judge_front(problem, front, 3, "cell");
+  Record judged;
+  judged.cell = "cell";
+  judged.singularity = "as judged";
+  const std::vector<FrontRecord> kept = judge_front(problem, front, 3, judged);
   ASSERT_EQ(kept.size(), 3U);
   EXPECT_EQ(kept[0].formula, "2*v + 1");
   EXPECT_TRUE(kept[1].chosen);
   EXPECT_EQ(kept[2].formula, "2*v + 1 + 3*g");
-  for (const FrontRecord& entry : kept) EXPECT_EQ(entry.singularity, "proved_free");
+  EXPECT_EQ(kept[1].singularity, "as judged");  // not proved a second time
+  EXPECT_EQ(kept[0].singularity, "proved_free");
+  EXPECT_EQ(kept[2].singularity, "proved_free");
 }
 
 }  // namespace

@@ -148,7 +148,8 @@ TEST(Page, DrawsEveryPictureSortsFiltersAndShowsAFormulaOnHover) {
       numbers: up.length, aria: heads[at].getAttribute('aria-sort'), filtered: column(5),
       hover: document.querySelectorAll('#tip .katex').length,
       shown: document.querySelectorAll('dl.formulas .katex').length,
-      tex: formulaToTex('a + -3*b - -2*c*(-d)'), values,  hidden,
+      tex: formulaToTex('a + -3*b - -2*c*(-d)'), numbers: formulaToTex('cos(1*100*q)*2'),
+      values,  hidden,
       pressed, waiting: waitingBefore,
       requests: performance.getEntriesByType('resource').map((r) => r.name)};
   )");
@@ -166,6 +167,7 @@ TEST(Page, DrawsEveryPictureSortsFiltersAndShowsAFormulaOnHover) {
   EXPECT_THAT(answer["record"].get<std::string>(), HasSubstr("cell: A/j2/no_load|"));  // on click
   EXPECT_GE(answer["shown"], 3);
   EXPECT_EQ(answer["tex"], "a - 3\\,b - 2\\,c\\,d");
+  EXPECT_EQ(answer["numbers"], "\\cos\\left(1\\cdot 100\\,q\\right)\\cdot 2");
   EXPECT_GE(answer["values"], 4);  // as a table, for who cannot see the picture
   EXPECT_GE(answer["hidden"], 1);  // a method's button takes its points out
   EXPECT_EQ(answer["pressed"], "false");

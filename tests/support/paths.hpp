@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace tribench::testing {
 
@@ -18,6 +19,8 @@ std::filesystem::path test_program();  // the same with the methods of support/t
 std::optional<std::filesystem::path> shared_data();
 // The reference material beside the checkout (../shared/reference), if it is there.
 std::optional<std::filesystem::path> shared_reference();
+// A public suite beside the checkout (../shared/suites/NAME), if it is there.
+std::optional<std::filesystem::path> shared_suite(const std::string& name);
 
 inline constexpr const char* kNoSharedData =
     "no measured data: ../shared is not beside the checkout";

@@ -157,15 +157,15 @@ void integer_power_kernel(T* out, const T* a, const T* b, const T*, std::size_t 
 
 template <typename T, int Form>
 void power_kernel(T* out, const T* a, const T* b, const T*, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) {
-    const T x = Form == kFormSV ? *a : a[i];
-    const T y = Form == kFormVS ? *b : b[i];
-    if constexpr (sizeof(T) == sizeof(double)) {
-      out[i] = __builtin_pow(x, y);
-    } else {
-      out[i] = static_cast<T>(__builtin_pow(static_cast<double>(x), static_cast<double>(y)));
-    }
-  }
+  const Vector<T> sa = Form == kFormSV ? splat(*a) : Vector<T>{};
+  const Vector<T> sb = Form == kFormVS ? splat(*b) : Vector<T>{};
+  for_rows<false>(out, n, [=](auto read, std::size_t i, auto) {
+    Vector<T> x = sa;
+    Vector<T> y = sb;
+    if constexpr (Form != kFormSV) x = read(a + i);
+    if constexpr (Form != kFormVS) y = read(b + i);
+    return pow(x, y);
+  });
 }
 
 template <typename T>

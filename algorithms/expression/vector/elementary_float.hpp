@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// exp, log, sin, cos and tanh of a vector of floats: at most 2 ulp, special points and bits as in
-// elementary.hpp, whose methods these are with shorter polynomials. Angles beyond kLargeAngleF are
-// reduced in double.
+// exp, log, sin, cos, tanh and pow of a vector of floats: at most 2 ulp, special points and bits as
+// in foundation/elementary/functions.hpp, whose methods these are with shorter polynomials. Angles
+// beyond kLargeAngleF are reduced in double.
 #pragma once
 
-#include "algorithms/expression/vector/elementary.hpp"
+#include "foundation/elementary/functions.hpp"
+#include "foundation/elementary/power.hpp"
 
 namespace tribench {
 namespace {
@@ -173,6 +174,22 @@ inline F32 tanh(F32 x) {
   const F32 q = t * inverse;
   const F32 miss = fma(-q, d, t) + fma(-q, d_rest + t_rest, t_rest);
   return with_sign(fma(miss, inverse, q), x);
+}
+
+// In double, rounded once more: what is left out of a float's range has no float either.
+inline F32 pow(F32 x, F32 y) {
+  using Half = float __attribute__((vector_size(kLaneBytes / 2)));
+  constexpr std::size_t kHalf = sizeof(Half);
+  F32 result;
+  for (std::size_t part = 0; part < 2; ++part) {
+    const auto wide = [part](const F32& v) {
+      return __builtin_convertvector(load<Half>(reinterpret_cast<const char*>(&v) + part * kHalf),
+                                     F64);
+    };
+    store(reinterpret_cast<char*>(&result) + part * kHalf,
+          __builtin_convertvector(pow(wide(x), wide(y)), Half));
+  }
+  return result;
 }
 
 }  // namespace

@@ -67,6 +67,8 @@ function formulaToTex(text) {
     ++at;
     return negative(factor());
   }
+  // Numbers side by side would read as one.
+  const times = (a, b) => `${a}${/^[0-9.]/.test(b) ? "\\cdot " : "\\,"}${b}`;
   function product() {
     let left = factor();
     for (;;) {
@@ -77,7 +79,7 @@ function formulaToTex(text) {
       const minus = Boolean(left.negated) !== Boolean(right.negated);
       const a = left.negated || left, b = right.negated || right;
       left = op === "/" ? {tex: `\\frac{${a.tex}}{${b.tex}}`, level: 2}
-                        : {tex: `${wrap(a, 1)}\\,${wrap(b, 1)}`, level: 1};
+                        : {tex: times(wrap(a, 1), wrap(b, 1)), level: 1};
       if (minus) left = negative(left);
     }
   }

@@ -11,6 +11,7 @@
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/singularity.hpp"
 #include "algorithms/expression/text.hpp"
+#include "foundation/error.hpp"
 #include "tests/algorithms/expression/containment.hpp"
 #include "tests/algorithms/expression/proof_formulas.hpp"
 
@@ -143,6 +144,79 @@ TEST(Certificate, checker_accepts_no_false_claim_however_the_box_is_cut) {
   EXPECT_FALSE(check_certificate(forge(json)).accepted);
 }
 
+// 1/x10000 is not finite on x10000=-1:1; a variable of 16 bits that folded input 65536 onto input 0
+// proved it.
+TEST(Certificate, names_every_input_it_claims_or_is_refused) {
+  std::string box;
+  for (int i = 0; i <= 65'536; ++i) box += "y" + std::to_string(i) + "=1:2,";
+  box += "x=-1:1";
+  EXPECT_THROW(parse_box(box), Error);
+  Json json = Json::parse(certify("1/x", "x=1:2"));
+  json["box"] = box;
+  json["formula"] = "1/x + 0*y65536";
+  const CertificateCheck check = check_certificate(forge(json));
+  EXPECT_FALSE(check.accepted);
+  EXPECT_EQ(check.reason.find("cannot be read"), std::string::npos) << check.reason;
+
+  std::string sum = "0";
+  for (int i = 0; i < 65'536; ++i) sum += " + y" + std::to_string(i);
+  std::vector<std::string> names;
+  EXPECT_EQ(parse_collecting_names(sum, names).columns_used(), kMaxInputs);
+  EXPECT_THROW(parse_collecting_names(sum + " + 1/x", names), Error);
+  EXPECT_THROW(Node::input(kMaxInputs), Error);
+}
+
+TEST(Certificate, is_read_by_the_checker_as_the_prover_wrote_it) {
+  RandomStream random(key_of("two parsers"));
+  const std::vector<std::string> names = {"v", "g", "t"};
+  for (int trial = 0; trial < 5000; ++trial) {
+    const Expression formula = testing::random_formula(random, {.inputs = 3});
+    const std::string text = print(formula, names);
+    ClaimedBox box = read_claimed_box("v=-1:1,g=-1:1,t=-1:1");
+    const ClaimedFormula claimed = read_claimed_formula(text, box);
+    ASSERT_EQ(claimed.size(), formula.size()) << text;
+    for (std::size_t i = 0; i < claimed.size(); ++i) {
+      const Node& node = formula.node(i);
+      ASSERT_EQ(claimed[i].op, node.op) << text;
+      ASSERT_EQ(claimed[i].value, node.value) << text;
+      if (node.is_variable()) ASSERT_EQ(claimed[i].input, node.variable) << text;
+    }
+  }
+}
+
+TEST(Certificate, is_rejected_where_its_formula_or_box_is_none) {
+  for (const char* formula : {"", "v +", "(v", "v)", "v v", "exp v", "exp", "w", "sgn_w", "2v",
+                              "v ** 2", "inf", "nan", "v#"}) {
+    ClaimedBox box = read_claimed_box("v=-1:1");
+    EXPECT_THROW(read_claimed_formula(formula, box), Error) << formula;
+  }
+  ClaimedBox box = read_claimed_box("v=-1:1");
+  EXPECT_THROW(read_claimed_formula(std::string(100'000, '('), box), Error);
+  for (const char* text : {"v", "v=1", "v=1:0", "v=0:inf", "v=0:nan", "v=0:1,v=0:1", "1=0:1",
+                           "v=0:1,sgn_v=-1:1", "v=0:1x", "x+y=0:1"}) {
+    EXPECT_THROW(read_claimed_box(text), Error) << text;
+  }
+}
+
+TEST(Certificate, of_garbage_is_rejected_and_the_reason_can_be_printed) {
+  const std::string good = certify(kFormula, kBox);
+  RandomStream random(key_of("garbage"));
+  std::vector<std::string> all = {std::string(100'000, '['), "\xff", ""};
+  for (int trial = 0; trial < 500; ++trial) {
+    std::string text = good;
+    for (int change = 0; change < 3; ++change) {
+      text[random.below(text.size())] = static_cast<char>(random.below(256));
+    }
+    all.push_back(text);
+  }
+  for (const std::string& text : all) {
+    if (text == good) continue;
+    const CertificateCheck check = check_certificate(text);
+    EXPECT_FALSE(check.accepted) << text;
+    EXPECT_NO_THROW(Json(check.reason).dump()) << check.reason;  // throws on what is no UTF-8
+  }
+}
+
 // The checker's bounds are its own code: they get the prover's property test.
 TEST(Certificate, checker_bounds_contain_every_sampled_value) {
   RandomStream random(key_of("checker bounds"));
@@ -154,11 +228,13 @@ TEST(Certificate, checker_bounds_contain_every_sampled_value) {
     for (const Interval& side : box) piece.push_back({side.low, side.high});
     const auto columns = testing::sample_box(random, box);
     for (std::size_t i = 0; i < formula.size(); ++i) {
-      const auto bounds = piece_bounds(formula.subtree(i), piece);
+      const std::string text = print(formula.subtree(i), std::vector<std::string>{"v", "g", "t"});
+      ClaimedBox claimed = read_claimed_box("v=-1:1,g=-1:1,t=-1:1");  // its names
+      const auto bounds = piece_bounds(read_claimed_formula(text, claimed), piece);
       if (!bounds) continue;
       ++bounded;
       ASSERT_EQ(testing::count_escapes(formula.subtree(i), columns, {bounds->low, bounds->high}), 0)
-          << print(formula.subtree(i), std::vector<std::string>{"v", "g", "t"});
+          << text;
     }
   }
   EXPECT_GT(bounded, 20000);

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "algorithms/expression/evaluate.hpp"
@@ -18,6 +19,7 @@
 #include "algorithms/expression/random_formula.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/formula_name.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench {
@@ -320,10 +322,69 @@ TEST(Export, RenamesWhatALanguageReserves) {
   EXPECT_THAT(code, HasSubstr("const double t_0 = friction_ * t0;"));
 }
 
+TEST(Export, GivesArgumentsThatCollideWhenMendedNamesOfTheirOwn) {
+  std::vector<std::string> names = {"if_", "if", "_v", "x_v", "lambda_", "lambda", "lambda__"};
+  const Expression formula = parse("if_ + if*_v - x_v*lambda_ + lambda*lambda__", names);
+  const std::vector<std::string> called = export_arguments(formula, names);
+  EXPECT_EQ(std::set<std::string>(called.begin(), called.end()).size(), names.size());
+  EXPECT_EQ(called[0], "if_");  // whoever needs no mend keeps its name
+  EXPECT_EQ(called[1], "if__");
+  EXPECT_EQ(called[3], "x_v");
+}
+
+TEST(Export, CompilesWithEveryWordOfTheLanguagesAsAnInput) {
+  // What the compilers themselves define beside keywords, and what they cannot define.
+  std::string words = output_of(
+      "for c in 'cc -std=gnu17' 'cc -std=c99' 'c++ -x c++'; do "
+      "printf '#include <math.h>\n' | $c -dM -E -; done | sed 's/^#define //; s/[ (].*//'");
+  words +=
+      " _Bool _Complex _Imaginary _Noreturn _Static_assert _Thread_local _Atomic _Generic bool true"
+      " false typeof asm auto register restrict class new this template operator NAN M_PI signgam"
+      " y0 j1 fabs sqrt exp2 cosf tanhl lambda None True match type np sp sign_of float tau end pi";
+  std::istringstream in(words);
+  std::set<std::string> names;
+  for (std::string word; in >> word;) {
+    if (is_formula_name(word)) names.insert(word);
+  }
+  ASSERT_GT(names.size(), 300U);
+  const std::vector<std::string> all(names.begin(), names.end());
+  std::string sum = "sqrt(abs(sgn(" + all.front() + ")))";
+  for (const std::string& name : all) sum += " + " + name;
+  std::vector<std::string> used = all;
+  const Expression formula = parse(sum, used);
+  const fs::path folder = fresh_folder("words");
+  write(folder / "f.c", export_code(formula, all, CodeForm::c, {}));
+  for (const char* compiler : {"cc -std=gnu17 -x c", "cc -std=c99 -pedantic -x c", "c++ -x c++"}) {
+    EXPECT_TRUE(
+        runs(fmt::format("{} -Werror -fsyntax-only {}", compiler, (folder / "f.c").string())))
+        << compiler;
+  }
+  if (!has("python3")) return;
+  write(folder / "f.py", export_code(formula, all, CodeForm::python, {}));
+  write(folder / "s.py", export_code(formula, all, CodeForm::sympy, {}));
+  for (const char* file : {"f.py", "s.py"}) {
+    EXPECT_TRUE(runs(fmt::format("python3 -m py_compile {}", (folder / file).string()))) << file;
+  }
+}
+
+TEST(Export, LetsNoTextFromOutsideIntoTheCode) {
+  const std::vector<std::string> names = {"x\"); import os; os.system(\"id\") #"};
+  const Expression formula = Expression::variable(0);
+  for (const std::string& form : code_form_names()) {
+    EXPECT_THROW(export_code(formula, names, find_code_form(form), {}), Error) << form;
+    ExportOptions options;
+    options.box = NamedBox{names, {{0, 1}}};
+    EXPECT_THROW(export_code(Expression::constant(1), {}, find_code_form(form), options), Error);
+  }
+  EXPECT_THROW(parse_box("x;system(\"id\")=0:1"), Error);
+}
+
 TEST(Export, RefusesUnknownFormsAndBadNames) {
   EXPECT_THROW(find_code_form("pyton"), Error);
   EXPECT_THROW(exported("v", "c", {.function = "2x"}), Error);
-  EXPECT_THROW(exported("v", "c", {.function = "while"}), Error);
+  for (const char* word : {"while", "_Bool", "NAN", "M_PI", "asm", "linux", "cosf", "__x", "y0"}) {
+    EXPECT_THROW(exported("v", "c", {.function = word}), Error) << word;
+  }
 }
 
 }  // namespace

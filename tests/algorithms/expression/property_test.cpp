@@ -126,6 +126,15 @@ TEST(Odd, is_decided_by_form_or_by_a_point) {
 TEST(Properties, refuse_a_question_that_makes_no_sense) {
   EXPECT_THROW(ask("v", {.property = Property::dissipative, .velocity = 1}), Error);
   EXPECT_THROW(ask("v", {.property = Property::monotone, .from = -1}), Error);
+  // Of no point of the box: anything would be proved.
+  const auto beyond = [](double low, double high, double from) {
+    return prove_property(parse("-v", kNames), {{low, high}, {0, 1}},
+                          {.property = Property::monotone, .from = from});
+  };
+  EXPECT_THROW(beyond(-1, 1, 5), Error);
+  EXPECT_THROW(beyond(-1, 1, 1), Error);
+  EXPECT_THROW(beyond(0, 0, 0), Error);
+  EXPECT_EQ(beyond(-1, 1, 0.9).verdict, Verdict::refuted);
   EXPECT_THROW(prove_property(parse("v", kNames), {{0, 1}}, {.property = Property::odd}), Error);
 }
 

@@ -9,6 +9,7 @@
 
 #include "algorithms/expression/evaluate.hpp"
 #include "foundation/error.hpp"
+#include "foundation/formula_name.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench {
@@ -111,6 +112,21 @@ TEST(Parse, LeavesHolesForWhatIsCalledAndNoFunction) {
   EXPECT_EQ(print(formula, names), "v*f^2 - p*exp(g)");
   EXPECT_THROW(parse_with_holes("f(v) + f(g)", std::vector<std::string>{"v", "g"}, holes), Error);
   EXPECT_THROW(parse("f(v)", std::vector<std::string>{"v"}), Error);
+}
+
+TEST(Print, WritesNoNameThatWouldReadBackAsSomethingElse) {
+  const Expression formula = Expression::unary(Op::exp, Expression::variable(0));
+  for (const char* name : {"x+y", "2", "1e5", "exp", "x;system(\"id\")", "q [deg]", ""}) {
+    EXPECT_THROW(print(formula, std::vector<std::string>{name}), Error) << name;
+  }
+  EXPECT_EQ(print(formula, std::vector<std::string>{"q_deg"}), "exp(q_deg)");
+}
+
+TEST(Parse, KnowsTheFunctionsThatNoInputIsCalledBy) {
+  for (const std::string_view name : kFunctionNames) {
+    const Expression formula = parse(std::string(name) + "(v)", kNames);
+    EXPECT_EQ(op_name(formula.node(formula.root()).op), name);
+  }
 }
 
 TEST(Parse, CollectsNamesInOrderOfAppearance) {

@@ -46,12 +46,7 @@ std::vector<T> apply(Op op, VectorLevel level, const std::vector<T>& x) {
 
 // Distance from the true value in units in the last place of the true value rounded to T.
 template <typename T>
-double ulp_error(MpfrFunction reference, T x, T y) {
-  mpfr_t exact;
-  mpfr_t argument;
-  mpfr_inits2(160, exact, argument, static_cast<mpfr_ptr>(nullptr));
-  mpfr_set_d(argument, static_cast<double>(x), MPFR_RNDN);
-  reference(exact, argument, MPFR_RNDN);
+double distance(mpfr_t exact, T y) {
   const T rounded = std::is_same_v<T, float> ? static_cast<T>(mpfr_get_flt(exact, MPFR_RNDN))
                                              : static_cast<T>(mpfr_get_d(exact, MPFR_RNDN));
   double error = 0;
@@ -69,7 +64,32 @@ double ulp_error(MpfrFunction reference, T x, T y) {
     mpfr_div_d(exact, exact, static_cast<double>(unit), MPFR_RNDN);
     error = std::abs(mpfr_get_d(exact, MPFR_RNDN));
   }
+  return error;
+}
+
+template <typename T>
+double ulp_error(MpfrFunction reference, T x, T y) {
+  mpfr_t exact;
+  mpfr_t argument;
+  mpfr_inits2(160, exact, argument, static_cast<mpfr_ptr>(nullptr));
+  mpfr_set_d(argument, static_cast<double>(x), MPFR_RNDN);
+  reference(exact, argument, MPFR_RNDN);
+  const double error = distance(exact, y);
   mpfr_clears(exact, argument, static_cast<mpfr_ptr>(nullptr));
+  return error;
+}
+
+template <typename T>
+double power_error(T x, T exponent, T y) {
+  mpfr_t exact;
+  mpfr_t base;
+  mpfr_t power;
+  mpfr_inits2(160, exact, base, power, static_cast<mpfr_ptr>(nullptr));
+  mpfr_set_d(base, static_cast<double>(x), MPFR_RNDN);
+  mpfr_set_d(power, static_cast<double>(exponent), MPFR_RNDN);
+  mpfr_pow(exact, base, power, MPFR_RNDN);
+  const double error = distance(exact, y);
+  mpfr_clears(exact, base, power, static_cast<mpfr_ptr>(nullptr));
   return error;
 }
 
@@ -214,6 +234,105 @@ TYPED_TEST(ElementaryFunctions, StayWithinMinusOneAndOneWhereTheTrueValueDoes) {
       }
     }
     for (const T y : apply(op, vector_level(), x)) ASSERT_LE(std::abs(y), 1) << op_name(op);
+  }
+}
+
+// Bases and exponents: what formulas hold, all bit patterns, results next to overflow and
+// underflow, bases next to 1 with huge exponents, and every special value with every other.
+template <typename T>
+void powers(int count, std::vector<T>& x, std::vector<T>& y) {
+  using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
+  RandomStream random(key_of("powers"));
+  const T huge = std::numeric_limits<T>::max();
+  const T infinity = std::numeric_limits<T>::infinity();
+  const std::vector<T> special = {T{0},
+                                  T{1},
+                                  T{2},
+                                  T{3},
+                                  T(0.5),
+                                  T(1.5),
+                                  T(1e9),
+                                  std::numeric_limits<T>::denorm_min(),
+                                  std::numeric_limits<T>::min(),
+                                  huge,
+                                  infinity,
+                                  std::nextafter(T{1}, T{0}),
+                                  T(9007199254740991),
+                                  T(9007199254740992),
+                                  std::numeric_limits<T>::quiet_NaN()};
+  for (const T a : special) {
+    for (const T b : special) {
+      for (const int signs : {0, 1, 2, 3}) {
+        x.push_back((signs & 1) != 0 ? -a : a);
+        y.push_back((signs & 2) != 0 ? -b : b);
+      }
+    }
+  }
+  const auto add = [&](double a, double b) {
+    x.push_back(static_cast<T>(a));
+    y.push_back(static_cast<T>(b));
+  };
+  const double reach = std::log(static_cast<double>(huge));
+  for (int i = 0; i < count; ++i) {
+    add(random.uniform(0, 10), random.uniform(-5, 5));
+    add(std::exp(random.uniform(-1, 1)), random.normal() * 20);
+    const double base = std::exp(random.uniform(-reach, reach));
+    add(base, random.uniform(-1.1, 1.1) * reach / std::log(base));
+    const double near = 1 + random.normal() * std::exp(-30 * random.uniform());
+    add(near, random.uniform(-1.1, 1.1) * reach / std::log(std::abs(near)));
+    add(-random.uniform(0, 10), static_cast<double>(random.below(40)) - 20);
+    x.push_back(std::bit_cast<T>(static_cast<Bits>(random.next())));
+    y.push_back(std::bit_cast<T>(static_cast<Bits>(random.next())));
+  }
+}
+
+TYPED_TEST(ElementaryFunctions, RaiseToAPowerWithinAUnitInTheLastPlaceAndTheSameBitsOnEveryLevel) {
+  using T = TypeParam;
+  std::vector<T> x;
+  std::vector<T> y;
+  powers<T>(20000, x, y);
+  std::vector<T> first(x.size());
+  kernel_table<T>(VectorLevel::baseline)
+      .power[kFormVV](first.data(), x.data(), y.data(), nullptr, x.size());
+  double worst = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double error = power_error(x[i], y[i], first[i]);
+    ASSERT_LE(error, 1.0) << std::hexfloat << x[i] << " ^ " << y[i] << ": " << first[i];
+    worst = std::max(worst, error);
+    ASSERT_TRUE(first[i] != 0 || std::signbit(first[i]) == std::signbit(std::pow(x[i], y[i])))
+        << std::hexfloat << x[i] << " ^ " << y[i];
+  }
+  this->RecordProperty("pow_worst_ulp", std::to_string(worst));
+  std::vector<T> out(x.size());
+  for (const VectorLevel level : available_vector_levels()) {
+    kernel_table<T>(level).power[kFormVV](out.data(), x.data(), y.data(), nullptr, x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      ASSERT_TRUE(out[i] == first[i] || (std::isnan(out[i]) && std::isnan(first[i])))
+          << vector_level_name(level) << ' ' << std::hexfloat << x[i] << " ^ " << y[i];
+    }
+  }
+}
+
+TYPED_TEST(ElementaryFunctions, GivePowersThatAreNumbersExactly) {
+  using T = TypeParam;
+  std::vector<T> x;
+  std::vector<T> y;
+  std::vector<T> expected;
+  for (int base = 2; base <= 12; ++base) {
+    T product = 1;
+    for (int n = 0; product < T{1} / std::numeric_limits<T>::epsilon(); ++n, product *= base) {
+      x.push_back(static_cast<T>(base));
+      y.push_back(static_cast<T>(n));
+      expected.push_back(product);
+      x.push_back(product);
+      y.push_back(T(0.5));
+      expected.push_back(std::sqrt(product));
+    }
+  }
+  std::vector<T> out(x.size());
+  kernel_table<T>(vector_level()).power[kFormVV](out.data(), x.data(), y.data(), nullptr, x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    EXPECT_EQ(out[i], expected[i]) << x[i] << " ^ " << y[i];
   }
 }
 

@@ -10,7 +10,7 @@
 // integers for large arguments of sin and cos. No tables, no division except in tanh.
 #pragma once
 
-#include "algorithms/expression/vector/lanes.hpp"
+#include "foundation/elementary/lanes.hpp"
 
 namespace tribench {
 namespace {

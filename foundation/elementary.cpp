@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "foundation/elementary.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "foundation/elementary/scalar.hpp"
+
+namespace tribench::elementary {
+namespace {
+
+const ScalarTable& table() {
+#if defined(__x86_64__)
+  static const ScalarTable& chosen = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
+                                         ? kScalarFma
+                                         : kScalarBaseline;
+  return chosen;
+#else
+  return kScalarBaseline;
+#endif
+}
+
+}  // namespace
+
+double exp(double x) { return table().exp(x); }
+double log(double x) { return table().log(x); }
+double sin(double x) { return table().sin(x); }
+double cos(double x) { return table().cos(x); }
+double tanh(double x) { return table().tanh(x); }
+double pow(double x, double y) { return table().pow(x, y); }
+
+// Kahan: what rounding took from 1 + x is made good by the ratio.
+double log1p(double x) {
+  const double sum = 1 + x;
+  if (sum == 1 || sum == std::numeric_limits<double>::infinity()) return x;
+  return log(sum) * (x / (sum - 1));
+}
+
+double expm1(double x) {
+  const double power = exp(x);
+  if (power == 1) return x;
+  if (power == 0 || std::isinf(power)) return power - 1;
+  return (power - 1) * (x / log(power));
+}
+
+double atanh(double x) {
+  const double size = std::abs(x);
+  return std::copysign(0.5 * log1p(2 * size / (1 - size)), x);
+}
+
+double log10(double x) {
+  const double value = log(x) * std::numbers::log10e;
+  const double nearest = std::nearbyint(value);
+  const bool is_near = std::abs(value - nearest) < 1e-12 && std::abs(nearest) <= 22;
+  return is_near && pow(10, nearest) == x ? nearest : value;
+}
+
+double tan(double x) { return sin(x) / cos(x); }
+double sinh(double x) { return (exp(x) - exp(-x)) / 2; }
+double cosh(double x) { return (exp(x) + exp(-x)) / 2; }
+
+double lgamma(double x) {
+  constexpr double kStart = 10;
+  constexpr double kHalfLogTwoPi = 0.91893853320467274178;
+  constexpr double kSeries[] = {1. / 12,   -1. / 360,      1. / 1260, -1. / 1680,
+                                1. / 1188, -691. / 360360, 1. / 156,  -3617. / 122400};
+  if (!(x > 0)) return std::numeric_limits<double>::quiet_NaN();
+  if (std::isinf(x)) return x;
+  double product = 1;
+  double y = x;
+  for (; y < kStart; ++y) product *= y;
+  const double z = 1 / (y * y);
+  double sum = 0;
+  for (int i = 7; i >= 0; --i) sum = sum * z + kSeries[i];
+  return (y - 0.5) * log(y) - y + kHalfLogTwoPi + sum / y - log(product);
+}
+
+}  // namespace tribench::elementary

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: MIT
+#define TRIBENCH_LANE_BYTES 16
+#include "foundation/elementary/scalar_table.hpp"
+
+namespace tribench::elementary {
+
+constinit const ScalarTable kScalarFma = kScalarTable;
+
+}  // namespace tribench::elementary

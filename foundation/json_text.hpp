@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+//
+// JSON from outside, and JSON for outside. Reading is bounded: what nests deeper than kMaxJsonDepth
+// is refused, because writing, comparing and walking a value are recursive and would run out of
+// stack. Writing never throws: bytes that are no UTF-8 become U+FFFD.
+//
+// Every text that this process did not make itself (certificates, run folders, lines of external
+// methods, weights, parameters) is read here.
+#pragma once
+
+#include <istream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace tribench {
+
+inline constexpr int kMaxJsonDepth = 64;
+
+// The value, or a discarded one (is_discarded()) where the text is not JSON or nests too deep;
+// `reason` then says why in one line of printable text, with the line and column.
+template <typename Json>
+Json read_json(std::string_view text, std::string* reason = nullptr);
+
+// Of all that is left in a stream; discarded where it cannot be read.
+template <typename Json>
+Json read_json(std::istream& in, std::string* reason = nullptr) {
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  return read_json<Json>(std::string_view(text), reason);
+}
+
+// As above; throws Error (bad_input) with the place instead.
+template <typename Json>
+Json read_json_or_throw(std::string_view text, std::string_view place);
+
+// On one line where indent is negative.
+template <typename Json>
+std::string write_json(const Json& value, int indent = -1);
+
+extern template nlohmann::json read_json(std::string_view, std::string*);
+extern template nlohmann::ordered_json read_json(std::string_view, std::string*);
+extern template nlohmann::json read_json_or_throw(std::string_view, std::string_view);
+extern template nlohmann::ordered_json read_json_or_throw(std::string_view, std::string_view);
+extern template std::string write_json(const nlohmann::json&, int);
+extern template std::string write_json(const nlohmann::ordered_json&, int);
+
+}  // namespace tribench

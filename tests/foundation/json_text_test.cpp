@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "foundation/json_text.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::ordered_json;
+
+std::string nested(int levels) { return std::string(levels, '[') + std::string(levels, ']'); }
+
+TEST(JsonText, RefusesWhatNestsTooDeepWithoutRunningOutOfStack) {
+  EXPECT_FALSE(read_json<Json>(nested(kMaxJsonDepth)).is_discarded());
+  std::string objects;
+  for (int i = 0; i < 100'000; ++i) objects += "{\"a\":";
+  for (const std::string& text : {nested(kMaxJsonDepth + 1), nested(1'000'000), objects}) {
+    std::string reason;
+    EXPECT_TRUE(read_json<Json>(text, &reason).is_discarded());
+    EXPECT_EQ(reason, "JSON nested deeper than 64 levels");
+  }
+}
+
+TEST(JsonText, SaysWhereItIsNoJsonInPrintableText) {
+  std::string reason;
+  EXPECT_TRUE(read_json<Json>("{\"a\": 1,\n \"b\": \"\xff\"}", &reason).is_discarded());
+  EXPECT_EQ(reason, "no JSON at line 2, column 8");
+  EXPECT_TRUE(read_json<Json>("", &reason).is_discarded());
+  EXPECT_EQ(reason, "no JSON at line 1, column 1");
+  EXPECT_TRUE(read_json<Json>("[1e999]", &reason).is_discarded());
+  EXPECT_THROW(read_json_or_throw<Json>("{", "a file"), Error);
+  EXPECT_EQ(read_json_or_throw<Json>("[1, 2]", "a file").size(), 2U);
+}
+
+TEST(JsonText, WritesBytesThatAreNoUtf8AsTheReplacementCharacter) {
+  EXPECT_EQ(write_json(Json({{"a", "\xff"}})), "{\"a\":\"\xef\xbf\xbd\"}");
+}
+
+TEST(JsonText, ReadsAStreamToItsEnd) {
+  std::istringstream in("{\"a\":\n 3}");
+  EXPECT_EQ(read_json<Json>(in)["a"], 3);
+  std::istringstream none;
+  EXPECT_TRUE(read_json<Json>(none).is_discarded());
+}
+
+}  // namespace
+}  // namespace tribench
