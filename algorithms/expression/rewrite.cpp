@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/expression/rewrite.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "algorithms/expression/apply.hpp"
+#include "algorithms/expression/bounds.hpp"
+#include "algorithms/expression/build.hpp"
+#include "algorithms/expression/edit.hpp"
+#include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/singularity.hpp"
+
+namespace tribench {
+namespace {
+
+bool is_sum(Op op) { return op == Op::add || op == Op::sub; }
+bool is_product(Op op) { return op == Op::mul || op == Op::div; }
+
+Expression power_of(const Expression& base, int power) {
+  return power == 1 ? base : build::power(base, power);
+}
+
+bool is_function(const Expression& formula, Op op) { return formula.node(formula.root()).op == op; }
+Expression argument_of(const Expression& formula) {
+  return formula.subtree(formula.only_child(formula.root()));
+}
+
+}  // namespace
+
+// ---- a node as a sum of products, and back
+
+void Rewriter::multiply(Term& term, Factor factor) {
+  if (factor.base.size() == 1 && factor.base.node(0).is_constant()) {
+    const double value = apply(Op::pow, factor.base.node(0).value, factor.power);
+    if (std::isfinite(term.coefficient * value) && value != 0) {
+      term.coefficient *= value;
+      return;
+    }
+  }
+  for (Factor& each : term.factors) {
+    if (each.base == factor.base && (each.power > 0) == (factor.power > 0)) {
+      each.power += factor.power;
+      return;
+    }
+  }
+  term.factors.push_back(std::move(factor));
+}
+
+void Rewriter::add_factors(const Expression& formula, std::size_t i, int power, Term& term) {
+  const Node& node = formula.node(i);
+  if (node.op == Op::mul || node.op == Op::div) {
+    add_factors(formula, formula.left_child(i), power, term);
+    add_factors(formula, formula.right_child(i), node.op == Op::mul ? power : -power, term);
+    return;
+  }
+  if (node.op == Op::neg) {
+    if (power % 2 != 0) term.coefficient = -term.coefficient;
+    add_factors(formula, formula.only_child(i), power, term);
+    return;
+  }
+  if (node.op == Op::pow && formula.node(i - 1).is_constant()) {
+    const double exponent = formula.node(i - 1).value * power;
+    if (formula.node(i - 1).value > 0 && exponent != 0 && is_product_power(exponent) &&
+        is_product_power(formula.node(i - 1).value)) {
+      return add_factors(formula, formula.left_child(i), static_cast<int>(exponent), term);
+    }
+  }
+  multiply(term, {formula.subtree(i), power});
+}
+
+void Rewriter::add_terms(const Expression& formula, std::size_t i, double sign, Sum& sum) {
+  const Node& node = formula.node(i);
+  if (is_sum(node.op)) {
+    add_terms(formula, formula.left_child(i), sign, sum);
+    add_terms(formula, formula.right_child(i), node.op == Op::add ? sign : -sign, sum);
+    return;
+  }
+  if (node.op == Op::neg) return add_terms(formula, formula.only_child(i), -sign, sum);
+  Term term{sign, {}};
+  add_factors(formula, i, 1, term);
+  sum.push_back(std::move(term));
+}
+
+Rewriter::Sum Rewriter::sum_at(const Expression& formula, std::size_t i) {
+  Sum sum;
+  add_terms(formula, i, 1, sum);
+  return sum;
+}
+
+Expression Rewriter::formula_of(const Term& term) {
+  Expression above;
+  Expression below;
+  for (const Factor& factor : term.factors) {
+    Expression& side = factor.power > 0 ? above : below;
+    const Expression power = power_of(factor.base, std::abs(factor.power));
+    side = side.empty() ? power : Expression::binary(Op::mul, side, power);
+  }
+  if (above.empty()) {
+    above = Expression::constant(term.coefficient);
+  } else if (term.coefficient == -1) {
+    above = Expression::unary(Op::neg, above);
+  } else if (term.coefficient != 1) {
+    above = Expression::binary(Op::mul, Expression::constant(term.coefficient), above);
+  }
+  return below.empty() ? above : Expression::binary(Op::div, above, below);
+}
+
+Expression Rewriter::formula_of(const Sum& sum) {
+  Expression formula;
+  for (const Term& term : sum) {
+    Term positive = term;
+    positive.coefficient = std::abs(term.coefficient);
+    if (formula.empty()) {
+      formula = formula_of(term);
+    } else {
+      formula = Expression::binary(term.coefficient < 0 ? Op::sub : Op::add, formula,
+                                   formula_of(positive));
+    }
+  }
+  return formula;
+}
+
+// ---- sums
+
+// For every base on either side of the bar: the terms that have it, divided by the power that all
+// of them hold.
+void Rewriter::take_out_factors(const Sum& sum, std::vector<Expression>& out) {
+  std::vector<Factor> seen;
+  for (const Term& term : sum) {
+    for (const Factor& factor : term.factors) {
+      const bool is_above = factor.power > 0;
+      const auto same = [&](const Factor& other) {
+        return other.base == factor.base && (other.power > 0) == is_above;
+      };
+      if (std::ranges::any_of(seen, same)) continue;
+      seen.push_back(factor);
+      Sum inside;
+      Sum outside;
+      int power = factor.power;
+      for (const Term& each : sum) {
+        const auto found = std::ranges::find_if(each.factors, same);
+        if (found == each.factors.end()) {
+          outside.push_back(each);
+          continue;
+        }
+        power = is_above ? std::min(power, found->power) : std::max(power, found->power);
+        inside.push_back(each);
+      }
+      if (inside.size() < 2) continue;
+      for (Term& each : inside) {
+        std::ranges::find_if(each.factors, same)->power -= power;
+        std::erase_if(each.factors, [](const Factor& f) { return f.power == 0; });
+      }
+      Term product;
+      multiply(product, {formula_of(inside), 1});
+      multiply(product, {factor.base, power});
+      outside.push_back(std::move(product));
+      out.push_back(formula_of(outside));
+    }
+  }
+}
+
+void Rewriter::take_out_numbers(const Sum& sum, std::vector<Expression>& out) {
+  for (std::size_t first = 0; first < sum.size(); ++first) {
+    const double size = std::abs(sum[first].coefficient);
+    if (size == 1 || size == 0) continue;
+    Sum inside;
+    Sum outside;
+    for (const Term& term : sum) {
+      (std::abs(term.coefficient) == size ? inside : outside).push_back(term);
+    }
+    if (inside.size() < 2 || std::abs(sum[first].coefficient) != size) continue;
+    for (Term& term : inside) term.coefficient = term.coefficient < 0 ? -1 : 1;
+    outside.push_back({size, {{formula_of(inside), 1}}});
+    out.push_back(formula_of(outside));
+  }
+}
+
+void Rewriter::drop_negligible(const Sum& sum, std::vector<Expression>& out) const {
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    Sum rest = sum;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+    const double largest = range(formula_of(sum[i])).magnitude();
+    const Expression others = formula_of(rest);
+    if (largest <= kNegligible * range(others).mignitude()) out.push_back(others);
+  }
+}
+
+void Rewriter::rewrite_sum(const Sum& sum, std::vector<Expression>& out) const {
+  take_out_factors(sum, out);
+  take_out_numbers(sum, out);
+  drop_negligible(sum, out);
+}
+
+// ---- products
+
+void Rewriter::multiply_out(const Term& term, std::vector<Expression>& out) {
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    const Factor& factor = term.factors[i];
+    if (factor.power != 1 || !is_sum(factor.base.node(factor.base.root()).op)) continue;
+    Term rest = term;
+    rest.factors.erase(rest.factors.begin() + static_cast<std::ptrdiff_t>(i));
+    Sum sum = sum_at(factor.base, factor.base.root());
+    for (Term& each : sum) {
+      each.coefficient *= rest.coefficient;
+      for (const Factor& other : rest.factors) multiply(each, other);
+    }
+    out.push_back(formula_of(sum));
+  }
+}
+
+bool Rewriter::is_sign_of(const Expression& sign, const Expression& whole) const {
+  if (is_function(sign, Op::sgn)) return argument_of(sign) == whole;
+  if (sign.size() != 1 || !sign.node(0).is_variable() || whole.size() != 1) return false;
+  const auto& base = box_[sign.node(0).variable].sign_of;
+  return base && whole.node(0).is_variable() && whole.node(0).variable == *base;
+}
+
+// Two factors as one, or one as what it is the root or the magnitude of.
+void Rewriter::merge_pairs(const Term& term, std::vector<Expression>& out) const {
+  const auto with = [&](std::size_t i, std::size_t j, const std::vector<Factor>& merged) {
+    Term result{term.coefficient, {}};
+    for (std::size_t k = 0; k < term.factors.size(); ++k) {
+      if (k != i && k != j) multiply(result, term.factors[k]);
+    }
+    for (const Factor& each : merged) {
+      if (each.power != 0) multiply(result, each);
+    }
+    out.push_back(formula_of(result));
+  };
+  using build::operator*;
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    const auto& [a, m] = term.factors[i];
+    const bool has_bounded_root = is_function(a, Op::sqrt) && range(a).is_bounded();
+    if (is_function(a, Op::exp) && m != 1) {
+      with(i, i, {{Expression::unary(Op::exp, build::constant(m) * argument_of(a)), 1}});
+    }
+    if (has_bounded_root && m % 2 == 0) with(i, i, {{argument_of(a), m / 2}});
+    if (is_function(a, Op::abs) && m % 2 == 0) with(i, i, {{argument_of(a), m}});
+    for (std::size_t j = 0; j < term.factors.size(); ++j) {
+      const auto& [b, n] = term.factors[j];
+      if (i < j && is_function(a, Op::exp) && is_function(b, Op::exp)) {
+        const Expression both =
+            build::sum_of(build::constant(m) * argument_of(a), build::constant(n) * argument_of(b));
+        with(i, j, {{Expression::unary(Op::exp, both), 1}});
+      }
+      if (i < j && has_bounded_root && is_function(b, Op::sqrt) && m == n &&
+          range(b).is_bounded()) {
+        with(i, j, {{Expression::unary(Op::sqrt, argument_of(a) * argument_of(b)), m}});
+      }
+      if (i == j || m != 1 || n < 1) continue;
+      if (is_sign_of(a, b)) with(i, j, {{Expression::unary(Op::abs, b), 1}, {b, n - 1}});
+      if (is_function(b, Op::abs) && is_sign_of(a, argument_of(b))) {
+        with(i, j, {{argument_of(b), 1}, {b, n - 1}});
+      }
+    }
+  }
+}
+
+void Rewriter::rewrite_product(const Term& term, std::vector<Expression>& out) const {
+  out.push_back(formula_of(term));
+  multiply_out(term, out);
+  merge_pairs(term, out);
+}
+
+// ---- functions
+
+// exp(a + c) = e^c exp(a), exp(log x) = x.
+void Rewriter::rewrite_exp(const Expression& argument, std::vector<Expression>& out) const {
+  const Sum sum = sum_at(argument, argument.root());
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    Sum rest = sum;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+    Term product;
+    if (!rest.empty()) multiply(product, {Expression::unary(Op::exp, formula_of(rest)), 1});
+    const Term& term = sum[i];
+    if (term.factors.empty()) {
+      const double scale = apply(Op::exp, term.coefficient);
+      if (!(scale > 1e-300 && scale < 1e300)) continue;
+      product.coefficient = scale;
+    } else if (term.factors.size() == 1 && term.factors[0].power == 1 &&
+               is_function(term.factors[0].base, Op::log) && is_product_power(term.coefficient)) {
+      multiply(product, {argument_of(term.factors[0].base), static_cast<int>(term.coefficient)});
+    } else {
+      continue;
+    }
+    out.push_back(formula_of(product));
+  }
+}
+
+// sqrt(c x^2 y) = sqrt(c) |x| sqrt(y).
+void Rewriter::rewrite_sqrt(const Expression& argument, std::vector<Expression>& out) const {
+  const Sum sum = sum_at(argument, argument.root());
+  if (sum.size() != 1) return;
+  const Term& inside = sum[0];
+  if (inside.coefficient > 0 && inside.coefficient != 1 && !inside.factors.empty()) {
+    Term rest = inside;
+    rest.coefficient = 1;
+    out.push_back(formula_of(
+        Term{std::sqrt(inside.coefficient), {{Expression::unary(Op::sqrt, formula_of(rest)), 1}}}));
+  }
+  for (std::size_t i = 0; i < inside.factors.size(); ++i) {
+    const Factor& factor = inside.factors[i];
+    if (factor.power < 2 || factor.power % 2 != 0) continue;
+    Term rest = inside;
+    rest.factors.erase(rest.factors.begin() + static_cast<std::ptrdiff_t>(i));
+    Term product;
+    const Expression root = power_of(factor.base, factor.power / 2);
+    multiply(product, {Expression::unary(Op::abs, root), 1});
+    if (range(factor.base).low >= 0) product.factors[0] = {root, 1};
+    if (!rest.factors.empty() || rest.coefficient != 1) {
+      multiply(product, {Expression::unary(Op::sqrt, formula_of(rest)), 1});
+    }
+    out.push_back(formula_of(product));
+  }
+}
+
+// By the first term that is left out: x^3 / 3 of tanh, x^3 / 6 of sin, x^2 / 2 of exp and cos.
+void Rewriter::replace_small(Op op, const Expression& argument,
+                             std::vector<Expression>& out) const {
+  const Interval x = range(argument);
+  const double largest = x.magnitude();
+  const double square = largest * largest;
+  const bool is_linear =
+      (op == Op::tanh && square / 3 <= kNegligible) || (op == Op::sin && square / 6 <= kNegligible);
+  if (is_linear) out.push_back(argument);
+  if (op == Op::exp && square <= kNegligible) {
+    out.push_back(Expression::binary(Op::add, argument, Expression::constant(1)));
+  }
+  if (op == Op::exp && 2 * largest <= kNegligible) out.push_back(Expression::constant(1));
+  if (op == Op::cos && square / 2 <= kNegligible) out.push_back(Expression::constant(1));
+  constexpr double kSaturated = 14.2;  // 1 - tanh is below 1e-12 from here on
+  if (op == Op::tanh && x.mignitude() >= kSaturated) {
+    out.push_back(Expression::constant(x.low > 0 ? 1 : -1));
+  }
+}
+
+void Rewriter::rewrite_function(Op op, const Expression& argument,
+                                std::vector<Expression>& out) const {
+  if (op == Op::exp) rewrite_exp(argument, out);
+  if (op == Op::sqrt) rewrite_sqrt(argument, out);
+  if (op == Op::log && is_function(argument, Op::exp)) out.push_back(argument_of(argument));
+  if (op == Op::abs) {
+    const Interval x = range(argument);
+    if (x.low >= 0) out.push_back(argument);
+    if (x.high <= 0) out.push_back(Expression::unary(Op::neg, argument));
+  }
+  replace_small(op, argument, out);
+}
+
+// ---- facts
+
+Interval Rewriter::range(const Expression& formula) const {
+  if (formula.columns_used() > box_.size()) return Interval::entire();
+  std::optional<Interval> all;
+  FormulaBounds bounds(formula);
+  for (const std::vector<Interval>& cell : sign_cells(formula, box_)) {
+    if (!bounds.sharpen(cell)) return Interval::entire();
+    all = all ? hull(*all, bounds.root().range) : bounds.root().range;
+  }
+  return all.value_or(Interval::entire());
+}
+
+std::vector<Expression> Rewriter::rewrites(const Expression& formula) const {
+  std::vector<Expression> all;
+  std::vector<Expression> here;
+  for (std::size_t i = 0; i < formula.size(); ++i) {
+    const Op op = formula.node(i).op;
+    here.clear();
+    if (is_sum(op)) {
+      const std::size_t parent = parent_of(formula, i);
+      const bool is_inner = parent < formula.size() && is_sum(formula.node(parent).op);
+      if (!is_inner) rewrite_sum(sum_at(formula, i), here);
+    } else if (is_product(op) || op == Op::pow) {
+      const std::size_t parent = parent_of(formula, i);
+      const bool is_inner = parent < formula.size() && is_product(formula.node(parent).op);
+      if (!is_inner) rewrite_product(sum_at(formula, i)[0], here);
+    } else if (arity(op) == 1 && op != Op::neg) {
+      rewrite_function(op, formula.subtree(formula.only_child(i)), here);
+    }
+    for (const Expression& piece : here) {
+      if (piece.empty()) continue;
+      Expression whole;
+      splice(formula, i, piece.nodes(), whole);
+      all.push_back(std::move(whole));
+    }
+  }
+  return all;
+}
+
+}  // namespace tribench

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+//
+// Formulas that are equal to a given one on a box, one rewrite away: what the canonical form
+// (canonical.hpp) does not decide because it can go either way. A search over these is
+// simplify.hpp.
+//
+//   sums       a common factor, or number, of some terms taken out; a term that is nothing beside
+//              the others dropped
+//   products   a factor that is a sum multiplied out; exponentials and roots merged; x sgn_x = |x|,
+//              |x| sgn_x = x
+//   functions  exp of log and of a constant term, log of exp, roots of squares and of constants,
+//              |x| of what has one sign; sin, tanh, exp and cos of arguments so small, tanh of ones
+//              so large, that the difference is below 1e-12 of the value
+//
+// A rewrite that needs a fact (a range, a sign) is offered where the box proves it. Values on the
+// box change by rounding, and by kNegligible of themselves where something is left out.
+#pragma once
+
+#include <vector>
+
+#include "algorithms/expression/expression.hpp"
+#include "algorithms/expression/input_box.hpp"
+#include "algorithms/expression/interval.hpp"
+
+namespace tribench {
+
+inline constexpr double kNegligible = 1e-12;
+
+class Rewriter {
+ public:
+  explicit Rewriter(const InputBox& box) : box_(box) {}
+
+  // No two orders alike: the same formula gives the same list.
+  std::vector<Expression> rewrites(const Expression& formula) const;
+
+ private:
+  struct Factor {
+    Expression base;
+    int power = 1;  // not 0
+  };
+  struct Term {
+    double coefficient = 1;
+    std::vector<Factor> factors;  // different bases on either side of the bar
+  };
+  using Sum = std::vector<Term>;
+
+  // The node that ends at i as a sum of products; a product has one term.
+  static Sum sum_at(const Expression& formula, std::size_t i);
+  static void add_terms(const Expression& formula, std::size_t i, double sign, Sum& sum);
+  static void add_factors(const Expression& formula, std::size_t i, int power, Term& term);
+  static void multiply(Term& term, Factor factor);
+  static Expression formula_of(const Term& term);
+  static Expression formula_of(const Sum& sum);
+
+  void rewrite_sum(const Sum& sum, std::vector<Expression>& out) const;
+  static void take_out_factors(const Sum& sum, std::vector<Expression>& out);
+  static void take_out_numbers(const Sum& sum, std::vector<Expression>& out);
+  void drop_negligible(const Sum& sum, std::vector<Expression>& out) const;
+  void rewrite_product(const Term& term, std::vector<Expression>& out) const;
+  static void multiply_out(const Term& term, std::vector<Expression>& out);
+  void merge_pairs(const Term& term, std::vector<Expression>& out) const;
+  void rewrite_function(Op op, const Expression& argument, std::vector<Expression>& out) const;
+  void rewrite_exp(const Expression& argument, std::vector<Expression>& out) const;
+  void rewrite_sqrt(const Expression& argument, std::vector<Expression>& out) const;
+  void replace_small(Op op, const Expression& argument, std::vector<Expression>& out) const;
+
+  // Of the formula's value on the box; entire where it may not be finite.
+  Interval range(const Expression& formula) const;
+  bool is_sign_of(const Expression& sign, const Expression& whole) const;
+
+  const InputBox& box_;
+};
+
+}  // namespace tribench
