@@ -21,7 +21,7 @@ struct Answer {
 // The arguments as a shell takes them; errors stand among the output.
 Answer run_check(const std::string& arguments) {
   const testing::ProgramRun run = testing::run_to_end(
-      {"sh", "-c", testing::program().string() + " check " + arguments + " 2>&1"});
+      {"sh", "-c", "\"$0\" check " + arguments + " 2>&1", testing::program().string()});
   return {run.status, run.output};
 }
 
