@@ -77,6 +77,8 @@ struct Grid {
   std::string reference_file;
   std::string reference;
 
+  std::vector<suite::Suite> suites;  // those that have problems of this grid
+
   // Every cell, in the order of the results: problem, method, operator set, seed.
   std::vector<Cell> cells() const;
   const Method& method(std::string_view method_name) const;

@@ -207,12 +207,46 @@ std::vector<std::string> names_of(const Items& items, NameOf name_of) {
   return names;
 }
 
+std::string read_suite_name(const TomlTable& file) {
+  std::string name;
+  file.table("suite", suite::suite_keys()).read("name", name);
+  return name;
+}
+
+std::vector<std::string> problems_of_suite(const std::string& suite,
+                                           const std::vector<std::string>& known) {
+  std::vector<std::string> names;
+  std::ranges::copy_if(known, std::back_inserter(names),
+                       [&](const std::string& name) { return name.starts_with(suite + "/"); });
+  return names;
+}
+
+// A file that is a suite asks for a run of itself: it must be the suite that everybody, worker
+// processes too, knows by its name.
+void check_suite(std::string_view toml, const std::string& file_name, const Catalogue& catalogue) {
+  const suite::Suite own = suite::read_suite(toml, file_name);
+  const auto known = std::ranges::find(catalogue.suites(), own.name, &suite::Suite::name);
+  if (known != catalogue.suites().end() && known->identity == own.identity) return;
+  throw_bad_input(known == catalogue.suites().end()
+                      ? fmt::format("the suite '{}' is not known", own.name)
+                      : fmt::format("another suite is called '{}'", own.name),
+                  file_name, "put the file into DIR/suites and give --data DIR");
+}
+
 void read_axes(const TomlTable& file, const TomlTable& table, const Registry& registry,
                const Catalogue& catalogue, const std::string& file_name, Grid& grid) {
-  grid.problems =
-      pick(table, "problems",
-           names_of(catalogue.entries(), [](const ProblemEntry& entry) { return entry.name; }),
-           "problem");
+  const std::vector<std::string> names =
+      names_of(catalogue.entries(), [](const ProblemEntry& entry) { return entry.name; });
+  grid.problems = file.has("suite") && !table.has("problems")
+                      ? problems_of_suite(read_suite_name(file), names)
+                      : pick(table, "problems", names, "problem");
+  for (const suite::Suite& suite : catalogue.suites()) {
+    const std::string prefix = suite.name + "/";
+    if (std::ranges::any_of(grid.problems,
+                            [&](const std::string& name) { return name.starts_with(prefix); })) {
+      grid.suites.push_back(suite);
+    }
+  }
   const std::vector<OperatorSet> sets = known_operator_sets(file);
   const std::vector<std::string> set_names =
       names_of(sets, [](const OperatorSet& set) { return set.name(); });
@@ -292,8 +326,12 @@ bool is_built_in(const OperatorSet& set) {
 Grid parse_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
                 const Catalogue& catalogue) {
   const toml::table root = parse_toml(toml, file_name);
-  const TomlTable file(root, file_name, "",
-                       {"grid", "budget", "retry", "method", "external", "operator_set"});
+  std::vector<std::string> keys = {"grid", "budget", "retry", "method", "external", "operator_set"};
+  if (root.contains("suite")) {
+    keys.insert(keys.end(), {"suite", "problem", "reference"});
+    check_suite(toml, file_name, catalogue);
+  }
+  const TomlTable file(root, file_name, "", keys);
   file.require("grid");
   const TomlTable table = file.table(
       "grid", {"name", "problems", "methods", "operators", "seeds", "quarantine", "reference"});

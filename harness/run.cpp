@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/run.hpp"
+#include "harness/catalogue.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>
@@ -215,8 +216,7 @@ Journal open_journal(const RunOptions& options, const RunIdentity& identity,
 }  // namespace
 
 std::string data_identity(const Grid& grid, const std::string& data) {
-  const Catalogue catalogue(data.empty() ? std::nullopt
-                                         : std::optional<std::filesystem::path>(data));
+  const Catalogue catalogue = full_catalogue_of(data);
   std::uint64_t hash = 0;
   for (const std::string& name : grid.problems) {
     const Problem problem = catalogue.find(name).make(grid.first_seed);

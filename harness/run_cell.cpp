@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/run_cell.hpp"
+#include "harness/catalogue.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -274,8 +275,7 @@ const CellRunner::Measured& CellRunner::problem(const CellTask& task) {
   if (found != problems_.end()) {
     problems_.splice(problems_.begin(), problems_, found);
   } else {
-    const Catalogue catalogue(task.data.empty() ? std::nullopt
-                                                : std::optional<std::filesystem::path>(task.data));
+    const Catalogue catalogue = full_catalogue_of(task.data);
     Problem made = catalogue.find(task.cell.problem).make(task.cell.seed);
     const Yardsticks yardsticks = measure_yardsticks(made);
     problems_.emplace_front(key, Measured{std::move(made), yardsticks});

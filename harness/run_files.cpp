@@ -7,12 +7,40 @@
 #include <fstream>
 #include <map>
 
+#include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 #include "harness/provenance.hpp"
 #include "reports/published.hpp"
 #include "reports/record_csv.hpp"
+#include "reports/suite_view.hpp"
 
 namespace tribench {
+
+namespace {
+
+int nodes_of(const std::string& law) {
+  std::vector<std::string> names;
+  return static_cast<int>(parse_collecting_names(law, names).size());
+}
+
+// What reports have to know of the suites in a grid.
+std::string suite_text(const Grid& grid) {
+  std::vector<SuiteInfo> suites;
+  for (const suite::Suite& suite : grid.suites) {
+    SuiteInfo info{suite.name, suite.summary, suite.recovered_below, suite.reference_note, {}, {}};
+    for (const suite::SuiteProblem& problem : suite.problems) {
+      info.problems.push_back({fmt::format("{}/{}", suite.name, problem.name), problem.law,
+                               problem.law.empty() ? 0 : nodes_of(problem.law)});
+    }
+    for (const suite::SuiteReference& one : suite.references) {
+      info.references.push_back({one.method, one.seconds, one.recovered, one.low, one.high});
+    }
+    suites.push_back(std::move(info));
+  }
+  return suites_json(suites);
+}
+
+}  // namespace
 
 void write_plan_files(const std::filesystem::path& folder, const Grid& grid) {
   std::vector<PlannedCell> planned;
@@ -22,6 +50,7 @@ void write_plan_files(const std::filesystem::path& folder, const Grid& grid) {
   write_file(folder / "grid.toml", print_grid(grid));
   write_file(folder / "planned.csv", planned_csv(planned));
   if (!grid.reference.empty()) write_file(folder / kPublishedFile, grid.reference);
+  if (!grid.suites.empty()) write_file(folder / kSuiteFile, suite_text(grid));
 }
 
 void write_result_files(const std::filesystem::path& folder, std::vector<CellResult> results) {

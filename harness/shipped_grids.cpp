@@ -62,6 +62,11 @@ Grid load_named_grid(const std::string& name_or_file, const Registry& registry,
       return parsed;
     }
   }
+  for (const suite::ShippedSuite& suite : suite::shipped_suites()) {
+    if (suite.name == name_or_file && !std::filesystem::is_regular_file(name_or_file)) {
+      return parse_grid(suite.toml, name_or_file + ".toml", registry, catalogue);
+    }
+  }
   return load_grid(name_or_file, registry, catalogue);
 }
 

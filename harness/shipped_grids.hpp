@@ -19,7 +19,7 @@ struct ShippedGrid {
 
 const std::vector<ShippedGrid>& shipped_grids();
 
-// A shipped grid by its name, else a file. Throws as load_grid does.
+// A shipped grid by its name, else a shipped suite, else a file. Throws as load_grid does.
 Grid load_named_grid(const std::string& name_or_file, const Registry& registry,
                      const Catalogue& catalogue);
 

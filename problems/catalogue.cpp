@@ -21,10 +21,12 @@ std::string suggestion(std::string_view name, const std::vector<ProblemEntry>& e
 
 }  // namespace
 
-Catalogue::Catalogue(std::optional<std::filesystem::path> data) {
+Catalogue::Catalogue(std::optional<std::filesystem::path> data, const suite::LawReader& laws) {
   kuka::add_entries(entries_);
   kuka::add_planted_entries(entries_);
   benchmark::add_entries(entries_, data);
+  suites_ = suite::known_suites(data);
+  for (const suite::Suite& suite : suites_) suite::add_entries(entries_, suite, laws, data);
   measured::add_entries(entries_, data);
 }
 

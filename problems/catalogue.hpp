@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "problems/problem.hpp"
+#include "problems/suite/suite_problem.hpp"
 
 namespace tribench {
 
@@ -16,14 +17,18 @@ class Catalogue {
  public:
   // data: the folder with the measured sets (--data, $TRIBENCH_DATA or ./data); measured problems
   // are listed without it too, but can be made only with it.
-  explicit Catalogue(std::optional<std::filesystem::path> data = std::nullopt);
+  // laws: makes rows of the suites' laws; without it those problems are listed and cannot be made.
+  explicit Catalogue(std::optional<std::filesystem::path> data = std::nullopt,
+                     const suite::LawReader& laws = {});
 
   const std::vector<ProblemEntry>& entries() const { return entries_; }
+  const std::vector<suite::Suite>& suites() const { return suites_; }
   // Throws Error (bad_input) with the nearest name.
   const ProblemEntry& find(std::string_view name) const;
 
  private:
   std::vector<ProblemEntry> entries_;
+  std::vector<suite::Suite> suites_;
 };
 
 }  // namespace tribench

@@ -13,6 +13,7 @@
 #include "reports/published.hpp"
 #include "reports/record_csv.hpp"
 #include "reports/run_folder.hpp"
+#include "reports/suite_view.hpp"
 #include "reports/summary.hpp"
 
 namespace tribench {
@@ -55,6 +56,9 @@ std::string write_run_reports(const std::filesystem::path& folder,
   if (!published.empty()) {
     text += "\n## Published figures beside ours\n" + published_markdown(published, "###");
   }
+  const std::vector<SuiteView> suites =
+      view_suites(read_suites(folder / kSuiteFile, run.complaints), run.records);
+  if (!suites.empty()) text += "\n## Suites\n" + suites_markdown(suites, "###");
   write_file(folder / "leaderboard.md", text);
   nlohmann::ordered_json data = page_data(run, summary, published);
   data["changed"] = change.json;

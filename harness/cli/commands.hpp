@@ -36,6 +36,7 @@ void add_study_command(CLI::App& app, ExitStatus& status);
 void add_submit_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_compare_command(CLI::App& app, ExitStatus& status);
 void add_export_command(CLI::App& app, ExitStatus& status);
+void add_predict_command(CLI::App& app, ExitStatus& status);
 void add_describe_command(CLI::App& app);
 // Under `study`.
 void add_comparison_study(CLI::App& study, ExitStatus& status);

@@ -9,9 +9,9 @@
 #include <memory>
 #include <string>
 
+#include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
-#include "problems/catalogue.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
 
@@ -26,8 +26,7 @@ struct GenerateOptions {
 };
 
 void generate(const GenerateOptions& options) {
-  const Catalogue catalogue(
-      options.data.empty() ? std::nullopt : std::optional<std::filesystem::path>(options.data));
+  const Catalogue catalogue = full_catalogue_of(options.data);
   const ProblemEntry& entry = catalogue.find(options.problem);
   const Dataset data =
       entry.data ? entry.data(options.seed) : dataset_of_tables(entry.make(options.seed));

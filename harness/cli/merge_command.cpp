@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/curves.hpp"
 #include "harness/provenance.hpp"
@@ -45,7 +46,7 @@ void merge(const MergeArguments& arguments) {
                                std::filesystem::copy_options::overwrite_existing);
   }
   write_result_files(out, merged.results);
-  write_curves(out, merged.results, Catalogue());
+  write_curves(out, merged.results, full_catalogue());
   write_merged_provenance(out, folders, merged);
   fmt::print("{}\n{} cells from {} folders; see {}\n", write_run_reports(out),
              merged.results.size(), folders.size(), (out / "leaderboard.md").string());

@@ -100,6 +100,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_data_command(app, status);
   add_compare_command(app, status);
   add_export_command(app, status);
+  add_predict_command(app, status);
   add_generate_command(app, status);
   add_loop_command(app, status, registry);
   add_list_command(app, status, registry);

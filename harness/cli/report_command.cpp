@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/curves.hpp"
 #include "harness/run_files.hpp"
@@ -37,7 +38,7 @@ void refresh_files(const std::filesystem::path& folder) {
   const JournalContents journal = read_journal(folder / "cells.jsonl");
   for (const std::string& damage : journal.damage) fmt::print(stderr, "tribench: {}\n", damage);
   write_result_files(folder, journal.results);
-  write_curves(folder, journal.results, Catalogue());
+  write_curves(folder, journal.results, full_catalogue());
 }
 
 void report(const ReportArguments& arguments) {

@@ -20,6 +20,7 @@
 #include "foundation/error.hpp"
 #include "foundation/scratch_folder.hpp"
 #include "foundation/text.hpp"
+#include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
@@ -54,11 +55,6 @@ struct RunArguments {
   std::string verify;
   std::size_t sample = 10;
 };
-
-Catalogue catalogue_of(const RunOptions& options) {
-  return Catalogue(options.data.empty() ? std::nullopt
-                                        : std::optional<std::filesystem::path>(options.data));
-}
 
 void print_dry_run(const Grid& grid, const std::vector<PlannedWork>& work, int jobs, bool json) {
   double total_s = 0;
@@ -118,7 +114,7 @@ void run_to_the_end(const Grid& grid, const RunOptions& options, ExitStatus& sta
   session.ended = utc_now();
   const JournalContents journal = read_journal(options.out / "cells.jsonl");
   write_result_files(options.out, journal.results);
-  write_curves(options.out, journal.results, catalogue_of(options));
+  write_curves(options.out, journal.results, full_catalogue_of(options.data));
   write_quarantine_file(options.out, journal.results);
   write_provenance(options.out, identity, session, journal.results);
   print_end(session.tally, options.out, write_run_reports(options.out));
@@ -146,7 +142,7 @@ void verify(const RunArguments& arguments, const Registry& registry, ExitStatus&
   const std::filesystem::path folder = arguments.verify;
   RunOptions options = options_of(arguments);
   const JournalContents journal = read_journal(folder / "cells.jsonl");
-  const Grid grid = load_grid(folder / "grid.toml", registry, catalogue_of(options));
+  const Grid grid = load_grid(folder / "grid.toml", registry, full_catalogue_of(options.data));
   const ScratchFolder scratch;
   options.out = scratch.path() / "run";
   const std::atomic<bool> never{false};
@@ -166,7 +162,7 @@ void run(const RunArguments& arguments, const Registry& registry, ExitStatus& st
     return;
   }
   RunOptions options = options_of(arguments);
-  Grid grid = load_named_grid(arguments.grid, registry, catalogue_of(options));
+  Grid grid = load_named_grid(arguments.grid, registry, full_catalogue_of(options.data));
   if (!arguments.quarantine.empty()) {
     for (std::string& glob : read_quarantine_file(arguments.quarantine)) {
       grid.quarantine.push_back(std::move(glob));

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "foundation/error.hpp"
+#include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
@@ -46,7 +47,7 @@ void submit(const SubmitArguments& arguments, const Registry& registry, ExitStat
   options.jobs = arguments.jobs;
   options.partition = arguments.partition;
   options.largest_array = arguments.largest_array;
-  const Grid grid = load_named_grid(arguments.grid, registry, Catalogue(data));
+  const Grid grid = load_named_grid(arguments.grid, registry, full_catalogue(data));
   const SlurmPlan plan = plan_slurm(grid, options);
   fmt::print("{} cells in {} elements of about {:.0f} s each\n", grid.cells().size(), plan.shards,
              plan.predicted_element_s);

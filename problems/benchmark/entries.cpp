@@ -8,7 +8,6 @@
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
-#include "problems/benchmark/nguyen.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
 
@@ -148,7 +147,6 @@ void add_entries(std::vector<ProblemEntry>& entries,
     entries.push_back(
         {given, fmt::format("{}, with the rows other programs were given", own), make_given, {}});
   }
-  add_nguyen_entries(entries);
 }
 
 }  // namespace tribench::benchmark

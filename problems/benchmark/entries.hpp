@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Published test problems of symbolic regression, for comparing methods with figures elsewhere:
-//   nguyen/1 ... nguyen/12           Uy et al. 2011, as used by Petersen et al. 2021, table 6
+// Friction laws for comparing methods with figures elsewhere (suites of other problems:
+// problems/suite):
 //   peer/friction1d, peer/load4d     two friction laws on which other programs' figures are known,
 //                                    with noise of our own for each seed
 //   peer_problems/friction1d, ...    the same with the very rows the others were given, from

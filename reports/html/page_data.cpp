@@ -11,6 +11,7 @@
 #include "foundation/json_text.hpp"
 #include "reports/figures.hpp"
 #include "reports/html/page_series.hpp"
+#include "reports/suite_view.hpp"
 
 namespace tribench {
 namespace {
@@ -181,6 +182,12 @@ ordered_json counts_json(const RunFolder& run, const RunSummary& summary) {
           {"cpu", duration_figure(summary.fit_cpu_s)}};
 }
 
+ordered_json suites_of(const RunFolder& run) {
+  std::vector<std::string> said_in_the_text;
+  return suite_views_json(
+      view_suites(read_suites(run.path / kSuiteFile, said_in_the_text), run.records));
+}
+
 }  // namespace
 
 ordered_json page_data(const RunFolder& run, const RunSummary& summary,
@@ -212,6 +219,7 @@ ordered_json page_data(const RunFolder& run, const RunSummary& summary,
           {"missing", std::move(missing)},
           {"complaints", run.complaints},
           {"reference", published_json(published)},
+          {"suites", suites_of(run)},
           {"records", records_json(run, summary)},
           {"provenance", std::move(provenance)}};
 }

@@ -10,30 +10,6 @@
 namespace tribench {
 namespace {
 
-TEST(NguyenProblems, HaveThePublishedRowsAndRanges) {
-  const Catalogue catalogue;
-  for (int number = 1; number <= 12; ++number) {
-    const ProblemEntry& entry = catalogue.find("nguyen/" + std::to_string(number));
-    const Problem problem = entry.make(1);
-    const Table& train = problem.stages[0].train;
-    EXPECT_EQ(train.rows(), 20U);
-    for (std::size_t j = 0; j < problem.inputs.size(); ++j) {
-      for (const double x : train.columns[j]) {
-        EXPECT_GE(x, problem.inputs[j].low);
-        EXPECT_LE(x, problem.inputs[j].high);
-      }
-    }
-    EXPECT_NE(entry.make(2).stages[0].train.target, train.target);
-    EXPECT_EQ(entry.make(1).stages[0].train.target, train.target);
-  }
-  // Nguyen-7 at a point worked by hand: log(2) + log(2) at x = 1.
-  const Problem seventh = catalogue.find("nguyen/7").make(1);
-  for (std::size_t r = 0; r < seventh.test.rows(); ++r) {
-    const double x = seventh.test.columns[0][r];
-    EXPECT_NEAR(std::exp(seventh.test.target[r]), (x + 1) * (x * x + 1), 1e-12);
-  }
-}
-
 TEST(PeerProblems, HaveNoiseOfTheStatedSizeAndATestGridWithoutZero) {
   const Catalogue catalogue;
   for (const auto& [name, noise, rows] :

@@ -100,6 +100,7 @@ const kEmpty = {front: "No front was written for this problem.", friction: "The 
 function drawPictures() {
   const pictures = new RunPictures(data, state);
   for (const id of kProblemPictures.concat(kOverallPictures)) {
+    if (!byId(id)) continue;  // a part that this run does not have
     const click = id === "front" || id === "singular" ? showRecord : undefined;
     drawLater(id, () => draw(id, pictures[id](lookFor(allMethods, widthOf(id))), {onclick: click, empty: kEmpty[id]}));
   }
@@ -177,6 +178,31 @@ function referencePart() {
     el("p", {class: "soft", style: "margin-top:.8rem"}, "What the figures say, and what is known of a difference:"), ...remarks];
 }
 
+const percent = (share) => share === null ? "-" : `${(100 * share).toFixed(1)} %`;
+
+function suitePart() {
+  if (!data.suites.length) return [];
+  const shareColumn = (name, of) => ({name, key: name, show: (r) => percent(of(r))});
+  const parts = data.suites.flatMap((suite) => [
+    el("h3", {}, `${suite.name}: ${suite.summary}`),
+    el("p", {}, `Recovered: at most ${fig(suite.recovered_below)} of the variance on unseen rows is left.`),
+    dataTable([{name: "method", key: "method"}, {name: "operators", key: "operators"},
+      shareColumn("recovered", (r) => r.recovered),
+      {name: "95 %", key: "low", show: (r) => `${percent(r.low)} … ${percent(r.high)}`},
+      shareColumn("R2 >= 0.999", (r) => r.r2_at_least[0]), shareColumn("0.99", (r) => r.r2_at_least[1]),
+      shareColumn("0.9", (r) => r.r2_at_least[2]), {name: "median R2", key: "r2_median", number: true},
+      {name: "CPU s", key: "fit_cpu_s", number: true}, {name: "wall s", key: "fit_wall_s", number: true},
+      {name: "evaluations", key: "evaluations", number: true},
+      shareColumn("small laws", (r) => r.recovered_by_size[0]), shareColumn("middle", (r) => r.recovered_by_size[1]),
+      shareColumn("large", (r) => r.recovered_by_size[2])], suite.rows, {label: `recovered of ${suite.name}`}),
+    el("p", {class: "soft"}, suite.reference_note),
+    el("details", {}, el("summary", {}, `Recovered by no method: ${suite.never_solved.length}`),
+      el("p", {}, el("code", {}, suite.never_solved.join("  "))))]);
+  return [el("h2", {id: "suites"}, "Suites"),
+    el("div", {class: "grid"}, card("suite", "Recovered against time", "Ours with 95 % intervals over problems; dashed: published.", true)),
+    ...parts];
+}
+
 function recordsPart() {
   const rows = data.records.rows.map((values) => Object.fromEntries(data.records.columns.map((c, i) => [c, values[i]])));
   const number = new Set(["mae_test", "mae_train", "fit_cpu_s", "r2_test"]);
@@ -228,6 +254,7 @@ function build() {
       fact(String(c.missing), "missing", c.missing > 0), fact(String(data.problems.length), "problems"),
       fact(String(allMethods.length), "methods"), fact(c.cpu, "CPU time in fits")));
   const parts = [["#wins", "who wins"], ["#problem", "problem"], ["#overall", "all problems"]];
+  if (data.suites.length) parts.push(["#suites", "suites"]);
   if (data.reference.length) parts.push(["#reference", "published"]);
   parts.push(["#failed", "failed"], ["#records", "records"], ["#provenance", "provenance"]);
   byId("nav").append(...parts.map(([h, t]) => el("a", {href: h}, t)),
@@ -235,7 +262,7 @@ function build() {
        chooser("operators", data.operators, "operators"), themeButton()));
   byId("main").append(
     el("h2", {id: "wins"}, "Who wins where"), winnersTable(), ...changedPart(), ...problemPart(), ...overallPart(),
-    ...referencePart(),
+    ...suitePart(), ...referencePart(),
     el("h2", {id: "failed"}, "What failed"), ...failuresPart(),
     el("h2", {id: "records"}, "Records"), ...recordsPart(),
     el("h2", {id: "provenance"}, "Provenance"), provenanceTable(data.provenance));

@@ -84,6 +84,26 @@ function sharePlot(points, look, title, description, format, what) {
                                          tooltip: {signal: "datum"}})])]});
 }
 
+// Share recovered against the time of a problem: ours with their intervals, published ones as lines.
+function suitePlot(view, rows, look) {
+  const published = view.references.map((r) => ({...r, x: r.seconds, y: r.recovered, series: r.method}));
+  const last = [...new Map(published.map((p) => [p.series, p])).values()];
+  const at = {x: {scale: "x", field: "x"}, y: {scale: "y", field: "y"}};
+  return frame({...look, description: "Share of the suite recovered against wall seconds of a problem",
+    data: [{name: "points", values: rows}, {name: "published", values: published}, {name: "last", values: last}],
+    x: logAxis("wall seconds of a problem (median)", rows.concat(published).map((p) => p.x), {format: "~g"}),
+    y: {title: "recovered", domain: [0, 1], format: "%"},
+    marks: [
+      grouped("published", [{type: "line", from: {data: "series"}, encode: {enter: {...at, stroke: {value: look.soft},
+        strokeDash: {value: [5, 4]}, strokeWidth: {value: 1.3}, tooltip: {signal: "datum"}}}}]),
+      {type: "text", from: {data: "last"}, encode: {enter: {...at, dx: {value: -4}, dy: {value: -6}, align: {value: "right"},
+        text: {field: "series"}, fill: {value: look.soft}, fontSize: {value: 10}}}},
+      {type: "rule", from: {data: "points"}, encode: {enter: {x: {scale: "x", field: "x"}, y: {scale: "y", field: "low"},
+        y2: {scale: "y", field: "high"}, stroke: {scale: "color", field: "method"}, strokeWidth: {value: 2}}}},
+      {type: "symbol", from: {data: "points"}, encode: {enter: {...at, size: {value: 90},
+        fill: {scale: "color", field: "method"}, tooltip: {signal: "datum"}}}}]});
+}
+
 // Mean ranks with half a critical difference to either side: two methods whose intervals do not
 // overlap can be told apart. Bars at the right join the methods that cannot.
 function rankPlot(ranking, look) {
@@ -285,10 +305,19 @@ class RunPictures {
     return values.length ? heatPlot(values, look, look.methods.filter((m) => present.has(m))) : null;
   }
 
+  // The first suite of the run: one is what people run.
+  suite(look) {
+    const view = this.data.suites[0];
+    if (!view) return null;
+    const rows = view.rows.filter((r) => this.shows(r.method) && r.fit_wall_s > 0)
+      .map((r) => ({...r, x: r.fit_wall_s, y: r.recovered}));
+    return rows.length ? suitePlot(view, rows, this.legend(look, rows)) : null;
+  }
+
   trace_evaluations(look) { return this.trace("evaluations", "evaluations (node-rows)", look); }
   trace_cpu(look) { return this.trace("cpu", "CPU seconds", look); }
 }
 
 // The pictures of one problem, and those of all problems together, by the name of their method above.
 const kProblemPictures = ["front", "friction", "error", "profile", "trace_evaluations", "trace_cpu", "singular"];
-const kOverallPictures = ["heat", "ranks", "profiles", "ecdf"];
+const kOverallPictures = ["heat", "ranks", "profiles", "ecdf", "suite"];

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include "problems/suite/suite.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "foundation/error.hpp"
+#include "foundation/random.hpp"
+#include "foundation/suggestion.hpp"
+#include "foundation/toml_table.hpp"
+
+namespace tribench::suite {
+namespace {
+
+constexpr double kLargest = std::numeric_limits<double>::max();
+constexpr int kMostRows = 1'000'000;
+
+template <typename Value>
+Value choose(const TomlTable& table, const char* key,
+             const std::vector<std::pair<std::string, Value>>& choices, Value otherwise) {
+  if (!table.has(key)) return otherwise;
+  std::string word;
+  table.read(key, word);
+  std::vector<std::string> words;
+  for (const auto& [name, value] : choices) {
+    if (name == word) return value;
+    words.push_back(name);
+  }
+  throw_bad_input(fmt::format("'{}' is no {}", word, key), table.place(key),
+                  did_you_mean(word, words));
+}
+
+void read_range(const TomlTable& table, const char* low, const char* high, const char* step,
+                Draw& draw) {
+  table.read(low, draw.low, -kLargest, kLargest);
+  table.read(high, draw.high, -kLargest, kLargest);
+  table.read(step, draw.step, 0, kLargest);
+}
+
+void check_draw(const TomlTable& table, const Draw& draw) {
+  if (!(draw.low < draw.high)) {
+    throw_bad_input(fmt::format("'low' is {} and 'high' {}", draw.low, draw.high), table.place(),
+                    "low must be less than high");
+  }
+  if (draw.kind == Draw::Kind::log && draw.low <= 0) {
+    throw_bad_input(fmt::format("'low' is {} with draw = \"log\"", draw.low), table.place(),
+                    "low must be greater than 0; sign = \"either\" or \"negative\" turns the sign");
+  }
+  if (draw.kind == Draw::Kind::lattice && !(draw.step > 0)) {
+    throw_bad_input("a lattice needs a 'step'", table.place());
+  }
+}
+
+SuiteInput read_input(const TomlTable& table) {
+  for (const char* key : {"name", "low", "high"}) table.require(key);
+  SuiteInput input;
+  table.read("name", input.name);
+  table.read("unit", input.unit);
+  table.read("meaning", input.meaning);
+  using enum Draw::Kind;
+  const std::vector<std::pair<std::string, Draw::Kind>> kinds = {
+      {"uniform", uniform}, {"log", log}, {"whole", whole}, {"lattice", lattice}};
+  input.train.kind = choose(table, "draw", kinds, uniform);
+  input.train.sign = choose<Draw::Sign>(table, "sign",
+                                        {{"as_drawn", Draw::Sign::as_drawn},
+                                         {"either", Draw::Sign::either},
+                                         {"negative", Draw::Sign::negative}},
+                                        Draw::Sign::as_drawn);
+  read_range(table, "low", "high", "step", input.train);
+  check_draw(table, input.train);
+  input.test = input.train;
+  input.test.kind = choose(table, "test_draw", kinds, input.train.kind);
+  read_range(table, "test_low", "test_high", "test_step", input.test);
+  check_draw(table, input.test);
+  return input;
+}
+
+SuiteProblem read_problem(const TomlTable& table, const SuiteProblem& defaults) {
+  SuiteProblem problem = defaults;
+  table.require("name");
+  table.read("name", problem.name);
+  table.read("note", problem.note);
+  table.read("law", problem.law);
+  table.read("unit", problem.unit);
+  table.read("file", problem.file);
+  table.read("target", problem.target);
+  int rows = static_cast<int>(problem.rows);
+  int test_rows = static_cast<int>(problem.test_rows);
+  table.read("rows", rows, 1, kMostRows);
+  table.read("test_rows", test_rows, 1, kMostRows);
+  problem.rows = static_cast<std::size_t>(rows);
+  problem.test_rows = static_cast<std::size_t>(test_rows);
+  const std::vector<std::string> keys = {"name",      "unit",     "meaning",   "draw",
+                                         "sign",      "low",      "high",      "step",
+                                         "test_draw", "test_low", "test_high", "test_step"};
+  for (const TomlTable& input : table.array_of_tables("inputs", keys)) {
+    problem.inputs.push_back(read_input(input));
+  }
+  if (!problem.file.empty()) return problem;
+  if (problem.law.empty() || problem.inputs.empty()) {
+    throw_bad_input(fmt::format("problem '{}' has no data", problem.name), table.place(),
+                    "give it 'law' and 'inputs', or 'file'");
+  }
+  return problem;
+}
+
+SuiteReference read_reference(const TomlTable& table) {
+  for (const char* key : {"method", "seconds", "recovered"}) table.require(key);
+  SuiteReference reference;
+  table.read("method", reference.method);
+  table.read("seconds", reference.seconds, 0, kLargest);
+  table.read("recovered", reference.recovered, 0, 1);
+  reference.low = reference.high = reference.recovered;
+  table.read("low", reference.low, 0, 1);
+  table.read("high", reference.high, 0, 1);
+  return reference;
+}
+
+}  // namespace
+
+const SuiteProblem& Suite::find(std::string_view problem) const {
+  std::vector<std::string> names;
+  for (const SuiteProblem& one : problems) {
+    if (one.name == problem) return one;
+    names.push_back(one.name);
+  }
+  throw_bad_input(fmt::format("suite '{}' has no problem '{}'", name, problem), {},
+                  did_you_mean(problem, names));
+}
+
+const std::vector<std::string>& suite_keys() {
+  static const std::vector<std::string> kKeys = {
+      "name",      "summary",    "source", "recovered_below", "rows",
+      "test_rows", "test_share", "splits", "standardise",     "reference_note"};
+  return kKeys;
+}
+
+bool is_suite(std::string_view toml, const std::string& file_name) {
+  return parse_toml(toml, file_name).contains("suite");
+}
+
+Suite read_suite(std::string_view toml, const std::string& file_name) {
+  const toml::table root = parse_toml(toml, file_name);
+  const TomlTable file(root, file_name, "",
+                       {"suite", "problem", "reference", "grid", "budget", "retry", "method",
+                        "external", "operator_set"});
+  file.require("suite");
+  const TomlTable head = file.table("suite", suite_keys());
+  head.require("name");
+  Suite suite;
+  suite.identity = key_of(toml);
+  SuiteProblem defaults;
+  head.read("name", suite.name);
+  head.read("summary", suite.summary);
+  head.read("source", suite.source);
+  head.read("recovered_below", suite.recovered_below, 0, 1);
+  head.read("test_share", suite.test_share, 0.01, 0.9);
+  head.read("standardise", suite.standardise);
+  head.read("splits", defaults.splits);
+  head.read("reference_note", suite.reference_note);
+  int rows = 0;
+  int test_rows = 0;
+  head.read("rows", rows, 1, kMostRows);
+  head.read("test_rows", test_rows, 1, kMostRows);
+  defaults.rows = static_cast<std::size_t>(rows);
+  defaults.test_rows = static_cast<std::size_t>(test_rows);
+  std::set<std::string> seen;
+  for (const TomlTable& table : file.array_of_tables(
+           "problem",
+           {"name", "note", "law", "unit", "file", "target", "rows", "test_rows", "inputs"})) {
+    suite.problems.push_back(read_problem(table, defaults));
+    if (!seen.insert(suite.problems.back().name).second) {
+      throw_bad_input(fmt::format("two problems are called '{}'", suite.problems.back().name),
+                      table.place("name"), "give one of them another name");
+    }
+  }
+  for (const TomlTable& table :
+       file.array_of_tables("reference", {"method", "seconds", "recovered", "low", "high"})) {
+    suite.references.push_back(read_reference(table));
+  }
+  return suite;
+}
+
+}  // namespace tribench::suite

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "foundation/error.hpp"
+#include "problems/suite/suite_problem.hpp"
+
+namespace tribench::suite {
+namespace {
+
+constexpr const char* kSmall = R"(
+[suite]
+name = "small"
+rows = 200
+test_rows = 300
+[grid]
+methods = ["pysr"]
+[[problem]]
+name = "product"
+law = "x*y"
+unit = "N m"
+inputs = [
+  { name = "x", low = 1e-3, high = 1e3, draw = "log", sign = "either", unit = "m" },
+  { name = "y", low = 2, high = 5, draw = "whole", test_low = 2, test_high = 9 },
+]
+[[reference]]
+method = "other"
+seconds = 2
+recovered = 0.5
+)";
+
+// Knows two laws, whatever the text.
+Law read_product(const std::string& formula, std::span<const std::string> /*names*/) {
+  if (formula == "log(x)") return [](std::span<const double> p) { return std::log(p[0]); };
+  return [](std::span<const double> p) { return p[0] * p[1]; };
+}
+
+std::string complaint(const std::string& toml) {
+  try {
+    read_suite(toml, "s.toml");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string with_input(const std::string& input) {
+  return "[suite]\nname = \"s\"\n[[problem]]\nname = \"p\"\nlaw = \"x\"\ninputs = [{ " + input +
+         " }]\n";
+}
+
+TEST(Suite, AMistakeIsNamedWithItsPlaceAndMend) {
+  EXPECT_EQ(complaint(with_input("name = \"x\", low = 1, high = 2")), "accepted");
+  EXPECT_NE(complaint(with_input("name = \"x\", low = 2, high = 1")).find("s.toml:6"),
+            std::string::npos);
+  EXPECT_NE(complaint(with_input("name = \"x\", low = 0, high = 1, draw = \"log\"")).find("low"),
+            std::string::npos);
+  EXPECT_NE(complaint(with_input("name = \"x\", low = 1, high = 2, draw = \"logg\""))
+                .find("did you mean log"),
+            std::string::npos);
+  EXPECT_NE(
+      complaint(with_input("name = \"x\", low = 1, high = 2, draw = \"lattice\"")).find("step"),
+      std::string::npos);
+  EXPECT_NE(complaint(with_input("name = \"x\", lo = 1, high = 2")).find("did you mean low"),
+            std::string::npos);
+  EXPECT_NE(complaint("[suite]\nname = \"s\"\n[[problem]]\nname = \"p\"\n").find("no data"),
+            std::string::npos);
+  const std::string twice = "[[problem]]\nname = \"p\"\nfile = \"a.csv\"\n";
+  EXPECT_NE(complaint("[suite]\nname = \"s\"\n" + twice + twice).find("two problems"),
+            std::string::npos);
+  EXPECT_NE(complaint("[grid]\nname = \"s\"\n").find("suite"), std::string::npos);
+}
+
+TEST(Suite, DrawsAreWhatTheySay) {
+  const Suite suite = read_suite(kSmall, "small.toml");
+  const Problem problem = make_suite_problem(suite, suite.find("product"), read_product, {}, 1);
+  EXPECT_EQ(problem.name, "small/product");
+  EXPECT_EQ(problem.target_unit, "N m");
+  EXPECT_EQ(problem.inputs[0].low, -1e3);
+  EXPECT_EQ(problem.inputs[1].high, 9);
+  const Table& train = problem.stages[0].train;
+  ASSERT_EQ(train.rows(), 200U);
+  ASSERT_EQ(problem.test.rows(), 300U);
+  int negative = 0;
+  int small = 0;
+  std::set<double> whole;
+  for (std::size_t r = 0; r < train.rows(); ++r) {
+    negative += train.columns[0][r] < 0 ? 1 : 0;
+    small += std::abs(train.columns[0][r]) < 1 ? 1 : 0;
+    whole.insert(train.columns[1][r]);
+    EXPECT_EQ(train.target[r], train.columns[0][r] * train.columns[1][r]);
+  }
+  EXPECT_NEAR(negative, 100, 30);
+  EXPECT_NEAR(small, 100, 30);  // three decades on either side of 1
+  EXPECT_EQ(whole, (std::set<double>{2, 3, 4, 5}));
+  EXPECT_GT(*std::ranges::max_element(problem.test.columns[1]), 5);
+  EXPECT_NE(
+      make_suite_problem(suite, suite.find("product"), read_product, {}, 2).stages[0].train.target,
+      train.target);
+}
+
+TEST(Suite, ALatticeHasEveryPointAndLeavesOutWhereTheLawIsNotFinite) {
+  const Suite suite = read_suite(
+      "[suite]\nname = \"s\"\n[[problem]]\nname = \"p\"\nlaw = \"log(x)\"\ninputs = [{ name = "
+      "\"x\", low = 0, high = 1, draw = \"lattice\", step = 0.1, test_step = 0.01 }, { name = "
+      "\"y\", low = 1, high = 2, draw = \"lattice\", step = 1 }]\n",
+      "s.toml");
+  const Problem problem = make_suite_problem(suite, suite.problems[0], read_product, {}, 1);
+  EXPECT_EQ(problem.stages[0].train.rows(), 20U);  // 11 points less x = 0, twice
+  EXPECT_EQ(problem.test.rows(), 200U);
+  EXPECT_EQ(problem.stages[0].train.columns[0][0], 0.1);
+}
+
+TEST(Suite, ALawThatIsFiniteNowhereIsRefused) {
+  const Suite suite = read_suite(
+      "[suite]\nname = \"s\"\nrows = 3\ntest_rows = 3\n[[problem]]\nname = \"p\"\nlaw = "
+      "\"log(x)\"\ninputs = [{ name = \"x\", low = 1, high = 2, sign = \"negative\" }]\n",
+      "s.toml");
+  EXPECT_THROW(make_suite_problem(suite, suite.problems[0], read_product, {}, 1), Error);
+}
+
+TEST(Suite, TablesAndSuitesOfOnesOwnLieInTheFolderOfData) {
+  const std::filesystem::path data = std::filesystem::path(::testing::TempDir()) / "suite_data";
+  std::filesystem::remove_all(data);
+  std::filesystem::create_directories(data / "suites");
+  std::ofstream table(data / "rows.csv");
+  table << "a,b,target\n";
+  for (int r = 0; r < 8; ++r) table << r << ',' << 2 * r << ',' << 3 * r << '\n';
+  table.close();
+  std::ofstream(data / "splits.csv") << "dataset,seed,test_rows\np,11,0 7\np,12,1 2\n";
+  std::ofstream(data / "suites/mine.toml")
+      << "[suite]\nname = \"mine\"\nsplits = \"splits.csv\"\n[[problem]]\nname = \"p\"\nfile = "
+         "\"rows.csv\"\n";
+  const std::vector<Suite> suites = known_suites(data);
+  EXPECT_EQ(suites.back().name, "mine");
+  EXPECT_EQ(suites.size(), shipped_suites().size() + 1);
+  const Problem first = make_suite_problem(suites.back(), suites.back().problems[0], {}, data, 1);
+  EXPECT_EQ(first.test.target, (std::vector<double>{0, 21}));
+  EXPECT_EQ(first.inputs[1].name, "b");
+  EXPECT_EQ(first.inputs[1].high, 12);
+  const Problem second = make_suite_problem(suites.back(), suites.back().problems[0], {}, data, 2);
+  EXPECT_EQ(second.test.target, (std::vector<double>{3, 6}));
+  const Problem third = make_suite_problem(suites.back(), suites.back().problems[0], {}, data, 3);
+  EXPECT_EQ(third.test.target, first.test.target);  // round and round
+}
+
+}  // namespace
+}  // namespace tribench::suite
