@@ -75,7 +75,7 @@ class TribenchRegressor(RegressorMixin, BaseEstimator):
     def fit(self, X, y):
         """X: n x d numbers (an array or a data frame), y: n numbers; no NaN. Returns itself."""
         labels = getattr(X, "columns", None)
-        X, y = self._checked(X, y)
+        X, y = self._checked_pair(X, y)
         if len(y) < 2:
             raise ValueError("1 sample: a fit needs two or more rows")
         self.names_ = formula_names(labels if labels is not None
@@ -102,7 +102,7 @@ class TribenchRegressor(RegressorMixin, BaseEstimator):
     def predict(self, X):
         """The formula's values by the program's own evaluator, bit for bit."""
         check_is_fitted(self)
-        X = self._checked(X)
+        X = self._checked_rows(X)
         with tempfile.TemporaryDirectory() as folder:
             data = pathlib.Path(folder) / "rows.csv"
             write_table(data, self.names_, X.T)
@@ -123,22 +123,21 @@ class TribenchRegressor(RegressorMixin, BaseEstimator):
             return int(self.random_state.randint(2**31 - 1))
         return int(self.random_state)
 
-    def _checked(self, X, y=None):
+    def _checked_pair(self, X, y):
         if HAVE_SKLEARN:
-            if y is None:
-                return self._validate_data(X, dtype=float, reset=False)
             return self._validate_data(X, y, dtype=float, y_numeric=True)
-        X = np.asarray(X, dtype=float)
-        if X.ndim != 2:
-            raise ValueError(f"X has {X.ndim} dimensions; give rows and columns")
-        if y is None:
-            if X.shape[1] != self.n_features_in_:
-                raise ValueError(f"X has {X.shape[1]} columns, the fit had {self.n_features_in_}")
-            return X
-        y = np.asarray(y, dtype=float)
-        if y.shape != (len(X),) or not (np.isfinite(X).all() and np.isfinite(y).all()):
-            raise ValueError("y must have a number for each row of X, and all must be finite")
+        X, y = np.asarray(X, dtype=float), np.asarray(y, dtype=float)
+        if X.ndim != 2 or y.shape != (len(X),) or not (np.isfinite(X).all() and np.isfinite(y).all()):
+            raise ValueError("give rows and columns and a number for each row, all of them finite")
         return X, y
+
+    def _checked_rows(self, X):
+        if HAVE_SKLEARN:
+            return self._validate_data(X, dtype=float, reset=False)
+        X = np.asarray(X, dtype=float)
+        if X.ndim != 2 or X.shape[1] != self.n_features_in_:
+            raise ValueError(f"give rows of {self.n_features_in_} columns, as the fit had")
+        return X
 
 
 def _text(value):
