@@ -14,6 +14,7 @@
 #include "algorithms/expression/bounds.hpp"
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/operator_set.hpp"
 #include "algorithms/expression/simplify.hpp"
 #include "algorithms/expression/singularity.hpp"
 #include "algorithms/expression/text.hpp"
