@@ -30,7 +30,7 @@ seeds_of() {
 # llvm_tool NAME: the one that belongs to the compiler in use.
 llvm_tool() {
     local version
-    version=$(sed -n 's/^CMAKE_CXX_COMPILER_VERSION.*//p; s/.*"\([0-9]*\)\.[0-9.]*").*/\1/p' \
+    version=$(sed -n 's/^set(CMAKE_CXX_COMPILER_VERSION "\([0-9]*\)\..*/\1/p' \
         "$build"/CMakeFiles/*/CMakeCXXCompiler.cmake | head -n 1)
     command -v "$1-$version" || command -v "$1"
 }
@@ -41,9 +41,13 @@ coverage_of() {
     shift
     LLVM_PROFILE_FILE=$build/corpus/$target.profraw "$program" -runs=0 "$@" >/dev/null 2>&1 || true
     "$(llvm_tool llvm-profdata)" merge -o "$build/corpus/$target.profdata" "$build/corpus/$target.profraw"
-    mapfile -t files <"$build/tests/fuzz/$target.reads"
-    "$(llvm_tool llvm-cov)" report "$program" -instr-profile="$build/corpus/$target.profdata" \
-        "${files[@]}" 2>/dev/null | awk '/^TOTAL/ {print $10}'
+    "$(llvm_tool llvm-cov)" export "$program" -instr-profile="$build/corpus/$target.profdata" \
+        -format=lcov -summary-only | awk -F: '
+            NR == FNR { aim[++n] = $0; next }
+            /^SF/ { hit = 0; for (i in aim) if (index($2, aim[i])) hit = 1 }
+            /^LF/ && hit { all += $2 }
+            /^LH/ && hit { reached += $2 }
+            END { if (all > 0) printf "%.1f %%", 100 * reached / all }' "$build/tests/fuzz/$target.reads" -
 }
 
 status=0
