@@ -4,11 +4,12 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -16,6 +17,7 @@
 #include <sstream>
 #include <utility>
 
+#include "foundation/child_keeper.hpp"
 #include "foundation/error.hpp"
 
 extern char** environ;
@@ -24,7 +26,9 @@ namespace tribench {
 namespace {
 
 [[noreturn]] void throw_failed(const std::string& what, int error) {
-  throw Error(ErrorKind::failed, fmt::format("{}: {}", what, std::strerror(error)));
+  const bool no_room = error == EAGAIN || error == ENOMEM || error == EMFILE || error == ENFILE;
+  throw Error(no_room ? ErrorKind::environment : ErrorKind::failed,
+              fmt::format("{}: {}", what, std::strerror(error)));
 }
 
 struct Pipe {
@@ -67,59 +71,55 @@ std::vector<std::string> environment_with(const std::vector<std::string>& extra)
   return all;
 }
 
-// Attributes and file actions of posix_spawn, freed on every path.
-struct SpawnSetup {
-  posix_spawnattr_t attributes;
-  posix_spawn_file_actions_t actions;
-  SpawnSetup() {
-    posix_spawnattr_init(&attributes);
-    posix_spawn_file_actions_init(&actions);
+// A program's file as execve wants it: found in PATH where the word has no slash.
+std::string found_in_path(const std::string& word) {
+  if (word.find('/') != std::string::npos) return word;
+  const char* variable = std::getenv("PATH");
+  std::string_view path = variable != nullptr ? variable : "/usr/local/bin:/usr/bin:/bin";
+  while (!path.empty()) {
+    const std::size_t end = std::min(path.find(':'), path.size());
+    const std::string candidate = fmt::format("{}/{}", end == 0 ? "." : path.substr(0, end), word);
+    if (::access(candidate.c_str(), X_OK) == 0) return candidate;
+    path.remove_prefix(std::min(end + 1, path.size()));
   }
-  ~SpawnSetup() {
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&actions);
-  }
-  SpawnSetup(const SpawnSetup&) = delete;
-  SpawnSetup& operator=(const SpawnSetup&) = delete;
-
-  // The child starts with no signal blocked and with the default answer to those we handle.
-  void set_signals_and_group(bool own_group) {
-    sigset_t none;
-    sigset_t defaults;
-    sigemptyset(&none);
-    sigemptyset(&defaults);
-    for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) sigaddset(&defaults, signal);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setsigdefault(&attributes, &defaults);
-    int flags = POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF;
-    if (own_group) {
-      posix_spawnattr_setpgroup(&attributes, 0);
-      flags |= POSIX_SPAWN_SETPGROUP;
-    }
-    posix_spawnattr_setflags(&attributes, static_cast<short>(flags));
-  }
-};
+  return word;  // execve will say that it is not there
+}
 
 }  // namespace
 
-ChildProcess::ChildProcess(const ChildOptions& options) : own_group_(options.own_group) {
+ChildProcess::ChildProcess(const ChildOptions& options) {
   if (options.command.empty()) throw Error(ErrorKind::failed, "an empty command cannot be run");
+  std::vector<std::string> words = options.command;
+  std::vector<std::string> environment = environment_with(options.environment);
+  const std::string file = found_in_path(words.front());
+  const std::vector<char*> word_pointers = pointers(words);
+  const std::vector<char*> environment_pointers = pointers(environment);
   Pipe input;
   Pipe output;
   Pipe errors;
-  SpawnSetup setup;
-  setup.set_signals_and_group(own_group_);
-  posix_spawn_file_actions_adddup2(&setup.actions, input.read_end, 0);
-  posix_spawn_file_actions_adddup2(&setup.actions, output.write_end, 1);
-  posix_spawn_file_actions_adddup2(&setup.actions, errors.write_end, 2);
-  if (!options.working_directory.empty()) {
-    posix_spawn_file_actions_addchdir_np(&setup.actions, options.working_directory.c_str());
+  Pipe life;
+  Pipe report;
+  const KeptProgram program{
+      file.c_str(),
+      word_pointers.data(),
+      environment_pointers.data(),
+      options.working_directory.empty() ? nullptr : options.working_directory.c_str(),
+      options.scratch.empty() ? nullptr : options.scratch.c_str(),
+      {input.read_end, output.write_end, errors.write_end},
+      life.read_end,
+      report.write_end};
+  keeper_ = start_keeper(program);
+  if (keeper_ < 0) throw_failed(fmt::format("cannot start '{}'", words.front()), errno);
+  ::close(Pipe::release(report.write_end));
+  ::close(Pipe::release(life.read_end));
+  life_ = Pipe::release(life.write_end);
+  report_ = Pipe::release(report.read_end);
+  const KeeperStart start = read_start(report_);
+  pid_ = start.pid;
+  if (start.error != 0) {
+    reap();
+    throw_failed(fmt::format("cannot run '{}'", words.front()), start.error);
   }
-  std::vector<std::string> words = options.command;
-  std::vector<std::string> environment = environment_with(options.environment);
-  const int error = posix_spawnp(&pid_, words.front().c_str(), &setup.actions, &setup.attributes,
-                                 pointers(words).data(), pointers(environment).data());
-  if (error != 0) throw_failed(fmt::format("cannot run '{}'", words.front()), error);
   input_ = Pipe::release(input.write_end);
   streams_ = {Pipe::release(output.read_end), Pipe::release(errors.read_end)};
   for (const int stream : streams_) ::fcntl(stream, F_SETFL, O_NONBLOCK);
@@ -127,10 +127,8 @@ ChildProcess::ChildProcess(const ChildOptions& options) : own_group_(options.own
 
 ChildProcess::~ChildProcess() {
   close_input();
-  if (!reaped_) {
-    kill();
-    reap();
-  }
+  kill();
+  reap();
   for (const int stream : streams_) {
     if (stream >= 0) ::close(stream);
   }
@@ -191,39 +189,47 @@ ChildOutput ChildProcess::read(double timeout_s) {
 }
 
 void ChildProcess::kill() {
-  if (reaped_) return;
-  ::kill(own_group_ ? -pid_ : pid_, SIGKILL);
+  if (life_ >= 0) ::close(std::exchange(life_, -1));
 }
 
-bool ChildProcess::reap() noexcept {
-  while (!reaped_) {
-    int status = 0;
-    if (::waitpid(pid_, &status, 0) < 0) {
-      if (errno == EINTR) continue;
-      return false;
-    }
-    reaped_ = true;
-    if (own_group_) ::kill(-pid_, SIGKILL);  // what it has left behind
-    if (WIFSIGNALED(status)) exit_.signal = WTERMSIG(status);
-    if (WIFEXITED(status)) exit_.status = WEXITSTATUS(status);
+void ChildProcess::reap() noexcept {
+  if (reaped_) return;
+  const int status = read_end(report_);
+  if (WIFSIGNALED(status)) exit_.signal = WTERMSIG(status);
+  if (WIFEXITED(status)) exit_.status = WEXITSTATUS(status);
+  while (::waitpid(keeper_, nullptr, 0) < 0 && errno == EINTR) {
   }
-  return true;
+  ::close(std::exchange(report_, -1));
+  kill();  // the keeper has gone: this only closes the pipe
+  reaped_ = true;
 }
 
 ChildExit ChildProcess::wait() {
-  if (!reap()) throw_failed("cannot wait for a child process", errno);
+  reap();
   return exit_;
 }
 
-ChildRun run_child(const ChildOptions& options, std::string_view input) {
+ChildRun run_child(const ChildOptions& options, std::string_view input, const ChildLimits& limits) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
   ChildProcess child(options);
   if (!input.empty()) child.write(input);
   child.close_input();
   ChildRun run;
   for (bool ended = false; !ended;) {
-    const ChildOutput part = child.read(1.0);
+    const double left_s =
+        limits.wall_s - std::chrono::duration<double>(Clock::now() - start).count();
+    if (left_s <= 0) {
+      run.timed_out = true;
+      child.kill();
+      break;
+    }
+    const ChildOutput part = child.read(std::min(left_s, 1.0));
     run.output += part.output;
     run.errors += part.errors;
+    if (run.output.size() + run.errors.size() > limits.output_bytes) {
+      throw Error(ErrorKind::failed, "the program prints without end", options.command.front());
+    }
     ended = part.ended;
   }
   run.exit = child.wait();
@@ -239,6 +245,7 @@ ProcessUse process_tree_use(pid_t pid) {
   std::ifstream stat(fmt::format("/proc/{}/stat", pid));
   std::string line;
   if (!std::getline(stat, line)) return {};
+  const bool is_keeper = line.find(fmt::format("({})", kKeeperName)) != std::string::npos;
   // Fields after the name, which stands in brackets and may hold blanks: 14 and 15 are user and
   // system ticks, 24 the resident pages (proc(5)).
   std::istringstream fields(line.substr(line.rfind(')') + 1));
@@ -247,8 +254,10 @@ ProcessUse process_tree_use(pid_t pid) {
   ProcessUse use;
   use.cpu_s = (std::strtod(field[14].c_str(), nullptr) + std::strtod(field[15].c_str(), nullptr)) /
               static_cast<double>(::sysconf(_SC_CLK_TCK));
-  use.resident_mib = std::strtod(field[24].c_str(), nullptr) *
-                     static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
+  if (!is_keeper) {
+    use.resident_mib = std::strtod(field[24].c_str(), nullptr) *
+                       static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
+  }
   std::ifstream children(fmt::format("/proc/{}/task/{}/children", pid, pid));
   for (pid_t child = 0; children >> child;) {
     const ProcessUse part = process_tree_use(child);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// A program run beside this one: spawned (never forked: a fork after OpenMP has started is
-// undefined), in a process group of its own so that it can be ended with all it has started, with
-// pipes on its three standard streams. Used for worker processes and methods in other languages.
+// A program run beside this one, with pipes on its three standard streams, and the promise that
+// nothing of it is left: a keeper process stands between, to which every process that the program
+// starts falls back when its parent has gone (a child subreaper: setsid and double forks do not
+// lead away from it). The keeper ends them all when the program has ended, when kill() is called,
+// and when this process is gone, by SIGKILL too. Linux only. It does nothing that is not allowed
+// between a fork and an exec in a program with threads.
 //
 // Not a shell: the command is a list of words; the first is a path or is looked up in PATH.
 #pragma once
@@ -10,6 +13,8 @@
 #include <sys/types.h>
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -21,7 +26,9 @@ struct ChildOptions {
   std::vector<std::string> command = {};
   std::vector<std::string> environment = {};     // NAME=value, besides this process's own
   std::filesystem::path working_directory = {};  // empty: this process's own
-  bool own_group = true;  // false: stays in this process's group and ends with it
+  // A folder that is removed when the program and all it has started have ended, even where this
+  // process is killed before: make it by ScratchFolder; empty: none.
+  std::filesystem::path scratch = {};
 };
 
 // How a process ended.
@@ -40,9 +47,10 @@ struct ChildOutput {
 
 class ChildProcess {
  public:
-  // Throws Error (failed) where the program cannot be started.
+  // Throws Error (failed) where the program cannot be started, (environment) where the machine has
+  // no room for one more process.
   explicit ChildProcess(const ChildOptions& options);
-  // Ends the process group if it still runs.
+  // Ends the program if it still runs, and all it has started.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
@@ -55,20 +63,21 @@ class ChildProcess {
   // Waits up to `timeout_s` for output; returns at once when there is some.
   ChildOutput read(double timeout_s);
 
-  // SIGKILL to the group (to the process alone where it has none of its own). No error where it
-  // has ended already.
+  // SIGKILL to the program and to all it has started. No error where it has ended already.
   void kill();
-  // Waits for the end and reaps it; the same answer from then on.
+  // Waits for the end of the program and of all it has started; the same answer from then on.
   ChildExit wait();
 
  private:
   void drain(int index, std::string& into);
-  bool reap() noexcept;  // false where the process cannot be waited for; errno says why
+  void reap() noexcept;
 
+  pid_t keeper_ = -1;
   pid_t pid_ = -1;
-  bool own_group_ = true;
   bool reaped_ = false;
   ChildExit exit_;
+  int life_ = -1;    // the keeper ends all when this is closed
+  int report_ = -1;  // what the keeper says of the program
   int input_ = -1;
   std::array<int, 2> streams_{-1, -1};  // its output, its errors
 };
@@ -78,15 +87,24 @@ struct ChildRun {
   ChildExit exit;
   std::string output;
   std::string errors;
+  bool timed_out = false;  // it was ended because its time was up
+};
+// What a program may take; beyond that it is ended.
+struct ChildLimits {
+  double wall_s = 1e9;
+  std::size_t output_bytes = SIZE_MAX;  // of both streams together
 };
 // Hands `input` to the program, closes its standard input and waits for its end. For programs that
-// read their input before they print much. Throws Error (failed) where it cannot be started.
-ChildRun run_child(const ChildOptions& options, std::string_view input = {});
+// read their input before they print much. Throws Error (failed) where it cannot be started or
+// prints without end.
+ChildRun run_child(const ChildOptions& options, std::string_view input = {},
+                   const ChildLimits& limits = {});
 
 // "SIGSEGV" for 11; "signal 99" where there is no name.
 std::string signal_name(int signal);
 
-// CPU seconds and resident memory of a process and of all it has started that still run.
+// CPU seconds and resident memory of a process and of all it has started that still run. A keeper's
+// memory is that of the process it was forked from and is not counted twice.
 struct ProcessUse {
   double cpu_s = 0;
   double resident_mib = 0;

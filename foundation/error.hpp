@@ -15,6 +15,9 @@ namespace tribench {
 enum class ErrorKind {
   bad_input,  // the user can mend it: exit status 2
   failed,     // the machine or a bug is at fault: exit status 3
+  // The machine has no room now (a full disk, a limit on files or processes): says nothing about
+  // what was tried, which can be repeated; exit status 3 too, and never a cell's result.
+  environment,
 };
 
 class Error : public std::runtime_error {

@@ -20,7 +20,7 @@ ScratchFolder::ScratchFolder() {
   std::string name = (parent / "tribench-XXXXXX").string();
   // mkdtemp gives it to its owner alone (0700).
   if (error || ::mkdtemp(name.data()) == nullptr) {
-    throw Error(ErrorKind::failed,
+    throw Error(ErrorKind::environment,
                 fmt::format("cannot make a temporary folder: {}",
                             error ? error.message() : std::strerror(errno)),
                 name, "set TMPDIR to a folder that can be written");

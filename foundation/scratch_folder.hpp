@@ -14,7 +14,7 @@ namespace tribench {
 // ScratchFolder of its starter's as its TMPDIR, and the starter removes all of it.
 class ScratchFolder {
  public:
-  // Throws Error (failed) where it cannot be made.
+  // Throws Error (environment) where it cannot be made.
   ScratchFolder();
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;

@@ -192,7 +192,8 @@ auto parse_or_throw(std::string_view text, Parse parse) {
 
 CellTask make_task(const Grid& grid, const Cell& cell, const std::string& data) {
   const Method& method = grid.method(cell.method);
-  return {cell, method, grid.operator_set(cell.operators), grid.limits_of(method), 1, data};
+  return {cell, method,    grid.operator_set(cell.operators), grid.limits_of(method), 1,
+          data, grid.prior};
 }
 
 Record empty_record(const Cell& cell) {
@@ -215,7 +216,8 @@ std::string print_task(const CellTask& task) {
                {"operators", operators_json(task.operators)},
                {"limits", limits_json(task.limits)},
                {"threads", task.threads},
-               {"data", task.data}});
+               {"data", task.data},
+               {"max_degree", task.prior.max_degree}});
 }
 
 CellTask parse_task(std::string_view text) {
@@ -231,6 +233,7 @@ CellTask parse_task(std::string_view text) {
     task.limits = parse_limits(object.at("limits"));
     task.threads = object.at("threads");
     task.data = object.at("data");
+    task.prior.max_degree = object.at("max_degree").get<std::map<std::string, int>>();
     return task;
   });
 }

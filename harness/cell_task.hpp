@@ -21,6 +21,7 @@ struct CellTask {
   CellLimits limits;
   int threads = 1;
   std::string data;  // folder of the measured sets; empty where there is none
+  Prior prior = {};
 };
 
 struct CellResult {

@@ -10,6 +10,13 @@
 
 namespace tribench {
 
+void apply_prior(const Prior& prior, Problem& problem) {
+  for (Input& input : problem.inputs) {
+    const auto found = prior.max_degree.find(input.name);
+    if (found != prior.max_degree.end()) input.max_degree = found->second;
+  }
+}
+
 OperatorSet fixed_form_operators() {
   std::vector<Op> all;
   for (int op = 0; op < kOpCount; ++op) {
@@ -18,21 +25,29 @@ OperatorSet fixed_form_operators() {
   return {kFixedForm, "every operation", all};
 }
 
+std::vector<std::string> Grid::sets_of(const Method& method) const {
+  if (method.fixed_form) return {kFixedForm};
+  std::vector<std::string> sets;
+  for (const OperatorSet& set : operators) {
+    const bool usable =
+        !method.is_external() || std::ranges::count(method.operators, set.name()) > 0;
+    if (usable) sets.push_back(set.name());
+  }
+  return sets;
+}
+
+std::size_t Grid::cell_count() const {
+  std::size_t of_a_seed = 0;
+  for (const Method& method : methods) of_a_seed += problems.size() * sets_of(method).size();
+  return of_a_seed * seed_count;
+}
+
 std::vector<Cell> Grid::cells() const {
   std::vector<Cell> all;
+  all.reserve(cell_count());
   for (const std::string& problem : problems) {
     for (const Method& method : methods) {
-      std::vector<std::string> sets;
-      if (method.fixed_form) {
-        sets = {kFixedForm};
-      } else {
-        for (const OperatorSet& set : operators) {
-          const bool usable =
-              !method.is_external() || std::ranges::count(method.operators, set.name()) > 0;
-          if (usable) sets.push_back(set.name());
-        }
-      }
-      for (const std::string& set : sets) {
+      for (const std::string& set : sets_of(method)) {
         for (std::uint64_t i = 0; i < seed_count; ++i) {
           all.push_back({problem, method.name, set, first_seed + i});
         }

@@ -59,6 +59,15 @@ struct Method {
   bool is_external() const { return !command.empty(); }
 };
 
+// What is held to be known before the data, the same for every method: the highest power of an
+// input, by the input's name. A problem without an input of that name is not concerned.
+struct Prior {
+  std::map<std::string, int> max_degree;
+
+  bool operator==(const Prior&) const = default;
+};
+void apply_prior(const Prior& prior, Problem& problem);
+
 // What a fixed form may use: every operation, under the name "-".
 OperatorSet fixed_form_operators();
 
@@ -72,6 +81,7 @@ struct Grid {
   std::vector<std::string> quarantine;  // globs over cell keys that are not run
   CellLimits limits;
   RetryPolicy retry;
+  Prior prior;
   // Published figures that the report sets beside the run's (reports/published.hpp): the file as
   // the grid names it, and its text; both empty where there is none.
   std::string reference_file;
@@ -81,6 +91,9 @@ struct Grid {
 
   // Every cell, in the order of the results: problem, method, operator set, seed.
   std::vector<Cell> cells() const;
+  std::size_t cell_count() const;
+  // Names of the operator sets that a method runs with.
+  std::vector<std::string> sets_of(const Method& method) const;
   const Method& method(std::string_view method_name) const;
   OperatorSet operator_set(std::string_view set_name) const;  // "-" is everything
   CellLimits limits_of(const Method& method) const { return method.limits.value_or(limits); }

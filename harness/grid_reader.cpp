@@ -11,6 +11,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/glob.hpp"
+#include "foundation/plain_name.hpp"
 #include "foundation/suggestion.hpp"
 #include "foundation/text.hpp"
 #include "foundation/toml_table.hpp"
@@ -21,6 +22,9 @@ namespace tribench {
 namespace {
 
 constexpr double kMaxSeconds = 30.0 * 24 * 3600;
+constexpr std::int64_t kMaxDegree = 16;
+constexpr std::uint64_t kMaxSeeds = 1'000'000;
+constexpr std::size_t kMaxCells = 5'000'000;  // a cell takes about 1 kB of memory and 2 kB of disk
 
 // Runs `action`; what it throws gets the place in the file.
 template <typename Action>
@@ -69,6 +73,20 @@ RetryPolicy read_retry(const TomlTable& table) {
   return retry;
 }
 
+Prior read_prior(const TomlTable& table) {
+  Prior prior;
+  for (const auto& [input, value] : table.values("max_degree")) {
+    const auto* degree = std::get_if<std::int64_t>(&value);
+    if (degree == nullptr || *degree < 1 || *degree > kMaxDegree) {
+      throw_bad_input(
+          fmt::format("the degree of '{}' is no whole number from 1 to {}", input, kMaxDegree),
+          table.place("max_degree"), "as in max_degree = { g = 1 }");
+    }
+    prior.max_degree[input] = static_cast<int>(*degree);
+  }
+  return prior;
+}
+
 std::vector<OperatorSet> known_operator_sets(const TomlTable& file) {
   std::vector<OperatorSet> sets = operator_sets();
   for (const TomlTable& table :
@@ -80,6 +98,7 @@ std::vector<OperatorSet> known_operator_sets(const TomlTable& file) {
     std::vector<std::string> words;
     bool proved_free_only = false;
     table.read("name", name);
+    require_plain_name(name, "an operator set", table.place("name"));
     table.read("summary", summary);
     table.read("operators", words);
     table.read("proved_free_only", proved_free_only);
@@ -163,10 +182,7 @@ Method read_external(const TomlTable& table, const std::vector<std::string>& set
 void check_names(const std::vector<Method>& methods, const std::string& file_name) {
   std::set<std::string> seen;
   for (const Method& method : methods) {
-    if (method.name.find_first_of("|\n") != std::string::npos || method.name.empty()) {
-      throw_bad_input(fmt::format("'{}' cannot name a method", method.name), file_name,
-                      "use letters, digits, _ - + .");
-    }
+    require_plain_name(method.name, "a method", file_name);
     if (!seen.insert(method.name).second) {
       throw_bad_input(fmt::format("two methods are called '{}'", method.name), file_name,
                       "give one of them another name");
@@ -326,7 +342,8 @@ bool is_built_in(const OperatorSet& set) {
 Grid parse_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
                 const Catalogue& catalogue) {
   const toml::table root = parse_toml(toml, file_name);
-  std::vector<std::string> keys = {"grid", "budget", "retry", "method", "external", "operator_set"};
+  std::vector<std::string> keys = {"grid",   "budget",   "retry",       "prior",
+                                   "method", "external", "operator_set"};
   if (root.contains("suite")) {
     keys.insert(keys.end(), {"suite", "problem", "reference"});
     check_suite(toml, file_name, catalogue);
@@ -338,16 +355,25 @@ Grid parse_grid(std::string_view toml, const std::string& file_name, const Regis
   Grid grid;
   grid.name = std::filesystem::path(file_name).stem().string();
   table.read("name", grid.name);
+  require_plain_name(grid.name, "a grid", table.place(table.has("name") ? "name" : "problems"));
   const TomlTable seeds = table.table("seeds", {"first", "count"});
   seeds.read("first", grid.first_seed);
   seeds.read("count", grid.seed_count);
-  if (grid.seed_count == 0) throw_bad_input("'count' must be at least 1", seeds.place("count"));
+  if (grid.seed_count == 0 || grid.seed_count > kMaxSeeds) {
+    throw_bad_input(fmt::format("'count' is {}", grid.seed_count), seeds.place("count"),
+                    fmt::format("use 1 to {}", kMaxSeeds));
+  }
   table.read("quarantine", grid.quarantine);
   table.read("reference", grid.reference_file);
   grid.limits = read_limits(file.table("budget", limit_keys()), grid.limits);
   grid.retry = read_retry(
       file.table("retry", {"crashed", "timeout", "cpu_limit", "out_of_memory", "error"}));
+  grid.prior = read_prior(file.table("prior", {"max_degree"}));
   read_axes(file, table, registry, catalogue, file_name, grid);
+  if (const std::size_t cells = grid.cell_count(); cells > kMaxCells) {
+    throw_bad_input(fmt::format("the grid has {} cells", cells), table.place(),
+                    fmt::format("use at most {}: split it into several grids", kMaxCells));
+  }
   return grid;
 }
 
@@ -392,6 +418,11 @@ std::string print_grid(const Grid& grid) {
                                    {"cpu_limit", grid.retry.cpu_limit},
                                    {"out_of_memory", grid.retry.out_of_memory},
                                    {"error", grid.retry.error}});
+  if (!grid.prior.max_degree.empty()) {
+    toml::table degrees;
+    for (const auto& [input, degree] : grid.prior.max_degree) degrees.insert(input, degree);
+    root.insert("prior", toml::table{{"max_degree", degrees}});
+  }
   toml::array methods;
   toml::array externals;
   toml::array sets;

@@ -10,6 +10,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/number_text.hpp"
+#include "foundation/order_statistics.hpp"
 
 namespace tribench {
 namespace {
@@ -32,6 +33,16 @@ Shard parse_shard(std::string_view text) {
                     "use K/N with K from 1 to N, as in 3/8");
   }
   return {*index, *count};
+}
+
+MeasuredCosts measured_costs(const RunFolder& run) {
+  std::map<std::string, std::vector<double>, std::less<>> seconds;
+  for (const Record& record : run.records) {
+    if (is_ok(record)) seconds[record.method].push_back(record.fit_cpu_s);
+  }
+  MeasuredCosts costs;
+  for (const auto& [method, values] : seconds) costs[method] = kBaseSeconds + median(values);
+  return costs;
 }
 
 double predict_seconds(const Grid& grid, const Cell& cell, const MeasuredCosts& costs) {

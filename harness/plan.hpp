@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/grid.hpp"
+#include "reports/run_folder.hpp"
 
 namespace tribench {
 
@@ -26,14 +27,16 @@ Shard parse_shard(std::string_view text);
 
 // Seconds a cell of each method took before (the median), by the method's name; may be empty.
 using MeasuredCosts = std::map<std::string, double, std::less<>>;
+// Of a run that has ended: its fits' seconds and what judging takes.
+MeasuredCosts measured_costs(const RunFolder& run);
 
 struct PlannedWork {
   Cell cell;
   double predicted_s = 0;
 };
 
-// CPU seconds the cell is expected to take: measured ones where there are any, else from its
-// budget at a cautious rate of evaluation.
+// CPU seconds the cell is expected to take: measured ones where there are any, else the most that
+// its budget allows, at a cautious rate of evaluation. Many methods end long before that.
 double predict_seconds(const Grid& grid, const Cell& cell, const MeasuredCosts& costs = {});
 
 // The shard's cells, the most expensive first, so that the last to end are short. Cells are dealt

@@ -14,6 +14,8 @@
 #include <set>
 
 #include "foundation/error.hpp"
+#include "foundation/output_folder.hpp"
+#include "foundation/suggestion.hpp"
 #include "harness/cell_task.hpp"
 #include "harness/progress_line.hpp"
 #include "harness/run_files.hpp"
@@ -195,6 +197,14 @@ void hash_table(const Table& table, std::uint64_t& hash) {
   hash_values(table.target, hash);
 }
 
+void require_known_inputs(const Prior& prior, const std::vector<std::string>& inputs) {
+  for (const auto& [name, degree] : prior.max_degree) {
+    if (std::ranges::count(inputs, name) > 0) continue;
+    throw_bad_input(fmt::format("no problem of the grid has an input '{}'", name),
+                    "[prior] max_degree", did_you_mean(name, inputs));
+  }
+}
+
 Journal open_journal(const RunOptions& options, const RunIdentity& identity,
                      std::set<std::string>& done, RunTally& tally) {
   const std::filesystem::path file = options.out / "cells.jsonl";
@@ -218,23 +228,21 @@ Journal open_journal(const RunOptions& options, const RunIdentity& identity,
 std::string data_identity(const Grid& grid, const std::string& data) {
   const Catalogue catalogue = full_catalogue_of(data);
   std::uint64_t hash = 0;
+  std::set<std::string> inputs;
   for (const std::string& name : grid.problems) {
     const Problem problem = catalogue.find(name).make(grid.first_seed);
+    for (const Input& input : problem.inputs) inputs.insert(input.name);
     for (const Stage& stage : problem.stages) hash_table(stage.train, hash);
     hash_table(problem.test, hash);
   }
+  require_known_inputs(grid.prior, {inputs.begin(), inputs.end()});
   return fmt::format("{:016x}", hash);
 }
 
 RunTally run_grid(const Grid& grid, const RunOptions& options, const RunIdentity& identity,
                   const std::atomic<bool>& stop) {
   const Clock::time_point start = Clock::now();
-  std::error_code error;
-  std::filesystem::create_directories(options.out, error);
-  if (error) {
-    throw Error(ErrorKind::failed, fmt::format("cannot make the folder: {}", error.message()),
-                options.out.string(), "choose a folder that can be written to by --out");
-  }
+  make_output_folder(options.out);
   RunTally tally;
   std::set<std::string> done;
   Journal journal = open_journal(options, identity, done, tally);

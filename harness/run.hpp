@@ -50,7 +50,8 @@ struct RunTally {
   std::size_t done() const { return found + ran; }
 };
 
-// Every problem's data as one hash; throws Error where a problem cannot be made.
+// Every problem's data as one hash; throws Error where a problem cannot be made, (bad_input) where
+// a prior names an input that none of them has.
 std::string data_identity(const Grid& grid, const std::string& data);
 
 // Runs what the folder's journal does not have yet. Throws Error (bad_input) where the folder

@@ -13,6 +13,7 @@
 #include <new>
 #include <optional>
 
+#include "algorithms/admission.hpp"
 #include "algorithms/external/external_method.hpp"
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
@@ -175,6 +176,34 @@ FitResult fit_or_refuse(const Regressor& method, FitContext& context) {
   }
 }
 
+bool has_finite_constants(const Expression& formula) {
+  return std::ranges::all_of(formula.nodes(), [](const Node& node) {
+    return !node.is_constant() || std::isfinite(node.value);
+  });
+}
+
+// What no method may hand in: a formula with a constant that is no number (it says nothing, and
+// cannot be read back), and one beyond a declared prior. The next simpler one stands in for a
+// choice that goes, else the simplest.
+void keep_usable_formulas(FitResult& fit, std::span<const Input> inputs) {
+  const auto is_usable = [inputs](const Expression& formula) {
+    return has_finite_constants(formula) && keeps_priors(formula, inputs);
+  };
+  if (std::ranges::all_of(fit.front, is_usable)) return;
+  std::vector<Expression> kept;
+  std::size_t chosen = 0;
+  for (std::size_t k = 0; k < fit.front.size(); ++k) {
+    if (!is_usable(fit.front[k])) continue;
+    if (k <= fit.chosen) chosen = kept.size();
+    kept.push_back(std::move(fit.front[k]));
+  }
+  fit.front = std::move(kept);
+  fit.chosen = chosen;
+  if (fit.front.empty()) {
+    fit.note = "every formula has constants that are not finite, or is beyond a prior";
+  }
+}
+
 StagesResult fit_stages(const Problem& problem, const Regressor& method, const CellTask& task,
                         Budget& budget, Trace& trace) {
   StagesResult result;
@@ -188,8 +217,9 @@ StagesResult fit_stages(const Problem& problem, const Regressor& method, const C
     Budget part = budget.share(budget.remaining() / (problem.stages.size() - s));
     FitContext context{data, task.operators, part, random.split(s), task.threads, &trace};
     trace.start_stage(budget.spent());
-    const FitResult fit = fit_or_refuse(method, context);
+    FitResult fit = fit_or_refuse(method, context);
     budget.settle(part);
+    keep_usable_formulas(fit, context.data.inputs);
     if (!fit.note.empty()) {
       if (!result.note.empty()) result.note += "; ";
       if (fit.reason == StopReason::unsupported) result.note += fmt::format("no {}: ", stage.name);
@@ -244,6 +274,9 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
     fit = fit_stages(problem, method, task, budget, trace);
   } catch (const std::bad_alloc&) {
     throw;
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::environment) throw;
+    fit.failure = fmt::format("error ({})", error.what());
   } catch (const std::exception& error) {
     fit.failure = fmt::format("error ({})", error.what());
   }
@@ -270,6 +303,7 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
 
 const CellRunner::Measured& CellRunner::problem(const CellTask& task) {
   constexpr std::size_t kKept = 16;
+  // A worker runs one grid, whose prior is the same in all its tasks.
   const std::string key = fmt::format("{}|{}|{}", task.cell.problem, task.cell.seed, task.data);
   const auto found = std::ranges::find(problems_, key, &std::pair<std::string, Measured>::first);
   if (found != problems_.end()) {
@@ -277,6 +311,7 @@ const CellRunner::Measured& CellRunner::problem(const CellTask& task) {
   } else {
     const Catalogue catalogue = full_catalogue_of(task.data);
     Problem made = catalogue.find(task.cell.problem).make(task.cell.seed);
+    apply_prior(task.prior, made);
     const Yardsticks yardsticks = measure_yardsticks(made);
     problems_.emplace_front(key, Measured{std::move(made), yardsticks});
     if (problems_.size() > kKept) problems_.pop_back();
@@ -302,6 +337,7 @@ CellResult CellRunner::run(const CellTask& task,
     set_yardsticks(data.yardsticks, result.record);
     return result;
   } catch (const Error& error) {
+    if (error.kind() == ErrorKind::environment) throw;
     failed.record.reason = fmt::format("error ({})", error.what());
   }
   return failed;

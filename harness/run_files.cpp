@@ -9,6 +9,7 @@
 
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/output_folder.hpp"
 #include "harness/provenance.hpp"
 #include "reports/published.hpp"
 #include "reports/record_csv.hpp"
@@ -130,7 +131,7 @@ JournalContents merge_journals(const std::vector<std::filesystem::path>& folders
   std::ranges::sort(merged.results, [](const CellResult& a, const CellResult& b) {
     return comes_before(a.record, b.record);
   });
-  std::filesystem::create_directories(out);
+  make_output_folder(out);
   Journal journal = Journal::create(out / "cells.jsonl", merged.identity);
   for (const CellResult& result : merged.results) journal.append(result);
   return merged;

@@ -13,6 +13,8 @@
 
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
+#include "foundation/output_folder.hpp"
+#include "foundation/shell_word.hpp"
 #include "harness/run_files.hpp"
 #include "reports/record_csv.hpp"
 
@@ -22,17 +24,15 @@ namespace {
 constexpr double kElementSeconds = 300;  // half a second an element is Slurm's own: well below 1 %
 constexpr int kProgramMemoryMib = 256;   // the run itself, beside its workers
 
-// In single quotes for the shell.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      result += "'\\''";
-    } else {
-      result += c;
-    }
+// A value in a line of the script's header. sbatch reads quotes there; a line's end would begin a
+// line of its own.
+std::string header_value(const std::string& value, const char* option) {
+  for (const char c : value) {
+    if (c >= ' ' && c != '\x7f' && c != '"' && c != '\\') continue;
+    throw_bad_input(fmt::format("a value holds the character {}", static_cast<int>(c)), option,
+                    "use no quotes, backslashes or control characters");
   }
-  return result + "'";
+  return value.find(' ') == std::string::npos ? value : fmt::format("\"{}\"", value);
 }
 
 std::string header(const std::string& name, const SlurmOptions& options, int minutes,
@@ -41,16 +41,10 @@ std::string header(const std::string& name, const SlurmOptions& options, int min
       "#!/bin/bash\n#SBATCH --job-name=tribench-{}\n#SBATCH --output={}\n"
       "#SBATCH --open-mode=append\n#SBATCH --time={}\n#SBATCH --mem={}M\n"
       "#SBATCH --cpus-per-task={}\n#SBATCH --requeue\n",
-      name, log, minutes, memory_mib, processors);
+      name, header_value(log, "--out"), minutes, memory_mib, processors);
   if (!options.partition.empty())
-    text += fmt::format("#SBATCH --partition={}\n", options.partition);
+    text += fmt::format("#SBATCH --partition={}\n", header_value(options.partition, "--partition"));
   return text + "set -eu\n";
-}
-
-std::string without_blanks(std::string name) {
-  std::ranges::replace_if(
-      name, [](char c) { return c <= ' ' || c == '/'; }, '-');
-  return name;
 }
 
 std::string submit(const std::vector<std::string>& command) {
@@ -98,23 +92,23 @@ SlurmPlan plan_slurm(const Grid& grid, const SlurmOptions& options, const Measur
   plan.memory_mib =
       kProgramMemoryMib + options.jobs * static_cast<int>(std::ceil(grid.limits.memory_mib));
   const std::string folder = options.out.string();
-  const std::string name = without_blanks(grid.name);
-  const std::string data = options.data.empty() ? "" : " --data " + quoted(options.data);
+  const std::string name = grid.name;
+  const std::string data = options.data.empty() ? "" : " --data " + shell_word(options.data);
   plan.array_script = header(name, options, plan.minutes, plan.memory_mib, options.jobs,
                              folder + "/log/element-%a.log") +
                       fmt::format(
                           "exec {0} run {1} --out {2}/shard-$SLURM_ARRAY_TASK_ID "
                           "--shard $SLURM_ARRAY_TASK_ID/{3} --jobs {4} --resume --quiet{5}\n",
-                          quoted(options.program.string()), quoted(folder + "/grid.toml"),
-                          quoted(folder), plan.shards, options.jobs, data);
+                          shell_word(options.program.string()), shell_word(folder + "/grid.toml"),
+                          shell_word(folder), plan.shards, options.jobs, data);
   plan.merge_script = header(name + "-merge", options, 60, 2048, 1, folder + "/log/merge.log") +
                       fmt::format("rm -f {0}/cells.jsonl\nexec {1} merge {0}/shard-* --out {0}\n",
-                                  quoted(folder), quoted(options.program.string()));
+                                  shell_word(folder), shell_word(options.program.string()));
   return plan;
 }
 
 SlurmJobs submit_slurm(const Grid& grid, const SlurmPlan& plan, const SlurmOptions& options) {
-  std::filesystem::create_directories(options.out / "log");
+  make_output_folder(options.out / "log");
   write_plan_files(options.out, grid);
   write_file(options.out / "array.sh", plan.array_script);
   write_file(options.out / "merge.sh", plan.merge_script);

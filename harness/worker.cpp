@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 #include <csignal>
 #include <iostream>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "foundation/error.hpp"
@@ -18,9 +18,6 @@
 
 namespace tribench {
 namespace {
-
-// The worker leads its process group: with it end the programs it has started.
-extern "C" void end_group(int /*signal*/) { ::kill(0, SIGKILL); }
 
 // Standard output is for answers alone: they get a descriptor of their own, and what a method or a
 // library prints goes to standard error.
@@ -59,8 +56,8 @@ void set_limits(const CellLimits& limits) {
 }  // namespace
 
 int run_worker(const Registry& registry) {
-  std::signal(SIGTERM, end_group);
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  // A full disk and a limit on file sizes are errors of write(), not reasons to die.
+  std::signal(SIGXFSZ, SIG_IGN);
   const int answers = take_over_output();
   CellRunner runner(registry);
   for (std::string line; std::getline(std::cin, line);) {
@@ -71,6 +68,9 @@ int run_worker(const Registry& registry) {
         send(answers, "started", print_result({record, {}, {}}));
       });
       send(answers, "finished", print_result(result));
+    } catch (const Error& error) {
+      // Nothing a cell can do wrong comes here: CellRunner makes a record of it.
+      send(answers, "environment", nlohmann::json(error.what()).dump());
     } catch (const std::bad_alloc&) {
       send(answers, "out_of_memory", "true");
       return 1;

@@ -5,10 +5,11 @@
 #include <sched.h>
 
 #include <chrono>
-#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "foundation/scratch_folder.hpp"
 
 namespace tribench {
@@ -18,6 +19,7 @@ constexpr double kTickSeconds = 0.05;
 constexpr std::string_view kStarted = "{\"started\":";
 constexpr std::string_view kFinished = "{\"finished\":";
 constexpr std::string_view kOutOfMemory = "{\"out_of_memory\":";
+constexpr std::string_view kEnvironment = "{\"environment\":";
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -54,6 +56,11 @@ struct WorkerProcess::Reading {
       if (line.starts_with(kStarted)) started = parse_result(body_of(line, kStarted));
       if (line.starts_with(kFinished)) finished = parse_result(body_of(line, kFinished));
       if (line.starts_with(kOutOfMemory)) out_of_memory = true;
+      if (line.starts_with(kEnvironment)) {
+        throw Error(ErrorKind::environment,
+                    read_json<nlohmann::json>(body_of(line, kEnvironment)).get<std::string>(), {},
+                    "what is done is kept: mend it and go on by --resume");
+      }
       pending.erase(0, end + 1);
     }
   }
@@ -74,8 +81,9 @@ void WorkerProcess::ensure_process() {
   if (cells_run_ >= options_.cells_per_worker) renew();
   if (process_) return;
   scratch_.emplace();
-  process_ = std::make_unique<ChildProcess>(ChildOptions{
-      options_.command, {fmt::format("TMPDIR={}", scratch_->path().string())}, {}, true});
+  const std::string temporary = "TMPDIR=" + scratch_->path().string();
+  process_ = std::make_unique<ChildProcess>(
+      ChildOptions{options_.command, {temporary}, {}, scratch_->path()});
   ++started_;
   if (options_.cpu) {
     cpu_set_t set;

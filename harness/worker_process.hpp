@@ -43,7 +43,8 @@ class WorkerProcess {
   ~WorkerProcess();
 
   // Runs one cell to its end, within its limits. `stop` is looked at 20 times a second. Throws
-  // Error (failed) where no worker can be started.
+  // Error (failed) where no worker can be started, (environment) where the machine has no room for
+  // the cell: that is no result.
   CellOutcome run(const CellTask& task, const std::atomic<bool>& stop);
   // The next cell gets a fresh process.
   void renew();

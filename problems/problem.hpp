@@ -28,6 +28,9 @@ struct Input {
   double high = 0;
   // An input named sgn_X is the sign of X: this is X's place among the inputs.
   std::optional<std::size_t> sign_of;
+  // A prior, declared by a problem or a grid and the same for every method: the highest power of
+  // this input in any product; 0: none is declared. What an input is called declares nothing.
+  int max_degree = 0;
 };
 
 // Rows for fitting or judging; column j belongs to inputs[j] of the table's owner.

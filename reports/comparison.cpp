@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -14,6 +15,7 @@
 #include "foundation/order_statistics.hpp"
 #include "foundation/random.hpp"
 #include "reports/record_csv.hpp"
+#include "reports/run_conditions.hpp"
 #include "reports/statistics/rank_tests.hpp"
 
 namespace tribench {
@@ -38,7 +40,12 @@ double error_of(const Record& record) {
   return is_ok(record) && !std::isnan(record.mae_test) ? record.mae_test : kInfinity;
 }
 
-double time_of(const Record& record) { return is_ok(record) ? record.fit_cpu_s : kMissing; }
+// Shorter fits have no pace: clocks, caches and the start of a process dominate.
+constexpr double kLeastMeasuredCpu_s = 0.02;
+
+double time_of(const Record& record) {
+  return is_ok(record) && record.fit_cpu_s >= kLeastMeasuredCpu_s ? record.fit_cpu_s : kMissing;
+}
 
 // log(new / base); 0 for equal figures, infinite where only one of them failed, NaN for no pair.
 double log_ratio(double base, double now) {
@@ -113,6 +120,65 @@ ComparisonVerdict judge(const ComparisonRow& row, double level, double equivalen
   if (row.p <= level && row.ratio < low) return ComparisonVerdict::better;
   if (row.interval.low >= low && row.interval.high <= high) return ComparisonVerdict::equivalent;
   return ComparisonVerdict::not_distinguishable;
+}
+
+// Whether noise like `values` (centred) with the shift on it would be called worse.
+bool is_seen(const std::vector<double>& values, double shift, double level, double equivalence) {
+  std::vector<double> shifted = values;
+  for (double& value : shifted) value += shift;
+  return median(shifted) > elementary::log1p(equivalence) &&
+         wilcoxon_signed_rank(shifted).p <= level;
+}
+
+// The least shift that is seen, by bisection; infinity where a loss of ten times is not.
+double least_seen(const std::vector<double>& values, double level, double equivalence) {
+  double low = 0;
+  double high = elementary::log(10.0);
+  if (!is_seen(values, high, level, equivalence)) return kInfinity;
+  for (int step = 0; step < 10; ++step) {
+    const double middle = 0.5 * (low + high);
+    (is_seen(values, middle, level, equivalence) ? high : low) = middle;
+  }
+  return high;
+}
+
+// The loss that 8 of 10 resamples of these pairs, centred, would have shown. `level`: of one test.
+double smallest_detectable_loss(std::vector<double> pairs, double level, std::uint64_t key,
+                                const ComparisonOptions& options) {
+  constexpr double kPower = 0.8;
+  std::erase_if(pairs, [](double value) { return std::isinf(value); });
+  if (pairs.empty()) return kInfinity;
+  const double middle = median(pairs);
+  for (double& value : pairs) value -= middle;
+  std::vector<double> shifts;
+  const RandomStream random(key);
+  for (std::size_t round = 0; round < options.power_rounds; ++round) {
+    RandomStream draws = random.split(round);
+    std::vector<double> resample;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      resample.push_back(pairs[draws.below(pairs.size())]);
+    shifts.push_back(least_seen(resample, level, options.quality_equivalence));
+  }
+  std::ranges::sort(shifts);
+  return elementary::expm1(
+      shifts[static_cast<std::size_t>(kPower * static_cast<double>(shifts.size()))]);
+}
+
+// Rows of one problem say what is undecided and what could have been seen; a pooled row only where
+// it is the one row of its method.
+void look_at_power(const Groups& groups, Comparison& comparison, const ComparisonOptions& options) {
+  const double level =
+      options.level / static_cast<double>(comparison.quality.size() + comparison.time.size());
+  for (ComparisonRow& row : comparison.quality) {
+    const auto& problems = groups.at({row.method, row.operators});
+    if (row.problem.empty() && problems.size() > 1) continue;
+    row.undecided = row.ratio > 1 + options.tolerance && row.verdict != ComparisonVerdict::worse;
+    if (options.power_rounds == 0) continue;
+    const std::string& problem = row.problem.empty() ? problems.begin()->first : row.problem;
+    row.detectable = smallest_detectable_loss(
+        problems.at(problem), level,
+        key_of(fmt::format("power|{}|{}|{}", row.method, row.operators, problem)), options);
+  }
 }
 
 // Holm over every row of the comparison, quality and time together.
@@ -215,7 +281,15 @@ std::vector<Pair> count_cells(const RunFolder& base, const RunFolder& now, Compa
     if (record.singularity == "refuted" && before.singularity != "refuted") {
       comparison.newly_singular.push_back(record.cell);
     }
+    if (before.singularity == "refuted" && is_ok(record) && record.singularity != "refuted") {
+      comparison.no_longer_singular.push_back(record.cell);
+    }
+    if (before.singularity == "proved_free" && record.singularity == "undecided") {
+      comparison.newly_unproved.push_back(record.cell);
+    }
   }
+  comparison.singular_p =
+      sign_test(comparison.newly_singular.size(), comparison.no_longer_singular.size());
   comparison.limits_p = sign_test(comparison.newly_failed.size() - comparison.newly_broken.size(),
                                   comparison.newly_fine.size());
   comparison.common = pairs.size();
@@ -243,11 +317,82 @@ std::string comparison_verdict_name(ComparisonVerdict verdict) {
   }
 }
 
+const char* outcome_name(ComparisonOutcome outcome) {
+  switch (outcome) {
+    case ComparisonOutcome::regression:
+      return "REGRESSION";
+    case ComparisonOutcome::undecided:
+      return "UNDECIDED";
+    default:
+      return "No regression";
+  }
+}
+
 bool Comparison::has_regression() const {
   const bool more_limits =
       newly_failed.size() > newly_broken.size() + newly_fine.size() && limits_p <= level;
-  return !newly_broken.empty() || more_limits || count_of(quality, ComparisonVerdict::worse) > 0 ||
+  const bool more_singular =
+      newly_singular.size() > no_longer_singular.size() && singular_p <= level;
+  return !newly_broken.empty() || more_limits || more_singular ||
+         count_of(quality, ComparisonVerdict::worse) > 0 ||
          count_of(time, ComparisonVerdict::worse) > 0;
+}
+
+std::vector<std::string> Comparison::doubts() const {
+  std::vector<std::string> all;
+  if (!conditions.empty() && !conditions_allowed) {
+    all.push_back(
+        fmt::format("the runs were asked different things ({} differences)", conditions.size()));
+  }
+  if (only_base > 0) all.push_back(fmt::format("{} cells of the base are missing", only_base));
+  for (const ComparisonRow& row : quality) {
+    if (!row.undecided) continue;
+    all.push_back(fmt::format("{} ({}) on {}: {:.0f} % worse, not significant (p = {:.2g})",
+                              row.method, row.operators, row.problem.empty() ? "all" : row.problem,
+                              100 * (row.ratio - 1), row.p));
+  }
+  constexpr double kSuspicious = 0.05;
+  if (newly_singular.size() > no_longer_singular.size() && singular_p <= kSuspicious &&
+      singular_p > level) {
+    all.push_back(fmt::format("{} formulas are newly singular, {} no longer", newly_singular.size(),
+                              no_longer_singular.size()));
+  }
+  return all;
+}
+
+ComparisonOutcome Comparison::outcome() const {
+  // What differs on purpose may well be worse: that decides nothing about the code.
+  if (!conditions.empty() && !conditions_allowed) return ComparisonOutcome::undecided;
+  if (has_regression()) return ComparisonOutcome::regression;
+  return common == 0 || !doubts().empty() ? ComparisonOutcome::undecided : ComparisonOutcome::fine;
+}
+
+std::string Comparison::visibility() const {
+  std::size_t asked = 0;
+  std::vector<const ComparisonRow*> blind;
+  for (const ComparisonRow& row : quality) {
+    if (std::isnan(row.detectable)) continue;
+    ++asked;
+    if (row.detectable > tolerance) blind.push_back(&row);
+  }
+  if (asked == 0) return {};
+  std::string text = fmt::format(
+      "A loss of {:.0f} % or more would have been seen (8 times of 10) in {} of {} comparisons of "
+      "a "
+      "method on a problem",
+      100 * tolerance, asked - blind.size(), asked);
+  std::ranges::sort(blind, std::greater<>(), &ComparisonRow::detectable);
+  constexpr std::size_t kShown = 5;
+  for (std::size_t i = 0; i < std::min(kShown, blind.size()); ++i) {
+    const ComparisonRow& row = *blind[i];
+    text += fmt::format("{} {} ({}) on {} {}", i == 0 ? "; on" : ",", row.method, row.operators,
+                        row.problem.empty() ? "all" : row.problem,
+                        std::isinf(row.detectable)
+                            ? std::string("none at all (too few pairs)")
+                            : fmt::format("only one of {:.0f} %", 100 * row.detectable));
+  }
+  if (blind.size() > kShown) text += fmt::format(", and {} more", blind.size() - kShown);
+  return text + ".";
 }
 
 std::string Comparison::sentence() const {
@@ -260,8 +405,8 @@ std::string Comparison::sentence() const {
   return fmt::format(
       "{}: {} of {} common cells identical; quality worse in {}, better in {}, equivalent in {}, "
       "not distinguishable in {} of {} verdicts; slower in {} of {}; {} cells newly failed.",
-      has_regression() ? "REGRESSION" : "No regression", identical, common,
-      count_of(quality, ComparisonVerdict::worse), count_of(quality, ComparisonVerdict::better),
+      outcome_name(outcome()), identical, common, count_of(quality, ComparisonVerdict::worse),
+      count_of(quality, ComparisonVerdict::better),
       count_of(quality, ComparisonVerdict::equivalent),
       count_of(quality, ComparisonVerdict::not_distinguishable), quality.size(),
       count_of(time, ComparisonVerdict::worse), time.size(), newly_failed.size());
@@ -271,13 +416,18 @@ Comparison compare_runs(const RunFolder& base, const RunFolder& now,
                         const ComparisonOptions& options) {
   Comparison comparison;
   comparison.level = options.level;
+  comparison.tolerance = options.tolerance;
+  comparison.conditions = condition_differences(base, now);
+  comparison.conditions_allowed = options.allow_conditions;
   const std::vector<Pair> pairs = count_cells(base, now, comparison);
-  comparison.quality = rows_of(log_ratios(pairs, error_of), true, options);
+  const Groups quality = log_ratios(pairs, error_of);
+  comparison.quality = rows_of(quality, true, options);
   comparison.why_no_time = why_no_time(base, now, options);
   if (comparison.why_no_time.empty()) {
     comparison.time = compare_time(pairs, base, now, options);
   }
   decide(comparison, options);
+  look_at_power(quality, comparison, options);
   return comparison;
 }
 

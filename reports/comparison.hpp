@@ -9,6 +9,13 @@
 // median ratio (two levels, problems and seeds, where problems are pooled). Time is compared, on
 // the log ratio of CPU seconds, only where both machines' calibration says that it can be.
 //
+// What is asked first is whether the two are answers to one question: other budgets, parameters,
+// seeds or data (run_conditions.hpp) leave the comparison undecided unless they are allowed.
+//
+// What a comparison cannot see it says: for each method on each problem the smallest loss that
+// would have been found (in 8 of 10 repetitions of this night's noise, by resampling). A loss
+// beyond the tolerance that is not significant is undecided, not fine.
+//
 // Verdicts: worse or better needs the adjusted p below the level AND a median ratio outside the
 // region of practical equivalence; equivalent needs the whole interval inside that region;
 // everything else is not distinguishable. Level 0.5 % for the whole comparison: of 200 comparisons
@@ -33,8 +40,11 @@ struct ComparisonOptions {
   double level = 0.005;               // family-wise, over all verdicts, two-sided
   double quality_equivalence = 0.01;  // ratios within 1 +- this are of no practical use
   double time_equivalence = 0.05;
-  double largest_drift = 0.05;  // of the calibration kernel within a run
-  std::size_t rounds = 2000;    // of each bootstrap
+  double largest_drift = 0.05;    // of the calibration kernel within a run
+  std::size_t rounds = 2000;      // of each bootstrap
+  double tolerance = 0.05;        // a loss beyond this that is not significant is undecided
+  std::size_t power_rounds = 50;  // resamples for the smallest detectable loss; 0: not asked
+  bool allow_conditions = false;  // compare though budgets, parameters or data differ
 };
 
 // One method (operator set), on one problem or, with an empty problem, on all of them.
@@ -49,7 +59,13 @@ struct ComparisonRow {
   double effect = 0;            // rank-biserial; positive where new is larger (worse)
   double p = kMissing;          // Holm-adjusted
   ComparisonVerdict verdict = ComparisonVerdict::not_distinguishable;
+  // The smallest loss (0.08: 8 %) that would have been a worse verdict; infinity where none would.
+  double detectable = kMissing;
+  bool undecided = false;  // a loss beyond the tolerance that is not significant
 };
+
+enum class ComparisonOutcome { fine, regression, undecided };
+const char* outcome_name(ComparisonOutcome outcome);  // "No regression", "REGRESSION", "UNDECIDED"
 
 struct Comparison {
   std::size_t common = 0;     // cells in both
@@ -60,9 +76,15 @@ struct Comparison {
   std::vector<std::string> newly_broken;    // of them, not by running into a limit
   std::vector<std::string> newly_fine;      // cells that failed before
   std::vector<std::string> newly_singular;  // refuted now, not before
-  std::vector<ComparisonRow> quality;       // pooled rows first, then by problem
-  std::vector<ComparisonRow> time;          // pooled rows only; empty where it cannot be compared
-  std::string why_no_time;                  // empty where time was compared
+  std::vector<std::string> no_longer_singular;
+  std::vector<std::string> newly_unproved;  // proved free before, undecided now
+  double singular_p = 1;                    // of the two counts above (exact sign test)
+  std::vector<std::string> conditions;      // in what the two runs were asked differently
+  bool conditions_allowed = false;
+  double tolerance = 0.05;
+  std::vector<ComparisonRow> quality;  // pooled rows first, then by problem
+  std::vector<ComparisonRow> time;     // pooled rows only; empty where it cannot be compared
+  std::string why_no_time;             // empty where time was compared
   // Cells that newly ran into a limit against those that no longer do (exact sign test).
   double limits_p = 1;
   double level = 0.005;
@@ -70,6 +92,12 @@ struct Comparison {
   // A worse verdict, a cell that newly crashed or gave an error, or clearly more cells that ran
   // into a limit (a single one may be the machine's bad moment).
   bool has_regression() const;
+  // Something of which this comparison cannot say that it is fine: differing conditions, cells that
+  // are missing, a loss beyond the tolerance that is not significant, more singular formulas.
+  std::vector<std::string> doubts() const;
+  ComparisonOutcome outcome() const;
+  // What would have been seen, and where not.
+  std::string visibility() const;
   std::string sentence() const;  // the outcome in one line
 };
 

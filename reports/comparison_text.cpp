@@ -72,13 +72,30 @@ ordered_json rows_json(const std::vector<ComparisonRow>& rows) {
                      {"high", number(row.interval.high)},
                      {"effect", number(row.effect)},
                      {"p", number(row.p)},
+                     {"detectable", number(row.detectable)},
+                     {"undecided", row.undecided},
                      {"verdict", comparison_verdict_name(row.verdict)}});
   }
   return array;
 }
 
-std::string outcome(const Comparison& comparison) {
-  std::string text = fmt::format("**{}**\n", comparison.sentence());
+std::string list_of(const char* title, const std::vector<std::string>& lines) {
+  if (lines.empty()) return {};
+  std::string text = fmt::format("{}:\n\n", title);
+  for (const std::string& line : lines) text += fmt::format("- {}\n", line);
+  return text + "\n";
+}
+
+std::string outcome_text(const Comparison& comparison) {
+  std::string text =
+      list_of(comparison.conditions_allowed ? "The runs were asked different things (allowed)"
+                                            : "The runs were asked different things",
+              comparison.conditions);
+  text += fmt::format("**{}**\n", comparison.sentence());
+  const std::string doubts = list_of("\nNot decided", comparison.doubts());
+  text += doubts;
+  const std::string visibility = comparison.visibility();
+  if (!visibility.empty()) text += fmt::format("{}{}\n", doubts.empty() ? "\n" : "", visibility);
   if (comparison.only_base + comparison.only_new > 0) {
     text += fmt::format("\nCells only in the base: {}, only in the new run: {}.\n",
                         comparison.only_base, comparison.only_new);
@@ -86,13 +103,15 @@ std::string outcome(const Comparison& comparison) {
   text += cell_list("Newly failed", comparison.newly_failed);
   text += cell_list("Fail no longer", comparison.newly_fine);
   text += cell_list("Newly singular", comparison.newly_singular);
+  text += cell_list("No longer singular", comparison.no_longer_singular);
+  text += cell_list("Newly without a proof", comparison.newly_unproved);
   return text;
 }
 
 }  // namespace
 
 std::string comparison_head(const Comparison& comparison) {
-  std::string text = outcome(comparison);
+  std::string text = outcome_text(comparison);
   std::vector<ComparisonRow> told;
   for (const ComparisonRow& row : comparison.quality) {
     const bool decided =
@@ -104,7 +123,7 @@ std::string comparison_head(const Comparison& comparison) {
 }
 
 std::string comparison_markdown(const Comparison& comparison) {
-  std::string text = outcome(comparison);
+  std::string text = outcome_text(comparison);
   if (comparison.identical < comparison.common) {
     text += "\n### Quality: error on test movements\n\n" + table_of(comparison.quality);
   }
@@ -116,7 +135,11 @@ std::string comparison_markdown(const Comparison& comparison) {
 }
 
 ordered_json comparison_json(const Comparison& comparison) {
-  return {{"regression", comparison.has_regression()},
+  return {{"outcome", outcome_name(comparison.outcome())},
+          {"conditions", comparison.conditions},
+          {"doubts", comparison.doubts()},
+          {"visibility", comparison.visibility()},
+          {"regression", comparison.has_regression()},
           {"sentence", comparison.sentence()},
           {"common", comparison.common},
           {"identical", comparison.identical},
@@ -125,6 +148,8 @@ ordered_json comparison_json(const Comparison& comparison) {
           {"newly_failed", comparison.newly_failed},
           {"newly_fine", comparison.newly_fine},
           {"newly_singular", comparison.newly_singular},
+          {"no_longer_singular", comparison.no_longer_singular},
+          {"newly_unproved", comparison.newly_unproved},
           {"quality", rows_json(comparison.quality)},
           {"time", rows_json(comparison.time)},
           {"why_no_time", comparison.why_no_time}};

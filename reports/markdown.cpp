@@ -14,7 +14,15 @@ std::string escaped(std::string_view cell) {
   std::string text;
   for (const char c : cell) {
     if (c == '|') text += '\\';
-    text += c == '\n' || c == '\r' ? ' ' : c;
+    // Markdown lets HTML through: a name or a reason from outside must not become a tag. Other
+    // control characters than a line's end show nothing and break what reads the page.
+    if (c == '<') {
+      text += "&lt;";
+    } else if (c >= 0 && c < ' ') {
+      text += ' ';
+    } else {
+      text += c;
+    }
   }
   return text;
 }

@@ -4,8 +4,8 @@
 // docs/external_methods.md). It is judged like a native method: what it says of its own errors is
 // a trace, never a result.
 //
-// The program runs in this process's group and under its limits of CPU and memory; whoever ends
-// the group ends the program too.
+// The program runs under this process's limits of memory, with a folder for temporary files of its
+// own; it and all it starts end with its answer or with this process, whichever comes first.
 #pragma once
 
 #include <map>
@@ -19,7 +19,8 @@ namespace tribench {
 
 // command: the words to run; the path of the request file is added as the last. Parameters are
 // handed on as they are. Unusable answers (no front, a formula that does not parse or leaves the
-// operator set, an exit status other than 0) throw Error (failed) from fit().
+// operator set, an exit status other than 0) throw Error (failed) from fit(); a full disk throws
+// Error (environment).
 std::unique_ptr<Regressor> make_external_method(std::vector<std::string> command,
                                                 std::map<std::string, ParameterValue> parameters);
 

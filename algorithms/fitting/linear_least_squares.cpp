@@ -78,6 +78,8 @@ LinearFit solve_least_squares(std::span<const double* const> columns,
     // stableNorm does not overflow on columns of 1e200.
     const double norm = column.stableNorm();
     scale[k] = norm > 0 && std::isfinite(norm) ? 1 / norm : 0;
+    // A column of subnormal numbers has no scale: like one of zeros it gets the coefficient 0.
+    if (!std::isfinite(scale[k])) scale[k] = 0;
     design.col(k) = column * scale[k];
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;

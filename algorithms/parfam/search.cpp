@@ -13,6 +13,7 @@
 #include "algorithms/parfam/elimination.hpp"
 #include "algorithms/parfam/subset.hpp"
 #include "foundation/elementary.hpp"
+#include "foundation/parallel_for.hpp"
 
 namespace tribench::parfam {
 namespace {
@@ -34,15 +35,6 @@ struct ScaledRows {
   std::size_t rows() const { return target.size(); }
 };
 
-// Friction is about linear in a load and in temperature. Higher powers of them follow what else
-// repeats with position on the training rows, and mislead where a payload goes beyond these.
-constexpr int kLoadPotence = 2;
-
-bool is_load(Role role) {
-  return role == Role::gravity_torque || role == Role::external_torque ||
-         role == Role::motor_torque || role == Role::temperature;
-}
-
 ScaledRows scale_rows(const FiniteRows& data, std::span<const Input> inputs) {
   ScaledRows scaled;
   scaled.target = data.target;
@@ -58,9 +50,8 @@ ScaledRows scale_rows(const FiniteRows& data, std::span<const Input> inputs) {
     scaled.columns.push_back(column);
     for (double& value : scaled.columns.back()) value /= scaled.scales.back();
     // The square of a sign is 1, or a second indicator of standstill: not worth a monomial.
-    scaled.caps.push_back(three_valued              ? 1
-                          : is_load(inputs[j].role) ? kLoadPotence
-                                                    : kMaximalPotence + 2);
+    const int most = three_valued ? 1 : kMaximalPotence + 2;
+    scaled.caps.push_back(inputs[j].max_degree > 0 ? std::min(most, inputs[j].max_degree) : most);
   }
   for (const auto& column : scaled.columns) scaled.pointers.push_back(column.data());
   return scaled;
@@ -219,11 +210,10 @@ void Search::add_families() {
   const RandomStream random = context_.random.split("families");
   InnerSearchOptions inner = options_.inner;
   inner.guard = sample_guard_ ? &*sample_guard_ : nullptr;
-#pragma omp parallel for schedule(dynamic) num_threads(context_.threads)
-  for (std::size_t i = 0; i < grid.size(); ++i) {
+  parallel_for(grid.size(), context_.threads, [&](std::size_t i) {
     found[i] =
         search_family(grid[i], sample_.pointers, sample_.target, inner, shares[i], random.split(i));
-  }
+  });
   for (const Budget& part : shares) context_.budget.settle(part);
   double squares = 0;
   for (double y : sample_.target) squares += y * y;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "algorithms/admission.hpp"
 #include "algorithms/pysr/text_pieces.hpp"
 #include "foundation/error.hpp"
 #include "foundation/number_text.hpp"
@@ -65,6 +66,8 @@ Validator::Validator(const Options& options, const OperatorSet& operators,
                      std::span<const Input> inputs, Form form)
     : operators_(&operators),
       form_(std::move(form)),
+      inputs_(inputs.begin(), inputs.end()),
+      has_priors_(std::ranges::any_of(inputs, [](const Input& one) { return one.max_degree > 0; })),
       max_depth_(options.max_depth),
       constant_size_(options.constant_size),
       variable_size_(options.variable_size),
@@ -153,6 +156,7 @@ bool Validator::admits(const Expression& formula, int max_size) const {
     return false;
   }
   if (!form_.fits(formula)) return false;
+  if (has_priors_ && !keeps_priors(formula, inputs_)) return false;
   if (form_.is_whole() ? !keeps_limits(formula) : !parts_fit(formula)) return false;
   return units_ != Units::hard || units_agree(formula, input_dimensions_, target_dimension_);
 }

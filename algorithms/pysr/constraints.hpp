@@ -39,9 +39,8 @@ class Validator {
   // Rounded sum of the weights of its nodes; the number of nodes with the default weights.
   int size(const Expression& formula) const;
 
-  // Form, size up to `max_size` (that of the columns' tape), depth, operators, arguments, nesting,
-  // sizes of parts, and units where they are hard.
-  // O(size * nested limits).
+  // Form, priors, size up to `max_size` (that of the columns' tape), depth, operators, arguments,
+  // nesting, sizes of parts, and units where they are hard. O(size * nested limits).
   bool admits(const Expression& formula, int max_size) const;
 
   // What the loss of a formula grows by where units are soft and it breaks them, else 0.
@@ -64,6 +63,8 @@ class Validator {
 
   const OperatorSet* operators_;
   Form form_;
+  std::vector<Input> inputs_;
+  bool has_priors_ = false;     // of the inputs: the highest power of one
   std::vector<int> part_size_;  // the largest allowed; empty for none
   int max_depth_;
   std::array<double, kOpCount> op_size_{};

@@ -21,6 +21,7 @@
 #include "algorithms/pysr/preparation.hpp"
 #include "algorithms/pysr/refinement.hpp"
 #include "foundation/error.hpp"
+#include "foundation/parallel_for.hpp"
 
 namespace tribench::pysr {
 namespace {
@@ -120,17 +121,12 @@ class Search {
 // runs first.
 template <typename Work>
 void Search::on_all_islands(Work work) {
-  const auto count = static_cast<int>(islands_.size());
   const std::uint64_t reserve = context_.budget.remaining() / kPolishShare;
   const std::uint64_t each =
-      (context_.budget.remaining() - reserve) / static_cast<std::uint64_t>(count);
+      (context_.budget.remaining() - reserve) / static_cast<std::uint64_t>(islands_.size());
   std::vector<Budget> shares(islands_.size(), context_.budget.share(each));
-#pragma omp parallel for schedule(dynamic) \
-    num_threads(std::max(context_.threads, 1)) if (context_.threads > 1)
-  for (int i = 0; i < count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    work(k, *islands_[k], shares[k]);
-  }
+  parallel_for(islands_.size(), context_.threads,
+               [&](std::size_t k) { work(k, *islands_[k], shares[k]); });
   for (const Budget& share : shares) context_.budget.settle(share);
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "algorithms/expression/complexity.hpp"
+#include "foundation/parallel_for.hpp"
 
 namespace tribench::udsr {
 namespace {
@@ -58,11 +59,14 @@ std::vector<double> Scoreboard::rewards(std::span<const Sequence> batch) {
   std::vector<Scored> scores(fresh.size());
   // Threads that wait for each other cost more than a small batch.
   const bool parallel = scorers_.size() > 1 && budget_->spent() - spent_before > kWorthThreads;
-#pragma omp parallel for schedule(dynamic, 4) \
-    num_threads(static_cast <int>(scorers_.size())) if (parallel)
-  for (std::size_t k = 0; k < fresh.size(); ++k) {
-    scores[k] = scorers_[static_cast<std::size_t>(omp_get_thread_num())]->score(batch[fresh[k]]);
-  }
+  constexpr int kChunk = 4;
+  parallel_for(
+      fresh.size(), parallel ? static_cast<int>(scorers_.size()) : 1,
+      [&](std::size_t k) {
+        const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+        scores[k] = scorers_[thread]->score(batch[fresh[k]]);
+      },
+      kChunk);
   for (std::size_t k = 0; k < fresh.size(); ++k) {
     known_[keys[fresh[k]]] = scores[k].reward;
     book(batch[fresh[k]], scores[k]);

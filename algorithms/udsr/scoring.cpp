@@ -79,7 +79,8 @@ bool is_sign(const Input& input) {
 std::vector<int> exponent_caps(std::span<const Input> inputs, int degree) {
   std::vector<int> caps;
   for (const Input& input : inputs) {
-    caps.push_back(is_sign(input) || input.role == Role::gravity_torque ? 1 : degree);
+    const int most = is_sign(input) ? 1 : degree;
+    caps.push_back(input.max_degree > 0 ? std::min(most, input.max_degree) : most);
   }
   return caps;
 }

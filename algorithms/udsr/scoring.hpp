@@ -30,10 +30,8 @@ struct Scored {
 
 bool is_sign(const Input& input);
 
-// The highest power of each input in a polynomial of this degree. The square of a sign is 1: higher
-// powers would only repeat it. A load enters as itself and, times its sign, as its magnitude, like
-// in every law of load-dependent friction; its higher powers run away outside the loads that were
-// seen.
+// The highest power of each input in a polynomial of this degree, the declared priors kept. The
+// square of a sign is 1: higher powers would only repeat it.
 std::vector<int> exponent_caps(std::span<const Input> inputs, int degree);
 
 // The rows of one problem and what scoring needs of them. Immutable: threads may share it.

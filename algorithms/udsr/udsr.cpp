@@ -229,7 +229,7 @@ class Search {
   }
 
   // Where the operator set admits only formulas proved free of singularities.
-  bool is_admitted(const Expression& formula) const { return admission_.is_safe(formula); }
+  bool is_admitted(const Expression& formula) const { return admission_.may_be_offered(formula); }
 
   // With constants before every term, then with ever fewer terms.
   void offer_sparser(const udsr::Sequence& sequence) {

@@ -26,6 +26,8 @@ void add_check_command(CLI::App& app, ExitStatus& status);
 void add_data_command(CLI::App& app, ExitStatus& status);
 void add_fit_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_generate_command(CLI::App& app, ExitStatus& status);
+void add_history_command(CLI::App& app, ExitStatus& status);
+void add_nightly_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_list_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_loop_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_merge_command(CLI::App& app, ExitStatus& status);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "harness/cli/commands.hpp"
+#include "harness/cli/number_options.hpp"
 #include "reports/comparison.hpp"
 #include "reports/history.hpp"
 #include "reports/run_folder.hpp"
@@ -22,6 +23,7 @@ struct CompareArguments {
   std::string base;
   std::string now;
   std::vector<std::string> history;  // oldest first, before `base`
+  ComparisonOptions options;
   bool json = false;
 };
 
@@ -41,12 +43,23 @@ nlohmann::ordered_json changes_json(const std::vector<SeriesChange>& changes,
   return array;
 }
 
+ExitStatus status_of(const Comparison& comparison) {
+  switch (comparison.outcome()) {
+    case ComparisonOutcome::regression:
+      return ExitStatus::found;
+    case ComparisonOutcome::undecided:
+      return ExitStatus::undecided;
+    default:
+      return ExitStatus::done;
+  }
+}
+
 void compare(const CompareArguments& arguments, ExitStatus& status) {
   std::vector<RunFolder> runs;
   for (const std::string& folder : arguments.history) runs.push_back(read_run_folder(folder));
   runs.push_back(read_run_folder(arguments.base));
   runs.push_back(read_run_folder(arguments.now));
-  const Comparison comparison = compare_runs(runs[runs.size() - 2], runs.back());
+  const Comparison comparison = compare_runs(runs[runs.size() - 2], runs.back(), arguments.options);
   const bool has_history = !arguments.history.empty();
   const std::vector<SeriesChange> changes =
       has_history ? find_changes(runs) : std::vector<SeriesChange>();
@@ -58,7 +71,7 @@ void compare(const CompareArguments& arguments, ExitStatus& status) {
     fmt::print("{}", comparison_markdown(comparison));
     if (has_history) fmt::print("\n### History\n\n{}", history_markdown(changes, runs));
   }
-  if (comparison.has_regression()) status = ExitStatus::found;
+  status = status_of(comparison);
 }
 
 }  // namespace
@@ -67,13 +80,22 @@ void add_compare_command(CLI::App& app, ExitStatus& status) {
   CLI::App* command = app.add_subcommand(
       "compare", "Decides whether a run is better, worse or not distinguishable from another");
   command->footer(
-      "Exit status 1 on a regression.\n"
+      "Exit status: 0 fine, 1 a regression, 4 undecided (the runs were asked different things, "
+      "cells "
+      "are missing, or a loss beyond the tolerance is not significant).\n"
       "Example: tribench compare runs/yesterday runs/today --history runs/monday runs/tuesday");
   auto arguments = std::make_shared<CompareArguments>();
   command->add_option("base", arguments->base, "folder of the run to compare with")->required();
   command->add_option("new", arguments->now, "folder of the run in question")->required();
   command->add_option("--history", arguments->history,
                       "earlier runs, oldest first: steps and drifts over all of them");
+  command->add_flag("--allow", arguments->options.allow_conditions,
+                    "compare though budgets, parameters, seeds or data differ");
+  command
+      ->add_option("--tolerance", arguments->options.tolerance,
+                   "a loss beyond this share that is not significant leaves it undecided")
+      ->transform(real_number(0, 10))
+      ->capture_default_str();
   command->add_flag("--json", arguments->json, "the comparison as JSON");
   command->callback([arguments, &status] { compare(*arguments, status); });
 }

@@ -23,6 +23,7 @@
 #include "algorithms/diagnosis/loop_json.hpp"
 #include "foundation/error.hpp"
 #include "foundation/number_text.hpp"
+#include "foundation/output_folder.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
 #include "problems/data_problem.hpp"
@@ -310,7 +311,9 @@ loop::Observations read_observations(const LoopArguments& arguments) {
 }
 
 void close_loop(const LoopArguments& arguments, const Registry& registry) {
-  // Before any work: a name that is known to nobody, and a file that nothing would be written to.
+  // Before any work: a folder that cannot be written to, a name that is known to nobody, and a file
+  // that nothing would be written to.
+  if (!arguments.out.empty()) make_output_folder(arguments.out);
   if (arguments.learn != "none") {
     registry.make(arguments.learn);
   } else if (!arguments.save_effect.empty()) {
@@ -334,7 +337,6 @@ void close_loop(const LoopArguments& arguments, const Registry& registry) {
   const std::string json = loop::write_loop_json(diagnosis, data, extras);
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;
-    std::filesystem::create_directories(folder);
     write_file(folder / "loop.json", json);
     write_loop_report(nlohmann::json::parse(json), title_of(arguments), folder);
     if (extras.suggestions.empty()) {

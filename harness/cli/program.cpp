@@ -55,17 +55,15 @@ std::string unknown_word(const CLI::App& app) {
   if (left.empty()) return {};
   const std::string word = left.front().substr(0, left.front().find('='));
   const std::vector<std::string> names = names_like(command, word);
-  const std::string near = nearest_name(word, names);
   const bool is_option = word.starts_with("-");
+  const std::string help = fmt::format("see: {} --help", command_path(command));
+  const std::string mend =
+      names.empty() ? help : did_you_mean(word, names, is_option ? help : std::string());
   return fmt::format("tribench: there is no {} '{}'; {}\n",
                      is_option       ? "option"
                      : names.empty() ? "further argument"
                                      : "subcommand",
-                     word,
-                     !near.empty() ? fmt::format("did you mean {}?", near)
-                     : is_option || names.empty()
-                         ? fmt::format("see: {} --help", command_path(command))
-                         : fmt::format("known: {}", fmt::join(names, ", ")));
+                     word, mend);
 }
 
 // Usage errors are bad input (2); --help and --version are done (0).
@@ -103,6 +101,8 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_predict_command(app, status);
   add_generate_command(app, status);
   add_loop_command(app, status, registry);
+  add_history_command(app, status);
+  add_nightly_command(app, status, registry);
   add_list_command(app, status, registry);
   add_study_command(app, status);
   add_submit_command(app, status, registry);

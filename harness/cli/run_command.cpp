@@ -7,10 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,13 +15,13 @@
 #include <utility>
 
 #include "foundation/error.hpp"
+#include "foundation/output_folder.hpp"
 #include "foundation/scratch_folder.hpp"
-#include "foundation/text.hpp"
+#include "foundation/shell_word.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
-#include "harness/curves.hpp"
 #include "harness/grid.hpp"
 #include "harness/machine.hpp"
 #include "harness/plan.hpp"
@@ -33,9 +30,10 @@
 #include "harness/run_files.hpp"
 #include "harness/shipped_grids.hpp"
 #include "harness/verify.hpp"
+#include "harness/whole_run.hpp"
 #include "problems/measured/data_folder.hpp"
 #include "reports/record_csv.hpp"
-#include "reports/run_reports.hpp"
+#include "reports/run_folder.hpp"
 
 namespace tribench {
 namespace {
@@ -53,72 +51,93 @@ struct RunArguments {
   bool json = false;
   std::string quarantine;
   std::string verify;
+  std::string like;
   std::size_t sample = 10;
 };
 
-void print_dry_run(const Grid& grid, const std::vector<PlannedWork>& work, int jobs, bool json) {
+double total_seconds(const std::vector<PlannedWork>& work) {
   double total_s = 0;
-  nlohmann::json cells = nlohmann::json::array();
-  for (const PlannedWork& item : work) {
-    total_s += item.predicted_s;
-    if (json) {
+  for (const PlannedWork& item : work) total_s += item.predicted_s;
+  return total_s;
+}
+
+// What the figure rests on is said with it: without a run to go by it is what budgets allow at
+// most.
+void print_dry_run(const Grid& grid, const RunArguments& arguments, const RunOptions& options) {
+  const std::vector<PlannedWork> work = plan_work(grid, options.shard, options.costs);
+  const double total_s = total_seconds(work);
+  const double most_s = total_seconds(plan_work(grid, options.shard));
+  const std::string basis =
+      options.costs.empty() ? std::string("budgets") : "medians of " + arguments.like;
+  if (arguments.json) {
+    nlohmann::json cells = nlohmann::json::array();
+    for (const PlannedWork& item : work) {
       cells.push_back({{"cell", item.cell.key()}, {"predicted_s", item.predicted_s}});
-    } else {
-      fmt::print("{:8.2f} s  {}\n", item.predicted_s, item.cell.key());
     }
-  }
-  const double wall_s = total_s / jobs;
-  if (json) {
     fmt::print("{}\n", nlohmann::json{{"grid", grid.name},
                                       {"cells", cells},
+                                      {"basis", basis},
                                       {"predicted_cpu_s", total_s},
-                                      {"predicted_wall_s", wall_s}}
+                                      {"predicted_wall_s", total_s / options.jobs},
+                                      {"most_wall_s", most_s / options.jobs}}
                            .dump(2));
+    return;
+  }
+  for (const PlannedWork& item : work) {
+    fmt::print("{:8.2f} s  {}\n", item.predicted_s, item.cell.key());
+  }
+  if (options.costs.empty()) {
+    fmt::print(
+        "{} cells, at most {:.0f} s with {} jobs: what their budgets allow. Most methods end long\n"
+        "before; for an estimate name a run to go by: --like DIR\n",
+        work.size(), total_s / options.jobs, options.jobs);
   } else {
-    fmt::print("{} cells, about {:.0f} CPU seconds, {:.0f} s with {} jobs\n", work.size(), total_s,
-               wall_s, jobs);
+    fmt::print("{} cells, about {:.0f} s with {} jobs by the {}; at most {:.0f} s\n", work.size(),
+               total_s / options.jobs, options.jobs, basis, most_s / options.jobs);
   }
 }
 
-// As it was typed, words separated by blanks.
-std::string own_command_line() {
-  std::string text = read_file_if_there("/proc/self/cmdline").value_or("");
-  if (!text.empty()) text.pop_back();
-  std::ranges::replace(text, '\0', ' ');
-  return text;
+// The command that goes on with this run, to be pasted into a shell.
+std::string resuming(const RunArguments& arguments, const std::filesystem::path& out) {
+  std::vector<std::string> words = {"tribench", "run", arguments.grid, "--out", out.string()};
+  const auto add = [&words](const char* option, const std::string& value) {
+    words.insert(words.end(), {option, value});
+  };
+  if (!arguments.data.empty()) add("--data", arguments.data);
+  if (arguments.shard != "1/1") add("--shard", arguments.shard);
+  if (arguments.jobs > 0) add("--jobs", std::to_string(arguments.jobs));
+  if (!arguments.quarantine.empty()) add("--quarantine", arguments.quarantine);
+  words.emplace_back("--resume");
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
+  return line;
 }
 
-void print_end(const RunTally& tally, const std::filesystem::path& out, const std::string& board) {
+void print_end(const RunArguments& arguments, const RunTally& tally,
+               const std::filesystem::path& out, const std::string& board) {
   if (!board.empty()) fmt::print("{}\n", board);
   for (const std::string& damage : tally.journal_damage) {
     fmt::print(stderr, "tribench: cells.jsonl: {}\n", damage);
   }
   if (tally.stopped) {
-    fmt::print(stderr,
-               "stopped: {} of {} cells are done; go on by: tribench run ... --out {} --resume\n",
-               tally.done(), tally.cells, out.string());
+    fmt::print(stderr, "stopped: {} of {} cells are done; go on by: {}\n", tally.done(),
+               tally.cells, resuming(arguments, out));
   } else {
     fmt::print("{} cells, {} failed, {:.1f} s; see {}\n", tally.done(), tally.failed, tally.wall_s,
                (out / "leaderboard.md").string());
   }
 }
 
-void run_to_the_end(const Grid& grid, const RunOptions& options, ExitStatus& status) {
-  const RunIdentity identity{print_grid(grid), code_identity(), data_identity(grid, options.data)};
-  // A full disk or a limit on file sizes is an error of write(), not a reason to die.
-  std::signal(SIGXFSZ, SIG_IGN);
+void run_to_the_end(const Grid& grid, const RunArguments& arguments, const RunOptions& options,
+                    ExitStatus& status) {
   // The first signal lets the run close its files.
-  const std::atomic<bool>& stop = stop_requested_by({SIGINT, SIGTERM});
-  RunSession session{utc_now(), {}, own_command_line(), options, {}};
-  session.tally = run_grid(grid, options, identity, stop);
-  session.ended = utc_now();
-  const JournalContents journal = read_journal(options.out / "cells.jsonl");
-  write_result_files(options.out, journal.results);
-  write_curves(options.out, journal.results, full_catalogue_of(options.data));
-  write_quarantine_file(options.out, journal.results);
-  write_provenance(options.out, identity, session, journal.results);
-  print_end(session.tally, options.out, write_run_reports(options.out));
-  if (session.tally.stopped) status = ExitStatus::failed;
+  const WholeRun run = run_whole(grid, options, stop_requested_by({SIGINT, SIGTERM}));
+  print_end(arguments, run.tally, options.out, run.board);
+  if (run.all_failed()) {
+    fmt::print(stderr, "every cell failed, the first one by: {}\n",
+               run.journal.results.front().record.reason);
+  }
+  if (run.tally.stopped || run.all_failed()) status = ExitStatus::failed;
 }
 
 RunOptions options_of(const RunArguments& arguments) {
@@ -135,6 +154,7 @@ RunOptions options_of(const RunArguments& arguments) {
                  : arguments.timing ? std::max(1, processors - 1)
                                     : processors;
   options.worker_command = {"/proc/self/exe", kWorkerCommand};
+  if (!arguments.like.empty()) options.costs = measured_costs(read_run_folder(arguments.like));
   return options;
 }
 
@@ -169,14 +189,14 @@ void run(const RunArguments& arguments, const Registry& registry, ExitStatus& st
     }
   }
   if (arguments.dry_run) {
-    print_dry_run(grid, plan_work(grid, options.shard), options.jobs, arguments.json);
+    print_dry_run(grid, arguments, options);
     if (arguments.out.empty()) return;
-    std::filesystem::create_directories(arguments.out);
+    make_output_folder(arguments.out);
     write_plan_files(arguments.out, grid);
     return;
   }
   options.out = arguments.out.empty() ? fmt::format("run-{}", grid.name) : arguments.out;
-  run_to_the_end(grid, options, status);
+  run_to_the_end(grid, arguments, options, status);
 }
 
 }  // namespace
@@ -197,7 +217,9 @@ void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry
   command->add_option("--data", arguments->data, "folder of the measured sets");
   command->add_flag("--resume", arguments->resume, "run what the folder does not have yet");
   command->add_flag("--dry-run", arguments->dry_run,
-                    "only list the cells and what they are predicted to cost");
+                    "only list the cells and what they cost: at most, or by --like");
+  command->add_option("--like", arguments->like,
+                      "a finished run whose seconds a method foretell this one's");
   command->add_flag("--timing", arguments->timing,
                     "for times to compare: one core is left free, workers are pinned");
   command->add_option("--quarantine", arguments->quarantine,

@@ -120,11 +120,16 @@ void add_loop_study(CLI::App& study, ExitStatus& status) {
   command->add_option("--command", *command_line,
                       "your own method instead of the loop: a program and its words, run without a "
                       "shell once a case (docs/closed_loop.md)");
-  command->callback([options, json, command_line, &status] {
+  auto limit_s = std::make_shared<double>(600);
+  command
+      ->add_option("--command-seconds", *limit_s, "wall time that the program may take for a case")
+      ->transform(real_number(0.01, 1e6))
+      ->capture_default_str();
+  command->callback([options, json, command_line, limit_s, &status] {
     options->quiet = false;
-    const LoopStudy done =
-        run_loop_study(*options, command_line->empty() ? LoopMethod(diagnose_case)
-                                                       : make_external_diagnosis(*command_line));
+    const LoopStudy done = run_loop_study(
+        *options, command_line->empty() ? LoopMethod(diagnose_case)
+                                        : make_external_diagnosis(*command_line, *limit_s));
     if (*json) {
       print_json(done);
     } else {

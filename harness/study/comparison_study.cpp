@@ -75,6 +75,7 @@ bool names_the_planted(const Comparison& comparison) {
 std::vector<ComparisonStudyFigure> run_comparison_study(const ComparisonStudyOptions& options) {
   std::vector<ComparisonStudyFigure> figures;
   ComparisonOptions comparing;
+  comparing.power_rounds = 0;
   comparing.rounds = 400;  // the interval decides only what is called equivalent
   for (const Planted& planted : kPlanted) {
     ComparisonStudyFigure figure;

@@ -84,30 +84,24 @@ void write_request(const std::filesystem::path& folder, const LoopCase& one,
   std::ofstream(folder / "request.json") << request.dump(1) << "\n";
 }
 
-// What the program printed; throws where it failed.
-std::string output_of(const std::vector<std::string>& command,
-                      const std::filesystem::path& request) {
+// What the program printed; throws where it failed or took too long.
+std::string output_of(const std::vector<std::string>& command, const std::filesystem::path& folder,
+                      double limit_s) {
   ChildOptions options;
   options.command = command;
-  options.command.push_back(request.string());
+  options.command.push_back((folder / "request.json").string());
+  options.scratch = folder;
+  options.environment.push_back("TMPDIR=" + folder.string());
   for (const char* name : {"OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"}) {
     options.environment.push_back(fmt::format("{}=1", name));
   }
-  ChildProcess program(options);
-  program.close_input();
-  std::string text;
-  std::string errors;
-  for (bool ended = false; !ended;) {
-    const ChildOutput output = program.read(1.0);
-    text += output.output;
-    errors += output.errors;
-    if (text.size() + errors.size() > kMaxOutputBytes) {
-      throw Error(ErrorKind::failed, "the program prints without end");
-    }
-    ended = output.ended;
+  const ChildRun run = run_child(options, {}, {limit_s, kMaxOutputBytes});
+  if (run.timed_out) {
+    throw Error(ErrorKind::failed, fmt::format("the program took longer than {} s", limit_s));
   }
-  const ChildExit exit = program.wait();
-  if (exit.ok()) return text;
+  if (run.exit.ok()) return run.output;
+  const ChildExit& exit = run.exit;
+  const std::string& errors = run.errors;
   const std::string how =
       exit.signal != 0 ? signal_name(exit.signal) : fmt::format("status {}", exit.status);
   throw Error(
@@ -183,8 +177,8 @@ LoopAnswer answer_in(const json& object, const PlantedData& planted, const loop:
 
 }  // namespace
 
-LoopMethod make_external_diagnosis(std::vector<std::string> command) {
-  return [command = std::move(command)](const LoopCase& one, const PlantedData& planted) {
+LoopMethod make_external_diagnosis(std::vector<std::string> command, double limit_s) {
+  return [command = std::move(command), limit_s](const LoopCase& one, const PlantedData& planted) {
     const loop::Observations data = loop::observe(planted.data);
     const std::vector<char> held_out = held_out_rows(data);
     std::vector<char> train(held_out.size());
@@ -192,7 +186,7 @@ LoopMethod make_external_diagnosis(std::vector<std::string> command) {
     const ScratchFolder scratch;
     write_request(scratch.path(), one, planted, held_out, train);
     try {
-      const json object = object_in(output_of(command, scratch.path() / "request.json"));
+      const json object = object_in(output_of(command, scratch.path(), limit_s));
       return answer_in(object, planted, data, held_out, base_prediction(data, train));
     } catch (const json::exception& error) {
       throw Error(ErrorKind::failed,

@@ -13,7 +13,8 @@
 namespace tribench {
 
 // command: the words to run; the path of the request is added as the last. Unusable answers and an
-// exit status other than 0 throw Error (failed) that names the case.
-LoopMethod make_external_diagnosis(std::vector<std::string> command);
+// exit status other than 0 throw Error (failed) that names the case; so does a case that takes
+// longer than `limit_s` of wall time, and the program is ended with all it has started.
+LoopMethod make_external_diagnosis(std::vector<std::string> command, double limit_s = 600);
 
 }  // namespace tribench

@@ -36,8 +36,32 @@ RecordOf records_by_cell(const RunFolder& run) {
   return found;
 }
 
+// At most `most` formulas of a sorted front, or as many as must stay: the simplest, the most
+// accurate and every chosen one. The others are taken evenly from the whole length.
+void cut_front(std::vector<FrontRecord>& front, std::size_t most) {
+  if (front.size() <= most) return;
+  std::vector<char> keep(front.size(), 0);
+  keep.front() = 1;
+  // The last one that improves is the most accurate; behind it stand chosen ones alone.
+  keep[static_cast<std::size_t>(std::ranges::min_element(front, {}, &FrontRecord::mae_test) -
+                                front.begin())] = 1;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    if (front[i].chosen) keep[i] = 1;
+  }
+  const auto must = static_cast<std::size_t>(std::ranges::count(keep, 1));
+  const std::size_t others = most > must ? most - must : 0;
+  for (std::size_t k = 0; k < others; ++k) keep[(k + 1) * front.size() / (others + 1)] = 1;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    if (keep[i] == 0) continue;
+    if (kept != i) front[kept] = std::move(front[i]);
+    ++kept;
+  }
+  front.resize(kept);
+}
+
 // Keeps the formulas that no other beats in complexity and error, and every chosen one.
-void thin_front(std::vector<FrontRecord>& front) {
+void thin_front(std::vector<FrontRecord>& front, std::size_t most) {
   std::sort(front.begin(), front.end(), [](const FrontRecord& a, const FrontRecord& b) {
     return std::tie(a.complexity, a.mae_test, a.formula) <
            std::tie(b.complexity, b.mae_test, b.formula);
@@ -50,7 +74,7 @@ void thin_front(std::vector<FrontRecord>& front) {
     if (improves) best = each.mae_test;
     kept.push_back(std::move(each));
   }
-  if (kept.size() > kFrontPoints) kept.resize(kFrontPoints);
+  cut_front(kept, most);
   front = std::move(kept);
 }
 
@@ -228,12 +252,12 @@ ordered_json fronts_json(const RunFolder& run) {
     const Record& record = *found->second;
     auto& group = groups[{record.problem, record.method, record.operators}];
     group.push_back(std::move(front));
-    if (group.size() > 20 * kFrontPoints) thin_front(group);
+    if (group.size() > 20 * kFrontPoints) thin_front(group, 10 * kFrontPoints);
   });
-  const std::size_t most = std::max<std::size_t>(8, kAllFrontPoints / (groups.size() + 1));
+  const std::size_t most =
+      std::clamp<std::size_t>(kAllFrontPoints / (groups.size() + 1), 8, kFrontPoints);
   for (auto& [key, group] : groups) {
-    thin_front(group);
-    if (group.size() > most) group.resize(most);
+    thin_front(group, most);
     for (const FrontRecord& front : group) {
       all.push_back({{"problem", std::get<0>(key)},
                      {"method", std::get<1>(key)},

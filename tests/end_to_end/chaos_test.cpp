@@ -80,7 +80,7 @@ class ChaosTest : public ::testing::Test {
   void run_disturbed(int kills) {
     RandomStream random(key_of("chaos"));
     for (int i = 0; i < kills; ++i) {
-      ChildProcess program(ChildOptions{command("disturbed", i > 0), {}, {}, true});
+      ChildProcess program(ChildOptions{command("disturbed", i > 0)});
       std::this_thread::sleep_for(std::chrono::duration<double>(random.uniform(0.1, 1.5)));
       ::kill(program.pid(), SIGKILL);
       program.wait();

@@ -72,7 +72,7 @@ TEST_F(ExternalTest, OnlyProvedFormulasStayWhereTheSetAdmitsNoOthers) {
                        "\"4 + qd\"], \"chosen\": 2}'"),
       "A/j2/no_load", "paper+safe_div");
   EXPECT_EQ(figure("mixed", "formula", "paper+safe_div"), "3 + qd/(qd^2 + 1)");
-  EXPECT_THAT(figure("poles", "reason", "paper+safe_div"), HasSubstr("proved free"));
+  EXPECT_THAT(figure("poles", "reason", "paper+safe_div"), HasSubstr("is proved free"));
 }
 
 TEST_F(ExternalTest, WhatAProgramGetsWrongCostsItsOwnCell) {
@@ -101,6 +101,71 @@ TEST_F(ExternalTest, WhatAProgramGetsWrongCostsItsOwnCell) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   EXPECT_FALSE(is_running(pid));
+}
+
+TEST_F(ExternalTest, NumbersInAnAnswerAreReadStrictly) {
+  const auto front = [](const std::string& more) {
+    return "echo '{\"front\": [\"1\", \"2\"], " + more + "}'";
+  };
+  run(R"("minus", "huge", "half", "good")",
+      shell_method("minus", front("\"evaluations\": -5")) +
+          shell_method("huge", front("\"chosen\": 1e300")) +
+          shell_method("half", front("\"chosen\": 0.5")) +
+          shell_method("good", front("\"evaluations\": 1e6, \"chosen\": 0")));
+  EXPECT_THAT(reason("minus"), HasSubstr("'evaluations' is -5, not a whole number"));
+  EXPECT_THAT(reason("huge"), HasSubstr("'chosen' is 1e+300, not a whole number"));
+  EXPECT_THAT(reason("half"), HasSubstr("'chosen' is 0.5, not a whole number"));
+  EXPECT_EQ(figure("good", "formula"), "1");
+  EXPECT_EQ(figure("good", "evaluations"), "1000000");
+}
+
+TEST_F(ExternalTest, AnAnswerStandsThoughSomethingStillHoldsTheOutput) {
+  run("\"lingers\"", shell_method("lingers",
+                                  "setsid -f sleep 987; sleep 987 & "
+                                  "echo '{\"front\": [\"3\"]}'; exit 0"));
+  EXPECT_EQ(reason("lingers"), "");
+  EXPECT_EQ(figure("lingers", "formula"), "3");
+}
+
+TEST_F(ExternalTest, APriorHoldsForProgramsAndIsToldThem) {
+  run("\"powers\"",
+      shell_method("powers", R"sh(grep -q '"max_degree": 1' "$1" || exit 4
+echo '{"front": ["1 + g", "2 + g^2", "3 + g*qd*g"], "chosen": 2}')sh") +
+          "[prior]\nmax_degree = { g = 1 }\n",
+      "A/j2/load");
+  const auto formulas = column_of(folder_ / "run", "formula");
+  EXPECT_EQ(formulas.at("A/j2/load|powers|paper|1"), "1 + g");
+}
+
+// A limit on files, a full disk: no result, and the run says so.
+TEST_F(ExternalTest, AFaultOfTheMachineStopsTheRunAndIsRepeatedByResume) {
+  const std::string flag = (folder_ / "mended").string();
+  write_text(folder_ / "grid.toml",
+             "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"limited\"]\n" +
+                 shell_method("limited", "test -e " + flag +
+                                             " || kill -XFSZ $$; echo '{\"front\": [\"4\"]}'"));
+  std::vector<std::string> command = {program().string(), "run", (folder_ / "grid.toml").string(),
+                                      "--out", (folder_ / "run").string()};
+  const ProgramRun stopped = run_to_end(command);
+  EXPECT_EQ(stopped.status, 3);
+  EXPECT_THAT(stopped.errors, HasSubstr("ulimit -f unlimited"));
+  command.push_back("--resume");
+  // No folder for temporary files is such a fault too.
+  const ProgramRun homeless = run_to_end(command, {"TMPDIR=/no/such/folder"});
+  EXPECT_EQ(homeless.status, 3);
+  EXPECT_THAT(homeless.errors, HasSubstr("TMPDIR"));
+  write_text(flag, "");
+  EXPECT_EQ(run_to_end(command).status, 0);
+  EXPECT_EQ(figure("limited", "formula"), "4");
+}
+
+TEST_F(ExternalTest, ARunOfWhichEveryCellFailedHasFailed) {
+  write_text(folder_ / "grid.toml", "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"no\"]\n" +
+                                        shell_method("no", "exit 9"));
+  const ProgramRun ended = run_to_end({program().string(), "run", (folder_ / "grid.toml").string(),
+                                       "--out", (folder_ / "run").string()});
+  EXPECT_EQ(ended.status, 3);
+  EXPECT_THAT(ended.errors, HasSubstr("every cell failed, the first one by: error (the program"));
 }
 
 TEST_F(ExternalTest, TheTemplateRunsAsItStands) {

@@ -5,7 +5,11 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
 #include <thread>
 
 #include "foundation/child_process.hpp"
@@ -102,10 +106,7 @@ TEST_F(RunTest, KilledHalfWayAndResumedGivesTheSameResults) {
   {
     ChildProcess program(
         ChildOptions{{test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
-                      (folder_ / "killed").string(), "--jobs", "2"},
-                     {},
-                     {},
-                     true});
+                      (folder_ / "killed").string(), "--jobs", "2"}});
     // Half the lines of the whole run's journal.
     const std::string whole = read_text(folder_ / "whole" / "cells.jsonl");
     while (read_text(journal).size() < whole.size() / 2) {
@@ -127,17 +128,22 @@ TEST_F(RunTest, KilledHalfWayAndResumedGivesTheSameResults) {
 TEST_F(RunTest, InterruptedItLeavesARunThatResumes) {
   ChildProcess program(
       ChildOptions{{test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
-                    (folder_ / "stopped").string(), "--jobs", "1"},
-                   {},
-                   {},
-                   true});
+                    (folder_ / "stopped").string(), "--jobs", "1"}});
   while (read_text(folder_ / "stopped" / "cells.jsonl").size() < 3000) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   ::kill(program.pid(), SIGINT);
+  std::string errors;
+  for (bool ended = false; !ended;) {
+    const ChildOutput output = program.read(1.0);
+    errors += output.errors;
+    ended = output.ended;
+  }
   const ChildExit exit = program.wait();
   EXPECT_EQ(exit.signal, 0);
   EXPECT_EQ(exit.status, 3);
+  EXPECT_THAT(errors, HasSubstr("go on by: tribench run " + (folder_ / "grid.toml").string() +
+                                " --out " + (folder_ / "stopped").string() + " --jobs 1 --resume"));
   const std::size_t before = column_of(folder_ / "stopped", "status").size();
   EXPECT_GT(before, 0U);
   EXPECT_LT(before, kCells);
@@ -156,27 +162,46 @@ TEST_F(RunTest, ResumingAnotherGridIsRefusedWithTheDifference) {
   EXPECT_THAT(refused.errors, HasSubstr("+ evaluations = 3000000"));
 }
 
-TEST_F(RunTest, AnOrphanedWorkerDoesNotOutliveItsRun) {
-  std::string hanging = kGrid;
-  hanging.replace(hanging.find("seconds = 0.1"), 13, "seconds = 987");
-  write_text(folder_ / "grid.toml", hanging);
-  pid_t worker = 0;
-  {
-    ChildProcess program(
-        ChildOptions{{test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
-                      (folder_ / "killed").string(), "--jobs", "1"},
-                     {},
-                     {},
-                     true});
-    const std::string children = "/proc/" + std::to_string(program.pid()) + "/task/" +
-                                 std::to_string(program.pid()) + "/children";
-    while (worker == 0) worker = static_cast<pid_t>(std::atoi(read_text(children).c_str()));
-    ::kill(program.pid(), SIGKILL);  // the program alone, not its group
-  }
-  for (int i = 0; i < 500 && is_running(worker); ++i) {
+// Started by a shell that has gone, so that nobody but the run's own keepers clears up.
+TEST_F(RunTest, NothingOutlivesARunThatIsKilled) {
+  const std::string pids = (folder_ / "pids").string();
+  write_text(folder_ / "grid.toml",
+             "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"escapes\"]\n[[external]]\n"
+             "name = \"escapes\"\ncommand = [\"bash\", \"-c\", \"echo $$ >> " +
+                 pids + "; setsid sleep 987 & setsid -f bash -c 'echo $$ >> " + pids +
+                 "; sleep 987'; sleep 987\"]\n");
+  const std::string line = "TMPDIR=" + folder_.path().string() + " " + test_program().string() +
+                           " run " + (folder_ / "grid.toml").string() + " --out " +
+                           (folder_ / "killed").string() +
+                           " --jobs 1 > /dev/null 2>&1 & echo $! > " + (folder_ / "run").string();
+  ASSERT_EQ(std::system(line.c_str()), 0);
+  const auto lines = [&pids] {
+    const std::string text = read_text(pids);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  for (int i = 0; i < 1000 && lines() < 2; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  EXPECT_FALSE(is_running(worker));
+  ASSERT_EQ(lines(), 2);
+  ::kill(std::stoi(read_text(folder_ / "run")), SIGKILL);
+  std::istringstream started(read_text(pids));
+  for (int pid = 0; started >> pid;) {
+    for (int i = 0; i < 500 && is_running(pid); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_FALSE(is_running(pid));
+  }
+  std::vector<std::string> left;
+  for (int i = 0; i < 500; ++i) {
+    left.clear();
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+      const std::string name = entry.path().filename();
+      if (name.starts_with("tribench-")) left.push_back(name);
+    }
+    if (left.empty()) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_THAT(left, ::testing::IsEmpty()) << "scratch folders";
 }
 
 TEST_F(RunTest, DryRunListsTheCellsAndWritesTheGridThatTakesEffect) {

@@ -3,10 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <sstream>
 #include <string>
+#include <thread>
 
 #include "foundation/error.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace tribench {
 namespace {
@@ -54,6 +61,65 @@ TEST(RunChild, SetsEnvironmentAndFolder) {
 TEST(RunChild, RefusesAProgramThatIsNotThere) {
   EXPECT_THROW(run_child({.command = {"no-program-of-this-name"}}), Error);
   EXPECT_THROW(run_child({}), Error);
+}
+
+// Programs that try to leave something behind.
+class EscapingChild : public ::testing::Test {
+ protected:
+  // Runs a line of shell in which `note` writes down the pid of what it runs in the background.
+  std::string line(const std::string& rest) const {
+    return "note() { setsid -f bash -c 'echo $$ >> " + (folder_ / "pids").string() +
+           "; sleep 987'; }; note; (note &); while [ $(wc -l < " + (folder_ / "pids").string() +
+           ") -lt 2 ]; do sleep 0.01; done; " + rest;
+  }
+  void expect_all_ended() const {
+    std::istringstream pids(testing::read_text(folder_ / "pids"));
+    int count = 0;
+    for (int pid = 0; pids >> pid; ++count) EXPECT_FALSE(testing::is_running(pid)) << pid;
+    EXPECT_EQ(count, 2);
+  }
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(EscapingChild, IsEndedWithItsProgramThoughItHoldsTheOutput) {
+  testing::write_text(folder_ / "pids", "");
+  const ChildRun run =
+      run_child({.command = {"bash", "-c", line("echo front; exit 0")}}, {}, {.wall_s = 20});
+  EXPECT_FALSE(run.timed_out);
+  EXPECT_TRUE(run.exit.ok());
+  EXPECT_EQ(run.output, "front\n");
+  expect_all_ended();
+}
+
+TEST_F(EscapingChild, IsEndedWhenTimeIsUp) {
+  testing::write_text(folder_ / "pids", "");
+  const ChildRun run = run_child({.command = {"bash", "-c", line("sleep 987")}}, {}, {.wall_s = 1});
+  EXPECT_TRUE(run.timed_out);
+  EXPECT_EQ(run.exit.signal, SIGKILL);
+  expect_all_ended();
+}
+
+TEST_F(EscapingChild, TakesItsScratchFolderWithIt) {
+  testing::write_text(folder_ / "pids", "");
+  const std::filesystem::path scratch = folder_ / "scratch";
+  testing::write_text(scratch / "inner" / "file", "text");
+  run_child({.command = {"bash", "-c", line("exit 3")}, .scratch = scratch});
+  EXPECT_FALSE(std::filesystem::exists(scratch));
+  expect_all_ended();
+}
+
+TEST(RunChild, StopsAProgramThatPrintsWithoutEnd) {
+  EXPECT_THROW(run_child({.command = {"yes"}}, {}, {.output_bytes = 1U << 20}), Error);
+}
+
+TEST(ProcessTreeUse, CountsWhatHasLeftItsParent) {
+  ChildProcess child({.command = {"bash", "-c", "(setsid bash -c 'while :; do :; done' &); read"}});
+  double cpu_s = 0;
+  for (int i = 0; i < 1000 && cpu_s < 0.05; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    cpu_s = process_tree_use(::getpid()).cpu_s - process_tree_use(0).cpu_s;
+  }
+  EXPECT_GE(cpu_s, 0.05);
 }
 
 }  // namespace

@@ -116,7 +116,10 @@ TEST(Grid, RefusesUnknownNamesAndValuesOfAnotherKind) {
               HasSubstr("did you mean grid_alpha?"));
   EXPECT_THAT(refusal(std::string(kAxes) + "seeds = { first = -1 }\n"),
               HasSubstr("must be a whole number, not negative"));
-  EXPECT_THAT(refusal(std::string(kAxes) + "seeds = { count = 0 }\n"), HasSubstr("at least 1"));
+  EXPECT_THAT(refusal(std::string(kAxes) + "seeds = { count = 0 }\n"),
+              HasSubstr("use 1 to 1000000"));
+  EXPECT_THAT(refusal(std::string(kAxes) + "seeds = { count = 1e9 }\n"),
+              HasSubstr("use 1 to 1000000"));
   EXPECT_THAT(refusal(std::string(kAxes) + "[budget]\nmemory_mib = \"much\"\n"),
               HasSubstr("must be a number"));
   EXPECT_THAT(refusal("[grid\n"), HasSubstr("g.toml:1"));
@@ -132,9 +135,42 @@ TEST(Grid, ChecksParametersAgainstTheAlgorithm) {
               HasSubstr("out of range"));
 }
 
+// What a name may do where it is not refused: begin a formula of a spreadsheet, leave the folder,
+// open a tag of a page.
+TEST(Grid, RefusesNamesThatFilesPagesAndShellsMisread) {
+  for (const char* name :
+       {"=cmd|' /C calc'!A0", "x/../../../Y", "<b>x</b>", "two words", "a\\u0001b"}) {
+    const std::string quoted = std::string("name = \"") + name + "\"\n";
+    EXPECT_THAT(refusal(std::string(kAxes) + quoted), HasSubstr("cannot name a grid; use 1 to 64"));
+    EXPECT_THAT(refusal(std::string(kAxes) + "[[method]]\nalgorithm = \"grid_alpha\"\n" + quoted),
+                HasSubstr("cannot name a method"));
+    EXPECT_THAT(refusal(std::string(kAxes) + "[[operator_set]]\noperators = [\"+\"]\n" + quoted),
+                HasSubstr("cannot name an operator set"));
+  }
+}
+
+TEST(Grid, RefusesMoreCellsThanARunCanHold) {
+  EXPECT_THAT(refusal("[grid]\nproblems = [\"A/*\"]\nmethods = [\"grid_*\"]\n"
+                      "seeds = { count = 1e6 }\n"),
+              HasSubstr("split it"));
+}
+
+TEST(Grid, ReadsAPriorAndHandsItToTheProblemsInputs) {
+  const Grid grid = parse(std::string(kAxes) + "[prior]\nmax_degree = { g = 1 }\n");
+  EXPECT_EQ(grid.prior.max_degree.at("g"), 1);
+  EXPECT_EQ(parse(print_grid(grid)).prior, grid.prior);
+  Problem problem = Catalogue().find("A/j2/load").make(1);
+  apply_prior(grid.prior, problem);
+  for (const Input& input : problem.inputs) {
+    EXPECT_EQ(input.max_degree, input.name == "g" ? 1 : 0) << input.name;
+  }
+  EXPECT_THAT(refusal(std::string(kAxes) + "[prior]\nmax_degree = { g = 0 }\n"),
+              HasSubstr("no whole number from 1 to 16"));
+}
+
 TEST(Grid, PrintedItReadsBackToTheSameGrid) {
   const std::string toml = R"([grid]
-name = "all of it"
+name = "all-of-it"
 problems = ["A/*"]
 methods = ["grid_alpha", "many", "theirs"]
 operators = ["paper", "mine"]

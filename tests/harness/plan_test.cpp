@@ -7,6 +7,7 @@
 #include <set>
 
 #include "foundation/error.hpp"
+#include "harness/slurm.hpp"
 
 namespace tribench {
 namespace {
@@ -54,6 +55,19 @@ TEST(PlanWork, BelievesMeasuredCosts) {
   const std::vector<PlannedWork> work = plan_work(grid, {}, {{"fast", 100.0}});
   EXPECT_EQ(work.front().cell.method, "fast");
   EXPECT_EQ(work.front().predicted_s, 100.0);
+}
+
+// A line's end in a value would begin a line of the script's header, which is a command to Slurm.
+TEST(SlurmPlan, RefusesValuesThatWouldAddLinesToTheHeader) {
+  const Grid grid = parse_grid("[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"linear\"]\n",
+                               "g.toml", Registry(), Catalogue());
+  SlurmOptions options;
+  options.out = "/tmp/with blanks";
+  EXPECT_NE(plan_slurm(grid, options)
+                .array_script.find("#SBATCH --output=\"/tmp/with blanks/log/element-%a.log\"\n"),
+            std::string::npos);
+  options.partition = "short\n#SBATCH --wrap=evil";
+  EXPECT_THROW(plan_slurm(grid, options), Error);
 }
 
 TEST(ParseShard, RefusesWhatIsNone) {

@@ -100,9 +100,7 @@ expect "a grid's name" paper complete_in_fish "tribench run pa"
 
 echo "# the nightly units"
 unit=$prefix/lib/systemd/system/tribench-nightly.service
-check "the script they call" test -x "$prefix/share/tribench/examples/nightly/nightly.sh"
-check "is the one they name" grep -qF "ExecStart=\"$prefix/share/tribench/examples/nightly/nightly.sh\"" "$unit"
-check "the program" grep -qF "TRIBENCH=$prefix/bin/tribench" "$unit"
+check "the program they call" grep -qF "ExecStart=\"$prefix/bin/tribench\" nightly" "$unit"
 check "systemd takes them" systemd-analyze verify --man=no "$unit" "${unit%.service}.timer"
 cat >"$scratch/night.toml" <<'END'
 [grid]
@@ -110,14 +108,14 @@ problems = ["A/j2/no_load"]
 methods = ["linear"]
 END
 night() {
-    TRIBENCH="$prefix/bin/tribench" "$prefix/share/tribench/examples/nightly/nightly.sh" \
-        "$scratch/archive" "$scratch/night.toml" >"$scratch/night.log" 2>&1 || {
+    "$prefix/bin/tribench" nightly --store "$scratch/nights" --grid "$scratch/night.toml" \
+        --least-free 0 >"$scratch/night.log" 2>&1 || {
         cat "$scratch/night.log"
         return 1
     }
 }
 check "the first night" night
-check "a night that finds its run done compares it with the base" night
+check "the second is compared with it" night
 check "says what it found" grep -q "identical" "$scratch/night.log"
 
 echo "$failures wrong"

@@ -9,6 +9,7 @@
 
 #include "foundation/random.hpp"
 #include "tests/reports/sample_run.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace tribench {
 namespace {
@@ -121,6 +122,119 @@ TEST(Comparison, RefusesToCompareTimesWhereTheCalibrationForbidsIt) {
   now = noisy_run("new", 5);
   now.provenance[0].second = "y";
   EXPECT_EQ(compare_runs(base, now).why_no_time, "the CPUs differ");
+}
+
+// A run's folder with nothing but the grid that took effect.
+RunFolder asked_for(const testing::TemporaryFolder& folder, const std::string& name,
+                    const std::string& grid) {
+  RunFolder run = noisy_run("x", 5);
+  run.path = folder / name;
+  testing::write_text(run.path / "grid.toml", grid);
+  return run;
+}
+
+TEST(Comparison, OfRunsThatWereAskedDifferentThingsIsUndecidedUnlessAllowed) {
+  const testing::TemporaryFolder folder;
+  const std::string grid =
+      "[budget]\nevaluations = 500000000\nseconds = 120.0\n\n[grid]\nname = 'nightly'\n"
+      "problems = [\n    'A/j2/load',\n    'B/j2/load'\n]\n\n[grid.seeds]\ncount = 10\n\n"
+      "[[method]]\nalgorithm = 'pysr'\nname = 'many'\n\n[method.parameters]\npopulations = 8\n";
+  const RunFolder base = asked_for(folder, "base", grid);
+  const RunFolder renamed =
+      asked_for(folder, "renamed", std::string(grid).replace(grid.find("nightly"), 7, "another"));
+  EXPECT_EQ(compare_runs(base, renamed).outcome(), ComparisonOutcome::fine);
+
+  std::string other = grid;
+  other.replace(other.find("500000000"), 9, "2000000");
+  other.replace(other.find("populations = 8"), 15, "populations = 9");
+  other.replace(other.find("'A/j2/load'"), 11, "'A/j4/load'");
+  const RunFolder now = asked_for(folder, "now", other);
+  const Comparison refused = compare_runs(base, now);
+  EXPECT_EQ(refused.outcome(), ComparisonOutcome::undecided);
+  EXPECT_THAT(refused.conditions,
+              ::testing::UnorderedElementsAre(HasSubstr("grid.problems"),
+                                              "budget.evaluations: 500000000 -> 2000000",
+                                              "method many.parameters.populations: 8 -> 9"));
+  const std::string page = comparison_markdown(refused);
+  EXPECT_LT(page.find("500000000 -> 2000000"), page.find("UNDECIDED")) << "not said first";
+  ComparisonOptions allowing;
+  allowing.allow_conditions = true;
+  EXPECT_EQ(compare_runs(base, now, allowing).outcome(), ComparisonOutcome::fine);
+
+  RunFolder other_data = asked_for(folder, "data", grid);
+  other_data.provenance.emplace_back("data_hash", "1234");
+  EXPECT_THAT(compare_runs(base, other_data).conditions, ::testing::ElementsAre("the data differ"));
+}
+
+// The case that passed: ten seeds, one method 2.6 times as bad on one problem, p = 0.02 after
+// adjustment.
+TEST(Comparison, ALargeLossThatIsNotSignificantIsUndecided) {
+  const RunFolder base = noisy_run("base", 5);
+  RunFolder now = noisy_run("new", 5);
+  for (Record& record : now.records) {
+    if (record.method == "b" && record.problem == "p0") record.mae_test *= 2.6;
+  }
+  const Comparison comparison = compare_runs(base, now);
+  EXPECT_FALSE(comparison.has_regression());
+  EXPECT_EQ(comparison.outcome(), ComparisonOutcome::undecided);
+  EXPECT_THAT(comparison_markdown(comparison), HasSubstr("b (paper) on p0: 16"));
+  ComparisonOptions tolerant;
+  tolerant.tolerance = 4;
+  EXPECT_EQ(compare_runs(base, now, tolerant).outcome(), ComparisonOutcome::fine);
+}
+
+TEST(Comparison, SaysWhichLossItWouldHaveSeen) {
+  const Comparison sharp = compare_runs(noisy_run("base", 20), noisy_run("new", 20));
+  std::size_t asked = 0;
+  for (const ComparisonRow& row : sharp.quality) {
+    if (row.problem.empty()) continue;
+    ++asked;
+    EXPECT_GT(row.detectable, 0.01);
+    EXPECT_LT(row.detectable, 0.10) << row.method << row.problem;
+  }
+  EXPECT_EQ(asked, 12U);
+  EXPECT_THAT(sharp.visibility(), HasSubstr("of 12 comparisons of a method on a problem"));
+  // Five seeds can never reach the level of one of 18 tests.
+  const Comparison blind = compare_runs(noisy_run("base", 5), noisy_run("new", 5));
+  EXPECT_THAT(blind.visibility(), HasSubstr("in 0 of 12"));
+  EXPECT_THAT(blind.visibility(), HasSubstr("none at all (too few pairs)"));
+}
+
+// What is said to be seen is seen: the loss it names, planted in fresh noise.
+TEST(Comparison, FindsTheLossItSaysItWouldFind) {
+  int found = 0;
+  constexpr int kTrials = 20;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const std::string key = std::to_string(trial);
+    const RunFolder base = noisy_run("base" + key, 20);
+    const Comparison before = compare_runs(base, noisy_run("new" + key, 20));
+    double loss = 0;
+    for (const ComparisonRow& row : before.quality) {
+      if (row.method == "b" && row.problem == "p1") loss = row.detectable;
+    }
+    RunFolder now = noisy_run("later" + key, 20);
+    for (Record& record : now.records) {
+      if (record.method == "b" && record.problem == "p1") record.mae_test *= 1 + loss;
+    }
+    for (const ComparisonRow& row : compare_runs(base, now).quality) {
+      if (row.method == "b" && row.problem == "p1") {
+        found += row.verdict == ComparisonVerdict::worse ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GE(found, 11) << "promised: 16 of 20";
+}
+
+TEST(Comparison, MissingCellsAndSingularFormulasCount) {
+  const RunFolder base = noisy_run("x", 20);
+  RunFolder now = base;
+  now.records.pop_back();
+  EXPECT_EQ(compare_runs(base, now).outcome(), ComparisonOutcome::undecided);
+  now = base;
+  for (std::size_t i = 0; i < 6; ++i) now.records[i].singularity = "refuted";
+  EXPECT_EQ(compare_runs(base, now).outcome(), ComparisonOutcome::undecided);
+  for (std::size_t i = 0; i < 12; ++i) now.records[i].singularity = "refuted";
+  EXPECT_EQ(compare_runs(base, now).outcome(), ComparisonOutcome::regression);
 }
 
 TEST(Comparison, ACrashIsARegressionAndASingleTimeoutIsNot) {

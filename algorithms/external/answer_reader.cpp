@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/external/answer_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "algorithms/admission.hpp"
+#include "algorithms/expression/text.hpp"
+#include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
+
+namespace tribench {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kQuotedCharacters = 200;
+
+[[noreturn]] void throw_unusable(std::string_view what) { throw Error(ErrorKind::failed, what); }
+
+std::string excerpt(std::string_view text) {
+  std::string shown(text.substr(0, kQuotedCharacters));
+  for (char& c : shown) {
+    if (c < ' ' || c > '~') c = ' ';
+  }
+  return shown;
+}
+
+std::string last_line(std::string_view text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.remove_suffix(1);
+  const std::size_t start = text.rfind('\n');
+  return excerpt(start == std::string_view::npos ? text : text.substr(start + 1));
+}
+
+// A count in the program's answer; json would read -5 and 1e300 as something.
+std::uint64_t count_in(const json& object, const char* key, std::uint64_t otherwise) {
+  if (!object.contains(key)) return otherwise;
+  const json& value = object.at(key);
+  if (value.is_number_unsigned()) return value.get<std::uint64_t>();
+  constexpr double kExact = 0x1p53;  // a program may count in doubles
+  const double number = value.is_number_float() ? value.get<double>() : -1;
+  if (number >= 0 && number <= kExact && number == std::floor(number)) {
+    return static_cast<std::uint64_t>(number);
+  }
+  throw_unusable(fmt::format("'{}' is {}, not a whole number from 0", key, excerpt(value.dump())));
+}
+
+void take_improvement(FitContext& context, const json& improvement) {
+  if (context.progress == nullptr) return;
+  context.progress->improved(improvement.at("train_error"),
+                             count_in(improvement, "evaluations", 0));
+}
+
+// Formulas beyond a prior go, and those not proved free where the operator set admits no others.
+// The next simpler one that is left stands in for a choice that goes, else the simplest.
+void keep_admitted_formulas(const FitContext& context, FitResult& result) {
+  const Admission admission(context);
+  std::vector<Expression> kept;
+  std::size_t chosen = 0;
+  for (std::size_t k = 0; k < result.front.size(); ++k) {
+    if (!admission.may_be_offered(result.front[k])) continue;
+    if (k <= result.chosen) chosen = kept.size();
+    kept.push_back(std::move(result.front[k]));
+  }
+  if (kept.empty())
+    throw_unusable("no formula of the front keeps to the priors and, where asked, is proved free");
+  result.front = std::move(kept);
+  result.chosen = chosen;
+}
+
+}  // namespace
+
+AnswerReader::AnswerReader(FitContext& context) : context_(context) {
+  for (const Input& input : context.data.inputs) names_.push_back(input.name);
+}
+
+void AnswerReader::take(std::string_view text) {
+  pending_ += text;
+  std::size_t start = 0;
+  for (std::size_t end = pending_.find('\n'); end != std::string::npos;
+       end = pending_.find('\n', start)) {
+    take_line(pending_.substr(start, end - start));
+    start = end + 1;
+  }
+  pending_.erase(0, start);
+}
+
+FitResult AnswerReader::finish(const ChildExit& exit, std::string_view errors) {
+  if (!pending_.empty()) take_line(std::exchange(pending_, {}));
+  if (exit.signal == SIGXFSZ) {
+    throw Error(ErrorKind::environment, "the program met a limit on the size of files", {},
+                "raise it: ulimit -f unlimited");
+  }
+  if (exit.signal != 0) {
+    throw_unusable(fmt::format("the program was ended by {}", signal_name(exit.signal)));
+  }
+  if (exit.status != 0) {
+    throw_unusable(
+        fmt::format("the program ended with status {}: {}", exit.status, last_line(errors)));
+  }
+  if (result_) return std::move(*result_);
+  throw_unusable(other_output_.empty()
+                     ? std::string("the program printed no front")
+                     : fmt::format("the program printed no front but '{}'", other_output_));
+}
+
+// Lines that are no JSON object are the program's own chatter.
+void AnswerReader::take_line(const std::string& line) {
+  const json object =
+      line.starts_with('{') ? read_json<json>(line) : json(json::value_t::discarded);
+  if (!object.is_object()) {
+    if (other_output_.empty()) other_output_ = excerpt(line);
+    return;
+  }
+  try {
+    if (object.contains("improved")) take_improvement(context_, object.at("improved"));
+    if (object.contains("unsupported")) {
+      result_ = FitResult::unsupported(object.at("unsupported"));
+    }
+    if (object.contains("front")) take_front(object);
+  } catch (const json::exception& error) {
+    throw_unusable(fmt::format("the program's answer is malformed: {}", error.what()));
+  }
+}
+
+void AnswerReader::take_front(const nlohmann::json& object) {
+  FitResult result;
+  for (const json& formula : object.at("front")) {
+    result.front.push_back(parse_formula(formula.get<std::string>()));
+  }
+  if (result.front.empty()) throw_unusable("the program's front is empty");
+  result.chosen = count_in(object, "chosen", result.front.size() - 1);
+  if (result.chosen >= result.front.size()) {
+    throw_unusable(
+        fmt::format("'chosen' is {} in a front of {}", result.chosen, result.front.size()));
+  }
+  result.note = object.value("note", std::string());
+  keep_admitted_formulas(context_, result);
+  context_.budget.book(count_in(object, "evaluations", 0));
+  result_ = std::move(result);
+}
+
+Expression AnswerReader::parse_formula(const std::string& text) const {
+  try {
+    Expression formula = parse(text, names_);
+    if (context_.operators.admits(formula)) return formula;
+  } catch (const Error& error) {
+    throw_unusable(fmt::format("the formula '{}' cannot be read: {}", excerpt(text), error.what()));
+  }
+  throw_unusable(fmt::format("the formula '{}' leaves the operator set {}", excerpt(text),
+                             context_.operators.name()));
+}
+
+}  // namespace tribench

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+#include "harness/nightly.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+
+#include "foundation/error.hpp"
+#include "foundation/output_folder.hpp"
+#include "foundation/scratch_folder.hpp"
+#include "harness/provenance.hpp"
+#include "harness/verify.hpp"
+#include "harness/whole_run.hpp"
+#include "reports/comparison.hpp"
+#include "reports/night_page.hpp"
+#include "reports/night_store.hpp"
+#include "reports/night_tests.hpp"
+#include "reports/record_csv.hpp"
+
+namespace tribench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPending = "pending";  // a run that has not been recorded yet
+constexpr std::size_t kLongestWindow = 7;
+
+// One night at a time; the kernel lets go of it however this process ends.
+class StoreLock {
+ public:
+  explicit StoreLock(const fs::path& store) {
+    const fs::path file = store / "lock";
+    descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (descriptor_ < 0) {
+      throw Error(ErrorKind::failed, std::strerror(errno), file.string());
+    }
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      ::close(descriptor_);
+      throw_bad_input("another night is using this store", store.string(), "wait for it to end");
+    }
+  }
+  ~StoreLock() { ::close(descriptor_); }
+  StoreLock(const StoreLock&) = delete;
+  StoreLock& operator=(const StoreLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
+void require_free_disk(const NightlyOptions& options) {
+  const double free_mib =
+      static_cast<double>(fs::space(options.store).available) / (1024.0 * 1024.0);
+  if (free_mib >= options.least_free_mib) return;
+  throw Error(ErrorKind::environment, fmt::format("{:.0f} MiB are free", free_mib),
+              options.store.string(),
+              fmt::format("make room for {:.0f} MiB (--least-free)", options.least_free_mib));
+}
+
+// The first night, recorded and perhaps blessed, but cut short before its run got its name.
+bool is_unfinished_first(const NightStore& store) {
+  const std::vector<std::string> names = store.names();
+  const fs::path pending = store.runs() / kPending;
+  return names.size() == 1 && fs::exists(pending / "provenance.json") &&
+         night_name(read_run_folder(pending)) == names.front();
+}
+
+// Nights that begin within a second are told apart; one that was recorded and then cut short,
+// before its run got its name, keeps its own.
+std::string unused_name(const NightStore& store, const std::string& name) {
+  std::string unused = name;
+  for (int k = 2; fs::exists(store.runs() / unused); ++k) unused = fmt::format("{}.{}", name, k);
+  return unused;
+}
+
+std::optional<Night> usable_base(const NightStore& store) {
+  if (is_unfinished_first(store)) return std::nullopt;
+  std::optional<Night> base = store.base();
+  if (base && !fs::exists(store.runs() / base->name / "results.csv")) {
+    throw_bad_input("the base's run is missing or was not finished",
+                    (store.runs() / base->name).string(),
+                    "bring it back from a copy, or bless another night: tribench history bless");
+  }
+  return base;
+}
+
+// A run cut short under other code, grid or data cannot be gone on with: it is put aside.
+WholeRun run_pending(const Grid& grid, RunOptions options, const std::atomic<bool>& stop) {
+  options.resume = true;
+  try {
+    return run_whole(grid, options, stop);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::bad_input || !fs::exists(options.out / "cells.jsonl")) throw;
+    const RunIdentity now{print_grid(grid), code_identity(), data_identity(grid, options.data)};
+    if (read_journal(options.out / "cells.jsonl").identity.difference(now).empty()) throw;
+  }
+  std::string aside = fmt::format("abandoned-{}", utc_now());
+  std::erase(aside, ':');
+  fs::rename(options.out, options.out.parent_path() / aside);
+  return run_whole(grid, options, stop);
+}
+
+VerifyResult verify_sample(const Grid& grid, const WholeRun& run, const NightlyOptions& options,
+                           const std::atomic<bool>& stop) {
+  const ScratchFolder scratch;
+  RunOptions again = options.run;
+  again.out = scratch.path() / "run";
+  again.resume = false;
+  return verify_run(grid, run.journal, options.sample, again, stop);
+}
+
+// The nights after the base, the newest last, as far back as the longest window looks.
+std::vector<Night> nights_since(const NightStore& store, const Night& base, const Night& now) {
+  std::vector<Night> nights;
+  const std::vector<std::string> names = store.names();
+  for (auto name = names.rbegin(); name != names.rend() && nights.size() + 1 < kLongestWindow;
+       ++name) {
+    if (*name >= now.name) continue;
+    if (*name <= base.name) break;
+    nights.push_back(store.read(*name));
+  }
+  std::ranges::reverse(nights);
+  nights.push_back(now);
+  return nights;
+}
+
+void keep_last_runs(const NightStore& store, const std::string& base, std::size_t keep) {
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::directory_iterator(store.runs())) {
+    if (entry.is_directory() && entry.path().filename() != kPending)
+      folders.push_back(entry.path());
+  }
+  std::ranges::sort(folders);
+  for (std::size_t i = 0; i + keep < folders.size(); ++i) {
+    if (folders[i].filename() != base) fs::remove_all(folders[i]);
+  }
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+// What one night came to.
+struct Verdict {
+  std::optional<Comparison> comparison;
+  std::vector<NightFinding> losses;
+  VerifyResult verified;
+  bool stopped = false;
+  bool all_failed = false;
+
+  NightEnd end() const {
+    if (stopped || all_failed) return NightEnd::failed;
+    if (!verified.different.empty() || !losses.empty()) return NightEnd::regression;
+    if (!comparison) return NightEnd::fine;
+    switch (comparison->outcome()) {
+      case ComparisonOutcome::regression:
+        return NightEnd::regression;
+      case ComparisonOutcome::undecided:
+        return NightEnd::undecided;
+      default:
+        return NightEnd::fine;
+    }
+  }
+};
+
+const char* name_of(NightEnd end) {
+  switch (end) {
+    case NightEnd::fine:
+      return "fine";
+    case NightEnd::regression:
+      return "REGRESSION";
+    case NightEnd::undecided:
+      return "UNDECIDED";
+    default:
+      return "FAILED";
+  }
+}
+
+std::string summary_of(const Verdict& verdict, const Grid& grid, const WholeRun& run,
+                       const Night& night, const std::optional<Night>& base,
+                       const fs::path& folder) {
+  std::string text = fmt::format("tribench {}: {}\n", grid.name, name_of(verdict.end()));
+  text += fmt::format("night {}, code {} {}\n", night.name, night.code, night.commit);
+  text += fmt::format("{} of {} cells, {} failed, {:.0f} s\n", run.tally.done(), run.tally.cells,
+                      run.tally.failed, run.tally.wall_s);
+  text += fmt::format(
+      "{} cells run again, {} differ{}\n", verdict.verified.compared,
+      verdict.verified.different.size(),
+      verdict.verified.different.empty() ? "" : ": " + verdict.verified.different.front());
+  if (!verdict.comparison) return text + "the first night: it is the base from now on\n";
+  const Comparison& comparison = *verdict.comparison;
+  text += fmt::format("base {}: {}\n", base->name, comparison.sentence());
+  if (!comparison.conditions.empty()) {
+    text += fmt::format("asked differently: {}{}\n", comparison.conditions.front(),
+                        comparison.conditions.size() > 1
+                            ? fmt::format(" and {} more", comparison.conditions.size() - 1)
+                            : "");
+  }
+  const std::vector<std::string> doubts = comparison.doubts();
+  if (!doubts.empty()) {
+    text += fmt::format("not decided: {}{}\n", doubts.front(),
+                        doubts.size() > 1 ? fmt::format(" and {} more", doubts.size() - 1) : "");
+  }
+  if (!verdict.losses.empty()) {
+    text += fmt::format(
+        "{}{}\n", first_line(losses_text(verdict.losses)),
+        verdict.losses.size() > 1 ? fmt::format(" and {} more", verdict.losses.size() - 1) : "");
+  }
+  if (!comparison.visibility().empty()) text += comparison.visibility() + "\n";
+  return text + fmt::format("{}\n", (folder / "report.html").string());
+}
+
+}  // namespace
+
+std::string night_name(const RunFolder& run) {
+  std::string when = run.provenance_of("sessions.0.started");
+  std::erase(when, ':');
+  if (when.empty()) {
+    throw_bad_input("the run does not say when it started", (run.path / "provenance.json").string(),
+                    "run 'tribench report' on the folder, or leave the run out");
+  }
+  return fmt::format("{}-{}", when, run.provenance_of("code.commit").substr(0, 12));
+}
+
+NightlyResult run_night(const Grid& grid, const NightlyOptions& options,
+                        const std::atomic<bool>& stop) {
+  NightStore store(options.store);
+  make_output_folder(store.runs());
+  const StoreLock lock(options.store);
+  require_free_disk(options);
+  const std::optional<Night> base = usable_base(store);
+  RunOptions running = options.run;
+  running.out = store.runs() / kPending;
+  const WholeRun run = run_pending(grid, running, stop);
+  const RunFolder now = read_run_folder(running.out);
+  Night night = night_of_run(now, unused_name(store, night_name(now)));
+  const fs::path folder = store.runs() / night.name;
+  Verdict verdict;
+  verdict.stopped = run.tally.stopped;
+  verdict.all_failed = run.all_failed();
+  if (verdict.stopped) {  // the next night goes on with it
+    return {verdict.end(), night.name,
+            summary_of(verdict, grid, run, night, std::nullopt, running.out)};
+  }
+  verdict.verified = verify_sample(grid, run, options, stop);
+  if (base) {
+    ComparisonOptions comparing;
+    comparing.tolerance = options.tolerance;
+    verdict.comparison = compare_runs(read_run_folder(store.runs() / base->name), now, comparing);
+    verdict.losses = find_losses(*base, nights_since(store, *base, night));
+  }
+  night.outcome = name_of(verdict.end());
+  const std::string summary = summary_of(verdict, grid, run, night, base, folder);
+  if (verdict.comparison) {
+    write_file(running.out / "comparison.md",
+               comparison_markdown(*verdict.comparison) + "\n" + losses_text(verdict.losses));
+  }
+  write_file(running.out / "summary.txt", summary);
+  // In this order: cut short anywhere, the next night finds a whole store and does the rest again.
+  store.record(night);
+  if (store.blessings().empty() && !verdict.all_failed)
+    store.bless({night.name, "the first night", utc_now()});
+  fs::rename(running.out, folder);
+  write_file(options.store / "nights.html", history_page(read_history(store)));
+  keep_last_runs(store, base ? base->name : night.name, options.keep_runs);
+  store.prune(options.keep_nights, true);
+  return {verdict.end(), night.name, summary};
+}
+
+}  // namespace tribench

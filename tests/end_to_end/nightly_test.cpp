@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+//
+// Nights as a timer runs them: the first, the next, one with a worse method, one that is killed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "foundation/child_process.hpp"
+#include "foundation/random.hpp"
+#include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace tribench::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+class NightlyTest : public ::testing::Test {
+ protected:
+  // `loss`: what the outside method adds to its one constant.
+  void write_grid(const std::string& evaluations, const std::string& loss = "0") {
+    write_text(folder_ / "g.toml",
+               "[grid]\nname = \"night\"\nproblems = [\"A/j2/no_load\"]\n"
+               "methods = [\"linear\", \"outside\"]\nseeds = { first = 1, count = 12 }\n"
+               "[budget]\nevaluations = " +
+                   evaluations +
+                   "\n"
+                   "[[external]]\nname = \"outside\"\ncommand = [\"bash\", \"" +
+                   (folder_ / "method.sh").string() + "\"]\n");
+    write_text(folder_ / "method.sh",
+               "echo '{\"front\": [\"8*sgn_qd + 10*qd + " + loss + "\"]}'\n");
+  }
+  std::vector<std::string> command() const {
+    return {program().string(), "nightly",
+            "--store",          store().string(),
+            "--grid",           (folder_ / "g.toml").string(),
+            "--least-free",     "0",
+            "--jobs",           "2",
+            "--sample",         "3"};
+  }
+  ProgramRun night(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = command();
+    words.insert(words.end(), more.begin(), more.end());
+    return run_to_end(words);
+  }
+  ProgramRun history(const std::string& what, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {program().string(), "history", what, store().string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_to_end(words);
+  }
+  std::filesystem::path store() const { return folder_ / "store"; }
+  static void next_second() { std::this_thread::sleep_for(std::chrono::milliseconds(1100)); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(NightlyTest, TheFirstIsTheBaseTheSecondIsComparedAndAWorseOneIsFound) {
+  write_grid("2_000_000");
+  const std::string told = (folder_ / "told").string();
+  const ProgramRun first = night({"--notify", "cat > " + told});
+  ASSERT_EQ(first.status, 0) << first.errors;
+  EXPECT_THAT(first.output, HasSubstr("the first night: it is the base"));
+  EXPECT_EQ(read_text(told), first.output);
+  next_second();
+  const ProgramRun second = night();
+  EXPECT_EQ(second.status, 0) << second.output << second.errors;
+  EXPECT_THAT(second.output, HasSubstr("All 24 cells are identical apart from time"));
+  EXPECT_THAT(second.output, HasSubstr("3 cells run again, 0 differ"));
+  next_second();
+  write_grid("2_000_000", "2");
+  const ProgramRun third = night();
+  EXPECT_EQ(third.status, 1) << third.output << third.errors;
+  EXPECT_THAT(third.output, HasSubstr("REGRESSION"));
+  next_second();
+  // A bad night is no base: the next is compared with the first again.
+  EXPECT_EQ(night().status, 1);
+  ASSERT_EQ(history("bless", {"the new level is meant"}).status, 0);
+  next_second();
+  EXPECT_EQ(night().status, 0);
+  EXPECT_THAT(history("show").output, HasSubstr("5 nights, 2 series; base"));
+  EXPECT_TRUE(std::filesystem::exists(store() / "nights.html"));
+}
+
+TEST_F(NightlyTest, AnotherBudgetIsUndecidedAndSaidFirst) {
+  write_grid("2_000_000");
+  ASSERT_EQ(night().status, 0);
+  next_second();
+  write_grid("1_000_000");
+  const ProgramRun other = night();
+  EXPECT_EQ(other.status, 4) << other.output;
+  EXPECT_THAT(other.output, HasSubstr("budget.evaluations: 2000000 -> 1000000"));
+}
+
+TEST_F(NightlyTest, AMissingOrDamagedBaseIsRefusedAndNeverReplaced) {
+  write_grid("2_000_000");
+  ASSERT_EQ(night().status, 0);
+  std::filesystem::path record;
+  for (const auto& entry : std::filesystem::directory_iterator(store() / "nights")) {
+    record = entry.path();
+  }
+  const std::string whole = read_text(record);
+  write_text(record, whole.substr(0, whole.size() / 2));
+  const ProgramRun damaged = night();
+  EXPECT_EQ(damaged.status, 2);
+  EXPECT_THAT(damaged.errors, HasSubstr("damaged"));
+  std::filesystem::remove(record);
+  EXPECT_EQ(night().status, 2);
+  write_text(record, whole);
+  std::filesystem::remove_all(store() / "runs" / record.stem());
+  const ProgramRun gone = night();
+  EXPECT_EQ(gone.status, 2);
+  EXPECT_THAT(gone.errors, HasSubstr("the base's run is missing"));
+}
+
+TEST_F(NightlyTest, ASecondOneAtATimeAndAFullDiskAreRefused) {
+  write_grid("2_000_000");
+  const ProgramRun full =
+      run_to_end({program().string(), "nightly", "--store", store().string(), "--grid",
+                  (folder_ / "g.toml").string(), "--least-free", "1e9"});
+  EXPECT_EQ(full.status, 3);
+  EXPECT_THAT(full.errors, HasSubstr("MiB are free"));
+  // A method that takes its time holds the store.
+  write_text(folder_ / "method.sh", "sleep 30\n");
+  ChildProcess slow(ChildOptions{command()});
+  for (int i = 0; i < 500 && !std::filesystem::exists(store() / "runs" / "pending"); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  const ProgramRun second = night();
+  EXPECT_EQ(second.status, 2);
+  EXPECT_THAT(second.errors, HasSubstr("another night is using this store"));
+}
+
+// A power cut at any moment: the store is whole and the next night goes on.
+TEST_F(NightlyTest, KilledAgainAndAgainItComesToItsEnd) {
+  write_grid("2_000_000");
+  RandomStream random(key_of("nightly"));
+  for (int kill = 0; kill < 12; ++kill) {
+    ChildProcess program(ChildOptions{command()});
+    std::this_thread::sleep_for(std::chrono::duration<double>(random.uniform(0.02, 0.6)));
+    ::kill(program.pid(), SIGKILL);
+    program.wait();
+  }
+  const ProgramRun last = night();
+  EXPECT_EQ(last.status, 0) << last.output << last.errors;
+  const ProgramRun shown = history("show", {"--json"});
+  ASSERT_EQ(shown.status, 0) << shown.errors;
+  EXPECT_THAT(shown.output, HasSubstr("\"damaged\": []"));
+}
+
+}  // namespace
+}  // namespace tribench::testing
