@@ -14,6 +14,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 namespace tribench::fuzz {
 
@@ -30,6 +31,12 @@ struct Registration {
 [[noreturn]] void wrong(const std::string& what);
 inline void expect(bool holds, const std::string& what) {
   if (!holds) wrong(what);
+}
+// For hot loops: the words are put together only where they are needed.
+template <typename Words>
+requires std::is_invocable_r_v<std::string, Words>
+void expect(bool holds, Words what) {
+  if (!holds) wrong(what());
 }
 
 // Runs `work`; an Error (bad input) is an answer and gives false, any other exception a finding.

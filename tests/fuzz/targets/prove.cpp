@@ -52,9 +52,10 @@ bool expect_bounds_hold(const Case& one, FormulaBounds& bounds, bool sharp) {
     const Expression node = one.formula.subtree(i);
     for (const std::vector<double>& point : one.points) {
       const double value = evaluator.evaluate_at(node, point);
-      fuzz::expect(bounds.at(i).range.contains(value), std::string(sharp ? "sharpened" : "plain") +
-                                                           " bounds of node " + std::to_string(i) +
-                                                           " do not hold a value of " + one.text());
+      fuzz::expect(bounds.at(i).range.contains(value), [&] {
+        return std::string(sharp ? "sharpened" : "plain") + " bounds of node " + std::to_string(i) +
+               " do not hold a value of " + one.text();
+      });
     }
   }
   return all;
@@ -66,25 +67,27 @@ void expect_verdict_is_true(const Case& one) {
     Evaluator evaluator;
     for (const std::vector<double>& point : one.points) {
       fuzz::expect(std::isfinite(evaluator.evaluate_at(one.formula, point)),
-                   "proved free, and is not: " + one.text());
+                   [&] { return "proved free, and is not: " + one.text(); });
     }
     const auto certificate = write_certificate(one.formula, one.box, kMaxPieces);
     if (certificate) {
       const CertificateCheck check = check_certificate(*certificate);
-      fuzz::expect(check.accepted,
-                   "its own certificate is rejected (" + check.reason + "): " + one.text());
+      fuzz::expect(check.accepted, [&] {
+        return "its own certificate is rejected (" + check.reason + "): " + one.text();
+      });
     }
   } else if (result.verdict == Verdict::refuted) {
-    fuzz::expect(result.witness.has_value(), "refuted without a witness: " + one.text());
+    fuzz::expect(result.witness.has_value(),
+                 [&] { return "refuted without a witness: " + one.text(); });
     const std::vector<double>& point = result.witness->point;
     for (std::size_t j = 0; j < point.size(); ++j) {
       fuzz::expect(one.box.ranges[j].low <= point[j] && point[j] <= one.box.ranges[j].high,
-                   "a witness outside the box: " + one.text());
+                   [&] { return "a witness outside the box: " + one.text(); });
     }
     if (result.witness->neighbour.empty()) {
       const Expression node = one.formula.subtree(result.witness->node);
       fuzz::expect(!std::isfinite(Evaluator().evaluate_at(node, point)),
-                   "a witness at which nothing is wrong: " + one.text());
+                   [&] { return "a witness at which nothing is wrong: " + one.text(); });
     }
   }
 }
@@ -97,8 +100,9 @@ void expect_limit_is_kept(const Case& one, const FormulaBounds& bounds, double l
   const double rounding = bounds.rounding_error(one.formula.root());
   Evaluator evaluator;
   for (const std::vector<double>& point : one.points) {
-    fuzz::expect(std::abs(evaluator.evaluate_at(one.formula, point)) <= limit + rounding,
-                 "proved within " + print_number(limit) + ", and is not: " + one.text());
+    fuzz::expect(std::abs(evaluator.evaluate_at(one.formula, point)) <= limit + rounding, [&] {
+      return "proved within " + print_number(limit) + ", and is not: " + one.text();
+    });
   }
 }
 
