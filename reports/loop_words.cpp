@@ -175,16 +175,46 @@ std::string closed_share(const json& error) {
                      100 * to);
 }
 
+namespace {
+
+// The sizes from which on effects would have shown.
+std::string detectable_clause(const json& loop) {
+  std::vector<std::string> sizes;
+  for (const json& one : items_of(loop, "candidates")) {
+    const double size = number_of(one, "detectable");
+    if (std::isnan(size)) continue;
+    sizes.push_back(
+        fmt::format("{} above {} {}", text_of(one, "family"), figure(size, 2), unit_of(loop)));
+  }
+  if (sizes.empty()) return {};
+  return fmt::format(" Would have shown (root mean square): {}.", fmt::join(sizes, ", "));
+}
+
+std::vector<std::string> texts_of(const json& object, const char* key) {
+  std::vector<std::string> all;
+  for (const json& item : items_of(object, key)) {
+    if (item.is_string()) all.push_back(item.get<std::string>());
+  }
+  return all;
+}
+
+}  // namespace
+
 std::string verdict_sentence(const json& loop) {
   const std::string verdict = text_of(loop, "verdict");
   const std::size_t count = items_of(loop, "effects").size();
   if (verdict == "NONE" && loop.contains("candidates") && items_of(loop, "candidates").empty()) {
     return "Nothing is claimed: these data can test none of the effects.";
   }
+  if (verdict == "CANNOT_TELL") {
+    return fmt::format("These data cannot tell: nothing in them can be tested. Needed: {}.",
+                       fmt::join(texts_of(loop, "needed"), "; "));
+  }
   if (verdict == "NONE") {
-    return items_of(loop, "untestable").empty()
-               ? "Nothing is missing: the residual shows no structure."
-               : "Nothing is missing that these data can show: the residual has no structure.";
+    return (items_of(loop, "untestable").empty()
+                ? "Nothing is missing: the residual shows no structure."
+                : "Nothing is missing that these data can show: the residual has no structure.") +
+           detectable_clause(loop);
   }
   const json error = member_of(loop, "error");
   const bool denied = error.contains("confirmed") && !flag_of(error, "confirmed");
@@ -222,6 +252,11 @@ std::string effect_sentence(const json& effect, const json& loop) {
   }
   for (const json& note : items_of(effect, "notes")) {
     if (note.is_string()) text += "; " + note.get<std::string>();
+  }
+  const double share = number_of(effect, "chosen_share");
+  if (!std::isnan(share)) {
+    text +=
+        fmt::format("; chosen in {:.0f} % of the searches with movements left out", 100 * share);
   }
   return text + '.' + alias_clause(effect) + request_clause(effect);
 }

@@ -13,9 +13,9 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/diagnosis/clusters.hpp"
 #include "algorithms/diagnosis/diagnosis.hpp"
-#include "algorithms/diagnosis/student_law.hpp"
+#include "algorithms/inference/clusters.hpp"
+#include "algorithms/inference/student_law.hpp"
 
 namespace tribench::loop {
 

@@ -22,6 +22,10 @@ namespace {
 constexpr std::size_t kFewMovements = 40;     // a fifth of them is too few to judge by
 constexpr std::size_t kWantedMovements = 30;  // R9
 constexpr std::size_t kPiecesOfOneMovement = 5;
+// Movements are left out in at least so many turns; in more, one movement each, where the rows of
+// all turns together stay below the second figure.
+constexpr std::size_t kFewestTurns = 10;
+constexpr std::size_t kRowsOfAllTurns = 60'000;
 
 std::vector<EffectFamily> chosen_families(const DiagnosisOptions& options) {
   std::vector<EffectFamily> all = builtin_effects();
@@ -67,9 +71,25 @@ std::vector<char> rows_of(const Observations& data, const std::vector<int>& test
   return keep;
 }
 
-Verdict verdict_of(const Diagnosis& diagnosis) {
+Verdict verdict_of(const Diagnosis& diagnosis, bool leftover_tested) {
   if (!diagnosis.leftover.inputs.empty()) return Verdict::unknown;
-  return diagnosis.effects.empty() ? Verdict::none : Verdict::effects;
+  if (!diagnosis.effects.empty()) return Verdict::effects;
+  const bool tested = leftover_tested || !diagnosis.candidates.empty();
+  return tested ? Verdict::none : Verdict::cannot_tell;
+}
+
+// What would make the data tell.
+std::vector<std::string> needed_to_tell(const Diagnosis& diagnosis) {
+  std::vector<std::string> needed;
+  needed.push_back(fmt::format(
+      "{} stretches of movement that say something of their own: here are {}, since the residual "
+      "keeps its sign for {:.0f} rows; record {} times as much",
+      kFewestClusters, diagnosis.stretches, diagnosis.correlation_rows,
+      (2 * kFewestClusters - 1) / std::max<std::size_t>(1, diagnosis.stretches)));
+  needed.emplace_back(
+      "the rigid body, where the torque holds it: declare gravity or the computed torque "
+      "(--roles COLUMN=gravity_torque), or name what is to be fitted (--rigid)");
+  return needed;
 }
 
 // The role names of what the family's columns in the model are functions of, signs left out.
@@ -153,6 +173,8 @@ std::string_view verdict_name(Verdict verdict) {
       return "EFFECTS";
     case Verdict::unknown:
       return "UNKNOWN";
+    case Verdict::cannot_tell:
+      return "CANNOT_TELL";
   }
   return "NONE";
 }
@@ -202,7 +224,8 @@ Diagnosis diagnose_training(const Observations& data, const std::vector<int>& te
   out.notes = search.notes;
   mark_provisional(out, train);
   if (options.physical_vetoes) apply_vetoes(out, train);
-  out.verdict = verdict_of(out);
+  out.verdict = verdict_of(out, search.leftover_tested);
+  if (out.verdict == Verdict::cannot_tell) out.needed = needed_to_tell(out);
   return out;
 }
 
@@ -218,12 +241,20 @@ std::vector<int> pieces(const Observations& data, double correlation_rows) {
   return unit;
 }
 
-// The movements that are left out at once, each set in ascending order.
+std::size_t turns_for(const Observations& data) {
+  return std::max(kFewestTurns, kRowsOfAllTurns / std::max<std::size_t>(1, data.rows()));
+}
+
+// The movements that are left out at once, each set in ascending order: those of a group, or single
+// ones, or where they are many, a tenth of them.
 std::vector<std::vector<int>> left_out_together(const Observations& data) {
   std::map<int, std::size_t> place;  // of a group's number, in the order of their first movements
   std::vector<std::vector<int>> all;
+  const auto turns = static_cast<int>(turns_for(data));
+  int turn = 0;
   for (const int m : data.movements()) {
-    const int number = data.group.empty() ? m : data.group[static_cast<std::size_t>(m)];
+    const int number =
+        data.group.empty() ? turn++ % turns : data.group[static_cast<std::size_t>(m)];
     const auto [known, is_new] = place.try_emplace(number, all.size());
     if (is_new) all.emplace_back();
     all[known->second].push_back(m);
@@ -269,9 +300,46 @@ ErrorFinding judge_rows(const Observations& data, const std::vector<char>& judge
   return error;
 }
 
+// How often searches on parts of the data choose the same effects.
+class ChosenShares {
+ public:
+  void count(const Diagnosis& part) {
+    ++searches_;
+    for (const EffectFinding& effect : part.effects) ++times_[effect.family];
+  }
+  void write(Diagnosis& whole) const {
+    if (searches_ == 0) return;
+    for (EffectFinding& effect : whole.effects) {
+      const auto found = times_.find(effect.family);
+      effect.chosen_share = found == times_.end() ? 0 : found->second / searches_;
+    }
+  }
+
+ private:
+  double searches_ = 0;
+  std::map<std::string, double> times_;
+};
+
+// Many movements: the search again without a tenth of the training movements in turn.
+void search_again(const Observations& data, const BaseMaker& base, Diagnosis& whole,
+                  RandomStream random) {
+  if (whole.effects.empty()) return;
+  ChosenShares shares;
+  std::vector<char> training = rows_of(data, whole.test_movements, false, {});
+  std::uint64_t turn = 0;
+  for (std::vector<int> left : left_out_together(data.select(training))) {
+    left.insert(left.end(), whole.test_movements.begin(), whole.test_movements.end());
+    std::ranges::sort(left);
+    shares.count(diagnose_training(data, left, base, whole.options, random.split(turn++)));
+  }
+  shares.write(whole);
+}
+
 // Few movements: the whole procedure again for each, without it, and all of them judged together.
-ErrorFinding judge_in_turn(const Observations& data, const BaseMaker& base, const Diagnosis& whole,
+// Says of each effect how many of them choose it too.
+ErrorFinding judge_in_turn(const Observations& data, const BaseMaker& base, Diagnosis& whole,
                            RandomStream random) {
+  ChosenShares shares;
   const std::vector<char> usable = rows_of(data, {}, false, whole.masked);
   LeftOut all;
   for (Eigen::VectorXd* one : {&all.before, &all.after, &all.corrected}) {
@@ -281,6 +349,7 @@ ErrorFinding judge_in_turn(const Observations& data, const BaseMaker& base, cons
   for (const std::vector<int>& left : left_out_together(data)) {
     const RandomStream own = random.split(turn++);
     const Diagnosis without = diagnose_training(data, left, base, whole.options, own);
+    shares.count(without);
     const LeftOut models = left_out_predictions(data, without, left, own.split("smooth"));
     const std::vector<char> rows = rows_of(data, left, true, {});
     for (std::size_t i = 0; i < data.rows(); ++i) {
@@ -291,6 +360,7 @@ ErrorFinding judge_in_turn(const Observations& data, const BaseMaker& base, cons
       all.corrected[at] = models.corrected[at];
     }
   }
+  shares.write(whole);
   const std::vector<int> unit = pieces(data.select(usable), whole.correlation_rows);
   return judge_rows(data, usable, all, unit, whole.options.ceiling, random);
 }
@@ -323,7 +393,8 @@ Diagnosis diagnose_canonical(const Observations& data, const BaseMaker& base,
     out.error = judge_in_turn(cut, base, out, random.split("in turn"));
     out.error.how = single ? "pieces of the one movement left out in turn"
                     : cut.group.empty()
-                        ? "each movement left out in turn"
+                        ? (movements > turns_for(data) ? "a tenth of the movements left out in turn"
+                                                       : "each movement left out in turn")
                         : fmt::format("movements of one '{}' left out in turn", cut.group_name);
     out.error.confirmed = out.effects.empty() || out.error.difference_low > 0;
     if (single) {
@@ -347,6 +418,7 @@ Diagnosis diagnose_canonical(const Observations& data, const BaseMaker& base,
     out.error =
         judge_rows(data, judged, models, data.select(judged).movement, options.ceiling, random);
     out.error.how = "held out";
+    if (options.resample) search_again(data, base, out, random.split("again"));
     out.error.confirmed = out.effects.empty() || out.error.difference_low > 0;
   }
   return out;

@@ -127,6 +127,11 @@ std::vector<EffectFinding> effect_findings(const Search& search, const Observati
     if (finding.vif > kLargeVif) {
       finding.notes.push_back("its parameters trade off against others': quote them together only");
     }
+    finding.another_shape = one.another_shape;
+    if (one.another_shape) {
+      finding.notes.push_back(
+          "of another shape than the library has: what is left over follows its own inputs");
+    }
     if (finding.few_movements) {
       finding.notes.push_back("carried by few movements: record more of them (R5, R7)");
     }

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <set>
 
-#include "algorithms/diagnosis/feature_scores.hpp"
 #include "algorithms/diagnosis/search.hpp"
+#include "algorithms/inference/feature_scores.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -158,6 +158,40 @@ BlockScores Search::score_modifier(const Modifier& modifier) const {
   return block;
 }
 
+// The signals that the family's columns in the model are functions of, signs left out.
+std::vector<std::string> Search::inputs_of(std::size_t family) const {
+  std::vector<std::string> names;
+  for (const Atom& atom : current_.model.atoms) {
+    if (atom.family != family) continue;
+    for (const Expression& column : atom.columns) {
+      for (const Node& node : column.nodes()) {
+        if (!node.is_variable()) continue;
+        const std::string& name = data_.signals[node.variable].name;
+        if (!name.starts_with("sgn_") && std::ranges::count(names, name) == 0) {
+          names.push_back(name);
+        }
+      }
+    }
+  }
+  return names;
+}
+
+// What is left over in nothing but the inputs of an effect that stands beside it is that effect, of
+// another shape than the library has.
+void Search::name_shapes() {
+  if (leftover.inputs.empty()) return;
+  for (Found& one : found) {
+    const std::vector<std::string> own = inputs_of(one.family);
+    const bool holds = std::ranges::all_of(leftover.signals, [&](const std::string& name) {
+      return std::ranges::count(own, name) > 0;
+    });
+    if (!holds) continue;
+    one.another_shape = true;
+    leftover.inputs.clear();
+    return;
+  }
+}
+
 void Search::test_leftover() {
   if (clusters_.stretches.size() < kFewestClusters) {
     note(fmt::format(
@@ -166,6 +200,7 @@ void Search::test_leftover() {
         clusters_.stretches.size(), kFewestClusters));
     return;
   }
+  leftover_tested = true;
   const std::vector<Smoother> smoothers = make_smoothers(data_, random_.split("smoothers"));
   const std::vector<Modifier> products = modifiers();
   std::vector<BlockScores> blocks;

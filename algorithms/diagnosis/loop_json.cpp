@@ -47,6 +47,8 @@ Json effect_json(const EffectFinding& effect) {
                {"provisional", effect.provisional},
                {"not_physical", effect.objection},
                {"few_movements", effect.few_movements},
+               {"another_shape", effect.another_shape},
+               {"chosen_share", number(effect.chosen_share)},
                {"notes", effect.notes}};
   for (const ParameterFinding& p : effect.parameters) json["params"].push_back(parameter_json(p));
   for (const AliasFinding& alias : effect.aliases) json["alias"].push_back(alias_json(alias));
@@ -123,8 +125,10 @@ Json lists_json(const Diagnosis& diagnosis) {
                                    {"atom", one.atom},
                                    {"p_adj", number(one.adjusted_p)},
                                    {"score", number(one.score)},
-                                   {"cv_gain", number(one.gain)}});
+                                   {"cv_gain", number(one.gain)},
+                                   {"detectable", number(one.detectable)}});
   }
+  lists["needed"] = diagnosis.needed;
   return lists;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/loop_model.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "algorithms/expression/text.hpp"
+#include "algorithms/fitting/symmetric_system.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench::loop {
@@ -14,6 +14,8 @@ namespace {
 constexpr int kMaxIterations = 30;
 constexpr double kStepTolerance = 1e-6;
 constexpr double kRelativeStep = 1e-5;  // of the central differences
+// Of a column's square: less beside the others is rounding.
+constexpr double kDependent = 1e-11;
 
 // The base's constants that a fit may move: an integer exponent is part of the form.
 std::vector<std::size_t> free_constants(const Expression& formula) {
@@ -108,80 +110,80 @@ std::vector<Expression> linear_columns(const LoopModel& model) {
   return all;
 }
 
-Eigen::VectorXd basic_solution_of(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
-                                  const Eigen::VectorXd& target) {
-  const Eigen::Index rank = qr.rank();
-  Eigen::VectorXd rotated = target;
-  rotated.applyOnTheLeft(qr.householderQ().adjoint());
-  Eigen::VectorXd ordered = Eigen::VectorXd::Zero(qr.cols());
-  ordered.head(rank) = qr.matrixQR()
-                           .topLeftCorner(rank, rank)
-                           .triangularView<Eigen::Upper>()
-                           .solve(rotated.head(rank));
-  return qr.colsPermutation() * ordered;
+// Lengths of columns; 1 of those that are nothing.
+Eigen::VectorXd lengths_of(const Eigen::MatrixXd& x) {
+  Eigen::VectorXd lengths = x.colwise().norm();
+  for (double& length : lengths) length = length > 0 && std::isfinite(length) ? length : 1;
+  return lengths;
 }
 
-// Solves for the linear coefficients at the current shapes; the sum of squares that is left.
-// keeps the whitened columns and the residual for the Jacobian.
+// The linear part at the present shapes: whitened columns of unit length, their products, and what
+// is left of the target beside them.
 struct LinearFit {
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  Eigen::MatrixXd x;
+  Eigen::VectorXd lengths;
+  Eigen::MatrixXd gram;
   Eigen::VectorXd residual;
   double sum_squares = 0;
 };
 
+// Solves for the linear coefficients.
 LinearFit solve_linear(LoopModel& model, const Observations& data, const Clusters& clusters,
                        const Noise& noise) {
   const SignalTable table(data);
   Eigen::VectorXd y = target_vector(data);
   if (!model.base.formula.empty()) y -= evaluate_one(model.base.formula, table);
-  const Eigen::MatrixXd x =
-      whitened(evaluate_columns(linear_columns(model), data), clusters, noise);
-  const Eigen::VectorXd target = whitened(y, clusters, noise);
   LinearFit fit;
-  if (x.cols() == 0) {
-    fit.residual = target;
-  } else {
-    const Eigen::VectorXd norms = x.colwise().norm().cwiseMax(1e-300);
-    const Eigen::MatrixXd scaled = x * norms.cwiseInverse().asDiagonal();
-    fit.qr.setThreshold(1e-9);
-    fit.qr.compute(scaled);
-    const Eigen::VectorXd solution = basic_solution_of(fit.qr, target);
-    model.coefficients = solution.cwiseQuotient(norms);
-    fit.residual = target - scaled * solution;
+  fit.residual = whitened(y, clusters, noise);
+  fit.x = whitened(evaluate_columns(linear_columns(model), data), clusters, noise);
+  if (fit.x.cols() > 0) {
+    fit.lengths = lengths_of(fit.x);
+    for (Eigen::Index j = 0; j < fit.x.cols(); ++j) fit.x.col(j) /= fit.lengths[j];
+    fit.gram = fit.x.transpose() * fit.x;
+    const Eigen::VectorXd solution =
+        basic_solution_symmetric(fit.gram, fit.x.transpose() * fit.residual, kDependent);
+    model.coefficients = solution.cwiseQuotient(fit.lengths);
+    fit.residual -= fit.x * solution;
   }
   fit.sum_squares = fit.residual.squaredNorm();
   return fit;
 }
 
-Eigen::VectorXd project_out(const LinearFit& fit, Eigen::VectorXd column) {
-  if (fit.qr.cols() == 0) return column;
-  column.applyOnTheLeft(fit.qr.householderQ().adjoint());
-  column.head(fit.qr.rank()).setZero();
-  column.applyOnTheLeft(fit.qr.householderQ());
-  return column;
-}
+// What the non-linear parameters can do that the linear ones cannot: the products of the Jacobian's
+// columns, the linear columns projected out, and its products with the residual.
+struct NonlinearNormal {
+  Eigen::MatrixXd gram;
+  Eigen::VectorXd gradient;
+};
 
-Eigen::MatrixXd projected_jacobian(LoopModel& model, const std::vector<Nonlinear>& parameters,
-                                   const Observations& data, const Clusters& clusters,
-                                   const Noise& noise, const LinearFit& fit) {
+NonlinearNormal nonlinear_normal(LoopModel& model, const std::vector<Nonlinear>& parameters,
+                                 const Observations& data, const Clusters& clusters,
+                                 const Noise& noise, const LinearFit& fit) {
   const SignalTable table(data);
   Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(data.rows()),
                            static_cast<Eigen::Index>(parameters.size()));
   for (std::size_t j = 0; j < parameters.size(); ++j) {
-    const Eigen::VectorXd raw = derivative(model, parameters[j], table);
-    jacobian.col(static_cast<Eigen::Index>(j)) = project_out(fit, whitened(raw, clusters, noise));
+    jacobian.col(static_cast<Eigen::Index>(j)) = derivative(model, parameters[j], table);
   }
-  return jacobian;
+  jacobian = whitened(std::move(jacobian), clusters, noise);
+  NonlinearNormal out{jacobian.transpose() * jacobian, jacobian.transpose() * fit.residual};
+  if (fit.x.cols() == 0) return out;
+  const Eigen::VectorXd whole = out.gram.diagonal();
+  const Eigen::MatrixXd cross = fit.x.transpose() * jacobian;
+  out.gram -= cross.transpose() * basic_solution_symmetric(fit.gram, cross, kDependent);
+  out.gram.diagonal() = out.gram.diagonal().cwiseMax(kDependent * whole);
+  return out;
 }
 
 // A damped step; parameters that would leave their bounds stop at them. Returns its relative size.
 double take_step(LoopModel& model, const std::vector<Nonlinear>& parameters,
-                 const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual, double damping) {
-  Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
-  const Eigen::VectorXd gradient = jacobian.transpose() * residual;
-  const Eigen::VectorXd diagonal = normal.diagonal().cwiseMax(1e-300);
-  normal.diagonal() += damping * diagonal;
-  const Eigen::VectorXd step = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(normal).solve(gradient);
+                 const NonlinearNormal& normal, double damping) {
+  const Eigen::VectorXd scale = normal.gram.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  Eigen::MatrixXd damped =
+      scale.cwiseInverse().asDiagonal() * normal.gram * scale.cwiseInverse().asDiagonal();
+  damped.diagonal().array() += damping;
+  const Eigen::VectorXd step =
+      solve_symmetric(damped, normal.gradient.cwiseQuotient(scale)).cwiseQuotient(scale);
   double largest = 0;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const double before = value_of(model, parameters[j]);
@@ -261,12 +263,12 @@ std::size_t LoopModel::first_column(std::size_t atom) const {
   return first;
 }
 
-Eigen::VectorXd basic_solution(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target,
-                               double threshold) {
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-  qr.setThreshold(threshold);
-  qr.compute(columns);
-  return basic_solution_of(qr, target);
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
+  const Eigen::VectorXd lengths = lengths_of(columns);
+  const Eigen::MatrixXd scaled = columns * lengths.cwiseInverse().asDiagonal();
+  return basic_solution_symmetric(scaled.transpose() * scaled, scaled.transpose() * target,
+                                  kDependent)
+      .cwiseQuotient(lengths);
 }
 
 Eigen::MatrixXd evaluate_columns(std::span<const Expression> formulas, const Observations& data) {
@@ -320,14 +322,13 @@ void fit_model(LoopModel& model, const Observations& data, const Clusters& clust
   if (parameters.empty()) return;
   double damping = 1e-3;
   for (int i = 0; i < kMaxIterations; ++i) {
-    const Eigen::MatrixXd jacobian =
-        projected_jacobian(model, parameters, data, clusters, noise, fit);
+    const NonlinearNormal normal = nonlinear_normal(model, parameters, data, clusters, noise, fit);
     bool improved = false;
     double step = 0;
     double decrease = 0;
     for (int attempt = 0; attempt < 6 && !improved; ++attempt) {
       LoopModel trial = model;
-      step = take_step(trial, parameters, jacobian, fit.residual, damping);
+      step = take_step(trial, parameters, normal, damping);
       LinearFit trial_fit = solve_linear(trial, data, clusters, noise);
       improved = trial_fit.sum_squares < fit.sum_squares;
       damping *= improved ? 0.2 : 8;

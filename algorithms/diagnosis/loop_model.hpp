@@ -13,8 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/diagnosis/clusters.hpp"
-#include "algorithms/diagnosis/effect_library.hpp"
+#include "algorithms/diagnosis/observations.hpp"
+#include "algorithms/effects/effect_library.hpp"
+#include "algorithms/inference/clusters.hpp"
 
 namespace tribench::loop {
 
@@ -46,10 +47,8 @@ struct LoopModel {
   std::size_t first_column(std::size_t atom) const;  // of its coefficients
 };
 
-// Least squares in which columns beyond the rank, pivots below that share of the largest, get no
-// weight (Eigen's own solve divides by them, however small).
-Eigen::VectorXd basic_solution(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target,
-                               double threshold);
+// Least squares in which columns that depend on others get no weight.
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target);
 
 // Values of formulas, one a column.
 Eigen::MatrixXd evaluate_columns(std::span<const Expression> formulas, const Observations& data);

@@ -93,6 +93,9 @@ Round Search::test_all(const FittedModel& state) const {
   round.blocks.resize(library_.size());
   for (std::size_t k = 0; k < library_.size(); ++k) {
     if (usable_[k] == 0) continue;
+    const bool lonely =
+        library_[k].beside_another && atoms_of(library_[k].family, state.model) == 0;
+    if (lonely) continue;
     const auto first = static_cast<Eigen::Index>(blocks_[k].first);
     const auto count = static_cast<Eigen::Index>(blocks_[k].count);
     round.blocks[k] = score_block(projected.middleCols(first, count), before.segment(first, count),
@@ -285,8 +288,8 @@ std::vector<Candidate> Search::admitted(const Round& round, const FittedModel& s
   return all;
 }
 
-std::size_t Search::atoms_of(std::size_t family) const {
-  return static_cast<std::size_t>(std::ranges::count(current_.model.atoms, family, &Atom::family));
+std::size_t Search::atoms_of(std::size_t family, const LoopModel& model) {
+  return static_cast<std::size_t>(std::ranges::count(model.atoms, family, &Atom::family));
 }
 
 void Search::remove_family(LoopModel& model, std::size_t family) const {
@@ -309,8 +312,9 @@ void Search::note(std::string text) {
 
 // False where the family has had its share already: the next best may still be needed.
 bool Search::add(const Candidate& winner, const Round& round) {
-  const bool again = atoms_of(winner.family) > 0;
-  if (atoms_of(winner.family) >= kMostAtoms) {
+  const std::size_t known = atoms_of(winner.family, current_.model);
+  const bool again = known > 0;
+  if (known >= kMostAtoms) {
     asked_more_.push_back(winner.family);
     note(fmt::format(
         "more than {} columns of '{}' are asked for: a sign of something that only looks like it",
@@ -350,7 +354,7 @@ bool Search::cancels_itself(const LoopModel& model, std::size_t family) const {
     together += one;
     sum += one.squaredNorm();
   }
-  return together.squaredNorm() < kCancelling * sum;
+  return sum > 0 && together.squaredNorm() < kCancelling * sum;
 }
 
 void Search::run() {
@@ -358,6 +362,7 @@ void Search::run() {
   const double scale = target_vector(data_).norm();
   if (!(raw.norm() > 1e-9 * scale)) {
     note("the base model leaves no residual");
+    leftover_tested = true;
     return;
   }
   base_round_ = test_all(base_fit_);
@@ -387,6 +392,7 @@ void Search::run() {
   leave_out_cancelling();
   test_leftover();
   leave_out_cancelling();  // the fit without proxies is another
+  name_shapes();
   // What its gain has rescued was testable after all.
   for (const Found& one : found) {
     std::erase_if(untestable, [&](const UntestableFinding& finding) {

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/diagnosis/cross_validation.hpp"
 #include "algorithms/diagnosis/diagnosis.hpp"
 #include "algorithms/diagnosis/loop_model.hpp"
-#include "algorithms/diagnosis/score_test.hpp"
 #include "algorithms/diagnosis/smoothers.hpp"
+#include "algorithms/inference/cross_validation.hpp"
+#include "algorithms/inference/score_test.hpp"
 
 namespace tribench::loop {
 
@@ -74,9 +74,11 @@ class Search {
     Gain gain;
     bool few;
     std::vector<AliasFinding> aliases;
+    bool another_shape = false;  // this cause, a curve that the library does not have
   };
   std::vector<Found> found;
   LeftoverFinding leftover;
+  bool leftover_tested = false;
   std::vector<UntestableFinding> untestable;
   std::vector<CoincidingFamilies> aliased;
   AliasMap alias_map;
@@ -96,6 +98,7 @@ class Search {
   void list_coinciding(const Round& round);
   void map_aliases(const Eigen::MatrixXf& correlations, const Round& round);
   void list_candidates(const Round& round);
+  double detectable(std::size_t family, const Round& round, double critical) const;
   bool add_best(const Round& round);
   bool add(const Candidate& winner, const Round& round);
   bool cancels_itself(const LoopModel& model, std::size_t family) const;
@@ -132,10 +135,12 @@ class Search {
   void locate_leftover(const std::vector<Smoother>& smoothers,
                        const std::vector<Modifier>& products,
                        const std::vector<BlockScores>& blocks, const std::vector<double>& maxima);
+  std::vector<std::string> inputs_of(std::size_t family) const;
+  void name_shapes();
   bool drop_varying(const std::vector<Modifier>& products);
   void drop_proxies(const Smoother& smoother);
   bool explains_more_than_is_left(const FittedModel& rest) const;
-  std::size_t atoms_of(std::size_t family) const;
+  static std::size_t atoms_of(std::size_t family, const LoopModel& model);
   void remove_family(LoopModel& model, std::size_t family) const;
 
   const Observations& data_;

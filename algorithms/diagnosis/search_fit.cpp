@@ -15,17 +15,12 @@ bool whitening_is_safe(const LoopModel& model, const Observations& data, const C
   const Eigen::MatrixXd x = tangent(model, data);
   const Eigen::VectorXd y = target_vector(data) - predict(model, data);
   if (x.cols() == 0) return true;
-  const auto solution = [&](const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
-    const Eigen::VectorXd norms = columns.colwise().norm().cwiseMax(1e-300);
-    const Eigen::MatrixXd scaled = columns * norms.cwiseInverse().asDiagonal();
-    return Eigen::VectorXd(basic_solution(scaled, target, 1e-9).cwiseQuotient(norms));
-  };
   Noise plain;
   plain.within_sd = 1;
   const Eigen::MatrixXd weighted = whitened(x, clusters, plain);
-  const Eigen::VectorXd one = solution(weighted, whitened(y, clusters, plain));
+  const Eigen::VectorXd one = least_squares(weighted, whitened(y, clusters, plain));
   const Eigen::VectorXd other =
-      solution(whitened(x, clusters, noise), whitened(y, clusters, noise));
+      least_squares(whitened(x, clusters, noise), whitened(y, clusters, noise));
   const double rows =
       static_cast<double>(data.rows()) / static_cast<double>(clusters.movements.size());
   const double most = noise.within_sd * noise.within_sd * noise.inflation +

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "algorithms/fitting/symmetric_system.hpp"
 
@@ -124,7 +125,24 @@ void Search::map_aliases(const Eigen::MatrixXf& correlations, const Round& round
   }
 }
 
+// The root mean square of an effect of the family that would be found nine times in ten: its shift
+// of the score's root reaches the critical value, and the noise's spread beyond.
+double Search::detectable(std::size_t family, const Round& round, double critical) const {
+  constexpr double kNineInTen = 1.2816;  // of the normal law
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < library_.size(); ++k) {
+    const BlockScores& block = round.blocks[k];
+    if (library_[k].family != family || !block.test.testable) continue;
+    const auto columns = static_cast<double>(block.whitened_sums.cols());
+    const double spread = std::sqrt(block.whitened_sums.cast<double>().squaredNorm() / columns);
+    const double needed = std::sqrt(block.gamma.statistic_of(critical)) + kNineInTen * spread;
+    least = std::min(least, needed / std::sqrt(block.test.information));
+  }
+  return least;
+}
+
 void Search::list_candidates(const Round& round) {
+  const double critical = critical_score(round.maxima, options_.alpha_library);
   for (std::size_t f = 0; f < families_.size(); ++f) {
     if (!(round.family_score[f] > 0)) continue;
     CandidateFinding finding;
@@ -143,6 +161,7 @@ void Search::list_candidates(const Round& round) {
         finding.gain = best->gain.nats;
       }
     }
+    finding.detectable = detectable(f, round, critical);
     candidates.push_back(std::move(finding));
   }
   std::ranges::stable_sort(candidates,

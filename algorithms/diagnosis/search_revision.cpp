@@ -97,7 +97,7 @@ bool Search::swap_or_drop(std::size_t family) {
 void Search::leave_out_cancelling() {
   for (const Found& one : found) {
     const std::size_t family = one.family;
-    if (atoms_of(family) < 2 || !cancels_itself(current_.model, family)) continue;
+    if (atoms_of(family, current_.model) < 2 || !cancels_itself(current_.model, family)) continue;
     one_column_.push_back(family);
     LoopModel rest = current_.model;
     remove_family(rest, family);

@@ -17,6 +17,16 @@ Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd&
 
 Eigen::MatrixXd inverse_symmetric(const Eigen::MatrixXd& a);
 
+// A minimiser of |y - x c| from x'x and x'y, one a column of b: columns of x that depend on others
+// get no weight (pivots below `threshold` of the largest, so scale x's columns to like lengths
+// first). Negated columns give negated weights, bit for bit.
+Eigen::MatrixXd basic_solution_symmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
+                                         double threshold);
+
+// x times a matrix that makes its columns orthonormal, those that depend on others left out (as
+// above, of columns scaled to unit length). Source: Yamamoto et al. 2015 (CholeskyQR2).
+Eigen::MatrixXd orthonormal_columns(const Eigen::MatrixXd& x, double threshold);
+
 // The largest magnitude of an eigenvalue.
 double spectral_norm_symmetric(const Eigen::MatrixXd& a);
 

@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "algorithms/diagnosis/effect_library.hpp"
+#include "algorithms/effects/effect_library.hpp"
 #include "algorithms/expression/operator_set.hpp"
 #include "algorithms/registry.hpp"
 #include "harness/cli/commands.hpp"

@@ -182,6 +182,7 @@ loop::DiagnosisOptions diagnosis_options(const LoopArguments& arguments) {
   options.flips = static_cast<std::size_t>(arguments.flips);
   options.families = arguments.effects;
   options.ceiling = true;
+  options.resample = true;
   options.physical_vetoes = !arguments.any_sign;
   if (!arguments.learned.empty()) options.learned = loop::read_effects(arguments.learned);
   if (arguments.gear_ratio > 0) options.gear_ratios = {arguments.gear_ratio};
@@ -202,7 +203,23 @@ std::string one_line(const loop::EffectFinding& effect, const std::string& unit)
     text += "\n       provisional: it shares an input with what is left over";
   }
   for (const std::string& note : effect.notes) text += "\n       " + note;
+  if (!std::isnan(effect.chosen_share)) {
+    text += fmt::format("\n       chosen in {:.0f} % of the searches with movements left out",
+                        100 * effect.chosen_share);
+  }
   return text;
+}
+
+// Where nothing is found: what would have been.
+void print_detectable(const loop::Diagnosis& diagnosis, const loop::Observations& data) {
+  if (diagnosis.verdict != loop::Verdict::none) return;
+  std::vector<std::string> sizes;
+  for (const loop::CandidateFinding& one : diagnosis.candidates) {
+    if (!std::isfinite(one.detectable)) continue;
+    sizes.push_back(
+        fmt::format("{} above {:.2g} {}", one.family, one.detectable, data.target_unit));
+  }
+  if (!sizes.empty()) fmt::print("  would have shown (rms): {}\n", fmt::join(sizes, ", "));
 }
 
 void print_findings(const loop::Diagnosis& diagnosis, const loop::Observations& data) {
@@ -211,6 +228,8 @@ void print_findings(const loop::Diagnosis& diagnosis, const loop::Observations& 
              diagnosis.leftover.inputs.empty()
                  ? ""
                  : fmt::format(" in {}", fmt::join(diagnosis.leftover.inputs, " x ")));
+  for (const std::string& one : diagnosis.needed) fmt::print("  needed: {}\n", one);
+  print_detectable(diagnosis, data);
   for (const loop::EffectFinding& effect : diagnosis.effects) {
     fmt::print("{}\n", one_line(effect, data.target_unit));
   }
@@ -310,7 +329,7 @@ loop::Observations read_observations(const LoopArguments& arguments) {
   return data;
 }
 
-void close_loop(const LoopArguments& arguments, const Registry& registry) {
+ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) {
   // Before any work: a folder that cannot be written to, a name that is known to nobody, and a file
   // that nothing would be written to.
   if (!arguments.out.empty()) make_output_folder(arguments.out);
@@ -347,15 +366,16 @@ void close_loop(const LoopArguments& arguments, const Registry& registry) {
   }
   if (arguments.json) {
     fmt::print("{}", json);
-    return;
+  } else {
+    print_findings(diagnosis, data);
+    print_extras(arguments, extras, data);
   }
-  print_findings(diagnosis, data);
-  print_extras(arguments, extras, data);
+  return diagnosis.verdict == loop::Verdict::cannot_tell ? ExitStatus::undecided : ExitStatus::done;
 }
 
 }  // namespace
 
-void add_loop_command(CLI::App& app, ExitStatus& /*status*/, const Registry& registry) {
+void add_loop_command(CLI::App& app, ExitStatus& status, const Registry& registry) {
   CLI::App* command = app.add_subcommand(
       "loop", "Find what a friction model lacks in measured data, add it and refit");
   command->footer(
@@ -437,7 +457,7 @@ void add_loop_command(CLI::App& app, ExitStatus& /*status*/, const Registry& reg
       ->check(CLI::ExistingFile);
   command->add_flag("--json", arguments->json, "print loop.json");
   command->add_option("--out", arguments->out, "folder for loop.json, loop.md, loop.html");
-  command->callback([arguments, &registry] { close_loop(*arguments, registry); });
+  command->callback([arguments, &status, &registry] { status = close_loop(*arguments, registry); });
 }
 
 }  // namespace tribench

@@ -17,7 +17,7 @@ LoopAnswer diagnose_case(const LoopCase& one, const PlantedData& planted) {
       loop::diagnose(data, loop::coulomb_viscous_base, options, one.seed);
   LoopAnswer answer;
   for (const loop::EffectFinding& effect : diagnosis.effects) {
-    answer.effects.push_back({effect.family, {}});
+    answer.effects.push_back({effect.family, {}, effect.another_shape});
     for (const loop::AliasFinding& alias : effect.aliases) {
       answer.effects.back().aliases.push_back(alias.family);
     }

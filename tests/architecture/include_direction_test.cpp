@@ -27,12 +27,16 @@ const std::map<std::string, Rooms>& allowed() {
       {"expression", {"foundation"}},
       {"interface", {"foundation", "problems", "expression", "fitting"}},
       {"fitting", {"foundation", "problems", "expression", "interface"}},
-      {"method", {"foundation", "problems", "expression", "interface", "fitting", "registry"}},
+      {"inference", {"foundation", "expression", "fitting"}},
+      {"effects", {"foundation", "problems", "expression"}},
+      {"method",
+       {"foundation", "problems", "expression", "interface", "fitting", "inference", "effects",
+        "registry"}},
       {"registry", {"foundation", "problems", "expression", "interface", "fitting", "method"}},
       {"reports", {"foundation"}},
       {"harness",
        {"foundation", "problems", "expression", "interface", "fitting", "method", "registry",
-        "reports"}},
+        "reports", "inference", "effects"}},
   };
   return kAllowed;
 }
@@ -45,7 +49,9 @@ std::string room_of(const std::string& path) {
   const std::size_t slash = rest.find('/');
   if (slash == std::string::npos) return rest.starts_with("registry") ? "registry" : "interface";
   const std::string folder = rest.substr(0, slash);
-  if (folder == "expression" || folder == "fitting") return folder;
+  for (const char* floor : {"expression", "fitting", "inference", "effects"}) {
+    if (folder == floor) return folder;
+  }
   return "method:" + folder;
 }
 
@@ -96,6 +102,8 @@ TEST(IncludeDirection, TheRuleItselfCatchesAnArrowThatRunsBack) {
   EXPECT_NE(objection("algorithms/expression/print.cpp", "algorithms/regressor.hpp"), "");
   EXPECT_NE(objection("algorithms/pysr/pysr.cpp", "algorithms/model_based/placebos.hpp"), "");
   EXPECT_NE(objection("algorithms/regressor.hpp", "algorithms/registry.hpp"), "");
+  EXPECT_NE(objection("algorithms/inference/flips.cpp", "problems/dataset.hpp"), "");
+  EXPECT_NE(objection("algorithms/effects/effect_file.cpp", "algorithms/inference/flips.hpp"), "");
   EXPECT_NE(objection("reports/csv.cpp", "problems/problem.hpp"), "");
   EXPECT_NE(objection("algorithms/pysr/pysr.cpp", "harness/judge.hpp"), "");
   EXPECT_EQ(objection("harness/judge.cpp", "reports/record.hpp"), "");

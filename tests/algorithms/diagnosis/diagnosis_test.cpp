@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(
 // Mean magnitude of the planted noise in the movements that a diagnosis has held out.
 double noise_held_out(const std::vector<kuka::Plant>& effects, const Diagnosis& diagnosis,
                       std::uint64_t seed) {
-  const kuka::PlantedData planted = kuka::make_planted({.effects = effects}, seed);
+  const PlantedData planted = kuka::make_planted({.effects = effects}, seed);
   double sum = 0;
   double rows = 0;
   for (std::size_t i = 0; i < planted.data.rows(); ++i) {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "algorithms/diagnosis/student_law.hpp"
+#include "algorithms/inference/student_law.hpp"
 
 namespace tribench::loop {
 namespace {

@@ -144,7 +144,7 @@ TEST(Retelling, OfAPlantedCampaignChangesNothing) {
                                                        {{"slow_oscillation", 1.0}}};
   std::uint64_t seed = 31;
   for (const std::vector<kuka::Plant>& effects : cases) {
-    const kuka::PlantedData planted = kuka::make_planted({.effects = effects}, seed);
+    const PlantedData planted = kuka::make_planted({.effects = effects}, seed);
     const std::string what = effects.empty() ? "nothing" : effects[0].family;
     expect_one_story(planted.data, {}, what);
     expect_one_story(planted.data, {.unordered = true}, what + " unordered");

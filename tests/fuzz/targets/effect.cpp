@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // An effect file either is refused with a place, or is written again as a file that reads the same.
-#include "algorithms/diagnosis/effect_library.hpp"
+#include "algorithms/effects/effect_library.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 TRIBENCH_FUZZ_TARGET(effect) {

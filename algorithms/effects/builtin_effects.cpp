@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/effects/effect_library.hpp"
+
+namespace tribench::loop {
+namespace {
+
+// Grids are fractions of the signal's scale. Time scales of a fall with speed up to 0.15 of the
+// top speed are Stribeck, above that non-linear viscous: the two are one function with the sign
+// turned.
+constexpr double kStribeckLimit = 0.15;
+
+// A step of the load that is wider than this part of it is no step: it would pass for a gain.
+constexpr double kWidestStep = 0.1;
+
+EffectFamily asymmetry() {
+  EffectFamily f{"asymmetry",
+                 "E2",
+                 "Coulomb and viscous friction that differ by direction",
+                 "friction differs by direction",
+                 "Armstrong-Helouvry 1991",
+                 {}};
+  f.atoms = {{{"1"}, {"half_gap"}},
+             {{"abs(v)"}, {"viscous_half_gap"}},
+             {{"1", "abs(v)"}, {"half_gap", "viscous_half_gap"}}};
+  f.known_aliases = {{"sensor_offset",
+                      "read the torque with the drive unpowered or the brake on, or turn the axis "
+                      "free of gravity",
+                      "half_gap"}};
+  f.separate_by = {"R8"};
+  return f;
+}
+
+EffectFamily stribeck() {
+  EffectFamily f{"stribeck",
+                 "E1",
+                 "friction that falls from its breakaway level as speed grows",
+                 "friction falls with speed near standstill",
+                 "Armstrong-Helouvry 1991; Canudas de Wit 1995",
+                 {}};
+  f.atoms = {{{"sgn_v*exp(-(abs(v)/vs)^delta)"},
+              {"excess"},
+              {{"vs", "v", {0.02, 0.045, 0.09, 0.14}, 0.004, kStribeckLimit, true},
+               {"delta", "", {1, 2}, 0.5, 3}}},
+             {.columns = {"exp(-(abs(v)/vs)^delta)"},
+              .coefficients = {"excess_half_gap"},
+              .shapes = {{"vs", "v", {0.02, 0.045, 0.09, 0.14}, 0.004, kStribeckLimit, true},
+                         {"delta", "", {1, 2}, 0.5, 3}},
+              .beside_another = true}};
+  f.sanity = {{"excess", 1, 0, 20, "breakaway friction below Coulomb friction"}};
+  f.separate_by = {"R6"};
+  return f;
+}
+
+EffectFamily nonlinear_viscous() {
+  EffectFamily f{"nonlinear_viscous",
+                 "E3",
+                 "viscous friction that is not proportional to speed",
+                 "viscous friction is not proportional to speed",
+                 "Wolf and Iskandar 2018 (polynomial); Bittencourt 2010",
+                 {}};
+  f.atoms = {
+      {{"v*abs(v)"}, {"quadratic"}},
+      {{"v^3"}, {"cubic"}},
+      {{"sgn_v*(abs(v)/vr)^n"}, {"power"}, {{"vr", "v", {1}, 1, 1}, {"n", "", {0.5, 4}, 0.3, 6}}},
+      {{"sgn_v*(1 - exp(-abs(v)/v0))"},
+       {"saturating"},
+       {{"v0", "v", {0.22, 0.5}, kStribeckLimit, 3}}},
+      {.columns = {"v^2"}, .coefficients = {"quadratic_half_gap"}, .beside_another = true},
+      {.columns = {"abs(v)^3"}, .coefficients = {"cubic_half_gap"}, .beside_another = true},
+      {.columns = {"1 - exp(-abs(v)/v0)"},
+       .coefficients = {"saturating_half_gap"},
+       .shapes = {{"v0", "v", {0.22, 0.5}, kStribeckLimit, 3}},
+       .beside_another = true}};
+  f.separate_by = {"R2"};
+  return f;
+}
+
+// Where inertia and gravity weigh alike at the fastest and heaviest the grid holds them so.
+ShapeTemplate inertia_in_load() { return {"J", "g/a", {0.3, 1}, 0.03, 10}; }
+
+EffectFamily load_coulomb() {
+  EffectFamily f{"load_coulomb",
+                 "E4",
+                 "Coulomb friction that grows with the load",
+                 "Coulomb friction grows with the load",
+                 "Bittencourt et al. 2010",
+                 {}};
+  f.atoms = {{{"sgn_v*abs(g)"}, {"mu"}},
+             {{"sgn_v*abs(g + J*a)"}, {"mu"}, {inertia_in_load()}, true},
+             {.columns = {"abs(g)"}, .coefficients = {"mu_half_gap"}, .beside_another = true}};
+  f.sanity = {{"mu", 1, 0, 1e30, "friction that falls as the load grows"}};
+  f.separate_by = {"R3"};
+  return f;
+}
+
+EffectFamily load_viscous() {
+  EffectFamily f{"load_viscous",
+                 "E7",
+                 "viscous friction that grows with the load",
+                 "viscous friction grows with the load",
+                 "Bittencourt et al. 2010",
+                 {}};
+  f.atoms = {{{"v*abs(g)"}, {"mu_v"}},
+             {{"v*abs(g + J*a)"}, {"mu_v"}, {inertia_in_load()}, true},
+             {.columns = {"abs(v*g)"}, .coefficients = {"mu_v_half_gap"}, .beside_another = true}};
+  f.separate_by = {"R3"};
+  return f;
+}
+
+EffectFamily power_quadrant_gain() {
+  EffectFamily f{"power_quadrant_gain",
+                 "E5",
+                 "efficiency that differs between driving and back-driving, proportional to load",
+                 "losses differ between driving and back-driving, in proportion to the load",
+                 "Tadese et al. 2021",
+                 {}};
+  f.atoms = {{{"g"}, {"gain"}}};
+  f.sanity = {{"gain", 0, 0.2, 1e30, "a share of the load above 20 %"}};
+  const std::string how =
+      "known payload and a link-side torque sensor, or a standstill hold approached from both "
+      "sides";
+  f.known_aliases = {{"torque_constant", how}, {"mass_scale", how}};
+  f.separate_by = {"R3", "R8"};
+  return f;
+}
+
+EffectFamily power_quadrant_step() {
+  EffectFamily f{"power_quadrant_step",
+                 "E6",
+                 "a loss that jumps where driving turns into back-driving",
+                 "a loss jumps where driving turns into back-driving",
+                 "Tadese et al. 2021",
+                 {}};
+  f.atoms = {{{"tanh(g/g0)"}, {"step"}, {{"g0", "g", {0.012, 0.05}, 0.003, kWidestStep}}}};
+  f.separate_by = {"R3", "R8"};
+  return f;
+}
+
+EffectFamily payload() {
+  EffectFamily f{"payload",
+                 "E14",
+                 "a mass or its lever that the declared gravity lacks",
+                 "the declared gravity torque lacks a mass",
+                 "rigid-body mechanics",
+                 {}};
+  f.atoms = {{{"sin(q)", "cos(q)"}, {"sine", "cosine"}}};
+  f.angular = true;
+  f.known_aliases = {{"output_ripple (once a turn)", "a known payload (R3)"}};
+  f.separate_by = {"R3"};
+  return f;
+}
+
+EffectFamily output_ripple() {
+  EffectFamily f{"output_ripple",
+                 "E8",
+                 "torque that repeats with the output's turn",
+                 "torque repeats with the joint's angle",
+                 "Tuttle 1992",
+                 {}};
+  for (int k = 2; k <= 8; ++k) {
+    const std::string angle = std::to_string(k) + "*q)";
+    f.atoms.push_back({{"cos(" + angle, "sin(" + angle}, {"cosine", "sine"}});
+  }
+  f.angular = true;
+  f.separate_by = {"R2", "R3"};
+  return f;
+}
+
+EffectFamily gear_ripple() {
+  EffectFamily f{"gear_ripple",
+                 "E9",
+                 "torque that repeats with the turn of the wave generator, the motor or the screw",
+                 "torque repeats with the motor's turn",
+                 "Taghirad and Belanger 1998; Ghorbel et al. 2001",
+                 {}};
+  for (const char* k : {"1", "2", "4"}) {
+    const std::string angle = std::string(k) + "*N*q)";
+    const ShapeTemplate ratio{"N", "", {}, 0, 0};  // the grid is the gear ratios
+    f.atoms.push_back({{"cos(" + angle, "sin(" + angle}, {"cosine", "sine"}, {ratio}});
+    f.atoms.push_back({{"sgn_v*cos(" + angle, "sgn_v*sin(" + angle}, {"cosine", "sine"}, {ratio}});
+  }
+  f.separate_by = {"R6"};
+  return f;
+}
+
+EffectFamily temperature() {
+  EffectFamily f{"temperature",
+                 "E10",
+                 "friction that changes with temperature",
+                 "friction changes with temperature",
+                 "Bittencourt 2012; Wolf and Iskandar 2018",
+                 {}};
+  const ShapeTemplate reference{
+      .name = "T0", .scale = "T", .grid = {0}, .low = 0, .high = 0, .reference = true};
+  f.atoms = {
+      {{"v*(T - T0)"}, {"viscous_slope"}, {reference}},
+      {{"sgn_v*(T - T0)"}, {"coulomb_slope"}, {reference}},
+      {{"v*exp(-(T - T0)/Tv)"}, {"viscous_decay"}, {reference, {"Tv", "T", {0.5, 1.0}, 0.2, 4}}},
+      {.columns = {"abs(v)*(T - T0)"},
+       .coefficients = {"viscous_slope_half_gap"},
+       .shapes = {reference},
+       .beside_another = true},
+      {.columns = {"T - T0"},
+       .coefficients = {"coulomb_slope_half_gap"},
+       .shapes = {reference},
+       .beside_another = true}};
+  f.sanity = {{"viscous_slope", -1, 0, 1e30, "viscous friction that grows with temperature"},
+              {"viscous_decay", 1, 0, 1e30, "viscous friction that grows with temperature"}};
+  f.separate_by = {"R5"};
+  return f;
+}
+
+EffectFamily drift() {
+  EffectFamily f{"drift",
+                 "E11",
+                 "friction or a sensor that changes through the campaign",
+                 "friction changes through the campaign",
+                 "Bittencourt and Axelsson 2013",
+                 {}};
+  const ShapeTemplate reference{
+      .name = "t0", .scale = "t", .grid = {0}, .low = 0, .high = 0, .reference = true};
+  f.atoms = {{{"sgn_v*(t - t0)"}, {"coulomb_rate"}, {reference}},
+             {{"v*(t - t0)"}, {"viscous_rate"}, {reference}},
+             {{"t - t0"}, {"offset_rate"}, {reference}},
+             // Running in: fast at first.
+             {{"sgn_v*exp(-(t - t0)/tr)"},
+              {"coulomb_run_in"},
+              {reference, {"tr", "t", {0.15, 0.4}, 0.03, 2}}},
+             {.columns = {"abs(v)*(t - t0)"},
+              .coefficients = {"viscous_rate_half_gap"},
+              .shapes = {reference},
+              .beside_another = true}};
+  f.separate_by = {"R1", "R5"};
+  return f;
+}
+
+EffectFamily hysteresis() {
+  EffectFamily f{"hysteresis",
+                 "E12",
+                 "presliding: friction that builds up after a reversal",
+                 "friction builds up with the distance after a reversal",
+                 "Dahl 1968; LuGre 1995",
+                 {}};
+  f.atoms = {{{"sgn_v*exp(-d/lambda)"},
+              {"presliding"},
+              {{"lambda", "d", {0.004, 0.01, 0.03}, 0.001, 0.1}}},
+             {.columns = {"exp(-d/lambda)"},
+              .coefficients = {"presliding_half_gap"},
+              .shapes = {{"lambda", "d", {0.004, 0.01, 0.03}, 0.001, 0.1}},
+              .beside_another = true}};
+  // Both are transients over the path since the torque on the gear turned.
+  f.known_aliases = {{"backlash", "load the joint so that its gear stays on one flank (R3)"}};
+  f.separate_by = {"R4"};
+  return f;
+}
+
+EffectFamily lag() {
+  EffectFamily f{"lag",
+                 "E13",
+                 "friction that follows the velocity late",
+                 "friction follows the velocity late near standstill",
+                 "Hess and Soom 1990",
+                 {}};
+  f.atoms = {
+      {{"sgn_v*exp(-abs(v)/vl)*sgn(v*a)"}, {"lag"}, {{"vl", "v", {0.07, 0.15, 0.3}, 0.02, 0.6}}}};
+  f.separate_by = {"R4"};
+  return f;
+}
+
+EffectFamily inertia() {
+  EffectFamily f{"inertia",
+                 "E15",
+                 "an inertia that the declared rigid body lacks",
+                 "the declared inertia is off",
+                 "rigid-body mechanics",
+                 {}};
+  f.atoms = {{{"a"}, {"inertia"}}};
+  f.known_aliases = {{"lag of viscous friction", "change the inertia with a payload (R3, R4)"}};
+  f.separate_by = {"R4", "R3"};
+  return f;
+}
+
+EffectFamily coupling() {
+  EffectFamily f{"coupling",
+                 "E18",
+                 "torque from the motion of another joint",
+                 "another joint's motion reaches this one",
+                 "rigid-body mechanics",
+                 {}};
+  f.atoms = {{{"v2"}, {"viscous"}},
+             {{"a2"}, {"inertial"}},
+             {{"v*v2"}, {"coriolis"}},
+             {{"v2^2"}, {"centrifugal"}}};
+  f.separate_by = {"R7"};
+  return f;
+}
+
+}  // namespace
+
+const std::vector<EffectFamily>& builtin_effects() {
+  static const std::vector<EffectFamily> kEffects = {asymmetry(),
+                                                     stribeck(),
+                                                     nonlinear_viscous(),
+                                                     load_coulomb(),
+                                                     load_viscous(),
+                                                     power_quadrant_gain(),
+                                                     power_quadrant_step(),
+                                                     payload(),
+                                                     output_ripple(),
+                                                     gear_ripple(),
+                                                     temperature(),
+                                                     drift(),
+                                                     hysteresis(),
+                                                     lag(),
+                                                     inertia(),
+                                                     coupling()};
+  return kEffects;
+}
+
+std::string experiment_text(std::string_view rule) {
+  if (rule == "R1") return "repeat at least 5 settings twice, hours apart";
+  if (rule == "R2") return "move both ways over the same stroke in the same posture";
+  if (rule == "R3") return "use two postures or a known payload";
+  if (rule == "R4")
+    return "run reversals and a two-tone movement that covers speed and acceleration";
+  if (rule == "R5") return "take the movements in random order with one cool-down";
+  if (rule == "R6") return "pass slowly, with at least 20 samples in a quarter of a motor turn";
+  if (rule == "R7") return "move the other joints one at a time, in at least 20 stretches";
+  if (rule == "R8") return "hold still after an approach from either side";
+  if (rule == "R9") return "record at least 30 movements";
+  return std::string(rule);
+}
+
+}  // namespace tribench::loop

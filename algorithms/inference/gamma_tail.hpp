@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// The upper tail of a Gamma distribution in log space: the common currency in which candidates
+// with different numbers of columns are compared. Scores beyond 15 are ordinary, far below what a
+// tail probability in double precision can hold.
+#pragma once
+
+#include <vector>
+
+namespace tribench::loop {
+
+// A Gamma distribution matched to the mean and the variance of a statistic under its null
+// distribution; score(q) = -log10 P(Q >= q).
+class MatchedGamma {
+ public:
+  // mean > 0, variance > 0; otherwise every score is 0 (a statistic that cannot vary says nothing).
+  MatchedGamma(double mean, double variance);
+
+  double score(double statistic) const;  // exact
+  // The statistic that has this score; 0 where nothing can vary.
+  double statistic_of(double score) const;
+
+  // Prepares a table for statistics up to `largest`, so that thousands of flips cost little.
+  void tabulate(double largest);
+  // Interpolated in the table, error below 1e-3; exact beyond it. Monotone in the statistic.
+  double fast_score(double statistic) const;
+
+ private:
+  double shape_ = 0;
+  double scale_ = 0;
+  double inverse_step_ = 0;  // of the table, in the square root of the statistic
+  std::vector<double> table_;
+};
+
+}  // namespace tribench::loop

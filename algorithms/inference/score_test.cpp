@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/inference/score_test.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/fitting/symmetric_system.hpp"
+
+namespace tribench::loop {
+namespace {
+
+constexpr double kSmallestShare = 1e-3;  // of the sum of squares
+constexpr std::size_t kFlipsAtOnce = 250;
+// Of a column's square: less beside the others is rounding.
+constexpr double kDependent = 1e-11;
+
+// Lower Cholesky factor of the Gram matrix of zt with a ridge; columns have unit length before
+// projection, so the tiny floor is relative.
+Eigen::MatrixXd factor_of(const Eigen::MatrixXd& gram, double ridge) {
+  Eigen::MatrixXd loaded = gram;
+  const double mean = gram.trace() / static_cast<double>(gram.rows());
+  loaded.diagonal().array() += ridge * mean + 1e-10 * mean;
+  return loaded.llt().matrixL();
+}
+
+void count_clusters(BlockTest& test, const Eigen::VectorXd& h) {
+  const double sum = h.sum();
+  const double squares = h.squaredNorm();
+  test.effective_clusters = squares > 0 ? sum * sum / squares : 0;
+  const double threshold = 0.1 * sum / static_cast<double>(h.size());
+  test.carrying = static_cast<std::size_t>((h.array() > threshold).count());
+}
+
+// The sums in the coordinates of the statistic, its matched null and the score.
+void finish_scores(BlockScores& block, const Eigen::MatrixXd& gram, const Eigen::MatrixXd& raw,
+                   double ridge) {
+  const Eigen::MatrixXd factor = factor_of(gram, ridge);
+  const Eigen::MatrixXd sums =
+      factor.triangularView<Eigen::Lower>().solve(raw.transpose()).transpose();
+  block.whitened_sums = sums.cast<float>();
+  block.test.statistic = sums.colwise().sum().squaredNorm();
+  // Moments of the flipped statistic |sum eps_c v_c|^2 over all flips.
+  const Eigen::VectorXd lengths = sums.rowwise().squaredNorm();
+  const double mean = lengths.sum();
+  const double variance = 2 * ((sums.transpose() * sums).squaredNorm() - lengths.squaredNorm());
+  block.gamma = MatchedGamma(mean, variance);
+  block.test.score = block.gamma.score(block.test.statistic);
+}
+
+// The sums of all testable blocks: one product with the flips serves them all.
+FloatRows side_by_side(std::span<const BlockScores> blocks) {
+  Eigen::Index rows = 0;
+  Eigen::Index columns = 0;
+  for (const BlockScores& block : blocks) {
+    if (!block.test.testable) continue;
+    rows = block.whitened_sums.rows();
+    columns += block.whitened_sums.cols();
+  }
+  FloatRows all(rows, columns);
+  Eigen::Index column = 0;
+  for (const BlockScores& block : blocks) {
+    if (!block.test.testable) continue;
+    all.middleCols(column, block.whitened_sums.cols()) = block.whitened_sums;
+    column += block.whitened_sums.cols();
+  }
+  return all;
+}
+
+}  // namespace
+
+Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& x) {
+  return x.cols() == 0 ? x : orthonormal_columns(x, kDependent);
+}
+
+Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd out(a.rows(), a.cols() + b.cols());
+  out << a, b;
+  return out;
+}
+
+Eigen::MatrixXd project_off(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis) {
+  if (basis.cols() == 0) return z;
+  return z - basis * (basis.transpose() * z);
+}
+
+BlockScores score_block(const Eigen::Ref<const Eigen::MatrixXd>& projected,
+                        const Eigen::Ref<const Eigen::VectorXd>& before,
+                        const Eigen::VectorXd& residual, const Clusters& clusters, double ridge) {
+  BlockScores out;
+  Eigen::MatrixXd zt = projected;
+  const Eigen::VectorXd after = zt.colwise().squaredNorm();
+  out.test.share = before.sum() > 0 ? std::sqrt(after.sum() / before.sum()) : 0;
+  Eigen::Index kept = 0;
+  for (Eigen::Index j = 0; j < zt.cols(); ++j) {
+    if (!(after[j] > kSmallestShare * before[j])) continue;
+    if (kept != j) zt.col(kept) = zt.col(j);
+    zt.col(kept) /= std::sqrt(before[j]);
+    ++kept;
+  }
+  if (kept == 0) return out;
+  zt.conservativeResize(Eigen::NoChange, kept);
+  out.test.testable = true;
+  out.test.information = after.sum() / static_cast<double>(after.size());
+  const auto count = static_cast<Eigen::Index>(clusters.stretches.size());
+  Eigen::MatrixXd sums(count, kept);
+  Eigen::VectorXd h(count);
+  for (Eigen::Index c = 0; c < count; ++c) {
+    const RowRange& range = clusters.stretches[static_cast<std::size_t>(c)];
+    const auto begin = static_cast<Eigen::Index>(range.begin);
+    const auto size = static_cast<Eigen::Index>(range.size());
+    const auto rows = zt.middleRows(begin, size);
+    sums.row(c).noalias() = residual.segment(begin, size).transpose() * rows;
+    h[c] = rows.squaredNorm();
+  }
+  count_clusters(out.test, h);
+  finish_scores(out, zt.transpose() * zt, sums, ridge);
+  return out;
+}
+
+BlockScores score_sums(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& sums, double ridge) {
+  BlockScores out;
+  out.test.testable = true;
+  finish_scores(out, gram, sums, ridge);
+  return out;
+}
+
+std::vector<double> flip_maxima(std::span<BlockScores> blocks, const Flips& flips,
+                                double stop_above, std::size_t stop_count) {
+  std::vector<double> maxima;
+  maxima.reserve(flips.count());
+  std::size_t exceeding = 0;
+  for (BlockScores& block : blocks) {
+    if (!block.test.testable) continue;
+    const double mean = block.whitened_sums.cast<double>().squaredNorm();
+    block.gamma.tabulate(std::max(block.test.statistic, 12 * mean));
+  }
+  const FloatRows all = side_by_side(blocks);
+  for (std::size_t first = 0; first < flips.count(); first += kFlipsAtOnce) {
+    const FloatRows sums = flips.sums(all, first, std::min(kFlipsAtOnce, flips.count() - first));
+    for (Eigen::Index b = 0; b < sums.rows(); ++b) {
+      double largest = 0;
+      const float* next = sums.data() + b * sums.cols();
+      for (const BlockScores& block : blocks) {
+        if (!block.test.testable) continue;
+        float statistic = 0;
+        for (const float* end = next + block.whitened_sums.cols(); next < end; ++next) {
+          statistic += *next * *next;
+        }
+        largest = std::max(largest, block.gamma.fast_score(static_cast<double>(statistic)));
+      }
+      maxima.push_back(largest);
+      if (stop_count > 0 && largest >= stop_above) ++exceeding;
+    }
+    if (stop_count > 0 && exceeding >= stop_count) break;
+  }
+  return maxima;
+}
+
+double critical_score(std::vector<double> maxima, double alpha) {
+  const double rank = alpha * (1.0 + static_cast<double>(maxima.size()));
+  const auto at = static_cast<std::size_t>(std::max(0.0, rank - 1));
+  if (at >= maxima.size()) return 0;
+  std::ranges::nth_element(maxima, maxima.begin() + static_cast<std::ptrdiff_t>(at),
+                           std::ranges::greater());
+  return maxima[at];
+}
+
+double adjusted_p(double score, std::span<const double> maxima) {
+  const auto at_least =
+      std::ranges::count_if(maxima, [score](double largest) { return largest >= score; });
+  return (1.0 + static_cast<double>(at_least)) / (1.0 + static_cast<double>(maxima.size()));
+}
+
+}  // namespace tribench::loop

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/effects/effect_library.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "algorithms/diagnosis/diagnosis.hpp"
+#include "foundation/error.hpp"
+#include "problems/kuka/planted.hpp"
+#include "tests/support/paths.hpp"
+
+namespace tribench::loop {
+namespace {
+
+// A campaign of a joint, its angle read as the position of an axis with a stroke of 0.24 m.
+Observations linear_axis(std::uint64_t seed) {
+  Observations data = observe(kuka::make_planted({}, seed).data);
+  for (Signal& signal : data.signals) {
+    if (signal.name != "q") continue;
+    signal.unit = "m";
+    for (double& q : signal.values) q *= 0.06;
+  }
+  return data;
+}
+
+const EffectFamily& family(std::string_view name) {
+  return *std::ranges::find(builtin_effects(), name, &EffectFamily::name);
+}
+
+std::vector<Atom> atoms_of(std::string_view name, const Observations& data) {
+  std::vector<std::string> missing;
+  return instantiate(family(name), 0, data, gear_ratios_for(data, {}), missing);
+}
+
+TEST(EffectLibrary, ALinearAxisHasRipplesOfItsScrewAndNoneOfAnAngle) {
+  const Observations data = linear_axis(1);
+  std::set<double> ratios;
+  for (const Atom& atom : atoms_of("gear_ripple", data)) ratios.insert(atom.shapes.at(0).value);
+  EXPECT_EQ(ratios.size(), 5U);
+  EXPECT_EQ(ratios.count(2 * std::numbers::pi / 0.005), 1U);
+  EXPECT_TRUE(atoms_of("payload", data).empty());
+  EXPECT_TRUE(atoms_of("output_ripple", data).empty());
+  EXPECT_EQ(gear_ratios_for(data, std::vector<double>{1000}), std::vector<double>{1000});
+}
+
+TEST(EffectLibrary, AJointHasRipplesOfTheUsualGears) {
+  const Observations data = observe(kuka::make_planted({}, 1).data);
+  const std::vector<double> ratios = gear_ratios_for(data, {});
+  EXPECT_EQ(std::ranges::count(ratios, 100.0), 1);
+  EXPECT_EQ(std::ranges::count(ratios, 160.0), 1);
+  EXPECT_FALSE(atoms_of("output_ripple", data).empty());
+}
+
+TEST(EffectLibrary, TheLoopFindsTheRippleOfAScrewWithoutBeingToldItsLead) {
+  Observations data = linear_axis(3);
+  DiagnosisOptions options;
+  EXPECT_EQ(diagnose(data, coulomb_viscous_base, options, 3).verdict, Verdict::none);
+  const std::vector<double> q = data.find("q")->values;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    data.target[i] += 0.3 * std::cos(2 * std::numbers::pi * q[i] / 0.01 + 0.7);
+  }
+  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options, 3);
+  ASSERT_EQ(diagnosis.effects.size(), 1U);
+  EXPECT_EQ(diagnosis.effects[0].family, "gear_ripple");
+  double period = 0;  // 10 mm, whichever lead it is a harmonic of
+  for (const ParameterFinding& p : diagnosis.effects[0].parameters) {
+    if (p.name != "N") continue;
+    const double harmonic = diagnosis.effects[0].atom[4] - '0';  // "cos(2*N*q), ..."
+    period = 2 * std::numbers::pi / (harmonic * p.value);
+  }
+  EXPECT_NEAR(period, 0.01, 1e-12);
+}
+
+bool same(const AtomTemplate& a, const AtomTemplate& b) {
+  const auto same_shape = [](const ShapeTemplate& x, const ShapeTemplate& y) {
+    return x.name == y.name && x.scale == y.scale && x.grid == y.grid && x.low == y.low &&
+           x.high == y.high && x.recorded == y.recorded;
+  };
+  return a.columns == b.columns && a.coefficients == b.coefficients &&
+         a.rigid_load == b.rigid_load && std::ranges::equal(a.shapes, b.shapes, same_shape);
+}
+
+bool same(const EffectFamily& a, const EffectFamily& b) {
+  const auto same_sanity = [](const Sanity& x, const Sanity& y) {
+    return x.coefficient == y.coefficient && x.sign == y.sign && x.largest == y.largest &&
+           x.excused_nats == y.excused_nats && x.why == y.why;
+  };
+  const auto same_alias = [](const KnownAlias& x, const KnownAlias& y) {
+    return x.name == y.name && x.separate_by == y.separate_by && x.coefficient == y.coefficient;
+  };
+  const auto same_atom = [](const AtomTemplate& x, const AtomTemplate& y) { return same(x, y); };
+  return a.name == b.name && a.id == b.id && a.summary == b.summary && a.phrase == b.phrase &&
+         a.source == b.source && a.angular == b.angular && a.separate_by == b.separate_by &&
+         std::ranges::equal(a.atoms, b.atoms, same_atom) &&
+         std::ranges::equal(a.sanity, b.sanity, same_sanity) &&
+         std::ranges::equal(a.known_aliases, b.known_aliases, same_alias);
+}
+
+TEST(EffectFile, HoldsAllThatABuiltInEffectHas) {
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "tribench_effects.toml";
+  std::ofstream(file) << write_effects(builtin_effects());
+  const std::vector<EffectFamily> read = read_effects(file);
+  ASSERT_EQ(read.size(), builtin_effects().size());
+  for (std::size_t f = 0; f < read.size(); ++f) {
+    EXPECT_TRUE(same(read[f], builtin_effects()[f])) << read[f].name;
+  }
+}
+
+TEST(EffectFile, SaysWhereAnEffectIsIncomplete) {
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "tribench_bad_effects.toml";
+  const auto complaint = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    try {
+      read_effects(file);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  const std::string head = "[[effect]]\nname = \"x\"\nphrase = \"y\"\n";
+  EXPECT_NE(complaint(head).find("no columns"), std::string::npos);
+  EXPECT_NE(complaint(head + "columns = [\"v^2\"]\ncoefficients = [\"a\", \"b\"]\n")
+                .find("as many coefficients"),
+            std::string::npos);
+  EXPECT_NE(complaint(head + "columns = [\"exp(-d/l)\"]\nshape = [{name = \"l\"}]\n")
+                .find("'l' has no grid"),
+            std::string::npos);
+}
+
+// What a file says is used or refused, with the line.
+TEST(EffectFile, RefusesWhatItDoesNotKnow) {
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "tribench_strict_effects.toml";
+  const std::string head = "[[effect]]\nname = \"x\"\nphrase = \"y\"\n";
+  const auto complaint = [&](const std::string& text) {
+    std::ofstream(file) << head << text;
+    try {
+      read_effects(file);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+      EXPECT_NE(error.place().find("tribench_strict_effects.toml"), std::string::npos);
+      return fmt::format("{} | {}", error.what(), error.mend());
+    }
+    return std::string("none");
+  };
+  const std::string columns = "columns = [\"v^2\"]\n";
+  const std::string shaped = "columns = [\"exp(-d/l)\"]\n";
+  EXPECT_EQ(complaint(columns), "none");
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {columns + "colunms = [\"v\"]\n", "did you mean columns"},
+      {columns + "sumary = 'z'\n", "did you mean summary"},
+      {columns + "summary = 3\n", "'summary' is no text"},
+      {columns + "angular = 1\n", "'angular' is no true or false"},
+      {"columns = \"v^2\"\n", "'columns' is no list"},
+      {"columns = [1]\n", "'columns' is no text"},
+      {shaped + "shape = [{name = 'l', grid = ['a']}]\n", "'grid' is no finite number"},
+      {shaped + "shape = [{name = 'l', grid = [nan]}]\n", "'grid' is no finite number"},
+      {shaped + "shape = [{name = 'l', grid = [1.0], hihg = 2}]\n", "did you mean high"},
+      {shaped + "shape = [{name = 'l', grid = [1.0], low = 2, high = 1}]\n", "above high"},
+      {shaped + "shape = {name = 'l', grid = [1.0]}\n", "'shape' is no list"},
+      {shaped + "shape = [{name = 'k', grid = [1.0]}]\n", "no column holds the shape 'k'"},
+      {"columns = [\"cos(N*q)\"]\nshape = [{name = 'N', grid = [7.0]}]\n", "is the gear ratio"},
+      {columns + "sanity = [{coefficient = 'c1', sign = 2}]\n", "'sign' is 2"},
+      {columns + "[[efect]]\nname = 'z'\n", "did you mean effect"}};
+  for (const auto& [text, wanted] : cases) {
+    EXPECT_NE(complaint(text).find(wanted), std::string::npos) << text << complaint(text);
+  }
+}
+
+// A file of a few hundred bytes whose grids multiply is refused before any column is made.
+TEST(EffectFile, RefusesGridsThatMultiply) {
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "tribench_large_effects.toml";
+  std::string grid;
+  for (int k = 1; k <= 40; ++k) grid += fmt::format("{}{}.0", k > 1 ? ", " : "", k);
+  std::ofstream(file)
+      << "[[effect]]\nname = 'x'\nphrase = 'y'\ncolumns = ['exp(-a1*v-b1*v-c1*v)']\n"
+      << fmt::format(
+             "shape = [{{name = 'a1', grid = [{0}]}}, {{name = 'b1', grid = "
+             "[{0}]}}, {{name = 'c1', grid = [{0}]}}]\n",
+             grid);
+  try {
+    read_effects(file);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("more than 2000 columns"), std::string::npos);
+  }
+}
+
+// Findings are told apart by their names.
+TEST(EffectFile, RefusesASecondEffectOfOneName) {
+  DiagnosisOptions options;
+  options.learned = {family("stribeck")};
+  EXPECT_THROW(diagnose(observe(kuka::make_planted({}, 1).data), coulomb_viscous_base, options, 1),
+               Error);
+}
+
+TEST(EffectFile, OfTheExamplesFindsWhatTheBuiltInLibraryLacks) {
+  Observations data = observe(kuka::make_planted({}, 5).data);
+  const std::vector<double> q = data.find("q")->values;
+  const std::vector<double> sign = data.find("sgn_v")->values;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    data.target[i] += 0.3 * sign[i] * std::cos(2 * q[i] + 0.7);
+  }
+  DiagnosisOptions options;
+  options.gear_ratios = {160};
+  EXPECT_EQ(diagnose(data, coulomb_viscous_base, options, 5).verdict, Verdict::unknown);
+  options.learned =
+      read_effects(tribench::testing::source_dir() / "examples/effects/transmission.toml");
+  EXPECT_EQ(options.learned.size(), 3U);
+  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options, 5);
+  EXPECT_EQ(diagnosis.verdict, Verdict::effects);
+  ASSERT_EQ(diagnosis.effects.size(), 1U);
+  EXPECT_EQ(diagnosis.effects[0].family, "friction_ripple");
+}
+
+}  // namespace
+}  // namespace tribench::loop

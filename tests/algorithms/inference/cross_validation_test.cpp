@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/inference/cross_validation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace tribench::loop {
+namespace {
+
+// Ten movements of 20 rows, a constant and a column that only the first movement excites.
+struct Case {
+  Clusters clusters;
+  Eigen::MatrixXd x;
+  Eigen::VectorXd y;
+  Noise noise;
+};
+
+Case make_case() {
+  std::vector<int> movement(200);
+  for (std::size_t i = 0; i < movement.size(); ++i) movement[i] = static_cast<int>(i / 20);
+  Case c;
+  c.clusters = make_clusters(movement, 1);
+  c.x = Eigen::MatrixXd::Ones(200, 2);
+  c.x.col(1).tail(180).setZero();
+  RandomStream random(2);
+  c.y = Eigen::VectorXd::NullaryExpr(200, [&] { return random.normal(); });
+  c.noise.within_sd = 1;
+  return c;
+}
+
+TEST(CrossValidation, WhatOneFoldAloneExcitesPredictsNothingThere) {
+  const Case c = make_case();
+  const Eigen::VectorXd losses = held_out_losses(c.x, c.y, c.clusters, c.noise);
+  EXPECT_TRUE(std::isnan(losses[0]));
+  const SubsetLosses subsets(c.x, c.y, c.clusters, c.noise);
+  const std::array<Eigen::Index, 2> both = {0, 1};
+  EXPECT_TRUE(std::isnan(subsets.losses(both)[0]));
+}
+
+TEST(CrossValidation, APenalisedColumnHasNoWeightThere) {
+  const Case c = make_case();
+  const Eigen::VectorXd with = held_out_losses(c.x, c.y, c.clusters, c.noise, 1, 0.02);
+  const Eigen::VectorXd without = held_out_losses(c.x.leftCols(1), c.y, c.clusters, c.noise);
+  EXPECT_TRUE(with.allFinite());
+  EXPECT_NEAR(with[0], without[0], 1e-6);
+}
+
+TEST(CrossValidation, AColumnOfZerosIsHarmless) {
+  Case c = make_case();
+  c.x.col(1).setZero();
+  const Eigen::VectorXd with = held_out_losses(c.x, c.y, c.clusters, c.noise);
+  const Eigen::VectorXd without = held_out_losses(c.x.leftCols(1), c.y, c.clusters, c.noise);
+  EXPECT_LT((with - without).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST(CrossValidation, AChoiceOfColumnsHasTheLossesOfItsOwnModel) {
+  Case c = make_case();
+  RandomStream random(3);
+  c.x.col(1) = Eigen::VectorXd::NullaryExpr(200, [&] { return random.normal(); });
+  const SubsetLosses subsets(c.x, c.y, c.clusters, c.noise);
+  const std::array<Eigen::Index, 1> second = {1};
+  const Eigen::VectorXd direct = held_out_losses(c.x.rightCols(1), c.y, c.clusters, c.noise);
+  EXPECT_LT((subsets.losses(second) - direct).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+}  // namespace
+}  // namespace tribench::loop

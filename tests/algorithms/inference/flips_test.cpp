@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/inference/flips.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tribench::loop {
+namespace {
+
+FloatRows random_scores(Eigen::Index clusters, Eigen::Index columns, RandomStream random) {
+  FloatRows scores(clusters, columns);
+  for (Eigen::Index i = 0; i < scores.size(); ++i) {
+    scores.data()[i] = static_cast<float>(random.normal());
+  }
+  return scores;
+}
+
+// Clusters and columns that fill no group and no tile, flips that fill no pair.
+TEST(Flips, SumsAreThoseOfTheSigns) {
+  for (const std::size_t clusters : {1U, 4U, 23U, 64U}) {
+    for (const Eigen::Index columns : {1, 16, 37}) {
+      const Flips flips(31, clusters, RandomStream(clusters));
+      const FloatRows scores =
+          random_scores(static_cast<Eigen::Index>(clusters), columns, RandomStream(9));
+      constexpr std::size_t kFirst = 6;
+      const FloatRows sums = flips.sums(scores, kFirst, 25);
+      ASSERT_EQ(sums.rows(), 25);
+      for (Eigen::Index b = 0; b < sums.rows(); ++b) {
+        Eigen::RowVectorXd expected = Eigen::RowVectorXd::Zero(columns);
+        for (std::size_t c = 0; c < clusters; ++c) {
+          const int sign = flips.sign(kFirst + static_cast<std::size_t>(b), c);
+          expected += sign * scores.row(static_cast<Eigen::Index>(c)).cast<double>();
+        }
+        EXPECT_LT((sums.row(b).cast<double>() - expected).cwiseAbs().maxCoeff(), 1e-5);
+      }
+    }
+  }
+}
+
+TEST(Flips, AreFairAndDifferFromFlipToFlipAndFromClusterToCluster) {
+  constexpr std::size_t kFlips = 400;
+  constexpr std::size_t kClusters = 50;
+  const Flips flips(kFlips, kClusters, RandomStream(3));
+  double sum = 0;
+  double neighbours = 0;
+  double next = 0;
+  for (std::size_t b = 0; b < kFlips; ++b) {
+    for (std::size_t c = 0; c < kClusters; ++c) {
+      sum += flips.sign(b, c);
+      if (c > 0) neighbours += flips.sign(b, c) * flips.sign(b, c - 1);
+      if (b > 0) next += flips.sign(b, c) * flips.sign(b - 1, c);
+    }
+  }
+  const double four_errors = 4 * std::sqrt(static_cast<double>(kFlips * kClusters));
+  EXPECT_LT(std::abs(sum), four_errors);
+  EXPECT_LT(std::abs(neighbours), four_errors);
+  EXPECT_LT(std::abs(next), four_errors);
+}
+
+}  // namespace
+}  // namespace tribench::loop

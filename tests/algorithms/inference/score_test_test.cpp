@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/inference/score_test.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "algorithms/inference/cross_validation.hpp"
+
+namespace tribench::loop {
+namespace {
+
+constexpr std::size_t kMovements = 60;
+constexpr std::size_t kRows = 30;
+
+struct Example {
+  Clusters clusters;
+  Eigen::MatrixXd x;           // an intercept and a slope
+  Eigen::MatrixXd candidates;  // six columns, constant within movements
+  Eigen::VectorXd y;
+};
+
+// Residuals that share an offset within each movement: tests that take rows for independent fail.
+Example clustered_example(std::uint64_t seed, double planted) {
+  RandomStream random(seed);
+  Example e;
+  std::vector<int> movement;
+  const auto n = static_cast<Eigen::Index>(kMovements * kRows);
+  e.x.resize(n, 2);
+  e.candidates.resize(n, 6);
+  e.y.resize(n);
+  for (std::size_t m = 0; m < kMovements; ++m) {
+    const double offset = random.normal();
+    Eigen::RowVectorXd levels(6);
+    for (double& level : levels) level = random.normal();
+    for (std::size_t i = 0; i < kRows; ++i) {
+      const auto row = static_cast<Eigen::Index>(m * kRows + i);
+      movement.push_back(static_cast<int>(m));
+      e.x.row(row) << 1, random.normal();
+      e.candidates.row(row) = levels;
+      e.y[row] = 2 + 0.5 * e.x(row, 1) + planted * levels[2] + offset + random.normal();
+    }
+  }
+  e.clusters = make_clusters(movement, 1);
+  return e;
+}
+
+// Smallest adjusted p over the candidates.
+std::vector<double> adjusted_ps(const Example& e, const Flips& flips) {
+  const Eigen::MatrixXd basis = orthonormal_basis(e.x);
+  const Eigen::VectorXd residual = project_off(e.y, basis);
+  std::vector<BlockScores> blocks;
+  for (Eigen::Index j = 0; j < e.candidates.cols(); ++j) {
+    const Eigen::VectorXd before = e.candidates.col(j).colwise().squaredNorm();
+    blocks.push_back(
+        score_block(project_off(e.candidates.col(j), basis), before, residual, e.clusters, 0));
+  }
+  const std::vector<double> maxima = flip_maxima(blocks, flips);
+  std::vector<double> ps;
+  for (const BlockScores& block : blocks) ps.push_back(adjusted_p(block.test.score, maxima));
+  return ps;
+}
+
+TEST(ScoreTest, RejectsTrueNullsAtTheNominalRateDespiteCorrelationWithinMovements) {
+  constexpr int kRuns = 300;
+  int rejected = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    const Flips flips(399, kMovements, RandomStream(1000 + run));
+    const std::vector<double> ps = adjusted_ps(clustered_example(run, 0), flips);
+    if (*std::min_element(ps.begin(), ps.end()) <= 0.05) ++rejected;
+  }
+  // 5 % of 300 are 15; three binomial standard errors are 11.
+  EXPECT_LE(rejected, 26);
+  EXPECT_GE(rejected, 4);
+}
+
+TEST(ScoreTest, FindsAPlantedColumnAndNoOther) {
+  const Flips flips(1999, kMovements, RandomStream(1));
+  const std::vector<double> ps = adjusted_ps(clustered_example(7, 1.0), flips);
+  EXPECT_LE(ps[2], 0.003);
+  for (const std::size_t other : {0U, 1U, 3U, 4U, 5U}) EXPECT_GT(ps[other], 0.05) << other;
+}
+
+TEST(ScoreTest, AColumnInsideTheModelIsNotTestable) {
+  const Example e = clustered_example(3, 0);
+  const Eigen::MatrixXd basis = orthonormal_basis(e.x);
+  const Eigen::VectorXd z = e.x * Eigen::Vector2d(3, -2);
+  const Eigen::VectorXd before = z.colwise().squaredNorm();
+  const BlockScores block =
+      score_block(project_off(z, basis), before, project_off(e.y, basis), e.clusters, 0);
+  EXPECT_FALSE(block.test.testable);
+  EXPECT_LT(block.test.share, 1e-6);
+}
+
+TEST(ScoreTest, DependentColumnsOfAModelAreLeftOutOfItsBasis) {
+  Eigen::MatrixXd x = clustered_example(3, 0).x;
+  x.conservativeResize(Eigen::NoChange, 3);
+  x.col(2) = 2 * x.col(0) - x.col(1);
+  EXPECT_EQ(orthonormal_basis(x).cols(), 2);
+}
+
+TEST(FlipMaxima, StopsOnceTheAnswerCannotBeSignificantAnyMore) {
+  const Example e = clustered_example(5, 0);
+  const Eigen::MatrixXd basis = orthonormal_basis(e.x);
+  const Eigen::VectorXd before = e.candidates.colwise().squaredNorm();
+  std::vector<BlockScores> blocks = {score_block(project_off(e.candidates, basis), before,
+                                                 project_off(e.y, basis), e.clusters, 0)};
+  const Flips flips(1999, kMovements, RandomStream(2));
+  EXPECT_LT(flip_maxima(blocks, flips, 0.0, 4).size(), 1999U);
+  EXPECT_EQ(flip_maxima(blocks, flips).size(), 1999U);
+}
+
+TEST(HeldOutLosses, FavourTheColumnThatIsThereAndNotOneThatIsNot) {
+  const Example e = clustered_example(11, 1.0);
+  Noise noise;
+  noise.within_sd = 1;
+  const Eigen::VectorXd without = held_out_losses(e.x, e.y, e.clusters, noise);
+  const Eigen::VectorXd right =
+      held_out_losses(beside(e.x, e.candidates.col(2)), e.y, e.clusters, noise);
+  const Eigen::VectorXd wrong =
+      held_out_losses(beside(e.x, e.candidates.col(4)), e.y, e.clusters, noise);
+  const Gain gain = paired_gain(without, right);
+  EXPECT_GT(gain.nats, 3 * gain.error);
+  EXPECT_LT(paired_gain(without, wrong).nats, 2 * paired_gain(without, wrong).error + 5);
+}
+
+TEST(HeldOutLosses, OfSubsetsAreThoseOfTheirColumns) {
+  const Example e = clustered_example(13, 0.5);
+  Noise noise;
+  noise.within_sd = 1.3;
+  noise.inflation = 2;
+  const Eigen::MatrixXd all = beside(e.x, e.candidates);
+  const SubsetLosses subsets(all, e.y, e.clusters, noise);
+  const std::vector<Eigen::Index> chosen = {0, 1, 4, 6};
+  const Eigen::VectorXd direct = held_out_losses(all(Eigen::all, chosen), e.y, e.clusters, noise);
+  EXPECT_LT((subsets.losses(chosen) - direct).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+}  // namespace
+}  // namespace tribench::loop
