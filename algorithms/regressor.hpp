@@ -102,9 +102,11 @@ struct FitResult {
   std::size_t chosen = 0;         // place in the front of the formula the method stands for
   StopReason reason = StopReason::converged;
   std::string note;  // one line for the record; says why where unsupported
+  // The formulas' form is the user's (a template): whoever shortens formulas leaves them.
+  bool keeps_form = false;
 
   static FitResult unsupported(std::string why) {
-    return {{}, 0, StopReason::unsupported, std::move(why)};
+    return {{}, 0, StopReason::unsupported, std::move(why), false};
   }
 };
 

@@ -192,8 +192,8 @@ auto parse_or_throw(std::string_view text, Parse parse) {
 
 CellTask make_task(const Grid& grid, const Cell& cell, const std::string& data) {
   const Method& method = grid.method(cell.method);
-  return {cell, method,    grid.operator_set(cell.operators), grid.limits_of(method), 1,
-          data, grid.prior};
+  return {cell,       method, grid.operator_set(cell.operators), grid.limits_of(method), 1, data,
+          grid.prior, false};
 }
 
 Record empty_record(const Cell& cell) {

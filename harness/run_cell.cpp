@@ -18,7 +18,9 @@
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "harness/finished_front.hpp"
 #include "harness/judge.hpp"
+#include "harness/restarts.hpp"
 #include "harness/table_evaluator.hpp"
 
 namespace tribench {
@@ -215,11 +217,22 @@ StagesResult fit_stages(const Problem& problem, const Regressor& method, const C
     const TrainingData data = view.data();
     // What is left is shared equally among the stages to come.
     Budget part = budget.share(budget.remaining() / (problem.stages.size() - s));
-    FitContext context{data, task.operators, part, random.split(s), task.threads, &trace};
     trace.start_stage(budget.spent());
-    FitResult fit = fit_or_refuse(method, context);
+    const auto fit_once = [&](RandomStream stream, Progress* progress) {
+      FitContext context{data, task.operators, part, stream, task.threads, progress};
+      FitResult once = fit_or_refuse(method, context);
+      keep_usable_formulas(once, data.inputs);
+      finish_front(data, task.operators, once);
+      return once;
+    };
+    FitResult fit = fit_once(random.split(s), &trace);
+    if (task.spends_all) {
+      // The trace is the first round's: a later one starts from nothing.
+      fit = fit_until_spent(
+          std::move(fit), [&](RandomStream stream) { return fit_once(stream, nullptr); }, data,
+          part, random.split("again").split(s));
+    }
     budget.settle(part);
-    keep_usable_formulas(fit, context.data.inputs);
     if (!fit.note.empty()) {
       if (!result.note.empty()) result.note += "; ";
       if (fit.reason == StopReason::unsupported) result.note += fmt::format("no {}: ", stage.name);

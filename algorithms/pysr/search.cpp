@@ -311,7 +311,11 @@ FitResult unsearched(const Form& form, const Rows& rows, std::string note) {
   for (const double value : rows.target) mean += value / static_cast<double>(rows.size());
   if (!form.is_whole()) mean = 0;
   const auto part = [mean](std::size_t) { return Expression::constant(mean); };
-  return {{form.written_out(form.assembled(part))}, 0, StopReason::budget, std::move(note)};
+  return {{form.written_out(form.assembled(part))},
+          0,
+          StopReason::budget,
+          std::move(note),
+          !form.is_whole()};
 }
 
 }  // namespace
@@ -340,6 +344,7 @@ FitResult search(const Options& given, FitContext& context) {
   }
   if (!result.front.empty()) add_to_note(note, form.parts_of(result.front[result.chosen]));
   result.note = std::move(note);
+  result.keeps_form = !form.is_whole();
   return result;
 }
 

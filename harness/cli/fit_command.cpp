@@ -37,6 +37,7 @@ struct FitArguments {
   std::uint64_t seed = 1;
   std::uint64_t evaluations = 2'000'000'000;
   double seconds = 60;
+  bool spends_all = false;  // seconds were asked for
   std::string test;
   bool drop_missing = false;
   bool flip_sign = false;
@@ -79,6 +80,7 @@ CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fix
   if (fixed_form) task.operators = fixed_form_operators();
   task.limits.evaluations = arguments.evaluations;
   task.limits.seconds = arguments.seconds;
+  task.spends_all = arguments.spends_all;
   task.threads = usable_processors();
   return task;
 }
@@ -175,17 +177,27 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
   command->add_option("--seed", arguments->seed, "same seed, same result")
       ->transform(whole_number(0))
       ->capture_default_str();
-  command->add_option("--evaluations", arguments->evaluations, "budget in node-rows")
-      ->transform(whole_number(0))
-      ->capture_default_str();
-  command->add_option("--seconds", arguments->seconds, "budget in CPU seconds")
-      ->transform(real_number(0.0, 1e9))
-      ->capture_default_str();
+  CLI::Option* evaluations =
+      command->add_option("--evaluations", arguments->evaluations, "budget in node-rows")
+          ->transform(whole_number(0))
+          ->capture_default_str();
+  CLI::Option* seconds =
+      command
+          ->add_option(
+              "--seconds", arguments->seconds,
+              "CPU seconds to spend: fits again from other starts until they are, or the data "
+              "are explained to rounding; without it one fit of at most 60")
+          ->transform(real_number(0.0, 1e9));
   command->add_option("--test", arguments->test, "other data to judge by");
   command->add_flag("--drop-missing", arguments->drop_missing, "drop and count incomplete rows");
   command->add_flag("--flip-sign", arguments->flip_sign, "torques are negative with velocity");
   command->add_flag("--json", arguments->json, "print JSON");
-  command->callback([arguments, &registry] { fit(*arguments, registry); });
+  command->callback([arguments, &registry, seconds, evaluations] {
+    constexpr std::uint64_t kNoLimit = 1'000'000'000'000'000'000;
+    arguments->spends_all = seconds->count() > 0;
+    if (arguments->spends_all && evaluations->count() == 0) arguments->evaluations = kNoLimit;
+    fit(*arguments, registry);
+  });
 }
 
 }  // namespace tribench

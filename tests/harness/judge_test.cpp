@@ -78,9 +78,9 @@ TEST(FitAndJudge, AddsTheStagesFormulasAndCountsTheAdaptationApart) {
   EXPECT_NEAR(record.mae_test, 0, 1e-12);
   EXPECT_NEAR(record.mae_truth, 0, 1e-12);
   EXPECT_NEAR(record.r2_test, 1, 1e-12);
-  // (2 v + 1) + (3 g + 0): two products, three sums, two variables.
-  EXPECT_EQ(record.complexity, 7);
-  EXPECT_EQ(record.complexity_adaptation, 3);
+  // (2 v + 1) + (3 g + 0), without the 0: two products, two sums, two variables.
+  EXPECT_EQ(record.complexity, 6);
+  EXPECT_EQ(record.complexity_adaptation, 2);
   EXPECT_EQ(record.evaluations, 200U);
   EXPECT_EQ(record.singularity, "proved_free");
   ASSERT_EQ(result.front.size(), 2U);

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/fitting/finish.hpp"
+
+#include <algorithm>
+#include <bitset>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "algorithms/expression/edit.hpp"
+#include "algorithms/expression/simplify.hpp"
+#include "algorithms/expression/singularity.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr double kSameError = 1e-9;
+constexpr double kRounding = 1e-12;
+// Constants are named where the rows are explained to this part of the target's size: beyond it
+// noise says nothing about their last digits.
+constexpr double kWorthNaming = 1e-5;
+constexpr double kNearValue = 1e-3;  // of the value, for a constant to be tried there
+
+std::bitset<kOpCount> operations_of(const Expression& formula) {
+  std::bitset<kOpCount> used;
+  for (const Node& node : formula.nodes()) used.set(static_cast<std::size_t>(node.op));
+  return used;
+}
+
+// Numbers with a name near c, the simplest first.
+std::vector<double> named_values(double c) {
+  std::vector<double> values;
+  const auto consider = [&](double value) {
+    const bool is_near = std::abs(c - value) <= kNearValue * std::abs(value);
+    if (is_near && value != 0 && std::ranges::count(values, value) == 0) values.push_back(value);
+  };
+  constexpr int kDenominators[] = {1, 2, 3, 4, 5, 6, 8, 10, 12};
+  for (const int q : kDenominators) {
+    const double p = std::nearbyint(c * q);
+    if (std::abs(p) <= 1000) consider(p / q);
+  }
+  constexpr double kRoots[] = {std::numbers::pi,     std::numbers::sqrt2,      std::numbers::sqrt3,
+                               std::numbers::inv_pi, std::numbers::inv_sqrtpi, std::numbers::e};
+  for (const double root : kRoots) {
+    for (const int q : kDenominators) {
+      const double p = std::nearbyint(c / root * q);
+      if (std::abs(p) <= 12) consider(root * (p / q));
+    }
+  }
+  return values;
+}
+
+bool has_a_name(double c) {
+  const std::vector<double> values = named_values(c);
+  return c == 0 || std::ranges::count(values, c) > 0;
+}
+
+}  // namespace
+
+FormulaFinisher::FormulaFinisher(const Inputs& inputs, std::span<const double> target, InputBox box,
+                                 std::function<bool(const Expression&)> admits)
+    : inputs_(inputs),
+      target_(target),
+      box_(std::move(box)),
+      admits_(std::move(admits)),
+      values_(target.size()) {
+  for (const double y : target_) {
+    target_square_ += y * y;
+    target_absolute_ += std::abs(y);
+  }
+}
+
+FormulaFinisher::RowErrors FormulaFinisher::errors_of(const Expression& formula) {
+  evaluator_.evaluate(formula, inputs_, values_);
+  RowErrors errors;
+  for (std::size_t r = 0; r < target_.size(); ++r) {
+    const double error = values_[r] - target_[r];
+    errors.square += error * error;
+    errors.absolute += std::abs(error);
+  }
+  return errors;
+}
+
+// False where either is not finite.
+bool FormulaFinisher::is_no_worse(const RowErrors& errors, const RowErrors& than) const {
+  return errors.square <= than.square * (1 + kSameError) + kRounding * kRounding * target_square_ &&
+         errors.absolute <= than.absolute * (1 + kSameError) + kRounding * target_absolute_;
+}
+
+bool FormulaFinisher::is_proved(const Expression& formula) const {
+  return prove_free(formula, box_).verdict == Verdict::proved_free;
+}
+
+Expression FormulaFinisher::shortest(const Expression& formula) {
+  const RowErrors before = errors_of(formula);
+  const auto own = operations_of(formula);
+  return simplify(formula, box_, [&](const Expression& candidate) {
+    const bool is_allowed = admits_(candidate) || (operations_of(candidate) & ~own).none();
+    return is_allowed && is_no_worse(errors_of(candidate), before);
+  });
+}
+
+// The others are fitted again; accepted where the rows do not mind.
+bool FormulaFinisher::try_value(Expression& formula, std::size_t place, double value) {
+  const RowErrors before = errors_of(formula);
+  Expression candidate = formula;
+  candidate.set_constant(place, value);
+  // What the others would have to make good must be small, or every constant is fitted to no end.
+  const double moved = errors_of(candidate).square;
+  if (!(moved <= kNearValue * kNearValue * target_square_)) return false;
+  std::vector<double> low;
+  std::vector<double> high;
+  for (const std::size_t p : candidate.constant_positions()) {
+    if (is_exponent(candidate, p)) continue;
+    const double c = candidate.node(p).value;
+    const bool is_held = p == place || has_a_name(c);
+    low.push_back(is_held ? c : -1e300);
+    high.push_back(is_held ? c : 1e300);
+  }
+  ConstantFitOptions options;
+  options.max_iterations = 10;
+  options.function_tolerance = 1e-14;
+  options.low = low;
+  options.high = high;
+  if (std::ranges::any_of(low, [](double x) { return x == -1e300; })) {
+    fitter_.fit(candidate, inputs_, target_, {}, options);
+  }
+  if (!is_no_worse(errors_of(candidate), before)) return false;
+  formula = std::move(candidate);
+  return true;
+}
+
+bool FormulaFinisher::name_a_constant(Expression& formula) {
+  for (const std::size_t place : formula.constant_positions()) {
+    const double c = formula.node(place).value;
+    if (has_a_name(c)) continue;
+    for (const double value : named_values(c)) {
+      if (try_value(formula, place, value)) return true;
+    }
+    if (!is_exponent(formula, place) && try_value(formula, place, 0)) return true;
+  }
+  return false;
+}
+
+Expression FormulaFinisher::finish(const Expression& formula) {
+  const RowErrors before = errors_of(formula);
+  if (!std::isfinite(before.square)) return formula;
+  Expression finished = shortest(formula);
+  if (before.square > kWorthNaming * kWorthNaming * target_square_) return finished;
+  Expression named = finished;
+  bool any = false;
+  while (name_a_constant(named)) any = true;
+  if (!any) return finished;
+  named = shortest(named);
+  const bool is_as_safe = is_proved(named) || !is_proved(finished);
+  return is_as_safe && is_no_worse(errors_of(named), before) ? named : finished;
+}
+
+}  // namespace tribench

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "harness/finished_front.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "algorithms/admission.hpp"
+#include "algorithms/finite_rows.hpp"
+#include "algorithms/fitting/exact_choice.hpp"
+#include "algorithms/fitting/finish.hpp"
+
+namespace tribench {
+
+void finish_front(const TrainingData& data, const OperatorSet& operators, FitResult& fit) {
+  if (fit.keeps_form || fit.front.empty()) return;
+  const FiniteRows rows(data);
+  FormulaFinisher finisher(rows.table(), rows.target, input_box(data.inputs),
+                           [&](const Expression& formula) { return operators.admits(formula); });
+  std::vector<Expression> finished;
+  std::size_t chosen = 0;
+  for (std::size_t i = 0; i < fit.front.size(); ++i) {
+    Expression formula = finisher.finish(fit.front[i]);
+    if (!keeps_priors(formula, data.inputs)) formula = fit.front[i];
+    const auto same = std::ranges::find(finished, formula);
+    if (i == fit.chosen) chosen = static_cast<std::size_t>(same - finished.begin());
+    if (same == finished.end()) finished.push_back(std::move(formula));
+  }
+  fit.front = std::move(finished);
+  fit.chosen = simplest_exact(fit.front, rows.table(), rows.target).value_or(chosen);
+}
+
+}  // namespace tribench

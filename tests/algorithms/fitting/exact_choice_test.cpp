@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/fitting/exact_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "algorithms/expression/text.hpp"
+
+namespace tribench {
+namespace {
+
+const std::vector<std::string> kNames = {"v"};
+
+std::optional<std::size_t> choice_of(const std::vector<std::string>& formulas, double noise = 0) {
+  std::vector<double> v;
+  std::vector<double> target;
+  for (int r = 0; r < 100; ++r) {
+    v.push_back(0.03 * r - 1.2);
+    target.push_back(2 * v.back() * v.back() + (r % 2 == 0 ? noise : -noise));
+  }
+  const double* column = v.data();
+  std::vector<Expression> parsed;
+  for (const std::string& formula : formulas) parsed.push_back(parse(formula, kNames));
+  return simplest_exact(parsed, {{&column, 1}, target.size()}, target);
+}
+
+TEST(ExactChoice, IsTheShortestFormulaThatIsExactToRounding) {
+  EXPECT_EQ(choice_of({"v", "2*v^2", "2*v^2 + 1e-13*v", "2*v^2 + 0*sin(v)"}), 1U);
+  // Constants that were polished less do not lose to a longer formula that was polished more.
+  EXPECT_EQ(choice_of({"v", "2.0000000001*v^2", "2*v^2 + 0*v"}), 1U);
+  EXPECT_EQ(choice_of({"2*v^2 + 0*v", "v*v*2"}), 1U);
+}
+
+TEST(ExactChoice, LeavesTheChoiceWhereThereIsNoiseOrTheLawWasNotFound) {
+  EXPECT_EQ(choice_of({"v", "2*v^2", "2*v^2 + 1e-3*v"}, 0.01), std::nullopt);
+  EXPECT_EQ(choice_of({"v", "1.99*v^2"}), std::nullopt);
+  EXPECT_EQ(choice_of({}), std::nullopt);
+  EXPECT_EQ(choice_of({"log(v - 9)", "1/0*v"}), std::nullopt);
+}
+
+TEST(ExactChoice, DoesNotTakeASimplerFormulaThatIsMerelyGood) {
+  EXPECT_EQ(choice_of({"2.00001*v^2", "2*v^2 + 1e-14*v"}), 1U);
+}
+
+}  // namespace
+}  // namespace tribench

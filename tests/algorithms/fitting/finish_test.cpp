@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/fitting/finish.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "algorithms/expression/complexity.hpp"
+#include "algorithms/expression/operator_set.hpp"
+#include "algorithms/expression/singularity.hpp"
+#include "algorithms/expression/text.hpp"
+#include "foundation/random.hpp"
+#include "tests/algorithms/expression/proof_formulas.hpp"
+
+namespace tribench {
+namespace {
+
+const std::vector<std::string> kNames = {"v", "g", "t"};
+const InputBox kBox = {{0.5, 5}, {0.5, 5}, {0.5, 5}};
+
+// Rows in the box with the values of a law, and noise.
+class Rows {
+ public:
+  explicit Rows(const std::string& law, double noise = 0) {
+    RandomStream random(key_of("finish"));
+    columns_.resize(3);
+    for (std::vector<double>& column : columns_) {
+      for (int r = 0; r < 200; ++r) column.push_back(random.uniform(0.5, 5));
+      pointers_.push_back(column.data());
+    }
+    target_.resize(200);
+    Evaluator().evaluate(parse(law, kNames), table(), target_);
+    for (double& y : target_) y += noise * random.normal();
+  }
+
+  Inputs table() const { return {pointers_, target_.size()}; }
+  double mean_square(const Expression& formula) const {
+    return Evaluator().sum_squared_errors(formula, table(), target_).sum;
+  }
+  Expression finish(const std::string& formula, const char* operators = "full") const {
+    const OperatorSet& set = find_operator_set(operators);
+    FormulaFinisher finisher(table(), target_, kBox,
+                             [&](const Expression& f) { return set.admits(f); });
+    const Expression finished = finisher.finish(parse(formula, kNames));
+    EXPECT_EQ(finisher.finish(finished), finished) << formula;
+    return finished;
+  }
+  std::string text(const std::string& formula, const char* operators = "full") const {
+    return print(finish(formula, operators), kNames);
+  }
+
+ private:
+  std::vector<std::vector<double>> columns_;
+  std::vector<const double*> pointers_;
+  std::vector<double> target_;
+};
+
+TEST(Finish, WritesTheLawShortly) {
+  EXPECT_EQ(Rows("v*g").text("1*(v*g)"), "v*g");
+  EXPECT_EQ(Rows("v/g").text("v/g - 0"), "v/g");
+  EXPECT_EQ(
+      paper_complexity(Rows("v*g/t^2*8971428571.428572").finish("v*g/tanh(3.5e-09*t^2)*31.4")), 7);
+}
+
+TEST(Finish, NamesConstantsThatTheRowsCannotTellFromNumbersWithAName) {
+  EXPECT_EQ(Rows("0.5*v*g^2").text("0.49999999731*v*g^2"), "0.5*v*g^2");
+  EXPECT_EQ(Rows("2*v + g/3").text("2.0000000004*v + 0.33333333321*g"),
+            print(parse("2*v + 0.3333333333333333*g", kNames), kNames));
+  const Expression circle = Rows("v*sin(g*3.141592653589793)").finish("v*sin(g*3.1415926512)");
+  EXPECT_EQ(print(circle, kNames), "v*sin(g*3.141592653589793)");
+  EXPECT_EQ(Rows("v + g").text("1.0000000001*v + g + 1e-12"), "v + g");
+  // As pysr left the laws of a public set.
+  EXPECT_EQ(paper_complexity(Rows("v*g/t").finish(
+                "1.0000000000000007*(t + -3.98e-18)^-0.9999999999999998*(v*g)")),
+            5);
+  EXPECT_EQ(paper_complexity(
+                Rows("(1 - cos(v*g))/2")
+                    .finish("-0.49999999999999994*(cos(v*g) + -0.9999999999999297) + 3.5e-14")),
+            6);
+  EXPECT_EQ(paper_complexity(Rows("3*v*g").finish("(3 + -1.2e-15*exp(-3*t))*v*g")), 4);
+}
+
+TEST(Finish, LeavesConstantsToTheRowsUnderNoise) {
+  const Rows rows("2*v + g", 0.1);
+  const Expression fitted = parse("2.0013*v + 0.9987*g", kNames);
+  EXPECT_EQ(rows.finish("2.0013*v + 0.9987*g"), fitted);
+}
+
+TEST(Finish, KeepsToTheOperatorsOfTheSetOrOfTheFormula) {
+  EXPECT_EQ(Rows("v*g + v*t").text("sqrt(v)*sqrt(v)*(g + t)", "paper"), "v*(g + t)");
+  // A baseline's own division stays usable where the set has none.
+  EXPECT_EQ(Rows("v/g").text("v/g + 0", "paper"), "v/g");
+}
+
+TEST(Finish, AnswersRowsWithoutAValueWithTheFormulaItself) {
+  EXPECT_EQ(Rows("v").text("log(v - 3) + 0*g"), "log(v - 3) + 0*g");
+}
+
+TEST(Finish, NamesNoConstantThatKeepsThePoleAway) {
+  const Rows rows("1/(g - 0.4999999999999)");
+  const Expression finished = rows.finish("1/(g - 0.4999999999999)");
+  EXPECT_EQ(prove_free(finished, kBox).verdict, Verdict::proved_free) << print(finished, kNames);
+}
+
+TEST(Finish, IsNeverWorseNorLongerNorMoreSingular) {
+  RandomStream random(key_of("finish random"));
+  int shorter = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const Expression formula = testing::random_formula(random, {.inputs = 3});
+    const Rows rows(trial % 2 == 0 ? print(formula, kNames) : "v*g + t", trial % 3 == 0 ? 0.1 : 0);
+    const double before = rows.mean_square(formula);
+    if (!std::isfinite(before)) continue;
+    const Expression finished = rows.finish(print(formula, kNames));
+    double size = rows.mean_square(Expression::constant(0));
+    EXPECT_LE(rows.mean_square(finished), before * (1 + 1e-8) + 1e-23 * size)
+        << print(formula, kNames) << " -> " << print(finished, kNames);
+    EXPECT_LE(paper_complexity(finished), paper_complexity(formula));
+    if (prove_free(formula, kBox).verdict == Verdict::proved_free) {
+      EXPECT_EQ(prove_free(finished, kBox).verdict, Verdict::proved_free);
+    }
+    shorter += paper_complexity(finished) < paper_complexity(formula) ? 1 : 0;
+  }
+  EXPECT_GT(shorter, 50);
+}
+
+}  // namespace
+}  // namespace tribench
