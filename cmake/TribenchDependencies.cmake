@@ -12,6 +12,7 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   find_package(xbyak 6 REQUIRED CONFIG)  # machine code for compiled formulas
 endif()
 find_package(OpenSSL 3 REQUIRED COMPONENTS Crypto)
+find_package(ZLIB 1.2 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)
 if(TRIBENCH_BUILD_TESTS)

@@ -42,6 +42,14 @@ double agreement(std::span<const double> friction, std::span<const double> veloc
   return ff > 0 && vv > 0 ? fv / std::sqrt(ff * vv) : 0;
 }
 
+// Of an input sgn_X that is derived from X.
+Role role_of_sign(const Dataset& data, std::string_view name) {
+  const Channel* of = data.find(name.substr(std::string_view("sgn_").size()));
+  if (of != nullptr && of->role == Role::velocity) return Role::velocity_sign;
+  if (of != nullptr && of->role == Role::gravity_torque) return Role::gravity_sign;
+  return Role::none;
+}
+
 std::vector<Input> make_inputs(const Dataset& data, const std::string& target,
                                std::span<const std::string> names) {
   if (names.empty()) throw_bad_input("no input is given", data.name, "name at least one column");
@@ -58,11 +66,10 @@ std::vector<Input> make_inputs(const Dataset& data, const std::string& target,
     }
     const std::vector<double> values = input_values(data, name);
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    const NameReading reading = read_channel_name(name);
     const Channel* channel = data.find(name);
     inputs.push_back({name,
-                      channel != nullptr ? channel->unit : reading.unit,
-                      channel != nullptr ? channel->role : reading.role,
+                      channel != nullptr ? channel->unit : "-",
+                      channel != nullptr ? channel->role : role_of_sign(data, name),
                       *low,
                       *high,
                       {}});

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct DataOptions {
+struct DataArguments {
   std::string folder;
   std::string set;
   std::string from;
@@ -52,7 +52,7 @@ bool is_here(const measured::Manifest& manifest, const std::optional<fs::path>& 
   return folder && fs::is_directory(*folder / manifest.name, code);
 }
 
-void list_sets(const DataOptions& options) {
+void list_sets(const DataArguments& options) {
   const std::optional<fs::path> folder = options.data();
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
   for (const measured::Manifest& manifest : measured::manifests()) {
@@ -73,7 +73,7 @@ void list_sets(const DataOptions& options) {
   if (options.json) fmt::print("{}\n", array.dump(2));
 }
 
-ExitStatus check_sets(const DataOptions& options) {
+ExitStatus check_sets(const DataArguments& options) {
   const std::optional<fs::path> folder = options.data();
   if (!folder) throw_bad_input(kNoFolder, {}, kFolderMend);
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
@@ -100,7 +100,7 @@ ExitStatus check_sets(const DataOptions& options) {
   return all_good ? ExitStatus::done : ExitStatus::found;
 }
 
-void add_set(const DataOptions& options) {
+void add_set(const DataArguments& options) {
   const measured::Manifest& manifest = measured::find_manifest(options.set);
   if (options.from.empty()) {
     throw_bad_input(fmt::format("'{}' is not fetched by this program", manifest.name), {},
@@ -116,7 +116,7 @@ void add_set(const DataOptions& options) {
   if (!manifest.cite.empty()) fmt::print("cite: {}\n", manifest.cite);
 }
 
-void add_common(CLI::App& command, DataOptions& options) {
+void add_common(CLI::App& command, DataArguments& options) {
   command.add_option("--data", options.folder,
                      "the folder with the measured sets (else $TRIBENCH_DATA, else ./data)");
 }
@@ -127,7 +127,7 @@ void add_data_command(CLI::App& app, ExitStatus& status) {
   CLI::App* data = app.add_subcommand("data", "Measured sets: what there is, and is it intact");
   data->footer("Example: tribench data check --data ../shared/data");
   data->require_subcommand(1);
-  auto options = std::make_shared<DataOptions>();
+  auto options = std::make_shared<DataArguments>();
 
   CLI::App* list = data->add_subcommand("list", "The sets the program knows");
   add_common(*list, *options);

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -17,11 +18,12 @@
 #include "algorithms/registry.hpp"
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/data_options.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/machine.hpp"
 #include "harness/run_cell.hpp"
 #include "problems/data_problem.hpp"
-#include "problems/reading/csv.hpp"
+#include "problems/reading/explanation.hpp"
 
 namespace tribench {
 namespace {
@@ -33,14 +35,12 @@ struct FitArguments {
   std::string method;
   std::string operators = "paper";
   std::vector<std::string> parameters;  // name=value
-  std::vector<std::string> roles;       // column=role
   std::uint64_t seed = 1;
   std::uint64_t evaluations = 2'000'000'000;
   double seconds = 60;
   bool spends_all = false;  // seconds were asked for
   std::string test;
-  bool drop_missing = false;
-  bool flip_sign = false;
+  std::shared_ptr<DataOptions> reading = std::make_shared<DataOptions>();
   bool json = false;
 };
 
@@ -53,14 +53,15 @@ std::pair<std::string, std::string> name_and_value(const std::string& text, cons
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-Dataset read_data(const std::string& file, const FitArguments& arguments) {
-  CsvOptions options;
-  options.drop_missing = arguments.drop_missing;
-  for (const std::string& role : arguments.roles) {
-    const auto [column, name] = name_and_value(role, "--roles");
-    options.roles[column] = find_role(name);
-  }
-  DataFile reading = read_csv(file, options);
+// A column is what --inputs and --target say; its name means nothing.
+Dataset read_columns(const std::string& file, const FitArguments& arguments) {
+  DataOptions options = *arguments.reading;
+  options.names_tell = false;
+  std::vector<std::string> used = arguments.inputs;
+  used.push_back(arguments.target);
+  const std::vector<std::filesystem::path> files = {file};
+  DataFile reading = read_data(files, options, used);
+  check_converted(reading);
   for (const std::string& warning : reading.warnings) {
     fmt::print(stderr, "tribench: {}\n", warning);
   }
@@ -68,7 +69,6 @@ Dataset read_data(const std::string& file, const FitArguments& arguments) {
     fmt::print(stderr, "tribench: {}: {} rows with missing values dropped\n", file,
                reading.dropped_rows);
   }
-  if (arguments.flip_sign) flip_torques(reading.data);
   return std::move(reading.data);
 }
 
@@ -138,9 +138,9 @@ void fit(const FitArguments& arguments, const Registry& registry) {
     parameters[name] = parameter_from_text(entry.parameters, name, value);
   }
   const std::unique_ptr<Regressor> method = registry.make(arguments.method, parameters);
-  const Dataset train = read_data(arguments.data, arguments);
+  const Dataset train = read_columns(arguments.data, arguments);
   std::optional<Dataset> test;
-  if (!arguments.test.empty()) test = read_data(arguments.test, arguments);
+  if (!arguments.test.empty()) test = read_columns(arguments.test, arguments);
   const Problem problem =
       make_data_problem(train, test ? &*test : nullptr, arguments.target, arguments.inputs);
   const CellResult result =
@@ -173,7 +173,7 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
   command->add_option("--operators", arguments->operators, "a name of `tribench list operators`")
       ->capture_default_str();
   command->add_option("--parameter", arguments->parameters, "name=value of the method; repeatable");
-  command->add_option("--roles", arguments->roles, "column=role,...")->delimiter(',');
+  add_data_options(*command, arguments->reading);
   command->add_option("--seed", arguments->seed, "same seed, same result")
       ->transform(whole_number(0))
       ->capture_default_str();
@@ -189,8 +189,6 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
               "are explained to rounding; without it one fit of at most 60")
           ->transform(real_number(0.0, 1e9));
   command->add_option("--test", arguments->test, "other data to judge by");
-  command->add_flag("--drop-missing", arguments->drop_missing, "drop and count incomplete rows");
-  command->add_flag("--flip-sign", arguments->flip_sign, "torques are negative with velocity");
   command->add_flag("--json", arguments->json, "print JSON");
   command->callback([arguments, &registry, seconds, evaluations] {
     constexpr std::uint64_t kNoLimit = 1'000'000'000'000'000'000;

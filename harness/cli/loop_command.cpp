@@ -25,9 +25,10 @@
 #include "foundation/number_text.hpp"
 #include "foundation/output_folder.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/data_options.hpp"
 #include "harness/cli/number_options.hpp"
-#include "problems/data_problem.hpp"
-#include "problems/reading/csv.hpp"
+#include "problems/preparation/recording.hpp"
+#include "problems/reading/explanation.hpp"
 #include "reports/loop_report.hpp"
 #include "reports/record_csv.hpp"
 
@@ -37,10 +38,8 @@ namespace {
 struct LoopArguments {
   std::vector<std::string> files;
   std::string model = "coulomb_viscous";
-  std::string roles;
   std::vector<std::string> rigid;
   std::vector<std::string> effects;
-  double gear_ratio = 0;
   double screw_lead = 0;
   double alpha_library = 0.003;
   double alpha_leftover = 0.002;
@@ -48,13 +47,13 @@ struct LoopArguments {
   int rows = 6000;
   std::uint64_t seed = 1;
   std::uint64_t evaluations = 200'000'000;
-  bool flip_sign = false;
-  bool drop_missing = false;
+  std::shared_ptr<DataOptions> reading = std::make_shared<DataOptions>();
+  Gravity gravity = Gravity::automatic;
+  bool explain = false;
   bool any_sign = false;
   std::optional<double> min_speed;
   bool unordered = false;
   bool steady = false;
-  std::string where;
   std::string leave_out;
   bool json = false;
   int suggest = 0;
@@ -64,23 +63,6 @@ struct LoopArguments {
   std::string save_effect;
   std::string out;
 };
-
-// "column=role,column=role"
-std::map<std::string, Role, std::less<>> parse_roles(const std::string& text) {
-  std::map<std::string, Role, std::less<>> roles;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string part = text.substr(begin, end - begin);
-    const std::size_t equals = part.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      throw_bad_input(fmt::format("'{}' is no COLUMN=ROLE", part), "--roles",
-                      "write for example --roles tau=friction_torque,w=velocity");
-    }
-    roles[part.substr(0, equals)] = find_role(part.substr(equals + 1));
-    begin = end + 1;
-  }
-  return roles;
-}
 
 bool is_word(const std::string& text) {
   return std::ranges::all_of(text,
@@ -102,77 +84,54 @@ loop::BaseMaker base_of(const LoopArguments& arguments, const Registry& registry
                            budget);
 }
 
-// Keeps the rows in which a column has a value: "torque_enabled=1".
-void keep_rows_where(Dataset& data, const std::string& condition) {
-  const std::size_t equals = condition.find('=');
-  const std::optional<double> value =
-      equals == std::string::npos
-          ? std::nullopt
-          : read_number<double>(std::string_view(condition).substr(equals + 1));
-  if (!value) {
-    throw_bad_input(fmt::format("'{}' is no COLUMN=NUMBER", condition), "--where",
-                    "write for example --where torque_enabled=1");
-  }
-  const std::vector<double> column = data.at(condition.substr(0, equals)).values;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < column.size(); ++i) {
-    if (column[i] != *value) continue;
-    for (Channel& channel : data.channels) channel.values[kept] = channel.values[i];
-    data.movement[kept++] = data.movement[i];
-  }
-  for (Channel& channel : data.channels) channel.values.resize(kept);
-  data.movement.resize(kept);
-  if (kept == 0) throw_bad_input("no row is left", "--where " + condition);
-}
-
-// Which movements have the same value in a column of numbers or text.
-struct Groups {
-  std::vector<int> of_movement;
-  std::string name;
-};
-
-Groups groups_by(const DataFile& file, const std::string& column) {
-  if (column.empty()) return {};
+// A column of numbers or text as a channel of numbers, one a value: rows may then be left out and
+// movements cut without losing it.
+void code_column(DataFile& file, const std::string& column) {
   const auto text = std::ranges::find(file.texts, column, &TextColumn::name);
-  std::vector<std::string> values;
-  if (text != file.texts.end()) {
-    values = text->values;
-  } else {
-    for (const double x : file.data.at(column).values) values.push_back(fmt::format("{}", x));
+  if (text == file.texts.end()) {
+    file.data.at(column);  // an unknown one is answered with the nearest
+    return;
   }
   std::vector<std::string> names;
-  Groups groups{std::vector<int>(file.data.movement_names.size(), -1), column};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto known = std::ranges::find(names, values[i]);
-    const int number = static_cast<int>(known - names.begin());
-    if (known == names.end()) names.push_back(values[i]);
-    int& group = groups.of_movement[static_cast<std::size_t>(file.data.movement[i])];
+  Channel codes{column, "-", Role::none, {}};
+  for (const std::string& value : text->values) {
+    const auto known = std::ranges::find(names, value);
+    codes.values.push_back(static_cast<double>(known - names.begin()));
+    if (known == names.end()) names.push_back(value);
+  }
+  file.data.channels.push_back(std::move(codes));
+}
+
+// Which movements have the same value in a column.
+std::vector<int> groups_by(const Dataset& data, const std::string& column) {
+  std::vector<double> values;
+  std::vector<int> groups(data.movement_names.size(), -1);
+  const std::vector<double>& rows = data.at(column).values;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto known = std::ranges::find(values, rows[i]);
+    const int number = static_cast<int>(known - values.begin());
+    if (known == values.end()) values.push_back(rows[i]);
+    int& group = groups[static_cast<std::size_t>(data.movement[i])];
     if (group != -1 && group != number) {
       throw_bad_input(fmt::format("'{}' changes within a movement (row {})", column, i + 1),
                       "--leave-out", "name a column that is the same all through a movement");
     }
     group = number;
   }
-  if (names.size() < 2) {
+  if (values.size() < 2) {
     throw_bad_input(fmt::format("'{}' is the same in every movement", column), "--leave-out",
                     "name a column that tells movements apart");
   }
   return groups;
 }
 
-Dataset read_data(const LoopArguments& arguments, std::vector<std::string>& warnings,
-                  Groups& groups) {
-  const CsvOptions options{parse_roles(arguments.roles), arguments.drop_missing};
-  std::vector<std::filesystem::path> files(arguments.files.begin(), arguments.files.end());
-  DataFile reading = read_csv_files(files, options);
-  warnings = reading.warnings;
-  if (reading.dropped_rows > 0) {
-    warnings.push_back(fmt::format("{} rows with missing values dropped", reading.dropped_rows));
-  }
-  groups = groups_by(reading, arguments.leave_out);
-  if (arguments.flip_sign) flip_torques(reading.data);
-  if (!arguments.where.empty()) keep_rows_where(reading.data, arguments.where);
-  return std::move(reading.data);
+DataFile read_files(const LoopArguments& arguments) {
+  const std::vector<std::filesystem::path> files(arguments.files.begin(), arguments.files.end());
+  std::vector<std::string> used = arguments.rigid;
+  if (!arguments.leave_out.empty()) used.push_back(arguments.leave_out);
+  DataFile file = read_data(files, *arguments.reading, used);
+  if (!arguments.leave_out.empty()) code_column(file, arguments.leave_out);
+  return file;
 }
 
 loop::DiagnosisOptions diagnosis_options(const LoopArguments& arguments) {
@@ -185,7 +144,9 @@ loop::DiagnosisOptions diagnosis_options(const LoopArguments& arguments) {
   options.resample = true;
   options.physical_vetoes = !arguments.any_sign;
   if (!arguments.learned.empty()) options.learned = loop::read_effects(arguments.learned);
-  if (arguments.gear_ratio > 0) options.gear_ratios = {arguments.gear_ratio};
+  if (arguments.reading->drive.gear_ratio) {
+    options.gear_ratios = {*arguments.reading->drive.gear_ratio};
+  }
   if (arguments.screw_lead > 0) options.gear_ratios = {2 * std::numbers::pi / arguments.screw_lead};
   return options;
 }
@@ -312,24 +273,49 @@ void grow_library(const LoopArguments& arguments, const Registry& registry,
 }
 
 loop::Observations read_observations(const LoopArguments& arguments) {
-  std::vector<std::string> warnings;
-  Groups groups;
-  const Dataset dataset = read_data(arguments, warnings, groups);
+  PreparedRecording recording =
+      prepare(read_files(arguments), *arguments.reading, arguments.gravity);
+  std::vector<std::string> rigid = arguments.rigid;
+  rigid.insert(rigid.end(), recording.rigid.begin(), recording.rigid.end());
   loop::Observations data = loop::observe(
-      dataset, {arguments.rigid, arguments.min_speed, arguments.unordered, arguments.steady});
-  data.group = groups.of_movement;
-  data.group_name = groups.name;
-  const std::size_t all_rows = data.rows();
-  data = data.thinned(static_cast<std::size_t>(arguments.rows));
-  if (data.rows() < all_rows) {
-    warnings.push_back(
-        fmt::format("{} of {} rows are used, evenly spaced (--rows)", data.rows(), all_rows));
+      recording.data, {rigid, arguments.min_speed, arguments.unordered, arguments.steady});
+  if (!arguments.leave_out.empty()) {
+    data.group = groups_by(recording.data, arguments.leave_out);
+    data.group_name = arguments.leave_out;
   }
-  data.warnings.insert(data.warnings.begin(), warnings.begin(), warnings.end());
+  std::vector<std::string>& notes = recording.notes;
+  recording.data = {};
+  const std::size_t all_rows = data.rows();
+  const loop::Shortened shortened = data.averaged(static_cast<std::size_t>(arguments.rows));
+  data = shortened.data;
+  if (data.rows() < all_rows) {
+    notes.push_back(shortened.rows_each > 1
+                        ? fmt::format("{} rows are averaged over {:.3g} neighbours each{} (--rows)",
+                                      data.rows(), shortened.rows_each, shortened.left_between)
+                        : fmt::format("{} of {} rows are used{} (--rows)", data.rows(), all_rows,
+                                      shortened.left_between));
+  }
+  data.warnings.insert(data.warnings.begin(), notes.begin(), notes.end());
   return data;
 }
 
+// What was understood, and what would be done; nothing is diagnosed.
+void explain(const LoopArguments& arguments) {
+  DataFile file = read_files(arguments);
+  fmt::print("{}", explanation(file));
+  if (!what_is_missing(file).empty()) return;
+  const PreparedRecording recording =
+      prepare(std::move(file), *arguments.reading, arguments.gravity);
+  for (const std::string& note : recording.notes) fmt::print("{}\n", note);
+  fmt::print("{} rows in {} movements\n", recording.data.rows(),
+             recording.data.movement_names.size());
+}
+
 ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) {
+  if (arguments.explain) {
+    explain(arguments);
+    return ExitStatus::done;
+  }
   // Before any work: a folder that cannot be written to, a name that is known to nobody, and a file
   // that nothing would be written to.
   if (!arguments.out.empty()) make_output_folder(arguments.out);
@@ -386,17 +372,23 @@ void add_loop_command(CLI::App& app, ExitStatus& status, const Registry& registr
       ->add_option("--model", arguments->model,
                    "the base: coulomb_viscous, symmetric, asymmetric, any method, a 'FORMULA'")
       ->capture_default_str();
-  command->add_option("--roles", arguments->roles, "COLUMN=ROLE,... where names do not tell");
   command
       ->add_option("--rigid", arguments->rigid,
                    "columns of the rigid body, fitted with the base and no effects")
       ->delimiter(',');
   command->add_option("--effects", arguments->effects, "test these families only")->delimiter(',');
-  CLI::Option* gear_ratio =
-      command
-          ->add_option("--gear-ratio", arguments->gear_ratio,
-                       "motor turns per turn of the joint; without it the usual ones are scanned")
-          ->transform(real_number(0, 1e6, LowEnd::above));
+  CLI::Option* gear_ratio = add_data_options(*command, arguments->reading);
+  gear_ratio->description(
+      "motor turns per turn of the joint; without it the usual ones are scanned for ripples");
+  command
+      ->add_option(
+          "--gravity", arguments->gravity,
+          "gravity that no column declares: fit sin and cos of the position with the base, "
+          "none, or auto: where that explains much")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Gravity>{
+          {"auto", Gravity::automatic}, {"fit", Gravity::fit}, {"none", Gravity::none}}));
+  command->add_flag("--explain", arguments->explain,
+                    "say what each column was taken for and what would be done, and stop");
   command
       ->add_option(
           "--screw-lead", arguments->screw_lead,
@@ -418,7 +410,6 @@ void add_loop_command(CLI::App& app, ExitStatus& status, const Registry& registr
           "leave out slower rows: the direction of friction is not known there; without it "
           "the speed is found from rows at rest")
       ->transform(real_number(0, 1e6));
-  command->add_option("--where", arguments->where, "COLUMN=NUMBER: use these rows only");
   command->add_option("--leave-out", arguments->leave_out,
                       "COLUMN: judge by leaving out, in turn, all movements that share its value");
   command->add_flag("--unordered", arguments->unordered,
@@ -426,7 +417,9 @@ void add_loop_command(CLI::App& app, ExitStatus& status, const Registry& registr
   command->add_flag(
       "--steady", arguments->steady,
       "each movement holds one speed: average it, its velocity's noise is not friction");
-  command->add_option("--rows", arguments->rows, "thin a longer recording evenly to about so many")
+  command
+      ->add_option("--rows", arguments->rows,
+                   "average neighbours of a longer recording, to about so many")
       ->transform(whole_number(100, 10'000'000))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "same seed, same answer")
@@ -435,8 +428,6 @@ void add_loop_command(CLI::App& app, ExitStatus& status, const Registry& registr
   command->add_option("--evaluations", arguments->evaluations, "what a searched base may spend")
       ->transform(whole_number(0))
       ->capture_default_str();
-  command->add_flag("--flip-sign", arguments->flip_sign, "the file's torques oppose the velocity");
-  command->add_flag("--drop-missing", arguments->drop_missing, "drop rows with missing values");
   command->add_flag("--any-sign", arguments->any_sign,
                     "accept effects whose parameters are not physical");
   command

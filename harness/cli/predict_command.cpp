@@ -68,7 +68,8 @@ void add_predict_command(CLI::App& app, ExitStatus& /*status*/) {
   command->add_option("--out", *out, "the file to write; else to the terminal");
   command->callback([model, data, out] {
     std::string text = "prediction\n";
-    for (const double value : predictions(*model, read_csv(*data).data)) {
+    for (const double value :
+         predictions(*model, read_csv(*data, CsvOptions{.names_tell = false}).data)) {
       text += csv_number(value) + "\n";
     }
     if (out->empty()) {

@@ -57,7 +57,7 @@ bool change_column(CsvCells& cells, std::size_t column,
   for (CsvLine& line : cells.lines) {
     if (line.blank()) continue;
     double value = 0;
-    if (read_cell(line.cells[column], value) != CellKind::number) continue;
+    if (read_cell(line.cells[column], false, value) != CellKind::number) continue;
     line.cells[column] = fmt::format("{}", change(value));
   }
   return true;

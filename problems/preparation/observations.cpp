@@ -227,6 +227,73 @@ Observations Observations::thinned(std::size_t most) const {
   return select(keep);
 }
 
+namespace {
+
+// The number of the block that each row belongs to.
+std::vector<std::size_t> blocks_of(const Observations& data, std::size_t longest) {
+  const std::vector<double>& v = data.find("v")->values;
+  const Signal* q = data.find("q");
+  const double reach = q != nullptr && q->unit == "m" ? kBlockLength : kBlockAngle;
+  double top = 0;
+  for (const double speed : v) top = std::max(top, std::abs(speed));
+  std::vector<std::size_t> block(data.rows(), 0);
+  for (std::size_t i = 1, begin = 0; i < data.rows(); ++i) {
+    const bool goes_on = data.movement[i] == data.movement[begin] && i - begin < longest &&
+                         sign_of(v[i]) == sign_of(v[begin]) &&
+                         std::abs(v[i] - v[begin]) <= kBlockSpeed * top &&
+                         (q == nullptr || std::abs(q->values[i] - q->values[begin]) <= reach);
+    block[i] = block[i - 1] + (goes_on ? 0 : 1);
+    if (!goes_on) begin = i;
+  }
+  return block;
+}
+
+}  // namespace
+
+Shortened Observations::averaged(std::size_t most) const {
+  if (rows() <= most) return {*this, 1, {}};
+  const std::vector<std::size_t> block = blocks_of(*this, (rows() + most - 1) / most);
+  const std::size_t blocks = block.back() + 1;
+  // Means of a row or two here and there gain nothing.
+  if (rows() < 2 * blocks) return {thinned(most), 1, ", evenly spaced"};
+  const std::size_t step = (blocks + most - 1) / most;
+  std::vector<char> first(rows(), 0);
+  for (std::size_t i = 0, place = 0; i < rows(); ++i) {
+    if (i > 0 && block[i] == block[i - 1]) continue;
+    if (i > 0 && movement[i] != movement[i - 1]) place = 0;
+    first[i] = place++ % step == 0 ? 1 : 0;
+  }
+  Shortened out{select(first), 1, {}};
+  std::size_t averaged_rows = 0;
+  const auto average = [&](const std::vector<double>& values, std::vector<double>& means) {
+    std::size_t k = 0;
+    averaged_rows = 0;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      if (first[i] == 0) continue;
+      double sum = 0;
+      std::size_t end = i;
+      while (end < rows() && block[end] == block[i]) sum += values[end++];
+      averaged_rows += end - i;
+      means[k++] = sum / static_cast<double>(end - i);
+    }
+  };
+  average(target, out.data.target);
+  if (!time.empty()) average(time, out.data.time);
+  for (std::size_t j = 0; j < signals.size(); ++j) {
+    average(signals[j].values, out.data.signals[j].values);
+  }
+  for (Signal& signal : out.data.signals) {
+    const Signal* of =
+        signal.name.starts_with("sgn_") ? out.data.find(signal.name.substr(4)) : nullptr;
+    for (std::size_t k = 0; of != nullptr && k < signal.values.size(); ++k) {
+      signal.values[k] = sign_of(of->values[k]);
+    }
+  }
+  out.rows_each = static_cast<double>(averaged_rows) / static_cast<double>(out.data.rows());
+  if (step > 1) out.left_between = fmt::format(", one mean in {}", step);
+  return out;
+}
+
 Observations observe(const Dataset& data, const ObservationOptions& options) {
   if (data.rows() == 0) throw_bad_input("the file has no rows", data.name);
   if (data.find(Role::velocity) == nullptr) {

@@ -64,12 +64,26 @@ struct Observations {
   void take_away(std::string_view name, std::string why);
   // The rows for which keep[row] != 0.
   Observations select(const std::vector<char>& keep) const;
-  // Every k-th row of each movement, so that at most about `rows` are left. Neighbouring rows of a
-  // fast recording say the same; a diagnosis loses next to nothing by it.
+  // Every k-th row of each movement, so that at most about `rows` are left.
   Observations thinned(std::size_t rows) const;
+  // Means over neighbouring rows of a fast recording, about `rows` of them. No mean reaches over a
+  // reversal, over more of the path than a gear's ripple leaves (kBlockAngle, kBlockLength) or over
+  // a change of speed; where that leaves too many, means in between are left out.
+  struct Shortened averaged(std::size_t rows) const;
   // The numbers of the movements that occur, in order.
   std::vector<int> movements() const;
 };
+
+struct Shortened {
+  Observations data;
+  double rows_each = 1;      // rows of a mean
+  std::string left_between;  // ", every 3rd mean", or empty
+};
+
+// A mean over this much of the path keeps 97 % of a ripple of 320 waves a radian.
+inline constexpr double kBlockAngle = 2e-3;   // rad
+inline constexpr double kBlockLength = 2e-4;  // m: a twelfth of the least usual lead of a screw
+inline constexpr double kBlockSpeed = 0.02;   // of the top speed
 
 struct ObservationOptions {
   // Channels, beside those found, whose coefficients are fitted with the base and are no effects:

@@ -1,75 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "problems/reading/channel_names.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
+#include <vector>
 
 namespace tribench {
 namespace {
 
-struct Suffix {
-  std::string_view text;
-  std::string_view unit;
-};
+using Words = std::vector<std::string>;
 
-// Longest first: _rad_s2 ends in neither _rad_s nor _s.
-constexpr std::array kSuffixes = {Suffix{"_rad_s2", "rad/s^2"},
-                                  Suffix{"_deg_s2", "deg/s^2"},
-                                  Suffix{"_m_s2", "m/s^2"},
-                                  Suffix{"_rad_s", "rad/s"},
-                                  Suffix{"_deg_s", "deg/s"},
-                                  Suffix{"_m_s", "m/s"},
-                                  Suffix{"_degC", "degC"},
-                                  Suffix{"_rad", "rad"},
-                                  Suffix{"_deg", "deg"},
-                                  Suffix{"_rpm", "rpm"},
-                                  Suffix{"_Nm", "N m"},
-                                  Suffix{"_nm", "N m"},
-                                  Suffix{"_kg", "kg"},
-                                  Suffix{"_m", "m"},
-                                  Suffix{"_s", "s"},
-                                  Suffix{"_N", "N"},
-                                  Suffix{"_A", "A"},
-                                  Suffix{"_V", "V"}};
-
-struct Known {
-  std::string_view name;  // lower case
-  Role role;
-  std::string_view unit;  // of the bare symbol; empty where only a suffix can tell
-};
-
-constexpr std::array kKnown = {Known{"time", Role::time, "s"},
-                               Known{"movement", Role::movement, "-"},
-                               Known{"position", Role::position, ""},
-                               Known{"q", Role::position, "rad"},
-                               Known{"velocity", Role::velocity, ""},
-                               Known{"v", Role::velocity, "rad/s"},
-                               Known{"qd", Role::velocity, "rad/s"},
-                               Known{"dq", Role::velocity, "rad/s"},
-                               Known{"acceleration", Role::acceleration, ""},
-                               Known{"a", Role::acceleration, "rad/s^2"},
-                               Known{"qdd", Role::acceleration, "rad/s^2"},
-                               Known{"ddq", Role::acceleration, "rad/s^2"},
-                               Known{"gravity_torque", Role::gravity_torque, ""},
-                               Known{"gravity", Role::gravity_torque, ""},
-                               Known{"tau_g", Role::gravity_torque, "N m"},
-                               Known{"g", Role::gravity_torque, "N m"},
-                               Known{"motor_torque", Role::motor_torque, ""},
-                               Known{"motor_force", Role::motor_torque, ""},
-                               Known{"tau_m", Role::motor_torque, "N m"},
-                               Known{"friction_torque", Role::friction_torque, ""},
-                               Known{"friction_force", Role::friction_torque, ""},
-                               Known{"friction", Role::friction_torque, ""},
-                               Known{"tau_f", Role::friction_torque, "N m"},
-                               Known{"external_torque", Role::external_torque, ""},
-                               Known{"tau_ext", Role::external_torque, "N m"},
-                               Known{"temperature", Role::temperature, ""},
-                               Known{"motor_current", Role::motor_current, ""},
-                               Known{"current", Role::motor_current, ""},
-                               Known{"other_velocity", Role::other_velocity, ""},
-                               Known{"v2", Role::other_velocity, "rad/s"},
-                               Known{"other_acceleration", Role::other_acceleration, ""},
-                               Known{"a2", Role::other_acceleration, "rad/s^2"}};
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+bool is_lower(char c) { return std::islower(static_cast<unsigned char>(c)) != 0; }
+bool is_upper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
 
 std::string lower(std::string_view text) {
   std::string result;
@@ -79,46 +23,208 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-const Known* find_known(std::string_view name) {
+// Words that name the setting and not the measurement.
+constexpr std::array<std::string_view, 20> kSetPoints = {
+    "desired", "des",       "commanded", "command",  "cmd",    "target", "goal",
+    "ref",     "reference", "set",       "setpoint", "demand", "error",  "err",
+    "min",     "max",       "limit",     "offset",   "bias",   "std"};
+
+// Words that add nothing to what a channel is.
+constexpr std::array<std::string_view, 25> kFillers = {
+    "joint",    "joints", "state", "states", "actual", "act", "measured", "meas", "msr",
+    "axis",     "robot",  "arm",   "link",   "value",  "val", "feedback", "fb",   "raw",
+    "filtered", "filt",   "data",  "msg",    "output", "jnt", "ax"};
+
+template <std::size_t N>
+bool is_among(const std::array<std::string_view, N>& list, std::string_view word) {
+  return std::ranges::find(list, word) != list.end();
+}
+
+// "jointPos.velDeg[2]" as joint, Pos, vel, Deg, 2; without `humps` as jointPos, velDeg, 2.
+Words split_words(std::string_view text, bool humps) {
+  Words words;
+  std::string word;
+  const auto end_word = [&] {
+    if (!word.empty()) words.push_back(std::move(word));
+    word.clear();
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && static_cast<unsigned char>(c) < 128) {
+      end_word();
+      continue;
+    }
+    if (humps && is_upper(c) && i > 0 && is_lower(text[i - 1])) end_word();
+    word += c;
+  }
+  end_word();
+  return words;
+}
+
+std::string joined(const Words& words, std::size_t begin, std::size_t end) {
+  std::string text;
+  for (std::size_t i = begin; i < end; ++i) text += (i > begin ? "_" : "") + words[i];
+  return text;
+}
+
+const ChannelAlias* find_alias(std::string_view name) {
   const std::string wanted = lower(name);
-  for (const Known& known : kKnown) {
-    if (known.name == wanted) return &known;
+  for (const ChannelAlias& alias : channel_aliases()) {
+    if (alias.name == wanted) return &alias;
   }
   return nullptr;
 }
 
-std::string unit_or_dash(std::string_view unit) { return std::string(unit.empty() ? "-" : unit); }
+void take_alias(NameReading& reading, const ChannelAlias& alias) {
+  reading.role = alias.role;
+  reading.source = alias.source;
+  if (reading.known_unit == nullptr && !alias.unit.empty()) {
+    reading.known_unit = find_unit(alias.unit);
+  }
+}
+
+// A name that is in the list as it stands.
+bool read_whole_name(std::string_view text, NameReading& reading) {
+  // Time and temperature differ by case alone.
+  if (text == "T") {
+    reading.role = Role::temperature;
+    reading.source = "tribench";
+    if (reading.known_unit == nullptr) reading.known_unit = find_unit("degC");
+    return true;
+  }
+  const ChannelAlias* alias = find_alias(text);
+  if (alias != nullptr) take_alias(reading, *alias);
+  return alias != nullptr;
+}
+
+// What a name without its unit says; false: nothing that is known.
+bool read_stem(std::string_view text, NameReading& reading) {
+  if (read_whole_name(text, reading)) return true;
+  Words all;
+  Words kept;
+  bool motor = false;
+  for (std::string word : split_words(text, true)) {
+    if (is_among(kSetPoints, lower(word))) return false;
+    const std::size_t letters = word.find_last_not_of("0123456789") + 1;
+    const bool numbered = letters < word.size() && word.size() - letters < 4;
+    if (numbered) {
+      reading.joint = std::stoi(word.substr(letters));
+      word.resize(letters);
+    }
+    if (word.empty()) continue;
+    motor = motor || lower(word) == "motor" || lower(word) == "mot";
+    const bool letter = numbered && (lower(word) == "j" || lower(word) == "a");  // "A2", "j2"
+    if (!letter && !is_among(kFillers, lower(word))) kept.push_back(word);
+    all.push_back(std::move(word));
+  }
+  const ChannelAlias* alias = find_alias(joined(all, 0, all.size()));
+  if (alias == nullptr) alias = find_alias(joined(kept, 0, kept.size()));
+  reading.doubt = 1;
+  if (alias == nullptr && motor) {
+    std::erase_if(kept, [](const std::string& word) {
+      return lower(word) == "motor" || lower(word) == "mot";
+    });
+    alias = find_alias(joined(kept, 0, kept.size()));
+    if (alias == nullptr) return false;
+    reading.at_motor = true;
+    reading.doubt = 2;
+  }
+  if (alias == nullptr) return false;
+  take_alias(reading, *alias);
+  return true;
+}
+
+// The unit in the last pair of brackets, which is taken off; a number there is the joint's.
+std::string take_brackets(std::string_view& name) {
+  while (!name.empty() && name.back() == ' ') name.remove_suffix(1);
+  if (name.empty()) return {};
+  constexpr std::array<std::string_view, 3> kPairs = {"[]", "()", "{}"};
+  for (const std::string_view pair : kPairs) {
+    if (name.back() != pair[1]) continue;
+    const std::size_t open = name.rfind(pair[0]);
+    if (open == std::string_view::npos || open == 0) return {};
+    const std::string inside(name.substr(open + 1, name.size() - open - 2));
+    if (!inside.empty() && std::ranges::all_of(inside, is_digit)) return {};
+    name = name.substr(0, open);
+    while (!name.empty() && (name.back() == ' ' || name.back() == '_')) name.remove_suffix(1);
+    return inside;
+  }
+  return {};
+}
+
+// A unit as the last words: the longest that leaves a name that goes with it.
+bool read_written_unit(const Words& words, NameReading& reading) {
+  for (std::size_t cut = 1; cut < words.size(); ++cut) {
+    const Unit* unit = find_unit(joined(words, cut, words.size()));
+    if (unit == nullptr) continue;
+    NameReading stem;
+    stem.known_unit = unit;
+    if (!read_stem(joined(words, 0, cut), stem) || !suits(*unit, stem.role)) continue;
+    reading = stem;
+    reading.unit_written = true;
+    return true;
+  }
+  return false;
+}
+
+// The unit of a channel without a role, for show: only as it is usually written.
+void read_unit_alone(std::string_view name, NameReading& reading) {
+  for (std::size_t at = name.find('_'); at != std::string_view::npos; at = name.find('_', at + 1)) {
+    const std::string_view last = name.substr(at + 1);
+    const Unit* unit = find_unit(last);
+    if (unit == nullptr || (last.size() == 1 && is_lower(last.front()) && unit->si != last)) {
+      continue;
+    }
+    reading = {};
+    reading.known_unit = unit;
+    reading.unit_written = true;
+    return;
+  }
+}
 
 // A name without a sign prefix.
-NameReading read_plain(std::string_view name) {
-  // Time and temperature differ by case alone.
-  if (name == "t") return {Role::time, "s"};
-  if (name == "T") return {Role::temperature, "degC"};
-  if (const Known* known = find_known(name)) return {known->role, unit_or_dash(known->unit)};
-  for (const Suffix& suffix : kSuffixes) {
-    if (!name.ends_with(suffix.text)) continue;
-    const std::string_view stem = name.substr(0, name.size() - suffix.text.size());
-    if (stem == "t") return {Role::time, std::string(suffix.unit)};
-    if (stem == "T") return {Role::temperature, std::string(suffix.unit)};
-    const Known* known = find_known(stem);
-    return {known != nullptr ? known->role : Role::none, std::string(suffix.unit)};
+NameReading read_plain(std::string_view whole) {
+  std::string_view name = whole;
+  const std::string inside = take_brackets(name);
+  NameReading reading;
+  reading.known_unit = find_unit(inside);
+  reading.unit_written = reading.known_unit != nullptr;
+  if (!inside.empty() && reading.known_unit == nullptr) reading.unknown_unit = inside;
+  NameReading plain = reading;
+  NameReading written;
+  if (read_whole_name(name, plain)) {
+    reading = plain;
+  } else if (!reading.unit_written && (read_written_unit(split_words(name, false), written) ||
+                                       read_written_unit(split_words(name, true), written))) {
+    reading = written;
+  } else if (read_stem(name, plain)) {
+    reading = plain;
+  } else if (!reading.unit_written) {
+    read_unit_alone(name, reading);
   }
-  return {Role::none, "-"};
+  if (reading.known_unit != nullptr && reading.role != Role::none &&
+      !suits(*reading.known_unit, reading.role)) {
+    reading.unknown_unit = std::string(reading.known_unit->symbol);
+    reading.known_unit = nullptr;
+    reading.unit_written = false;
+  }
+  return reading;
 }
 
 }  // namespace
 
 NameReading read_channel_name(std::string_view name) {
   constexpr std::string_view kSign = "sgn_";
-  if (!name.starts_with(kSign)) return read_plain(name);
-  switch (read_plain(name.substr(kSign.size())).role) {
-    case Role::velocity:
-      return {Role::velocity_sign, "-"};
-    case Role::gravity_torque:
-      return {Role::gravity_sign, "-"};
-    default:
-      return {Role::none, "-"};
+  NameReading reading;
+  if (!name.starts_with(kSign)) {
+    reading = read_plain(name);
+  } else {
+    const Role of = read_plain(name.substr(kSign.size())).role;
+    if (of == Role::velocity) reading.role = Role::velocity_sign;
+    if (of == Role::gravity_torque) reading.role = Role::gravity_sign;
   }
+  reading.unit = reading.known_unit != nullptr ? std::string(reading.known_unit->symbol) : "-";
+  return reading;
 }
 
 bool is_torque_like(Role role) {

@@ -1,29 +1,47 @@
 // SPDX-License-Identifier: MIT
 //
-// What a column's name says about it: `velocity_rad_s` is a velocity in rad/s, `tau_m` a motor
-// torque, `sgn_qd` the sign of a velocity. Names that say nothing get the role `none`.
+// What a column's name says about it: `velocity_rad_s` is a velocity in rad/s, `q [deg]` a
+// position in degrees, `tau_J_2` the torque of joint 2, `sgn_qd` the sign of a velocity. The names
+// themselves, with where each comes from, stand in channel_aliases.cpp. Set points (desired,
+// commanded, target ...) and names that say nothing have the role `none`.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "problems/dataset.hpp"
+#include "problems/reading/units.hpp"
 
 namespace tribench {
 
 struct NameReading {
   Role role = Role::none;
-  std::string unit;  // SI symbol; "-" where the name has none
+  std::string unit;  // symbol; "-" where the name has none
+  // The unit that is written in the name, else the one that its source always uses; null: neither.
+  const Unit* known_unit = nullptr;
+  bool unit_written = false;  // in the name itself
+  std::string unknown_unit;   // in brackets, and nobody's
+  std::string_view source;    // who names a channel so
+  bool at_motor = false;      // the name says the motor's side of the gear
+  std::optional<int> joint;   // the number in the name
+  int doubt = 0;              // of two columns with one role the lower one has it
 };
 
-// Known: time t, movement, position q, velocity v qd dq, acceleration a qdd ddq, gravity_torque
-// tau_g g, motor_torque tau_m, friction_torque tau_f friction, external_torque tau_ext,
-// temperature T, motor_current current, other_velocity v2, other_acceleration a2, and sgn_X; all
-// but T and t whatever the case; with a unit as last part: _rad _rad_s _rad_s2 _deg _deg_s _m _m_s
-// _m_s2 _s _Nm _N _A _V _degC _kg _rpm.
+// A unit stands in brackets ("q [deg]", "q (deg)") or last ("q_deg", "qDeg"); a number is the
+// joint's. Letters' case decides between t and T alone.
 NameReading read_channel_name(std::string_view name);
 
 // Torques and what stands for them (a force, a current, a voltage).
 bool is_torque_like(Role role);
+
+struct ChannelAlias {
+  std::string_view name;  // lower case, words apart by '_'
+  Role role;
+  std::string_view unit;    // that this source always uses; empty where it differs
+  std::string_view source;  // whose name it is
+};
+std::span<const ChannelAlias> channel_aliases();
 
 }  // namespace tribench

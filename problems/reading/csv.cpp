@@ -4,228 +4,201 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
-#include <ostream>
+#include <cmath>
 #include <set>
 
 #include "foundation/error.hpp"
-#include "foundation/suggestion.hpp"
-#include "foundation/text.hpp"
-#include "problems/reading/channel_names.hpp"
+#include "problems/reading/column_plan.hpp"
 #include "problems/reading/csv_cells.hpp"
 #include "problems/reading/csv_checks.hpp"
+#include "problems/reading/csv_columns.hpp"
+#include "problems/reading/file_text.hpp"
 
 namespace tribench {
 namespace {
 
-// What a column turned out to be.
-enum class ColumnKind { number, text, movement };
-
-struct Column {
-  NameReading reading;
-  bool role_given = false;
-  ColumnKind kind = ColumnKind::number;
+// A file on its way to a dataset: what the functions below work on.
+struct Reading {
+  std::string_view text;
+  std::string_view file;
+  const CsvOptions& options;
+  CsvLayout layout;
+  std::vector<ColumnPlan> plans;
+  CsvColumns columns;
+  std::vector<std::size_t> rows;  // that are kept
 };
 
-std::string cell_complaint(std::string_view cell) {
-  if (cell.empty()) return "the cell is empty";
+std::string stem_of(std::string_view file) {
+  std::filesystem::path path(file);
+  if (path.extension() == ".gz") path = path.stem();
+  return path.stem().string();
+}
+
+double largest_of(const ColumnPlan& plan) {
+  return plan.reading.role == Role::none ? kLargestNumber : kLargestMeasured;
+}
+
+[[noreturn]] void refuse_cell(const Reading& in, std::size_t row, std::size_t column) {
+  const std::size_t place = in.columns.places[row];
+  const std::string cell = cell_at(in.text, in.layout, place, column);
   double value = 0;
-  const bool too_large = read_cell(cell, value) == CellKind::missing && value != 0;
-  return fmt::format("'{}' is {}", cell,
-                     too_large ? "too large for what is measured" : "not a finite number");
+  const CellKind kind = read_cell(cell, in.layout.decimal_comma, value);
+  const std::string what = cell.empty() ? "the cell is empty"
+                           : kind == CellKind::number
+                               ? fmt::format("'{}' is too large for what is measured", cell)
+                               : fmt::format("'{}' is not a finite number", cell);
+  const bool mixed = in.layout.decimal_comma && cell.find('.') != std::string::npos;
+  throw_bad_input(what, csv_place(in.file, line_of(in.text, place), in.layout.header[column]),
+                  mixed ? "this file has decimal commas: write numbers in one way, and without "
+                          "signs for thousands"
+                        : "mend the value, or drop such rows with --drop-missing");
 }
 
-std::string number_mend(std::string_view cell, char delimiter) {
-  if (delimiter != ',' && cell.find(',') != std::string_view::npos) {
-    return "write numbers with a decimal point";
-  }
-  return "mend the value, or drop such rows with --drop-missing";
-}
-
-void check_roles_name_columns(const CsvCells& cells, const CsvOptions& options,
-                              std::string_view file) {
-  for (const auto& [column, role] : options.roles) {
-    if (std::find(cells.header.begin(), cells.header.end(), column) != cells.header.end()) continue;
-    throw_bad_input(fmt::format("a role is given for column '{}', which is not there", column),
-                    file, did_you_mean(column, cells.header));
-  }
-}
-
-// Text where no cell is a number; but a role that needs numbers is never text.
-ColumnKind kind_of(const CsvCells& cells, std::size_t column, const NameReading& reading) {
-  if (reading.role == Role::movement) return ColumnKind::movement;
-  if (reading.role != Role::none) return ColumnKind::number;
-  bool has_text = false;
-  for (const CsvLine& line : cells.lines) {
-    if (line.blank()) continue;
-    double value = 0;
-    const CellKind kind = read_cell(line.cells[column], value);
-    if (kind == CellKind::number) return ColumnKind::number;
-    has_text = has_text || kind == CellKind::text;
-  }
-  return has_text ? ColumnKind::text : ColumnKind::number;
-}
-
-// A role given by hand takes it away from columns that only sound like it; of several that sound
-// alike the first keeps it.
-void settle_roles(const CsvCells& cells, std::vector<Column>& columns, DataFile& reading) {
-  std::map<Role, std::size_t> owner;
-  for (const bool given : {true, false}) {
-    for (std::size_t j = 0; j < columns.size(); ++j) {
-      Column& column = columns[j];
-      if (column.role_given != given || column.reading.role == Role::none) continue;
-      const auto [place, is_new] = owner.try_emplace(column.reading.role, j);
-      if (is_new) continue;
-      if (!given) {
-        reading.warnings.push_back(fmt::format(
-            "column '{}' is read without a role: '{}' already is the {}", cells.header[j],
-            cells.header[place->second], role_name(column.reading.role)));
-      }
-      if (!given || column.reading.role == Role::movement) column.reading.role = Role::none;
-    }
-  }
-}
-
-std::vector<Column> read_columns(const CsvCells& cells, const CsvOptions& options,
-                                 DataFile& reading) {
-  std::vector<Column> columns;
-  for (const std::string& name : cells.header) {
-    Column column;
-    column.reading = read_channel_name(name);
-    if (const auto given = options.roles.find(name); given != options.roles.end()) {
-      column.reading.role = given->second;
-      column.role_given = true;
-    }
-    columns.push_back(std::move(column));
-  }
-  settle_roles(cells, columns, reading);
-  for (std::size_t j = 0; j < columns.size(); ++j) {
-    columns[j].kind = kind_of(cells, j, columns[j].reading);
-  }
-  return columns;
-}
-
-// The first cell of a line that should be a number and is not; the header's size where all are.
 // Text in a column of numbers is never dropped silently: only missing values are.
-std::size_t first_missing(const CsvCells& cells, const CsvLine& line,
-                          const std::vector<Column>& columns, std::string_view file,
-                          std::vector<double>& values) {
-  if (line.blank()) return 0;
-  std::size_t missing = columns.size();
-  for (std::size_t j = 0; j < columns.size(); ++j) {
-    if (columns[j].kind == ColumnKind::movement && line.cells[j].empty()) {
-      missing = std::min(missing, j);
+void check_texts(const Reading& in) {
+  std::size_t first = kNoRow;
+  std::size_t column = 0;
+  for (std::size_t j = 0; j < in.plans.size(); ++j) {
+    const std::size_t row = in.columns.columns[j].first_text;
+    if (in.plans[j].used && row < first) {
+      first = row;
+      column = j;
     }
-    if (columns[j].kind != ColumnKind::number) continue;
-    const CellKind kind = read_cell(line.cells[j], values[j]);
-    if (kind == CellKind::text) {
-      throw_bad_input(cell_complaint(line.cells[j]), csv_place(file, line.number, cells.header[j]),
-                      number_mend(line.cells[j], cells.delimiter));
-    }
-    if (kind == CellKind::missing) missing = std::min(missing, j);
   }
-  return missing;
+  if (first != kNoRow) refuse_cell(in, first, column);
+}
+
+bool is_missing(const Reading& in, std::size_t row, std::size_t j) {
+  const CsvColumn& column = in.columns.columns[j];
+  if (in.plans[j].reading.role == Role::movement) return column.texts[row].empty();
+  return column.kind == ColumnKind::number &&
+         !(std::abs(column.numbers[row]) <= largest_of(in.plans[j]));
+}
+
+void choose_rows(Reading& in, DataFile& out) {
+  check_texts(in);
+  std::vector<std::size_t> looked_at;
+  for (std::size_t j = 0; j < in.plans.size(); ++j) {
+    if (in.plans[j].used && in.plans[j].kind != ColumnKind::unused) looked_at.push_back(j);
+  }
+  in.rows.reserve(in.columns.rows());
+  for (std::size_t row = 0; row < in.columns.rows(); ++row) {
+    const auto missing =
+        std::ranges::find_if(looked_at, [&](std::size_t j) { return is_missing(in, row, j); });
+    if (missing == looked_at.end()) {
+      in.rows.push_back(row);
+    } else if (!in.options.drop_missing) {
+      refuse_cell(in, row, *missing);
+    } else {
+      ++out.dropped_rows;
+    }
+  }
+  if (in.rows.empty()) {
+    throw_bad_input(fmt::format("all {} rows have missing values", out.dropped_rows), in.file,
+                    "remove the column that is empty");
+  }
+}
+
+template <typename Value>
+std::vector<Value> kept(std::vector<Value>& values, const std::vector<std::size_t>& rows) {
+  if (rows.size() == values.size()) return std::move(values);
+  std::vector<Value> some;
+  some.reserve(rows.size());
+  for (const std::size_t row : rows) some.push_back(std::move(values[row]));
+  return some;
 }
 
 // Gives each movement its number; rows of one stand together.
-class MovementCounter {
- public:
-  MovementCounter(Dataset& data, std::string_view file) : data_(data), file_(file) {}
-
-  void add(const std::string& name, std::size_t line) {
-    if (data_.movement_names.empty() || data_.movement_names.back() != name) {
-      if (!seen_.insert(name).second) {
-        throw_bad_input(fmt::format("movement '{}' goes on after another one began", name),
-                        csv_place(file_, line),
+void number_movements(Reading& in, const std::vector<std::string>& names, DataFile& out) {
+  Dataset& data = out.data;
+  std::set<std::string> seen;
+  for (std::size_t r = 0; r < names.size(); ++r) {
+    if (r == 0 || names[r] != data.movement_names.back()) {
+      if (!seen.insert(names[r]).second) {
+        throw_bad_input(fmt::format("movement '{}' goes on after another one began", names[r]),
+                        csv_place(in.file, line_of(in.text, in.columns.places[in.rows[r]])),
                         "rows of one movement stand together: sort the file, or give each "
                         "recording its own name");
       }
-      data_.movement_names.push_back(name);
+      data.movement_names.push_back(names[r]);
     }
-    data_.movement.push_back(static_cast<int>(data_.movement_names.size()) - 1);
+    data.movement.push_back(static_cast<int>(data.movement_names.size()) - 1);
   }
+}
 
- private:
-  Dataset& data_;
-  std::string_view file_;
-  std::set<std::string> seen_;
-};
-
-std::string stem_of(std::string_view file) { return std::filesystem::path(file).stem().string(); }
-
-void fill_rows(const CsvCells& cells, const std::vector<Column>& columns, std::string_view file,
-               const CsvOptions& options, DataFile& reading, std::vector<std::size_t>& kept_lines) {
-  const auto movement = std::find_if(columns.begin(), columns.end(), [](const Column& column) {
-    return column.kind == ColumnKind::movement;
-  });
-  MovementCounter movements(reading.data, file);
-  std::vector<double> values(columns.size());
-  for (const CsvLine& line : cells.lines) {
-    const std::size_t missing = first_missing(cells, line, columns, file, values);
-    if (missing < columns.size()) {
-      if (!options.drop_missing) {
-        const std::string_view cell = line.blank() ? std::string_view() : line.cells[missing];
-        throw_bad_input(cell_complaint(cell), csv_place(file, line.number, cells.header[missing]),
-                        number_mend(cell, cells.delimiter));
-      }
-      ++reading.dropped_rows;
-      continue;
-    }
-    movements.add(movement == columns.end()
-                      ? stem_of(file)
-                      : line.cells[static_cast<std::size_t>(movement - columns.begin())],
-                  line.number);
-    std::size_t channel = 0;
-    std::size_t text = 0;
-    for (std::size_t j = 0; j < columns.size(); ++j) {
-      if (columns[j].kind == ColumnKind::number) {
-        reading.data.channels[channel++].values.push_back(values[j]);
-      } else if (columns[j].kind == ColumnKind::text) {
-        reading.texts[text++].values.push_back(line.cells[j]);
-      }
-    }
-    kept_lines.push_back(line.number);
+void fill_movements(Reading& in, DataFile& out) {
+  for (std::size_t j = 0; j < in.plans.size(); ++j) {
+    if (in.plans[j].reading.role != Role::movement) continue;
+    out.has_movements = true;
+    number_movements(in, kept(in.columns.columns[j].texts, in.rows), out);
+    return;
   }
+  out.data.movement_names = {stem_of(in.file)};
+  out.data.movement.assign(in.rows.size(), 0);
+}
+
+// Nanoseconds of a stamp, to its seconds.
+void add_to_time(const Reading& in, DataFile& out) {
+  const auto part = std::ranges::find_if(in.plans, &ColumnPlan::adds_to_time);
+  if (part == in.plans.end()) return;
+  const auto find = [&](bool seconds) {
+    return std::ranges::find_if(out.data.channels, [&](const Channel& channel) {
+      return channel.role == Role::time && (channel.name == part->reading.column) != seconds;
+    });
+  };
+  const auto seconds = find(true);
+  const auto rest = find(false);
+  for (std::size_t r = 0; r < seconds->values.size(); ++r) seconds->values[r] += rest->values[r];
+  out.data.channels.erase(rest);
+}
+
+void fill_channels(Reading& in, DataFile& out) {
+  for (std::size_t j = 0; j < in.plans.size(); ++j) {
+    ColumnPlan& plan = in.plans[j];
+    CsvColumn& column = in.columns.columns[j];
+    if (plan.reading.role != Role::movement && column.kind == ColumnKind::number) {
+      Channel channel{in.layout.header[j], {}, plan.reading.role, kept(column.numbers, in.rows)};
+      convert(plan, channel.values, in.options.drive, in.file);
+      channel.unit = plan.reading.si;
+      out.data.channels.push_back(std::move(channel));
+    } else if (plan.reading.role != Role::movement && column.kind == ColumnKind::text) {
+      out.texts.push_back({in.layout.header[j], kept(column.texts, in.rows)});
+    }
+    out.readings.push_back(plan.reading);
+  }
+  if (out.data.channels.empty()) {
+    throw_bad_input("no column holds numbers", in.file, "give at least one column of numbers");
+  }
+  add_to_time(in, out);
 }
 
 }  // namespace
 
 DataFile parse_csv(std::string_view text, std::string_view file, const CsvOptions& options) {
-  const CsvCells cells = split_csv(text, file);
-  check_roles_name_columns(cells, options, file);
-  DataFile reading;
-  const std::vector<Column> columns = read_columns(cells, options, reading);
-  reading.data.name = stem_of(file);
-  for (std::size_t j = 0; j < columns.size(); ++j) {
-    if (columns[j].kind == ColumnKind::number) {
-      reading.data.channels.push_back(
-          {cells.header[j], columns[j].reading.unit, columns[j].reading.role, {}});
-    } else if (columns[j].kind == ColumnKind::text) {
-      reading.texts.push_back({cells.header[j], {}});
-    }
+  DataFile out;
+  Reading in{text, file, options, find_layout(text, file), {}, {}, {}};
+  in.plans = plan_columns(in.layout, options, file, out);
+  std::vector<ColumnKind> kinds;
+  for (const ColumnPlan& plan : in.plans) kinds.push_back(plan.kind);
+  in.columns = read_columns(text, file, in.layout, kinds);
+  if (in.columns.rows() == 0) throw_bad_input("there is a header and no row", file, "add rows");
+  for (const auto* notes : {&in.layout.notes, &in.columns.notes}) {
+    out.warnings.insert(out.warnings.end(), notes->begin(), notes->end());
   }
-  if (reading.data.channels.empty()) {
-    throw_bad_input("no column holds numbers", file, "give at least one column of numbers");
-  }
-  std::vector<std::size_t> lines;
-  fill_rows(cells, columns, file, options, reading, lines);
-  if (reading.data.rows() == 0) {
-    throw_bad_input(fmt::format("all {} rows have missing values", reading.dropped_rows), file,
-                    "remove the column that is empty");
-  }
-  check_time(reading, lines, file);
-  demote_current(options, reading);
-  check_torque_units(reading.data, file);
-  return reading;
+  out.data.name = stem_of(file);
+  choose_rows(in, out);
+  fill_movements(in, out);
+  fill_channels(in, out);
+  check_time(
+      out, [&](std::size_t row) { return line_of(text, in.columns.places[in.rows[row]]); }, file);
+  demote_current(options, out);
+  check_torque_units(out.data, file);
+  return out;
 }
 
 DataFile read_csv(const std::filesystem::path& file, const CsvOptions& options) {
-  std::error_code code;
-  if (std::filesystem::is_directory(file, code)) {
-    throw_bad_input("this is a folder", file.string(), "give a CSV file");
-  }
-  return parse_csv(read_file(file), file.string(), options);
+  const std::string text = read_file_text(file);
+  return parse_csv(text, file.string(), options);
 }
 
 namespace {
@@ -277,51 +250,6 @@ DataFile read_csv_files(std::span<const std::filesystem::path> files, const CsvO
     append(all, read_csv(file, options), file.string());
   }
   return all;
-}
-
-namespace {
-
-std::string quoted(const std::string& cell) {
-  if (cell.find_first_of(",;\t\"\n\r") == std::string::npos && !cell.empty() &&
-      cell.front() != ' ' && cell.back() != ' ') {
-    return cell;
-  }
-  std::string text = "\"";
-  for (const char c : cell) {
-    if (c == '"') text += '"';
-    text += c;
-  }
-  return text + '"';
-}
-
-}  // namespace
-
-void write_csv(const Dataset& data, std::ostream& out) {
-  fmt::memory_buffer buffer;
-  buffer.append(std::string_view("movement"));
-  for (const Channel& channel : data.channels) {
-    fmt::format_to(std::back_inserter(buffer), ",{}", quoted(channel.name));
-  }
-  buffer.push_back('\n');
-  for (std::size_t r = 0; r < data.rows(); ++r) {
-    const auto movement = static_cast<std::size_t>(data.movement[r]);
-    buffer.append(std::string_view(quoted(data.movement_names[movement])));
-    for (const Channel& channel : data.channels) {
-      fmt::format_to(std::back_inserter(buffer), ",{}", channel.values[r]);
-    }
-    buffer.push_back('\n');
-  }
-  out.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-}
-
-void write_csv(const Dataset& data, const std::filesystem::path& file) {
-  std::ofstream out(file, std::ios::binary);
-  if (out) write_csv(data, out);
-  out.flush();
-  if (!out) {
-    throw Error(ErrorKind::failed, "cannot write the file", file.string(),
-                "check that the folder exists and is writable");
-  }
 }
 
 }  // namespace tribench

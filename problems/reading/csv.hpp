@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// Data files, in and out. One header line, then numbers; comma, semicolon or tab (whichever the
-// header has most of), quotes, a byte order mark, CRLF and a missing last newline are accepted.
+// Data files, in and out. A line of names, then numbers, as people and robots write it (what is
+// understood: csv_layout.hpp); gzip is unpacked.
 //
 //   movement,time_s,velocity_rad_s,friction_torque_Nm
 //   up slow,0.000,0.31,9.82
 //
-// Roles and units come from the column's name (see channel_names.hpp) unless given. A column named
-// `movement` may hold any text; rows of one movement stand together, and their order is the
-// campaign's. Without one the file is one movement, named after the file. A column that holds no
-// number at all is text: it is kept apart and is no channel.
+// What a column is, and in which unit, comes from the roles that are given, then from a row of
+// units, then from the column's name (channel_names.hpp). A channel with a role is converted to SI
+// (units.hpp) here and nowhere else; one without stays as it is. A column named `movement` may hold
+// any text; rows of one movement stand together, and their order is the campaign's. Without one the
+// file is one movement, named after the file. A column of text is kept apart and is no channel.
 //
-// Missing values: an empty cell, nan, inf, NA. They are an error that names line and column, or
-// the row is dropped and counted. Nothing is interpolated.
+// Missing values: an empty cell, nan, inf, NA, null. In a column that is used they are an error
+// that names line and column, or the row is dropped and counted. Nothing is interpolated.
 //
 // Errors: tribench::Error (bad_input) with file:line:column and the mend. Cost: O(bytes).
 #pragma once
@@ -20,19 +21,27 @@
 #include <cstddef>
 #include <filesystem>
 #include <iosfwd>
-#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "problems/dataset.hpp"
+#include "problems/reading/roles.hpp"
+#include "problems/reading/units.hpp"
 
 namespace tribench {
 
 struct CsvOptions {
-  std::map<std::string, Role, std::less<>> roles;  // by column; wins over the name
+  GivenRoles roles;  // by column; wins over the name
   bool drop_missing = false;
+  bool names_tell = true;  // false: a column is what `roles` says, and nothing else
+  // The columns that are used beside those with a role; without a list all are. What is not used
+  // is not looked at and becomes no channel.
+  std::optional<std::vector<std::string>> used = {};
+  std::optional<int> joint = {};  // of several in the names: q1 ... q7
+  Drive drive = {};
 };
 
 struct TextColumn {
@@ -40,9 +49,27 @@ struct TextColumn {
   std::vector<std::string> values;  // per row of the dataset
 };
 
+// What a column was taken for, and why.
+struct ColumnReading {
+  std::string column;
+  Role role = Role::none;
+  std::string role_from;      // "--roles", "name", "name (libfranka)"; empty without a role
+  std::string unit;           // as the file has it, "rpm@motor"; empty: not known
+  std::string unit_from;      // "--roles", "row of units", "name", "libfranka", "size"; empty
+  std::string si;             // what it became
+  double factor = 1;          // of the conversion
+  bool unit_assumed = false;  // by the name's source alone: to be checked against the data
+  bool unit_asked = false;    // not known, and needed
+  std::string needs;          // what is missing for the conversion: "--counts-per-turn N"
+  std::string remark;
+};
+
 struct DataFile {
   Dataset data;
   std::vector<TextColumn> texts;
+  std::vector<ColumnReading> readings;  // every column of the file, in its order
+  std::vector<int> joints;     // numbers in the names of which one has to be chosen; else empty
+  bool has_movements = false;  // a column tells them
   std::size_t dropped_rows = 0;
   std::vector<std::string> warnings;  // one sentence each
 };

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "problems/reading/csv_layout.hpp"
+
 namespace tribench {
 
 struct CsvLine {
@@ -19,25 +21,29 @@ struct CsvLine {
 struct CsvCells {
   char delimiter = ',';
   std::vector<std::string> header;
-  std::vector<CsvLine> lines;  // as many cells as the header; blank lines have one empty cell
+  std::vector<CsvLine> lines;  // as many cells as the header
 };
 
-// Cells are trimmed; a quoted cell keeps its blanks. Throws Error (bad_input) where the text is
-// empty, binary, ragged, has an open quote, or its header lacks, repeats or numbers the columns.
+// The whole text as cells; for files that are written again. Reading numbers: csv_columns.hpp.
+// Cells are trimmed; a quoted cell keeps its blanks. Throws Error (bad_input) as find_layout does,
+// and where a line is ragged or has an open quote.
 CsvCells split_csv(std::string_view text, std::string_view file);
-
-// "file:line" and "file:line:column name".
-std::string csv_place(std::string_view file, std::size_t line);
-std::string csv_place(std::string_view file, std::size_t line, std::string_view column);
 
 // Fits square and multiply what they are given until larger numbers leave the range of doubles.
 // Nothing measured is as large (nanoseconds since 1970 are 2e18), but markers for missing values
 // are (3.4e38, 1.8e308).
-inline constexpr double kLargestNumber = 1e30;
+inline constexpr double kLargestMeasured = 1e30;
+// Of a quantity in whatever unit: its square and the square's square are still doubles.
+inline constexpr double kLargestNumber = 1e75;
 
 enum class CellKind { number, missing, text };
-// number: a finite one that makes up the whole cell; missing: empty, nan, na, inf in any case and
-// sign, and numbers beyond kLargestNumber.
-CellKind read_cell(std::string_view cell, double& value);
+// number: one that makes up the whole cell, however large; missing: empty, nan, na, null, none,
+// inf in any case and sign. decimal_comma: "1,5" is a number too.
+CellKind read_cell(std::string_view cell, bool decimal_comma, double& value);
+
+// The record at the scanner: `width` cells and a separator at the end at most.
+// Throws Error (bad_input) naming the line where it is ragged.
+void check_width(std::size_t cells, bool last_is_empty, const CsvLayout& layout,
+                 std::string_view file, std::size_t line);
 
 }  // namespace tribench

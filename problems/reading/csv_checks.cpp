@@ -52,13 +52,14 @@ std::string mend_of_time(const DataFile& reading, const Channel& time) {
 // the factor between the two is for the model to find.
 bool is_load_in_own_unit(const Dataset& data, const Channel& channel) {
   const Channel* motor = data.find(Role::motor_torque);
+  if (motor == nullptr) motor = data.find(Role::motor_current);
   return channel.role == Role::gravity_torque && channel.unit.starts_with("N") &&
          motor != nullptr && (motor->unit == "V" || motor->unit == "A");
 }
 
 }  // namespace
 
-void check_time(const DataFile& reading, std::span<const std::size_t> lines,
+void check_time(const DataFile& reading, const std::function<std::size_t(std::size_t)>& line_of,
                 std::string_view file) {
   const Dataset& data = reading.data;
   const Channel* time = data.find(Role::time);
@@ -69,7 +70,7 @@ void check_time(const DataFile& reading, std::span<const std::size_t> lines,
     }
     throw_bad_input(
         fmt::format("time runs back from {} to {}", time->values[r - 1], time->values[r]),
-        csv_place(file, lines[r], time->name), mend_of_time(reading, *time));
+        csv_place(file, line_of(r), time->name), mend_of_time(reading, *time));
   }
 }
 
@@ -77,7 +78,8 @@ void demote_current(const CsvOptions& options, DataFile& reading) {
   for (Channel& current : reading.data.channels) {
     if (current.role != Role::motor_current || options.roles.contains(current.name)) continue;
     for (const Channel& other : reading.data.channels) {
-      if (!is_torque_like(other.role) || other.unit == "-" || other.unit == current.unit) continue;
+      const bool torque = other.role == Role::motor_torque || other.role == Role::friction_torque;
+      if (!torque || other.unit == "-" || other.unit == current.unit) continue;
       current.role = Role::none;
       reading.warnings.push_back(fmt::format("column '{}' is read without a role: '{}' is in {}",
                                              current.name, other.name, other.unit));

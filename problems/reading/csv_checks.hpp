@@ -5,19 +5,20 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
+#include <functional>
 #include <string_view>
 
 #include "problems/reading/csv.hpp"
 
 namespace tribench {
 
-// Throws Error (bad_input) where time runs back within a movement; lines: of the rows in the file.
+// Throws Error (bad_input) where time runs back within a movement; line_of: of a row in the file.
 // Where a column changes whenever time runs back, the mend names it: it names the recordings.
-void check_time(const DataFile& reading, std::span<const std::size_t> lines, std::string_view file);
+void check_time(const DataFile& reading, const std::function<std::size_t(std::size_t)>& line_of,
+                std::string_view file);
 
-// A current beside torques in another unit is what the torques were computed from: it loses the
-// role that only its name gave it.
+// A current beside a motor or friction torque in another unit is what that was computed from: it
+// loses the role that only its name gave it.
 void demote_current(const CsvOptions& options, DataFile& reading);
 
 // Throws Error (bad_input) where torque-like channels differ in unit. A gravity torque may stand

@@ -27,7 +27,10 @@ void read(std::string_view text, bool drop_missing) {
   if (!fuzz::reads([&] { file = parse_csv(text, "data.csv", options); })) return;
   for (const Channel& channel : file.data.channels) {
     fuzz::expect(channel.values.size() == file.data.rows(), "a channel has other rows");
-    options.roles[channel.name] = channel.role;
+    // What was converted is written in SI under its old name.
+    GivenRole role(channel.role);
+    if (channel.role != Role::none) role.unit = find_unit(channel.unit);
+    options.roles[channel.name] = role;
   }
   std::ostringstream written;
   write_csv(file.data, written);

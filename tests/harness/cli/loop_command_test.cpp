@@ -78,7 +78,7 @@ TEST(LoopCommand, bad_input_ends_with_status_2_and_says_how_to_mend_it) {
     return csv({1.0 * m, speed_of(m), friction_of(speed_of(m), m, i)});
   };
   EXPECT_THAT(complaint("movement,speed,friction_torque_Nm", good), HasSubstr("--roles"));
-  EXPECT_THAT(complaint("movement,velocity_rad_s,torque", good), HasSubstr("--roles"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,load_cell", good), HasSubstr("--roles"));
   EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm",
                         [](int m, int i) {
                           return csv({1.0 * m, speed_of(m), -friction_of(speed_of(m), m, i)});

@@ -45,12 +45,61 @@ TEST(ChannelNames, SayRoleAndUnit) {
       {"x1", Role::none, "-"},
       {"", Role::none, "-"},
       {"_s", Role::none, "s"},
+      {"q [deg]", Role::position, "deg"},
+      {"q (deg)", Role::position, "deg"},
+      {"q[\xC2\xB0]", Role::position, "deg"},
+      {"posDeg", Role::position, "deg"},
+      {"i_mA", Role::motor_current, "mA"},
+      {"Motor Current (mA)", Role::motor_current, "mA"},
+      {"vel_dps", Role::velocity, "deg/s"},
+      {"motor_speed_rpm", Role::velocity, "rpm"},
+      {"pos", Role::position, "-"},
+      {"cur", Role::motor_current, "-"},
+      {"stamp", Role::time, "-"},
+      {"effort", Role::motor_torque, "N m"},
+      {"tau_J[2]", Role::motor_torque, "N m"},
+      {"AIPos.A2", Role::position, "deg"},
+      {"header.stamp.nanosec", Role::time, "ns"},
+      {"servo_speed_rad_s", Role::none, "rad/s"},
+      {"set_speed_rpm", Role::none, "rpm"},
+      {"desired_current_A", Role::none, "A"},
+      {"rigid_current_A", Role::none, "A"},
+      {"torque_enabled", Role::none, "-"},
   };
   for (const Case& c : cases) {
     const NameReading reading = read_channel_name(c.name);
     EXPECT_EQ(reading.role, c.role) << c.name;
     EXPECT_EQ(reading.unit, c.unit) << c.name;
   }
+}
+
+TEST(ChannelNames, say_the_joint_and_the_side_of_the_gear) {
+  EXPECT_EQ(read_channel_name("q3").joint, 3);
+  EXPECT_EQ(read_channel_name("position[0]").joint, 0);
+  EXPECT_EQ(read_channel_name("joint_2_current_A").joint, 2);
+  EXPECT_FALSE(read_channel_name("v2").joint);  // the other joint's velocity
+  EXPECT_TRUE(read_channel_name("motor_speed_rpm").at_motor);
+  EXPECT_FALSE(read_channel_name("velocity_rad_s").at_motor);
+}
+
+TEST(ChannelNames, every_alias_is_read_as_itself) {
+  for (const ChannelAlias& alias : channel_aliases()) {
+    const NameReading reading = read_channel_name(alias.name);
+    EXPECT_EQ(reading.role, alias.role) << alias.name;
+    EXPECT_EQ(reading.unit, alias.unit.empty() ? "-" : alias.unit) << alias.name;
+    EXPECT_EQ(reading.doubt, 0) << alias.name;
+  }
+}
+
+TEST(Units, spellings_are_one_unit_and_strangers_none) {
+  for (const char* text : {"deg/s", "Deg/s", "dps", "\xC2\xB0/s", "deg s^-1", "deg\xC2\xB7s-1"}) {
+    ASSERT_NE(find_unit(text), nullptr) << text;
+    EXPECT_EQ(find_unit(text)->symbol, "deg/s") << text;
+  }
+  EXPECT_EQ(find_unit("mNm")->symbol, "mN m");
+  EXPECT_EQ(find_unit("N.m")->symbol, "N m");
+  EXPECT_EQ(find_unit("mA")->symbol, "mA");
+  for (const char* text : {"", "foo", "furlong", "q", "x/s"}) EXPECT_EQ(find_unit(text), nullptr);
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "harness/cli/data_options.hpp"
+
+#include <string>
+#include <vector>
+
+#include "foundation/error.hpp"
+#include "harness/cli/number_options.hpp"
+
+namespace tribench {
+
+CLI::Option* add_data_options(CLI::App& command, std::shared_ptr<DataOptions> options) {
+  command.add_option_function<std::vector<std::string>>(
+      "--roles",
+      [options](const std::vector<std::string>& texts) {
+        for (const std::string& text : texts) {
+          for (const auto& [column, role] : parse_roles(text, "--roles")) {
+            if (!options->roles.emplace(column, role).second) {
+              throw_bad_input("column '" + column + "' is given two roles", "--roles",
+                              "give it one");
+            }
+          }
+        }
+      },
+      "COLUMN=ROLE[UNIT],... what a column is: q=position[deg], w=velocity[rpm@motor], "
+      "i=motor_current[mA], stamp=time[ns]; without [UNIT] as the header says, else SI");
+  command
+      .add_option("--joint", options->joint, "of several joints in the columns' names (q1 ... q7)")
+      ->transform(whole_number(0, 999));
+  command.add_option("--where", options->where, "COLUMN=NUMBER: use these rows only");
+  command.add_flag("--drop-missing", options->drop_missing, "drop and count incomplete rows");
+  command.add_flag("--flip-sign", options->flip_sign, "the file's torques oppose the velocity");
+  command
+      .add_option("--counts-per-turn", options->drive.counts_per_turn,
+                  "of an encoder that is read in counts, after quadrature")
+      ->transform(real_number(0, 1e12, LowEnd::above));
+  command.add_option_function<std::string>(
+      "--torque-constant",
+      [options](const std::string& text) {
+        options->torque_constant = parse_torque_constant(text, "--torque-constant");
+      },
+      "K: torque from current, in N m/A at the joint; K@motor: at the motor, times --gear-ratio");
+  return command
+      .add_option("--gear-ratio", options->drive.gear_ratio, "motor turns per turn of the joint")
+      ->transform(real_number(0, 1e6, LowEnd::above));
+}
+
+}  // namespace tribench

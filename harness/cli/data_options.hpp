@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+//
+// The options by which a command is told what a data file means: the same words everywhere.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "problems/preparation/data_options.hpp"
+
+namespace tribench {
+
+// Adds --roles, --joint, --where, --drop-missing, --flip-sign, --counts-per-turn, --gear-ratio and
+// --torque-constant; what is given is in the options when the command's callback runs.
+// The options must live as long as the command. Returns the option --gear-ratio.
+CLI::Option* add_data_options(CLI::App& command, std::shared_ptr<DataOptions> options);
+
+}  // namespace tribench

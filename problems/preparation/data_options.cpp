@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "problems/preparation/data_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "foundation/error.hpp"
+#include "problems/data_problem.hpp"
+#include "problems/reading/csv_cells.hpp"
+#include "problems/table.hpp"
+
+namespace tribench {
+namespace {
+
+std::optional<double> number_of(std::string_view text) {
+  double value = 0;
+  if (read_cell(text, false, value) != CellKind::number || !std::isfinite(value)) return {};
+  return value;
+}
+
+struct Condition {
+  std::string column;
+  double value = 0;
+};
+
+Condition parse_condition(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw_bad_input(fmt::format("'{}' is no COLUMN=NUMBER", text), "--where");
+  }
+  const std::optional<double> value = number_of(text.substr(equals + 1));
+  if (!value) {
+    throw_bad_input(fmt::format("'{}' is no number", text.substr(equals + 1)), "--where",
+                    "write COLUMN=NUMBER");
+  }
+  return {text.substr(0, equals), *value};
+}
+
+template <typename Values>
+void keep(Values& values, const std::vector<std::size_t>& rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) values[i] = std::move(values[rows[i]]);
+  values.resize(rows.size());
+}
+
+void keep_rows_where(DataFile& file, const Condition& condition) {
+  const std::vector<double>& column = file.data.at(condition.column).values;
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    if (column[i] == condition.value) rows.push_back(i);
+  }
+  if (rows.empty()) {
+    throw_bad_input("no row is left",
+                    fmt::format("--where {}={}", condition.column, condition.value));
+  }
+  for (Channel& channel : file.data.channels) keep(channel.values, rows);
+  for (TextColumn& text : file.texts) keep(text.values, rows);
+  keep(file.data.movement, rows);
+}
+
+}  // namespace
+
+TorqueConstant parse_torque_constant(const std::string& text, const std::string& place) {
+  TorqueConstant constant;
+  std::string_view number = text;
+  constexpr std::string_view kMotor = "@motor";
+  if (number.ends_with(kMotor)) {
+    constant.at_motor = true;
+    number.remove_suffix(kMotor.size());
+  }
+  const std::optional<double> value = number_of(number);
+  if (!value || !(*value > 0)) {
+    throw_bad_input(fmt::format("'{}' is no torque constant", text), place,
+                    "write N m/A at the joint, or K@motor beside --gear-ratio; a negative one is "
+                    "--flip-sign");
+  }
+  constant.value = *value;
+  return constant;
+}
+
+DataFile read_data(std::span<const std::filesystem::path> files, const DataOptions& options,
+                   std::optional<std::vector<std::string>> used) {
+  std::optional<Condition> condition;
+  if (!options.where.empty()) condition = parse_condition(options.where);
+  if (condition && used) used->push_back(condition->column);
+  CsvOptions csv{options.roles,   options.drop_missing, options.names_tell,
+                 std::move(used), options.joint,        options.drive};
+  DataFile file = read_csv_files(files, csv);
+  if (condition) keep_rows_where(file, *condition);
+  if (options.flip_sign) flip_torques(file.data);
+  return file;
+}
+
+}  // namespace tribench

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include "problems/preparation/motion_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "foundation/elementary.hpp"
+#include "foundation/error.hpp"
+#include "problems/preparation/segments.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kTurn = 2 * std::numbers::pi;
+
+constexpr double kGood = 0.15;          // of the slope's logarithm: the same motion
+constexpr double kSameFactor = 0.08;    // a known factor explains the slope
+constexpr double kTellsMotion = 0.9;    // correlation from which the slope says something
+constexpr double kMostTurns = 2;        // of a joint, either way together
+constexpr double kLongestStep = 0.5;    // s
+constexpr double kShortestStep = 1e-5;  // s
+
+const ColumnReading* reading_of(const DataFile& file, Role role) {
+  const auto found = std::ranges::find(file.readings, role, &ColumnReading::role);
+  return found == file.readings.end() ? nullptr : &*found;
+}
+
+// A factor that a wrong unit makes, and the mend for the column it belongs to.
+struct Suspect {
+  double factor;  // of (change of position) / (integral of velocity)
+  Role role;
+  std::string unit;
+};
+
+std::vector<Suspect> suspects(std::optional<double> gear_ratio) {
+  std::vector<Suspect> list = {{kDegrees, Role::position, "deg"},
+                               {1 / kDegrees, Role::velocity, "deg/s"},
+                               {kTurn, Role::velocity, "rev/s"},
+                               {1 / kTurn, Role::position, "rev"},
+                               {kTurn / 60, Role::velocity, "rpm"},
+                               {1e-3, Role::time, "ms"},
+                               {1e-6, Role::time, "us"},
+                               {1e-9, Role::time, "ns"},
+                               {1e3, Role::position, "mm or mrad"},
+                               {1e-3, Role::velocity, "mm/s or mrad/s"},
+                               {4, Role::position, "counts, after quadrature"},
+                               {0.25, Role::position, "counts, before quadrature"}};
+  if (gear_ratio) {
+    const double n = *gear_ratio;
+    list.push_back({n, Role::position, "rad@motor"});
+    list.push_back({1 / n, Role::velocity, "rad/s@motor"});
+    list.push_back({kTurn / 60 / n, Role::velocity, "rpm@motor"});
+    list.push_back({1 / n / kDegrees, Role::velocity, "deg/s@motor"});
+    list.push_back({n * kDegrees, Role::position, "deg@motor"});
+  }
+  return list;
+}
+
+std::string mend_for(const DataFile& file, const Suspect& suspect) {
+  const ColumnReading* reading = reading_of(file, suspect.role);
+  const bool plain = suspect.unit.find(' ') == std::string::npos;
+  if (reading == nullptr) return "check the units";
+  return plain ? fmt::format("say --roles '{}={}[{}]'", reading->column, role_name(suspect.role),
+                             suspect.unit)
+               : fmt::format("check the {}: {}", role_name(suspect.role), suspect.unit);
+}
+
+// The factor nearest to the slope; of two as near the one whose unit was only assumed.
+const Suspect* find_suspect(const DataFile& file, const std::vector<Suspect>& list, double slope) {
+  constexpr double kAsNear = 0.02;
+  const Suspect* found = nullptr;
+  double nearest = kSameFactor;
+  bool assumed = false;
+  for (const Suspect& one : list) {
+    const ColumnReading* reading = reading_of(file, one.role);
+    if (reading == nullptr) continue;
+    const double away = std::abs(elementary::log(std::abs(slope) / one.factor));
+    const bool better = reading->unit_assumed && !assumed
+                            ? away < nearest + kAsNear
+                            : away < nearest - kAsNear || (found == nullptr && away < nearest);
+    const bool nearer = reading->unit_assumed == assumed && away < nearest;
+    if (away > kSameFactor || !(better || nearer)) continue;
+    found = &one;
+    nearest = away;
+    assumed = reading->unit_assumed;
+  }
+  return found;
+}
+
+void check_match(const DataFile& file, const MotionMatch& match, std::optional<double> gear_ratio) {
+  if (std::abs(match.agreement) < kTellsMotion) return;
+  const std::string& velocity = reading_of(file, Role::velocity)->column;
+  const std::string& position = reading_of(file, Role::position)->column;
+  if (match.slope > 0 && std::abs(elementary::log(match.slope)) < kGood) return;
+  const std::string what = fmt::format("'{}' changes {:.4g} times as fast as '{}' says", position,
+                                       match.slope, velocity);
+  if (match.slope < 0 && std::abs(elementary::log(-match.slope)) < kGood) {
+    throw_bad_input(what, file.data.name,
+                    fmt::format("one of the two has its sign turned: turn it in the file (and the "
+                                "torque's with --flip-sign, where '{}' is wrong)",
+                                velocity));
+  }
+  const std::vector<Suspect> list = suspects(gear_ratio);
+  const Suspect* suspect = find_suspect(file, list, match.slope);
+  throw_bad_input(what, file.data.name,
+                  suspect != nullptr ? mend_for(file, *suspect)
+                                     : "check the units of position, velocity and time (--roles "
+                                       "COLUMN=ROLE[UNIT]), --counts-per-turn and --gear-ratio");
+}
+
+// What was taken for SI because its name's source always uses SI, and cannot be.
+void check_assumed(const DataFile& file) {
+  const ColumnReading* position = reading_of(file, Role::position);
+  const Channel* q = file.data.find(Role::position);
+  const bool in_counts =
+      position != nullptr && position->unit == "counts" && position->unit_from != "--roles";
+  if (q != nullptr && q->unit == "rad" && (in_counts || position->unit_assumed)) {
+    const auto [low, high] = std::ranges::minmax(q->values);
+    if (in_counts && high - low > kMostTurns * kTurn) {
+      throw_bad_input(
+          fmt::format("'{}' ranges over {:.3g} turns: nothing says on which side of the gear",
+                      position->column, (high - low) / kTurn),
+          file.data.name,
+          fmt::format("say --roles '{0}=position[counts@motor]' with --gear-ratio, or "
+                      "'{0}=position[counts]' if it is the joint",
+                      position->column));
+    }
+    if (high - low > kMostTurns * kTurn) {
+      throw_bad_input(
+          fmt::format("'{}' ranges over {:.4g} rad, {:.3g} turns: its unit was only assumed",
+                      position->column, high - low, (high - low) / kTurn),
+          file.data.name,
+          fmt::format("say it: --roles '{0}=position[deg]', or '{0}=position[rad]' if it is so",
+                      position->column));
+    }
+  }
+  const ColumnReading* time = reading_of(file, Role::time);
+  const Channel* t = file.data.find(Role::time);
+  if (time == nullptr || !time->unit_assumed || t == nullptr) return;
+  const double step = median_step(t->values, file.data.movement);
+  const bool derives = file.data.find(Role::velocity) == nullptr;
+  if (derives && step > 0 && (step > kLongestStep || step < kShortestStep)) {
+    throw_bad_input(
+        fmt::format("'{}' steps by {:.4g} s: its unit was only assumed", time->column, step),
+        file.data.name,
+        fmt::format("say it: --roles '{0}=time[ms]', or '{0}=time[s]' if it is so", time->column));
+  }
+}
+
+}  // namespace
+
+MotionMatch match_motion(std::span<const double> time, std::span<const double> position,
+                         std::span<const double> velocity, std::span<const RowRange> pieces) {
+  double qq = 0;
+  double vv = 0;
+  double qv = 0;
+  // Over a tenth of a second or so: an encoder's count is small beside it.
+  for (const RowRange& piece : pieces) {
+    const double span = time[piece.end - 1] - time[piece.begin];
+    const auto rows = static_cast<double>(piece.end - piece.begin);
+    const auto stride =
+        std::clamp<std::size_t>(static_cast<std::size_t>(span > 0 ? 0.1 * rows / span : 1), 1,
+                                std::max<std::size_t>((piece.end - piece.begin) / 8, 1));
+    for (std::size_t i = piece.begin; i + stride < piece.end; i += stride) {
+      double path = 0;
+      for (std::size_t k = i; k < i + stride; ++k) {
+        path += 0.5 * (velocity[k] + velocity[k + 1]) * (time[k + 1] - time[k]);
+      }
+      const double dq = position[i + stride] - position[i];
+      qq += dq * dq;
+      vv += path * path;
+      qv += dq * path;
+    }
+  }
+  if (qq <= 0 || vv <= 0) return {1, 0};
+  // Of the two slopes the one that noise in neither pulls to 0: their geometric mean.
+  return {std::copysign(std::sqrt(qq / vv), qv), qv / std::sqrt(qq * vv)};
+}
+
+void check_motion(const DataFile& file, std::optional<double> gear_ratio) {
+  const Channel* q = file.data.find(Role::position);
+  const Channel* v = file.data.find(Role::velocity);
+  const Channel* t = file.data.find(Role::time);
+  if (q != nullptr && v != nullptr && t != nullptr) {
+    const std::vector<RowRange> pieces = pieces_of(t->values, file.data.movement, {});
+    check_match(file, match_motion(t->values, q->values, v->values, pieces), gear_ratio);
+  }
+  check_assumed(file);
+}
+
+std::optional<double> delay_of(std::span<const double> time,
+                               std::span<const double> velocity_of_position,
+                               std::span<const double> velocity, std::span<const RowRange> pieces) {
+  constexpr double kLongest = 0.1;  // s
+  std::vector<double> errors;
+  double step = 0;
+  std::size_t most = 0;
+  for (const RowRange& piece : pieces) {
+    if (piece.end - piece.begin < 50) continue;
+    const double one = (time[piece.end - 1] - time[piece.begin]) /
+                       static_cast<double>(piece.end - piece.begin - 1);
+    if (step == 0) {
+      step = one;
+      most = std::min<std::size_t>(static_cast<std::size_t>(kLongest / std::max(one, 1e-6)), 100);
+      errors.assign(2 * most + 1, 0.0);
+    }
+    const std::size_t stride = std::max<std::size_t>(1, (piece.end - piece.begin) / 20'000);
+    for (std::size_t i = piece.begin + most; i + most < piece.end; i += stride) {
+      for (std::size_t k = 0; k <= 2 * most; ++k) {
+        const double e = velocity[i + k - most] - velocity_of_position[i];
+        errors[k] += e * e;
+      }
+    }
+  }
+  if (errors.size() < 3) return {};
+  const auto best = static_cast<std::size_t>(std::ranges::min_element(errors) - errors.begin());
+  if (best == 0 || best + 1 == errors.size()) return {};
+  // Where the shift hardly matters there is nothing to be told.
+  if (errors[best] > 0.8 * std::max(errors.front(), errors.back())) return {};
+  const double bend = errors[best - 1] - 2 * errors[best] + errors[best + 1];
+  const double part = bend > 0 ? 0.5 * (errors[best - 1] - errors[best + 1]) / bend : 0;
+  return step * (static_cast<double>(best) - static_cast<double>(most) + part);
+}
+
+}  // namespace tribench

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+//
+// Whether the story that position, velocity and time tell together is possible. Where one factor
+// (degrees for radians, milliseconds for seconds, rpm, the gear ratio, a sign) explains why not,
+// the recording is refused and the factor named; nothing is corrected silently.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "problems/preparation/motion_smoother.hpp"
+#include "problems/reading/csv.hpp"
+
+namespace tribench {
+
+// How the position's change goes with the velocity's integral, row by row: 1 where both tell the
+// same motion. `agreement` is their correlation.
+struct MotionMatch {
+  double slope = 1;
+  double agreement = 0;
+};
+MotionMatch match_motion(std::span<const double> time, std::span<const double> position,
+                         std::span<const double> velocity, std::span<const RowRange> pieces);
+
+// Throws Error (bad_input) where velocity and position disagree, or where a unit that was only
+// assumed makes the motion absurd (a joint that turns many times over, steps of seconds).
+void check_motion(const DataFile& file, std::optional<double> gear_ratio);
+
+// By how much the velocity lags behind the position's own (s; negative: it leads); nothing where
+// the rows do not tell. velocity_of_position: zero-phase.
+std::optional<double> delay_of(std::span<const double> time,
+                               std::span<const double> velocity_of_position,
+                               std::span<const double> velocity, std::span<const RowRange> pieces);
+
+}  // namespace tribench

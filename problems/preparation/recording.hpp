@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+//
+// From a file as it was read to a recording that a diagnosis can look at: torque from current,
+// velocity and acceleration from position, strokes for movements, rows that say nothing left out,
+// gravity that nobody declared. What was done is said, with the figures; what cannot be true is
+// refused with the mend.
+//
+// A file that has its movements, its velocity and its acceleration comes out as it went in, but for
+// rows at a limit of the amplifier.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "problems/preparation/data_options.hpp"
+
+namespace tribench {
+
+enum class Gravity {
+  automatic,  // fitted where it explains much and no column declares it
+  fit,        // sin q and cos q join the base, whatever they explain
+  none,       // there is none, or the columns declare it
+};
+
+struct PreparedRecording {
+  Dataset data;
+  std::vector<std::string> rigid;  // channels whose coefficients are fitted with the base
+  bool derived_velocity = false;   // from the position, in place of a column or of none
+  std::vector<std::string> notes;  // what was done, one sentence each
+};
+
+// Throws Error (bad_input): all that is missing at once, a story that is not possible, two
+// quantities of different units where one would have to be subtracted from the other.
+PreparedRecording prepare(DataFile file, const DataOptions& options,
+                          Gravity gravity = Gravity::automatic);
+
+}  // namespace tribench

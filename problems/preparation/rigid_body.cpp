@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "problems/preparation/rigid_body.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "foundation/elementary.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr std::size_t kRows = 20'000;  // that take part, evenly spaced
+constexpr std::size_t kFewest = 100;
+constexpr double kLeastRange = 0.3;  // rad: less does not tell gravity from an offset
+constexpr int kRounds = 4;
+// Neighbouring rows repeat one another: of this many only one is new to the standard errors.
+constexpr double kRowsThatAgree = 20;
+
+struct Fit {
+  Eigen::VectorXd coefficients;
+  Eigen::VectorXd errors;
+  double squares = 0;
+};
+
+Fit least_squares(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
+  Fit fit;
+  const Eigen::VectorXd scale = x.colwise().norm().cwiseMax(1e-300);
+  const Eigen::MatrixXd scaled = x * scale.cwiseInverse().asDiagonal();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
+  fit.coefficients = qr.solve(y).cwiseQuotient(scale);
+  fit.squares = (y - x * fit.coefficients).squaredNorm();
+  const auto free = static_cast<double>(std::max<Eigen::Index>(x.rows() - x.cols(), 1));
+  const Eigen::MatrixXd gram = scaled.transpose() * scaled;
+  const Eigen::MatrixXd ridge = gram + 1e-12 * Eigen::MatrixXd::Identity(gram.rows(), gram.cols());
+  const Eigen::VectorXd variance = ridge.inverse().diagonal() * fit.squares / free;
+  fit.errors = (kRowsThatAgree * variance).cwiseMax(0).cwiseSqrt().cwiseQuotient(scale);
+  return fit;
+}
+
+const Channel* torque_of(const Dataset& data) {
+  if (const Channel* torque = data.find(Role::motor_torque)) return torque;
+  return data.find(Role::motor_current);
+}
+
+// sgn v, v, 1, |v| and, where there is one, the acceleration; then `more` columns left free.
+struct Rows {
+  Eigen::MatrixXd x;
+  Eigen::VectorXd y;
+  Eigen::Index base = 0;  // columns before `more`
+  std::vector<std::size_t> places;
+  double speed = 0;  // typical
+};
+
+Rows rows_of(const Dataset& data, const Channel& torque, Eigen::Index more) {
+  const std::vector<double>& v = data.find(Role::velocity)->values;
+  const Channel* a = data.find(Role::acceleration);
+  const std::size_t step = std::max<std::size_t>(1, data.rows() / kRows);
+  Rows rows;
+  for (std::size_t i = 0; i < data.rows(); i += step) {
+    if (v[i] != 0) rows.places.push_back(i);
+  }
+  const auto n = static_cast<Eigen::Index>(rows.places.size());
+  rows.base = a != nullptr ? 5 : 4;
+  rows.x.resize(n, rows.base + more);
+  rows.y.resize(n);
+  for (Eigen::Index r = 0; r < n; ++r) {
+    const std::size_t i = rows.places[static_cast<std::size_t>(r)];
+    rows.x(r, 0) = v[i] > 0 ? 1 : -1;
+    rows.x(r, 1) = v[i];
+    rows.x(r, 2) = 1;
+    rows.x(r, 3) = std::abs(v[i]);
+    if (a != nullptr) rows.x(r, 4) = a->values[i];
+    rows.y(r) = torque.values[i];
+    rows.speed += std::abs(v[i]) / static_cast<double>(n);
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::optional<RigidBody> fit_rigid_body(const Dataset& data) {
+  const Channel* torque = torque_of(data);
+  const Channel* q = data.find(Role::position);
+  if (torque == nullptr || q == nullptr || q->unit != "rad" || !data.find(Role::velocity)) {
+    return {};
+  }
+  const auto [low, high] = std::ranges::minmax(q->values);
+  if (high - low < kLeastRange) return {};
+  Rows rows = rows_of(data, *torque, 3);
+  if (rows.places.size() < kFewest) return {};
+  const Eigen::Index n = rows.x.rows();
+  for (Eigen::Index r = 0; r < n; ++r) {
+    const double angle = q->values[rows.places[static_cast<std::size_t>(r)]];
+    rows.x(r, rows.base) = elementary::sin(angle);
+    rows.x(r, rows.base + 1) = elementary::cos(angle);
+  }
+  const Fit without = least_squares(rows.x.leftCols(rows.base), rows.y);
+  Fit with = least_squares(rows.x.leftCols(rows.base + 2), rows.y);
+  // Friction that grows with the load leans on gravity: it is fitted beside it, the load taken
+  // from the fit before.
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::VectorXd load =
+        rows.x.middleCols(rows.base, 2) * with.coefficients.segment(rows.base, 2);
+    rows.x.col(rows.base + 2) = rows.x.col(0).cwiseProduct(load.cwiseAbs());
+    with = least_squares(rows.x, rows.y);
+  }
+  RigidBody body;
+  body.sine = with.coefficients(rows.base);
+  body.cosine = with.coefficients(rows.base + 1);
+  body.explained = without.squares > 0 ? 1 - with.squares / without.squares : 0;
+  body.certainty = std::hypot(body.sine, body.cosine) /
+                   std::hypot(with.errors(rows.base), with.errors(rows.base + 1));
+  body.friction = with.coefficients(0) + with.coefficients(1) * rows.speed;
+  body.friction_error = with.errors(0) + with.errors(1) * rows.speed;
+  return body;
+}
+
+std::optional<GravityFactor> gravity_factor(const Dataset& data) {
+  const Channel* torque = torque_of(data);
+  const Channel* gravity = data.find(Role::gravity_torque);
+  if (torque == nullptr || gravity == nullptr || !data.find(Role::velocity)) return {};
+  Rows rows = rows_of(data, *torque, 1);
+  if (rows.places.size() < kFewest) return {};
+  for (Eigen::Index r = 0; r < rows.x.rows(); ++r) {
+    rows.x(r, rows.base) = gravity->values[rows.places[static_cast<std::size_t>(r)]];
+  }
+  const Fit fit = least_squares(rows.x, rows.y);
+  return GravityFactor{fit.coefficients(rows.base), fit.errors(rows.base)};
+}
+
+}  // namespace tribench

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+//
+// The rigid body in a motor torque or current: inertia times acceleration, and gravity of one
+// joint, A sin q + B cos q, where no column declares it. Fitted beside Coulomb and viscous
+// friction, which are not returned: the diagnosis has its own.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "problems/dataset.hpp"
+
+namespace tribench {
+
+struct RigidBody {
+  double sine = 0;  // coefficients of sin q and cos q, in the torque's unit
+  double cosine = 0;
+  double explained = 0;  // share of what friction and inertia leave that gravity takes
+  double certainty = 0;  // amplitude over its standard error
+  double friction = 0;   // at the typical speed, with its sign: negative opposes convention
+  double friction_error = 0;
+};
+
+// Needs an angle, a velocity and a torque (motor_torque or motor_current); acceleration where there
+// is one. Nothing where one of them is missing or rows are too few to tell.
+std::optional<RigidBody> fit_rigid_body(const Dataset& data);
+
+// The factor by which a declared gravity torque goes into the motor torque: 1 where both have one
+// unit and one sign; its standard error. Nothing where gravity hardly varies.
+struct GravityFactor {
+  double value = 1;
+  double error = 0;
+};
+std::optional<GravityFactor> gravity_factor(const Dataset& data);
+
+}  // namespace tribench

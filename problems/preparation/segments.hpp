@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+//
+// Where a recording hangs together and where it does not: pieces without a gap in time, rows in
+// which a bus repeated itself, strokes of motion between rests and reversals, currents at a limit.
+// Speeds here are looked at in the units they come in; nothing is changed.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "problems/dataset.hpp"
+#include "problems/preparation/motion_smoother.hpp"
+
+namespace tribench {
+
+// The step of time that half the rows keep; 0 where there are none.
+double median_step(std::span<const double> time, std::span<const int> movement);
+
+// At least 80 % of the steps within half of the median, and the median is short enough (0.1 s) to
+// follow a motion: its derivatives can be taken.
+bool is_regular(std::span<const double> time, std::span<const int> movement);
+
+// Rows of one movement without a gap of more than five steps; `left_out` rows belong to none.
+std::vector<RowRange> pieces_of(std::span<const double> time, std::span<const int> movement,
+                                std::span<const char> left_out);
+
+// Rows in which a channel that is noisy (`noisy`) repeats its value for five rows and more while
+// `position` does so too and moved before and after: the bus repeated its last message.
+std::vector<char> repeated_rows(std::span<const double> position, std::span<const double> noisy);
+
+// Rows at the largest or the smallest value, where more rows stand on it than in the whole band of
+// 2 % of the range beside it: the amplifier's limit. All 0 where there is none.
+std::vector<char> clipped_rows(std::span<const double> values);
+
+// Motion without a rest: from standstill or a reversal to the next. `noise`: of the velocity.
+// Strokes shorter than `fewest` rows are none.
+struct Strokes {
+  std::vector<RowRange> strokes;
+  std::size_t resting = 0;  // rows at rest
+  std::size_t reversals = 0;
+  std::size_t rests = 0;
+};
+Strokes strokes_of(std::span<const double> time, std::span<const double> velocity,
+                   std::span<const RowRange> pieces, double noise, std::size_t fewest);
+
+}  // namespace tribench

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: MIT
+#include "problems/reading/column_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
+#include "problems/reading/channel_names.hpp"
+
+namespace tribench {
+namespace {
+
+void check_named(std::string_view column, std::string_view what, const CsvLayout& layout,
+                 std::string_view file) {
+  if (std::ranges::find(layout.header, column) != layout.header.end()) return;
+  constexpr std::string_view kSign = "sgn_";
+  if (column.starts_with(kSign) &&
+      std::ranges::find(layout.header, column.substr(kSign.size())) != layout.header.end()) {
+    return;  // derived
+  }
+  const std::size_t shown = std::min<std::size_t>(layout.header.size(), 40);
+  const auto end = layout.header.begin() + static_cast<std::ptrdiff_t>(shown);
+  throw_bad_input(
+      fmt::format("{} '{}', which is not there", what, column), file,
+      did_you_mean(column, layout.header,
+                   fmt::format("columns: {}{}", fmt::join(layout.header.begin(), end, ", "),
+                               shown < layout.header.size() ? ", ..." : "")));
+}
+
+bool needs_unit(Role role) {
+  return role == Role::position || role == Role::velocity || role == Role::acceleration ||
+         role == Role::time || role == Role::motor_current || role == Role::other_velocity ||
+         role == Role::other_acceleration;
+}
+
+// What a role given without a unit is in.
+const Unit* si_unit(Role role) {
+  switch (role) {
+    case Role::position:
+      return find_unit("rad");
+    case Role::velocity:
+    case Role::other_velocity:
+      return find_unit("rad/s");
+    case Role::acceleration:
+    case Role::other_acceleration:
+      return find_unit("rad/s^2");
+    case Role::time:
+      return find_unit("s");
+    case Role::motor_current:
+      return find_unit("A");
+    case Role::temperature:
+      return find_unit("degC");
+    default:
+      return nullptr;
+  }
+}
+
+const Unit* unit_in_row(const CsvLayout& layout, std::size_t column, Role role) {
+  if (layout.units.empty() || layout.units[column].empty()) return nullptr;
+  const Unit* unit = find_unit(layout.units[column]);
+  return unit != nullptr && suits(*unit, role) ? unit : nullptr;
+}
+
+void take_unit(ColumnPlan& plan, const Unit* unit, std::string_view from) {
+  plan.unit = unit;
+  plan.reading.unit = std::string(unit->symbol) + (plan.at_motor ? "@motor" : "");
+  plan.reading.unit_from = std::string(from);
+}
+
+ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions& options,
+                       std::string_view file) {
+  const std::string& name = layout.header[j];
+  ColumnPlan plan;
+  plan.reading.column = name;
+  NameReading heard;
+  if (options.names_tell) heard = read_channel_name(name);
+  plan.reading.role = heard.role;
+  plan.doubt = heard.doubt;
+  plan.at_motor = heard.at_motor;
+  if (heard.role != Role::none) {
+    plan.reading.role_from = fmt::format("name ({})", heard.source);
+    if (heard.source.empty()) plan.reading.role_from = "name";
+  }
+  const auto given = options.roles.find(name);
+  if (given != options.roles.end()) {
+    plan.role_given = true;
+    plan.reading.role = given->second.role;
+    plan.reading.role_from = "--roles";
+    plan.at_motor = given->second.at_motor;
+    plan.doubt = 0;
+    // What is written in the name counts whatever else the name says.
+    if (!options.names_tell) heard = read_channel_name(name);
+    if (heard.known_unit != nullptr && !suits(*heard.known_unit, plan.reading.role)) heard = {};
+  }
+  const Role role = plan.reading.role;
+  if (given != options.roles.end() && given->second.unit != nullptr) {
+    take_unit(plan, given->second.unit, "--roles");
+  } else if (const Unit* row = unit_in_row(layout, j, role)) {
+    take_unit(plan, row, "row of units");
+  } else if (heard.unit_written) {
+    take_unit(plan, heard.known_unit, "name");
+  } else if (!heard.unknown_unit.empty() && needs_unit(role)) {
+    throw_bad_input(fmt::format("'{}' is no unit of a {}", heard.unknown_unit, role_name(role)),
+                    fmt::format("{}, column '{}'", file, name),
+                    fmt::format("say it with --roles '{}={}[UNIT]'; known: {}", name,
+                                role_name(role), units_of(role)));
+  } else if (heard.known_unit != nullptr && role != Role::none && !plan.role_given) {
+    take_unit(plan, heard.known_unit, heard.source);
+    plan.reading.unit_assumed = true;
+  } else if (plan.role_given && si_unit(role) != nullptr) {
+    take_unit(plan, si_unit(role), "--roles without a unit");
+    plan.reading.unit_assumed = true;
+  } else {
+    plan.reading.unit_asked = needs_unit(role);
+  }
+  return plan;
+}
+
+void lose_role(ColumnPlan& plan, std::string remark) {
+  plan.reading.role = Role::none;
+  plan.reading.role_from.clear();
+  plan.reading.unit_asked = false;
+  plan.reading.remark = std::move(remark);
+}
+
+// Of columns with numbers in their names those of one joint count. The velocity of the joint
+// beside it is the other velocity.
+void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, DataFile& out) {
+  std::map<int, std::vector<std::size_t>> joints;
+  for (std::size_t j = 0; j < plans.size(); ++j) {
+    const Role role = plans[j].reading.role;
+    if (plans[j].role_given || role == Role::none || role == Role::movement) continue;
+    const NameReading name = read_channel_name(plans[j].reading.column);
+    if (name.joint) joints[*name.joint].push_back(j);
+  }
+  // "v2" is the other joint's velocity, unless --joint makes it the second's.
+  if (options.joint) {
+    for (std::size_t j = 0; j < plans.size(); ++j) {
+      if (plans[j].reading.column != "v2" && plans[j].reading.column != "a2") continue;
+      plans[j].reading.role = plans[j].reading.column == "v2" ? Role::velocity : Role::acceleration;
+      joints[2].push_back(j);
+    }
+  }
+  if (options.joint && !joints.contains(*options.joint)) {
+    std::vector<int> known;
+    for (const auto& [joint, columns] : joints) known.push_back(joint);
+    throw_bad_input(fmt::format("no column is of joint {}", *options.joint), "--joint",
+                    known.empty() ? "leave it out: no name holds a joint's number"
+                                  : fmt::format("joints: {}", fmt::join(known, ", ")));
+  }
+  if (joints.size() < 2) return;
+  if (!options.joint) {
+    const bool unnumbered = std::ranges::any_of(plans, [](const ColumnPlan& plan) {
+      return plan.reading.role == Role::velocity && plan.doubt == 0;
+    });
+    for (const auto& [joint, columns] : joints) {
+      if (!unnumbered) out.joints.push_back(joint);
+      for (const std::size_t j : columns) lose_role(plans[j], "of one of several joints");
+    }
+    return;
+  }
+  int neighbour = *options.joint - 1;
+  if (!joints.contains(neighbour)) neighbour = *options.joint + 1;
+  for (const auto& [joint, columns] : joints) {
+    if (joint == *options.joint) continue;
+    for (const std::size_t j : columns) {
+      ColumnReading& reading = plans[j].reading;
+      if (joint == neighbour && reading.role == Role::velocity) {
+        reading.role = Role::other_velocity;
+      } else if (joint == neighbour && reading.role == Role::acceleration) {
+        reading.role = Role::other_acceleration;
+      } else {
+        lose_role(plans[j], fmt::format("of joint {}", joint));
+      }
+    }
+  }
+}
+
+// Seconds and nanoseconds of one stamp in two columns.
+bool completes_time(const ColumnPlan& first, const ColumnPlan& second) {
+  return first.reading.role == Role::time && first.unit != nullptr && second.unit != nullptr &&
+         first.unit->symbol == "s" && second.unit->symbol == "ns";
+}
+
+// A role given by hand takes it away from columns that only sound like it; of several that sound
+// alike the one whose name is closest keeps it, then the first.
+void settle_roles(std::vector<ColumnPlan>& plans, DataFile& out) {
+  std::map<Role, std::size_t> owner;
+  std::vector<std::size_t> order(plans.size());
+  for (std::size_t j = 0; j < order.size(); ++j) order[j] = j;
+  std::ranges::stable_sort(
+      order, {}, [&](std::size_t j) { return plans[j].role_given ? -1 : plans[j].doubt; });
+  for (const std::size_t j : order) {
+    ColumnPlan& plan = plans[j];
+    if (plan.reading.role == Role::none) continue;
+    const auto [place, is_new] = owner.try_emplace(plan.reading.role, j);
+    if (is_new) continue;
+    ColumnPlan& first = plans[place->second];
+    if (completes_time(first, plan) || completes_time(plan, first)) {
+      // The seconds are the time, the nanoseconds are added to it.
+      ColumnPlan& part = plan.unit->symbol == "ns" ? plan : first;
+      part.adds_to_time = true;
+      part.reading.remark = "added to the seconds";
+      if (&part == &first) place->second = j;
+      continue;
+    }
+    if (!plan.role_given) {
+      std::string remark = fmt::format("'{}' already is the {}", first.reading.column,
+                                       role_name(first.reading.role));
+      if (plan.doubt <= first.doubt || first.role_given) {
+        out.warnings.push_back(
+            fmt::format("column '{}' is read without a role: {}", plan.reading.column, remark));
+      }
+      lose_role(plan, std::move(remark));
+    } else if (plan.reading.role == Role::movement) {
+      lose_role(plan, "another column is the movement");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& options,
+                                     std::string_view file, DataFile& out) {
+  for (const auto& [column, role] : options.roles) {
+    check_named(column, "a role is given for column", layout, file);
+  }
+  std::set<std::string, std::less<>> used;
+  if (options.used) {
+    for (const std::string& column : *options.used) {
+      check_named(column, "there is no column", layout, file);
+      used.insert(column);
+      if (column.starts_with("sgn_")) used.insert(column.substr(4));
+    }
+  }
+  std::vector<ColumnPlan> plans;
+  for (std::size_t j = 0; j < layout.header.size(); ++j) {
+    plans.push_back(plan_column(layout, j, options, file));
+  }
+  if (options.names_tell) choose_joint(options, plans, out);
+  settle_roles(plans, out);
+  for (ColumnPlan& plan : plans) {
+    const Role role = plan.reading.role;
+    plan.used = !options.used || role != Role::none || used.contains(plan.reading.column);
+    plan.kind = role == Role::movement ? ColumnKind::text
+                : role != Role::none   ? ColumnKind::number
+                : plan.used            ? ColumnKind::found
+                                       : ColumnKind::unused;
+  }
+  return plans;
+}
+
+const Unit* unit_of_epoch(double time) {
+  // From 2001 to 2096.
+  constexpr double kFirst = 1e9;
+  constexpr double kLast = 4e9;
+  for (const std::string_view symbol : {"s", "ms", "us", "ns"}) {
+    const Unit* unit = find_unit(symbol);
+    if (time * unit->factor >= kFirst && time * unit->factor <= kLast) return unit;
+  }
+  return nullptr;
+}
+
+void convert(ColumnPlan& plan, std::vector<double>& values, const Drive& drive,
+             std::string_view file) {
+  ColumnReading& reading = plan.reading;
+  const std::string place = fmt::format("{}, column '{}'", file, reading.column);
+  if (reading.role == Role::time && !values.empty()) {
+    const Unit* epoch = unit_of_epoch(values.front());
+    if (epoch != nullptr && (plan.unit == nullptr || reading.unit_assumed)) {
+      take_unit(plan, epoch, "size");
+      reading.unit_assumed = false;
+      reading.unit_asked = false;
+    }
+    if (plan.unit != nullptr && values.front() * plan.unit->factor > 1e10) {
+      throw_bad_input(
+          fmt::format("{} {} are more than 300 years", values.front(), plan.unit->symbol), place,
+          epoch == nullptr ? "check the unit of time"
+                           : fmt::format("it looks like {} since 1970: --roles '{}=time[{}]'",
+                                         epoch->symbol, reading.column, epoch->symbol));
+    }
+    if (epoch != nullptr && plan.unit == epoch) {
+      const double first = values.front();
+      for (double& value : values) value -= first;
+      reading.remark = "since 1970; starts at 0 here";
+    }
+  }
+  if (plan.unit == nullptr || reading.role == Role::none) {
+    reading.si = reading.unit.empty() ? "-" : reading.unit;
+    return;
+  }
+  const auto [conversion, needs] = conversion_of(*plan.unit, plan.at_motor, drive);
+  if (!needs.empty()) {
+    reading.needs = needs;
+    reading.si = "-";
+    return;
+  }
+  reading.si = conversion.unit;
+  reading.factor = conversion.factor;
+  if (conversion.factor == 1 && conversion.offset == 0) return;
+  for (double& value : values) value = (value + conversion.offset) * conversion.factor;
+}
+
+}  // namespace tribench

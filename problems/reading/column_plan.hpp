@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+//
+// What each column of a file is and in which unit: the roles that are given against a row of units
+// against the names. Internal to the room.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "problems/reading/csv.hpp"
+#include "problems/reading/csv_columns.hpp"
+
+namespace tribench {
+
+struct ColumnPlan {
+  ColumnReading reading;
+  ColumnKind kind = ColumnKind::found;
+  bool used = true;            // a missing value in it is an error
+  const Unit* unit = nullptr;  // null: not known, or not needed
+  bool at_motor = false;
+  bool role_given = false;
+  int doubt = 0;
+  bool adds_to_time = false;  // nanoseconds beside a column of seconds
+};
+
+// Fills the file's warnings and joints too. Throws Error (bad_input) for a role or a use of a
+// column that is not there, and for a unit that does not go with its role.
+std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& options,
+                                     std::string_view file, DataFile& out);
+
+// The unit of a time by its size, where it counts since 1970; null: it does not.
+const Unit* unit_of_epoch(double time);
+
+// Converts a channel to SI and says so in the reading. Time that counts since 1970 starts at 0.
+void convert(ColumnPlan& plan, std::vector<double>& values, const Drive& drive,
+             std::string_view file);
+
+}  // namespace tribench

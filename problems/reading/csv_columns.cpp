@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "problems/reading/csv_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "problems/reading/csv_cells.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+class ColumnReader {
+ public:
+  ColumnReader(std::string_view text, std::string_view file, const CsvLayout& layout,
+               std::span<const ColumnKind> kinds)
+      : text_(text),
+        file_(file),
+        layout_(layout),
+        scanner_(text, file, layout.delimiter, layout.begin, layout.line) {
+    for (const ColumnKind kind : kinds) out_.columns.push_back({kind, {}, {}, kNoRow});
+  }
+
+  CsvColumns read() {
+    const std::size_t width = out_.columns.size();
+    while (scanner_.find_record(width)) {
+      const std::size_t line = scanner_.line();
+      const std::size_t place = scanner_.place();
+      if (!read_row(line)) break;
+      out_.places.push_back(place);
+      if (out_.places.size() == 100) reserve(place);
+    }
+    for (CsvColumn& column : out_.columns) {
+      if (column.kind == ColumnKind::found) column.kind = ColumnKind::number;
+    }
+    return std::move(out_);
+  }
+
+ private:
+  // From the first hundred rows the size of the whole is plain.
+  void reserve(std::size_t place) {
+    const double share = static_cast<double>(text_.size()) /
+                         static_cast<double>(std::max<std::size_t>(place - layout_.begin, 1));
+    const auto rows = static_cast<std::size_t>(std::min(110 * share, 1e8));
+    out_.places.reserve(rows);
+    for (CsvColumn& column : out_.columns) {
+      if (column.kind == ColumnKind::number) column.numbers.reserve(rows);
+    }
+  }
+
+  // False: the last line is cut off, and nothing of it is kept.
+  bool read_row(std::size_t line) {
+    std::size_t cells = 0;
+    bool more = true;
+    while (more && cells < out_.columns.size()) {
+      read_next(out_.columns[cells++]);
+      more = scanner_.goes_on();
+    }
+    if (cells == out_.columns.size() && !more) return true;
+    bool last_is_empty = false;
+    while (more) {
+      last_is_empty = scanner_.next_cell().empty();
+      ++cells;
+      more = scanner_.goes_on();
+    }
+    if (cells < out_.columns.size() && scanner_.at_end() && text_.back() != '\n' &&
+        out_.rows() > 0) {
+      take_back();
+      out_.notes.push_back(fmt::format("the last line ({}) is cut off and left out", line));
+      return false;
+    }
+    check_width(cells, last_is_empty, layout_, file_, line);
+    return true;
+  }
+
+  void take_back() {
+    for (CsvColumn& column : out_.columns) {
+      if (column.numbers.size() > out_.rows()) column.numbers.pop_back();
+      if (column.texts.size() > out_.rows()) column.texts.pop_back();
+      if (column.first_text == out_.rows()) column.first_text = kNoRow;
+    }
+  }
+
+  void read_next(CsvColumn& column) {
+    if (column.kind == ColumnKind::number && read_number_in_place(column)) return;
+    const std::string_view cell = scanner_.next_cell();
+    switch (column.kind) {
+      case ColumnKind::unused:
+        return;
+      case ColumnKind::text:
+        column.texts.emplace_back(cell);
+        return;
+      case ColumnKind::found:
+        settle(column, cell);
+        return;
+      case ColumnKind::number:
+        add_number(column, cell);
+        return;
+    }
+  }
+
+  // The usual cell: digits up to the delimiter or the line's end.
+  bool read_number_in_place(CsvColumn& column) {
+    std::size_t place = scanner_.place();
+    while (place < text_.size() && text_[place] == ' ') ++place;
+    const char* const end = text_.data() + text_.size();
+    double value = 0;
+    const auto [stop, code] = std::from_chars(text_.data() + place, end, value);
+    if (code != std::errc() || !std::isfinite(value)) return false;
+    if (stop != end && *stop != layout_.delimiter && *stop != '\n' && *stop != '\r') return false;
+    column.numbers.push_back(value);
+    scanner_.move_to(static_cast<std::size_t>(stop - text_.data()));
+    return true;
+  }
+
+  void settle(CsvColumn& column, std::string_view cell) {
+    double value = 0;
+    const CellKind kind = read_cell(cell, layout_.decimal_comma, value);
+    if (kind == CellKind::missing) {
+      column.numbers.push_back(kMissing);
+    } else if (kind == CellKind::number) {
+      column.kind = ColumnKind::number;
+      column.numbers.push_back(value);
+    } else {
+      column.kind = ColumnKind::text;
+      column.texts.resize(column.numbers.size());
+      column.numbers = {};
+      column.texts.emplace_back(cell);
+    }
+  }
+
+  void add_number(CsvColumn& column, std::string_view cell) {
+    double value = kMissing;
+    const CellKind kind = read_cell(cell, layout_.decimal_comma, value);
+    if (kind == CellKind::text && column.first_text == kNoRow) column.first_text = out_.rows();
+    column.numbers.push_back(kind == CellKind::number ? value : kMissing);
+  }
+
+  std::string_view text_;
+  std::string_view file_;
+  const CsvLayout& layout_;
+  CsvScanner scanner_;
+  CsvColumns out_;
+};
+
+}  // namespace
+
+CsvColumns read_columns(std::string_view text, std::string_view file, const CsvLayout& layout,
+                        std::span<const ColumnKind> kinds) {
+  return ColumnReader(text, file, layout, kinds).read();
+}
+
+std::size_t line_of(std::string_view text, std::size_t place) {
+  return static_cast<std::size_t>(
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n'));
+}
+
+std::string cell_at(std::string_view text, const CsvLayout& layout, std::size_t place,
+                    std::size_t column) {
+  CsvScanner scanner(text, "", layout.delimiter, place, 1);
+  for (std::size_t j = 0; j < column; ++j) {
+    scanner.next_cell();
+    scanner.goes_on();
+  }
+  return std::string(scanner.next_cell());
+}
+
+}  // namespace tribench

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: MIT
+#include "problems/reading/csv_layout.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <set>
+
+#include "foundation/error.hpp"
+#include "problems/reading/csv_cells.hpp"
+#include "problems/reading/units.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::size_t kHeadLines = 60;  // the header stands among these
+
+struct HeadLine {
+  std::size_t begin = 0;
+  std::size_t number = 1;
+  bool comment = false;
+  std::string_view text;  // without the comment's sign
+};
+
+using Cells = std::vector<std::string>;
+
+std::size_t comment_sign(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return 0;
+  if (line[first] == '#' || line[first] == '%') return line.find_first_not_of("#%", first);
+  if (line.substr(first).starts_with("//")) return first + 2;
+  return 0;
+}
+
+std::vector<HeadLine> head_of(std::string_view text) {
+  std::vector<HeadLine> lines;
+  std::size_t number = 1;
+  std::size_t begin = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  for (; begin < text.size() && lines.size() < kHeadLines; ++number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    if (line.find_first_not_of(" \t\r") != std::string_view::npos) {
+      const std::size_t sign = comment_sign(line);
+      const bool comment = sign != 0;
+      lines.push_back(
+          {begin, number, comment, comment ? line.substr(std::min(sign, line.size())) : line});
+    }
+    begin = end + 1;
+  }
+  return lines;
+}
+
+Cells cells_of(const HeadLine& line, char delimiter) {
+  Cells cells;
+  CsvScanner scanner(line.text, "", delimiter, 0, line.number);
+  try {
+    do {
+      cells.emplace_back(scanner.next_cell());
+    } while (scanner.goes_on());
+  } catch (const Error&) {  // a quote is open here: the rows will say so with the file's name
+  }
+  return cells;
+}
+
+bool is_number(std::string_view cell) {
+  double value = 0;
+  return read_cell(cell, true, value) == CellKind::number;
+}
+
+// A line of data: numbers, or at least one among gaps and texts.
+bool is_row(const Cells& cells) { return std::ranges::any_of(cells, is_number); }
+
+bool names_columns(const Cells& cells) {
+  const auto numbers = std::ranges::count_if(cells, is_number);
+  const auto empty = std::ranges::count(cells, std::string());
+  const auto all = static_cast<std::ptrdiff_t>(cells.size());
+  return numbers == 0 && empty < all && (empty <= 1 || empty * 4 < all);
+}
+
+bool names_units(const Cells& cells) {
+  std::size_t units = 0;
+  for (std::string_view cell : cells) {
+    if (cell.size() > 2 && (cell.front() == '[' || cell.front() == '(')) {
+      cell = cell.substr(1, cell.size() - 2);
+    }
+    if (find_unit(cell) != nullptr) {
+      ++units;
+    } else if (!cell.empty() && cell != "-" && cell != "1") {
+      return false;
+    }
+  }
+  return units > 0;
+}
+
+// As many cells, but for a separator at the end of either line.
+bool same_width(const Cells& header, const Cells& row) {
+  if (header.size() == row.size()) return true;
+  if (row.size() == header.size() + 1) return row.back().empty();
+  return header.size() == row.size() + 1 && header.back().empty();
+}
+
+struct Found {
+  char delimiter = ',';
+  std::optional<std::size_t> header;  // place among the head's lines
+  std::optional<std::size_t> units;
+  std::size_t row = 0;
+  std::size_t width = 0;
+};
+
+// The layout that a delimiter would mean; no header: it means none.
+Found try_delimiter(const std::vector<HeadLine>& lines, char delimiter) {
+  Found found{delimiter, {}, {}, 0, 0};
+  std::vector<Cells> cells;
+  for (const HeadLine& line : lines) cells.push_back(cells_of(line, delimiter));
+  std::size_t row = 0;
+  while (row < lines.size() && (lines[row].comment || !is_row(cells[row]))) ++row;
+  if (row == lines.size()) return found;
+  found.row = row;
+  const auto search = [&](bool comments) {
+    for (std::size_t i = row; i-- > 0;) {
+      if (lines[i].comment != comments || !same_width(cells[i], cells[row])) continue;
+      if (!found.units && names_units(cells[i])) {
+        bool more = false;
+        for (std::size_t k = 0; k < i; ++k) {
+          more = more || (same_width(cells[k], cells[row]) && names_columns(cells[k]));
+        }
+        if (more) {
+          found.units = i;
+          continue;
+        }
+      }
+      if (!names_columns(cells[i])) continue;
+      found.header = i;
+      found.width = cells[row].size();
+      return;
+    }
+  };
+  search(false);
+  if (!found.header) search(true);
+  return found;
+}
+
+// Where no layout fits: the first line that is no comment names the columns, and what is wrong
+// with the rows is said there.
+Found plain_layout(const std::vector<HeadLine>& lines) {
+  Found found;
+  std::size_t first = 0;
+  while (first + 1 < lines.size() && lines[first].comment) ++first;
+  std::ptrdiff_t most = 0;
+  for (const char candidate : {',', ';', '\t', '|'}) {
+    const std::ptrdiff_t count = std::ranges::count(lines[first].text, candidate);
+    if (count <= most) continue;
+    most = count;
+    found.delimiter = candidate;
+  }
+  found.header = first;
+  found.row = first + 1;
+  return found;
+}
+
+Found best_layout(const std::vector<HeadLine>& lines) {
+  Found best;
+  for (const char delimiter : {',', ';', '\t', '|', ' '}) {
+    const Found found = try_delimiter(lines, delimiter);
+    if (!found.header) continue;
+    if (!best.header || found.width > best.width) best = found;
+  }
+  // One column: blanks may well be part of its name.
+  return best.header ? best : plain_layout(lines);
+}
+
+void check_header(std::vector<std::string>& header, std::string_view file, std::size_t line) {
+  std::set<std::string_view> seen;
+  if (header.size() > 1 && header.front().empty()) header.front() = "index";  // as pandas writes it
+  for (std::size_t j = 0; j < header.size(); ++j) {
+    if (header[j].empty()) {
+      throw_bad_input(fmt::format("column {} has no name", j + 1), csv_place(file, line),
+                      "name every column in the first line");
+    }
+    if (!seen.insert(header[j]).second) {
+      throw_bad_input(fmt::format("two columns are named '{}'", header[j]), csv_place(file, line),
+                      "rename one of them");
+    }
+  }
+  if (std::ranges::all_of(header, is_number)) {
+    throw_bad_input("the first line holds numbers, not names", csv_place(file, line),
+                    "add a line with the columns' names");
+  }
+}
+
+// Digits, a comma, digits: not the thousands of a number with several commas.
+bool has_decimal_comma(std::string_view cell) {
+  const std::size_t comma = cell.find(',');
+  if (comma == std::string_view::npos || cell.find(',', comma + 1) != std::string_view::npos) {
+    return false;
+  }
+  double value = 0;
+  return cell.find('.') == std::string_view::npos &&
+         read_cell(cell, true, value) == CellKind::number;
+}
+
+bool uses_decimal_commas(const std::vector<HeadLine>& lines, const Found& found) {
+  bool commas = false;
+  for (std::size_t i = found.row; i < lines.size(); ++i) {
+    if (lines[i].comment) continue;
+    for (const std::string& cell : cells_of(lines[i], found.delimiter)) {
+      commas = commas || has_decimal_comma(cell);
+    }
+  }
+  return commas;
+}
+
+void check_bytes(std::string_view text, std::string_view file) {
+  const std::size_t nul = text.find('\0');
+  if (nul == std::string_view::npos) return;
+  const auto line = static_cast<std::size_t>(
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n'));
+  throw_bad_input("this is not a text file (it holds a zero byte)", csv_place(file, line),
+                  "save it as CSV in UTF-8");
+}
+
+std::string without_brackets(std::string_view cell) {
+  if (cell.size() > 2 && (cell.front() == '[' || cell.front() == '(')) {
+    cell = cell.substr(1, cell.size() - 2);
+  }
+  return std::string(cell == "-" || cell == "1" ? "" : cell);
+}
+
+}  // namespace
+
+std::string csv_place(std::string_view file, std::size_t line) {
+  return fmt::format("{}:{}", file, line);
+}
+
+std::string csv_place(std::string_view file, std::size_t line, std::string_view column) {
+  return fmt::format("{}:{}:{}", file, line, column);
+}
+
+CsvLayout find_layout(std::string_view text, std::string_view file) {
+  check_bytes(text, file);
+  const std::vector<HeadLine> lines = head_of(text);
+  if (lines.empty()) {
+    throw_bad_input("the file is empty", std::string(file), "give a header line and rows");
+  }
+  const Found found = best_layout(lines);
+  const HeadLine& header = lines[*found.header];
+  CsvLayout layout;
+  layout.delimiter = found.delimiter;
+  layout.header = cells_of(header, found.delimiter);
+  const bool has_rows = found.row < lines.size();
+  const Cells first = has_rows ? cells_of(lines[found.row], found.delimiter) : Cells();
+  // A separator at the end of the lines names no column where the rows have nothing there either.
+  if (layout.header.size() > 1 && layout.header.back().empty() && has_rows &&
+      (first.size() < layout.header.size() || first.back().empty())) {
+    layout.header.pop_back();
+  }
+  check_header(layout.header, file, header.number);
+  if (!has_rows) throw_bad_input("there is a header and no row", std::string(file), "add rows");
+  layout.begin = lines[found.row].begin;
+  layout.line = lines[found.row].number;
+  layout.decimal_comma = uses_decimal_commas(lines, found);
+  if (found.units) {
+    for (const std::string& cell : cells_of(lines[*found.units], found.delimiter)) {
+      layout.units.push_back(without_brackets(cell));
+    }
+    layout.units.resize(layout.header.size());
+  }
+  std::size_t titles = 0;
+  for (std::size_t i = 0; i < *found.header; ++i) titles += lines[i].comment ? 0 : 1;
+  if (titles > 0) {
+    layout.notes.push_back(
+        fmt::format("{} lines before the columns' names are passed over", titles));
+  }
+  return layout;
+}
+
+bool CsvScanner::is_comment(std::size_t width) const {
+  std::size_t first = place_;
+  while (first < text_.size() && is_blank(text_[first])) ++first;
+  if (first >= text_.size()) return false;
+  const bool sign =
+      text_[first] == '#' || text_[first] == '%' || text_.substr(first).starts_with("//");
+  if (!sign || width < 2) return sign;
+  CsvScanner probe(text_, file_, delimiter_, place_, line_);
+  std::size_t cells = 0;
+  do {
+    probe.next_cell();
+    ++cells;
+  } while (probe.goes_on());
+  return cells != width;
+}
+
+bool CsvScanner::find_record(std::size_t width) {
+  while (place_ < text_.size()) {
+    const char c = text_[place_];
+    if (c == '\n') {
+      ++place_;
+      ++line_;
+    } else if (is_blank(c) && text_.find_first_not_of(" \t\r", place_) < text_.size() &&
+               text_[text_.find_first_not_of(" \t\r", place_)] == '\n') {
+      skip_line();
+    } else if ((c == '#' || c == '%' || c == '/' || c == ' ') && is_comment(width)) {
+      skip_line();
+    } else {
+      return true;
+    }
+  }
+  return false;
+}
+
+void CsvScanner::skip_line() {
+  place_ = text_.find('\n', place_);
+  if (place_ == std::string_view::npos) {
+    place_ = text_.size();
+  } else {
+    ++place_;
+    ++line_;
+  }
+}
+
+std::string_view CsvScanner::next_cell() {
+  while (place_ < text_.size() && is_blank(text_[place_])) ++place_;
+  if (place_ < text_.size() && text_[place_] == '"') {
+    ++place_;
+    return quoted_cell();
+  }
+  const std::size_t begin = place_;
+  while (place_ < text_.size() && text_[place_] != '\n' && text_[place_] != delimiter_) ++place_;
+  std::size_t end = place_;
+  while (end > begin && (is_blank(text_[end - 1]) || text_[end - 1] == '\t')) --end;
+  return text_.substr(begin, end - begin);
+}
+
+std::string_view CsvScanner::quoted_cell() {
+  const std::size_t opened = line_;
+  unquoted_.clear();
+  while (place_ < text_.size()) {
+    const char c = text_[place_++];
+    if (c == '\n') ++line_;
+    if (c != '"') {
+      unquoted_ += c;
+      continue;
+    }
+    if (place_ < text_.size() && text_[place_] == '"') {
+      unquoted_ += '"';
+      ++place_;
+      continue;
+    }
+    while (place_ < text_.size() && (text_[place_] == ' ' || text_[place_] == '\r') &&
+           delimiter_ != ' ') {
+      ++place_;
+    }
+    if (place_ == text_.size() || text_[place_] == '\n' || text_[place_] == '\r' ||
+        text_[place_] == delimiter_) {
+      return unquoted_;
+    }
+    throw_bad_input(fmt::format("text follows a closing quote: '{}'", text_.substr(place_, 10)),
+                    csv_place(file_, opened), "put the whole cell into the quotes");
+  }
+  throw_bad_input("a quote is opened and never closed", csv_place(file_, opened),
+                  "close it or remove it");
+}
+
+bool CsvScanner::goes_on() {
+  if (delimiter_ == ' ') {
+    while (place_ < text_.size() && is_blank(text_[place_])) ++place_;
+    if (place_ < text_.size() && text_[place_] != '\n') return true;
+  }
+  if (place_ < text_.size() && text_[place_] == '\r') ++place_;
+  if (place_ >= text_.size()) return false;
+  const char end = text_[place_++];
+  if (end != '\n') return true;
+  ++line_;
+  return false;
+}
+
+}  // namespace tribench

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+//
+// Units as logs name them, and their SI values: "deg/s", "rpm", "mA", "mN m", "degF", "counts".
+// Everything beyond the reader is in rad, rad/s, rad/s^2, m, m/s, m/s^2, s, N m, N, A, V, degC.
+//
+// Not a general unit system: only what a robot's log holds, so that an unknown word is a question
+// to the user and never a guess.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "problems/dataset.hpp"
+
+namespace tribench {
+
+enum class Dimension {
+  angle,
+  angular_velocity,
+  angular_acceleration,
+  length,
+  speed,
+  linear_acceleration,
+  time,
+  torque,
+  force,
+  current,
+  voltage,
+  temperature,
+  mass,
+  share,  // per cent of something rated
+};
+
+// The SI value is (value + offset) * factor.
+struct Unit {
+  std::string_view symbol;  // as printed: "deg/s"
+  std::string_view si;      // what it becomes: "rad/s"
+  Dimension dimension;
+  double factor;
+  double offset = 0;
+  bool counts = false;  // the factor is of turns: it waits for the counts of one
+};
+
+// Any usual spelling: case is looked at only where it decides, blanks and dots between the parts
+// never. Null where the word is no unit.
+const Unit* find_unit(std::string_view text);
+
+// Whether a channel of this role can be measured in the unit; true for a role that says nothing.
+bool suits(const Unit& unit, Role role);
+
+// "rad, deg, rev, counts, m, mm": what `suits` takes, for messages.
+std::string units_of(Role role);
+
+// What the user knows of the drive, as far as units need it.
+struct Drive {
+  std::optional<double> counts_per_turn;
+  std::optional<double> gear_ratio;
+};
+
+// A channel's values in SI are (value + offset) * factor.
+struct Conversion {
+  double factor = 1;
+  double offset = 0;
+  std::string unit;  // SI symbol
+};
+
+// The conversion of a unit, for a quantity at the joint or (`at_motor`) on the motor's side of the
+// gear: motion is divided, torque multiplied by the ratio. `needs` says what the drive lacks for
+// it ("--counts-per-turn N"); the conversion is then not to be used.
+struct Converted {
+  Conversion conversion;
+  std::string needs;
+};
+Converted conversion_of(const Unit& unit, bool at_motor, const Drive& drive);
+
+}  // namespace tribench

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+#include "problems/preparation/recording.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "foundation/error.hpp"
+#include "tests/problems/preparation/raw_log.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using testing::RawLogPlan;
+using testing::RawSample;
+using testing::RawTelling;
+
+DataOptions engineer() {
+  DataOptions options;
+  options.torque_constant = TorqueConstant{8, false};
+  return options;
+}
+
+CsvOptions csv_of(const DataOptions& options) {
+  CsvOptions csv;
+  csv.roles = options.roles;
+  csv.drive = options.drive;
+  csv.used = std::vector<std::string>{};
+  return csv;
+}
+
+PreparedRecording prepared(const std::string& text, const DataOptions& options,
+                           Gravity gravity = Gravity::automatic) {
+  return prepare(parse_csv(text, "log.csv", csv_of(options)), options, gravity);
+}
+
+std::string complaint(const std::string& text, const DataOptions& options,
+                      Gravity gravity = Gravity::automatic) {
+  try {
+    prepared(text, options, gravity);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+    return error.what();
+  }
+  return "no error";
+}
+
+double rms_against_truth(const PreparedRecording& recording, const std::vector<RawSample>& truth,
+                         Role role, double RawSample::*member, double step) {
+  const std::vector<double>& values = recording.data.find(role)->values;
+  const std::vector<double>& time = recording.data.find(Role::time)->values;
+  double sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto place = static_cast<std::size_t>(std::lround(time[i] / step));
+    const double e = values[i] - truth[place].*member;
+    sum += e * e;
+  }
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+TEST(PreparedRecording, position_and_current_alone_become_torque_velocity_and_strokes) {
+  RawLogPlan plan;
+  const std::vector<RawSample> truth = simulate(plan);
+  const PreparedRecording recording = prepared(raw_table(truth, plan, {}), engineer());
+  const Dataset& data = recording.data;
+  ASSERT_NE(data.find(Role::velocity), nullptr);
+  EXPECT_EQ(data.find(Role::motor_torque)->unit, "N m");
+  EXPECT_LT(rms_against_truth(recording, truth, Role::velocity, &RawSample::velocity, plan.step),
+            0.005);
+  EXPECT_LT(
+      rms_against_truth(recording, truth, Role::acceleration, &RawSample::acceleration, plan.step),
+      0.6);
+  // Strokes are the movements that were made, give or take those at either end.
+  const int made = truth.back().movement > 0 ? truth.back().movement : 20;
+  EXPECT_NEAR(static_cast<double>(data.movement_names.size()), made, 0.15 * made);
+  for (std::size_t i = 1; i < data.rows(); ++i) {
+    if (data.movement[i] != data.movement[i - 1]) continue;
+    ASSERT_GT(data.find(Role::velocity)->values[i] * data.find(Role::velocity)->values[i - 1],
+              -1e-5);
+  }
+}
+
+TEST(PreparedRecording, gravity_that_no_column_declares_is_found) {
+  RawLogPlan plan;
+  plan.load = 0.08;
+  const PreparedRecording recording = prepared(raw_table(simulate(plan), plan, {}), engineer());
+  const Channel* load = recording.data.find(Role::gravity_torque);
+  ASSERT_NE(load, nullptr);
+  const std::vector<double>& q = recording.data.find(Role::position)->values;
+  for (std::size_t i = 0; i < q.size(); i += 100) {
+    EXPECT_NEAR(load->values[i], plan.gravity * std::sin(q[i]), 0.03 * plan.gravity);
+  }
+  EXPECT_THAT(recording.rigid, Contains("sin_q"));
+  EXPECT_THAT(recording.notes, Contains(HasSubstr("--gravity fit")));
+  plan.gravity = 0;
+  EXPECT_EQ(
+      prepared(raw_table(simulate(plan), plan, {}), engineer()).data.find(Role::gravity_torque),
+      nullptr);
+}
+
+TEST(PreparedRecording, a_filtered_velocity_is_known_by_its_delay) {
+  RawLogPlan plan;
+  RawTelling telling;
+  telling.velocity = true;
+  const std::vector<RawSample> truth = simulate(plan);
+  const PreparedRecording recording = prepared(raw_table(truth, plan, telling), engineer());
+  EXPECT_THAT(recording.notes, Contains(HasSubstr("lags behind its position by")));
+  EXPECT_LT(rms_against_truth(recording, truth, Role::velocity, &RawSample::velocity, plan.step),
+            0.005);
+  plan.velocity_filter = 0;
+  telling.velocity = true;
+  const PreparedRecording plain = prepared(raw_table(simulate(plan), plan, telling), engineer());
+  EXPECT_THAT(plain.notes, Not(Contains(HasSubstr("lags behind"))));
+}
+
+// Every way of telling one physics gives the same channels.
+TEST(PreparedRecording, tellings_of_one_physics_agree) {
+  RawLogPlan plan;
+  const std::vector<RawSample> truth = simulate(plan);
+  DataOptions options = engineer();
+  options.drive.counts_per_turn = 65536;
+  const PreparedRecording first = prepared(raw_table(truth, plan, {}), options);
+  for (const RawTelling telling :
+       {RawTelling{.counts = true}, RawTelling{.decimal_comma = true},
+        RawTelling{.decimal_comma = true, .units_row = true}, RawTelling{.units_row = true}}) {
+    const PreparedRecording other = prepared(raw_table(truth, plan, telling), options);
+    ASSERT_EQ(other.data.rows(), first.data.rows());
+    for (const Role role : {Role::velocity, Role::motor_torque, Role::position}) {
+      for (std::size_t i = 0; i < first.data.rows(); i += 50) {
+        EXPECT_NEAR(other.data.find(role)->values[i], first.data.find(role)->values[i], 2e-3);
+      }
+    }
+  }
+}
+
+TEST(PreparedRecording, lost_messages_cut_the_recording_and_nothing_is_drawn_through_them) {
+  RawLogPlan plan;
+  const std::vector<RawSample> truth = simulate(plan);
+  const PreparedRecording recording =
+      prepared(raw_table(truth, plan, {.losses = true}), engineer());
+  EXPECT_LT(rms_against_truth(recording, truth, Role::velocity, &RawSample::velocity, plan.step),
+            0.005);
+}
+
+// The same numbers in a unit that nobody said.
+std::string told_wrong(double position, double velocity, double time) {
+  std::string text = "time,q,dq,tau_m\n";
+  for (int i = 0; i < 4000; ++i) {
+    const double t = 0.005 * i;
+    const double q = 0.5 * std::sin(t);
+    const double v = 0.5 * std::cos(t);
+    text += std::to_string(t * time) + "," + std::to_string(q * position) + "," +
+            std::to_string(v * velocity) + "," +
+            std::to_string((v > 0 ? 5 : -5) + 3 * v + 0.01 * std::sin(17.0 * i)) + "\n";
+  }
+  return text;
+}
+
+TEST(PreparedRecording, a_story_that_is_not_possible_is_refused_with_the_mend) {
+  const DataOptions options;
+  EXPECT_EQ(complaint(told_wrong(1, 1, 1), options), "no error");
+  EXPECT_THAT(complaint(told_wrong(57.29578, 1, 1), options), HasSubstr("q=position[deg]"));
+  EXPECT_THAT(complaint(told_wrong(1, 57.29578, 1), options), HasSubstr("dq=velocity[deg/s]"));
+  EXPECT_THAT(complaint(told_wrong(1, 9.549297, 1), options), HasSubstr("dq=velocity[rpm]"));
+  EXPECT_THAT(complaint(told_wrong(1, 1, 1000), options), HasSubstr("time=time[ms]"));
+  EXPECT_THAT(complaint(told_wrong(1, -1, 1), options), HasSubstr("sign turned"));
+  // Both in degrees agree with one another; the range of motion does not agree with radians.
+  EXPECT_THAT(complaint(told_wrong(57.29578, 57.29578, 1), options), HasSubstr("q=position[deg]"));
+  DataOptions geared;
+  geared.drive.gear_ratio = 100;
+  EXPECT_THAT(complaint(told_wrong(1, 100, 1), geared), HasSubstr("velocity[rad/s@motor]"));
+  EXPECT_THAT(complaint(told_wrong(1, 954.9297, 1), geared), HasSubstr("velocity[rpm@motor]"));
+}
+
+TEST(PreparedRecording, different_units_are_never_subtracted) {
+  RawLogPlan plan;
+  const std::string text = raw_table(simulate(plan), plan, {.gravity = true});
+  EXPECT_THAT(complaint(text, {}), HasSubstr("--torque-constant"));
+  EXPECT_EQ(complaint(text, engineer()), "no error");
+  DataOptions wrong = engineer();
+  wrong.torque_constant->value = 8000;
+  EXPECT_THAT(complaint(text, wrong), HasSubstr("with the factor"));
+}
+
+TEST(PreparedRecording, all_that_is_missing_is_said_at_once) {
+  const std::string text = "stamp,pos,cur\n0,1,2\n1,2,3\n";
+  const std::string said = complaint(text, {});
+  for (const char* word : {"unit of 'stamp'", "unit of 'pos'", "unit of 'cur'",
+                           "stamp=time[?],pos=position[?],cur=motor_current[?]"}) {
+    EXPECT_THAT(said, HasSubstr(word));
+  }
+}
+
+TEST(PreparedRecording, friction_that_opposes_the_velocity_is_seen_beside_gravity) {
+  RawLogPlan plan;
+  std::vector<RawSample> truth = simulate(plan);
+  for (RawSample& sample : truth) sample.torque = -sample.torque;
+  EXPECT_THAT(complaint(raw_table(truth, plan, {}), engineer()), HasSubstr("--flip-sign"));
+}
+
+TEST(PreparedRecording, a_current_at_its_limit_is_left_out_and_counted) {
+  RawLogPlan plan;
+  std::vector<RawSample> truth = simulate(plan);
+  std::size_t clipped = 0;
+  for (RawSample& sample : truth) {
+    clipped += sample.torque > 14 ? 1 : 0;
+    sample.torque = std::min(sample.torque, 14.0);
+  }
+  ASSERT_GT(clipped, 100U);
+  EXPECT_THAT(prepared(raw_table(truth, plan, {}), engineer()).notes,
+              Contains(HasSubstr("at its limit")));
+}
+
+}  // namespace
+}  // namespace tribench

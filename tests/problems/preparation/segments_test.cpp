@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "problems/preparation/segments.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tribench {
+namespace {
+
+TEST(Segments, a_gap_cuts_and_a_pause_between_strokes_does_too) {
+  std::vector<double> time;
+  std::vector<double> v;
+  for (int i = 0; i < 3000; ++i) {
+    time.push_back(0.002 * i + (i >= 2500 ? 1.0 : 0.0));
+    const double t = 0.002 * i;
+    v.push_back(t < 1 ? 0.5 : t < 2 ? 0 : t < 3 ? -0.5 : t < 4 ? 0.25 : 0.01);
+  }
+  const std::vector<int> movement(time.size(), 0);
+  const std::vector<RowRange> pieces = pieces_of(time, movement, {});
+  ASSERT_EQ(pieces.size(), 2U);
+  EXPECT_EQ(pieces[1].begin, 2500U);
+  const Strokes strokes = strokes_of(time, v, pieces, 0, 8);
+  EXPECT_EQ(strokes.rests, 1U);
+  EXPECT_EQ(strokes.resting, 500U);
+  EXPECT_EQ(strokes.reversals, 1U);
+  ASSERT_EQ(strokes.strokes.size(), 4U);  // before and after the rest, the reversal and the gap
+  EXPECT_EQ(strokes.strokes[1].begin, 1000U);
+  EXPECT_EQ(strokes.strokes[2].begin, 1500U);
+}
+
+TEST(Segments, a_limit_is_told_from_a_peak) {
+  std::vector<double> sine;
+  std::vector<double> clipped;
+  for (int i = 0; i < 5000; ++i) {
+    sine.push_back(std::round(1000 * std::sin(0.01 * i)) / 1000);
+    clipped.push_back(std::clamp(sine.back(), -0.8, 0.8));
+  }
+  for (const char one : clipped_rows(sine)) ASSERT_EQ(one, 0);
+  std::size_t found = 0;
+  for (const char one : clipped_rows(clipped)) found += one != 0 ? 1 : 0;
+  EXPECT_GT(found, 1500U);
+}
+
+TEST(Segments, a_repeated_message_is_told_from_a_coarse_encoder) {
+  std::vector<double> position;
+  std::vector<double> current;
+  for (int i = 0; i < 1000; ++i) {
+    position.push_back(std::floor(i / 2.0));
+    current.push_back(std::sin(12.3 * i));
+  }
+  for (const char one : repeated_rows(position, current)) ASSERT_EQ(one, 0);
+  for (int i = 400; i < 420; ++i) {
+    position[static_cast<std::size_t>(i)] = position[399];
+    current[static_cast<std::size_t>(i)] = current[399];
+  }
+  std::size_t found = 0;
+  for (const char one : repeated_rows(position, current)) found += one != 0 ? 1 : 0;
+  EXPECT_EQ(found, 20U);
+}
+
+}  // namespace
+}  // namespace tribench
