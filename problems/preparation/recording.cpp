@@ -29,6 +29,7 @@ constexpr std::size_t kFewestRows = 8;     // of a stroke
 constexpr std::size_t kEdgeRows = 3;       // of a derived motion, at the ends of a piece
 constexpr double kBlur = 3;                // time constants of the smoother
 constexpr double kUnresolved = 3;          // standard errors of the acceleration
+constexpr double kLeastDelay = 0.6;        // steps of time
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kMuchExplained = 0.3;
 constexpr double kSure = 10;  // standard errors
@@ -238,10 +239,11 @@ void settle_velocity(PreparedRecording& out, const DerivedMotion& derived) {
   const std::optional<double> delay =
       delay_of(t, derived.motion.velocity, v->values, derived.pieces);
   const double step = median_step(t, out.data.movement);
-  if (!delay || std::abs(*delay) < 0.6 * step) return;
-  out.notes.push_back(fmt::format("'{}' {} its position by {:.3g} ms, as a filtered velocity does",
-                                  v->name, *delay > 0 ? "lags behind" : "runs ahead of",
-                                  1e3 * std::abs(*delay)));
+  // No filter runs ahead: a velocity that does was derived otherwise, and is left as it is.
+  if (!delay || *delay < kLeastDelay * step) return;
+  out.notes.push_back(
+      fmt::format("'{}' lags behind its position by {:.3g} ms, as a filtered velocity does",
+                  v->name, 1e3 * *delay));
   replace_velocity(out, derived);
 }
 
