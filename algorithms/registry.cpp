@@ -41,7 +41,8 @@ const AlgorithmEntry& Registry::find(std::string_view name) const {
 std::unique_ptr<Regressor> Registry::make(
     std::string_view name, const std::map<std::string, ParameterValue>& given) const {
   const AlgorithmEntry& entry = find(name);
-  return entry.make(Parameters(entry.parameters, given), *this);
+  return entry.make(Parameters(entry.parameters, given),
+                    [this](std::string_view other) { return make(other); });
 }
 
 }  // namespace tribench

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -117,7 +118,9 @@ class Regressor {
   virtual FitResult fit(FitContext& context) const = 0;
 };
 
-class Registry;
+// Makes another method by its name, with its defaults: for one that builds on it (the closed loop
+// on its base). Throws Error (bad_input) with the nearest name.
+using MakeMethod = std::function<std::unique_ptr<Regressor>(std::string_view name)>;
 
 // One algorithm: what it is called, what it accepts, how it is made.
 struct AlgorithmEntry {
@@ -127,10 +130,9 @@ struct AlgorithmEntry {
   // A fixed form (a baseline's exp and /) does not depend on the operator set; the grid runs such
   // a method once per problem and seed, under the set "-".
   bool fixed_form = false;
-  // A method that builds on another (the closed loop on its base) is handed the registry here and
-  // nowhere else.
+  // `other` outlives nothing: what a method needs of it is made at once.
   std::unique_ptr<Regressor> (*make)(const Parameters& parameters,
-                                     const Registry& registry) = nullptr;
+                                     const MakeMethod& other) = nullptr;
 };
 
 }  // namespace tribench

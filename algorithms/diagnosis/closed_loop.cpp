@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "algorithms/expression/text.hpp"
-#include "algorithms/registry.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench::loop {
@@ -70,7 +69,7 @@ Expression over_inputs(const Expression& formula, const Observations& data,
 
 class ClosedLoop : public Regressor {
  public:
-  ClosedLoop(const Parameters& parameters, const Registry& registry)
+  ClosedLoop(const Parameters& parameters, const MakeMethod& other)
       : base_name_(parameters.text("base")) {
     options_.test_share = 0;  // the harness holds movements out, and judges
     options_.alpha_library = parameters.number("alpha_library");
@@ -89,7 +88,7 @@ class ClosedLoop : public Regressor {
         throw_bad_input(fmt::format("'{}' is no method's name", base_name_), "base",
                         fmt::format("a formula is given as formula:{}", base_name_));
       }
-      method_ = registry.make(base_name_);
+      method_ = other(base_name_);
     }
   }
 
@@ -239,8 +238,8 @@ AlgorithmEntry closed_loop_entry() {
       {"physical_vetoes", "an effect with unphysical parameters is no finding", true},
   };
   entry.fixed_form = true;
-  entry.make = [](const Parameters& parameters, const Registry& registry) {
-    return std::unique_ptr<Regressor>(std::make_unique<loop::ClosedLoop>(parameters, registry));
+  entry.make = [](const Parameters& parameters, const MakeMethod& other) {
+    return std::unique_ptr<Regressor>(std::make_unique<loop::ClosedLoop>(parameters, other));
   };
   return entry;
 }

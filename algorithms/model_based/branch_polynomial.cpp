@@ -85,7 +85,7 @@ AlgorithmEntry branch_polynomial_entry() {
           "a cubic in velocity for each direction, exact least squares",
           {},
           true,
-          [](const Parameters&, const Registry&) -> std::unique_ptr<Regressor> {
+          [](const Parameters&, const MakeMethod&) -> std::unique_ptr<Regressor> {
             return std::make_unique<BranchPolynomial>();
           }};
 }

@@ -48,7 +48,7 @@ AlgorithmEntry constant_entry() {
           "placebo: the mean of the target",
           {},
           true,
-          [](const Parameters&, const Registry&) -> std::unique_ptr<Regressor> {
+          [](const Parameters&, const MakeMethod&) -> std::unique_ptr<Regressor> {
             return std::make_unique<LinearModel>(false);
           }};
 }
@@ -58,7 +58,7 @@ AlgorithmEntry linear_entry() {
           "placebo: least squares in all inputs",
           {},
           true,
-          [](const Parameters&, const Registry&) -> std::unique_ptr<Regressor> {
+          [](const Parameters&, const MakeMethod&) -> std::unique_ptr<Regressor> {
             return std::make_unique<LinearModel>(true);
           }};
 }

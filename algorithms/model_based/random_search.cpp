@@ -132,7 +132,7 @@ AlgorithmEntry random_search_entry() {
           {{"formulas", "formulas drawn", std::int64_t{20000}, 1, 1e9},
            {"size", "largest number of nodes drawn", std::int64_t{20}, 1, 200}},
           false,
-          [](const Parameters& parameters, const Registry&) -> std::unique_ptr<Regressor> {
+          [](const Parameters& parameters, const MakeMethod&) -> std::unique_ptr<Regressor> {
             return std::make_unique<RandomSearch>(parameters);
           }};
 }

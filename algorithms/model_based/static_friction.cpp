@@ -125,7 +125,7 @@ std::vector<ParameterSpec> specs() {
 
 AlgorithmEntry symmetric_entry() {
   return {"symmetric", "static friction model (Stribeck), the same in both directions", specs(),
-          true, [](const Parameters& parameters, const Registry&) -> std::unique_ptr<Regressor> {
+          true, [](const Parameters& parameters, const MakeMethod&) -> std::unique_ptr<Regressor> {
             return std::make_unique<StaticFriction>(parameters, false);
           }};
 }
@@ -133,7 +133,7 @@ AlgorithmEntry symmetric_entry() {
 AlgorithmEntry asymmetric_entry() {
   return {"asymmetric", "static friction model (Stribeck), each direction with its own parameters",
           specs(), true,
-          [](const Parameters& parameters, const Registry&) -> std::unique_ptr<Regressor> {
+          [](const Parameters& parameters, const MakeMethod&) -> std::unique_ptr<Regressor> {
             return std::make_unique<StaticFriction>(parameters, true);
           }};
 }

@@ -83,7 +83,7 @@ std::vector<ParameterSpec> specs() {
 
 AlgorithmEntry parfam_entry() {
   return {"parfam", "ParFam: parametric families by continuous optimisation", specs(), false,
-          [](const Parameters& parameters, const Registry&) -> std::unique_ptr<Regressor> {
+          [](const Parameters& parameters, const MakeMethod&) -> std::unique_ptr<Regressor> {
             return std::make_unique<ParFam>(parameters);
           }};
 }

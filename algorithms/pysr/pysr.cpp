@@ -18,7 +18,7 @@ class Pysr : public Regressor {
   pysr::Options options_;
 };
 
-std::unique_ptr<Regressor> make_pysr(const Parameters& parameters, const Registry&) {
+std::unique_ptr<Regressor> make_pysr(const Parameters& parameters, const MakeMethod&) {
   return std::make_unique<Pysr>(pysr::options_from(parameters));
 }
 

@@ -362,7 +362,7 @@ AlgorithmEntry udsr_entry() {
           "unified deep symbolic regression: policy network, genetic programming, linear token, "
           "recursive simplification, pre-training",
           parameter_specs(), false,
-          [](const Parameters& parameters, const Registry&) -> std::unique_ptr<Regressor> {
+          [](const Parameters& parameters, const MakeMethod&) -> std::unique_ptr<Regressor> {
             return std::make_unique<Udsr>(settings_from(parameters));
           }};
 }

@@ -24,7 +24,7 @@ class Median : public tribench::Regressor {
 };
 
 std::unique_ptr<tribench::Regressor> make_median(const tribench::Parameters&,
-                                                 const tribench::Registry&) {
+                                                 const tribench::MakeMethod&) {
   return std::make_unique<Median>();
 }
 

@@ -17,7 +17,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-std::unique_ptr<Regressor> make_nothing(const Parameters&, const Registry&) { return nullptr; }
+std::unique_ptr<Regressor> make_nothing(const Parameters&, const MakeMethod&) { return nullptr; }
 
 Registry small_registry() {
   Registry registry;

@@ -170,7 +170,7 @@ class TestMethod : public Regressor {
 };
 
 template <Behaviour behaviour>
-std::unique_ptr<Regressor> make(const Parameters& parameters, const Registry&) {
+std::unique_ptr<Regressor> make(const Parameters& parameters, const MakeMethod&) {
   return std::make_unique<TestMethod>(behaviour, parameters.number("seconds"));
 }
 
