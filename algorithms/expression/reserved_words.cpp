@@ -68,7 +68,9 @@ bool is_reserved_word(std::string_view name) {
     if (holds(list, name)) return true;
   }
   // M_PIf, M_PIl and their like.
-  if (name.size() > 3 && name.starts_with("M_") && is_capital(name[2])) return true;
+  if (name.starts_with("M_") && name.size() > 3 && is_capital(name[2]) && name.back() != '_') {
+    return true;
+  }
   return (name.back() == 'f' || name.back() == 'l') &&
          holds(kMath, name.substr(0, name.size() - 1));
 }
