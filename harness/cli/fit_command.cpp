@@ -148,7 +148,11 @@ void fit(const FitArguments& arguments, const Registry& registry) {
   if (result.record.status != "ok") {
     const bool is_unsupported = result.record.reason.starts_with("unsupported");
     throw Error(is_unsupported ? ErrorKind::bad_input : ErrorKind::failed, result.record.reason,
-                arguments.method);
+                arguments.method,
+                is_unsupported
+                    ? "say what the columns are (--roles COLUMN=ROLE), or choose another "
+                      "method"
+                    : "");
   }
   arguments.json ? print_json(result) : print_text(result);
 }

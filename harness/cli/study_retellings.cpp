@@ -35,7 +35,7 @@ struct Arguments {
   bool json = false;
 };
 
-std::vector<Recording> listed_recordings(const Arguments& arguments) {
+std::vector<RecordingToTell> listed_recordings(const Arguments& arguments) {
   RecordingList list;
   if (arguments.measured) {
     const auto folder = measured::find_data_folder(
@@ -53,18 +53,18 @@ std::vector<Recording> listed_recordings(const Arguments& arguments) {
     fmt::print(stderr, "{}: its files are not there, left out\n", name);
   }
   std::erase_if(list.recordings,
-                [&](const Recording& one) { return !one.name.starts_with(arguments.only); });
+                [&](const RecordingToTell& one) { return !one.name.starts_with(arguments.only); });
   if (list.recordings.empty()) throw_bad_input("no recording is left");
   return list.recordings;
 }
 
-std::vector<Recording> chosen_recordings(const Arguments& arguments) {
-  std::vector<Recording> recordings =
+std::vector<RecordingToTell> chosen_recordings(const Arguments& arguments) {
+  std::vector<RecordingToTell> recordings =
       arguments.measured || !arguments.list.empty()
           ? listed_recordings(arguments)
           : planted_recordings(arguments.generator, arguments.campaigns, arguments.seed,
                                arguments.only);
-  for (Recording& one : recordings) {
+  for (RecordingToTell& one : recordings) {
     one.options.insert(one.options.end(), arguments.more.begin(), arguments.more.end());
   }
   return recordings;

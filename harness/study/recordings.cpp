@@ -36,20 +36,20 @@ std::string csv_text(const CsvCells& cells) {
   return text;
 }
 
-Recording recording_of(const LoopCase& one) {
+RecordingToTell recording_of(const LoopCase& one) {
   std::ostringstream text;
   write_csv(one.make().data, text);
-  Recording recording{one.key(),
-                      {{"recording.csv", split_csv(text.str(), "recording.csv")}},
-                      {"--gear-ratio", fmt::format("{}", one.gear_ratio)},
-                      one.seed};
+  RecordingToTell recording{one.key(),
+                            {{"recording.csv", split_csv(text.str(), "recording.csv")}},
+                            {"--gear-ratio", fmt::format("{}", one.gear_ratio)},
+                            one.seed};
   if (one.any_sign) recording.options.emplace_back("--any-sign");
   return recording;
 }
 
-Recording recording_of(const TomlTable& table, const std::filesystem::path& folder) {
+RecordingToTell recording_of(const TomlTable& table, const std::filesystem::path& folder) {
   for (const char* key : {"name", "files"}) table.require(key);
-  Recording recording;
+  RecordingToTell recording;
   std::vector<std::string> files;
   table.read("name", recording.name);
   table.read("files", files);
@@ -66,8 +66,8 @@ Recording recording_of(const TomlTable& table, const std::filesystem::path& fold
 
 }  // namespace
 
-std::vector<Recording> planted_recordings(LoopGenerator generator, int count,
-                                          std::uint64_t first_seed, std::string_view only) {
+std::vector<RecordingToTell> planted_recordings(LoopGenerator generator, int count,
+                                                std::uint64_t first_seed, std::string_view only) {
   // So few null runs that they are near a tenth of the draw.
   std::vector<LoopCase> cases = generator == LoopGenerator::simulated
                                     ? make_simulated_cases(1, 2, first_seed)
@@ -81,7 +81,7 @@ std::vector<Recording> planted_recordings(LoopGenerator generator, int count,
   }
   RandomStream(key_of("recordings/planted")).split(first_seed).shuffle(std::span(cases));
   cases.resize(std::min(cases.size(), static_cast<std::size_t>(count)));
-  std::vector<Recording> recordings;
+  std::vector<RecordingToTell> recordings;
   for (const LoopCase& one : cases) recordings.push_back(recording_of(one));
   return recordings;
 }
@@ -92,7 +92,7 @@ RecordingList read_recordings(std::string_view toml, const std::string& name,
   const TomlTable file(root, name, "", {"recording"});
   RecordingList list;
   for (const TomlTable& table : file.array_of_tables("recording", {"name", "files", "options"})) {
-    Recording recording = recording_of(table, folder);
+    RecordingToTell recording = recording_of(table, folder);
     if (recording.files.empty()) {
       list.missing.push_back(recording.name);
     } else {
@@ -104,7 +104,7 @@ RecordingList read_recordings(std::string_view toml, const std::string& name,
 
 std::string_view measured_recordings_toml() { return embedded::measured_recordings(); }
 
-std::vector<std::string> write_recording(const Recording& recording,
+std::vector<std::string> write_recording(const RecordingToTell& recording,
                                          const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   std::vector<std::string> words = {"loop"};

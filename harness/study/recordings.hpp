@@ -21,7 +21,7 @@ struct RecordingFile {
 };
 
 // A campaign and how `tribench loop` is asked about it.
-struct Recording {
+struct RecordingToTell {
   std::string name;  // "single/stribeck/1/301": names it everywhere
   std::vector<RecordingFile> files;
   std::vector<std::string> options;  // "--roles", "tau=motor_torque", "--unordered"
@@ -32,11 +32,11 @@ struct Recording {
 // Planted campaigns: `count` of the study's cases whose key begins with `only` (empty: any), drawn
 // with the seed among those that are not at the limit of what can be found (0.5 times the noise and
 // more, or nothing planted). Throws Error (bad_input) where no key begins so.
-std::vector<Recording> planted_recordings(LoopGenerator generator, int count,
-                                          std::uint64_t first_seed, std::string_view only);
+std::vector<RecordingToTell> planted_recordings(LoopGenerator generator, int count,
+                                                std::uint64_t first_seed, std::string_view only);
 
 struct RecordingList {
-  std::vector<Recording> recordings;
+  std::vector<RecordingToTell> recordings;
   std::vector<std::string> missing;  // names of those whose files are not there
 };
 // From TOML: [[recording]] with name, files (in `folder`) and options = ["--roles", ...]. `name` is
@@ -48,7 +48,7 @@ std::string_view measured_recordings_toml();
 
 // Writes the files to a folder and returns what asks the loop about them, program aside:
 // {"loop", "DIR/a.csv", ..., "--seed", "1"}. Throws Error (failed) where a file cannot be written.
-std::vector<std::string> write_recording(const Recording& recording,
+std::vector<std::string> write_recording(const RecordingToTell& recording,
                                          const std::filesystem::path& folder);
 
 }  // namespace tribench

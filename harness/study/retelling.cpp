@@ -24,14 +24,14 @@ constexpr double kRounding = 1e-9;      // of errors that sums in another order 
 constexpr std::string_view kUnordered = "--unordered";
 
 // The value of an option of `loop`; empty where it is not given.
-std::string_view option_of(const Recording& recording, std::string_view name) {
+std::string_view option_of(const RecordingToTell& recording, std::string_view name) {
   const auto found = std::ranges::find(recording.options, name);
   if (found == recording.options.end() || found + 1 == recording.options.end()) return {};
   return *(found + 1);
 }
 
 // What --roles says of a column ("motor_current[mA]": the role alone), else its name.
-Role role_of(const Recording& recording, std::string_view column) {
+Role role_of(const RecordingToTell& recording, std::string_view column) {
   std::string_view roles = option_of(recording, "--roles");
   while (!roles.empty()) {
     const std::string_view part = roles.substr(0, roles.find(','));
@@ -64,7 +64,7 @@ bool change_column(CsvCells& cells, std::size_t column,
 }
 
 // Changes the numbers of every column of a role; false where there is none.
-bool change_roles(Recording& recording, const std::function<bool(Role)>& which,
+bool change_roles(RecordingToTell& recording, const std::function<bool(Role)>& which,
                   const std::function<double(double)>& change) {
   bool any = false;
   for (RecordingFile& file : recording.files) {
@@ -77,7 +77,8 @@ bool change_roles(Recording& recording, const std::function<bool(Role)>& which,
   return any;
 }
 
-std::optional<std::size_t> movement_column(const Recording& recording, const CsvCells& cells) {
+std::optional<std::size_t> movement_column(const RecordingToTell& recording,
+                                           const CsvCells& cells) {
   for (std::size_t c = 0; c < cells.header.size(); ++c) {
     if (role_of(recording, cells.header[c]) == Role::movement) return c;
   }
@@ -87,7 +88,7 @@ std::optional<std::size_t> movement_column(const Recording& recording, const Csv
 // The lines of one movement, which stand together.
 using Movement = std::vector<CsvLine>;
 
-std::vector<Movement> movements_of(const Recording& recording, const CsvCells& cells) {
+std::vector<Movement> movements_of(const RecordingToTell& recording, const CsvCells& cells) {
   const std::optional<std::size_t> column = movement_column(recording, cells);
   std::vector<Movement> movements;
   for (const CsvLine& line : cells.lines) {
@@ -107,7 +108,7 @@ void put_movements(CsvCells& cells, const std::vector<Movement>& movements) {
   }
 }
 
-std::size_t count_movements(const Recording& recording) {
+std::size_t count_movements(const RecordingToTell& recording) {
   std::size_t count = 0;
   for (const RecordingFile& file : recording.files) {
     count += movements_of(recording, file.cells).size();
@@ -115,23 +116,25 @@ std::size_t count_movements(const Recording& recording) {
   return count;
 }
 
-std::optional<Recording> mirror(const Recording& recording, RandomStream /*random*/) {
-  Recording told = recording;
+std::optional<RecordingToTell> mirror(const RecordingToTell& recording, RandomStream /*random*/) {
+  RecordingToTell told = recording;
   change_roles(told, is_signed, [](double x) { return -x; });
   return told;
 }
 
 template <int kNumerator, int kDenominator>
-std::optional<Recording> in_another_torque(const Recording& recording, RandomStream /*random*/) {
-  Recording told = recording;
+std::optional<RecordingToTell> in_another_torque(const RecordingToTell& recording,
+                                                 RandomStream /*random*/) {
+  RecordingToTell told = recording;
   change_roles(told, is_torque_like, [](double x) { return x * kNumerator / kDenominator; });
   told.torque_unit = recording.torque_unit * kDenominator / kNumerator;
   return told;
 }
 
 // Radians as degrees, where the columns' own names say the unit.
-std::optional<Recording> in_degrees(const Recording& recording, RandomStream /*random*/) {
-  Recording told = recording;
+std::optional<RecordingToTell> in_degrees(const RecordingToTell& recording,
+                                          RandomStream /*random*/) {
+  RecordingToTell told = recording;
   bool any = false;
   for (RecordingFile& file : told.files) {
     for (std::size_t c = 0; c < file.cells.header.size(); ++c) {
@@ -152,8 +155,9 @@ std::optional<Recording> in_degrees(const Recording& recording, RandomStream /*r
   return any ? std::optional(told) : std::nullopt;
 }
 
-std::optional<Recording> shuffle_columns(const Recording& recording, RandomStream random) {
-  Recording told = recording;
+std::optional<RecordingToTell> shuffle_columns(const RecordingToTell& recording,
+                                               RandomStream random) {
+  RecordingToTell told = recording;
   for (RecordingFile& file : told.files) {
     std::vector<std::size_t> order(file.cells.header.size());
     std::iota(order.begin(), order.end(), 0);
@@ -171,9 +175,10 @@ std::optional<Recording> shuffle_columns(const Recording& recording, RandomStrea
   return told;
 }
 
-std::optional<Recording> shuffle_movements(const Recording& recording, RandomStream random) {
+std::optional<RecordingToTell> shuffle_movements(const RecordingToTell& recording,
+                                                 RandomStream random) {
   if (count_movements(recording) < 2) return std::nullopt;
-  Recording told = unordered(recording);
+  RecordingToTell told = unordered(recording);
   for (RecordingFile& file : told.files) {
     std::vector<Movement> movements = movements_of(recording, file.cells);
     random.shuffle(std::span(movements));
@@ -183,8 +188,9 @@ std::optional<Recording> shuffle_movements(const Recording& recording, RandomStr
   return told;
 }
 
-std::optional<Recording> shift_time(const Recording& recording, RandomStream /*random*/) {
-  Recording told = recording;
+std::optional<RecordingToTell> shift_time(const RecordingToTell& recording,
+                                          RandomStream /*random*/) {
+  RecordingToTell told = recording;
   const bool any = change_roles(
       told, [](Role role) { return role == Role::time; },
       [](double t) { return t + kEpoch2023_s; });
@@ -193,8 +199,9 @@ std::optional<Recording> shift_time(const Recording& recording, RandomStream /*r
 
 // Names that sort in another order than the campaign's. A movement that is read from a column of
 // numbers keeps numbers.
-std::optional<Recording> rename_movements(const Recording& recording, RandomStream /*random*/) {
-  Recording told = recording;
+std::optional<RecordingToTell> rename_movements(const RecordingToTell& recording,
+                                                RandomStream /*random*/) {
+  RecordingToTell told = recording;
   std::size_t number = 0;
   for (RecordingFile& file : told.files) {
     const std::optional<std::size_t> column = movement_column(recording, file.cells);
@@ -212,14 +219,16 @@ std::optional<Recording> rename_movements(const Recording& recording, RandomStre
   return told;
 }
 
-std::optional<Recording> with_another_seed(const Recording& recording, RandomStream random) {
-  Recording told = recording;
+std::optional<RecordingToTell> with_another_seed(const RecordingToTell& recording,
+                                                 RandomStream random) {
+  RecordingToTell told = recording;
   told.seed = recording.seed + 1 + random.below(1'000'000);
   return told;
 }
 
-std::optional<Recording> every_second_row(const Recording& recording, RandomStream /*random*/) {
-  Recording told = recording;
+std::optional<RecordingToTell> every_second_row(const RecordingToTell& recording,
+                                                RandomStream /*random*/) {
+  RecordingToTell told = recording;
   for (RecordingFile& file : told.files) {
     std::vector<Movement> movements = movements_of(recording, file.cells);
     for (Movement& movement : movements) {
@@ -233,8 +242,9 @@ std::optional<Recording> every_second_row(const Recording& recording, RandomStre
 }
 
 // Leaves out the movements, numbered through all files, that are marked.
-std::optional<Recording> without(const Recording& recording, const std::vector<char>& left_out) {
-  Recording told = recording;
+std::optional<RecordingToTell> without(const RecordingToTell& recording,
+                                       const std::vector<char>& left_out) {
+  RecordingToTell told = recording;
   std::size_t number = 0;
   for (RecordingFile& file : told.files) {
     std::vector<Movement> kept;
@@ -247,8 +257,8 @@ std::optional<Recording> without(const Recording& recording, const std::vector<c
   return told;
 }
 
-std::optional<Recording> without_the_last_tenth(const Recording& recording,
-                                                RandomStream /*random*/) {
+std::optional<RecordingToTell> without_the_last_tenth(const RecordingToTell& recording,
+                                                      RandomStream /*random*/) {
   const std::size_t count = count_movements(recording);
   if (count < 10) return std::nullopt;
   std::vector<char> left_out(count);
@@ -256,7 +266,8 @@ std::optional<Recording> without_the_last_tenth(const Recording& recording,
   return without(recording, left_out);
 }
 
-std::optional<Recording> without_any_tenth(const Recording& recording, RandomStream random) {
+std::optional<RecordingToTell> without_any_tenth(const RecordingToTell& recording,
+                                                 RandomStream random) {
   const std::size_t count = count_movements(recording);
   if (count < 10) return std::nullopt;
   std::vector<char> left_out(count);
@@ -302,7 +313,7 @@ const Retelling& find_retelling(std::string_view name) {
                   did_you_mean(name, names));
 }
 
-Recording unordered(Recording recording) {
+RecordingToTell unordered(RecordingToTell recording) {
   if (std::ranges::find(recording.options, kUnordered) == recording.options.end()) {
     recording.options.emplace_back(kUnordered);
   }

@@ -25,7 +25,8 @@ struct Retelling {
   // Compared with the first telling under --unordered: the order of movements is what changes.
   bool unordered = false;
   // Nothing where this recording cannot be told so (no time to shift, one movement to order).
-  std::optional<Recording> (*tell)(const Recording& recording, RandomStream random) = nullptr;
+  std::optional<RecordingToTell> (*tell)(const RecordingToTell& recording,
+                                         RandomStream random) = nullptr;
 };
 
 const std::vector<Retelling>& retellings();
@@ -33,6 +34,6 @@ const std::vector<Retelling>& retellings();
 const Retelling& find_retelling(std::string_view name);
 
 // The same under --unordered.
-Recording unordered(Recording recording);
+RecordingToTell unordered(RecordingToTell recording);
 
 }  // namespace tribench

@@ -54,13 +54,13 @@ bool same_number(double a, double b) { return a == b || (std::isnan(a) && std::i
 // The first tellings of a recording: as it stands, and under --unordered where that is asked for.
 class FirstTellings {
  public:
-  FirstTellings(const Recording& recording, const StoryTeller& teller)
+  FirstTellings(const RecordingToTell& recording, const StoryTeller& teller)
       : recording_(recording), teller_(teller) {}
   const LoopStory& plain() { return told(plain_, recording_); }
   const LoopStory& unordered() { return told(unordered_, tribench::unordered(recording_)); }
 
  private:
-  const LoopStory& told(std::optional<LoopStory>& story, const Recording& recording) {
+  const LoopStory& told(std::optional<LoopStory>& story, const RecordingToTell& recording) {
     if (story) return *story;
     story = teller_(recording);
     if (story->verdict == "FAILED") {
@@ -69,19 +69,19 @@ class FirstTellings {
     return *story;
   }
 
-  const Recording& recording_;
+  const RecordingToTell& recording_;
   const StoryTeller& teller_;
   std::optional<LoopStory> plain_;
   std::optional<LoopStory> unordered_;
 };
 
-std::vector<RetellingOutcome> retell(const Recording& recording,
+std::vector<RetellingOutcome> retell(const RecordingToTell& recording,
                                      const std::vector<const Retelling*>& ways,
                                      const StoryTeller& teller) {
   FirstTellings first(recording, teller);
   std::vector<RetellingOutcome> outcomes;
   for (const Retelling* way : ways) {
-    std::optional<Recording> told =
+    std::optional<RecordingToTell> told =
         way->tell(recording, RandomStream(key_of(recording.name)).split(way->name));
     if (!told) continue;
     RetellingOutcome out{recording.name, way, way->unordered ? first.unordered() : first.plain(),
@@ -144,7 +144,7 @@ std::string LoopStory::text() const {
 }
 
 StoryTeller make_loop_teller(std::string program) {
-  return [program = std::move(program)](const Recording& recording) {
+  return [program = std::move(program)](const RecordingToTell& recording) {
     const ScratchFolder scratch;
     ChildOptions options;
     options.command = {program};
@@ -160,7 +160,7 @@ StoryTeller make_loop_teller(std::string program) {
   };
 }
 
-RetellingStudy run_retelling_study(const std::vector<Recording>& recordings,
+RetellingStudy run_retelling_study(const std::vector<RecordingToTell>& recordings,
                                    const StoryTeller& teller,
                                    const RetellingStudyOptions& options) {
   std::vector<const Retelling*> ways;

@@ -31,7 +31,7 @@ struct LoopStory {
 };
 
 // Called from several threads at once.
-using StoryTeller = std::function<LoopStory(const Recording&)>;
+using StoryTeller = std::function<LoopStory(const RecordingToTell&)>;
 
 // Asks a program ("/usr/bin/tribench"): `program loop FILES OPTIONS --seed N --json`, with one
 // thread. A program that cannot be started throws Error (failed).
@@ -42,7 +42,7 @@ struct RetellingOutcome {
   const Retelling* retelling = nullptr;
   LoopStory first;
   LoopStory again;         // errors in the first telling's unit
-  Recording told;          // only where the story changed
+  RecordingToTell told;    // only where the story changed
   double error_ratio = 0;  // again / first, after the refit; NaN where one is not known
   bool same = true;        // verdict and families
   bool same_bits = true;   // the errors too
@@ -78,7 +78,7 @@ struct RetellingStudyOptions {
 };
 
 // Throws Error (bad_input) where a first telling fails. Cost: a run of the loop each.
-RetellingStudy run_retelling_study(const std::vector<Recording>& recordings,
+RetellingStudy run_retelling_study(const std::vector<RecordingToTell>& recordings,
                                    const StoryTeller& teller, const RetellingStudyOptions& options);
 
 }  // namespace tribench

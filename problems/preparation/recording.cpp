@@ -479,7 +479,8 @@ void fit_gravity(PreparedRecording& out, Gravity gravity) {
   out.notes.push_back(fmt::format(
       "gravity that no column declares is fitted with the base ({:.4g} {} at most; it explains "
       "{:.0f} % of what friction and inertia leave){}",
-      std::hypot(body->sine, body->cosine), torque->unit, 100 * body->explained,
+      std::sqrt(body->sine * body->sine + body->cosine * body->cosine), torque->unit,
+      100 * body->explained,
       gravity == Gravity::fit ? "" : ", as --gravity fit does; --gravity none leaves it out"));
   add_rigid(out, sine);
   add_rigid(out, cosine);

@@ -109,8 +109,9 @@ std::optional<RigidBody> fit_rigid_body(const Dataset& data) {
   body.sine = with.coefficients(rows.base);
   body.cosine = with.coefficients(rows.base + 1);
   body.explained = without.squares > 0 ? 1 - with.squares / without.squares : 0;
-  body.certainty = std::hypot(body.sine, body.cosine) /
-                   std::hypot(with.errors(rows.base), with.errors(rows.base + 1));
+  const auto length = [](double a, double b) { return std::sqrt(a * a + b * b); };
+  body.certainty =
+      length(body.sine, body.cosine) / length(with.errors(rows.base), with.errors(rows.base + 1));
   body.friction = with.coefficients(0) + with.coefficients(1) * rows.speed;
   body.friction_error = with.errors(0) + with.errors(1) * rows.speed;
   return body;

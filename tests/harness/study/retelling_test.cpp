@@ -24,14 +24,14 @@ constexpr const char* kText =
     "up,0,0,1,3,a,20\nup,0.5,0.5,1,3.5,b,20\nup,1,1,1,nan,c,21\n"
     "down,5,1,-1,-3,d,22\ndown,5.5,0.5,-1,-3.5,e,22\n";
 
-Recording small_recording() {
+RecordingToTell small_recording() {
   return {"small",
           {{"small.csv", split_csv(kText, "small.csv")}},
           {"--roles", "w=velocity,tau=motor_torque[N m]"},
           7};
 }
 
-std::vector<std::string> column(const Recording& recording, const std::string& name) {
+std::vector<std::string> column(const RecordingToTell& recording, const std::string& name) {
   const CsvCells& cells = recording.files[0].cells;
   const auto at = std::ranges::find(cells.header, name) - cells.header.begin();
   std::vector<std::string> values;
@@ -41,12 +41,12 @@ std::vector<std::string> column(const Recording& recording, const std::string& n
   return values;
 }
 
-Recording told(std::string_view name, const Recording& recording = small_recording()) {
+RecordingToTell told(std::string_view name, const RecordingToTell& recording = small_recording()) {
   return find_retelling(name).tell(recording, RandomStream(1)).value();
 }
 
 TEST(Retelling, MirroringNegatesWhatHasASignAndNothingElse) {
-  const Recording mirrored = told("mirrored");
+  const RecordingToTell mirrored = told("mirrored");
   EXPECT_THAT(column(mirrored, "w"), ElementsAre("-1", "-1", "-1", "1", "1"));
   EXPECT_THAT(column(mirrored, "tau"), ElementsAre("-3", "-3.5", "nan", "3", "3.5"));
   EXPECT_THAT(column(mirrored, "position_rad"), ElementsAre("-0", "-0.5", "-1", "-1", "-0.5"));
@@ -57,7 +57,7 @@ TEST(Retelling, MirroringNegatesWhatHasASignAndNothingElse) {
 }
 
 TEST(Retelling, TorquesInAnotherUnitSayHowLargeItIs) {
-  const Recording small = told("torque_x1000");
+  const RecordingToTell small = told("torque_x1000");
   EXPECT_THAT(column(small, "tau"), ElementsAre("3000", "3500", "nan", "-3000", "-3500"));
   EXPECT_EQ(column(small, "w"), column(small_recording(), "w"));
   EXPECT_EQ(small.torque_unit, 0.001);
@@ -65,21 +65,21 @@ TEST(Retelling, TorquesInAnotherUnitSayHowLargeItIs) {
 }
 
 TEST(Retelling, DegreesAreToldOnlyWhereTheNameSaysTheUnit) {
-  const Recording degrees = told("degrees");
+  const RecordingToTell degrees = told("degrees");
   EXPECT_THAT(degrees.files[0].cells.header, ::testing::Contains("position_deg"));
   EXPECT_EQ(std::stod(column(degrees, "position_deg")[1]), 0.5 * 180 / std::numbers::pi);
-  Recording named = small_recording();
+  RecordingToTell named = small_recording();
   named.options[1] += ",position_rad=position";
   EXPECT_FALSE(find_retelling("degrees").tell(named, RandomStream(1)).has_value());
 }
 
 TEST(Retelling, OrderAndNamesChangeWithoutTheRows) {
-  const Recording columns = told("columns");
+  const RecordingToTell columns = told("columns");
   EXPECT_NE(columns.files[0].cells.header, small_recording().files[0].cells.header);
   for (const std::string& name : small_recording().files[0].cells.header) {
     EXPECT_EQ(column(columns, name), column(small_recording(), name));
   }
-  Recording shuffled = told("movements");
+  RecordingToTell shuffled = told("movements");
   for (std::uint64_t key = 2; column(shuffled, "movement")[0] == "up"; ++key) {
     shuffled = *find_retelling("movements").tell(small_recording(), RandomStream(key));
   }
@@ -97,7 +97,7 @@ TEST(Retelling, LessOfARecordingIsWholeMovementsOrEverySecondRowOfEach) {
   EXPECT_FALSE(find_retelling("last_tenth").tell(small_recording(), RandomStream(1)).has_value());
   std::string text = "movement,v,tau_f\n";
   for (int m = 0; m < 20; ++m) text += fmt::format("{0},1,2\n{0},1,3\n", m);
-  const Recording many{"many", {{"many.csv", split_csv(text, "many.csv")}}, {}, 1};
+  const RecordingToTell many{"many", {{"many.csv", split_csv(text, "many.csv")}}, {}, 1};
   EXPECT_EQ(column(told("last_tenth", many), "movement").back(), "17");
   EXPECT_EQ(column(told("any_tenth", many), "movement").size(), 36U);
   EXPECT_NE(told("seed", many).seed, many.seed);
@@ -113,7 +113,7 @@ TEST(Retelling, AnUnknownOneIsAnsweredWithTheNearest) {
 }
 
 // A loop that is afraid of negative velocities, and one that counts in N m.
-LoopStory looks_at_the_sign(const Recording& recording) {
+LoopStory looks_at_the_sign(const RecordingToTell& recording) {
   const bool starts_forwards = column(recording, "w")[0] == "1";
   return {"EFFECTS", {starts_forwards ? "stribeck" : "lag"}, 2, 1, {}};
 }
@@ -134,7 +134,7 @@ TEST(RetellingStudy, NamesEachStoryThatChangedAndCountsTheRest) {
 }
 
 TEST(RetellingStudy, ErrorsAreComparedInTheFirstTellingsUnit) {
-  const StoryTeller honest = [](const Recording& recording) {
+  const StoryTeller honest = [](const RecordingToTell& recording) {
     const double tau = std::stod(column(recording, "tau")[0]);
     return LoopStory{"NONE", {}, tau, tau / 3, {}};
   };
@@ -183,10 +183,10 @@ TEST(Recordings, TheListOfMeasuredOnesReadsAndNamesWhatIsMissing) {
 }
 
 TEST(Recordings, PlantedOnesAreDrawnByTheSeed) {
-  const std::vector<Recording> drawn =
+  const std::vector<RecordingToTell> drawn =
       planted_recordings(LoopGenerator::planted, 5, 3, "single/lag");
   ASSERT_EQ(drawn.size(), 5U);
-  for (const Recording& one : drawn) EXPECT_TRUE(one.name.starts_with("single/lag"));
+  for (const RecordingToTell& one : drawn) EXPECT_TRUE(one.name.starts_with("single/lag"));
   EXPECT_EQ(planted_recordings(LoopGenerator::planted, 5, 3, "single/lag")[4].name, drawn[4].name);
   EXPECT_THROW(planted_recordings(LoopGenerator::planted, 5, 3, "single/lagg"), Error);
 }
