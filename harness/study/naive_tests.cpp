@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "algorithms/effects/effect_library.hpp"
 #include "algorithms/diagnosis/loop_model.hpp"
+#include "algorithms/effects/effect_library.hpp"
 #include "algorithms/inference/score_test.hpp"
 #include "foundation/elementary.hpp"
 #include "foundation/incomplete_gamma.hpp"
