@@ -26,14 +26,14 @@ CLI::Option* add_data_options(CLI::App& command, std::shared_ptr<DataOptions> op
       "i=motor_current[mA], stamp=time[ns]; without [UNIT] as the header says, else SI");
   command
       .add_option("--joint", options->joint, "of several joints in the columns' names (q1 ... q7)")
-      ->transform(whole_number(0, 999));
+      ->transform(whole_number(0, kMostJoints));
   command.add_option("--where", options->where, "COLUMN=NUMBER: use these rows only");
   command.add_flag("--drop-missing", options->drop_missing, "drop and count incomplete rows");
   command.add_flag("--flip-sign", options->flip_sign, "the file's torques oppose the velocity");
   command
       .add_option("--counts-per-turn", options->drive.counts_per_turn,
                   "of an encoder that is read in counts, after quadrature")
-      ->transform(real_number(0, 1e12, LowEnd::above));
+      ->transform(real_number(0, kMostCounts, LowEnd::above));
   command.add_option_function<std::string>(
       "--torque-constant",
       [options](const std::string& text) {
@@ -42,7 +42,7 @@ CLI::Option* add_data_options(CLI::App& command, std::shared_ptr<DataOptions> op
       "K: torque from current, in N m/A at the joint; K@motor: at the motor, times --gear-ratio");
   return command
       .add_option("--gear-ratio", options->drive.gear_ratio, "motor turns per turn of the joint")
-      ->transform(real_number(0, 1e6, LowEnd::above));
+      ->transform(real_number(0, kLargestGearRatio, LowEnd::above));
 }
 
 }  // namespace tribench

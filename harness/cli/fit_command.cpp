@@ -23,7 +23,6 @@
 #include "harness/machine.hpp"
 #include "harness/run_cell.hpp"
 #include "problems/data_problem.hpp"
-#include "problems/reading/explanation.hpp"
 
 namespace tribench {
 namespace {
@@ -55,13 +54,10 @@ std::pair<std::string, std::string> name_and_value(const std::string& text, cons
 
 // A column is what --inputs and --target say; its name means nothing.
 Dataset read_columns(const std::string& file, const FitArguments& arguments) {
-  DataOptions options = *arguments.reading;
-  options.names_tell = false;
   std::vector<std::string> used = arguments.inputs;
   used.push_back(arguments.target);
   const std::vector<std::filesystem::path> files = {file};
-  DataFile reading = read_data(files, options, used);
-  check_converted(reading);
+  DataFile reading = read_named_columns(files, *arguments.reading, std::move(used));
   for (const std::string& warning : reading.warnings) {
     fmt::print(stderr, "tribench: {}\n", warning);
   }

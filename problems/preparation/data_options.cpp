@@ -9,6 +9,7 @@
 #include "foundation/error.hpp"
 #include "problems/data_problem.hpp"
 #include "problems/reading/csv_cells.hpp"
+#include "problems/reading/explanation.hpp"
 #include "problems/table.hpp"
 
 namespace tribench {
@@ -90,6 +91,43 @@ DataFile read_data(std::span<const std::filesystem::path> files, const DataOptio
   if (condition) keep_rows_where(file, *condition);
   if (options.flip_sign) flip_torques(file.data);
   return file;
+}
+
+DataFile read_named_columns(std::span<const std::filesystem::path> files, DataOptions options,
+                            std::vector<std::string> used) {
+  options.names_tell = false;
+  DataFile file = read_data(files, options, std::move(used));
+  check_converted(file);
+  if (std::string made = make_torque(file.data, options); !made.empty()) {
+    file.warnings.push_back(std::move(made));
+  }
+  return file;
+}
+
+std::string make_torque(Dataset& data, const DataOptions& options) {
+  if (!options.torque_constant) return {};
+  const auto found = std::ranges::find(data.channels, Role::motor_current, &Channel::role);
+  if (found == data.channels.end()) {
+    throw_bad_input("there is no motor current", "--torque-constant",
+                    "name it: --roles COLUMN=motor_current[A]");
+  }
+  Channel& current = *found;
+  if (current.unit != "A") {
+    throw_bad_input(fmt::format("the unit of '{}' is not known", current.name), "--torque-constant",
+                    fmt::format("say it: --roles '{}=motor_current[A]' (or mA)", current.name));
+  }
+  double factor = options.torque_constant->value;
+  if (options.torque_constant->at_motor) {
+    if (!options.drive.gear_ratio) {
+      throw_bad_input("it is of the motor, and nothing says how the gear raises the torque",
+                      "--torque-constant", "give --gear-ratio N");
+    }
+    factor *= *options.drive.gear_ratio;
+  }
+  for (double& value : current.values) value *= factor;
+  current.unit = "N m";
+  if (data.find(Role::motor_torque) == nullptr) current.role = Role::motor_torque;
+  return fmt::format("torque is {:.6g} N m/A times '{}'", factor, current.name);
 }
 
 }  // namespace tribench

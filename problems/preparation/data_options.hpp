@@ -14,6 +14,11 @@
 
 namespace tribench {
 
+// What the numbers may be at most.
+inline constexpr int kMostJoints = 999;
+inline constexpr double kMostCounts = 1e12;
+inline constexpr double kLargestGearRatio = 1e6;
+
 struct TorqueConstant {
   double value = 0;  // N m/A
   bool at_motor = false;
@@ -38,5 +43,17 @@ struct DataOptions {
 // Throws Error (bad_input).
 DataFile read_data(std::span<const std::filesystem::path> files, const DataOptions& options,
                    std::optional<std::vector<std::string>> used = {});
+
+// Columns that are what the user says they are, for a fit or a problem of a grid: names tell
+// nothing, units that were said are converted, current becomes torque where a constant was given
+// (`options.names_tell` does not matter). Throws Error (bad_input), also for a unit that waits for
+// the counts of a turn or the gear ratio.
+DataFile read_named_columns(std::span<const std::filesystem::path> files, DataOptions options,
+                            std::vector<std::string> used);
+
+// The motor current becomes the motor torque, in N m; returns the sentence that says so, empty
+// where the options hold no torque constant. Throws Error (bad_input): there is no current, its
+// unit is not known, the constant is the motor's and there is no gear ratio.
+std::string make_torque(Dataset& data, const DataOptions& options);
 
 }  // namespace tribench

@@ -42,32 +42,6 @@ Channel* find(Dataset& data, Role role) {
 
 // ---- torque --------------------------------------------------------------------------------
 
-void make_torque(PreparedRecording& out, const DataOptions& options) {
-  if (!options.torque_constant) return;
-  Channel* current = find(out.data, Role::motor_current);
-  if (current == nullptr) {
-    throw_bad_input("there is no motor current", "--torque-constant",
-                    "name it: --roles COLUMN=motor_current[A]");
-  }
-  if (current->unit != "A") {
-    throw_bad_input(fmt::format("the unit of '{}' is not known", current->name),
-                    "--torque-constant",
-                    fmt::format("say it: --roles '{}=motor_current[A]' (or mA)", current->name));
-  }
-  double factor = options.torque_constant->value;
-  if (options.torque_constant->at_motor) {
-    if (!options.drive.gear_ratio) {
-      throw_bad_input("it is of the motor, and nothing says how the gear raises the torque",
-                      "--torque-constant", "give --gear-ratio N");
-    }
-    factor *= *options.drive.gear_ratio;
-  }
-  for (double& value : current->values) value *= factor;
-  current->unit = "N m";
-  if (find(out.data, Role::motor_torque) == nullptr) current->role = Role::motor_torque;
-  out.notes.push_back(fmt::format("torque is {:.6g} N m/A times '{}'", factor, current->name));
-}
-
 // Two quantities of different units are never subtracted.
 void check_units(const PreparedRecording& out) {
   const Channel* gravity = out.data.find(Role::gravity_torque);
@@ -500,7 +474,9 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
   }
   for (std::string& one : what_was_converted(file)) out.notes.push_back(std::move(one));
   out.data = std::move(file.data);
-  make_torque(out, options);
+  if (std::string made = make_torque(out.data, options); !made.empty()) {
+    out.notes.push_back(std::move(made));
+  }
   check_units(out);
   drop_repeated_stamps(out);
   drop_repeated_messages(out);

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "problems/preparation/data_options_toml.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "foundation/error.hpp"
+#include "foundation/scratch_folder.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::HasSubstr;
+
+DataOptions options_of(const std::string& toml) {
+  const toml::table root = parse_toml(toml, "grid.toml");
+  return read_data_options(TomlTable(root, "grid.toml", "[[problem]]", data_option_keys()));
+}
+
+std::string refusal(const std::string& toml) {
+  try {
+    options_of(toml);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+    return error.what();
+  }
+  return "no error";
+}
+
+constexpr const char* kText = "run,phi,i,tau\n1,90,100,2\n1,180,,3\n2,270,300,4\n";
+
+TEST(DataOptions, a_table_of_toml_says_what_the_command_line_says) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "log.csv";
+  std::ofstream(file) << kText;
+  const DataOptions options = options_of(
+      "roles = 'phi=position[deg@motor], i=motor_current[mA]'\nwhere = 'run=1'\n"
+      "drop_missing = true\ngear_ratio = 2.0\ntorque_constant = '0.5@motor'\n");
+  const std::vector<std::filesystem::path> files = {file};
+  const DataFile read = read_named_columns(files, options, {"phi", "i"});
+  ASSERT_EQ(read.data.rows(), 1U);
+  EXPECT_EQ(read.dropped_rows, 1U);
+  EXPECT_NEAR(read.data.at("phi").values[0], std::numbers::pi / 4, 1e-15);
+  EXPECT_NEAR(read.data.at("i").values[0], 0.1, 1e-15);
+  EXPECT_EQ(read.data.at("i").role, Role::motor_torque);
+  EXPECT_EQ(read.data.at("i").unit, "N m");
+}
+
+TEST(DataOptions, an_empty_table_leaves_the_columns_as_they_are) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "log.csv";
+  std::ofstream(file) << kText;
+  const std::vector<std::filesystem::path> files = {file};
+  const DataFile read = read_named_columns(files, options_of(""), {"phi", "tau"});
+  EXPECT_EQ(read.data.rows(), 3U);
+  EXPECT_EQ(read.data.at("tau").role, Role::none);
+  EXPECT_EQ(read.data.at("phi").values[0], 90);
+}
+
+TEST(DataOptions, a_refusal_names_the_key_and_its_line) {
+  EXPECT_THAT(refusal("joint = 1\nroles = 'q=positon'"), HasSubstr("grid.toml:2"));
+  EXPECT_THAT(refusal("gear_ratio = 0.0"), HasSubstr("gear_ratio"));
+  EXPECT_THAT(refusal("torque_constant = 'much'"), HasSubstr("grid.toml:1"));
+  EXPECT_THAT(refusal("role = 'q=position'"), HasSubstr("roles"));
+}
+
+}  // namespace
+}  // namespace tribench
