@@ -218,6 +218,15 @@ TEST_F(RunTest, DryRunListsTheCellsAndWritesTheGridThatTakesEffect) {
   EXPECT_EQ(again.output, listed.output) << again.errors;
 }
 
+TEST_F(RunTest, DryRunGoesByARunThatIsThere) {
+  ASSERT_EQ(run("before", {"--quiet"}).status, 0);
+  const ProgramRun told = run("dry", {"--dry-run", "--like", (folder_ / "before").string()});
+  EXPECT_EQ(told.status, 0) << told.errors;
+  EXPECT_THAT(told.output, HasSubstr("by the medians of " + (folder_ / "before").string()));
+  EXPECT_THAT(told.output, HasSubstr("48 cells, about "));
+  EXPECT_THAT(run("dry", {"--dry-run"}).output, HasSubstr("48 cells, at most "));
+}
+
 TEST_F(RunTest, VerifyRunsASampleAgainAndFindsResultsThatDoNotComeOutAgain) {
   ASSERT_EQ(run("run").status, 0);
   const auto verify = [&] {

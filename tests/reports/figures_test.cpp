@@ -40,6 +40,13 @@ TEST(MarkdownTable, PadsByCodePointsAndEscapesBars) {
             "| \xC2\xB5m   |  22 |\n");
 }
 
+TEST(MarkdownTable, LetsNoTagAndNoControlCharacterThrough) {
+  MarkdownTable table({{"name"}});
+  table.add({"<img src=x onerror=alert(1)>\x1b[31m\n"});
+  EXPECT_NE(table.text().find("\n| &lt;img src=x onerror=alert(1)> [31m  |\n"), std::string::npos)
+      << table.text();
+}
+
 TEST(Shortened, NeverCutsACodePoint) {
   EXPECT_EQ(shortened("abcdef", 6), "abcdef");
   EXPECT_EQ(shortened("abcdefg", 6), "abc...");

@@ -36,6 +36,17 @@ TEST(LinearLeastSquares, SeesDependentColumnsWhateverTheirUnits) {
   EXPECT_EQ((fit.coefficients[0] == 0) + (fit.coefficients[1] == 0), 1);
 }
 
+TEST(LinearLeastSquares, GivesAColumnOfSubnormalNumbersTheCoefficientZero) {
+  const std::vector<double> ones = {1, 1, 1, 1};
+  const std::vector<double> tiny = {5e-324, 1e-320, 2e-321, 3e-323};
+  const std::vector<double> y = {3, 4, 7, 8};
+  const std::vector<const double*> columns = {ones.data(), tiny.data()};
+  const LinearFit fit = solve_least_squares(columns, y);
+  EXPECT_NEAR(fit.coefficients[0], 5.5, 1e-12);
+  EXPECT_EQ(fit.coefficients[1], 0);
+  EXPECT_NEAR(fit.sum_squares, 17, 1e-12);
+}
+
 TEST(SolveQuadratic, MeetsTheConditionsOfOptimality) {
   RandomStream random(8);
   for (int trial = 0; trial < 300; ++trial) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -77,6 +78,19 @@ TEST(StudyCommand, GeneratorAnswersInJson) {
   const auto study = run_tribench({"study", "generator", "--seeds", "1", "--json"});
   EXPECT_EQ(nlohmann::json::parse(study.output).size(), 26U);
   EXPECT_EQ(run_tribench({"study", "generator", "--seeds", "0"}).status, 2);
+}
+
+TEST(StudyCommand, AProgramThatDoesNotAnswerIsEndedAfterItsTime) {
+  const TemporaryFolder folder;
+  write_text(folder / "sleeper.sh", "sleep 100\n");
+  const auto start = std::chrono::steady_clock::now();
+  const auto study =
+      run_tribench({"study", "loop", "--only", "single/stribeck", "--runs", "1", "--per-cell", "1",
+                    "--jobs", "1", "--command-seconds", "0.2", "--out", (folder / "study").string(),
+                    "--command", "sh", (folder / "sleeper.sh").string()});
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
+  EXPECT_NE(study.status, 0);
+  EXPECT_THAT(study.errors, HasSubstr("longer than 0.2 s"));
 }
 
 }  // namespace

@@ -115,6 +115,9 @@ TEST(LoopCommand, bad_input_ends_with_status_2_and_says_how_to_mend_it) {
               HasSubstr("w"));
   EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--where", "nope=1"}),
               HasSubstr("nope"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good,
+                        {"--where", "velocity_rad_s=1xyz"}),
+              HasSubstr("1xyz"));
   EXPECT_THAT(
       complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--leave-out", "velocity"}),
       HasSubstr("velocity_rad_s"));
@@ -126,6 +129,20 @@ TEST(LoopCommand, bad_input_ends_with_status_2_and_says_how_to_mend_it) {
               HasSubstr("--learn"));
   EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--learn", "pysir"}),
               HasSubstr("pysr"));
+}
+
+TEST(LoopCommand, a_folder_that_cannot_be_made_is_said_before_the_work) {
+  const testing::TemporaryFolder folder;
+  testing::write_text(folder / "taken", "a file");
+  const std::string file =
+      file_of(folder, "movement,velocity_rad_s,friction_torque_Nm", 12, 20, [](int m, int i) {
+        return csv({1.0 * m, speed_of(m), friction_of(speed_of(m), m, i)});
+      });
+  const testing::ProgramRun run =
+      tribench({"loop", file, "--out", (folder / "taken" / "below").string()});
+  EXPECT_NE(run.status, 0);
+  EXPECT_THAT(run.errors, HasSubstr("taken"));
+  EXPECT_EQ(run.output, "");  // no verdict that would then be lost
 }
 
 TEST(LoopCommand, poor_input_is_warned_of_and_nothing_is_claimed) {
