@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "foundation/error.hpp"
@@ -112,6 +114,41 @@ void TomlTable::read(std::string_view key, std::vector<std::string>& value) cons
     if (text == nullptr) refuse(key, "an array of texts");
     value.push_back(text->get());
   }
+}
+
+void TomlTable::read(std::string_view key, std::vector<std::uint64_t>& value) const {
+  if (!has(key)) return;
+  constexpr std::string_view kWanted = "an array of whole numbers, not negative";
+  const toml::array* array = table_->get(key)->as_array();
+  if (array == nullptr) refuse(key, kWanted);
+  value.clear();
+  for (const toml::node& node : *array) {
+    const auto* number = node.as_integer();
+    if (number == nullptr || number->get() < 0) refuse(key, kWanted);
+    value.push_back(static_cast<std::uint64_t>(number->get()));
+  }
+}
+
+void TomlTable::read(std::string_view key, std::vector<double>& value) const {
+  if (!has(key)) return;
+  constexpr std::string_view kWanted = "an array of finite numbers";
+  const toml::array* array = table_->get(key)->as_array();
+  if (array == nullptr) refuse(key, kWanted);
+  value.clear();
+  for (const toml::node& node : *array) {
+    const std::optional<double> number = node.value<double>();
+    if (!number || !std::isfinite(*number)) refuse(key, kWanted);
+    value.push_back(*number);
+  }
+}
+
+std::vector<std::string> TomlTable::keys(std::string_view key) const {
+  std::vector<std::string> names;
+  if (!has(key)) return names;
+  const toml::table* inner = table_->get(key)->as_table();
+  if (inner == nullptr) refuse(key, "a table");
+  for (const auto& [name, node] : *inner) names.emplace_back(name.str());
+  return names;
 }
 
 void TomlTable::require(std::string_view key) const {

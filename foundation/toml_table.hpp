@@ -37,10 +37,15 @@ class TomlTable {
   void read(std::string_view key, std::uint64_t& value) const;
   void read(std::string_view key, int& value, int low, int high) const;
   void read(std::string_view key, std::vector<std::string>& value) const;
+  void read(std::string_view key, std::vector<std::uint64_t>& value) const;
+  // Finite numbers.
+  void read(std::string_view key, std::vector<double>& value) const;
   // Throws where the key is missing.
   void require(std::string_view key) const;
   // Every key with its value, of an inner table that may have any keys.
   std::map<std::string, TomlValue> values(std::string_view key) const;
+  // The keys of an inner table that may have any; none where the key is missing.
+  std::vector<std::string> keys(std::string_view key) const;
   // An inner table, with its own keys; empty where the key is missing.
   TomlTable table(std::string_view key, const std::vector<std::string>& known_keys) const;
   std::vector<TomlTable> array_of_tables(std::string_view key,

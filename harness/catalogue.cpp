@@ -7,6 +7,8 @@
 
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/text.hpp"
+#include "foundation/text.hpp"
+#include "problems/user/user_problem_text.hpp"
 
 namespace tribench {
 namespace {
@@ -27,8 +29,15 @@ Catalogue full_catalogue(const std::optional<std::filesystem::path>& data) {
   return Catalogue(data, law_reader());
 }
 
-Catalogue full_catalogue_of(std::string_view data) {
-  return full_catalogue(data.empty() ? std::nullopt : std::optional<std::filesystem::path>(data));
+Catalogue full_catalogue_of(std::string_view data, std::span<const user::UserProblem> own) {
+  return Catalogue(data.empty() ? std::nullopt : std::optional<std::filesystem::path>(data),
+                   law_reader(), own);
+}
+
+Catalogue full_catalogue_of_run(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "grid.toml";
+  const std::string text = read_file_if_there(file).value_or("");
+  return full_catalogue_of({}, user::parse_user_problems(text, file.string(), folder));
 }
 
 }  // namespace tribench

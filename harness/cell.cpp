@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
+
 namespace tribench {
 
 std::string Cell::key() const {
-  return fmt::format("{}|{}|{}|{}", problem, method, operators, seed);
+  const std::string_view at = data.empty() ? "" : "@";
+  return fmt::format("{}{}{}|{}|{}|{}", problem, at, data, method, operators, seed);
 }
 
 }  // namespace tribench

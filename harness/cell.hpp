@@ -17,8 +17,9 @@ struct Cell {
   std::string method;
   std::string operators;
   std::uint64_t seed = 0;
+  std::string data = {};  // hash of a user problem's files; empty for those of the catalogue
 
-  std::string key() const;  // "A/j2/load|pysr|paper|1"
+  std::string key() const;  // "A/j2/load|pysr|paper|1", "mine@3fa9c1e2d4b5|pysr|paper|1"
   bool operator==(const Cell&) const = default;
 };
 

@@ -8,6 +8,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "problems/user/user_problem_text.hpp"
 
 namespace tribench {
 namespace {
@@ -192,8 +193,11 @@ auto parse_or_throw(std::string_view text, Parse parse) {
 
 CellTask make_task(const Grid& grid, const Cell& cell, const std::string& data) {
   const Method& method = grid.method(cell.method);
-  return {cell,       method, grid.operator_set(cell.operators), grid.limits_of(method), 1, data,
-          grid.prior, false};
+  CellTask task{
+      cell,       method, grid.operator_set(cell.operators), grid.limits_of(method), 1, data,
+      grid.prior, false};
+  if (const user::UserProblem* own = grid.own_problem(cell.problem)) task.own = *own;
+  return task;
 }
 
 Record empty_record(const Cell& cell) {
@@ -207,6 +211,7 @@ Record empty_record(const Cell& cell) {
 }
 
 std::string print_task(const CellTask& task) {
+  const std::string own = task.own ? user::print_user_problem(*task.own) : std::string();
   return dump({{"problem", task.cell.problem},
                {"seed", task.cell.seed},
                {"method", task.method.name},
@@ -217,6 +222,7 @@ std::string print_task(const CellTask& task) {
                {"limits", limits_json(task.limits)},
                {"threads", task.threads},
                {"data", task.data},
+               {"own", own},
                {"max_degree", task.prior.max_degree}});
 }
 
@@ -233,6 +239,11 @@ CellTask parse_task(std::string_view text) {
     task.limits = parse_limits(object.at("limits"));
     task.threads = object.at("threads");
     task.data = object.at("data");
+    const std::string own = object.at("own");
+    for (user::UserProblem& one : user::parse_user_problems(own, "task", {})) {
+      task.cell.data = one.hash();
+      task.own = std::move(one);
+    }
     task.prior.max_degree = object.at("max_degree").get<std::map<std::string, int>>();
     return task;
   });

@@ -4,6 +4,7 @@
 // worker processes. Both go as one line of JSON; doubles come back bit for bit.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,7 @@ struct CellTask {
   Prior prior = {};
   // The budget is what shall be spent, not what may be (restarts.hpp). Never so in a grid.
   bool spends_all = false;
+  std::optional<user::UserProblem> own = {};  // what cell.problem is, where the grid brings it
 };
 
 struct CellResult {

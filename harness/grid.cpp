@@ -4,17 +4,46 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "foundation/error.hpp"
 #include "foundation/glob.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench {
+
+void set_seconds(CellLimits& limits, double seconds) {
+  limits.seconds = seconds;
+  limits.cpu_limit_seconds = 1.5 * seconds + 30;
+  limits.wall_seconds = 3 * seconds + 60;
+}
 
 void apply_prior(const Prior& prior, Problem& problem) {
   for (Input& input : problem.inputs) {
     const auto found = prior.max_degree.find(input.name);
     if (found != prior.max_degree.end()) input.max_degree = found->second;
   }
+}
+
+std::vector<std::string> pick_names(const std::vector<std::string>& globs,
+                                    const std::vector<std::string>& known, std::string_view what,
+                                    const std::string& place) {
+  std::set<std::string> picked;
+  for (const std::string& glob : globs) {
+    bool found = false;
+    for (const std::string& name : known) {
+      if (!glob_matches(glob, name)) continue;
+      picked.insert(name);
+      found = true;
+    }
+    if (found) continue;
+    throw_bad_input(fmt::format("there is no {} '{}'", what, glob), place,
+                    did_you_mean(glob, known));
+  }
+  std::vector<std::string> ordered;
+  std::ranges::copy_if(known, std::back_inserter(ordered),
+                       [&](const std::string& name) { return picked.contains(name); });
+  return ordered;
 }
 
 OperatorSet fixed_form_operators() {
@@ -46,10 +75,12 @@ std::vector<Cell> Grid::cells() const {
   std::vector<Cell> all;
   all.reserve(cell_count());
   for (const std::string& problem : problems) {
+    const user::UserProblem* brought = own_problem(problem);
+    const std::string data = brought == nullptr ? std::string() : brought->hash();
     for (const Method& method : methods) {
       for (const std::string& set : sets_of(method)) {
         for (std::uint64_t i = 0; i < seed_count; ++i) {
-          all.push_back({problem, method.name, set, first_seed + i});
+          all.push_back({problem, method.name, set, first_seed + i, data});
         }
       }
     }
@@ -72,6 +103,11 @@ OperatorSet Grid::operator_set(std::string_view set_name) const {
     if (set.name() == set_name) return set;
   }
   throw Error(ErrorKind::failed, fmt::format("the grid has no operator set '{}'", set_name));
+}
+
+const user::UserProblem* Grid::own_problem(std::string_view problem) const {
+  const auto found = std::ranges::find(own, problem, &user::UserProblem::name);
+  return found == own.end() ? nullptr : &*found;
 }
 
 bool Grid::quarantined(const std::string& cell_key) const {

@@ -17,6 +17,7 @@
 #include "algorithms/registry.hpp"
 #include "harness/cell.hpp"
 #include "problems/catalogue.hpp"
+#include "problems/user/user_problem.hpp"
 
 namespace tribench {
 
@@ -31,6 +32,9 @@ struct CellLimits {
 
   bool operator==(const CellLimits&) const = default;
 };
+
+// The fit stops by itself; judging and slack come on top, in CPU and in wall time.
+void set_seconds(CellLimits& limits, double seconds);
 
 // How often a cell that failed is tried again, by the reason. A cell that failed in a worker that
 // had run other cells before is always tried once more in a fresh one, which is not counted here.
@@ -87,7 +91,8 @@ struct Grid {
   std::string reference_file;
   std::string reference;
 
-  std::vector<suite::Suite> suites;  // those that have problems of this grid
+  std::vector<suite::Suite> suites;    // those that have problems of this grid
+  std::vector<user::UserProblem> own;  // problems of this grid that it brings itself
 
   // Every cell, in the order of the results: problem, method, operator set, seed.
   std::vector<Cell> cells() const;
@@ -96,9 +101,17 @@ struct Grid {
   std::vector<std::string> sets_of(const Method& method) const;
   const Method& method(std::string_view method_name) const;
   OperatorSet operator_set(std::string_view set_name) const;  // "-" is everything
+  // Nothing for a problem of the catalogue.
+  const user::UserProblem* own_problem(std::string_view problem) const;
   CellLimits limits_of(const Method& method) const { return method.limits.value_or(limits); }
   bool quarantined(const std::string& cell_key) const;
 };
+
+// The names that globs pick, in the order of `known`. Throws Error (bad_input) with the place and
+// the nearest name for a glob that picks nothing. `what`: "problem", "method".
+std::vector<std::string> pick_names(const std::vector<std::string>& globs,
+                                    const std::vector<std::string>& known, std::string_view what,
+                                    const std::string& place);
 
 // Throws Error (bad_input) with file, line and the nearest name. Leaves `reference` empty.
 Grid parse_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
@@ -108,7 +121,10 @@ Grid load_grid(const std::filesystem::path& file, const Registry& registry,
                const Catalogue& catalogue);
 
 // The grid as it took effect, as TOML; parse_grid(print_grid(g)) gives the same cells and limits.
-// Published figures are named as they lie beside it in a run's folder.
-std::string print_grid(const Grid& grid);
+// Published figures are named as they lie beside it in a run's folder, data files from `folder`,
+// where the text will lie.
+std::string print_grid(const Grid& grid, const std::filesystem::path& folder = ".");
+// The same wherever its files lie: what makes two runs the same run.
+std::string print_grid_identity(const Grid& grid);
 
 }  // namespace tribench

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// Grids as TOML, in and out.
+// Grids from TOML.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <fstream>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include "foundation/error.hpp"
 #include "foundation/glob.hpp"
@@ -16,6 +15,7 @@
 #include "foundation/text.hpp"
 #include "foundation/toml_table.hpp"
 #include "harness/grid.hpp"
+#include "problems/user/user_problem_text.hpp"
 #include "reports/published.hpp"
 
 namespace tribench {
@@ -46,11 +46,7 @@ auto at_place(const std::string& place, Action action) {
 CellLimits read_limits(const TomlTable& table, CellLimits limits) {
   table.read("evaluations", limits.evaluations);
   table.read("seconds", limits.seconds, 0, kMaxSeconds);
-  // The fit stops by itself; judging and slack come on top, unless the file says otherwise.
-  if (table.has("seconds")) {
-    limits.cpu_limit_seconds = 1.5 * limits.seconds + 30;
-    limits.wall_seconds = 3 * limits.seconds + 60;
-  }
+  if (table.has("seconds")) set_seconds(limits, limits.seconds);
   table.read("wall_seconds", limits.wall_seconds, 0.01, kMaxSeconds);
   table.read("cpu_limit_seconds", limits.cpu_limit_seconds, 0.01, kMaxSeconds);
   table.read("memory_mib", limits.memory_mib, 16, 1 << 24);
@@ -123,29 +119,12 @@ std::vector<OperatorSet> known_operator_sets(const TomlTable& file) {
   return sets;
 }
 
-// The names that the globs of a file pick, in the order of `known`; a glob that picks nothing is
-// refused with the nearest name.
 std::vector<std::string> pick(const TomlTable& table, std::string_view key,
                               const std::vector<std::string>& known, std::string_view what) {
   std::vector<std::string> globs;
   table.require(key);
   table.read(key, globs);
-  std::set<std::string> picked;
-  for (const std::string& glob : globs) {
-    bool found = false;
-    for (const std::string& name : known) {
-      if (!glob_matches(glob, name)) continue;
-      picked.insert(name);
-      found = true;
-    }
-    if (found) continue;
-    throw_bad_input(fmt::format("there is no {} '{}'", what, glob), table.place(key),
-                    did_you_mean(glob, known));
-  }
-  std::vector<std::string> ordered;
-  std::ranges::copy_if(known, std::back_inserter(ordered),
-                       [&](const std::string& name) { return picked.contains(name); });
-  return ordered;
+  return pick_names(globs, known, what, table.place(key));
 }
 
 Method read_method(const TomlTable& table, const Registry& registry) {
@@ -249,13 +228,39 @@ void check_suite(std::string_view toml, const std::string& file_name, const Cata
                   file_name, "put the file into DIR/suites and give --data DIR");
 }
 
+// Puts their names before those that are known.
+void read_own_problems(const TomlTable& file, const std::string& file_name,
+                       std::vector<std::string>& names, Grid& grid) {
+  if (file.has("suite")) return;  // its [[problem]]s are the suite's
+  grid.own = user::read_user_problems(file, std::filesystem::path(file_name).parent_path());
+  std::vector<std::string> all;
+  for (const user::UserProblem& own : grid.own) {
+    if (std::ranges::count(names, own.name) > 0) {
+      throw_bad_input(fmt::format("there is another problem '{}'", own.name), file.place("problem"),
+                      "give yours another name");
+    }
+    all.push_back(own.name);
+  }
+  all.insert(all.end(), names.begin(), names.end());
+  names = std::move(all);
+}
+
 void read_axes(const TomlTable& file, const TomlTable& table, const Registry& registry,
                const Catalogue& catalogue, const std::string& file_name, Grid& grid) {
-  const std::vector<std::string> names =
+  std::vector<std::string> names =
       names_of(catalogue.entries(), [](const ProblemEntry& entry) { return entry.name; });
-  grid.problems = file.has("suite") && !table.has("problems")
-                      ? problems_of_suite(read_suite_name(file), names)
-                      : pick(table, "problems", names, "problem");
+  if (file.has("suite") && !table.has("problems")) {
+    grid.problems = problems_of_suite(read_suite_name(file), names);
+  } else {
+    read_own_problems(file, file_name, names, grid);
+    // A file that brings problems and names none runs those.
+    grid.problems = table.has("problems") || grid.own.empty()
+                        ? pick(table, "problems", names, "problem")
+                        : names_of(grid.own, [](const auto& own) { return own.name; });
+    std::erase_if(grid.own, [&](const user::UserProblem& own) {
+      return std::ranges::count(grid.problems, own.name) == 0;
+    });
+  }
   for (const suite::Suite& suite : catalogue.suites()) {
     const std::string prefix = suite.name + "/";
     if (std::ranges::any_of(grid.problems,
@@ -282,70 +287,15 @@ void read_axes(const TomlTable& file, const TomlTable& table, const Registry& re
   }
 }
 
-toml::table parameters_table(const std::map<std::string, ParameterValue>& parameters) {
-  toml::table table;
-  for (const auto& [name, value] : parameters) {
-    std::visit([&table, &key = name](const auto& plain) { table.insert(key, plain); }, value);
-  }
-  return table;
-}
-
-toml::array text_array(const std::vector<std::string>& texts) {
-  toml::array array;
-  for (const std::string& text : texts) array.push_back(text);
-  return array;
-}
-
-void insert_limits(toml::table& table, const CellLimits& limits) {
-  table.insert("evaluations", static_cast<std::int64_t>(limits.evaluations));
-  table.insert("seconds", limits.seconds);
-  table.insert("wall_seconds", limits.wall_seconds);
-  table.insert("cpu_limit_seconds", limits.cpu_limit_seconds);
-  table.insert("memory_mib", limits.memory_mib);
-}
-
-toml::table method_table(const Method& method) {
-  toml::table table;
-  table.insert("name", method.name);
-  if (!method.parameters.empty()) {
-    table.insert("parameters", parameters_table(method.parameters));
-  }
-  if (!method.is_external()) {
-    table.insert("algorithm", method.algorithm);
-    return table;
-  }
-  table.insert("command", text_array(method.command));
-  table.insert("operators", text_array(method.operators));
-  table.insert("fixed_form", method.fixed_form);
-  if (method.limits) insert_limits(table, *method.limits);
-  return table;
-}
-
-toml::table operator_set_table(const OperatorSet& set) {
-  std::vector<std::string> words;
-  for (const Op op : set.operators()) words.emplace_back(op_name(op));
-  toml::table table;
-  table.insert("name", set.name());
-  table.insert("summary", set.summary());
-  table.insert("operators", text_array(words));
-  table.insert("proved_free_only", set.proved_free_only());
-  return table;
-}
-
-bool is_built_in(const OperatorSet& set) {
-  return std::ranges::any_of(
-      operator_sets(), [&](const OperatorSet& built_in) { return built_in.name() == set.name(); });
-}
-
 }  // namespace
 
 Grid parse_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
                 const Catalogue& catalogue) {
   const toml::table root = parse_toml(toml, file_name);
-  std::vector<std::string> keys = {"grid",   "budget",   "retry",       "prior",
-                                   "method", "external", "operator_set"};
+  std::vector<std::string> keys = {"grid",   "budget",   "retry",        "prior",
+                                   "method", "external", "operator_set", "problem"};
   if (root.contains("suite")) {
-    keys.insert(keys.end(), {"suite", "problem", "reference"});
+    keys.insert(keys.end(), {"suite", "reference"});
     check_suite(toml, file_name, catalogue);
   }
   const TomlTable file(root, file_name, "", keys);
@@ -395,49 +345,6 @@ Grid load_grid(const std::filesystem::path& file, const Registry& registry,
   check_published(*figures, reference.string());
   grid.reference = *figures;
   return grid;
-}
-
-std::string print_grid(const Grid& grid) {
-  toml::table table;
-  table.insert("name", grid.name);
-  table.insert("problems", text_array(grid.problems));
-  table.insert("methods", text_array(names_of(grid.methods,
-                                              [](const Method& method) { return method.name; })));
-  table.insert(
-      "operators",
-      text_array(names_of(grid.operators, [](const OperatorSet& set) { return set.name(); })));
-  table.insert("seeds", toml::table{{"first", static_cast<std::int64_t>(grid.first_seed)},
-                                    {"count", static_cast<std::int64_t>(grid.seed_count)}});
-  table.insert("quarantine", text_array(grid.quarantine));
-  if (!grid.reference.empty()) table.insert("reference", kPublishedFile);
-  toml::table budget;
-  insert_limits(budget, grid.limits);
-  toml::table root{{"grid", table}, {"budget", budget}};
-  root.insert("retry", toml::table{{"crashed", grid.retry.crashed},
-                                   {"timeout", grid.retry.timeout},
-                                   {"cpu_limit", grid.retry.cpu_limit},
-                                   {"out_of_memory", grid.retry.out_of_memory},
-                                   {"error", grid.retry.error}});
-  if (!grid.prior.max_degree.empty()) {
-    toml::table degrees;
-    for (const auto& [input, degree] : grid.prior.max_degree) degrees.insert(input, degree);
-    root.insert("prior", toml::table{{"max_degree", degrees}});
-  }
-  toml::array methods;
-  toml::array externals;
-  toml::array sets;
-  for (const Method& method : grid.methods) {
-    (method.is_external() ? externals : methods).push_back(method_table(method));
-  }
-  for (const OperatorSet& set : grid.operators) {
-    if (!is_built_in(set)) sets.push_back(operator_set_table(set));
-  }
-  if (!methods.empty()) root.insert("method", methods);
-  if (!externals.empty()) root.insert("external", externals);
-  if (!sets.empty()) root.insert("operator_set", sets);
-  std::ostringstream text;
-  text << root << "\n";
-  return text.str();
 }
 
 }  // namespace tribench

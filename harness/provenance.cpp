@@ -17,6 +17,7 @@
 #include "foundation/text.hpp"
 #include "harness/build_info.hpp"
 #include "harness/machine.hpp"
+#include "problems/user/user_problem_text.hpp"
 #include "reports/record_csv.hpp"
 
 namespace tribench {
@@ -94,15 +95,35 @@ ordered_json earlier_sessions(const std::filesystem::path& file) {
   return before.at("sessions");
 }
 
+// The files of the grid's own problems.
+ordered_json files_json(const RunIdentity& identity) {
+  ordered_json files = ordered_json::array();
+  for (const user::UserProblem& own : user::parse_user_problems(identity.grid, "grid.toml", {})) {
+    for (const auto& [sources, part] :
+         {std::pair{&own.files, "rows"}, std::pair{&own.held_out.files, "test"}}) {
+      for (const user::DataSource& source : *sources) {
+        files.push_back({{"problem", own.name},
+                         {"file", source.file.string()},
+                         {"part", part},
+                         {"sha256", source.sha256}});
+      }
+    }
+  }
+  return files;
+}
+
 void write_all(const std::filesystem::path& folder, const RunIdentity& identity,
                const ordered_json& sessions, const std::vector<CellResult>& results) {
   const auto failed = std::ranges::count_if(
       results, [](const CellResult& result) { return result.record.status != "ok"; });
-  const ordered_json all = {
-      {"code", code_json()},        {"grid_hash", fmt::format("{:016x}", key_of(identity.grid))},
-      {"data_hash", identity.data}, {"cells", results.size()},
-      {"failed", failed},           {"fingerprint", fingerprint(results)},
-      {"sessions", sessions}};
+  const ordered_json all = {{"code", code_json()},
+                            {"grid_hash", fmt::format("{:016x}", key_of(identity.grid))},
+                            {"data_hash", identity.data},
+                            {"files", files_json(identity)},
+                            {"cells", results.size()},
+                            {"failed", failed},
+                            {"fingerprint", fingerprint(results)},
+                            {"sessions", sessions}};
   write_file(folder / "provenance.json", write_json(all, 2) + "\n");
 }
 

@@ -226,7 +226,7 @@ Journal open_journal(const RunOptions& options, const RunIdentity& identity,
 }  // namespace
 
 std::string data_identity(const Grid& grid, const std::string& data) {
-  const Catalogue catalogue = full_catalogue_of(data);
+  const Catalogue catalogue = full_catalogue_of(data, grid.own);
   std::uint64_t hash = 0;
   std::set<std::string> inputs;
   for (const std::string& name : grid.problems) {

@@ -314,16 +314,31 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
   return result;
 }
 
+namespace {
+
+Problem make_problem(const CellTask& task) {
+  if (!task.own) return full_catalogue_of(task.data).find(task.cell.problem).make(task.cell.seed);
+  try {
+    user::require_unchanged(*task.own);
+  } catch (const Error& error) {
+    // It was there when the run began: no fault of the cell, which can be run another time.
+    throw Error(ErrorKind::environment, error.what());
+  }
+  return user::make_user_problem(*task.own, law_reader(), task.cell.seed);
+}
+
+}  // namespace
+
 const CellRunner::Measured& CellRunner::problem(const CellTask& task) {
   constexpr std::size_t kKept = 16;
   // A worker runs one grid, whose prior is the same in all its tasks.
-  const std::string key = fmt::format("{}|{}|{}", task.cell.problem, task.cell.seed, task.data);
+  const std::string key =
+      fmt::format("{}@{}|{}|{}", task.cell.problem, task.cell.data, task.cell.seed, task.data);
   const auto found = std::ranges::find(problems_, key, &std::pair<std::string, Measured>::first);
   if (found != problems_.end()) {
     problems_.splice(problems_.begin(), problems_, found);
   } else {
-    const Catalogue catalogue = full_catalogue_of(task.data);
-    Problem made = catalogue.find(task.cell.problem).make(task.cell.seed);
+    Problem made = make_problem(task);
     apply_prior(task.prior, made);
     const Yardsticks yardsticks = measure_yardsticks(made);
     problems_.emplace_front(key, Measured{std::move(made), yardsticks});

@@ -48,7 +48,7 @@ void write_plan_files(const std::filesystem::path& folder, const Grid& grid) {
   for (const Cell& cell : grid.cells()) {
     planned.push_back({cell.key(), cell.problem, cell.method, cell.operators, cell.seed});
   }
-  write_file(folder / "grid.toml", print_grid(grid));
+  write_file(folder / "grid.toml", print_grid(grid, folder));
   write_file(folder / "planned.csv", planned_csv(planned));
   if (!grid.reference.empty()) write_file(folder / kPublishedFile, grid.reference);
   if (!grid.suites.empty()) write_file(folder / kSuiteFile, suite_text(grid));

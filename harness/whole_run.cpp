@@ -26,7 +26,8 @@ std::string own_command_line() {
 }  // namespace
 
 WholeRun run_whole(const Grid& grid, const RunOptions& options, const std::atomic<bool>& stop) {
-  const RunIdentity identity{print_grid(grid), code_identity(), data_identity(grid, options.data)};
+  const RunIdentity identity{print_grid_identity(grid), code_identity(),
+                             data_identity(grid, options.data)};
   // A full disk or a limit on file sizes is an error of write(), not a reason to die.
   std::signal(SIGXFSZ, SIG_IGN);
   RunSession session{utc_now(), {}, own_command_line(), options, {}};
@@ -34,7 +35,7 @@ WholeRun run_whole(const Grid& grid, const RunOptions& options, const std::atomi
   session.ended = utc_now();
   WholeRun run{session.tally, read_journal(options.out / "cells.jsonl"), {}};
   write_result_files(options.out, run.journal.results);
-  write_curves(options.out, run.journal.results, full_catalogue_of(options.data));
+  write_curves(options.out, run.journal.results, full_catalogue_of(options.data, grid.own));
   write_quarantine_file(options.out, run.journal.results);
   write_provenance(options.out, identity, session, run.journal.results);
   run.board = write_run_reports(options.out);

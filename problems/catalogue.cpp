@@ -21,7 +21,9 @@ std::string suggestion(std::string_view name, const std::vector<ProblemEntry>& e
 
 }  // namespace
 
-Catalogue::Catalogue(std::optional<std::filesystem::path> data, const suite::LawReader& laws) {
+Catalogue::Catalogue(std::optional<std::filesystem::path> data, const suite::LawReader& laws,
+                     std::span<const user::UserProblem> own) {
+  user::add_entries(entries_, own, laws);
   kuka::add_entries(entries_);
   kuka::add_planted_entries(entries_);
   benchmark::add_entries(entries_, data);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "foundation/error.hpp"
+#include "foundation/formula_name.hpp"
 #include "problems/reading/channel_names.hpp"
 #include "problems/table.hpp"
 
@@ -42,6 +43,17 @@ double agreement(std::span<const double> friction, std::span<const double> veloc
   return ff > 0 && vv > 0 ? fv / std::sqrt(ff * vv) : 0;
 }
 
+// Fits square what they are given: numbers that are all as small vanish then.
+void require_squares(const Channel& target, const std::string& place) {
+  constexpr double kSmallest = 1e-75;
+  double largest = 0;
+  for (const double value : target.values) largest = std::max(largest, std::abs(value));
+  if (largest == 0 || largest >= kSmallest) return;
+  throw_bad_input(
+      fmt::format("no value of the target '{}' is larger than {}", target.name, largest), place,
+      "give it in a smaller unit: fits need values from 1e-75 to 1e75");
+}
+
 // Of an input sgn_X that is derived from X.
 Role role_of_sign(const Dataset& data, std::string_view name) {
   const Channel* of = data.find(name.substr(std::string_view("sgn_").size()));
@@ -55,6 +67,7 @@ std::vector<Input> make_inputs(const Dataset& data, const std::string& target,
   if (names.empty()) throw_bad_input("no input is given", data.name, "name at least one column");
   std::vector<Input> inputs;
   for (const std::string& name : names) {
+    require_formula_name(name, data.name);
     if (name == target) {
       throw_bad_input(fmt::format("'{}' is the target and an input", name), data.name,
                       "remove it from the inputs");
@@ -108,6 +121,7 @@ void flip_torques(Dataset& data) {
 Problem make_data_problem(const Dataset& train, const Dataset* test, const std::string& target,
                           std::span<const std::string> inputs) {
   const Channel& judged = train.at(target);
+  require_squares(judged, train.name);
   refuse_opposing_friction(train, target);
   Problem problem;
   problem.name = train.name;

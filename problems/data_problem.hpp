@@ -17,7 +17,8 @@ namespace tribench {
 // One stage on all rows of `train`; the test table holds all rows of `test`, or stays empty where
 // there is none. The input box is the range of the training rows. A missing input sgn_X is derived
 // from X. Throws Error (bad_input) with the nearest name for an unknown column, for an input that
-// is the target or is named twice, and where friction opposes velocity (see below).
+// is the target, is named twice or cannot stand in a formula, for a target too small to be squared,
+// and where friction opposes velocity (see below).
 Problem make_data_problem(const Dataset& train, const Dataset* test, const std::string& target,
                           std::span<const std::string> inputs);
 

@@ -9,11 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "foundation/text.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/curves.hpp"
 #include "harness/provenance.hpp"
 #include "harness/run_files.hpp"
+#include "problems/user/user_problem_text.hpp"
 #include "reports/published.hpp"
 #include "reports/record_csv.hpp"
 #include "reports/run_reports.hpp"
@@ -37,16 +39,17 @@ void merge(const MergeArguments& arguments) {
   print_damage(merged);
   // The shards agree on the grid, so the first one's plan is everybody's.
   const std::filesystem::path out = arguments.out;
-  for (const char* file : {"grid.toml", "planned.csv"}) {
-    std::filesystem::copy_file(folders.front() / file, out / file,
-                               std::filesystem::copy_options::overwrite_existing);
-  }
+  const std::filesystem::path grid = folders.front() / "grid.toml";
+  write_file(out / "grid.toml",
+             user::moved_grid_text(read_file(grid), grid.string(), folders.front(), out));
+  std::filesystem::copy_file(folders.front() / "planned.csv", out / "planned.csv",
+                             std::filesystem::copy_options::overwrite_existing);
   if (std::filesystem::exists(folders.front() / kPublishedFile)) {
     std::filesystem::copy_file(folders.front() / kPublishedFile, out / kPublishedFile,
                                std::filesystem::copy_options::overwrite_existing);
   }
   write_result_files(out, merged.results);
-  write_curves(out, merged.results, full_catalogue());
+  write_curves(out, merged.results, full_catalogue_of_run(out));
   write_merged_provenance(out, folders, merged);
   fmt::print("{}\n{} cells from {} folders; see {}\n", write_run_reports(out),
              merged.results.size(), folders.size(), (out / "leaderboard.md").string());

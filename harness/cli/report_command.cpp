@@ -38,7 +38,7 @@ void refresh_files(const std::filesystem::path& folder) {
   const JournalContents journal = read_journal(folder / "cells.jsonl");
   for (const std::string& damage : journal.damage) fmt::print(stderr, "tribench: {}\n", damage);
   write_result_files(folder, journal.results);
-  write_curves(folder, journal.results, full_catalogue());
+  write_curves(folder, journal.results, full_catalogue_of_run(folder));
 }
 
 void report(const ReportArguments& arguments) {

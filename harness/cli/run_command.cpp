@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -20,6 +21,7 @@
 #include "foundation/shell_word.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/data_grid_options.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/grid.hpp"
@@ -53,6 +55,14 @@ struct RunArguments {
   std::string verify;
   std::string like;
   std::size_t sample = 10;
+  std::shared_ptr<DataGridRequest> own = std::make_shared<DataGridRequest>();
+  // In place of the grid's.
+  std::optional<std::uint64_t> seeds;
+  std::optional<std::uint64_t> evaluations;
+  std::optional<double> seconds;
+
+  // Whether the grid's file alone does not say what runs.
+  bool changes_grid() const { return !own->files.empty() || seeds || evaluations || seconds; }
 };
 
 double total_seconds(const std::vector<PlannedWork>& work) {
@@ -99,7 +109,9 @@ void print_dry_run(const Grid& grid, const RunArguments& arguments, const RunOpt
 
 // The command that goes on with this run, to be pasted into a shell.
 std::string resuming(const RunArguments& arguments, const std::filesystem::path& out) {
-  std::vector<std::string> words = {"tribench", "run", arguments.grid, "--out", out.string()};
+  // The folder's own says it all.
+  const std::string grid = arguments.changes_grid() ? (out / "grid.toml").string() : arguments.grid;
+  std::vector<std::string> words = {"tribench", "run", grid, "--out", out.string()};
   const auto add = [&words](const char* option, const std::string& value) {
     words.insert(words.end(), {option, value});
   };
@@ -182,7 +194,13 @@ void run(const RunArguments& arguments, const Registry& registry, ExitStatus& st
     return;
   }
   RunOptions options = options_of(arguments);
-  Grid grid = load_named_grid(arguments.grid, registry, full_catalogue_of(options.data));
+  Grid grid = arguments.own->files.empty()
+                  ? load_named_grid(arguments.grid, registry, full_catalogue_of(options.data))
+                  : make_data_grid(*arguments.own, registry);
+  if (arguments.seeds) grid.seed_count = *arguments.seeds;
+  if (arguments.evaluations) grid.limits.evaluations = *arguments.evaluations;
+  if (arguments.seconds) set_seconds(grid.limits, *arguments.seconds);
+  for (const std::string& note : reading_notes(grid)) fmt::print(stderr, "tribench: {}\n", note);
   if (!arguments.quarantine.empty()) {
     for (std::string& glob : read_quarantine_file(arguments.quarantine)) {
       grid.quarantine.push_back(std::move(glob));
@@ -205,11 +223,22 @@ void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry
   CLI::App* command = app.add_subcommand("run", "Runs a grid of cells and renders a leaderboard");
   command->footer(
       "Example: tribench run grids/paper.toml --out run-paper --jobs 8\n"
+      "         tribench run --data-file logs --target tau --inputs v,load --methods '*'\n"
       "Without a file the built-in grid 'quick' runs. Ctrl-C leaves a run that --resume goes on "
       "with.");
   auto arguments = std::make_shared<RunArguments>();
-  command->add_option("grid", arguments->grid, "a grid file, or a name of `tribench list grids`")
-      ->capture_default_str();
+  CLI::Option* grid =
+      command
+          ->add_option("grid", arguments->grid, "a grid file, or a name of `tribench list grids`")
+          ->capture_default_str();
+  grid->excludes(add_data_grid_options(*command, arguments->own));
+  constexpr double kMostSeconds = 2e6;
+  command->add_option("--seeds", arguments->seeds, "how many, in place of the grid's")
+      ->transform(whole_number(1, 1'000'000));
+  command->add_option("--evaluations", arguments->evaluations, "budget of a cell in node-rows")
+      ->transform(whole_number(0));
+  command->add_option("--seconds", arguments->seconds, "budget of a cell in CPU seconds")
+      ->transform(real_number(0, kMostSeconds));
   command->add_option("--out", arguments->out, "the run's folder (default: run-NAME)");
   command->add_option("--jobs", arguments->jobs, "worker processes at a time (default: all cores)")
       ->transform(whole_number(1, 4096));

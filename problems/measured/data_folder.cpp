@@ -2,14 +2,11 @@
 #include "problems/measured/data_folder.hpp"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
-#include <array>
 #include <cstdlib>
-#include <fstream>
-#include <memory>
 
 #include "foundation/error.hpp"
+#include "problems/file_hash.hpp"
 
 namespace tribench::measured {
 namespace {
@@ -33,27 +30,6 @@ std::optional<fs::path> find_data_folder(const std::optional<fs::path>& given) {
   std::error_code code;
   if (fs::is_directory("data", code)) return fs::path("data");
   return std::nullopt;
-}
-
-std::string sha256_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw_bad_input("cannot read the file", file.string(), "check the path");
-  const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context(EVP_MD_CTX_new(),
-                                                                   EVP_MD_CTX_free);
-  bool is_good = context != nullptr && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1;
-  std::array<char, 65536> block{};
-  while (is_good && in) {
-    in.read(block.data(), block.size());
-    is_good =
-        EVP_DigestUpdate(context.get(), block.data(), static_cast<std::size_t>(in.gcount())) == 1;
-  }
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  is_good = is_good && !in.bad() && EVP_DigestFinal_ex(context.get(), digest.data(), &size) == 1;
-  if (!is_good) throw Error(ErrorKind::failed, "cannot hash the file", file.string());
-  std::string text;
-  for (unsigned int i = 0; i < size; ++i) text += fmt::format("{:02x}", digest[i]);
-  return text;
 }
 
 std::vector<FileCheck> check_set(const Manifest& manifest, const fs::path& folder) {

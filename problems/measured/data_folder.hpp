@@ -18,9 +18,6 @@ namespace tribench::measured {
 std::optional<std::filesystem::path> find_data_folder(
     const std::optional<std::filesystem::path>& given);
 
-// SHA-256 of a file's bytes in lower-case hexadecimal. Throws Error where it cannot be read.
-std::string sha256_of(const std::filesystem::path& file);
-
 enum class FileState { good, missing, changed };
 struct FileCheck {
   std::string set;

@@ -8,6 +8,7 @@
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
 #include "problems/data_problem.hpp"
+#include "problems/file_hash.hpp"
 #include "problems/measured/data_folder.hpp"
 #include "problems/measured/recording.hpp"
 #include "problems/table.hpp"

@@ -94,7 +94,7 @@ DataFile read_data(std::span<const std::filesystem::path> files, const DataOptio
 }
 
 DataFile read_named_columns(std::span<const std::filesystem::path> files, DataOptions options,
-                            std::vector<std::string> used) {
+                            std::optional<std::vector<std::string>> used) {
   options.names_tell = false;
   DataFile file = read_data(files, options, std::move(used));
   check_converted(file);

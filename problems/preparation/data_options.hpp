@@ -49,7 +49,7 @@ DataFile read_data(std::span<const std::filesystem::path> files, const DataOptio
 // (`options.names_tell` does not matter). Throws Error (bad_input), also for a unit that waits for
 // the counts of a turn or the gear ratio.
 DataFile read_named_columns(std::span<const std::filesystem::path> files, DataOptions options,
-                            std::vector<std::string> used);
+                            std::optional<std::vector<std::string>> used);
 
 // The motor current becomes the motor torque, in N m; returns the sentence that says so, empty
 // where the options hold no torque constant. Throws Error (bad_input): there is no current, its

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "foundation/error.hpp"
+#include "problems/file_hash.hpp"
 #include "tests/support/paths.hpp"
 
 namespace tribench::measured {

@@ -41,7 +41,7 @@ TEST(DataOptions, a_table_of_toml_says_what_the_command_line_says) {
       "roles = 'phi=position[deg@motor], i=motor_current[mA]'\nwhere = 'run=1'\n"
       "drop_missing = true\ngear_ratio = 2.0\ntorque_constant = '0.5@motor'\n");
   const std::vector<std::filesystem::path> files = {file};
-  const DataFile read = read_named_columns(files, options, {"phi", "i"});
+  const DataFile read = read_named_columns(files, options, std::vector<std::string>{"phi", "i"});
   ASSERT_EQ(read.data.rows(), 1U);
   EXPECT_EQ(read.dropped_rows, 1U);
   EXPECT_NEAR(read.data.at("phi").values[0], std::numbers::pi / 4, 1e-15);
@@ -55,7 +55,8 @@ TEST(DataOptions, an_empty_table_leaves_the_columns_as_they_are) {
   const std::filesystem::path file = folder.path() / "log.csv";
   std::ofstream(file) << kText;
   const std::vector<std::filesystem::path> files = {file};
-  const DataFile read = read_named_columns(files, options_of(""), {"phi", "tau"});
+  const DataFile read =
+      read_named_columns(files, options_of(""), std::vector<std::string>{"phi", "tau"});
   EXPECT_EQ(read.data.rows(), 3U);
   EXPECT_EQ(read.data.at("tau").role, Role::none);
   EXPECT_EQ(read.data.at("phi").values[0], 90);

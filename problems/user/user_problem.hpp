@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+//
+// A user's own files as a problem: which they are, what their columns mean, which rows test. Said
+// once, in a grid or on a command line; every worker process makes the same problem of it again,
+// and refuses files that are no longer the ones that were named.
+//
+// Not for sets that others use too (problems/suite, problems/measured).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "problems/preparation/data_options.hpp"
+#include "problems/problem.hpp"
+#include "problems/suite/suite_problem.hpp"
+
+namespace tribench::user {
+
+struct DataSource {
+  std::filesystem::path file;  // absolute, or from the working directory
+  std::string sha256;          // of its bytes
+};
+
+// Which rows test. Rows of one group are never parted.
+struct HeldOut {
+  enum class Kind {
+    nothing,
+    share,   // of the groups, drawn
+    values,  // rows whose `column` has one of `values`
+    files,   // all rows of other files
+  };
+  Kind kind = Kind::share;
+  double share = 0.25;
+  std::vector<std::uint64_t> seeds;  // of the draw, one a cell seed, round and round; empty: that
+  std::string column;
+  std::vector<std::string> values;
+  std::vector<DataSource> files;
+};
+
+struct UserProblem {
+  std::string name;
+  std::vector<DataSource> files;  // one campaign, in this order
+  std::string target;
+  std::vector<std::string> inputs;  // empty: every other column of numbers
+  DataOptions reading;              // names tell nothing, whatever it says
+  // Rows with the same text in this column are one movement; without it a movement is what the
+  // roles say, of several files each one, of a single file each row.
+  std::string group;
+  HeldOut held_out;
+  std::string law;                           // over the inputs, where it is known
+  std::map<std::string, std::string> units;  // what figures are labelled with; converts nothing
+  std::map<std::string, std::pair<double, double>> box;  // else the rows' ranges
+
+  // Of all its files: 12 hexadecimal digits, of a single file the first of its SHA-256.
+  std::string hash() const;
+};
+
+// Throws Error (bad_input) where a file is missing or has changed.
+void require_unchanged(const UserProblem& own);
+
+// The rows as they were read, with roles, groups and warnings of the reader; every column that is
+// a number. Throws Error (bad_input) with file, line and column.
+DataFile read_user_rows(const UserProblem& own);
+
+// The seed draws the rows that test. Throws Error (bad_input) where a file cannot be read or has
+// changed, a column is not there, nothing or everything is held out, a row lies outside the box.
+Problem make_user_problem(const UserProblem& own, const suite::LawReader& laws, std::uint64_t seed);
+
+void add_entries(std::vector<ProblemEntry>& entries, std::span<const UserProblem> own,
+                 const suite::LawReader& laws);
+
+// "0.2" as a share, "fold=3" as a column's value. Throws Error (bad_input) with `place`.
+HeldOut parse_held_out(const std::string& text, const std::string& place);
+
+// What FILE, FOLDER or 'PATTERN*' name, in the order of their names: of a folder its data files.
+// Throws Error (bad_input) where there is none.
+std::vector<std::filesystem::path> find_data_files(const std::filesystem::path& named,
+                                                   const std::string& place);
+// The files with their hashes. Throws Error (bad_input) where one cannot be read.
+std::vector<DataSource> hashed(std::span<const std::filesystem::path> files);
+
+// A file's name as a problem's: "joint 1 (up).csv" -> "joint_1_up".
+std::string name_of_file(const std::filesystem::path& file);
+
+}  // namespace tribench::user

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+//
+// A user's own files from the command line to a leaderboard, by an option and by a grid.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace tribench::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr const char* kGrid = R"([grid]
+name = "mine"
+methods = ["linear", "test_search"]
+
+[budget]
+evaluations = 20_000
+
+[[problem]]
+folder = "logs"
+target = "tau"
+inputs = ["v", "load"]
+group = "campaign"
+)";
+
+class OwnDataTest : public ::testing::Test {
+ protected:
+  void SetUp() override { fill(folder_ / "here"); }
+
+  // The same files and grid in a folder of their own: another machine, as far as paths go.
+  static void fill(const fs::path& place) {
+    fs::create_directories(place / "logs");
+    for (int k = 0; k < 5; ++k) {
+      std::string text = "v,load,tau,campaign\n";
+      for (int r = 0; r < 20; ++r) {
+        const double v = std::sin(r + k);
+        text += std::to_string(v) + "," + std::to_string(r % 5) + "," +
+                std::to_string((k + 1) * v + 0.1 * (r % 5)) + "," + "pqrst"[r / 4] + "\n";
+      }
+      write_text(place / "logs" / ("joint " + std::to_string(k) + ".csv"), text);
+    }
+    write_text(place / "grid.toml", kGrid);
+  }
+
+  static ProgramRun run(const std::vector<std::string>& words) {
+    std::vector<std::string> command = {test_program().string()};
+    command.insert(command.end(), words.begin(), words.end());
+    return run_to_end(command);
+  }
+  ProgramRun run_grid(const std::string& place, const std::string& out,
+                      const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"run", (folder_ / place / "grid.toml").string(), "--out",
+                                      (folder_ / place / out).string(), "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(OwnDataTest, AFolderOfFilesBecomesALeaderboardInOneCommand) {
+  const fs::path out = folder_ / "board";
+  const ProgramRun done =
+      run({"run", "--data-file", (folder_ / "here/logs").string(), "--target", "tau", "--inputs",
+           "v,load", "--methods", "linear,constant", "--out", out.string(), "--quiet"});
+  ASSERT_EQ(done.status, 0) << done.errors;
+  const std::string board = read_text(out / "leaderboard.md");
+  for (int k = 0; k < 5; ++k) EXPECT_THAT(board, HasSubstr("joint_" + std::to_string(k)));
+  EXPECT_EQ(column_of(out, "status").size(), 10U);
+  for (const auto& [cell, formula] : column_of(out, "formula")) {
+    if (cell.find("|linear|") != std::string::npos) EXPECT_THAT(formula, HasSubstr("load"));
+  }
+  // Together they are one problem, a file held out.
+  const ProgramRun one =
+      run({"run", "--data-file", (folder_ / "here/logs").string(), "--target", "tau", "--inputs",
+           "v,load", "--methods", "linear", "--together", "campaign", "--seeds", "3", "--out",
+           (folder_ / "one").string(), "--quiet"});
+  ASSERT_EQ(one.status, 0) << one.errors;
+  EXPECT_EQ(column_of(folder_ / "one", "status").size(), 3U);
+}
+
+TEST_F(OwnDataTest, AnotherMachineGivesTheSameBytes) {
+  ASSERT_EQ(run_grid("here", "out", {"--jobs", "2"}).status, 0);
+  fill(folder_ / "elsewhere/deeper");
+  ASSERT_EQ(run_grid("elsewhere/deeper", "out", {"--jobs", "1"}).status, 0);
+  const fs::path here = folder_ / "here/out";
+  const fs::path there = folder_ / "elsewhere/deeper/out";
+  EXPECT_EQ(timeless_results(here), timeless_results(there));
+  for (const char* file : {"grid.toml", "planned.csv", "front.csv", "curves.csv"}) {
+    EXPECT_EQ(read_text(here / file), read_text(there / file)) << file;
+  }
+  const auto provenance = nlohmann::json::parse(read_text(here / "provenance.json"));
+  ASSERT_EQ(provenance.at("files").size(), 5U);
+  const std::string hash = provenance.at("files")[0].at("sha256");
+  EXPECT_THAT(read_text(here / "results.csv"), HasSubstr("joint_0@" + hash.substr(0, 12) + "|"));
+}
+
+TEST_F(OwnDataTest, ShardsOnDifferentMachinesMerge) {
+  fill(folder_ / "elsewhere/deeper");
+  ASSERT_EQ(run_grid("here", "whole").status, 0);
+  ASSERT_EQ(run_grid("here", "half", {"--shard", "1/2"}).status, 0);
+  ASSERT_EQ(run_grid("elsewhere/deeper", "half", {"--shard", "2/2"}).status, 0);
+  const fs::path merged = folder_ / "merged";
+  const ProgramRun merge =
+      run({"merge", (folder_ / "here/half").string(), (folder_ / "elsewhere/deeper/half").string(),
+           "--out", merged.string()});
+  ASSERT_EQ(merge.status, 0) << merge.errors;
+  EXPECT_EQ(timeless_results(merged), timeless_results(folder_ / "here/whole"));
+  EXPECT_EQ(read_text(merged / "curves.csv"), read_text(folder_ / "here/whole/curves.csv"));
+  // The merged folder's grid finds the files, too.
+  const ProgramRun again = run(
+      {"run", (merged / "grid.toml").string(), "--out", merged.string(), "--resume", "--quiet"});
+  EXPECT_EQ(again.status, 0) << again.errors;
+}
+
+TEST_F(OwnDataTest, AFileThatChangedIsRefusedAndLeavesNoRecord) {
+  ASSERT_EQ(run_grid("here", "out").status, 0);
+  const std::string before = read_text(folder_ / "here/out/results.csv");
+  std::ofstream(folder_ / "here/logs/joint 3.csv", std::ios::app) << "9,9,9,p\n";
+  const ProgramRun resumed = run_grid("here", "out", {"--resume"});
+  EXPECT_EQ(resumed.status, 2);
+  EXPECT_THAT(resumed.errors, HasSubstr("another run"));
+  const ProgramRun by_folder = run({"run", (folder_ / "here/out/grid.toml").string(), "--out",
+                                    (folder_ / "here/out").string(), "--resume", "--quiet"});
+  EXPECT_EQ(by_folder.status, 2);
+  EXPECT_THAT(by_folder.errors, AllOf(HasSubstr("joint 3.csv"), HasSubstr("has changed")));
+  EXPECT_EQ(read_text(folder_ / "here/out/results.csv"), before);
+}
+
+TEST_F(OwnDataTest, AFileThatChangesUnderTheRunStopsIt) {
+  // The method spoils the file that the next cells need.
+  write_text(folder_ / "here/method.sh", "sleep 0.2; echo 9,9,9,p >> '" +
+                                             (folder_ / "here/logs/joint 4.csv").string() +
+                                             "'; echo '{\"front\": [\"v\"]}'\n");
+  write_text(folder_ / "here/grid.toml",
+             "[grid]\nmethods = [\"spoils\"]\nseeds = { first = 1, count = 2 }\n"
+             "[[external]]\nname = \"spoils\"\ncommand = [\"bash\", \"" +
+                 (folder_ / "here/method.sh").string() +
+                 "\"]\n[[problem]]\nfile = \"logs/joint 4.csv\"\ntarget = \"tau\"\n"
+                 "inputs = [\"v\"]\n");
+  const ProgramRun stopped = run_grid("here", "out", {"--jobs", "1"});
+  EXPECT_EQ(stopped.status, 3);
+  EXPECT_THAT(stopped.errors, HasSubstr("has changed"));
+}
+
+TEST_F(OwnDataTest, SlurmElementsAreToldTheSameFiles) {
+  const ProgramRun plan = run({"submit", (folder_ / "here/grid.toml").string(), "--slurm", "--out",
+                               (folder_ / "run").string(), "--shards", "2", "--dry-run"});
+  ASSERT_EQ(plan.status, 0) << plan.errors;
+  EXPECT_THAT(plan.output, HasSubstr("grid.toml"));
+  const ProgramRun dry = run({"run", (folder_ / "here/grid.toml").string(), "--dry-run", "--out",
+                              (folder_ / "run").string()});
+  ASSERT_EQ(dry.status, 0);
+  EXPECT_THAT(dry.output, HasSubstr("joint_2@"));
+  // What an element runs: the run folder's own grid.
+  const ProgramRun element = run({"run", (folder_ / "run/grid.toml").string(), "--out",
+                                  (folder_ / "run/shard-1").string(), "--shard", "1/2", "--quiet"});
+  EXPECT_EQ(element.status, 0) << element.errors;
+}
+
+TEST_F(OwnDataTest, RefusalsNameOptionAndMend) {
+  const std::string logs = (folder_ / "here/logs").string();
+  const auto refused = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "run");
+    const ProgramRun answer = run(words);
+    EXPECT_EQ(answer.status, 2);
+    return answer.errors;
+  };
+  EXPECT_THAT(refused({"--data-file", logs}), HasSubstr("--target"));
+  EXPECT_THAT(refused({"--target", "tau"}), HasSubstr("--data-file"));
+  EXPECT_THAT(refused({"quick", "--data-file", logs, "--target", "tau"}), HasSubstr("excludes"));
+  EXPECT_THAT(refused({"--data-file", logs + "/none.csv", "--target", "tau"}),
+              AllOf(HasSubstr("--data-file"), HasSubstr("none.csv")));
+  EXPECT_THAT(refused({"--data-file", logs, "--target", "tau", "--methods", "linaer"}),
+              HasSubstr("linear"));
+  EXPECT_THAT(refused({"--data-file", logs, "--target", "tua", "--methods", "linear"}),
+              AllOf(HasSubstr("tau"), HasSubstr("joint 0.csv")));
+  EXPECT_THAT(refused({"--data-file", logs, "--target", "tau", "--split", "1.5"}),
+              HasSubstr("--split"));
+}
+
+}  // namespace
+}  // namespace tribench::testing
