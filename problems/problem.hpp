@@ -80,6 +80,8 @@ struct ProblemEntry {
   // The recording behind the problem with every channel, training and test movements alike; empty
   // where there is nothing beyond the problem's own tables.
   std::function<Dataset(std::uint64_t seed)> data;
+  // Where it comes from, for people: a page, a paper, a file; empty: this program makes it up.
+  std::string source = {};
 };
 
 }  // namespace tribench

@@ -40,6 +40,8 @@ void add_compare_command(CLI::App& app, ExitStatus& status);
 void add_export_command(CLI::App& app, ExitStatus& status);
 void add_predict_command(CLI::App& app, ExitStatus& status);
 void add_describe_command(CLI::App& app);
+// Under `list`.
+void add_problem_listing(CLI::App& list);
 // Under `study`.
 void add_comparison_study(CLI::App& study, ExitStatus& status);
 void add_recovery_study(CLI::App& study);

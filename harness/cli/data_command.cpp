@@ -55,7 +55,7 @@ bool is_here(const measured::Manifest& manifest, const std::optional<fs::path>& 
 void list_sets(const DataArguments& options) {
   const std::optional<fs::path> folder = options.data();
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
-  for (const measured::Manifest& manifest : measured::manifests()) {
+  for (const measured::Manifest& manifest : measured::known_manifests(folder)) {
     const bool here = is_here(manifest, folder);
     array.push_back({{"name", manifest.name},
                      {"summary", manifest.title},
@@ -79,7 +79,7 @@ ExitStatus check_sets(const DataArguments& options) {
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
   bool any = false;
   bool all_good = true;
-  for (const measured::Manifest& manifest : measured::manifests()) {
+  for (const measured::Manifest& manifest : measured::known_manifests(folder)) {
     const bool wanted =
         options.set.empty() ? is_here(manifest, folder) : manifest.name == options.set;
     if (!wanted) continue;
@@ -101,15 +101,16 @@ ExitStatus check_sets(const DataArguments& options) {
 }
 
 void add_set(const DataArguments& options) {
-  const measured::Manifest& manifest = measured::find_manifest(options.set);
+  // A data folder that is named need not exist yet; the default is ./data.
+  const fs::path target =
+      options.folder.empty() ? options.data().value_or(fs::path("data")) : fs::path(options.folder);
+  const std::vector<measured::Manifest> known = measured::known_manifests(target);
+  const measured::Manifest& manifest = measured::find_manifest(known, options.set);
   if (options.from.empty()) {
     throw_bad_input(fmt::format("'{}' is not fetched by this program", manifest.name), {},
                     fmt::format("get it from {} (licence: {}) and give --from DIR", manifest.source,
                                 manifest.licence));
   }
-  // A data folder that is named need not exist yet; the default is ./data.
-  const fs::path target =
-      options.folder.empty() ? options.data().value_or(fs::path("data")) : fs::path(options.folder);
   const fs::path added = measured::add_set(manifest, options.from, target);
   fmt::print("{}: {} files, all hashes good; licence: {}\n", added.string(), manifest.files.size(),
              manifest.licence);
@@ -139,7 +140,9 @@ void add_data_command(CLI::App& app, ExitStatus& status) {
   check->add_option("NAME", options->set, "only this set, and all of it");
   check->add_flag("--json", options->json, "an array of {name, summary}");
   check->callback([options, &status] {
-    if (!options->set.empty()) measured::find_manifest(options->set);
+    if (!options->set.empty()) {
+      measured::find_manifest(measured::known_manifests(options->data()), options->set);
+    }
     status = check_sets(*options);
   });
 

@@ -7,11 +7,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
+#include "problems/measured/data_folder.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
 
@@ -26,7 +28,8 @@ struct GenerateOptions {
 };
 
 void generate(const GenerateOptions& options) {
-  const Catalogue catalogue = full_catalogue_of(options.data);
+  const Catalogue catalogue = full_catalogue(measured::find_data_folder(
+      options.data.empty() ? std::nullopt : std::optional<std::filesystem::path>(options.data)));
   const ProblemEntry& entry = catalogue.find(options.problem);
   const Dataset data =
       entry.data ? entry.data(options.seed) : dataset_of_tables(entry.make(options.seed));

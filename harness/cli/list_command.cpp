@@ -17,7 +17,7 @@
 #include "algorithms/registry.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/shipped_grids.hpp"
-#include "problems/catalogue.hpp"
+#include "problems/measured/data_folder.hpp"
 #include "problems/measured/manifest.hpp"
 
 namespace tribench {
@@ -28,13 +28,6 @@ struct Listed {
   std::string summary;
   nlohmann::json more = nlohmann::json::object();  // beside them in JSON
 };
-
-std::vector<Listed> listed_problems() {
-  std::vector<Listed> all;
-  const Catalogue catalogue;
-  for (const ProblemEntry& entry : catalogue.entries()) all.push_back({entry.name, entry.summary});
-  return all;
-}
 
 nlohmann::json json_of(const ParameterValue& value) {
   return std::visit([](const auto& v) { return nlohmann::json(v); }, value);
@@ -89,7 +82,9 @@ std::vector<Listed> listed_operators() {
 
 std::vector<Listed> listed_data() {
   std::vector<Listed> all;
-  for (const measured::Manifest& set : measured::manifests()) all.push_back({set.name, set.title});
+  for (const auto& set : measured::known_manifests(measured::find_data_folder({}))) {
+    all.push_back({set.name, set.title});
+  }
   return all;
 }
 
@@ -142,9 +137,9 @@ void add_methods(CLI::App& list, const Registry& registry) {
 
 void add_list_command(CLI::App& app, ExitStatus& /*status*/, const Registry& registry) {
   CLI::App* list = app.add_subcommand("list", "What there is");
-  list->footer("Example: tribench list problems --json");
+  list->footer("Example: tribench list problems fastsrb/I.12.1");
   list->require_subcommand(1);
-  add_kind(*list, "problems", "Every problem of the catalogue", listed_problems);
+  add_problem_listing(*list);
   add_methods(*list, registry);
   add_kind(*list, "effects", "What the closed loop can find", listed_effects);
   add_kind(*list, "operators", "The operator sets", listed_operators);

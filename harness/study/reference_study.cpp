@@ -85,7 +85,7 @@ ReferenceFigure measure(const measured::ProblemPlan& plan, const Problem& proble
 
 std::vector<ReferenceFigure> run_reference_study(const std::optional<std::filesystem::path>& data) {
   std::vector<ReferenceFigure> figures;
-  const measured::Manifest& emps = measured::find_manifest("emps");
+  const measured::Manifest& emps = measured::find_manifest(measured::shipped_manifests(), "emps");
   for (const measured::ProblemPlan& plan : emps.problems) {
     const Problem problem = measured::make_measured_problem(emps, plan, data, 1);
     for (const auto& [model, published] : plan.published_percent) {

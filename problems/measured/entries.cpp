@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
@@ -87,15 +88,19 @@ Problem make_measured_problem(const Manifest& manifest, const ProblemPlan& plan,
 }
 
 void add_entries(std::vector<ProblemEntry>& entries, const DataFolder& data) {
-  for (const Manifest& manifest : manifests()) {
-    for (const ProblemPlan& plan : manifest.problems) {
+  for (Manifest& known : known_manifests(data)) {
+    const auto manifest = std::make_shared<const Manifest>(std::move(known));
+    const std::string source =
+        fmt::format("{}; {}; licence: {}", manifest->title, manifest->source, manifest->licence);
+    for (const ProblemPlan& plan : manifest->problems) {
       entries.push_back({plan.name, plan.summary,
-                         [&manifest, &plan, data](std::uint64_t seed) {
-                           return make_measured_problem(manifest, plan, data, seed);
+                         [manifest, &plan, data](std::uint64_t seed) {
+                           return make_measured_problem(*manifest, plan, data, seed);
                          },
-                         [&manifest, &plan, data](std::uint64_t) {
-                           return read_recording(plan, verified_file(manifest, plan.file, data));
-                         }});
+                         [manifest, &plan, data](std::uint64_t) {
+                           return read_recording(plan, verified_file(*manifest, plan.file, data));
+                         },
+                         source});
     }
   }
 }

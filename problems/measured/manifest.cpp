@@ -8,7 +8,9 @@
 #include <set>
 
 #include "foundation/error.hpp"
+#include "foundation/plain_name.hpp"
 #include "foundation/suggestion.hpp"
+#include "foundation/text.hpp"
 #include "foundation/toml_table.hpp"
 
 namespace tribench::embedded {
@@ -258,7 +260,7 @@ Manifest parse_manifest(std::string_view text, std::string_view file) {
   return manifest;
 }
 
-const std::vector<Manifest>& manifests() {
+const std::vector<Manifest>& shipped_manifests() {
   static const std::vector<Manifest> kManifests = {
       parse_manifest(embedded::manifest_bam_xl330(), "bam-xl330.toml"),
       parse_manifest(embedded::manifest_emps(), "emps.toml"),
@@ -269,9 +271,64 @@ const std::vector<Manifest>& manifests() {
   return kManifests;
 }
 
-const Manifest& find_manifest(std::string_view name) {
+namespace {
+
+// Names stand in cells' keys and in commands.
+void require_names(const Manifest& manifest, const std::filesystem::path& file) {
+  require_plain_name(manifest.name, "a measured set", file.string());
+  if (manifest.name != file.parent_path().filename()) {
+    throw_bad_input(fmt::format("the set is called '{}' and its folder '{}'", manifest.name,
+                                file.parent_path().filename().string()),
+                    file.string(), "call them alike");
+  }
+  for (const ProblemPlan& plan : manifest.problems) {
+    for (const std::string& part : split(plan.name, '/')) {
+      require_plain_name(part, "each part of a problem's name", file.string());
+    }
+  }
+}
+
+std::vector<std::filesystem::path> manifest_files(
+    const std::optional<std::filesystem::path>& data) {
+  std::vector<std::filesystem::path> files;
+  std::error_code code;
+  if (!data || !std::filesystem::is_directory(*data, code)) return files;
+  for (const auto& folder : std::filesystem::directory_iterator(*data)) {
+    std::filesystem::path file = folder.path() / "manifest.toml";
+    if (std::filesystem::is_regular_file(file, code)) files.push_back(std::move(file));
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace
+
+std::vector<Manifest> known_manifests(const std::optional<std::filesystem::path>& data) {
+  std::vector<Manifest> known = shipped_manifests();
+  for (const std::filesystem::path& file : manifest_files(data)) {
+    Manifest own = parse_manifest(read_file(file), file.string());
+    require_names(own, file);
+    const auto same = std::ranges::find(known, own.name, &Manifest::name);
+    if (same == known.end()) {
+      known.push_back(std::move(own));
+    } else {
+      *same = std::move(own);
+    }
+  }
+  std::set<std::string> seen;
+  for (const Manifest& manifest : known) {
+    for (const ProblemPlan& plan : manifest.problems) {
+      if (seen.insert(plan.name).second) continue;
+      throw_bad_input(fmt::format("two problems are called '{}'", plan.name), manifest.name,
+                      "give one of them another name");
+    }
+  }
+  return known;
+}
+
+const Manifest& find_manifest(const std::vector<Manifest>& known, std::string_view name) {
   std::vector<std::string> names;
-  for (const Manifest& manifest : manifests()) {
+  for (const Manifest& manifest : known) {
     if (manifest.name == name) return manifest;
     names.push_back(manifest.name);
   }

@@ -2,13 +2,15 @@
 //
 // What is known about a measured set: where it comes from, under which licence, what its files
 // must hash to, what its columns are, and the problems made of it. One TOML file a set, embedded
-// in the program; the data themselves are never part of it.
+// in the program, or beside the data of whoever has a set of their own; the data themselves are
+// never part of the program.
 //
 // A table [[problem]] may have `joints = [1, 2, ...]`: it then stands for one problem a joint,
 // {joint} in its texts replaced by the number.
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -88,10 +90,15 @@ struct Manifest {
 // Throws Error (bad_input) with file and line; unknown keys are refused with the nearest name.
 Manifest parse_manifest(std::string_view toml, std::string_view file);
 
-// The sets the program knows, by name.
-const std::vector<Manifest>& manifests();
+// The sets the program brings, by name.
+const std::vector<Manifest>& shipped_manifests();
+
+// Those, and the ones of <data>/NAME/manifest.toml in the order of their names; one of these with a
+// shipped one's name takes its place. Throws Error (bad_input) where one cannot be read, is called
+// otherwise than its folder, or has a problem that another set has.
+std::vector<Manifest> known_manifests(const std::optional<std::filesystem::path>& data);
 
 // Throws Error (bad_input) with the nearest name.
-const Manifest& find_manifest(std::string_view name);
+const Manifest& find_manifest(const std::vector<Manifest>& known, std::string_view name);
 
 }  // namespace tribench::measured

@@ -335,7 +335,7 @@ void add_entries(std::vector<ProblemEntry>& entries, const Suite& suite, const L
     const std::string summary = !one.law.empty()    ? one.law
                                 : !one.note.empty() ? one.note
                                                     : fmt::format("the table {}", one.file);
-    entries.push_back({fmt::format("{}/{}", kept->name, name), summary, make, {}});
+    entries.push_back({fmt::format("{}/{}", kept->name, name), summary, make, {}, kept->source});
   }
 }
 

@@ -279,7 +279,7 @@ void add_entries(std::vector<ProblemEntry>& entries, std::span<const UserProblem
     entries.push_back(
         {one.name, summary,
          [kept, laws](std::uint64_t seed) { return make_user_problem(*kept, laws, seed); },
-         [kept](std::uint64_t) { return read_user_rows(*kept).data; }});
+         [kept](std::uint64_t) { return read_user_rows(*kept).data; }, summary});
   }
 }
 

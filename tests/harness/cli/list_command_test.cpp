@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/paths.hpp"
@@ -42,6 +43,27 @@ TEST(ListCommand, GivesTheParametersOfOneMethodAsText) {
   const ProgramRun unknown = list({"methods", "pyrs"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.errors, HasSubstr("did you mean pysr?"));
+}
+
+TEST(ListCommand, SaysOfOneProblemWhatItIsMadeOf) {
+  const ProgramRun run = list({"problems", "B/j2/load", "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const auto problem = nlohmann::json::parse(run.output).at(0);
+  EXPECT_EQ(problem.at("name"), "B/j2/load");
+  EXPECT_EQ(problem.at("target").at("unit"), "N m");
+  EXPECT_EQ(problem.at("stages").size(), 2U);
+  EXPECT_GT(problem.at("test").at("movements"), 1);
+  for (const auto& input : problem.at("inputs")) EXPECT_LT(input.at("low"), input.at("high"));
+  const ProgramRun text = list({"problems", "nguyen/1"});
+  EXPECT_THAT(text.output, HasSubstr("x^3"));
+  EXPECT_THAT(text.output, HasSubstr("-1 to 1"));
+  const ProgramRun some = list({"problems", "nguyen/*"});
+  EXPECT_EQ(std::ranges::count(some.output, '\n'), 12);
+  const ProgramRun unknown = list({"problems", "nguyen/99"});
+  EXPECT_EQ(unknown.status, 2);
+  const ProgramRun absent = list({"problems", "emps/estimation", "--data", "/nowhere"});
+  EXPECT_EQ(absent.status, 2);
+  EXPECT_THAT(absent.errors, HasSubstr("/nowhere"));
 }
 
 }  // namespace

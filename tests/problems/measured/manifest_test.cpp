@@ -5,9 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "foundation/error.hpp"
+#include "problems/file_hash.hpp"
+#include "problems/measured/entries.hpp"
 
 namespace tribench::measured {
 namespace {
@@ -29,7 +33,7 @@ std::string complaint(const std::string& text) {
 
 TEST(Manifest, TheEmbeddedSetsAreComplete) {
   std::set<std::string> problems;
-  for (const Manifest& manifest : manifests()) {
+  for (const Manifest& manifest : shipped_manifests()) {
     EXPECT_FALSE(manifest.licence.empty()) << manifest.name;
     EXPECT_FALSE(manifest.source.empty()) << manifest.name;
     EXPECT_FALSE(manifest.problems.empty()) << manifest.name;
@@ -44,7 +48,7 @@ TEST(Manifest, TheEmbeddedSetsAreComplete) {
       })) << plan.file;
     }
   }
-  EXPECT_EQ(manifests().size(), 6U);
+  EXPECT_EQ(shipped_manifests().size(), 6U);
   EXPECT_EQ(problems.size(), 1U + 2 + 7 + 4 + 5 + 5);
 }
 
@@ -88,11 +92,67 @@ TEST(Manifest, MistakesAreNamedWithTheirLine) {
 
 TEST(Manifest, AnUnknownSetIsAnsweredWithTheNearest) {
   try {
-    find_manifest("screw-drive");
+    find_manifest(shipped_manifests(), "screw-drive");
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("did you mean screw-drives?"));
   }
+}
+
+class OwnManifests : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::remove_all(data_);
+    std::filesystem::create_directories(data_ / "mine");
+  }
+  void TearDown() override { std::filesystem::remove_all(data_); }
+  void write(const std::string& name, const std::string& problem) const {
+    std::ofstream(data_ / "mine/rows.csv") << "v,tau\n1,2\n2,4\n3,6\n4,8\n";
+    std::ofstream(data_ / "mine/manifest.toml")
+        << "name = \"" + name +
+               "\"\ntitle = \"My rig\"\nsource = \"a shelf\"\n"
+               "licence = \"none\"\n[[file]]\nname = \"rows.csv\"\nsha256 = \"" +
+               sha256_of(data_ / "mine/rows.csv") + "\"\n[[problem]]\nname = \"" + problem +
+               "\"\nsummary = \"s\"\nfile = \"rows.csv\"\ntarget = \"tau\"\ninputs = [\"v\"]\n"
+               "movements = {pieces = 4}\n";
+  }
+  std::string refusal() const {
+    try {
+      known_manifests(data_);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  const std::filesystem::path data_ =
+      std::filesystem::path(::testing::TempDir()) / "tribench_own_manifests";
+};
+
+TEST_F(OwnManifests, LieBesideTheirDataAndMakeProblems) {
+  write("mine", "mine/one");
+  EXPECT_EQ(known_manifests(data_).size(), shipped_manifests().size() + 1);
+  std::vector<ProblemEntry> entries;
+  add_entries(entries, data_);
+  const auto entry = std::ranges::find(entries, "mine/one", &ProblemEntry::name);
+  ASSERT_NE(entry, entries.end());
+  EXPECT_THAT(entry->source, HasSubstr("a shelf"));
+  const Problem problem = entry->make(1);
+  EXPECT_EQ(problem.stages.front().train.rows(), 3U);
+  EXPECT_EQ(problem.test.rows(), 1U);
+  std::ofstream(data_ / "mine/rows.csv", std::ios::app) << "5,10\n";
+  EXPECT_THROW(entry->make(1), Error);
+}
+
+TEST_F(OwnManifests, AreRefusedWhereTheirNamesDoNotHold) {
+  write("yours", "yours/one");
+  EXPECT_THAT(refusal(), HasSubstr("called 'yours' and its folder 'mine'"));
+  write("mine", "mine/a|b");
+  EXPECT_THAT(refusal(), HasSubstr("manifest.toml"));
+  write("mine", "emps/estimation");
+  EXPECT_THAT(refusal(), HasSubstr("two problems are called 'emps/estimation'"));
+  std::ofstream(data_ / "mine/manifest.toml") << "name = \"mine\"\ntitel = 1\n";
+  EXPECT_THAT(refusal(), HasSubstr("mine/manifest.toml"));
 }
 
 }  // namespace
