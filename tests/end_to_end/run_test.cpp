@@ -170,8 +170,8 @@ TEST_F(RunTest, NothingOutlivesARunThatIsKilled) {
              "name = \"escapes\"\ncommand = [\"bash\", \"-c\", \"echo $$ >> " +
                  pids + "; setsid sleep 987 & setsid -f bash -c 'echo $$ >> " + pids +
                  "; sleep 987'; sleep 987\"]\n");
-  const std::string line = "TMPDIR=" + folder_.path().string() + " " + test_program().string() +
-                           " run " + (folder_ / "grid.toml").string() + " --out " +
+  const std::string line = "TMPDIR=" + folder_.path().string() + " '" + test_program().string() +
+                           "' run " + (folder_ / "grid.toml").string() + " --out " +
                            (folder_ / "killed").string() +
                            " --jobs 1 > /dev/null 2>&1 & echo $! > " + (folder_ / "run").string();
   ASSERT_EQ(std::system(line.c_str()), 0);
