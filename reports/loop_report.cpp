@@ -5,37 +5,33 @@
 
 #include <nlohmann/json.hpp>
 
+#include "reports/html/embedded.hpp"
 #include "reports/html/html_report.hpp"
-#include "reports/loop_words.hpp"
+#include "reports/html/loop_page.hpp"
+#include "reports/picture_files.hpp"
+#include "reports/record/loop_json.hpp"
 #include "reports/record_csv.hpp"
 
 namespace tribench {
 
-std::string loop_html(const nlohmann::json& loop, const std::string& title) {
-  const nlohmann::json effects = items_of(loop, "effects");
-  nlohmann::ordered_json sentences = nlohmann::ordered_json::array();
-  for (const nlohmann::json& effect : effects) sentences.push_back(effect_sentence(effect, loop));
-  const std::string leftover = leftover_sentence(loop);
-  if (!leftover.empty()) sentences.push_back(leftover);
-  const std::string heading = fmt::format("Closing the loop: {}", title);
-  const nlohmann::ordered_json data = {
-      {"title", heading},
-      {"verdict", verdict_sentence(loop)},
-      {"sentences", std::move(sentences)},
-      {"lists",
-       {{{"title", "What these data cannot show"}, {"lines", untestable_sentences(loop)}},
-        {{"title", "What these data cannot tell apart"}, {"lines", aliased_sentences(loop)}},
-        {{"title", "Bursts, left out of every fit and no friction"},
-         {"lines", event_sentences(loop)}},
-        {{"title", "Remarks"}, {"lines", remarks(loop)}}}},
-      {"loop", loop.is_object() ? loop : nlohmann::json::object()}};
-  return html_page(heading, PageKind::loop, data);
+std::string loop_html(const LoopRecord& record) {
+  return html_page("Closing the loop: " + record.title, PageKind::loop, loop_page_data(record));
 }
 
-void write_loop_report(const nlohmann::json& loop, const std::string& title,
-                       const std::filesystem::path& folder) {
-  write_file(folder / "loop.md", loop_markdown(loop, title));
-  write_file(folder / "loop.html", loop_html(loop, title));
+void write_loop_report(const LoopRecord& record, const std::filesystem::path& folder) {
+  write_file(folder / "loop.json", write_loop_json(record));
+  write_file(folder / "loop.md", loop_markdown(record));
+  write_file(folder / "loop.html", loop_html(record));
+}
+
+std::vector<std::string> write_loop_pictures(const LoopRecord& record,
+                                             const std::filesystem::path& folder) {
+  std::vector<std::string> files =
+      draw_picture_files({embedded::loop_plots_js(), embedded::loop_pictures_js()},
+                         loop_page_data(record), folder, {});
+  const std::vector<std::string> png = write_png_beside(folder, files);
+  files.insert(files.end(), png.begin(), png.end());
+  return files;
 }
 
 }  // namespace tribench

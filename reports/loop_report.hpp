@@ -1,46 +1,31 @@
 // SPDX-License-Identifier: MIT
 //
-// What people read about a closed loop: loop.md and loop.html from loop.json alone. Nothing is
-// computed here that the diagnosis has not decided.
-//
-// loop.json has the keys
-//   verdict, alpha, seed, noise, effects, leftover, untestable, events, error, candidates, formula
-// and, for this report, an object `pictures` (every part of it may be absent):
-//
-//   "pictures": {
-//     "target": "friction torque",            // y axis title
-//     "unit": "N m",                           // of the target and of every residual
-//     "base_formula": "...",                   // what was fitted before the loop, print form
-//     "residuals": [{                          // one a channel that is worth a look
-//        "channel": "velocity", "unit": "rad/s",
-//        "x": [..],                            // thinned to about 1500 rows
-//        "before": [..], "after": [..],        // residual of those rows; null where missing
-//        "effect": [..],                       // what the refitted model says beyond the base
-//        "effects": [{"family": "stribeck", "y": [..]}]  // optionally each by itself
-//     }],
-//     "movements": [{"name": "17", "test": true, "mae_before": 0.5, "mae_after": 0.1}],
-//     "alias_map": {"families": ["stribeck", ..], "correlation": [[1, 0.3], [0.3, 1]]}
-//   }
-//
-// Keys that are unknown are ignored, keys that are missing leave their part out; a part whose
-// arrays differ in length is left out with a line that says so.
+// What people read about a closed loop: loop.md and loop.html, and its pictures as files, from its
+// record alone. Nothing is computed here that the diagnosis has not decided. The sentences are
+// those of loop_words.hpp, the pictures those of html/loop_page.hpp.
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
+
+#include "reports/record/loop_record.hpp"
 
 namespace tribench {
 
-// One plain sentence an effect, the errors before and after, what else it could be, what to
-// measure next. title: names the data, e.g. the file.
-std::string loop_markdown(const nlohmann::json& loop, const std::string& title);
+// At most 120 lines: the answer, then figures in tables; long lists end where loop.json has more.
+std::string loop_markdown(const LoopRecord& record);
 
 // One self-contained page with the pictures.
-std::string loop_html(const nlohmann::json& loop, const std::string& title);
+std::string loop_html(const LoopRecord& record);
 
-// Writes loop.md and loop.html into the folder. Throws Error (failed) where it cannot be written.
-void write_loop_report(const nlohmann::json& loop, const std::string& title,
-                       const std::filesystem::path& folder);
+// Writes loop.json, loop.md and loop.html into the folder. Throws Error (failed) where they cannot
+// be written.
+void write_loop_report(const LoopRecord& record, const std::filesystem::path& folder);
+
+// Every picture of the page as SVG and PNG; returns the files' names. Throws Error (failed) where
+// node or rsvg-convert are missing, with the package to install.
+std::vector<std::string> write_loop_pictures(const LoopRecord& record,
+                                             const std::filesystem::path& folder);
 
 }  // namespace tribench

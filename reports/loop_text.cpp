@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// loop.md: the finding in sentences, the figures in tables.
+// loop.md: the answer in sentences, then the details in tables; two screens.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <utility>
 #include <vector>
 
 #include "reports/figures.hpp"
@@ -18,121 +16,143 @@
 namespace tribench {
 namespace {
 
-using nlohmann::json;
+constexpr int kDigits = 4;
+constexpr std::size_t kMostLines = 6;  // of a list or table; loop.json has all
 
-std::string errors_of(const json& loop) {
-  const json error = member_of(loop, "error");
-  if (error.empty()) return "No error before and after was computed.\n";
-  MarkdownTable table({{"on movements that nothing was fitted to"}, {"value", Align::right}});
-  const auto add = [&](const char* key, const char* label) {
-    const double value = number_of(error, key);
-    table.add({label, figure(value)});
+std::string interval(const LoopUnit& unit, double low, double high) {
+  return fmt::format("{} .. {}", figure(unit.factor * low, kDigits),
+                     figure(unit.factor * high, kDigits));
+}
+
+std::string errors_of(const LoopRecord& record) {
+  const LoopError& error = record.error;
+  const LoopUnit unit = torque_unit(record);
+  MarkdownTable table({{fmt::format("mean absolute error ({})", unit.name)}, {"", Align::right}});
+  const auto add = [&](const char* label, double value) {
+    if (std::isfinite(value)) table.add({label, figure(unit.factor * value, kDigits)});
   };
-  table.add({"test movements", count_figure(number_of(error, "test_movements"))});
-  add("mae_before", "mean absolute error before");
-  add("mae_after", "mean absolute error after");
-  if (error.contains("ci_diff") && error["ci_diff"].size() == 2) {
-    table.add({"improvement, 95 % interval over movements",
-               fmt::format("{} .. {}", figure(element_of(error["ci_diff"], 0)),
-                           figure(element_of(error["ci_diff"], 1)))});
+  add("before", error.mae_before);
+  add("after", error.mae_after);
+  if (std::isfinite(error.difference_low)) {
+    table.add({"improvement, 95 %", interval(unit, error.difference_low, error.difference_high)});
   }
-  add("ceiling", "the noise at least: no model does better");
-  add("attainable", "the noise at most: a smooth model of these inputs gets there");
-  const double closed = number_of(error, "closed_fraction");
-  if (!std::isnan(closed)) {
-    table.add({"share of the gap to the noise that was closed", closed_share(error)});
+  add("the noise at least: no model does better", error.ceiling);
+  add("the noise at most: a smooth model of these inputs gets there", error.attainable);
+  const std::string closed = closed_share(error);
+  if (!closed.empty()) table.add({"of the gap to the noise closed", closed});
+  std::string text = "\n## Error before and after\n\n" + table.text();
+  text += fmt::format("\nJudged on: {}{}.\n",
+                      error.how.empty() ? "nothing" : plain_text(record, error.how),
+                      error.test_movements > 0 ? fmt::format(" ({})", error.test_movements) : "");
+  if (!error.ceiling_note.empty()) {
+    text += fmt::format("No share of the gap: {}.\n", plain_text(record, error.ceiling_note));
   }
-  const std::string note = text_of(error, "ceiling_note");
-  return table.text() + (note.empty() ? "" : fmt::format("\nNo closed fraction: {}.\n", note));
+  return text;
 }
 
-std::string effects_table(const json& effects) {
-  MarkdownTable table({{"order", Align::right},
-                       {"effect"},
-                       {"term"},
-                       {"parameters"},
-                       {"rms", Align::right},
-                       {"p", Align::right},
-                       {"evidence", Align::right}});
-  for (const json& effect : effects) {
-    table.add({count_figure(number_of(effect, "order")), text_of(effect, "family"),
-               markdown_code(text_of(effect, "atom")), parameters_of(effect),
-               figure(number_of(effect, "rms_contribution")), figure(number_of(effect, "p_adj"), 2),
-               fmt::format("{} +- {}", figure(number_of(effect, "cv_gain")),
-                           figure(number_of(effect, "cv_se"), 2))});
-  }
-  return table.text();
+std::string card_line(const LoopCard& card) {
+  std::string text = fmt::format("- **{}**: {}", card.title, card.amount);
+  if (!card.share.empty()) text += ", " + card.share;
+  text += fmt::format("; {}. {}", card.grade, card.sure);
+  for (const std::string& doubt : card.doubts) text += ' ' + doubt;
+  if (!card.rivals.empty()) text += ' ' + card.rivals;
+  if (!card.settle.empty()) text += ' ' + card.settle;
+  return text + '\n';
 }
 
-std::string candidates_of(const json& loop) {
-  const json candidates = items_of(loop, "candidates");
-  if (candidates.empty()) return {};
-  MarkdownTable table({{"candidate"}, {"p", Align::right}, {"score", Align::right}});
-  for (const json& candidate : candidates) {
-    table.add({text_of(candidate, "family"), figure(number_of(candidate, "p_adj"), 2),
-               figure(number_of(candidate, "score"))});
+std::string effects_table(const LoopRecord& record) {
+  if (record.effects.empty()) return {};
+  MarkdownTable table(
+      {{"effect"}, {"parameters, 95 %"}, {"p", Align::right}, {"evidence, nats", Align::right}});
+  for (const LoopEffect& effect : record.effects) {
+    table.add({family_title(record, effect.family), parameter_words(effect),
+               figure(effect.adjusted_p, 2),
+               fmt::format("{} +- {}", figure(effect.gain), figure(effect.gain_error, 2))});
   }
-  return "\n## What was considered\n\n" + table.text();
+  return "\n## The effects in figures\n\n" + table.text() +
+         "\np: chance that noise looks like this anywhere in the search; evidence: log likelihood "
+         "gained "
+         "on movements left out.\n";
 }
 
 std::string list_of(const char* title, const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += fmt::format("- {}\n", line);
-  return text.empty() ? text : fmt::format("\n## {}\n\n{}", title, text);
+  if (lines.empty()) return {};
+  std::string text = fmt::format("\n## {}\n\n", title);
+  for (std::size_t i = 0; i < std::min(lines.size(), kMostLines); ++i)
+    text += fmt::format("- {}\n", lines[i]);
+  if (lines.size() > kMostLines)
+    text += fmt::format("- and {} more in loop.json\n", lines.size() - kMostLines);
+  return text;
 }
 
-std::string next_movements_of(const json& loop) {
-  MarkdownTable table({{"order", Align::right},
-                       {"movement"},
+std::string next_movements_of(const LoopRecord& record) {
+  if (record.next_movements.empty()) return {};
+  MarkdownTable table({{"movement"},
                        {"velocity", Align::right},
                        {"from", Align::right},
                        {"to", Align::right},
                        {"load", Align::right},
                        {"tells apart"},
                        {"by", Align::right}});
-  std::size_t order = 0;
-  for (const json& one : items_of(loop, "next_movements")) {
-    const auto place = [&](const char* key) { return figure(number_of(one, key)); };
-    table.add({std::to_string(++order), text_of(one, "kind"), place("velocity"), place("from"),
-               place("to"), place("load_factor"), text_of(one, "between"), place("separation")});
+  for (std::size_t i = 0; i < std::min(record.next_movements.size(), kMostLines); ++i) {
+    const LoopNextMovement& one = record.next_movements[i];
+    table.add({plain_text(record, one.kind), figure(one.velocity), figure(one.from), figure(one.to),
+               figure(one.load_factor), plain_text(record, one.between), figure(one.separation)});
   }
-  if (table.empty()) return {};
-  return "\n## Next movements\n\nBest first; `load` is the factor on the gravity torque (another "
-         "payload or posture), `by` the mean squared difference of the two explanations over the "
-         "noise's variance. `next_movements.csv` has durations and tones too.\n\n" +
+  return "\n## Next movements\n\nBest first; `load` is the factor on the gravity torque, `by` the "
+         "mean "
+         "squared difference of the explanations over the noise's variance. `next_movements.csv` "
+         "has all.\n\n" +
          table.text();
 }
 
-std::string movements_of(const json& loop) {
-  const json pictures = member_of(loop, "pictures");
-  MarkdownTable table({{"movement"}, {"MAE before", Align::right}, {"MAE after", Align::right}});
-  for (const json& movement : items_of(pictures, "movements")) {
-    if (!flag_of(movement, "test")) continue;
-    table.add({text_of(movement, "name"), figure(number_of(movement, "mae_before")),
-               figure(number_of(movement, "mae_after"))});
+std::string model_of(const LoopRecord& record) {
+  if (record.formula.empty()) return {};
+  std::string text = "\n## The model now\n\n";
+  for (const LoopTerm& term : record.terms) {
+    if (term.formula.empty()) continue;
+    text += fmt::format("- {}: `{}`\n",
+                        term.family.empty() ? "base" : family_title(record, term.family),
+                        readable_formula(term.formula));
   }
-  return table.empty() ? std::string() : "\n## Held-out movements\n\n" + table.text();
+  MarkdownTable table(
+      {{"symbol"}, {"is"}, {"unit"}, {"seen from", Align::right}, {"to", Align::right}});
+  for (const LoopSymbol& symbol : record.symbols) {
+    if (!symbol.used || symbol.name.starts_with("sgn_")) continue;
+    table.add({markdown_code(symbol.name), symbol.meaning, symbol.unit, figure(symbol.low),
+               figure(symbol.high)});
+  }
+  return text + "\n" + table.text() +
+         "\nFour digits; `loop.json` has all, `loop.html` the C code.\n";
+}
+
+std::string data_of(const LoopRecord& record) {
+  if (record.steps.empty()) return {};
+  MarkdownTable table({{"what was done to the data"}, {"rows left", Align::right}});
+  for (const LoopDataStep& step : record.steps) {
+    table.add({plain_text(record, step.what), std::to_string(step.rows)});
+  }
+  return "\n## The data\n\n" + table.text();
 }
 
 }  // namespace
 
-std::string loop_markdown(const json& loop, const std::string& title) {
-  std::string text = fmt::format("# Closing the loop: {}\n\n", title);
-  text += fmt::format("**{}**\n", verdict_sentence(loop));
-  const json effects = items_of(loop, "effects");
-  if (!effects.empty()) text += '\n';
-  for (const json& effect : effects) text += fmt::format("- {}\n", effect_sentence(effect, loop));
-  const std::string leftover = leftover_sentence(loop);
-  if (!leftover.empty()) text += fmt::format("- {}\n", leftover);
-  text += "\n## Error before and after\n\n" + errors_of(loop);
-  if (!effects.empty()) text += "\n## The effects\n\n" + effects_table(effects);
-  text += list_of("What these data cannot show", untestable_sentences(loop));
-  text += list_of("What these data cannot tell apart", aliased_sentences(loop));
-  text += list_of("Bursts, left out of every fit and no friction", event_sentences(loop));
-  text += list_of("Remarks", remarks(loop));
-  text += next_movements_of(loop) + candidates_of(loop) + movements_of(loop);
-  const std::string formula = text_of(loop, "formula");
-  if (!formula.empty()) text += fmt::format("\n## The model now\n\n    {}\n", formula);
+std::string loop_markdown(const LoopRecord& record) {
+  const LoopWords words = loop_words(record);
+  std::string text = fmt::format("# Closing the loop: {}\n\n**{}**\n\n{}\n\n", record.title,
+                                 words.headline, words.error);
+  for (const LoopCard& card : words.cards) text += card_line(card);
+  for (const std::string* one : {&words.leftover, &words.detectable}) {
+    if (!one->empty()) text += fmt::format("{}{}\n", words.cards.empty() ? "" : "\n", *one);
+  }
+  for (const std::string& one : words.needed) text += fmt::format("- Needed: {}.\n", one);
+  text += fmt::format("\nNext: {}\n", words.next);
+  text += errors_of(record) + effects_table(record) + model_of(record);
+  text += list_of("What these data cannot show", words.untestable);
+  text += list_of("What these data cannot tell apart", words.aliased);
+  text += list_of("Bursts, left out of every fit and no friction", words.bursts);
+  text += next_movements_of(record) + data_of(record);
+  text += list_of("Remarks", words.remarks);
   return text;
 }
 

@@ -4,328 +4,443 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
+#include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <limits>
-#include <nlohmann/json.hpp>
+#include <map>
+#include <regex>
 #include <utility>
-#include <vector>
 
 #include "reports/figures.hpp"
 
 namespace tribench {
 namespace {
 
-using nlohmann::json;
-using Words = std::pair<std::string_view, std::string_view>;
+constexpr int kDigits = 4;
+// Shares of the searches with movements left out that find an effect again.
+constexpr double kVerySure = 0.95;
+constexpr double kSure = 0.8;
+constexpr double kLikely = 0.5;
+constexpr std::size_t kNamedEffects = 3;  // in the headline
+constexpr std::size_t kNamedSizes = 5;    // that would have been seen
 
-constexpr std::array<Words, 18> kFamilies = {{
-    {"asymmetry", "a difference between the two directions"},
-    {"stribeck", "the Stribeck effect (friction falls as motion starts)"},
-    {"nonlinear_viscous", "viscous friction that is not linear in velocity"},
-    {"load_coulomb", "Coulomb friction that grows with load"},
-    {"load_viscous", "viscous friction that grows with load"},
-    {"power_quadrant_gain",
-     "friction that differs between driving and back-driving, in "
-     "proportion to the load"},
-    {"power_quadrant_step", "friction that steps where the load changes sign"},
-    {"payload", "an error of payload or gravity model"},
-    {"output_ripple", "ripple once or a few times per turn of the link"},
-    {"gear_ripple", "ripple of the gear"},
-    {"temperature", "temperature"},
-    {"drift", "a drift through the campaign"},
-    {"hysteresis", "hysteresis after a reversal (presliding)"},
-    {"lag", "friction that lags behind velocity"},
-    {"inertia", "an error of inertia"},
-    {"coupling", "coupling to other joints"},
-    {"offset", "a constant offset"},
-    {"backlash", "backlash of the gear"},
-}};
+bool known(double value) { return std::isfinite(value); }
 
-constexpr std::array<Words, 9> kMovements = {{
-    {"R1", "repeat at least 5 settings twice, hours apart"},
-    {"R2", "drive both directions over the same stroke and posture"},
-    {"R3", "drive in two postures, or with a known payload"},
-    {"R4", "drive reversals and a multisine that covers velocity and acceleration"},
-    {"R5", "drive in random order with one cool-down"},
-    {"R6", "drive slow passes with 20 samples a gear ripple at least"},
-    {"R7", "move the other joints one at a time, in 20 separate stretches"},
-    {"R8", "hold still, approached from both sides"},
-    {"R9", "record 30 movements at least"},
-}};
+std::string capital(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
 
-template <std::size_t N>
-std::string_view words_for(const std::array<Words, N>& words, std::string_view name) {
-  for (const auto& [key, text] : words) {
-    if (key == name) return text;
+std::string spaced(std::string text) {
+  std::ranges::replace(text, '_', ' ');
+  return text;
+}
+
+// "a", "a and b", "a, b and c".
+std::string listed(const std::vector<std::string>& items, std::string_view last = "and") {
+  if (items.empty()) return {};
+  std::string text = items[0];
+  for (std::size_t i = 1; i < items.size(); ++i) {
+    text += i + 1 == items.size() ? fmt::format(" {} ", last) : ", ";
+    text += items[i];
+  }
+  return text;
+}
+
+const LoopFamily* find_family(const LoopRecord& record, std::string_view name) {
+  const auto found = std::ranges::find(record.families, name, &LoopFamily::name);
+  return found == record.families.end() ? nullptr : &*found;
+}
+
+std::string phrase_of(const LoopRecord& record, std::string_view name) {
+  const LoopFamily* family = find_family(record, name);
+  return family == nullptr || family->phrase.empty() ? family_title(record, name) : family->phrase;
+}
+
+// What an experiment's code, or a sentence that stands for one, asks for.
+std::string ask_of(const LoopRecord& record, const std::string& code) {
+  return code.empty() ? code : plain_text(record, code);
+}
+
+std::string amount(const LoopUnit& unit, double value) {
+  return fmt::format("{} {}", figure(unit.factor * value, kDigits), unit.name);
+}
+
+std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
+
+std::string where_judged(const LoopError& error) {
+  if (error.how.starts_with("pieces")) return "on pieces of the recording that it never saw";
+  if (error.how.starts_with("none")) return "on the rows that it was fitted to";
+  return "on movements that it never saw";
+}
+
+std::string error_sentence(const LoopRecord& record) {
+  const LoopError& error = record.error;
+  const LoopUnit unit = torque_unit(record);
+  if (!known(error.mae_before)) return "No error before and after could be computed.";
+  const auto shown = [&](double value) { return figure(unit.factor * value, kDigits); };
+  std::string text;
+  if (record.effects.empty()) {
+    text =
+        fmt::format("Mean error {} {} {}", shown(error.mae_after), unit.name, where_judged(error));
+  } else {
+    text = fmt::format("Mean error {} -> {} {} {}", shown(error.mae_before), shown(error.mae_after),
+                       unit.name, where_judged(error));
+    if (!error.confirmed) {
+      text += ", which do not confirm the effects";
+    } else if (known(error.difference_low) && known(error.difference_high)) {
+      text += fmt::format(" (better by {} to {})", figure(unit.factor * error.difference_low, 2),
+                          figure(unit.factor * error.difference_high, 2));
+    }
+  }
+  const double room = error.mae_after - error.ceiling;
+  if (known(room) && record.verdict != LoopVerdict::cannot_tell) {
+    text += room > 0.01 * error.mae_after ? fmt::format("; at most {} {} more can be had",
+                                                        figure(unit.factor * room, 2), unit.name)
+                                          : std::string("; the rest is noise");
+  }
+  return text + '.';
+}
+
+std::string grade_of(const LoopEffect& effect) {
+  if (!effect.objection.empty()) return "not physical";
+  if (effect.provisional) return "provisional";
+  if (!known(effect.chosen_share)) return "passes the test";
+  if (effect.chosen_share >= kVerySure) return "very sure";
+  if (effect.chosen_share >= kSure) return "sure";
+  return effect.chosen_share >= kLikely ? "likely" : "doubtful";
+}
+
+std::vector<std::string> doubts_of(const LoopRecord& record, const LoopEffect& effect) {
+  std::vector<std::string> all;
+  if (!effect.objection.empty()) {
+    all.push_back(fmt::format("Not physical ({}): it stands for something else.",
+                              plain_text(record, effect.objection)));
+  } else if (effect.provisional) {
+    all.push_back("It shares an input with what is still unexplained.");
+  }
+  if (effect.another_shape) all.push_back("This cause, but another curve than those known.");
+  if (effect.few_movements) all.push_back("Few movements carry it: record more.");
+  return all;
+}
+
+void add_rivals(LoopCard& card, const LoopRecord& record, const LoopEffect& effect) {
+  std::vector<std::string> exact;
+  std::vector<std::string> near;
+  std::string ask;
+  for (const LoopAlias& alias : effect.aliases) {
+    (alias.exact ? exact : near).push_back(family_title(record, alias.family));
+    if (alias.exact && ask.empty()) ask = ask_of(record, alias.separate_by);
+  }
+  if (!exact.empty()) {
+    card.rivals = fmt::format("These data cannot tell it from {}.", listed(exact, "or"));
+  }
+  if (!near.empty()) {
+    card.rivals +=
+        fmt::format("{}It could also be {}.", card.rivals.empty() ? "" : " ", listed(near, "or"));
+  }
+  const bool settled = card.rivals.empty() && (card.grade == "very sure" || card.grade == "sure");
+  if (settled) return;
+  if (ask.empty() && !effect.separate_by.empty()) ask = ask_of(record, effect.separate_by[0]);
+  if (!ask.empty()) card.settle = fmt::format("To settle it: {}.", ask);
+}
+
+// " (every 2.50 mm)" of an effect that repeats.
+std::string period_words(const LoopRecord& record, const std::string& family) {
+  for (const LoopEffectPicture& picture : record.pictures.effects) {
+    if (picture.family != family || !(picture.x.period > 0)) continue;
+    const LoopUnit unit = length_unit(picture.x.unit, picture.x.period);
+    return fmt::format(" (every {} {})", figure(unit.factor * picture.x.period), unit.name);
   }
   return {};
 }
 
-std::string alias_clause(const json& effect) {
-  std::vector<std::string> exact;
-  std::vector<std::string> near;
-  for (const json& alias : items_of(effect, "alias")) {
-    const std::string words = family_words(text_of(alias, "family"));
-    const bool is_exact = flag_of(alias, "exact");
-    const std::string ask = is_exact ? text_of(alias, "separate_by") : std::string();
-    (is_exact ? exact : near)
-        .push_back(ask.empty()
-                       ? words
-                       : fmt::format("{} (to settle that: {})", words, movement_words(ask)));
+LoopCard card_of(const LoopRecord& record, const LoopEffect& effect) {
+  LoopCard card;
+  card.family = effect.family;
+  card.title = capital(phrase_of(record, effect.family)) + period_words(record, effect.family);
+  card.noun = family_title(record, effect.family);
+  if (known(effect.rms)) {
+    card.amount = amount(torque_unit(record), effect.rms);
+    if (record.friction_rms > 0) {
+      card.share = percent(effect.rms / record.friction_rms) + " of friction";
+    }
   }
-  std::string text;
-  if (!exact.empty()) {
-    text +=
-        fmt::format(" In these data it cannot be told from {} at all.", fmt::join(exact, " or "));
+  card.grade = grade_of(effect);
+  card.sure = known(effect.chosen_share)
+                  ? fmt::format("Found again in {} of the repeats.", percent(effect.chosen_share))
+                  : "It passes the test against chance.";
+  card.doubts = doubts_of(record, effect);
+  add_rivals(card, record, effect);
+  return card;
+}
+
+std::string effects_clause(const LoopRecord& record) {
+  std::vector<std::string> phrases;
+  for (const LoopEffect& effect : record.effects) {
+    if (phrases.size() == kNamedEffects && record.effects.size() > kNamedEffects + 1) break;
+    phrases.push_back(phrase_of(record, effect.family));
   }
-  if (!near.empty()) text += fmt::format(" It could also be {}.", fmt::join(near, " or "));
+  if (phrases.size() < record.effects.size()) {
+    phrases.push_back(fmt::format("{} more effects", record.effects.size() - phrases.size()));
+  }
+  return capital(listed(phrases));
+}
+
+std::string leftover_inputs(const LoopRecord& record) {
+  std::vector<std::string> names;
+  for (const std::string& input : record.leftover.inputs) names.push_back(spaced(input));
+  return listed(names);
+}
+
+std::string headline_of(const LoopRecord& record) {
+  switch (record.verdict) {
+    case LoopVerdict::cannot_tell:
+      return "These data cannot tell: nothing in them can be tested.";
+    case LoopVerdict::none:
+      if (record.candidates.empty()) return "These data can test none of the known effects.";
+      return record.untestable.empty() ? "Nothing is missing: what is left is noise."
+                                       : "Nothing is missing that these data can show.";
+    case LoopVerdict::effects:
+      return effects_clause(record) + '.';
+    case LoopVerdict::unknown:
+      break;
+  }
+  const std::string inputs = leftover_inputs(record);
+  if (record.effects.empty()) {
+    return inputs.empty() ? "Something is missing that is none of the known effects."
+                          : fmt::format(
+                                "Something is missing that depends on {} and is none of "
+                                "the known effects.",
+                                inputs);
+  }
+  return fmt::format("{}; something more is missing that no known effect explains.",
+                     effects_clause(record));
+}
+
+std::string leftover_of(const LoopRecord& record) {
+  const std::string inputs = leftover_inputs(record);
+  if (record.verdict != LoopVerdict::unknown || inputs.empty()) return {};
+  // An effect whose parameters are not physical fits there, and so leaves nothing to be tested.
+  if (record.leftover.p > record.alpha_leftover) {
+    return fmt::format(
+        "Still unexplained: something in {}, where only an effect fits that cannot "
+        "be physical.",
+        inputs);
+  }
+  return fmt::format("Still unexplained: something that depends on {}.", inputs);
+}
+
+std::string next_movement_words(const LoopRecord& record) {
+  const LoopNextMovement& one = record.next_movements[0];
+  std::string text = one.kind == "constant" ? fmt::format("a pass at {}", figure(one.velocity))
+                                            : "a movement of two sines";
+  for (const LoopSymbol& symbol : record.symbols) {
+    if (symbol.name == "v" && one.kind == "constant") text += ' ' + symbol.unit;
+  }
+  if (known(one.load_factor) && one.load_factor != 1) {
+    text += fmt::format(" with {} times the load", figure(one.load_factor, 2));
+  }
   return text;
 }
 
-std::string request_clause(const json& effect) {
-  std::vector<std::string> requests;
-  for (const json& request : items_of(effect, "separate_by")) {
-    if (request.is_string()) requests.push_back(movement_words(request.get<std::string>()));
+// The effect that most needs to be settled: provisional or with a rival, found least often.
+const LoopCard* least_sure(const LoopRecord& record, const std::vector<LoopCard>& cards) {
+  const LoopCard* worst = nullptr;
+  double worst_share = 2;
+  for (std::size_t i = 0; i < cards.size(); ++i) {
+    const LoopEffect& effect = record.effects[i];
+    double share = known(effect.chosen_share) ? effect.chosen_share : 1;
+    if (effect.provisional || !effect.aliases.empty()) share -= 1;
+    if (cards[i].settle.empty() || !(share < worst_share)) continue;
+    worst = &cards[i];
+    worst_share = share;
   }
-  return requests.empty() ? std::string()
-                          : fmt::format(" To settle it: {}.", fmt::join(requests, "; "));
+  return worst;
 }
 
-std::string unit_of(const json& loop) {
-  const std::string unit = text_of(member_of(loop, "pictures"), "unit");
-  return unit.empty() ? "N m" : unit;
+std::string next_of(const LoopRecord& record, const LoopWords& words) {
+  if (record.verdict == LoopVerdict::cannot_tell) {
+    return words.needed.empty() ? "Record more movements." : "Record " + words.needed[0] + '.';
+  }
+  if (!record.next_movements.empty()) {
+    return fmt::format("Record {}: there the explanations left differ most.",
+                       next_movement_words(record));
+  }
+  if (record.verdict == LoopVerdict::unknown && record.learned.empty()) {
+    return "Let a method grow the missing effect from what is left (--learn pysr), or record "
+           "movements that vary its inputs by themselves.";
+  }
+  if (const LoopCard* card = least_sure(record, words.cards)) {
+    std::string ask = card->settle;
+    const std::string lead = "To settle it: ";
+    if (ask.starts_with(lead)) ask = ask.substr(lead.size());
+    return fmt::format("To be sure of the {}: {}", card->noun, ask);
+  }
+  for (const LoopUntestable& one : record.untestable) {
+    if (one.ask.empty()) continue;
+    return fmt::format("To test what these data cannot show ({}): {}.",
+                       family_title(record, one.family), ask_of(record, one.ask));
+  }
+  return "Nothing: the model stands as it is.";
+}
+
+std::string detectable_of(const LoopRecord& record) {
+  if (record.verdict != LoopVerdict::none) return {};
+  const LoopUnit unit = torque_unit(record);
+  std::vector<std::string> sizes;
+  for (const LoopCandidate& one : record.candidates) {
+    if (!known(one.detectable) || sizes.size() == kNamedSizes) continue;
+    sizes.push_back(fmt::format("{} above {} {}", family_title(record, one.family),
+                                figure(unit.factor * one.detectable, 2), unit.name));
+  }
+  if (sizes.empty()) return {};
+  return fmt::format("Would have been seen: {}.", listed(sizes));
+}
+
+// Families with the same reason in one line.
+std::vector<std::string> untestable_lines(const LoopRecord& record) {
+  std::vector<std::string> reasons;
+  std::map<std::string, std::vector<std::string>> families;
+  std::map<std::string, std::vector<std::string>> asks;
+  for (const LoopUntestable& one : record.untestable) {
+    const std::string reason = plain_text(record, one.reason);
+    if (std::ranges::count(reasons, reason) == 0) reasons.push_back(reason);
+    families[reason].push_back(family_title(record, one.family));
+    const std::string ask = ask_of(record, one.ask);
+    if (!ask.empty() && std::ranges::count(asks[reason], ask) == 0) asks[reason].push_back(ask);
+  }
+  std::vector<std::string> lines;
+  for (const std::string& reason : reasons) {
+    std::string line = fmt::format("{}: {}.", capital(listed(families[reason])), reason);
+    if (!asks[reason].empty()) line += fmt::format(" To test it: {}.", listed(asks[reason], "or"));
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::vector<std::string> aliased_lines(const LoopRecord& record) {
+  std::vector<std::string> lines;
+  for (const LoopCoincidence& pair : record.aliased) {
+    std::string line =
+        fmt::format("{} and {} (correlation {}).", capital(family_title(record, pair.first)),
+                    family_title(record, pair.second), figure(pair.correlation));
+    const std::string ask = ask_of(record, pair.separate_by);
+    if (!ask.empty()) line += fmt::format(" To tell them apart: {}.", ask);
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::vector<std::string> burst_lines(const LoopRecord& record) {
+  std::vector<std::string> lines;
+  for (const LoopBurst& burst : record.bursts) {
+    const std::string name =
+        burst.movement_name.empty() ? std::to_string(burst.movement) : burst.movement_name;
+    lines.push_back(fmt::format("Movement {}, {} to {} s, peak {}.", name, figure(burst.begin),
+                                figure(burst.end), amount(torque_unit(record), burst.peak)));
+  }
+  return lines;
+}
+
+std::string replaced(const std::string& text, const std::string& pattern, const std::string& by) {
+  return std::regex_replace(text, std::regex(pattern), by);
+}
+
+std::string with_titles(const LoopRecord& record, std::string text) {
+  for (const LoopFamily& family : record.families) {
+    const std::string quoted = '\'' + family.name + '\'';
+    for (std::size_t at = 0; (at = text.find(quoted, at)) != std::string::npos;) {
+      text.replace(at, quoted.size(), family.title);
+      at += family.title.size();
+    }
+    if (family.name.find('_') == std::string::npos) continue;
+    text = replaced(text, "\\b" + family.name + "\\b", family.title);
+  }
+  return text;
 }
 
 }  // namespace
 
-double number_of(const json& object, const char* key) {
-  const auto found = object.is_object() ? object.find(key) : object.end();
-  if (!object.is_object() || found == object.end() || !found->is_number()) {
-    return std::numeric_limits<double>::quiet_NaN();
+std::string target_words(const LoopRecord& record) {
+  std::string unit = record.unit;
+  std::erase(unit, ' ');
+  std::string words = record.target;
+  if (words.ends_with('_' + unit)) words.resize(words.size() - unit.size() - 1);
+  return spaced(words);
+}
+
+LoopUnit torque_unit(const LoopRecord& record) {
+  return readable_unit(record.unit.empty() ? "N m" : record.unit, record.error.mae_before);
+}
+
+std::string family_title(const LoopRecord& record, std::string_view family) {
+  const LoopFamily* known_family = find_family(record, family);
+  return known_family == nullptr ? spaced(std::string(family)) : known_family->title;
+}
+
+std::string plain_text(const LoopRecord& record, std::string text) {
+  text = replaced(text, R"( \((R[1-9](, )?)+\))", "");
+  text = replaced(text, R"( \(--[^)]*\))", "");
+  text = with_titles(record, std::move(text));
+  for (const LoopExperiment& one : record.experiments) {
+    text = replaced(text, "\\b" + one.code + "\\b", one.text);
   }
-  return found->get<double>();
-}
-
-double element_of(const json& array, std::size_t i) {
-  if (!array.is_array() || i >= array.size() || !array[i].is_number()) {
-    return std::numeric_limits<double>::quiet_NaN();
+  // What is quoted or an option is the user's own and stays.
+  std::string out;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\'') quoted = !quoted && text.find('\'', i + 1) != std::string::npos;
+    const bool inside = i > 0 && i + 1 < text.size() &&
+                        std::isalnum(static_cast<unsigned char>(text[i - 1])) != 0 &&
+                        std::isalnum(static_cast<unsigned char>(text[i + 1])) != 0;
+    out += text[i] == '_' && inside && !quoted ? ' ' : text[i];
   }
-  return array[i].get<double>();
+  return out;
 }
 
-std::string text_of(const json& object, const char* key) {
-  if (!object.is_object()) return {};
-  const auto found = object.find(key);
-  if (found == object.end() || found->is_null()) return {};
-  if (found->is_string()) return found->get<std::string>();
-  return found->is_number_float() ? figure(found->get<double>()) : found->dump();
+std::string readable_formula(std::string formula) {
+  formula = replaced(formula, R"(\bsgn_([A-Za-z0-9_]+))", "sgn($1)");
+  return replaced(formula, R"(\+ -)", "- ");
 }
 
-json items_of(const json& object, const char* key) {
-  if (!object.is_object() || !object.contains(key) || !object[key].is_array()) return json::array();
-  return object[key];
-}
-
-json member_of(const json& object, const char* key) {
-  if (!object.is_object() || !object.contains(key) || !object[key].is_object()) {
-    return json::object();
-  }
-  return object[key];
-}
-
-bool flag_of(const json& object, const char* key) {
-  return object.is_object() && object.contains(key) && object[key].is_boolean() &&
-         object[key].get<bool>();
-}
-
-std::string family_words(std::string_view family) {
-  const std::string_view words = words_for(kFamilies, family);
-  return std::string(words.empty() ? family : words);
-}
-
-std::string movement_words(std::string_view request) {
-  const std::string_view words = words_for(kMovements, request);
-  return words.empty() ? std::string(request) : fmt::format("{} ({})", words, request);
-}
-
-std::string parameters_of(const json& effect) {
+std::string parameter_words(const LoopEffect& effect) {
   std::vector<std::string> parts;
-  for (const json& parameter : items_of(effect, "params")) {
-    parts.push_back(fmt::format(
-        "{} = {} ({} .. {})", text_of(parameter, "name"), figure(number_of(parameter, "value")),
-        figure(number_of(parameter, "lo")), figure(number_of(parameter, "hi"))));
+  for (const LoopParameter& p : effect.parameters) {
+    parts.push_back(p.low < p.high
+                        ? fmt::format("{} = {} ({} .. {})", spaced(p.name),
+                                      figure(p.value, kDigits), figure(p.low), figure(p.high))
+                        : fmt::format("{} = {}", spaced(p.name), figure(p.value, kDigits)));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string closed_share(const json& error) {
-  const double low = number_of(error, "closed_fraction");
-  if (std::isnan(low)) return {};
-  const double high = number_of(error, "closed_fraction_high");
-  std::string text = fmt::format("{:.0f} %", 100 * low);
-  if (!std::isnan(high) && std::lround(100 * high) > std::lround(100 * low)) {
-    text = fmt::format("{:.0f} .. {:.0f} %", 100 * low, 100 * high);
-  }
-  const json interval = items_of(error, "closed_fraction_ci");
-  const double from = element_of(interval, 0);
-  const double to = element_of(interval, 1);
-  if (std::isnan(from) || std::isnan(to)) return text;
-  return fmt::format("{} (the lower figure's 95 % interval: {:.0f} .. {:.0f} %)", text, 100 * from,
-                     100 * to);
+std::string closed_share(const LoopError& error) {
+  const double low = error.closed_fraction;
+  if (!known(low)) return {};
+  const double high = known(error.closed_fraction_high) ? error.closed_fraction_high : low;
+  if (std::lround(100 * high) <= std::lround(100 * low)) return percent(low);
+  return fmt::format("{:.0f} .. {}", 100 * low, percent(high));
 }
 
-namespace {
-
-// The sizes from which on effects would have shown.
-std::string detectable_clause(const json& loop) {
-  std::vector<std::string> sizes;
-  for (const json& one : items_of(loop, "candidates")) {
-    const double size = number_of(one, "detectable");
-    if (std::isnan(size)) continue;
-    sizes.push_back(
-        fmt::format("{} above {} {}", text_of(one, "family"), figure(size, 2), unit_of(loop)));
-  }
-  if (sizes.empty()) return {};
-  return fmt::format(" Would have shown (root mean square): {}.", fmt::join(sizes, ", "));
-}
-
-std::vector<std::string> texts_of(const json& object, const char* key) {
-  std::vector<std::string> all;
-  for (const json& item : items_of(object, key)) {
-    if (item.is_string()) all.push_back(item.get<std::string>());
-  }
-  return all;
-}
-
-}  // namespace
-
-std::string verdict_sentence(const json& loop) {
-  const std::string verdict = text_of(loop, "verdict");
-  const std::size_t count = items_of(loop, "effects").size();
-  if (verdict == "NONE" && loop.contains("candidates") && items_of(loop, "candidates").empty()) {
-    return "Nothing is claimed: these data can test none of the effects.";
-  }
-  if (verdict == "CANNOT_TELL") {
-    return fmt::format("These data cannot tell: nothing in them can be tested. Needed: {}.",
-                       fmt::join(texts_of(loop, "needed"), "; "));
-  }
-  if (verdict == "NONE") {
-    return (items_of(loop, "untestable").empty()
-                ? "Nothing is missing: the residual shows no structure."
-                : "Nothing is missing that these data can show: the residual has no structure.") +
-           detectable_clause(loop);
-  }
-  const json error = member_of(loop, "error");
-  const bool denied = error.contains("confirmed") && !flag_of(error, "confirmed");
-  const std::string doubt = denied ? " The held-out movements do not confirm it." : "";
-  if (verdict == "EFFECTS") {
-    return (count == 1 ? "One effect was missing and has been added."
-                       : fmt::format("{} effects were missing and have been added.", count)) +
-           doubt;
-  }
-  if (verdict == "UNKNOWN") {
-    return count == 0 ? "Something is missing that is none of the known effects."
-                      : fmt::format(
-                            "{} added, and something is still missing that is none of the "
-                            "known effects.",
-                            count == 1 ? "One effect was" : fmt::format("{} effects were", count)) +
-                            doubt;
-  }
-  return verdict.empty() ? "No verdict was reached." : fmt::format("Verdict: {}.", verdict);
-}
-
-std::string effect_sentence(const json& effect, const json& loop) {
-  const std::string family = text_of(effect, "family");
-  std::string text = fmt::format("**{}**, {}:", family, family_words(family));
-  const double rms = number_of(effect, "rms_contribution");
-  if (!std::isnan(rms)) text += fmt::format(" contributes {} {} rms", figure(rms), unit_of(loop));
-  const std::string parameters = parameters_of(effect);
-  if (!parameters.empty()) text += fmt::format(", with {} at 95 %", parameters);
-  const double p = number_of(effect, "p_adj");
-  if (!std::isnan(p)) text += fmt::format("; p = {} after correction for the search", figure(p, 2));
-  const std::string objection = text_of(effect, "not_physical");
-  if (!objection.empty()) {
-    text += fmt::format("; not physical ({}), so that it stands for something else", objection);
-  } else if (flag_of(effect, "provisional")) {
-    text += "; provisional, because it shares an input with what is still unexplained";
-  }
-  for (const json& note : items_of(effect, "notes")) {
-    if (note.is_string()) text += "; " + note.get<std::string>();
-  }
-  const double share = number_of(effect, "chosen_share");
-  if (!std::isnan(share)) {
-    text +=
-        fmt::format("; chosen in {:.0f} % of the searches with movements left out", 100 * share);
-  }
-  return text + '.' + alias_clause(effect) + request_clause(effect);
-}
-
-std::string leftover_sentence(const json& loop) {
-  const json leftover = member_of(loop, "leftover");
-  const json inputs = items_of(leftover, "inputs");
-  if (text_of(loop, "verdict") != "UNKNOWN" || inputs.empty()) return {};
-  std::vector<std::string> names;
-  for (const json& input : inputs) {
-    if (input.is_string()) names.push_back(input.get<std::string>());
-  }
-  const double p = number_of(leftover, "p");
-  // An effect whose parameters are not physical fits there, and so leaves nothing to be tested.
-  if (p > number_of(member_of(loop, "alpha"), "gen")) {
-    return fmt::format(
-        "What is missing depends on **{}**: an effect fits there that cannot be "
-        "physical.",
-        fmt::join(names, " and "));
-  }
-  return fmt::format("What is still unexplained depends on **{}** (p = {}).",
-                     fmt::join(names, " and "), figure(p, 2));
-}
-
-std::vector<std::string> untestable_sentences(const json& loop) {
-  std::vector<std::string> all;
-  for (const json& item : items_of(loop, "untestable")) {
-    const std::string ask = text_of(item, "ask");
-    all.push_back(
-        fmt::format("{}: {}.{}", family_words(text_of(item, "family")), text_of(item, "reason"),
-                    ask.empty() ? "" : fmt::format(" To test it: {}.", movement_words(ask))));
-  }
-  return all;
-}
-
-std::vector<std::string> aliased_sentences(const json& loop) {
-  std::vector<std::string> all;
-  for (const json& item : items_of(loop, "aliased")) {
-    const json families = items_of(item, "families");
-    if (families.size() != 2 || !families[0].is_string() || !families[1].is_string()) continue;
-    const std::string ask = text_of(item, "separate_by");
-    all.push_back(fmt::format(
-        "{} and {} (correlation {}).{}", family_words(families[0].get<std::string>()),
-        family_words(families[1].get<std::string>()), figure(number_of(item, "corr")),
-        ask.empty() ? "" : fmt::format(" To tell them apart: {}.", movement_words(ask))));
-  }
-  return all;
-}
-
-std::vector<std::string> event_sentences(const json& loop) {
-  std::vector<std::string> all;
-  for (const json& event : items_of(loop, "events")) {
-    const std::string name = text_of(event, "movement_name");
-    all.push_back(fmt::format("movement {}, {} to {} s, peak {} {}",
-                              name.empty() ? text_of(event, "movement") : name,
-                              figure(number_of(event, "t0")), figure(number_of(event, "t1")),
-                              figure(number_of(event, "peak")), unit_of(loop)));
-  }
-  return all;
-}
-
-std::vector<std::string> remarks(const json& loop) {
-  std::vector<std::string> all;
-  for (const char* key : {"warnings", "notes"}) {
-    for (const json& remark : items_of(loop, key)) {
-      if (remark.is_string()) all.push_back(remark.get<std::string>() + '.');
+LoopWords loop_words(const LoopRecord& record) {
+  LoopWords words;
+  words.headline = headline_of(record);
+  words.error = error_sentence(record);
+  for (const LoopEffect& effect : record.effects) words.cards.push_back(card_of(record, effect));
+  words.leftover = leftover_of(record);
+  words.detectable = detectable_of(record);
+  for (const std::string& one : record.needed) words.needed.push_back(plain_text(record, one));
+  words.untestable = untestable_lines(record);
+  words.aliased = aliased_lines(record);
+  words.bursts = burst_lines(record);
+  for (const auto* list : {&record.warnings, &record.notes}) {
+    for (const std::string& one : *list) {
+      words.remarks.push_back(capital(plain_text(record, one)) + '.');
     }
   }
-  return all;
+  words.next = next_of(record, words);
+  return words;
 }
 
 }  // namespace tribench

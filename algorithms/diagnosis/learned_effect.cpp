@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/diagnosis/loop_json.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 

@@ -356,4 +356,8 @@ Expression formula_of(const LoopModel& model) {
   return sum.empty() ? Expression::constant(0) : sum;
 }
 
+std::string formula_text(const LoopModel& model, const Observations& data) {
+  return print(formula_of(model), data.names());
+}
+
 }  // namespace tribench::loop

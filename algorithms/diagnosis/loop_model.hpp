@@ -68,5 +68,7 @@ void fit_model(LoopModel& model, const Observations& data, const Clusters& clust
 
 // The model as one formula over the signals.
 Expression formula_of(const LoopModel& model);
+// The same over the signals' names.
+std::string formula_text(const LoopModel& model, const Observations& data);
 
 }  // namespace tribench::loop

@@ -295,25 +295,31 @@ EffectFamily coupling() {
   return f;
 }
 
+EffectFamily titled(EffectFamily family, std::string title) {
+  family.title = std::move(title);
+  return family;
+}
+
 }  // namespace
 
 const std::vector<EffectFamily>& builtin_effects() {
-  static const std::vector<EffectFamily> kEffects = {asymmetry(),
-                                                     stribeck(),
-                                                     nonlinear_viscous(),
-                                                     load_coulomb(),
-                                                     load_viscous(),
-                                                     power_quadrant_gain(),
-                                                     power_quadrant_step(),
-                                                     payload(),
-                                                     output_ripple(),
-                                                     gear_ripple(),
-                                                     temperature(),
-                                                     drift(),
-                                                     hysteresis(),
-                                                     lag(),
-                                                     inertia(),
-                                                     coupling()};
+  static const std::vector<EffectFamily> kEffects = {
+      titled(asymmetry(), "difference between the directions"),
+      titled(stribeck(), "Stribeck effect"),
+      titled(nonlinear_viscous(), "nonlinear viscous friction"),
+      titled(load_coulomb(), "load-dependent Coulomb friction"),
+      titled(load_viscous(), "load-dependent viscous friction"),
+      titled(power_quadrant_gain(), "loss that differs in back-driving"),
+      titled(power_quadrant_step(), "loss step in back-driving"),
+      titled(payload(), "payload error"),
+      titled(output_ripple(), "ripple of the joint's turn"),
+      titled(gear_ripple(), "gear ripple"),
+      titled(temperature(), "temperature"),
+      titled(drift(), "drift"),
+      titled(hysteresis(), "hysteresis after reversals"),
+      titled(lag(), "friction lag"),
+      titled(inertia(), "inertia error"),
+      titled(coupling(), "coupling to another joint")};
   return kEffects;
 }
 

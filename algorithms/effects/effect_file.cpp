@@ -214,6 +214,7 @@ EffectFamily read_family(const Entry& entry) {
   family.summary = entry.find<std::string>("summary").value_or(family.phrase);
   family.source = entry.find<std::string>("source").value_or("a file");
   family.origin = entry.find<std::string>("origin").value_or("");
+  family.title = entry.find<std::string>("title").value_or("");
   family.angular = entry.find<bool>("angular").value_or(false);
   family.separate_by = entry.list<std::string>("separate_by");
   for (const Entry& one :
@@ -261,6 +262,7 @@ void insert_family(toml::table& table, const EffectFamily& family) {
   table.insert("summary", family.summary);
   table.insert("source", family.source);
   table.insert("origin", family.origin);
+  if (!family.title.empty()) table.insert("title", family.title);
   table.insert("angular", family.angular);
   table.insert("separate_by", array_of(family.separate_by));
   toml::array sanity;
@@ -307,9 +309,9 @@ std::vector<EffectFamily> read_effects(const std::filesystem::path& file) {
   const toml::table table = parse_file(file);
   const Entry whole(table, file.string(), {"effect"});
   const std::vector<Entry> effects =
-      whole.entries("effect", {"name", "id", "phrase", "summary", "source", "origin", "angular",
-                               "separate_by", "sanity", "alias", "columns", "coefficients", "shape",
-                               "rigid_load", "beside_another"});
+      whole.entries("effect", {"name", "id", "phrase", "summary", "source", "origin", "title",
+                               "angular", "separate_by", "sanity", "alias", "columns",
+                               "coefficients", "shape", "rigid_load", "beside_another"});
   if (effects.empty()) {
     throw_bad_input("there is no [[effect]] in the file", file.string(),
                     "see --save-effect for the form");

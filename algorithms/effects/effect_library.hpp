@@ -76,6 +76,7 @@ struct EffectFamily {
   std::vector<std::string> separate_by = {};  // experiments: "R3", ...
   bool angular = false;     // makes sense for an angle only, not for a position in m
   std::string origin = {};  // of a learned effect: the movements it was found on, as text
+  std::string title = {};   // a short noun for tables and cards; empty: the name
 };
 
 // The built-in families, in the order in which they are listed.

@@ -19,6 +19,7 @@
 #include "foundation/json_text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
+#include "harness/loop/controller_code.hpp"
 #include "problems/preparation/derived_channels.hpp"
 #include "reports/record_csv.hpp"
 
@@ -89,14 +90,14 @@ void write_export(ExportArguments arguments) {
     formula = parse_over(arguments.formula, *options.box);
     names = options.box->names;
   }
-  std::string code = export_code(formula, names, form, options);
   const std::vector<std::string> called = export_arguments(formula, names, options);
-  if (from && form == CodeForm::c && std::ranges::count(called, "d") > 0) {
-    code += loop::c_history_code(options.function, called, *from);
-  } else if (!arguments.derive.empty()) {
+  const bool has_history = from && form == CodeForm::c && std::ranges::count(called, "d") > 0;
+  if (!has_history && !arguments.derive.empty()) {
     throw_bad_input(form == CodeForm::c ? "the formula has no input d" : "only C has a history",
                     "--derive", "leave it out");
   }
+  const std::string code = has_history ? loop::controller_code(formula, names, options, from)
+                                       : export_code(formula, names, form, options);
   if (arguments.out.empty()) {
     fmt::print("{}", code);
   } else {

@@ -2,6 +2,7 @@
 //
 // tribench loop: measured data and a base model in, the missing effects and the refitted model out.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -20,16 +21,18 @@
 #include "algorithms/budget.hpp"
 #include "algorithms/diagnosis/closed_loop.hpp"
 #include "algorithms/diagnosis/diagnosis.hpp"
-#include "algorithms/diagnosis/loop_json.hpp"
 #include "foundation/error.hpp"
 #include "foundation/number_text.hpp"
 #include "foundation/output_folder.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/data_options.hpp"
 #include "harness/cli/number_options.hpp"
+#include "harness/loop/loop_record_of.hpp"
 #include "problems/preparation/recording.hpp"
 #include "problems/reading/explanation.hpp"
 #include "reports/loop_report.hpp"
+#include "reports/loop_words.hpp"
+#include "reports/record/loop_json.hpp"
 #include "reports/record_csv.hpp"
 
 namespace tribench {
@@ -62,6 +65,7 @@ struct LoopArguments {
   std::string learned;
   std::string save_effect;
   std::string out;
+  std::string pictures;
 };
 
 bool is_word(const std::string& text) {
@@ -151,75 +155,6 @@ loop::DiagnosisOptions diagnosis_options(const LoopArguments& arguments) {
   return options;
 }
 
-std::string one_line(const loop::EffectFinding& effect, const std::string& unit) {
-  std::string text = fmt::format("  {}. {}: {} ({:.3g} {} rms, p = {:.2g}, {:.0f} nats)",
-                                 effect.order, effect.family, effect.phrase,
-                                 effect.rms_contribution, unit, effect.adjusted_p, effect.gain);
-  for (const loop::ParameterFinding& p : effect.parameters) {
-    text += fmt::format("\n       {} = {:.4g} ({:.4g} .. {:.4g})", p.name, p.value, p.low, p.high);
-  }
-  if (!effect.objection.empty()) {
-    text += "\n       not physical: " + effect.objection;
-  } else if (effect.provisional) {
-    text += "\n       provisional: it shares an input with what is left over";
-  }
-  for (const std::string& note : effect.notes) text += "\n       " + note;
-  if (!std::isnan(effect.chosen_share)) {
-    text += fmt::format("\n       chosen in {:.0f} % of the searches with movements left out",
-                        100 * effect.chosen_share);
-  }
-  return text;
-}
-
-// Where nothing is found: what would have been.
-void print_detectable(const loop::Diagnosis& diagnosis, const loop::Observations& data) {
-  if (diagnosis.verdict != loop::Verdict::none) return;
-  std::vector<std::string> sizes;
-  for (const loop::CandidateFinding& one : diagnosis.candidates) {
-    if (!std::isfinite(one.detectable)) continue;
-    sizes.push_back(
-        fmt::format("{} above {:.2g} {}", one.family, one.detectable, data.target_unit));
-  }
-  if (!sizes.empty()) fmt::print("  would have shown (rms): {}\n", fmt::join(sizes, ", "));
-}
-
-void print_findings(const loop::Diagnosis& diagnosis, const loop::Observations& data) {
-  for (const std::string& warning : data.warnings) fmt::print("warning: {}\n", warning);
-  fmt::print("{}{}\n", verdict_name(diagnosis.verdict),
-             diagnosis.leftover.inputs.empty()
-                 ? ""
-                 : fmt::format(" in {}", fmt::join(diagnosis.leftover.inputs, " x ")));
-  for (const std::string& one : diagnosis.needed) fmt::print("  needed: {}\n", one);
-  print_detectable(diagnosis, data);
-  for (const loop::EffectFinding& effect : diagnosis.effects) {
-    fmt::print("{}\n", one_line(effect, data.target_unit));
-  }
-  for (const std::string& note : diagnosis.notes) fmt::print("  note: {}\n", note);
-  const loop::ErrorFinding& error = diagnosis.error;
-  fmt::print(
-      "  error ({}): MAE {:.4g} -> {:.4g}, RMS {:.4g} -> {:.4g}, movements' means RMS {:.3g} -> "
-      "{:.3g} {}{}\n",
-      error.how, error.mae_before, error.mae_after, error.rmse_before, error.rmse_after,
-      error.means_before, error.means_after, data.target_unit,
-      error.confirmed ? "" : "; NOT confirmed on held-out data");
-  if (!std::isnan(error.ceiling)) {
-    fmt::print("  the noise lies between {:.4g} and {:.4g} {} (mean magnitude)", error.ceiling,
-               error.attainable, data.target_unit);
-    if (!std::isnan(error.closed_fraction) && !diagnosis.effects.empty()) {
-      const std::string least = fmt::format("{:.0f}", 100 * error.closed_fraction);
-      const std::string most = fmt::format("{:.0f}", 100 * error.closed_fraction_high);
-      fmt::print("; {} % of the gap above it is closed",
-                 least == most ? least : fmt::format("{} to {}", least, most));
-    }
-    fmt::print("\n");
-  }
-  if (!error.ceiling_note.empty()) fmt::print("  no closed fraction: {}\n", error.ceiling_note);
-  for (const loop::UntestableFinding& one : diagnosis.untestable) {
-    fmt::print("  cannot say: {} ({})\n", one.family, one.reason);
-  }
-  fmt::print("  {}\n", loop::formula_text(diagnosis.after, data));
-}
-
 std::string title_of(const LoopArguments& arguments) {
   std::string title;
   for (const std::string& file : arguments.files) {
@@ -272,9 +207,12 @@ void grow_library(const LoopArguments& arguments, const Registry& registry,
   write_file(arguments.save_effect, loop::write_effects(std::vector{learned->family}));
 }
 
-loop::Observations read_observations(const LoopArguments& arguments) {
-  PreparedRecording recording =
-      prepare(read_files(arguments), *arguments.reading, arguments.gravity);
+loop::Observations read_observations(const LoopArguments& arguments,
+                                     std::vector<LoopDataStep>& steps) {
+  DataFile file = read_files(arguments);
+  steps.push_back({"read from the file", file.data.rows()});
+  PreparedRecording recording = prepare(std::move(file), *arguments.reading, arguments.gravity);
+  steps.push_back({"cut into movements, derived channels added", recording.data.rows()});
   std::vector<std::string> rigid = arguments.rigid;
   rigid.insert(rigid.end(), recording.rigid.begin(), recording.rigid.end());
   loop::Observations data = loop::observe(
@@ -286,8 +224,11 @@ loop::Observations read_observations(const LoopArguments& arguments) {
   std::vector<std::string>& notes = recording.notes;
   recording.data = {};
   const std::size_t all_rows = data.rows();
+  steps.push_back({"rows that count for friction", all_rows});
   const loop::Shortened shortened = data.averaged(static_cast<std::size_t>(arguments.rows));
   data = shortened.data;
+  if (data.rows() < all_rows)
+    steps.push_back({"neighbouring rows averaged or thinned", data.rows()});
   if (data.rows() < all_rows) {
     notes.push_back(shortened.rows_each > 1
                         ? fmt::format("{} rows are averaged over {:.3g} neighbours each{} (--rows)",
@@ -319,19 +260,21 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
   // Before any work: a folder that cannot be written to, a name that is known to nobody, and a file
   // that nothing would be written to.
   if (!arguments.out.empty()) make_output_folder(arguments.out);
+  if (!arguments.pictures.empty()) make_output_folder(arguments.pictures);
   if (arguments.learn != "none") {
     registry.make(arguments.learn);
   } else if (!arguments.save_effect.empty()) {
     throw_bad_input("there is no effect to save without --learn", "--save-effect",
                     "name a method: --learn pysr");
   }
-  const loop::Observations data = read_observations(arguments);
+  loop::LoopExtras extras;
+  extras.title = title_of(arguments);
+  const loop::Observations data = read_observations(arguments, extras.steps);
   std::unique_ptr<Regressor> method;
   Budget budget(BudgetLimits{.evaluations = arguments.evaluations});
   const loop::BaseMaker base = base_of(arguments, registry, method, budget);
   loop::Diagnosis diagnosis =
       loop::diagnose(data, base, diagnosis_options(arguments), arguments.seed);
-  loop::LoopExtras extras;
   if (arguments.learn != "none" && !diagnosis.leftover.signals.empty()) {
     grow_library(arguments, registry, data, base, diagnosis, extras);
   }
@@ -339,21 +282,21 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
     extras.suggestions =
         loop::propose_movements(diagnosis, data, static_cast<std::size_t>(arguments.suggest));
   }
-  const std::string json = loop::write_loop_json(diagnosis, data, extras);
+  const LoopRecord record = loop::loop_record_of(diagnosis, data, extras);
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;
-    write_file(folder / "loop.json", json);
-    write_loop_report(nlohmann::json::parse(json), title_of(arguments), folder);
+    write_loop_report(record, folder);
     if (extras.suggestions.empty()) {
       std::filesystem::remove(folder / "next_movements.csv");  // an earlier run's
     } else {
       write_file(folder / "next_movements.csv", loop::movements_csv(extras.suggestions, data));
     }
   }
+  if (!arguments.pictures.empty()) write_loop_pictures(record, arguments.pictures);
   if (arguments.json) {
-    fmt::print("{}", json);
+    fmt::print("{}", write_loop_json(record));
   } else {
-    print_findings(diagnosis, data);
+    fmt::print("{}", loop_terminal(record, isatty(STDOUT_FILENO) != 0));
     print_extras(arguments, extras, data);
   }
   return diagnosis.verdict == loop::Verdict::cannot_tell ? ExitStatus::undecided : ExitStatus::done;
@@ -448,6 +391,8 @@ void add_loop_command(CLI::App& app, ExitStatus& status, const Registry& registr
       ->check(CLI::ExistingFile);
   command->add_flag("--json", arguments->json, "print loop.json");
   command->add_option("--out", arguments->out, "folder for loop.json, loop.md, loop.html");
+  command->add_option("--pictures", arguments->pictures,
+                      "folder for every picture of the page, as SVG and PNG");
   command->callback([arguments, &status, &registry] { status = close_loop(*arguments, registry); });
 }
 

@@ -15,6 +15,7 @@
 #include "harness/curves.hpp"
 #include "harness/run_files.hpp"
 #include "harness/study/external_torque_study.hpp"
+#include "reports/picture_files.hpp"
 #include "reports/pictures.hpp"
 #include "reports/record_csv.hpp"
 #include "reports/run_reports.hpp"
@@ -56,6 +57,7 @@ void report(const ReportArguments& arguments) {
   fmt::print("{}\n", write_run_reports(folder, arguments.base));
   if (!arguments.pictures.empty()) {
     const std::vector<std::string> files = write_pictures(folder, arguments.pictures);
+    write_png_beside(arguments.pictures, files);
     fmt::print("{} pictures in {}\n", files.size(), arguments.pictures);
   }
   if (!arguments.page.empty()) {
@@ -76,8 +78,10 @@ void add_report_command(CLI::App& app, ExitStatus& /*status*/) {
   command->add_option("folder", arguments->folder, "a run's folder")->required();
   command->add_option("--base", arguments->base,
                       "an earlier run: the first screen says what changed since then");
-  command->add_option("--pictures", arguments->pictures,
-                      "write every picture of the page as SVG into this folder (needs nodejs)");
+  command->add_option(
+      "--pictures", arguments->pictures,
+      "write every picture of the page as SVG and PNG into this folder (needs nodejs and "
+      "librsvg2-bin)");
   command->add_option("--page", arguments->page,
                       "write a page to cite (Markdown): settings, machine, published figures "
                       "beside ours, proofs, pictures (needs nodejs)");

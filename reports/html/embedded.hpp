@@ -25,5 +25,6 @@ std::string_view common_js();
 std::string_view run_js();
 std::string_view loop_js();
 std::string_view pictures_js();
+std::string_view loop_pictures_js();
 
 }  // namespace tribench::embedded

@@ -4,8 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <regex>
 
+#include "reports/loop_words.hpp"
+#include "reports/record/loop_json.hpp"
 #include "tests/reports/sample_run.hpp"
 
 namespace tribench {
@@ -15,88 +19,173 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+std::ptrdiff_t lines_of(const std::string& text) { return std::ranges::count(text, '\n'); }
+
+// A word of the program (load_coulomb) or a code (R4) that people were not meant to see.
+std::string first_code(const std::string& text) {
+  static const std::regex kCode(R"([a-z]+_[a-z_]+|\bR[1-9]\b)");
+  std::smatch found;
+  return std::regex_search(text, found, kCode) ? found.str() : std::string();
+}
+
+LoopRecord with(LoopVerdict verdict) {
+  LoopRecord record = sample_loop();
+  record.verdict = verdict;
+  if (verdict != LoopVerdict::unknown) record.leftover.inputs.clear();
+  if (verdict == LoopVerdict::none || verdict == LoopVerdict::cannot_tell) record.effects.clear();
+  if (verdict == LoopVerdict::cannot_tell) record.needed = {"20 stretches of movement"};
+  return record;
+}
+
 TEST(LoopReport, IsByteForByteWhatWasAgreed) {
-  expect_golden(loop_markdown(sample_loop(), "joint 2"), "reports/loop.md");
+  expect_golden(loop_markdown(sample_loop()), "reports/loop.md");
 }
 
-TEST(LoopReport, SaysPlainlyThatNothingIsMissing) {
-  EXPECT_THAT(loop_markdown(json{{"verdict", "NONE"}, {"candidates", json::array()}}, "x"),
-              HasSubstr("these data can test none of the effects"));
-  EXPECT_THAT(loop_markdown(json{{"verdict", "NONE"}}, "x"),
-              HasSubstr("Nothing is missing: the residual shows no structure."));
+TEST(LoopWords, AnswerWhatHowMuchHowSureAndWhatNext) {
+  const LoopWords words = loop_words(with(LoopVerdict::effects));
+  EXPECT_EQ(words.headline,
+            "Friction falls with speed near standstill and losses differ between driving and "
+            "back-driving, in proportion to the load.");
+  EXPECT_EQ(words.error,
+            "Mean error 0.8100 -> 0.2400 N m on movements that it never saw (better by 0.49 to "
+            "0.63); at most 0.050 N m more can be had.");
+  ASSERT_EQ(words.cards.size(), 2U);
+  EXPECT_EQ(words.cards[0].amount, "0.3100 N m");
+  EXPECT_EQ(words.cards[0].share, "3 % of friction");
+  EXPECT_EQ(words.cards[0].grade, "very sure");
+  EXPECT_EQ(words.cards[0].settle, "");  // there is nothing to settle
+  EXPECT_EQ(words.cards[1].grade, "provisional");
+  EXPECT_EQ(words.cards[1].rivals, "It could also be payload error.");
+  EXPECT_EQ(words.cards[1].settle, "To settle it: use two postures or a known payload.");
+  EXPECT_THAT(words.next, HasSubstr("use two postures or a known payload"));
 }
 
-TEST(LoopReport, DoesNotPassSilenceOfTheDataForAnAnswer) {
-  json loop = {{"verdict", "NONE"},
-               {"candidates", {{{"family", "lag"}}}},
-               {"untestable", {{{"family", "lag"}, {"reason", "no acceleration"}}}},
-               {"warnings", {"all movement is in one direction"}},
-               {"notes", {"there are 4 movements"}}};
-  const std::string text = loop_markdown(loop, "x");
-  EXPECT_THAT(text, HasSubstr("Nothing is missing that these data can show"));
-  EXPECT_THAT(text, HasSubstr("no acceleration"));
-  EXPECT_THAT(text, HasSubstr("- all movement is in one direction."));
-  EXPECT_THAT(text, HasSubstr("- there are 4 movements."));
+TEST(LoopWords, HaveAFaceForEveryVerdict) {
+  EXPECT_EQ(loop_words(with(LoopVerdict::none)).headline,
+            "Nothing is missing that these data can show.");
+  EXPECT_THAT(loop_words(with(LoopVerdict::none)).detectable,
+              HasSubstr("Stribeck effect above 0.050 N m"));
+  EXPECT_THAT(loop_words(with(LoopVerdict::unknown)).leftover, HasSubstr("depends on position"));
+  EXPECT_EQ(loop_words(with(LoopVerdict::cannot_tell)).next, "Record 20 stretches of movement.");
+  LoopRecord nothing_to_test = with(LoopVerdict::none);
+  nothing_to_test.candidates.clear();
+  EXPECT_THAT(loop_words(nothing_to_test).headline, HasSubstr("can test none"));
+  LoopRecord all_tested = with(LoopVerdict::none);
+  all_tested.untestable.clear();
+  EXPECT_EQ(loop_words(all_tested).headline, "Nothing is missing: what is left is noise.");
 }
 
-TEST(LoopReport, SaysWhatSpeaksAgainstAFinding) {
-  json loop = sample_loop();
-  loop["error"]["confirmed"] = false;
-  EXPECT_THAT(loop_markdown(loop, "x"), HasSubstr("held-out movements do not confirm"));
-  loop["effects"][1]["not_physical"] = "a share of the load above 20 %";
-  loop["effects"][1]["notes"] = {"carried by few movements"};
-  loop["leftover"]["p"] = 0.7;
-  const std::string text = loop_markdown(loop, "x");
-  EXPECT_THAT(text, HasSubstr("not physical (a share of the load above 20 %)"));
-  EXPECT_THAT(text, HasSubstr("; carried by few movements."));
-  EXPECT_THAT(text, HasSubstr("an effect fits there that cannot be physical"));
-  EXPECT_THAT(text, Not(HasSubstr("p = 0.70")));
+TEST(LoopWords, SayWhatSpeaksAgainstAFinding) {
+  LoopRecord record = sample_loop();
+  record.error.confirmed = false;
+  record.effects[0].chosen_share = 0.4;
+  record.effects[0].few_movements = true;
+  record.effects[1].objection = "a share of the load above 20 %";
+  record.effects[1].aliases[0] = {"sensor_offset", 1, 0, 0, true, "read the torque unpowered (R8)"};
+  record.leftover.p = 0.7;
+  const LoopWords words = loop_words(record);
+  EXPECT_THAT(words.error, HasSubstr("do not confirm"));
+  EXPECT_EQ(words.cards[0].grade, "doubtful");
+  EXPECT_THAT(words.cards[0].doubts, ::testing::Contains(HasSubstr("Few movements")));
+  EXPECT_EQ(words.cards[1].grade, "not physical");
+  EXPECT_THAT(words.cards[1].doubts, ::testing::Contains(HasSubstr("above 20 %")));
+  EXPECT_EQ(words.cards[1].rivals, "These data cannot tell it from sensor offset.");
+  EXPECT_EQ(words.cards[1].settle, "To settle it: read the torque unpowered.");
+  EXPECT_THAT(words.leftover, HasSubstr("cannot be physical"));
 }
 
-TEST(LoopReport, ListsWhatCannotBeToldApartBurstsAndTheNextMovements) {
-  json loop = sample_loop();
-  loop["aliased"] = {
-      {{"families", {"payload", "power_quadrant_gain"}}, {"corr", 0.999}, {"separate_by", "R3"}}};
-  loop["next_movements"] = {{{"kind", "constant"},
-                             {"velocity", 0.1},
-                             {"from", -1},
-                             {"to", 1},
-                             {"load_factor", 1.5},
-                             {"separation", 3.2},
-                             {"between", "payload | power_quadrant_gain"}}};
-  const std::string text = loop_markdown(loop, "x");
-  EXPECT_THAT(text, HasSubstr("cannot tell apart"));
-  loop["effects"][0]["alias"] = {{{"family", "sensor_offset"},
-                                  {"exact", true},
-                                  {"separate_by", "read the torque with the drive unpowered"}}};
-  EXPECT_THAT(loop_markdown(loop, "x"),
-              HasSubstr("cannot be told from sensor_offset (to settle that: read the torque with "
-                        "the drive unpowered) at all"));
-  EXPECT_THAT(text, HasSubstr("a known payload (R3)"));
-  EXPECT_THAT(text, HasSubstr("movement 17, 1.20 to 1.30 s"));
-  EXPECT_THAT(text, HasSubstr("## Next movements"));
-  EXPECT_THAT(text, HasSubstr("| constant |"));
-}
-
-TEST(LoopReport, SurvivesEveryKeyOfAnotherKind) {
-  const json whole = sample_loop();
-  for (const auto& [key, value] : whole.items()) {
-    for (const json& other :
-         {json(nullptr), json(1), json("x"), json::array({1, nullptr}), json{{"a", 1}}}) {
-      json spoilt = whole;
-      spoilt[key] = other;
-      EXPECT_NO_THROW(loop_markdown(spoilt, "x")) << key << " " << other;
+TEST(LoopWords, HoldNoNameOfTheProgramAndNoCode) {
+  for (const LoopVerdict verdict :
+       {LoopVerdict::none, LoopVerdict::effects, LoopVerdict::unknown, LoopVerdict::cannot_tell}) {
+    const LoopRecord record = with(verdict);
+    const LoopWords words = loop_words(record);
+    std::string all = words.headline + words.error + words.leftover + words.next + words.detectable;
+    for (const LoopCard& card : words.cards) {
+      all += card.title + card.noun + card.sure + card.rivals + card.settle;
+      for (const std::string& doubt : card.doubts) all += doubt;
     }
-    json without = whole;
-    without.erase(key);
-    EXPECT_NO_THROW(loop_markdown(without, "x")) << key;
+    for (const auto* list : {&words.untestable, &words.aliased, &words.bursts, &words.remarks}) {
+      for (const std::string& line : *list) all += line;
+    }
+    EXPECT_EQ(first_code(all), "") << all;
+    EXPECT_EQ(first_code(loop_terminal(record, false)), "");
   }
+  EXPECT_EQ(plain_text(sample_loop(), "'stribeck' needs R3 (R4): see column 'a_b', x_y (--rows)"),
+            "Stribeck effect needs use two postures or a known payload: see column 'a_b', x y");
 }
 
-TEST(LoopReport, WritesBesideTheJson) {
+TEST(LoopWords, ReadSmallTorquesInMilli) {
+  LoopRecord record = with(LoopVerdict::effects);
+  record.error.mae_before = 0.00014;
+  record.error.mae_after = 0.00007;
+  EXPECT_THAT(loop_words(record).error, HasSubstr("0.1400 -> 0.07000 mN m"));
+  EXPECT_EQ(readable_unit("rad/s", 1e-6).name, "rad/s");
+  EXPECT_EQ(length_unit("m", 0.0025).factor, 1000);
+}
+
+TEST(LoopTerminal, HasTwelveLinesAtMostAndColourOnlyWhereAsked) {
+  LoopRecord record = sample_loop();
+  for (int i = 0; i < 6; ++i) record.effects.push_back(record.effects[0]);
+  record.needed = {"a", "b", "c"};
+  const std::string plain = loop_terminal(record, false);
+  EXPECT_LE(lines_of(plain), 12);
+  EXPECT_THAT(plain, Not(HasSubstr("\033")));
+  EXPECT_THAT(plain, HasSubstr("and 3 more"));
+  EXPECT_THAT(loop_terminal(record, true), HasSubstr("\033[1m"));
+}
+
+TEST(LoopReport, IsTwoScreensHoweverMuchThereIs) {
+  LoopRecord record = sample_loop();
+  for (int i = 0; i < 60; ++i) {
+    record.effects.push_back(record.effects[i % 2]);
+    record.effects.resize(std::min<std::size_t>(record.effects.size(), 8));
+    record.untestable.push_back({"inertia", "reason " + std::to_string(i), 0, 0, "R4"});
+    record.aliased.push_back({"payload", "inertia", 0.99, "R3"});
+    record.bursts.push_back(record.bursts[0]);
+    record.warnings.push_back("a remark");
+    record.next_movements.push_back({.kind = "two_tone", .between = "payload | gear_ripple"});
+  }
+  const std::string text = loop_markdown(record);
+  EXPECT_LE(lines_of(text), 120);
+  EXPECT_THAT(text, HasSubstr("cannot tell apart"));
+  EXPECT_THAT(text, HasSubstr("## Next movements"));
+  EXPECT_THAT(text, HasSubstr("Movement up slow, 1.20 to 1.30 s"));
+  EXPECT_THAT(text, HasSubstr("| two tone |"));
+}
+
+TEST(LoopJson, KeepsTheKeysThatProgramsRead) {
+  const json loop = json::parse(write_loop_json(sample_loop()));
+  for (const char* key :
+       {"verdict", "confirmed", "target",     "alpha",          "seed",    "noise",
+        "effects", "leftover",  "untestable", "aliased",        "events",  "candidates",
+        "needed",  "error",     "base",       "base_formula",   "formula", "symbols",
+        "notes",   "warnings",  "learned",    "next_movements", "pictures"}) {
+    EXPECT_TRUE(loop.contains(key)) << key;
+  }
+  EXPECT_EQ(loop["verdict"], "UNKNOWN");
+  EXPECT_EQ(loop["effects"][1]["alias"][0]["family"], "payload");
+  EXPECT_EQ(loop["effects"][0]["params"][0]["lo"], 1.1);
+  EXPECT_TRUE(loop["effects"][0]["vif"].is_null());  // no figure
+  EXPECT_EQ(loop["error"]["ci_diff"], (json{0.49, 0.63}));
+  EXPECT_EQ(loop["pictures"]["residuals"][0]["effects"][0]["family"], "stribeck");
+  EXPECT_EQ(loop["pictures"]["alias_map"]["correlation"][1][2], 0.95);
+  EXPECT_EQ(loop["pictures"]["effects"][1]["series"].size(), 2U);
+}
+
+TEST(LoopReport, OfARecordWithoutFiguresSaysNothingOfThem) {
+  const LoopRecord empty;
+  EXPECT_THAT(loop_markdown(empty), Not(HasSubstr("nan")));
+  EXPECT_THAT(loop_terminal(empty, false), HasSubstr("No error"));
+  EXPECT_TRUE(json::parse(write_loop_json(empty))["error"]["mae_before"].is_null());
+  EXPECT_NO_THROW(loop_html(empty));
+}
+
+TEST(LoopReport, WritesItsThreeFiles) {
   const auto folder = fresh_folder("loop");
-  write_loop_report(sample_loop(), "joint 2", folder);
+  write_loop_report(sample_loop(), folder);
   EXPECT_THAT(text_of(folder / "loop.md"), HasSubstr("Closing the loop: joint 2"));
+  EXPECT_THAT(text_of(folder / "loop.json"), HasSubstr("\"verdict\": \"UNKNOWN\""));
+  EXPECT_THAT(text_of(folder / "loop.html"), HasSubstr("<title>Closing the loop: joint 2"));
 }
 
 }  // namespace

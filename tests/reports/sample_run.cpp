@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "foundation/random.hpp"
@@ -119,57 +118,174 @@ void write_sample_run(const fs::path& folder, std::uint64_t seeds) {
   write_file(folder / "grid.toml", "[grid]\nname = \"sample\"\n");
 }
 
-nlohmann::json sample_loop() {
-  using nlohmann::json;
-  json loop = json::parse(R"json({
-    "verdict": "UNKNOWN", "alpha": {"lib": 0.003, "gen": 0.002, "flips": 1999}, "seed": 1,
-    "effects": [
-      {"family": "stribeck", "atom": "s*exp(-|v|/0.05)", "order": 1, "p_adj": 0.0005,
-       "cv_gain": 212.4, "cv_se": 20.1, "rms_contribution": 0.31, "vif": 1.2,
-       "params": [{"name": "Fs - Fc", "value": 1.2, "lo": 1.1, "hi": 1.3}],
-       "alias": [], "separate_by": []
-},
-      {"family": "power_quadrant_gain", "atom": "g", "order": 2, "p_adj": 0.001, "cv_gain": 80,
-       "cv_se": 12, "rms_contribution": 0.9, "vif": 3.1, "provisional": true,
-       "params": [{"name": "c1", "value": 0.08, "lo": 0.07, "hi": 0.09}],
-       "alias": [{"family": "payload", "corr": 0.95, "gain_diff": 1, "se": 2, "exact": false}],
-       "separate_by": ["R3"]}],
-    "leftover": {"p": 0.001, "inputs": ["position"]},
-    "untestable": [{"family": "inertia", "reason": "no acceleration in the data", "ask": "R4"}],
-    "events": [{"movement": 17, "t0": 1.2, "t1": 1.3, "peak": 4.1}],
-    "error": {"test_movements": 22, "mae_before": 0.81, "mae_after": 0.24,
-              "ci_diff": [0.49, 0.63], "ceiling": 0.19, "attainable": 0.2, "closed_fraction": 0.91,
-              "closed_fraction_ci": [0.85, 0.95], "closed_fraction_high": 0.93},
-    "candidates": [{"family": "stribeck", "p_adj": 0.0005, "score": 14.2},
-                   {"family": "temperature", "p_adj": 0.31, "score": 2.2}],
-    "formula": "8.1*sgn_v + 14*v"
-})json");
-  json residual = {{"channel", "velocity"}, {"unit", "rad/s"}};
-  RandomStream random(8);
-  for (int i = 0; i < 200; ++i) {
-    const double v = -0.6 + 1.2 * i / 199.0;
-    const double effect = (v > 0 ? 1 : -1) * 1.2 * std::exp(-std::abs(v) / 0.05);
-    const double after = 0.2 * random.normal();
-    residual["x"].push_back(v);
-    residual["before"].push_back(effect + after);
-    residual["after"].push_back(after);
-    residual["effect"].push_back(effect);
+namespace {
+
+std::vector<double> grid(double from, double to, std::size_t count) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    values.push_back(from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1));
   }
-  json movements = json::array();
+  return values;
+}
+
+// Bins over x with values of f, its spread and a band.
+template <class F>
+LoopSeries bins(LoopSplit split, std::vector<double> x, F f) {
+  LoopSeries series;
+  series.split = split;
+  series.x = std::move(x);
+  for (const double at : series.x) {
+    series.measured.push_back(f(at) + 0.02 * std::sin(40 * at));
+    series.spread.push_back(0.05);
+    series.before.push_back(0.9 * f(at));
+    series.after.push_back(f(at));
+    series.band.push_back(0.03);
+    series.rows.push_back(40);
+  }
+  return series;
+}
+
+LoopPictures sample_pictures() {
+  LoopPictures pictures;
+  const auto friction = [](double v) { return (v > 0 ? 8 : -8) + 14 * v; };
+  pictures.friction.x = {"velocity", "rad/s"};
+  pictures.friction.series = {bins(LoopSplit::all, grid(-0.6, -0.02, 12), friction),
+                              bins(LoopSplit::all, grid(0.02, 0.6, 12), friction)};
+  const auto falling = [](double v) { return 1.2 * std::exp(-v / 0.05); };
+  pictures.effects.push_back({"stribeck",
+                              {"velocity", "rad/s", true},
+                              true,
+                              {bins(LoopSplit::all, grid(0.005, 0.3, 20), falling)},
+                              {}});
+  const auto wave = [](double q) { return 0.9 * std::sin(q / 0.0025 * 6.283); };
+  pictures.effects.push_back(
+      {"gear_ripple",
+       {"position", "m", false, 0.0025},
+       false,
+       {bins(LoopSplit::forward, grid(0, 0.0025, 20), wave),
+        bins(LoopSplit::backward, grid(0, 0.0025, 20), [&](double q) { return -wave(q); })},
+       {}});
+  const auto bump = [](double q) { return std::exp(-50 * (q - 0.5) * (q - 0.5)); };
+  pictures.inputs.push_back({{"position", "rad"},
+                             true,
+                             {bins(LoopSplit::forward, grid(-1, 1, 30), bump),
+                              bins(LoopSplit::backward, grid(-1, 1, 30), bump)}});
+  pictures.inputs.push_back(
+      {{"velocity", "rad/s"}, false, {bins(LoopSplit::forward, grid(0, 1, 30), [](double) {
+         return 0.01;
+       })}});
+  LoopMapPicture map{{"position", "rad"}, {"temperature", "degC"}, {}};
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j)
+      map.cells.push_back({0.1 * i, 0.1 * i + 0.1, 20.0 + j, 21.0 + j, 0.1 * (i - j), 30});
+  }
+  pictures.maps.push_back(map);
+  LoopTrace trace;
+  trace.movement = "17";
+  trace.why = "middle";
+  trace.held_out = true;
+  trace.x = grid(0, 4, 200);
+  for (const double t : trace.x) {
+    trace.before.push_back(8 + std::sin(t));
+    trace.after.push_back(8.4 + std::sin(t));
+    trace.measured.push_back(8.4 + std::sin(t) + 0.1 * std::sin(60 * t));
+  }
+  pictures.traces = {trace, trace};
+  pictures.traces[1].why = "most";
   for (int m = 0; m < 30; ++m) {
-    movements.push_back({{"name", std::to_string(m)},
-                         {"test", m % 5 == 0},
-                         {"mae_before", 0.8 + 0.1 * random.normal()},
-                         {"mae_after", 0.24 + 0.03 * random.normal()}});
+    pictures.movements.push_back({std::to_string(m), m % 5 == 0, 0.8 + 0.01 * m, 0.24 + 0.003 * m});
   }
-  loop["pictures"] = {{"target", "friction torque"},
-                      {"unit", "N m"},
-                      {"base_formula", "8*sgn_v + 14*v"},
-                      {"residuals", {residual}},
-                      {"movements", movements},
-                      {"alias_map",
-                       {{"families", {"stribeck", "power_quadrant_gain", "payload"}},
-                        {"correlation", {{1, 0.1, 0.05}, {0.1, 1, 0.95}, {0.05, 0.95, 1}}}}}};
+  pictures.aliases = {{"stribeck", "power_quadrant_gain", "payload"},
+                      {{1, 0.1, 0.05}, {0.1, 1, 0.95}, {0.05, 0.95, 1}}};
+  pictures.residuals.channels = {{"velocity", "rad/s", {0.1, 0.2}}};
+  pictures.residuals.before = {0.5, 0.6};
+  pictures.residuals.after = {0.1, 0.2};
+  pictures.residuals.effect = {0.4, 0.4};
+  pictures.residuals.effects = {{"stribeck", {0.4, 0.4}}};
+  return pictures;
+}
+
+}  // namespace
+
+LoopRecord sample_loop() {
+  LoopRecord loop;
+  loop.title = "joint 2";
+  loop.verdict = LoopVerdict::unknown;
+  loop.target = "friction_torque_Nm";
+  loop.unit = "N m";
+  loop.alpha_library = 0.003;
+  loop.alpha_leftover = 0.002;
+  loop.flips = 1999;
+  loop.seed = 1;
+  loop.noise = {0.2, 0.05, 0.1, 5760, 108, 90, 4000};
+  loop.friction_rms = 10;
+  LoopEffect stribeck;
+  stribeck.family = "stribeck";
+  stribeck.atom = "sgn_v*exp(-(abs(v)/vs)^delta)";
+  stribeck.order = 1;
+  stribeck.adjusted_p = 0.0005;
+  stribeck.gain = 212.4;
+  stribeck.gain_error = 20.1;
+  stribeck.rms = 0.31;
+  stribeck.chosen_share = 1;
+  stribeck.parameters = {{"excess", 1.2, 1.1, 1.3}};
+  LoopEffect gain;
+  gain.family = "power_quadrant_gain";
+  gain.atom = "g";
+  gain.order = 2;
+  gain.adjusted_p = 0.001;
+  gain.gain = 80;
+  gain.gain_error = 12;
+  gain.rms = 0.9;
+  gain.chosen_share = 0.4;
+  gain.provisional = true;
+  gain.parameters = {{"gain", 0.08, 0.07, 0.09}};
+  gain.aliases = {{"payload", 0.95, 1, 2, false, ""}};
+  gain.separate_by = {"R3"};
+  loop.effects = {stribeck, gain};
+  loop.leftover.p = 0.001;
+  loop.leftover.inputs = {"position"};
+  loop.untestable = {{"inertia", "no acceleration in the data", 0, 0, "R4"}};
+  loop.bursts = {{17, "up slow", 1.2, 1.3, 4.1}};
+  loop.error.test_movements = 22;
+  loop.error.how = "held out";
+  loop.error.mae_before = 0.81;
+  loop.error.mae_after = 0.24;
+  loop.error.difference_low = 0.49;
+  loop.error.difference_high = 0.63;
+  loop.error.ceiling = 0.19;
+  loop.error.attainable = 0.2;
+  loop.error.closed_fraction = 0.91;
+  loop.error.closed_low = 0.85;
+  loop.error.closed_high = 0.95;
+  loop.error.closed_fraction_high = 0.93;
+  loop.candidates = {{"stribeck", "sgn_v*exp(-(abs(v)/vs)^delta)", 0.0005, 14.2, 212.4, 0.05},
+                     {"temperature", "v*(T - T0)", 0.31, 2.2, kNoFigure, 0.1}};
+  loop.base = "coulomb_viscous";
+  loop.base_formula = "8*sgn_v + 14*v";
+  loop.formula = "8.1*sgn_v + 14*v + 1.2*(sgn_v*exp(-abs(v)/0.05)) + 0.08*g";
+  loop.terms = {{"", "8.1*sgn_v + 14*v"},
+                {"stribeck", "1.2*sgn_v*exp(-20*abs(v))"},
+                {"power_quadrant_gain", "0.08*g"}};
+  loop.symbols = {
+      {"v", "velocity_rad_s", "rad/s", "velocity", "", true, -0.6, 0.6},
+      {"sgn_v", "velocity_rad_s", "-", "direction of motion (1, 0 or -1)", "", true, -1, 1},
+      {"g", "gravity_Nm", "N m", "gravity torque", "", true, -20, 20}};
+  loop.code = "double friction(double v, double g);\n";
+  loop.notes = {"'stribeck' replaced by 'nonlinear_viscous' (R5, R7)"};
+  loop.warnings = {"12 of 5772 rows are slower than 0.05: left out (--min-speed)"};
+  loop.steps = {{"read from the file", 5772}, {"rows that count for friction", 5760}};
+  loop.pictures = sample_pictures();
+  loop.families = {{"stribeck", "Stribeck effect", "friction falls with speed near standstill"},
+                   {"power_quadrant_gain", "loss that differs in back-driving",
+                    "losses differ between driving and back-driving, in proportion to the load"},
+                   {"payload", "payload error", "the declared gravity torque lacks a mass"},
+                   {"gear_ripple", "gear ripple", "torque repeats with the motor's turn"},
+                   {"nonlinear_viscous", "nonlinear viscous friction",
+                    "viscous friction is not proportional to speed"},
+                   {"temperature", "temperature", "friction changes with temperature"},
+                   {"inertia", "inertia error", "the declared inertia is off"}};
+  loop.experiments = {{"R3", "use two postures or a known payload"}, {"R4", "run reversals"}};
   return loop;
 }
 

@@ -5,11 +5,11 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "reports/record.hpp"
+#include "reports/record/loop_record.hpp"
 
 namespace tribench {
 
@@ -21,8 +21,8 @@ std::filesystem::path fresh_folder(const std::string& name);
 // Writes results.csv, planned.csv, provenance.json and grid.toml of the sample run.
 void write_sample_run(const std::filesystem::path& folder, std::uint64_t seeds);
 
-// A loop.json with two effects, an alias, something left over, and pictures.
-nlohmann::json sample_loop();
+// Two effects, an alias, something left over, and a picture of every kind.
+LoopRecord sample_loop();
 
 std::string text_of(const std::filesystem::path& file);
 

@@ -1,127 +1,165 @@
 // SPDX-License-Identifier: MIT
 //
-// The report of a closed loop.
+// The report of a closed loop: what is missing, how much it matters, how sure it is, what next; then
+// the pictures, the model, the data, and last the figures for who wants to check them.
 "use strict";
 
-const loop = data.loop;
-const pictures = loop.pictures || {};
-const unit = pictures.unit || "N m";
-const list = (value) => Array.isArray(value) ? value : [];
+const words = data.words;
+const picturesOf = (test) => data.pictures.filter(test);
+const kFaces = {EFFECTS: ["Effects found", "found"], NONE: ["Nothing missing", "none"], UNKNOWN: ["Something unknown", "unknown"],
+                CANNOT_TELL: ["Cannot tell", "mute"]};
+const kGradeClass = {"very sure": "good", sure: "good", likely: "fair", doubtful: "poor", provisional: "poor", "not physical": "poor",
+                     "passes the test": "fair"};
 
-// One far-off row must not flatten all others: the frame ends a little beyond what all but one in 250 reach.
-function frameOf(r) {
-  const sizes = [...list(r.before), ...list(r.after), ...list(r.effect)].filter((y) => y !== null).map(Math.abs).sort((a, b) => a - b);
-  return sizes.length ? 1.3 * sizes[Math.floor(0.996 * (sizes.length - 1))] : 0;
-}
+const lookAt = (id) => ({...inkOf(), dark: darkTheme(), width: widthOf(id)});
 
-function beyondFrame(r) {
-  const frame = frameOf(r);
-  const beyond = list(r.before).filter((y, i) => Math.max(Math.abs(y), Math.abs(r.after[i] ?? 0)) > frame).length;
-  return beyond ? `; ${beyond} of ${r.before.length} rows lie beyond the frame` : "";
-}
-
-function residualPoints(r) {
-  const rows = [];
-  const frame = frameOf(r);
-  const add = (values, name, dots) => list(values).forEach((y, i) => {
-    if (y === null || !isFinite(r.x[i]) || Math.abs(y) > frame) return;
-    rows.push({x: r.x[i], y, curve: name, method: name, series: name, dots});
-  });
-  add(r.before, "before", true);
-  add(r.after, "after", true);
-  add(r.effect, "fitted effect", true);
-  return rows;
+let chosenTrace = 0;
+function drawPicture(picture) {
+  draw(picture.id, loopPlot(picture, {...lookAt(picture.id), height: picture.hero ? 236 : undefined}, chosenTrace));
 }
 
 function drawLoop() {
-  list(pictures.residuals).forEach((r, i) => {
-    const id = "residual-" + i;
-    const look = {...lookFor(["before", "after", "fitted effect"], widthOf(id)), colors: ["#d1495b", "#0b6e75", "#edae49"]};
-    const whole = list(r.x).length && ["before", "after", "effect"].every((k) => !r[k] || r[k].length === r.x.length);
-    draw(id, whole ? residualPlot(residualPoints(r), look, [`${r.channel}, ${r.unit || ""}`, "residual, " + unit]) : null,
-         {empty: "The arrays of this picture differ in length."});
-  });
-  const moves = list(pictures.movements).map((m) => ({name: String(m.name), before: m.mae_before, after: m.mae_after,
-    method: m.test ? "held out" : "used for the fit"}));
-  draw("movements", moves.length ? movementPlot(moves, {...lookFor(["held out", "used for the fit"], widthOf("movements")),
-       colors: ["#d1495b", "#8aa4a8"]}, unit) : null);
-  const found = new Set(list(loop.effects).map((e) => e.family));
-  const bars = list(loop.candidates).filter((c) => isFinite(c.score)).slice(0, 20)
-    .map((c) => ({name: c.family, x: Math.max(0, c.cv_gain || 0), p: c.p_adj, score: c.score, gain: c.cv_gain,
-      label: "p = " + fig(c.p_adj), found: found.has(c.family)})).sort((a, b) => b.x - a.x || b.score - a.score);
-  draw("evidence", bars.length ? barPlot(bars, lookFor([], widthOf("evidence")), "cross-validated gain, nats") : null);
-  const map = pictures.alias_map || {};
-  const cells = list(map.families).flatMap((a, i) => map.families.map((b, j) =>
-    ({a, b, correlation: (map.correlation[i] || [])[j], size: Math.abs((map.correlation[i] || [])[j])})))
-    .filter((c) => isFinite(c.size));
-  draw("aliases", cells.length ? aliasPlot(cells, lookFor([], widthOf("aliases")), map.families) : null);
-  const left = list((loop.leftover || {}).inputs);
-  const leftover = list((loop.leftover || {}).curve).map((p) => ({x: p[0], y: p[1], curve: "leftover", method: "leftover", series: "l"}));
-  draw("leftover", leftover.length ? curvePlot(leftover, lookFor(["leftover"], widthOf("leftover")),
-       [list(loop.leftover.inputs).join(", "), "residual, " + unit], "What is left over") : null,
-       {empty: left.length ? `It depends on ${left.join(" and ")}: no curve over one input shows it.` : "Nothing was left over."});
+  for (const picture of data.pictures) {
+    const holder = byId(picture.id);
+    if (!holder) continue;
+    if (picture.hero) drawPicture(picture);
+    else drawLater(picture.id, () => drawPicture(picture));
+  }
 }
 
-function effectsTable() {
-  const rows = list(loop.effects).map((e) => ({...e, interval: list(e.params).map((p) =>
-    `${p.name} = ${fig(p.value)} (${fig(p.lo)} … ${fig(p.hi)})`).join(", "),
-    alias: list(e.alias).map((a) => a.family + (a.exact ? " (exactly)" : "")).join(", ")}));
-  return dataTable([{name: "order", key: "order", count: true}, {name: "effect", key: "family"},
-    {name: "term", key: "atom", show: (r) => el("code", {}, r.atom || "")}, {name: "parameters, 95 %", key: "interval"},
-    {name: "rms, " + unit, key: "rms_contribution", number: true}, {name: "p", key: "p_adj", number: true},
-    {name: "evidence, nats", key: "cv_gain", number: true}, {name: "could also be", key: "alias"}], rows, {label: "effects"});
+function pictureCard(picture, more, wide) {
+  const section = card(picture.id, picture.title, picture.caption, wide);
+  section.classList.add("picture");
+  for (const one of more || []) section.insertBefore(one, section.querySelector(".plot"));
+  return section;
 }
 
-// What the data cannot say, bursts, remarks: a list each where there is one.
-function listCards() {
-  return list(data.lists).filter((part) => part.lines.length).map((part) => el("section", {class: "card"},
-    el("h3", {}, part.title), el("ul", {}, part.lines.map((line) => el("li", {}, line)))));
+function badge(text, kind) { return el("span", {class: "badge " + kind}, text); }
+
+function effectCard(one, i) {
+  const line = (text, kind) => text ? [el("p", {class: kind || undefined}, text)] : [];
+  const picture = data.pictures.find((p) => p.family === one.family);
+  return el("section", {class: "card effect"},
+    el("div", {class: "effect-head"}, badge(one.grade, kGradeClass[one.grade] || "fair"),
+       picture ? el("a", {href: "#" + picture.id, "aria-label": "picture of: " + one.noun}, "picture") : ""),
+    el("h3", {}, one.title), el("p", {class: "amount"}, el("b", {}, one.amount), one.share ? " · " + one.share : ""),
+    ...line(one.sure), ...one.doubts.flatMap((d) => line(d, "doubt")), ...line(one.rivals), ...line(one.settle));
 }
 
-function nextMovements() {
-  const rows = list(loop.next_movements).map((m, i) => ({...m, order: i + 1}));
-  return rows.length ? [el("h2", {id: "next"}, "Next movements"),
-    el("p", {class: "soft"}, "Those at which the explanations left differ most, best first; next_movements.csv has them with durations and tones."),
-    dataTable([{name: "order", key: "order", count: true}, {name: "movement", key: "kind"},
-      {name: "velocity", key: "velocity", number: true}, {name: "from", key: "from", number: true},
-      {name: "to", key: "to", number: true}, {name: "load factor", key: "load_factor", number: true},
-      {name: "tells apart", key: "between"}, {name: "by, noise variances", key: "separation", number: true}], rows,
-      {label: "next movements"})] : [];
+function copyButton(label, text) {
+  const button = el("button", {type: "button", onclick: async () => {
+    try { await navigator.clipboard.writeText(text); button.textContent = "copied"; } catch (error) { button.textContent = "select and copy below"; }
+    setTimeout(() => { button.textContent = label; }, 1600);
+  }}, label);
+  return button;
 }
 
-function closedShare(error) {
-  const low = Math.round(100 * error.closed_fraction);
-  const high = Math.round(100 * (error.closed_fraction_high ?? error.closed_fraction));
-  return high > low ? `${low} … ${high} %` : low + " %";
+function reveal(label, content) {
+  const box = el("pre", {class: "code", hidden: "hidden", tabindex: "0"}, content);
+  const button = el("button", {type: "button", "aria-expanded": "false", onclick: () => {
+    box.hidden = !box.hidden;
+    button.setAttribute("aria-expanded", String(!box.hidden));
+  }}, label);
+  return [button, box];
+}
+
+function modelPart() {
+  const model = data.model;
+  if (!model.formula) return [];
+  const lines = model.terms.map((t, i) => el("div", {class: "line"}, el("dt", {}, t.name),
+    el("dd", {tabindex: "0"}, el("span", {class: "sign"}, i === 0 || t.formula.startsWith("-") ? "" : "+ "), formulaElement(t.formula, {periods: true}))));
+  const [codeButton, codeBox] = reveal("C code", model.code);
+  const [fullButton, fullBox] = reveal("all digits", model.formula);
+  return [el("h2", {id: "model"}, "The model now"),
+    el("p", {class: "soft"}, `${model.target} in ${model.unit} is the sum of these lines; ripples show their period.`),
+    el("dl", {class: "formulas"}, lines),
+    el("div", {class: "tools"}, copyButton("copy formula", model.formula), fullButton, copyButton("copy C", model.code), codeButton), fullBox, codeBox,
+    el("h3", {class: "above"}, "Symbols, and the range in which the model has been seen"),
+    dataTable([{name: "symbol", key: "name", show: (r) => formulaElement(r.name)}, {name: "is", key: "meaning"}, {name: "unit", key: "unit"},
+      {name: "from", key: "low", number: true}, {name: "to", key: "high", number: true},
+      ...(model.symbols.some((s) => s.recipe) ? [{name: "computed as", key: "recipe"}] : [])], model.symbols, {label: "symbols"})];
+}
+
+function dataPart() {
+  const d = data.data;
+  return [el("h2", {id: "data"}, "What was done to the data"),
+    el("p", {}, `${d.rows} rows in ${counted(d.movements, "movement")}; they say as much as ${counted(d.stretches, "independent stretch").replace("stretchs", "stretches")}.`),
+    el("div", {class: "grid"},
+      el("div", {}, d.steps.length ? dataTable([{name: "step", key: "what"}, {name: "rows left", key: "rows", count: true}], d.steps, {label: "steps"}) : ""),
+      el("div", {}, dataTable([{name: "column", key: "column"}, {name: "taken for", key: "meaning"}, {name: "unit", key: "unit"}], d.columns, {label: "columns"}))),
+    ...listPart("Remarks", words.remarks)];
+}
+
+function listPart(title, lines) {
+  return lines.length ? [el("h3", {class: "above"}, title), el("ul", {}, lines.map((line) => el("li", {}, line)))] : [];
+}
+
+function detailsPart() {
+  const d = data.details;
+  const parts = [el("p", {}, "Evidence is the log likelihood gained on movements left out (nats; 3 is a lot). p is the chance that noise alone looks " +
+    "like this anywhere in the search; an effect is claimed below " + fig(d.alpha) + ". Repeats are searches with some movements left out. Errors: " + d.how + "." +
+    (d.closed ? " Of the gap to the noise " + d.closed + " is closed." : "") + (d.ceiling_note ? " No share of the gap: " + d.ceiling_note + "." : ""))];
+  if (d.effects.length) parts.push(dataTable([{name: "effect", key: "effect"}, {name: "in files", key: "family"}, {name: "parameters, 95 %", key: "parameters"},
+    {name: "p", key: "p", number: true}, {name: "evidence", key: "gain", number: true}, {name: "±", key: "gain_error", number: true},
+    {name: "notes", key: "notes"}], d.effects, {label: "effects in figures"}));
+  if (d.candidates.length) parts.push(el("h3", {class: "above"}, "Considered first"), dataTable([{name: "effect", key: "candidate"}, {name: "p", key: "p", number: true},
+    {name: "score", key: "score", number: true}, {name: "evidence", key: "gain", number: true},
+    {name: `seen from (${data.unit})`, key: "detectable", number: true}], d.candidates, {label: "candidates"}));
+  if (d.next.length) parts.push(el("h3", {class: "above"}, "Next movements"), dataTable([{name: "movement", key: "kind"}, {name: "velocity", key: "velocity", number: true},
+    {name: "from", key: "from", number: true}, {name: "to", key: "to", number: true}, {name: "load factor", key: "load", number: true},
+    {name: "tells apart", key: "between"}, {name: "by, noise variances", key: "separation", number: true}], d.next, {label: "next movements"}));
+  return el("details", {id: "details"}, el("summary", {}, "Figures and tests"), ...parts);
+}
+
+function traceChooser(picture) {
+  if (picture.traces.length < 2) return [];
+  return [el("label", {class: "soft"}, el("select", {"aria-label": "movement", onchange: (e) => { chosenTrace = Number(e.target.value); drawPicture(picture); }},
+    picture.traces.map((t, i) => el("option", {value: i}, t.name))))];
+}
+
+// What stands beside the bars: what to do next, or what would have been seen.
+function nextCard() {
+  const lines = [el("h3", {}, "What next"), el("p", {class: "next"}, words.next)];
+  if (words.needed.length > 1) lines.push(el("ul", {}, words.needed.slice(1).map((n) => el("li", {}, n + "."))));
+  if (words.detectable) lines.push(el("p", {class: "next"}, words.detectable));
+  if (words.leftover && words.cards.length) lines.push(el("p", {class: "next"}, words.leftover));
+  return el("section", {class: "card answer"}, lines);
+}
+
+function section(id, title, pictures, more) {
+  if (!pictures.length) return [];
+  return [el("h2", {id}, title), ...(more || []), el("div", {class: "grid"}, pictures.map((p) => pictureCard(p)))];
 }
 
 function buildLoop() {
-  const error = loop.error || {};
-  const known = (value) => typeof value === "number" && isFinite(value);  // null is neither
-  const fact = (value, label) => el("div", {class: "fact"}, el("b", {}, value), el("span", {class: "soft"}, label));
-  byId("top").append(el("h1", {}, data.title), el("p", {class: "reading"}, el("b", {}, data.verdict)),
-    ...data.sentences.map((s) => el("p", {}, s.replace(/\*\*/g, ""))),
-    el("div", {class: "facts"}, fact(fig(error.mae_before), "MAE before, " + unit),
-      fact(fig(error.mae_after), "MAE after, " + unit),
-      ...(known(error.ceiling) ? [fact(known(error.attainable) && fig(error.attainable) !== fig(error.ceiling)
-        ? `${fig(error.ceiling)} … ${fig(error.attainable)}` : fig(error.ceiling), "the noise lies here, " + unit)] : []),
-      ...(known(error.closed_fraction) ? [fact(closedShare(error), "of the gap to the noise closed")] : []),
-      fact(count(error.test_movements), "held-out movements")));
-  byId("nav").append(el("a", {href: "#residuals"}, "residuals"), el("a", {href: "#effects"}, "effects"),
-                     el("a", {href: "#model"}, "model"), el("span", {class: "push"}, themeButton()));
+  const [face, kind] = kFaces[data.verdict] || [data.verdict, "mute"];
+  const heroes = picturesOf((p) => p.id === "error" || p.id === "friction");
+  // Where something unknown is left its picture stands on the first screen.
+  const left = picturesOf((p) => p.leftover);
+  if (data.verdict === "UNKNOWN" && left.length) heroes.push(left[0]);
+  for (const p of heroes) p.hero = true;
+  byId("top").append(el("div", {class: "verdict"}, badge(face, kind), el("span", {class: "soft"}, data.title)),
+    el("h1", {class: "headline"}, words.headline), el("p", {class: "matters"}, words.error.replace("->", "→")));
+  const error = data.pictures.find((p) => p.id === "error");
+  const rest = heroes.filter((p) => p !== error);
   byId("main").append(
-    el("h2", {id: "residuals"}, "Residuals"),
-    el("div", {class: "grid"}, list(pictures.residuals).map((r, i) =>
-      card("residual-" + i, "Against " + r.channel, "Residual before and after; the fitted effect is what the refitted model says beyond the base" + beyondFrame(r) + "."))),
-    el("h2", {id: "effects"}, "Effects"), effectsTable(),
-    el("div", {class: "grid", style: "margin-top:1rem"},
-      card("movements", "Error of each movement", "Below the dashed line: better than before."),
-      card("evidence", "Candidates", "What each would have gained by itself on movements left out; coloured: added. p is corrected for the search."),
-      card("aliases", "What could be mistaken for what", "Absolute correlation of two effects in these data, base removed."),
-      card("leftover", "Left over", "Structure that none of the effects explains."), listCards()),
-    ...nextMovements(),
-    el("h2", {id: "model"}, "The model now"), loop.formula ? el("div", {class: "card"}, formulaElement(loop.formula),
-      el("div", {class: "code"}, loop.formula)) : el("p", {}, "No formula."));
+    el("div", {class: "hero columns-" + rest.length},
+      el("div", {class: "answers"}, error ? pictureCard(error) : "", nextCard()), ...rest.map((p) => pictureCard(p))),
+    el("div", {class: "effects"}, words.cards.map(effectCard)));
+  const here = (test) => picturesOf((p) => !p.hero && test(p));
+  const parts = [
+    ["effects", "The effects, each in its own coordinate", here((p) => p.kind === "effect")],
+    ["unexplained", "Still unexplained", here((p) => p.leftover)]];
+  for (const [id, title, pictures] of parts) byId("main").append(...section(id, title, pictures));
+  const trace = data.pictures.find((p) => p.id === "trace");
+  if (trace) byId("main").append(el("h2", {id: "movement"}, "A movement"), pictureCard(trace, traceChooser(trace), true));
+  byId("main").append(...modelPart(), ...section("inputs", "What is left, input by input", here((p) => p.kind === "input" && !p.leftover)),
+    ...section("checks", "Behind the answer", here((p) => ["movements", "evidence", "aliases"].includes(p.kind))),
+    ...listPart("What these data cannot show", words.untestable), ...listPart("What these data cannot tell apart", words.aliased),
+    ...listPart("Bursts, left out of every fit and no friction", words.bursts), ...dataPart(), el("h2", {}, "Details"), detailsPart());
+  const links = [["effects", "effects"], ["movement", "a movement"], ["model", "model and code"], ["inputs", "what is left"], ["data", "data"], ["details", "details"]];
+  byId("nav").append(...links.filter(([id]) => byId(id)).map(([id, text]) => el("a", {href: "#" + id}, text)),
+                     el("span", {class: "push"}, themeButton()));
   window.drawAll = drawLoop;
   drawLoop();
   let resized = 0;

@@ -21,13 +21,7 @@ async function write(pictures, id, name) {
   if (only.length && !only.includes(name)) return;
   const spec = pictures[id]({...look, width: wide.has(id) ? 960 : 560});
   if (!spec) return;
-  // Without a label a mark and with two decimals a file has a third of the size.
-  const still = {...spec, background: "white", config: {...spec.config, aria: false}};
-  const view = new vega.View(vega.parse(still), {renderer: "none", logLevel: vega.Error});
-  const svg = (await view.toSVG()).replace(/(\.[0-9]{2})[0-9]+/g, "$1")
-    .replace("<g ", `<title>${spec.description.replace(/[<&]/g, "")}</title><g `);
-  fs.writeFileSync(path.join(folder, name), svg);
-  console.log(name);
+  await writeSvg(spec, folder, name, fs, path);
 }
 
 async function main() {

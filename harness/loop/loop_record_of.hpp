@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+//
+// A diagnosis as the record that reports are made of (reports/record/loop_record.hpp).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "algorithms/diagnosis/diagnosis.hpp"
+#include "algorithms/diagnosis/experiments.hpp"
+#include "algorithms/diagnosis/learned_effect.hpp"
+#include "reports/record/loop_record.hpp"
+
+namespace tribench::loop {
+
+// What goes beside the diagnosis.
+struct LoopExtras {
+  std::string title;  // the data's name
+  std::vector<LearnedEffect> learned;
+  std::vector<ProposedMovement> suggestions;
+  std::vector<LoopDataStep> steps;  // what became of the rows
+};
+
+// data: what was diagnosed. Cost: a few evaluations of both models on every row.
+LoopRecord loop_record_of(const Diagnosis& diagnosis, const Observations& data,
+                          const LoopExtras& extras = {});
+
+}  // namespace tribench::loop
