@@ -10,6 +10,7 @@
 
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
+#include "harness/cli/study_logs.hpp"
 #include "harness/cli/study_loop.hpp"
 #include "harness/cli/study_retellings.hpp"
 #include "harness/study/external_torque_study.hpp"
@@ -156,6 +157,7 @@ void add_study_command(CLI::App& app, ExitStatus& status) {
   add_generator_study(*study, status);
   add_reference_study(*study, status);
   add_external_torque_study(*study);
+  add_log_study(*study, status);
   add_loop_study(*study, status);
   add_recovery_study(*study);
   add_retelling_study(*study, status);

@@ -42,27 +42,6 @@ bool belongs(const std::vector<PlantedEffect>& effects, const std::string& famil
   });
 }
 
-Says judge_claims(const LoopAnswer& answer, const LoopOutcome& out,
-                  const std::vector<PlantedEffect>& effects) {
-  const bool outside = !std::ranges::all_of(effects, &PlantedEffect::in_library);
-  const bool none_wrong =
-      std::ranges::all_of(out.claimed, [&](const auto& f) { return belongs(effects, f); });
-  const std::size_t unnamed = count_unnamed(effects, out.claimed);
-  if (unnamed == 0 && none_wrong && answer.unknown == outside) {
-    const bool shaped = std::ranges::none_of(answer.effects, &LoopAnswer::Effect::another_shape);
-    return shaped ? Says::exact : Says::another_shape;
-  }
-  const bool any_named = effects.size() > unnamed && !out.claimed.empty() && !outside;
-  if (unnamed == 0 && any_named) return none_wrong ? Says::with_unknown : Says::with_more;
-  if (answer.unknown) return Says::unknown;
-  if (out.claimed.empty()) return Says::nothing;
-  if (none_wrong) return Says::partly;
-  std::vector<std::string> covered = out.claimed;
-  covered.insert(covered.end(), out.aliases.begin(), out.aliases.end());
-  return count_unnamed(effects, covered) == 0 && !outside && !effects.empty() ? Says::alias
-                                                                              : Says::wrong;
-}
-
 // UNKNOWN in exactly the inputs in which the one effect lives.
 bool is_located(const LoopAnswer& answer, const std::vector<PlantedEffect>& effects) {
   if (!answer.unknown || effects.size() != 1) return false;
@@ -140,6 +119,31 @@ std::string_view says_name(Says says) {
   return kNames[static_cast<std::size_t>(says)];
 }
 
+Says judge_story(const LoopAnswer& answer, const std::vector<PlantedEffect>& effects) {
+  std::vector<std::string> claimed;
+  std::vector<std::string> covered;
+  for (const LoopAnswer::Effect& effect : answer.effects) {
+    claimed.push_back(effect.family);
+    covered.push_back(effect.family);
+    covered.insert(covered.end(), effect.aliases.begin(), effect.aliases.end());
+  }
+  const bool outside = !std::ranges::all_of(effects, &PlantedEffect::in_library);
+  const bool none_wrong =
+      std::ranges::all_of(claimed, [&](const auto& f) { return belongs(effects, f); });
+  const std::size_t unnamed = count_unnamed(effects, claimed);
+  if (unnamed == 0 && none_wrong && answer.unknown == outside) {
+    const bool shaped = std::ranges::none_of(answer.effects, &LoopAnswer::Effect::another_shape);
+    return shaped ? Says::exact : Says::another_shape;
+  }
+  const bool any_named = effects.size() > unnamed && !claimed.empty() && !outside;
+  if (unnamed == 0 && any_named) return none_wrong ? Says::with_unknown : Says::with_more;
+  if (answer.unknown) return Says::unknown;
+  if (claimed.empty()) return Says::nothing;
+  if (none_wrong) return Says::partly;
+  return count_unnamed(effects, covered) == 0 && !outside && !effects.empty() ? Says::alias
+                                                                              : Says::wrong;
+}
+
 LoopOutcome judge_answer(const LoopCase& one, const LoopAnswer& answer,
                          const PlantedData& planted) {
   LoopOutcome out;
@@ -158,7 +162,7 @@ LoopOutcome judge_answer(const LoopCase& one, const LoopAnswer& answer,
   }
   out.unknown = answer.unknown;
   out.inputs = answer.inputs;
-  out.says = judge_claims(answer, out, planted.truth.effects);
+  out.says = judge_story(answer, planted.truth.effects);
   out.located = is_located(answer, planted.truth.effects);
   out.events = answer.bursts.size();
   out.bursts = planted.truth.collisions.size();

@@ -92,6 +92,9 @@ struct LoopOutcome {
   std::string_view cause() const { return planted.empty() ? "none" : std::string_view(planted[0]); }
 };
 
+// By its families, aliases and `unknown` alone.
+Says judge_story(const LoopAnswer& answer, const std::vector<PlantedEffect>& effects);
+
 LoopOutcome judge_answer(const LoopCase& one, const LoopAnswer& answer, const PlantedData& planted);
 
 // One line of CSV an outcome.

@@ -40,6 +40,9 @@ class DistanceSinceReversal {
   double distance_ = 0;
 };
 
+// The channel's name where it was computed before the recording was cut, and not by `observe`.
+inline constexpr std::string_view kDerivedDistance = "distance_since_reversal (derived)";
+
 // "d = ..." in words, for reports.
 std::string distance_recipe();
 

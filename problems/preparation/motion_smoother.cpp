@@ -20,6 +20,10 @@ constexpr double kTrialStep = 1.6;
 constexpr double kUnknown = 1e4;  // variance of the first state, in the filter's own units
 constexpr double kNothingNew = std::numeric_limits<double>::infinity();  // of a variance
 constexpr std::size_t kSlowest = 10;  // rows a count: an encoder's own error is not less
+// The likelihood looks one row ahead; derivatives are best with a little less (docs/first_log.md).
+constexpr double kCaution = 0.7;
+constexpr int kRounds = 2;            // of learning where the jerk is
+constexpr double kLeastShape = 0.05;  // of its mean: what a recording says of its jerk is little
 constexpr double kStill = 0.01;       // s: a count that stays for so long says where the motion is
 
 // Symmetric 3x3: 00 01 02 11 12 22.
@@ -62,9 +66,16 @@ struct Likelihood {
   double rows = 0;
 };
 
-// jerk: spectral density in units of the position's variance.
-Likelihood run_forward(std::span<const double> time, const Unstaired& data, const RowRange& piece,
+// What the filter takes for granted, row by row.
+struct Belief {
+  Unstaired data;
+  std::vector<double> shape;  // of the jerk's density through the recording; mean about 1
+};
+
+// jerk: spectral density in units of the position's variance, times the shape.
+Likelihood run_forward(std::span<const double> time, const Belief& belief, const RowRange& piece,
                        double jerk, std::vector<Step>* steps) {
+  const Unstaired& data = belief.data;
   Likelihood sum;
   const std::size_t n = piece.end - piece.begin;
   const double span = time[piece.end - 1] - time[piece.begin];
@@ -78,7 +89,7 @@ Likelihood run_forward(std::span<const double> time, const Unstaired& data, cons
     if (i > piece.begin) {
       const double dt = time[i] - time[i - 1];
       x = move(x, dt);
-      p = predict(p, dt, jerk);
+      p = predict(p, dt, jerk * belief.shape[i]);
     }
     if (steps != nullptr) {
       (*steps)[i - piece.begin].predicted = x;
@@ -153,14 +164,14 @@ Matrix gain(const Covariance& filtered, const Covariance& predicted, double dt) 
   return c;
 }
 
-// Fills the motion's rows of a piece; returns the variances of velocity and acceleration in its
-// middle (in units of the position's).
+// Fills the motion's rows of a piece; returns the variances of velocity and acceleration, summed
+// over the rows (in units of the position's).
 std::array<double, 2> run_backward(std::span<const double> time, const RowRange& piece,
                                    const std::vector<Step>& steps, Motion& out) {
   const std::size_t n = steps.size();
   State x = steps.back().filtered;
   Matrix p = full(steps.back().filtered_covariance);
-  std::array<double, 2> middle = {p[1][1], p[2][2]};
+  std::array<double, 2> variances = {0, 0};
   for (std::size_t i = n; i-- > 0;) {
     if (i + 1 < n) {
       const double dt = time[piece.begin + i + 1] - time[piece.begin + i];
@@ -187,9 +198,10 @@ std::array<double, 2> run_backward(std::span<const double> time, const RowRange&
     out.position[piece.begin + i] = x[0];
     out.velocity[piece.begin + i] = x[1];
     out.acceleration[piece.begin + i] = x[2];
-    if (i == n / 2) middle = {p[1][1], p[2][2]};
+    variances[0] += p[1][1];
+    variances[1] += p[2][2];
   }
-  return middle;
+  return variances;
 }
 
 double typical_step(std::span<const double> time, std::span<const RowRange> pieces) {
@@ -229,7 +241,7 @@ std::vector<RowRange> trial_pieces(std::span<const RowRange> pieces) {
   return some.empty() ? std::vector<RowRange>(pieces.begin(), pieces.end()) : some;
 }
 
-double likelihood_of(std::span<const double> time, const Unstaired& data,
+double likelihood_of(std::span<const double> time, const Belief& data,
                      std::span<const RowRange> pieces, double jerk) {
   Likelihood sum;
   for (const RowRange& piece : pieces) {
@@ -242,18 +254,19 @@ double likelihood_of(std::span<const double> time, const Unstaired& data,
   return -sum.rows * elementary::log(sum.squares / sum.rows) - sum.log_variance;
 }
 
-double choose_bandwidth(std::span<const double> time, const Unstaired& data,
+struct Choice {
+  double bandwidth = kLowestBandwidth;  // Hz
+  double likelihood = 0;
+};
+
+Choice choose_bandwidth(std::span<const double> time, const Belief& data,
                         std::span<const RowRange> pieces, double dt) {
   const std::vector<RowRange> some = trial_pieces(pieces);
-  double best = kLowestBandwidth;
-  double most = 0;
+  Choice best;
   bool first = true;
   for (double hertz = kLowestBandwidth; hertz <= 0.2 / dt; hertz *= kTrialStep) {
     const double one = likelihood_of(time, data, some, jerk_of(hertz, dt));
-    if (first || one > most) {
-      most = one;
-      best = hertz;
-    }
+    if (first || one > best.likelihood) best = {hertz, one};
     first = false;
   }
   return best;
@@ -318,48 +331,104 @@ Unstaired without_stairs(std::span<const double> time, std::span<const double> p
   return out;
 }
 
-Motion smooth_motion(std::span<const double> time, std::span<const double> position,
-                     std::span<const RowRange> pieces, double bandwidth) {
-  const std::size_t n = position.size();
-  Motion out{std::vector<double>(position.begin(), position.end()), std::vector<double>(n, 0.0),
-             std::vector<double>(n, 0.0)};
+namespace {
+
+Belief read_counts(std::span<const double> time, std::span<const double> position,
+                   std::span<const RowRange> pieces) {
   const double resolution = resolution_of(position);
-  Unstaired data{{position.begin(), position.end()}, std::vector<double>(n, 1.0)};
+  const std::size_t n = position.size();
+  Belief belief{{{position.begin(), position.end()}, std::vector<double>(n, 1.0)},
+                std::vector<double>(n, 1.0)};
   for (const RowRange& piece : pieces) {
     const std::size_t length = piece.end - piece.begin;
     const Unstaired one = without_stairs(time.subspan(piece.begin, length),
                                          position.subspan(piece.begin, length), resolution);
-    std::ranges::copy(one.position,
-                      data.position.begin() + static_cast<std::ptrdiff_t>(piece.begin));
-    std::ranges::copy(one.variance,
-                      data.variance.begin() + static_cast<std::ptrdiff_t>(piece.begin));
+    const auto begin = static_cast<std::ptrdiff_t>(piece.begin);
+    std::ranges::copy(one.position, belief.data.position.begin() + begin);
+    std::ranges::copy(one.variance, belief.data.variance.begin() + begin);
   }
-  const double dt = typical_step(time, pieces);
-  out.bandwidth = bandwidth > 0 ? bandwidth : choose_bandwidth(time, data, pieces, dt);
-  const double jerk = jerk_of(out.bandwidth, dt);
+  return belief;
+}
+
+Motion smooth(std::span<const double> time, const Belief& belief, std::span<const RowRange> pieces,
+              double bandwidth, double dt) {
+  const std::size_t n = time.size();
+  Motion out{belief.data.position, std::vector<double>(n, 0.0), std::vector<double>(n, 0.0)};
+  out.bandwidth = bandwidth;
+  const double jerk = jerk_of(bandwidth, dt);
   Likelihood sum;
-  std::vector<double> velocity_variances;
-  std::vector<double> acceleration_variances;
+  std::array<double, 2> variances = {0, 0};
+  double rows = 0;
   std::vector<Step> steps;
   for (const RowRange& piece : pieces) {
     if (piece.end - piece.begin < 2) continue;
-    const Likelihood one = run_forward(time, data, piece, jerk, &steps);
+    const Likelihood one = run_forward(time, belief, piece, jerk, &steps);
     sum.squares += one.squares;
     sum.rows += one.rows;
-    const std::array<double, 2> middle = run_backward(time, piece, steps, out);
-    velocity_variances.push_back(middle[0]);
-    acceleration_variances.push_back(middle[1]);
+    const std::array<double, 2> of_piece = run_backward(time, piece, steps, out);
+    for (std::size_t k = 0; k < 2; ++k) variances[k] += of_piece[k];
+    rows += static_cast<double>(piece.end - piece.begin);
   }
-  const double variance = sum.rows > 0 ? sum.squares / sum.rows : 0;
-  const auto typical = [&](std::vector<double>& variances) {
-    if (variances.empty()) return 0.0;
-    const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
-    std::nth_element(variances.begin(), middle, variances.end());
-    return std::sqrt(*middle * variance);
-  };
-  out.velocity_noise = typical(velocity_variances);
-  out.acceleration_noise = typical(acceleration_variances);
+  const double scale = sum.rows > 0 ? sum.squares / sum.rows / std::max(rows, 1.0) : 0;
+  out.velocity_noise = std::sqrt(variances[0] * scale);
+  out.acceleration_noise = std::sqrt(variances[1] * scale);
   return out;
+}
+
+// How the jerk's density goes through the recording, from a motion that was smoothed with less
+// knowledge of it: ramps begin and end, between them there is none. Mean 1.
+std::vector<double> shape_of(std::span<const double> time, const Motion& motion,
+                             std::span<const RowRange> pieces, double dt) {
+  std::vector<double> shape(time.size(), 1.0);
+  const auto reach = static_cast<std::size_t>(std::max(1.0, 1 / (kTwoPi * motion.bandwidth * dt)));
+  double sum = 0;
+  double rows = 0;
+  for (const RowRange& piece : pieces) {
+    const std::size_t n = piece.end - piece.begin;
+    std::vector<double> until(n + 1, 0.0);  // sums of the jerk's squares
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t i = piece.begin + k;
+      const double jerk =
+          k == 0 ? 0
+                 : (motion.acceleration[i] - motion.acceleration[i - 1]) / (time[i] - time[i - 1]);
+      until[k + 1] = until[k] + jerk * jerk;
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t low = k > reach ? k - reach : 0;
+      const std::size_t high = std::min(n, k + reach + 1);
+      shape[piece.begin + k] = (until[high] - until[low]) / static_cast<double>(high - low);
+      sum += shape[piece.begin + k];
+      ++rows;
+    }
+  }
+  const double mean = rows > 0 ? sum / rows : 0;
+  for (double& one : shape) one = mean > 0 ? kLeastShape + (1 - kLeastShape) * one / mean : 1;
+  return shape;
+}
+
+}  // namespace
+
+MotionSmoother::MotionSmoother(std::span<const double> time, std::span<const double> position,
+                               std::span<const RowRange> pieces)
+    : time_(time), pieces_(pieces.begin(), pieces.end()), step_(typical_step(time, pieces)) {
+  Belief belief = read_counts(time, position, pieces);
+  Choice best = choose_bandwidth(time, belief, pieces, step_);
+  for (int round = 0; round < kRounds; ++round) {
+    const Motion motion = smooth(time, belief, pieces, best.bandwidth, step_);
+    Belief next{belief.data, shape_of(time, motion, pieces, step_)};
+    const Choice choice = choose_bandwidth(time, next, pieces, step_);
+    if (choice.likelihood <= best.likelihood) break;
+    belief = std::move(next);
+    best = choice;
+  }
+  positions_ = std::move(belief.data);
+  shape_ = std::move(belief.shape);
+  bandwidth_ = kCaution * best.bandwidth;
+}
+
+Motion MotionSmoother::smoothed(double share) const {
+  const Belief belief{positions_, shape_};
+  return smooth(time_, belief, pieces_, share * bandwidth_, step_);
 }
 
 }  // namespace tribench

@@ -22,7 +22,7 @@ struct Motion {
   std::vector<double> velocity;
   std::vector<double> acceleration;
   double bandwidth = 0;       // Hz
-  double velocity_noise = 0;  // standard deviation that the position's noise leaves, typical row
+  double velocity_noise = 0;  // root mean square over the rows, as the filter knows it
   double acceleration_noise = 0;
 };
 
@@ -38,13 +38,29 @@ struct Unstaired {
 Unstaired without_stairs(std::span<const double> time, std::span<const double> position,
                          double resolution);
 
-// Pieces: [begin, end) ranges of rows without a gap, each smoothed by itself, all with one
-// bandwidth (in Hz; 0: chosen from the data).
+// [begin, end): rows without a gap.
 struct RowRange {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
-Motion smooth_motion(std::span<const double> time, std::span<const double> position,
-                     std::span<const RowRange> pieces, double bandwidth = 0);
+
+// Each piece is smoothed by itself, all with one bandwidth; where the jerk is large through the
+// recording (ramps begin and end) is learned from it, as far as the likelihood rewards it.
+class MotionSmoother {
+ public:
+  // `time` must outlive this.
+  MotionSmoother(std::span<const double> time, std::span<const double> position,
+                 std::span<const RowRange> pieces);
+  // With `share` of the chosen bandwidth.
+  Motion smoothed(double share = 1) const;
+
+ private:
+  std::span<const double> time_;
+  std::vector<RowRange> pieces_;
+  double step_;
+  Unstaired positions_;
+  std::vector<double> shape_;  // of the jerk's density, per row
+  double bandwidth_ = 0;
+};
 
 }  // namespace tribench

@@ -315,6 +315,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
     const bool distance = channel.name.starts_with("distance_since_reversal");
     out.signals.push_back(
         {distance ? "d" : name, channel.name, channel.unit, channel.role, {}, channel.values});
+    if (channel.name == kDerivedDistance) out.signals.back().recipe = distance_recipe();
     if (rigid) out.rigid.push_back(name);
   }
   for (const std::string& name : options.rigid) data.at(name);

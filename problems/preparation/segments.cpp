@@ -38,13 +38,6 @@ std::vector<double> steps_of(std::span<const double> time, std::span<const int> 
   return steps;
 }
 
-double top_speed(std::span<const double> velocity) {
-  std::vector<double> speeds;
-  speeds.reserve(velocity.size());
-  for (const double v : velocity) speeds.push_back(std::abs(v));
-  return quantile(std::move(speeds), 0.99);
-}
-
 // Rows in stretches that get nowhere.
 std::vector<char> resting_rows(std::span<const double> time, std::span<const double> velocity,
                                std::span<const RowRange> pieces, double slowest) {
@@ -89,6 +82,13 @@ std::size_t rows_at_next(std::span<const double> values, double limit) {
 }
 
 }  // namespace
+
+double top_speed(std::span<const double> velocity) {
+  std::vector<double> speeds;
+  speeds.reserve(velocity.size());
+  for (const double v : velocity) speeds.push_back(std::abs(v));
+  return quantile(std::move(speeds), 0.99);
+}
 
 double median_step(std::span<const double> time, std::span<const int> movement) {
   return quantile(steps_of(time, movement), 0.5);

@@ -18,6 +18,9 @@ namespace tribench {
 // The step of time that half the rows keep; 0 where there are none.
 double median_step(std::span<const double> time, std::span<const int> movement);
 
+// 99 % quantile of the magnitudes.
+double top_speed(std::span<const double> velocity);
+
 // At least 80 % of the steps within half of the median, and the median is short enough (0.1 s) to
 // follow a motion: its derivatives can be taken.
 bool is_regular(std::span<const double> time, std::span<const int> movement);

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "harness/cli/study_logs.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "foundation/error.hpp"
+#include "harness/cli/number_options.hpp"
+#include "harness/study/log_study.hpp"
+
+namespace tribench {
+namespace {
+
+struct LogStudyArguments {
+  LogStudyOptions study;
+  std::string out;
+  bool json = false;
+};
+
+// The command that asks again; writes the file where there is a folder for it.
+std::string command_of(const LogOutcome& one, const std::string& folder) {
+  std::string name = one.name;
+  std::ranges::replace(name, '/', '_');
+  const std::filesystem::path file =
+      std::filesystem::path(folder) / fmt::format("{}_{}.csv", name, log_told_name(one.told));
+  std::filesystem::create_directories(folder);
+  std::ofstream(file, std::ios::binary) << one.text;
+  std::string command = "tribench loop " + file.string();
+  for (const std::string& word : one.options) {
+    command += word.find('[') != std::string::npos ? " '" + word + "'" : " " + word;
+  }
+  return command;
+}
+
+void print_outcomes(const LogStudy& study, const std::string& folder) {
+  for (const LogOutcome& one : study.outcomes) {
+    if (one.text.empty()) continue;  // all three stories of the run are right
+    fmt::print("{} {}: {} ({}){}{}\n", one.name, log_told_name(one.told), one.story.text(),
+               says_name(one.says), one.misread.empty() ? "" : "; " + one.misread,
+               one.summary.empty() ? "" : fmt::format("\n    {}", one.summary));
+    if (!folder.empty()) fmt::print("    {}\n", command_of(one, folder));
+  }
+}
+
+void print_figures(const std::vector<LogFigure>& figures) {
+  fmt::print(
+      "\n| told | logs | read | right | as the clean table | misread | confidently wrong | "
+      "false alarms |\n|---|--:|--:|--:|--:|--:|--:|--:|\n");
+  for (const LogFigure& f : figures) {
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} of {} |\n", log_told_name(f.told), f.logs,
+               f.read, f.right, f.same, f.misread, f.wrong, f.false_alarms, f.nulls);
+  }
+}
+
+void print_json(const LogStudy& study) {
+  nlohmann::ordered_json figures = nlohmann::ordered_json::array();
+  for (const LogFigure& f : study.figures) {
+    figures.push_back({{"name", log_told_name(f.told)},
+                       {"summary", fmt::format("raw logs, told: {}", log_told_name(f.told))},
+                       {"logs", f.logs},
+                       {"read", f.read},
+                       {"right", f.right},
+                       {"same", f.same},
+                       {"misread", f.misread},
+                       {"confidently_wrong", f.wrong},
+                       {"nulls", f.nulls},
+                       {"false_alarms", f.false_alarms}});
+  }
+  nlohmann::ordered_json logs = nlohmann::ordered_json::array();
+  for (const LogOutcome& one : study.outcomes) {
+    logs.push_back({{"log", one.name},
+                    {"told", log_told_name(one.told)},
+                    {"how", one.summary},
+                    {"story", one.story.text()},
+                    {"says", says_name(one.says)},
+                    {"misread", one.misread}});
+  }
+  fmt::print("{}\n", nlohmann::ordered_json{{"figures", figures}, {"logs", logs}}.dump(2));
+}
+
+void run(const LogStudyArguments& arguments, ExitStatus& status) {
+  const LogStudy study = run_log_study("/proc/self/exe", arguments.study);
+  if (arguments.json) {
+    print_json(study);
+  } else {
+    print_outcomes(study, arguments.out);
+    print_figures(study.figures);
+  }
+  const bool fine = std::ranges::all_of(
+      study.figures, [](const LogFigure& f) { return f.misread == 0 && f.wrong == 0; });
+  if (!fine) status = ExitStatus::found;
+}
+
+}  // namespace
+
+void add_log_study(CLI::App& study, ExitStatus& status) {
+  CLI::App* command =
+      study.add_subcommand("logs", "Is the same found in raw logs as in clean tables?");
+  command->footer("Example: tribench study logs --logs 100 --out wrong-logs");
+  auto arguments = std::make_shared<LogStudyArguments>();
+  command->add_option("--logs", arguments->study.logs, "so many runs, each told three times")
+      ->transform(whole_number(1, 100'000))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->study.first_seed, "of the first run")
+      ->transform(whole_number(0))
+      ->capture_default_str();
+  command->add_option("--only", arguments->study.only, "runs whose names begin so: load, none/10");
+  command
+      ->add_option("--scale", arguments->study.scale,
+                   "of what is planted, in standard deviations of the noise")
+      ->transform(real_number(0.01, 100))
+      ->capture_default_str();
+  command->add_option("--seconds", arguments->study.seconds, "of a log")
+      ->transform(real_number(10, 10'000))
+      ->capture_default_str();
+  command->add_option("--jobs", arguments->study.threads, "threads; the figures are the same")
+      ->transform(whole_number(0, 1024));
+  command->add_flag("--clean-only{false}", arguments->study.raw,
+                    "ask about the clean tables alone");
+  command->add_option("--out", arguments->out,
+                      "folder for the files of the stories that are wrong");
+  command->add_flag("--json", arguments->json, "figures and stories");
+  command->callback([arguments, &status] {
+    arguments->study.quiet = arguments->json;
+    run(*arguments, status);
+  });
+}
+
+}  // namespace tribench

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+//
+// The steps by which `prepare` makes a recording of a file, in its order. Each changes the
+// recording and says in its notes what it did; each throws Error (bad_input) for what cannot be
+// true. Internal to the room.
+#pragma once
+
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "problems/preparation/motion_smoother.hpp"
+#include "problems/preparation/recording.hpp"
+
+namespace tribench {
+
+inline constexpr std::size_t kFewestRows = 8;  // of a stroke, of a piece
+inline constexpr double kBlur = 3;             // time constants of the smoother
+inline constexpr double kRadPerTurn = 2 * std::numbers::pi;
+
+Channel* find_channel(Dataset& data, Role role);  // null: there is none
+
+// ---- rows (recording_rows.cpp)
+
+void keep_rows(Dataset& data, const std::vector<std::size_t>& rows);
+// Those that are marked, with a sentence: "12 of 900 rows WHY: left out".
+void leave_out(PreparedRecording& out, const std::vector<char>& rows, const std::string& why);
+// Stamps that do not move on: the later row of two is left out.
+void drop_repeated_stamps(PreparedRecording& out);
+void drop_repeated_messages(PreparedRecording& out);
+// An angle that starts again after a turn is laid end to end.
+void unwrap(PreparedRecording& out);
+// Currents and torques at a limit of the amplifier.
+void drop_clipped(PreparedRecording& out);
+
+// ---- motion (recording_motion.cpp)
+
+struct DerivedMotion {
+  Motion motion;
+  Motion slower;  // of half the bandwidth
+  std::vector<RowRange> pieces;
+};
+
+// Nothing where there is no position, or the rows are too uneven or too far apart in time.
+std::optional<DerivedMotion> derive_motion(const PreparedRecording& out);
+// The derived velocity where there is none, or one that lags behind its position.
+void settle_velocity(PreparedRecording& out, const DerivedMotion& derived);
+// The derived acceleration where there is none.
+void settle_acceleration(PreparedRecording& out, const DerivedMotion& derived);
+// Where the acceleration changes faster than the smoother follows, inertia would be taken for
+// friction. Marked before rows are left out, dropped when the movements are cut.
+void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived);
+void drop_unresolved(PreparedRecording& out);
+// Rows of no piece have no derived motion, and the ends of a piece a poor one.
+void drop_edges(PreparedRecording& out, const DerivedMotion& derived);
+
+// ---- movements (recording_movements.cpp)
+
+// Strokes for movements. noise: of the velocity; blur: s that it is uncertain around a rest or a
+// reversal.
+void cut_strokes(PreparedRecording& out, double noise, double blur);
+
+// ---- gravity (recording_gravity.cpp)
+
+// Two quantities of different units are never subtracted.
+void check_units(const PreparedRecording& out);
+// Declared gravity that goes into the torque with a factor of -1, 1000, the gear ratio.
+void check_gravity_factor(const PreparedRecording& out, const DataOptions& options);
+// sin and cos of the position for gravity that no column declares.
+void fit_gravity(PreparedRecording& out, Gravity gravity);
+
+}  // namespace tribench

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "harness/study/log_study.hpp"
+#include "tests/support/paths.hpp"
+
+namespace tribench {
+namespace {
+
+// Seeds that nothing was settled on. Bounds are what was seen, less two of twenty.
+TEST(LogStudy, raw_logs_tell_what_clean_tables_tell) {
+  LogStudyOptions options;
+  options.logs = 20;
+  options.first_seed = 1001;
+  const LogStudy study = run_log_study(testing::program().string(), options);
+  const LogFigure& told = study.figures.at(1);
+  const LogFigure& bare = study.figures.at(2);
+  EXPECT_EQ(told.read, told.logs);
+  EXPECT_EQ(bare.read, bare.logs);
+  EXPECT_EQ(told.misread + bare.misread, 0U);
+  EXPECT_GE(told.right, 13U);
+  EXPECT_GE(bare.right, 11U);
+}
+
+}  // namespace
+}  // namespace tribench
