@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -15,14 +16,23 @@
 #include <vector>
 
 #include "algorithms/expression/text.hpp"
+#include "algorithms/external/external_method.hpp"
 #include "algorithms/registry.hpp"
 #include "foundation/error.hpp"
+#include "foundation/number_text.hpp"
+#include "foundation/shell_word.hpp"
+#include "foundation/text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/data_options.hpp"
+#include "harness/cli/fit_output.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/machine.hpp"
 #include "harness/run_cell.hpp"
+#include "harness/table_evaluator.hpp"
+#include "harness/weighted_fit.hpp"
 #include "problems/data_problem.hpp"
+#include "problems/user/user_problem.hpp"
+#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {
@@ -32,6 +42,13 @@ struct FitArguments {
   std::string target;
   std::vector<std::string> inputs;
   std::string method;
+  std::string external;
+  std::string weights;
+  std::string sigma;
+  std::string group;
+  std::optional<user::HeldOut> held_out;
+  std::string save;
+  std::vector<std::string> words;  // of the command line, after the program's name
   std::string operators = "paper";
   std::vector<std::string> parameters;  // name=value
   std::uint64_t seed = 1;
@@ -55,7 +72,9 @@ std::pair<std::string, std::string> name_and_value(const std::string& text, cons
 // A column is what --inputs and --target say; its name means nothing.
 Dataset read_columns(const std::string& file, const FitArguments& arguments) {
   std::vector<std::string> used = arguments.inputs;
-  used.push_back(arguments.target);
+  for (const std::string* more : {&arguments.target, &arguments.weights, &arguments.sigma}) {
+    if (!more->empty()) used.push_back(*more);
+  }
   const std::vector<std::filesystem::path> files = {file};
   DataFile reading = read_named_columns(files, *arguments.reading, std::move(used));
   for (const std::string& warning : reading.warnings) {
@@ -70,8 +89,8 @@ Dataset read_columns(const std::string& file, const FitArguments& arguments) {
 
 CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fixed_form) {
   CellTask task;
-  task.cell = {problem.name, arguments.method, fixed_form ? kFixedForm : arguments.operators,
-               arguments.seed};
+  const std::string& method = arguments.method.empty() ? arguments.external : arguments.method;
+  task.cell = {problem.name, method, fixed_form ? kFixedForm : arguments.operators, arguments.seed};
   task.operators = find_operator_set(arguments.operators);
   if (fixed_form) task.operators = fixed_form_operators();
   task.limits.evaluations = arguments.evaluations;
@@ -81,76 +100,186 @@ CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fix
   return task;
 }
 
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
-void print_json(const CellResult& result) {
-  const Record& record = result.record;
-  nlohmann::ordered_json front = nlohmann::ordered_json::array();
-  for (const FrontRecord& entry : result.front) {
-    front.push_back({{"formula", entry.formula},
-                     {"complexity", entry.complexity},
-                     {"mae_train", number(entry.mae_train)},
-                     {"mae_test", number(entry.mae_test)},
-                     {"singularity", entry.singularity}});
+// The words of a command as a shell would part them; quotes hold words together.
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words;
+  char quote = 0;
+  bool inside = false;
+  for (const char c : text) {
+    if (quote != 0 ? c == quote : (c == '\'' || c == '"')) {
+      quote = quote != 0 ? 0 : c;
+      if (!inside) words.emplace_back();
+      inside = true;
+    } else if (c == ' ' && quote == 0) {
+      inside = false;
+    } else {
+      if (!inside) words.emplace_back();
+      inside = true;
+      words.back() += c;
+    }
   }
-  nlohmann::ordered_json all = {{"formula", record.formula},
-                                {"complexity", record.complexity},
-                                {"nodes", record.nodes},
-                                {"mae_train", number(record.mae_train)},
-                                {"mae_test", number(record.mae_test)},
-                                {"evaluations", record.evaluations},
-                                {"fit_cpu_s", number(record.fit_cpu_s)},
-                                {"singularity", record.singularity}};
-  if (!record.witness.empty()) all["witness"] = nlohmann::json::parse(record.witness);
-  if (!record.note.empty()) all["note"] = record.note;
-  all["front"] = front;
-  fmt::print("{}\n", all.dump(2));
-}
-
-std::string figure(double value) {
-  return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string("-");
-}
-
-void print_text(const CellResult& result) {
-  fmt::print("  complexity     MAE train      MAE test  singularity  formula\n");
-  for (const FrontRecord& entry : result.front) {
-    fmt::print("{} {:10}  {:>12}  {:>12}  {:11}  {}\n", entry.chosen ? '*' : ' ', entry.complexity,
-               figure(entry.mae_train), figure(entry.mae_test), entry.singularity, entry.formula);
+  if (quote != 0 || words.empty()) {
+    throw_bad_input(fmt::format("'{}' is no command", text), "--external",
+                    "as in --external 'python3 mine.py'");
   }
-  const Record& record = result.record;
-  fmt::print("\nchosen: {}\n", record.formula);
-  if (!record.witness.empty()) fmt::print("singular at {}\n", record.witness);
-  if (!record.note.empty()) fmt::print("note: {}\n", record.note);
-  fmt::print("{} node-rows, {:.3g} CPU seconds\n", record.evaluations, record.fit_cpu_s);
+  return words;
 }
 
-void fit(const FitArguments& arguments, const Registry& registry) {
-  const AlgorithmEntry& entry = registry.find(arguments.method);
+// Of a program nobody knows the kinds: as a grid's TOML would have them.
+ParameterValue plain_value(const std::string& text) {
+  if (text == "true" || text == "false") return text == "true";
+  if (const auto whole = read_number<std::int64_t>(text)) return *whole;
+  if (const auto real = read_number<double>(text)) return *real;
+  return text;
+}
+
+struct ChosenMethod {
+  std::unique_ptr<Regressor> method;
+  bool fixed_form = false;
+};
+
+ChosenMethod choose_method(const FitArguments& arguments, const Registry& registry) {
   std::map<std::string, ParameterValue> parameters;
+  if (!arguments.external.empty()) {
+    for (const std::string& text : arguments.parameters) {
+      const auto [name, value] = name_and_value(text, "--parameter");
+      parameters[name] = plain_value(value);
+    }
+    return {make_external_method(words_of(arguments.external), parameters), false};
+  }
+  const AlgorithmEntry& entry = registry.find(arguments.method);
   for (const std::string& text : arguments.parameters) {
     const auto [name, value] = name_and_value(text, "--parameter");
     parameters[name] = parameter_from_text(entry.parameters, name, value);
   }
-  const std::unique_ptr<Regressor> method = registry.make(arguments.method, parameters);
-  const Dataset train = read_columns(arguments.data, arguments);
-  std::optional<Dataset> test;
-  if (!arguments.test.empty()) test = read_columns(arguments.test, arguments);
-  const Problem problem =
-      make_data_problem(train, test ? &*test : nullptr, arguments.target, arguments.inputs);
-  const CellResult result =
-      fit_and_judge(problem, *method, task_of(arguments, problem, entry.fixed_form));
-  if (result.record.status != "ok") {
-    const bool is_unsupported = result.record.reason.starts_with("unsupported");
-    throw Error(is_unsupported ? ErrorKind::bad_input : ErrorKind::failed, result.record.reason,
-                arguments.method,
-                is_unsupported
-                    ? "say what the columns are (--roles COLUMN=ROLE), or choose another "
-                      "method"
-                    : "");
+  return {registry.make(arguments.method, parameters), entry.fixed_form};
+}
+
+// Nothing is held out unless it is asked for; then, as in a grid, by groups or single rows.
+Problem make_problem(const FitArguments& arguments, const std::vector<std::string>& inputs) {
+  if (!arguments.held_out && arguments.group.empty()) {
+    const Dataset train = read_columns(arguments.data, arguments);
+    std::optional<Dataset> test;
+    if (!arguments.test.empty()) test = read_columns(arguments.test, arguments);
+    return make_data_problem(train, test ? &*test : nullptr, arguments.target, inputs);
   }
-  arguments.json ? print_json(result) : print_text(result);
+  user::UserProblem own;
+  own.name = user::name_of_file(arguments.data);
+  const std::vector<std::filesystem::path> files = {arguments.data};
+  own.files = user::hashed(files);
+  own.target = arguments.target;
+  own.inputs = inputs;
+  own.reading = *arguments.reading;
+  own.group = arguments.group;
+  own.held_out.kind = user::HeldOut::Kind::nothing;
+  if (arguments.held_out) own.held_out = *arguments.held_out;
+  if (!arguments.test.empty()) {
+    const std::vector<std::filesystem::path> tests = {arguments.test};
+    own.held_out.kind = user::HeldOut::Kind::files;
+    own.held_out.files = user::hashed(tests);
+  }
+  return user::make_user_problem(own, {}, arguments.seed);
+}
+
+// Weights travel with the rows as an input that no method sees; taken out again here.
+std::vector<double> take_weights(const FitArguments& arguments, Problem& problem) {
+  if (arguments.weights.empty() && arguments.sigma.empty()) return {};
+  Stage& stage = problem.stages.front();
+  std::vector<double> weights = std::move(stage.train.columns.back());
+  problem.inputs.pop_back();
+  stage.inputs.pop_back();
+  stage.train.columns.pop_back();
+  problem.test.columns.pop_back();
+  if (arguments.sigma.empty()) return weights;
+  for (std::size_t r = 0; r < weights.size(); ++r) {
+    if (!(weights[r] > 0)) {
+      throw_bad_input(fmt::format("'{}' is {} in row {}", arguments.sigma, weights[r], r + 1),
+                      arguments.data, "a standard deviation is above 0");
+    }
+    weights[r] = 1 / (weights[r] * weights[r]);
+  }
+  return weights;
+}
+
+// What gives the same formula again: seconds depend on the machine, evaluations do not.
+std::string reproducing(const FitArguments& arguments, const Record& record, bool by_clock) {
+  std::vector<std::string> words = arguments.words;
+  if (by_clock || arguments.spends_all) {
+    constexpr const char* kAmple = "1e6";
+    for (const char* option : {"--seconds", "--evaluations"}) {
+      const auto found = std::ranges::find(words, option);
+      if (found != words.end()) words.erase(found, std::min(found + 2, words.end()));
+    }
+    words.insert(words.end(), {"--evaluations", std::to_string(record.evaluations)});
+    if (arguments.spends_all) words.insert(words.end(), {"--seconds", kAmple});
+  }
+  std::string line = "tribench";
+  for (const std::string& word : words) line += " " + shell_word(word);
+  return line;
+}
+
+void add_intervals(const FitArguments& arguments, const Problem& problem,
+                   std::span<const double> weights, FitAnswer& answer) {
+  const Table& table = problem.stages.front().train;
+  try {
+    answer.intervals = fit_intervals(parse(answer.result.record.formula, problem.input_names()),
+                                     TableInputs(table).inputs(), table.target, table.movement,
+                                     weights, !arguments.sigma.empty());
+  } catch (const Error& error) {
+    answer.no_intervals = error.what();
+  }
+}
+
+void fit(const FitArguments& arguments, const Registry& registry) {
+  const ChosenMethod chosen = choose_method(arguments, registry);
+  std::vector<std::string> inputs = arguments.inputs;
+  for (const std::string* column : {&arguments.weights, &arguments.sigma}) {
+    if (!column->empty()) inputs.push_back(*column);
+  }
+  Problem problem = make_problem(arguments, inputs);
+  const std::vector<double> weights = take_weights(arguments, problem);
+  const CellTask task = task_of(arguments, problem, chosen.fixed_form);
+  FitAnswer answer;
+  answer.result = weights.empty() ? fit_and_judge(problem, *chosen.method, task)
+                                  : fit_weighted(problem, weights, *chosen.method, task);
+  const Record& record = answer.result.record;
+  if (record.status != "ok") {
+    const bool is_unsupported = record.reason.starts_with("unsupported");
+    throw Error(
+        is_unsupported ? ErrorKind::bad_input : ErrorKind::failed, record.reason, arguments.method,
+        is_unsupported ? "say what the columns are (--roles COLUMN=ROLE), or choose another "
+                         "method"
+                       : "");
+  }
+  const bool by_clock = record.note.find("ended by the clock") != std::string::npos;
+  // A search stops before the step that would overdraw its budget.
+  constexpr double kSpent = 0.99;
+  const bool by_evaluations = static_cast<double>(record.evaluations) >=
+                              kSpent * static_cast<double>(arguments.evaluations);
+  answer.ended = by_clock ? "seconds" : by_evaluations ? "evaluations" : "finished";
+  answer.reproduce = reproducing(arguments, record, by_clock);
+  answer.inputs = problem.input_names();
+  answer.target = problem.target;
+  add_intervals(arguments, problem, weights, answer);
+  if (!arguments.save.empty()) write_file(arguments.save, fit_json(answer).dump(2) + "\n");
+  if (arguments.json) {
+    fmt::print("{}\n", fit_json(answer).dump(2));
+  } else {
+    print_fit(answer);
+  }
+}
+
+// As they were typed.
+std::vector<std::string> own_words() {
+  std::string text = read_file_if_there("/proc/self/cmdline").value_or("");
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\0', begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  if (!words.empty()) words.erase(words.begin());
+  return words;
 }
 
 }  // namespace
@@ -168,8 +297,12 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
       ->add_option("--inputs", arguments->inputs, "the columns to explain it by; sgn_X is derived")
       ->required()
       ->delimiter(',');
-  command->add_option("--method", arguments->method, "a name of `tribench list methods`")
-      ->required();
+  CLI::Option* method =
+      command->add_option("--method", arguments->method, "a name of `tribench list methods`");
+  command
+      ->add_option("--external", arguments->external,
+                   "'PROGRAM WORDS': a program as the method (docs/external_methods.md)")
+      ->excludes(method);
   command->add_option("--operators", arguments->operators, "a name of `tribench list operators`")
       ->capture_default_str();
   command->add_option("--parameter", arguments->parameters, "name=value of the method; repeatable");
@@ -188,9 +321,32 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
               "CPU seconds to spend: fits again from other starts until they are, or the data "
               "are explained to rounding; without it one fit of at most 60")
           ->transform(real_number(0.0, 1e9));
-  command->add_option("--test", arguments->test, "other data to judge by");
+  CLI::Option* test = command->add_option("--test", arguments->test, "other data to judge by");
+  command
+      ->add_option_function<std::string>(
+          "--split",
+          [arguments = arguments.get()](const std::string& text) {
+            arguments->held_out = user::parse_held_out(text, "--split");
+          },
+          "hold out a share of the rows (0.25), drawn with the seed, or COLUMN=VALUE")
+      ->excludes(test);
+  command->add_option("--group", arguments->group,
+                      "the column whose equal values are one movement: kept whole by --split, the "
+                      "unit of the intervals");
+  CLI::Option* weights = command->add_option("--weights", arguments->weights,
+                                             "a column: how much each row's squared error counts");
+  command
+      ->add_option("--sigma", arguments->sigma,
+                   "a column: the standard deviation of each row's target")
+      ->excludes(weights);
+  command->add_option("--save", arguments->save, "a file for `tribench predict`, with intervals");
   command->add_flag("--json", arguments->json, "print JSON");
   command->callback([arguments, &registry, seconds, evaluations] {
+    if (arguments->method.empty() && arguments->external.empty()) {
+      throw_bad_input("no method is given", "--method",
+                      "name one of `tribench list methods`, or a program by --external");
+    }
+    arguments->words = own_words();
     constexpr std::uint64_t kNoLimit = 1'000'000'000'000'000'000;
     arguments->spends_all = seconds->count() > 0;
     if (arguments->spends_all && evaluations->count() == 0) arguments->evaluations = kNoLimit;

@@ -16,6 +16,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/fit_output.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
 #include "reports/csv.hpp"
@@ -25,9 +26,9 @@ namespace tribench {
 namespace {
 
 // MODEL: a file with the JSON of `fit --json`, or a formula.
-std::string formula_of(const std::string& model) {
+nlohmann::json model_of(const std::string& model) {
   std::error_code is_no_path;  // a long formula is none
-  if (!std::filesystem::is_regular_file(model, is_no_path)) return model;
+  if (!std::filesystem::is_regular_file(model, is_no_path)) return {{"formula", model}};
   std::ifstream in(model);
   const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
   if (json.is_discarded() || !json.is_object() || !json.contains("formula") ||
@@ -35,20 +36,39 @@ std::string formula_of(const std::string& model) {
     throw_bad_input("this is no model: it has no formula", model,
                     "give a formula, or what 'tribench fit --json' prints");
   }
-  return json["formula"];
+  return json;
 }
 
-std::vector<double> predictions(const std::string& model, const Dataset& data) {
+std::string predictions(const std::string& file, const Dataset& data, bool intervals) {
+  const nlohmann::json model = model_of(file);
   std::vector<std::string> names;
-  const std::string text = formula_of(model);
-  const Expression formula = parse_collecting_names(text, names);
+  const Expression formula = parse_collecting_names(model["formula"].get<std::string>(), names);
   std::vector<std::vector<double>> columns;
   std::vector<const double*> pointers;
   for (const std::string& name : names) columns.push_back(input_values(data, name));
   for (const std::vector<double>& column : columns) pointers.push_back(column.data());
   std::vector<double> values(data.rows());
-  Evaluator().evaluate(formula, {pointers, data.rows()}, values);
-  return values;
+  const Inputs inputs{pointers, data.rows()};
+  Evaluator().evaluate(formula, inputs, values);
+  std::vector<double> halves;
+  if (intervals) {
+    const FitIntervals kept = read_fit_intervals(model, file);
+    for (const std::size_t place : kept.places) {
+      if (place < formula.size() && formula.node(place).is_constant()) continue;
+      throw_bad_input("the intervals are of another formula", file,
+                      "save the model again by: tribench fit --save FILE");
+    }
+    halves = curve_half_widths(formula, kept, inputs);
+  }
+  std::string text = intervals ? "prediction,low,high\n" : "prediction\n";
+  for (std::size_t r = 0; r < values.size(); ++r) {
+    text += csv_number(values[r]);
+    if (intervals) {
+      text += "," + csv_number(values[r] - halves[r]) + "," + csv_number(values[r] + halves[r]);
+    }
+    text += "\n";
+  }
+  return text;
 }
 
 }  // namespace
@@ -56,7 +76,7 @@ std::vector<double> predictions(const std::string& model, const Dataset& data) {
 void add_predict_command(CLI::App& app, ExitStatus& /*status*/) {
   CLI::App* command = app.add_subcommand("predict", "A fitted formula's values on a data file");
   command->footer(
-      "Example: tribench fit joint.csv --target tau_f --inputs v,sgn_v --method pysr --json > "
+      "Example: tribench fit joint.csv --target tau_f --inputs v,sgn_v --method pysr --save "
       "m.json"
       "\n         tribench predict m.json later.csv --out predicted.csv");
   auto model = std::make_shared<std::string>();
@@ -66,12 +86,12 @@ void add_predict_command(CLI::App& app, ExitStatus& /*status*/) {
       ->required();
   command->add_option("DATA", *data, "a CSV file with the formula's columns")->required();
   command->add_option("--out", *out, "the file to write; else to the terminal");
-  command->callback([model, data, out] {
-    std::string text = "prediction\n";
-    for (const double value :
-         predictions(*model, read_csv(*data, CsvOptions{.names_tell = false}).data)) {
-      text += csv_number(value) + "\n";
-    }
+  auto intervals = std::make_shared<bool>(false);
+  command->add_flag("--intervals", *intervals,
+                    "with a model of `fit --save`: 95 % of the curve, as columns low and high");
+  command->callback([model, data, out, intervals] {
+    const std::string text =
+        predictions(*model, read_csv(*data, CsvOptions{.names_tell = false}).data, *intervals);
     if (out->empty()) {
       std::fputs(text.c_str(), stdout);
     } else {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,7 @@ namespace tribench::testing {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 // tau = 3 sgn(v) + 2 v in two movements, exactly.
@@ -83,6 +85,105 @@ TEST_F(FitTest, RefusesBadInputWithPlaceAndMend) {
               HasSubstr("template, character 3: 'velocity_rad' is not an input; did you mean"));
   EXPECT_EQ(fit({"--target", "x", "--inputs", "y", "--method", "linear", "--seed", "-1"}).status,
             2);
+}
+
+// y = 1.5 v + noise of 1 in every other row, none beside it: only weights tell which.
+class UnequalRowsTest : public FitTest {
+ protected:
+  void SetUp() override {
+    std::string text = "v,y,sigma,weight,group,fold,bad\n";
+    for (int i = 0; i < 80; ++i) {
+      const double v = -2 + 0.05 * i;
+      const bool rough = i % 2 == 0;
+      const double noise = rough ? 0.8 + std::sin(1.7 * i) : 1e-3 * std::sin(2.3 * i);
+      text += std::to_string(v) + "," + std::to_string(1.5 * v + 0.25 + noise) + "," +
+              (rough ? "1" : "0.001") + "," + (rough ? "0" : "1") + "," + std::to_string(i / 5) +
+              "," + std::to_string(i % 4) + ",-1\n";
+    }
+    write_text(folder_ / "train.csv", text);
+  }
+  json answer(const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"--target", "y", "--inputs", "v", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramRun run = fit(words);
+    EXPECT_EQ(run.status, 0) << run.errors;
+    return json::parse(run.output);
+  }
+  std::string refusal(const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"--target", "y", "--inputs", "v"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramRun run = fit(words);
+    EXPECT_EQ(run.status, 2) << run.errors;
+    return run.errors;
+  }
+  // Whether a constant near 1.5 has an interval that holds 1.5 and is no wider than `width`.
+  static bool knows_the_slope(const json& answer, double width) {
+    for (const json& one : answer.at("intervals").at("constants")) {
+      const double low = one.at("low");
+      const double high = one.at("high");
+      if (low <= 1.5 && 1.5 <= high && high - low <= width) return true;
+    }
+    return false;
+  }
+};
+
+TEST_F(UnequalRowsTest, WeightsAndStandardDeviationsSayWhichRowsCount) {
+  EXPECT_FALSE(knows_the_slope(answer({"--method", "linear"}), 0.01));
+  EXPECT_TRUE(knows_the_slope(answer({"--method", "linear", "--sigma", "sigma"}), 0.01));
+  EXPECT_TRUE(knows_the_slope(answer({"--method", "linear", "--weights", "weight"}), 0.01));
+  EXPECT_THAT(refusal({"--method", "linear", "--weights", "bad"}),
+              AllOf(HasSubstr("row 1"), HasSubstr("0 or more")));
+  EXPECT_THAT(refusal({"--method", "linear", "--sigma", "weight"}), HasSubstr("above 0"));
+  EXPECT_THAT(refusal({"--method", "linear", "--sigma", "sgima"}), HasSubstr("sigma"));
+}
+
+TEST_F(UnequalRowsTest, HoldsOutWhatItIsAskedTo) {
+  const json whole = answer({"--method", "linear"});
+  EXPECT_TRUE(whole.at("mae_test").is_null());
+  EXPECT_EQ(whole.at("intervals").at("unit"), "row");
+  EXPECT_EQ(whole.at("intervals").at("units"), 80);
+  const json part = answer({"--method", "linear", "--split", "0.25", "--group", "group"});
+  EXPECT_EQ(part.at("intervals").at("unit"), "movement");
+  EXPECT_EQ(part.at("intervals").at("units"), 12);
+  EXPECT_GT(part.at("mae_test").get<double>(), 0);
+  EXPECT_EQ(answer({"--method", "linear", "--split", "fold=3"}).at("intervals").at("units"), 60);
+  EXPECT_THAT(refusal({"--method", "linear", "--split", "fold=9"}), HasSubstr("values there"));
+}
+
+TEST_F(UnequalRowsTest, AProgramIsAMethod) {
+  write_text(folder_ / "mine.sh", "echo '{\"front\": [\"1.5*v + 0.25\"]}'\n");
+  const json told = answer({"--external", "bash '" + (folder_ / "mine.sh").string() + "'"});
+  EXPECT_EQ(told.at("formula"), "1.5*v + 0.25");
+  EXPECT_EQ(told.at("ended"), "finished");
+  EXPECT_THAT(refusal({"--external", "bash 'open"}), HasSubstr("--external"));
+  EXPECT_THAT(refusal({}), HasSubstr("--method"));
+}
+
+TEST_F(UnequalRowsTest, ASavedModelPredictsWithIntervals) {
+  const std::string model = (folder_ / "model.json").string();
+  answer({"--method", "linear", "--save", model});
+  const ProgramRun run = run_to_end(
+      {program().string(), "predict", model, (folder_ / "train.csv").string(), "--intervals"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, ::testing::StartsWith("prediction,low,high\n"));
+  EXPECT_EQ(std::ranges::count(run.output, '\n'), 81);
+  const ProgramRun none = run_to_end(
+      {program().string(), "predict", "2*v", (folder_ / "train.csv").string(), "--intervals"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.errors, HasSubstr("--save"));
+}
+
+TEST_F(UnequalRowsTest, TheCommandItNamesGivesTheSameAgain) {
+  // Of seconds it says the evaluations that they came to.
+  const json clocked = answer({"--method", "pysr", "--seconds", "0.05"});
+  EXPECT_THAT(clocked.at("reproduce").get<std::string>(),
+              HasSubstr("--evaluations " + clocked.at("evaluations").dump()));
+  const json once = answer({"--method", "pysr", "--seed", "7"});
+  const std::string line = once.at("reproduce");
+  const ProgramRun again =
+      run_to_end({"bash", "-c", program().string() + line.substr(std::string("tribench").size())});
+  ASSERT_EQ(again.status, 0) << again.errors;
+  EXPECT_EQ(json::parse(again.output).at("formula"), once.at("formula"));
 }
 
 }  // namespace

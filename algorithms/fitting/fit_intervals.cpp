@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/fitting/fit_intervals.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "algorithms/expression/differentiate.hpp"
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+// Fewer movements say too little about how movements differ.
+constexpr std::size_t kLeastMovements = 8;
+// Of the largest eigenvalue of the scaled J^T J: below it a direction is not determined.
+constexpr double kRankTolerance = 1e-11;
+
+std::vector<std::size_t> free_constants(const Expression& formula) {
+  std::set<std::size_t> exponents;
+  for (std::size_t i = 0; i < formula.size(); ++i) {
+    if (formula.node(i).op != Op::pow) continue;
+    const std::size_t exponent = formula.right_child(i);
+    const Node& node = formula.node(exponent);
+    if (node.is_constant() && node.value == std::round(node.value)) exponents.insert(exponent);
+  }
+  std::vector<std::size_t> places = formula.constant_positions();
+  std::erase_if(places, [&](std::size_t place) { return exponents.contains(place); });
+  return places;
+}
+
+Eigen::MatrixXd jacobian_of(const Expression& formula, std::span<const std::size_t> places,
+                            const Inputs& inputs, std::span<double> values) {
+  Differentiator differentiator;
+  differentiator.prepare(formula, places);
+  const auto rows = static_cast<Eigen::Index>(inputs.rows);
+  Eigen::MatrixXd jacobian(rows, static_cast<Eigen::Index>(places.size()));
+  differentiator.jacobian(inputs, values,
+                          {jacobian.data(), static_cast<std::size_t>(jacobian.size())});
+  return jacobian;
+}
+
+// A symmetric matrix's inverse on the directions that are determined.
+struct PseudoInverse {
+  Eigen::MatrixXd inverse;
+  Eigen::MatrixXd null_space;  // a column a direction that is not
+  Eigen::Index rank() const { return inverse.rows() - null_space.cols(); }
+};
+
+PseudoInverse pseudo_inverse(const Eigen::MatrixXd& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  const Eigen::VectorXd& values = solver.eigenvalues();
+  const double least = kRankTolerance * std::max(values.maxCoeff(), 0.0);
+  Eigen::Index lost = 0;
+  while (lost < values.size() && !(values[lost] > least)) ++lost;
+  const Eigen::MatrixXd kept = solver.eigenvectors().rightCols(values.size() - lost);
+  const Eigen::VectorXd inverted = values.tail(values.size() - lost).cwiseInverse();
+  return {kept * inverted.asDiagonal() * kept.transpose(), solver.eigenvectors().leftCols(lost)};
+}
+
+// Nothing where a movement alone determines something.
+std::optional<Eigen::MatrixXd> jackknife(const Eigen::MatrixXd& jacobian,
+                                         const Eigen::VectorXd& residual,
+                                         const std::map<int, std::vector<Eigen::Index>>& movements,
+                                         Eigen::Index rank) {
+  const Eigen::Index p = jacobian.cols();
+  const Eigen::MatrixXd whole = jacobian.transpose() * jacobian;
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(p, p);
+  for (const auto& [movement, rows] : movements) {
+    Eigen::MatrixXd part = Eigen::MatrixXd::Zero(p, p);
+    Eigen::VectorXd score = Eigen::VectorXd::Zero(p);
+    for (const Eigen::Index r : rows) {
+      part += jacobian.row(r).transpose() * jacobian.row(r);
+      score += jacobian.row(r).transpose() * residual[r];
+    }
+    const PseudoInverse rest = pseudo_inverse(whole - part);
+    if (rest.rank() < rank) return std::nullopt;
+    const Eigen::VectorXd moved = rest.inverse * score;
+    covariance += moved * moved.transpose();
+  }
+  const auto count = static_cast<double>(movements.size());
+  return covariance * ((count - 1) / count);
+}
+
+}  // namespace
+
+double student_point(double freedom) {
+  constexpr double kNormal = 1.959963984540054;
+  if (freedom < 1.5) return 12.706204736432095;
+  if (freedom < 2.5) return 4.302652729696142;
+  // Abramowitz & Stegun 1964, 26.7.5.
+  const double z = kNormal;
+  const double z2 = z * z;
+  const double g1 = (z2 + 1) * z / 4;
+  const double g2 = ((5 * z2 + 16) * z2 + 3) * z / 96;
+  const double g3 = (((3 * z2 + 19) * z2 + 17) * z2 - 15) * z / 384;
+  const double g4 = ((((79 * z2 + 776) * z2 + 1482) * z2 - 1920) * z2 - 945) * z / 92160;
+  return z + (g1 + (g2 + (g3 + g4 / freedom) / freedom) / freedom) / freedom;
+}
+
+FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
+                           std::span<const double> target, std::span<const int> movement,
+                           std::span<const double> weights, bool known_variance) {
+  FitIntervals result;
+  result.places = free_constants(formula);
+  const auto p = static_cast<Eigen::Index>(result.places.size());
+  const auto n = static_cast<Eigen::Index>(inputs.rows);
+  result.unit = "row";
+  result.units = inputs.rows;
+  if (p == 0) return result;
+  std::vector<double> values(inputs.rows);
+  Eigen::MatrixXd jacobian = jacobian_of(formula, result.places, inputs, values);
+  Eigen::VectorXd residual(n);
+  for (Eigen::Index r = 0; r < n; ++r) {
+    const auto row = static_cast<std::size_t>(r);
+    const double root = weights.empty() ? 1 : std::sqrt(weights[row]);
+    residual[r] = root * (target[row] - values[row]);
+    jacobian.row(r) *= root;
+  }
+  if (!jacobian.allFinite() || !residual.allFinite()) {
+    throw_bad_input("the formula has no finite derivative in some row", {},
+                    "its constants have no intervals");
+  }
+  // Columns of like lengths; one that is 0 everywhere stays, and is not determined.
+  Eigen::VectorXd scale = jacobian.colwise().norm();
+  for (Eigen::Index k = 0; k < p; ++k) scale[k] = scale[k] > 0 ? scale[k] : 1;
+  jacobian = jacobian * scale.cwiseInverse().asDiagonal();
+  const PseudoInverse base = pseudo_inverse(jacobian.transpose() * jacobian);
+  const Eigen::Index rank = base.rank();
+  if (n <= rank) {
+    throw_bad_input(fmt::format("{} rows for {} constants", n, p), {},
+                    "intervals need more rows than constants");
+  }
+  const double variance =
+      known_variance ? 1 : residual.squaredNorm() / static_cast<double>(n - rank);
+  Eigen::MatrixXd covariance = variance * base.inverse;
+  result.quantile = student_point(known_variance ? 1e9 : static_cast<double>(n - rank));
+  std::map<int, std::vector<Eigen::Index>> movements;
+  for (std::size_t r = 0; r < movement.size(); ++r) {
+    movements[movement[r]].push_back(static_cast<Eigen::Index>(r));
+  }
+  const bool grouped = movements.size() < inputs.rows && !known_variance &&
+                       movements.size() >= std::max(kLeastMovements, result.places.size() + 3);
+  if (grouped) {
+    if (const auto robust = jackknife(jacobian, residual, movements, rank)) {
+      covariance = *robust;
+      result.unit = "movement";
+      result.units = movements.size();
+      result.quantile = student_point(static_cast<double>(movements.size() - 1));
+    }
+  }
+  covariance = scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
+  for (Eigen::Index k = 0; k < p; ++k) {
+    const double value = formula.node(result.places[static_cast<std::size_t>(k)]).value;
+    constexpr double kLost = 1e-6;
+    const bool lost = rank < p && base.null_space.row(k).norm() > kLost;
+    const double half = lost ? kMissing : result.quantile * std::sqrt(covariance(k, k));
+    result.constants.push_back({value, value - half, value + half});
+    for (Eigen::Index l = 0; l < p; ++l) result.covariance.push_back(covariance(k, l));
+  }
+  return result;
+}
+
+std::vector<double> curve_half_widths(const Expression& formula, const FitIntervals& intervals,
+                                      const Inputs& inputs) {
+  std::vector<double> halves(inputs.rows, 0);
+  const auto p = static_cast<Eigen::Index>(intervals.places.size());
+  if (p == 0) return halves;
+  std::vector<double> values(inputs.rows);
+  const Eigen::MatrixXd jacobian = jacobian_of(formula, intervals.places, inputs, values);
+  const Eigen::Map<const Eigen::MatrixXd> covariance(intervals.covariance.data(), p, p);
+  for (std::size_t r = 0; r < halves.size(); ++r) {
+    const Eigen::VectorXd slope = jacobian.row(static_cast<Eigen::Index>(r)).transpose();
+    halves[r] = intervals.quantile * std::sqrt(std::max(0.0, slope.dot(covariance * slope)));
+  }
+  return halves;
+}
+
+}  // namespace tribench

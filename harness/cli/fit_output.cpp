@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "harness/cli/fit_output.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "foundation/error.hpp"
+
+namespace tribench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string figure(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string("-");
+}
+
+Json intervals_json(const FitIntervals& intervals) {
+  Json constants = Json::array();
+  for (std::size_t k = 0; k < intervals.constants.size(); ++k) {
+    const ConstantInterval& one = intervals.constants[k];
+    constants.push_back({{"value", number(one.value)},
+                         {"low", number(one.low)},
+                         {"high", number(one.high)},
+                         {"place", intervals.places[k]}});
+  }
+  return {{"level", 0.95},
+          {"given", "the form of the formula"},
+          {"unit", intervals.unit},
+          {"units", intervals.units},
+          {"constants", constants},
+          {"quantile", intervals.quantile},
+          {"covariance", intervals.covariance}};
+}
+
+}  // namespace
+
+Json fit_json(const FitAnswer& answer) {
+  const Record& record = answer.result.record;
+  Json front = Json::array();
+  for (const FrontRecord& entry : answer.result.front) {
+    front.push_back({{"formula", entry.formula},
+                     {"complexity", entry.complexity},
+                     {"mae_train", number(entry.mae_train)},
+                     {"mae_test", number(entry.mae_test)},
+                     {"singularity", entry.singularity}});
+  }
+  Json all = {{"formula", record.formula},
+              {"complexity", record.complexity},
+              {"nodes", record.nodes},
+              {"mae_train", number(record.mae_train)},
+              {"mae_test", number(record.mae_test)},
+              {"evaluations", record.evaluations},
+              {"fit_cpu_s", number(record.fit_cpu_s)},
+              {"singularity", record.singularity}};
+  if (!record.witness.empty()) all["witness"] = nlohmann::json::parse(record.witness);
+  if (!record.note.empty()) all["note"] = record.note;
+  all["target"] = answer.target;
+  all["inputs"] = answer.inputs;
+  all["ended"] = answer.ended;
+  all["reproduce"] = answer.reproduce;
+  if (answer.intervals) all["intervals"] = intervals_json(*answer.intervals);
+  all["front"] = front;
+  return all;
+}
+
+void print_fit(const FitAnswer& answer) {
+  fmt::print("  complexity     MAE train      MAE test  singularity  formula\n");
+  for (const FrontRecord& entry : answer.result.front) {
+    fmt::print("{} {:10}  {:>12}  {:>12}  {:11}  {}\n", entry.chosen ? '*' : ' ', entry.complexity,
+               figure(entry.mae_train), figure(entry.mae_test), entry.singularity, entry.formula);
+  }
+  const Record& record = answer.result.record;
+  fmt::print("\nchosen: {}\n", record.formula);
+  if (!record.witness.empty()) fmt::print("singular at {}\n", record.witness);
+  if (!record.note.empty()) fmt::print("note: {}\n", record.note);
+  if (answer.intervals) {
+    fmt::print("constants, 95 %, given the form ({} {}s as units):\n", answer.intervals->units,
+               answer.intervals->unit);
+    for (const ConstantInterval& one : answer.intervals->constants) {
+      fmt::print("  {:<14} {}\n", figure(one.value),
+                 std::isfinite(one.low) ? fmt::format("{} .. {}", figure(one.low), figure(one.high))
+                                        : std::string("not determined by the rows"));
+    }
+  } else {
+    fmt::print("no intervals: {}\n", answer.no_intervals);
+  }
+  fmt::print("{} node-rows, {:.3g} CPU seconds; ended by: {}\nagain: {}\n", record.evaluations,
+             record.fit_cpu_s, answer.ended, answer.reproduce);
+}
+
+FitIntervals read_fit_intervals(const nlohmann::json& model, const std::string& file) {
+  FitIntervals intervals;
+  try {
+    const nlohmann::json& kept = model.at("intervals");
+    intervals.quantile = kept.at("quantile");
+    intervals.covariance = kept.at("covariance").get<std::vector<double>>();
+    for (const nlohmann::json& one : kept.at("constants"))
+      intervals.places.push_back(one.at("place"));
+  } catch (const nlohmann::json::exception&) {
+    throw_bad_input("this model has no intervals", file, "save one by: tribench fit --save FILE");
+  }
+  const std::size_t p = intervals.places.size();
+  if (intervals.covariance.size() != p * p) {
+    throw_bad_input("the covariance does not fit the constants", file,
+                    "save the model again by: tribench fit --save FILE");
+  }
+  return intervals;
+}
+
+}  // namespace tribench

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// What `tribench fit` answers: for a terminal, as JSON, as a file that `tribench predict` reads.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "algorithms/fitting/fit_intervals.hpp"
+#include "harness/cell_task.hpp"
+
+namespace tribench {
+
+struct FitAnswer {
+  CellResult result;
+  std::optional<FitIntervals> intervals;
+  std::string no_intervals;  // why there are none
+  std::string ended;         // "finished", "evaluations", "seconds"
+  std::string reproduce;     // the command that gives the same again
+  std::vector<std::string> inputs;
+  std::string target;
+};
+
+nlohmann::ordered_json fit_json(const FitAnswer& answer);
+void print_fit(const FitAnswer& answer);
+
+// Of a file with the JSON of a fit. Throws Error (bad_input) with the file where it has none.
+FitIntervals read_fit_intervals(const nlohmann::json& model, const std::string& file);
+
+}  // namespace tribench

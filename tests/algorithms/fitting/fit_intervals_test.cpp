@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/fitting/fit_intervals.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "algorithms/expression/text.hpp"
+#include "algorithms/fitting/constant_fit.hpp"
+#include "foundation/error.hpp"
+#include "foundation/random.hpp"
+
+namespace tribench {
+namespace {
+
+const std::vector<std::string> kNames = {"x"};
+
+struct Rows {
+  std::vector<double> x;
+  std::vector<double> y;
+  std::vector<int> movement;
+
+  std::vector<const double*> columns() const { return {x.data()}; }
+};
+
+double law(double x) { return 2 * std::exp(-1.5 * x) + 0.5; }
+
+// Noise of a row, and of a movement of 12 rows as a whole.
+Rows draw(std::uint64_t seed, int rows, double of_row, double of_movement) {
+  RandomStream random(seed);
+  Rows drawn;
+  double shared = 0;
+  for (int r = 0; r < rows; ++r) {
+    if (r % 12 == 0) shared = of_movement * random.normal();
+    drawn.x.push_back(random.uniform(0, 2));
+    drawn.y.push_back(law(drawn.x.back()) + shared + of_row * random.normal());
+    drawn.movement.push_back(r / 12);
+  }
+  return drawn;
+}
+
+FitIntervals fitted(const Rows& rows, Expression& formula) {
+  const std::vector<const double*> columns = rows.columns();
+  ConstantFitter().fit(formula, {columns, rows.x.size()}, rows.y);
+  return fit_intervals(formula, {columns, rows.x.size()}, rows.y, rows.movement);
+}
+
+TEST(FitIntervals, AreTheTextbooksForAStraightLine) {
+  // Anscombe's first set: 3.0001 (1.1247) and 0.5001 (0.1179), 9 degrees of freedom.
+  Rows rows;
+  rows.x = {10, 8, 13, 9, 11, 14, 6, 4, 12, 7, 5};
+  rows.y = {8.04, 6.95, 7.58, 8.81, 8.33, 9.96, 7.24, 4.26, 10.84, 4.82, 5.68};
+  rows.movement.assign(11, 0);
+  Expression line = parse("1 + 1*x", kNames);
+  const FitIntervals intervals = fitted(rows, line);
+  ASSERT_EQ(intervals.constants.size(), 2U);
+  EXPECT_EQ(intervals.unit, "row");
+  EXPECT_NEAR(intervals.constants[0].value, 3.0001, 1e-4);
+  EXPECT_NEAR(intervals.constants[0].high - intervals.constants[0].value, 2.262157 * 1.1247, 1e-3);
+  EXPECT_NEAR(intervals.constants[1].value - intervals.constants[1].low, 2.262157 * 0.1179, 1e-3);
+  // Of the line at the mean of x: s / sqrt(n), s = 1.2366.
+  const std::vector<double> at = {9};
+  const std::vector<const double*> columns = {at.data()};
+  EXPECT_NEAR(curve_half_widths(line, intervals, {columns, 1})[0],
+              2.262157 * 1.2366 / std::sqrt(11.0), 1e-3);
+}
+
+TEST(FitIntervals, StudentsPointsAreTheTables) {
+  EXPECT_NEAR(student_point(1), 12.7062, 1e-4);
+  EXPECT_NEAR(student_point(2), 4.30265, 1e-5);
+  EXPECT_NEAR(student_point(3), 3.18245, 2e-2);
+  EXPECT_NEAR(student_point(5), 2.57058, 1e-3);
+  EXPECT_NEAR(student_point(10), 2.22814, 1e-4);
+  EXPECT_NEAR(student_point(1e9), 1.95996, 1e-5);
+}
+
+TEST(FitIntervals, SayWhatTheRowsDoNotDetermine) {
+  const Rows rows = draw(1, 60, 0.05, 0);
+  Expression twice = parse("1.5*(0.7*x) + 0.5*x^2 + 1", kNames);
+  const FitIntervals intervals = fitted(rows, twice);
+  ASSERT_EQ(intervals.constants.size(), 4U);  // the exponent is part of the form
+  EXPECT_TRUE(std::isnan(intervals.constants[0].low));
+  EXPECT_TRUE(std::isnan(intervals.constants[1].low));
+  EXPECT_LT(intervals.constants[2].low, intervals.constants[2].high);
+  const std::vector<const double*> columns = rows.columns();
+  for (const double half : curve_half_widths(twice, intervals, {columns, rows.x.size()})) {
+    EXPECT_TRUE(half > 0 && half < 1);
+  }
+  const std::vector<double> few = {1, 2};
+  const std::vector<const double*> two = {few.data()};
+  const std::vector<int> one = {0, 0};
+  EXPECT_THROW(fit_intervals(parse("1 + 2*x", kNames), {two, 2}, few, one), Error);
+}
+
+struct Coverage {
+  int constants = 0;
+  int constants_hit = 0;
+  int curve = 0;
+  int curve_hit = 0;
+};
+
+Coverage coverage(int draws, int rows, double of_row, double of_movement, const char* unit) {
+  const std::vector<double> truth = {2, -1.5, 0.5};
+  Coverage seen;
+  for (int k = 0; k < draws; ++k) {
+    const Rows drawn = draw(static_cast<std::uint64_t>(k) + 1, rows, of_row, of_movement);
+    Expression formula = parse("2*exp(-1.5*x) + 0.5", kNames);
+    const FitIntervals intervals = fitted(drawn, formula);
+    EXPECT_EQ(intervals.unit, unit);
+    for (std::size_t j = 0; j < truth.size(); ++j) {
+      ++seen.constants;
+      const ConstantInterval& one = intervals.constants[j];
+      seen.constants_hit += one.low <= truth[j] && truth[j] <= one.high ? 1 : 0;
+    }
+    const std::vector<double> at = {0, 0.5, 1, 2};
+    const std::vector<const double*> columns = {at.data()};
+    std::vector<double> values(at.size());
+    Evaluator().evaluate(formula, {columns, at.size()}, values);
+    const std::vector<double> halves = curve_half_widths(formula, intervals, {columns, at.size()});
+    for (std::size_t r = 0; r < at.size(); ++r) {
+      ++seen.curve;
+      seen.curve_hit += std::abs(values[r] - law(at[r])) <= halves[r] ? 1 : 0;
+    }
+  }
+  return seen;
+}
+
+void expect_covered(const Coverage& seen) {
+  const double constants = static_cast<double>(seen.constants_hit) / seen.constants;
+  const double curve = static_cast<double>(seen.curve_hit) / seen.curve;
+  std::printf("coverage: constants %.1f %%, curve %.1f %%\n", 100 * constants, 100 * curve);
+  EXPECT_GE(constants, 0.93);
+  EXPECT_LE(constants, 0.97);
+  EXPECT_GE(curve, 0.93);
+  EXPECT_LE(curve, 0.97);
+}
+
+TEST(FitIntervalsCoverage, IsNinetyFivePerCentWithIndependentRows) {
+  expect_covered(coverage(1000, 40, 0.1, 0, "row"));
+}
+
+TEST(FitIntervalsCoverage, IsNinetyFivePerCentWithMovementsThatDiffer) {
+  expect_covered(coverage(1000, 240, 0.1, 0.1, "movement"));
+}
+
+}  // namespace
+}  // namespace tribench
