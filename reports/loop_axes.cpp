@@ -32,7 +32,7 @@ std::string axis_title(const LoopAxis& axis, const LoopUnit& unit) {
   if (axis.channel == "time") words = "time";
   const bool formula = axis.channel.find_first_of("+*-/") != std::string::npos;
   if (formula) {
-    words = '|' + words + '|';
+    words = "size of " + words;
     std::ranges::replace(words, '*', ' ');
   } else if (axis.magnitude) {
     words = axis.channel == "velocity" ? "speed" : "size of the " + words;

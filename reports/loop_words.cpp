@@ -364,10 +364,9 @@ std::string with_titles(const LoopRecord& record, std::string text) {
 
 std::string target_words(const LoopRecord& record) {
   std::string unit = record.unit;
-  std::erase(unit, ' ');
-  std::string words = record.target;
-  if (words.ends_with('_' + unit)) words.resize(words.size() - unit.size() - 1);
-  return spaced(words);
+  std::erase_if(unit, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; });
+  if (unit.empty()) return spaced(record.target);
+  return spaced(replaced(record.target, '_' + unit + "\\b", ""));
 }
 
 LoopUnit torque_unit(const LoopRecord& record) {

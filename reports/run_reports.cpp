@@ -32,6 +32,8 @@ Change change_since(const std::filesystem::path& base, const RunFolder& run) {
                                         std::filesystem::canonical(base).filename().string());
   Change change{since + comparison_head(comparison), comparison_json(comparison)};
   change.json["base"] = before.name;
+  change.json["base_started"] = before.provenance_of("sessions.0.started");
+  change.json["started"] = run.provenance_of("sessions.0.started");
   return change;
 }
 

@@ -152,6 +152,20 @@ void add_signal(std::vector<Coordinate>& all, const Observations& data, std::siz
   all.push_back({axis, x});
 }
 
+std::string rounded_text(Expression formula, const Observations& data) {
+  for (const std::size_t i : formula.constant_positions()) {
+    formula.set_constant(i, std::stod(fmt::format("{:.3g}", formula.node(i).value)));
+  }
+  return print(formula, data.names());
+}
+
+// Of a sum that begins with a signal, that signal's; else not known.
+std::string unit_of(const Expression& sum, const Observations& data) {
+  if (sum.node(sum.root()).op != Op::add) return {};
+  const Node& first = sum.node(sum.left_child(sum.root()));
+  return first.is_variable() ? data.signals[first.variable].unit : std::string();
+}
+
 // Simplest first.
 std::vector<Coordinate> coordinates(const std::vector<Expression>& columns, const LoopRows& all) {
   const Observations& data = all.data;
@@ -165,12 +179,8 @@ std::vector<Coordinate> coordinates(const std::vector<Expression>& columns, cons
   for (const std::size_t column : signals) add_signal(found, data, column);
   for (const Expression& argument : arguments_of(columns, {Op::abs})) {
     if (argument.size() < 2) continue;
-    Expression rounded = argument;
-    for (const std::size_t i : rounded.constant_positions()) {
-      rounded.set_constant(i, std::stod(fmt::format("{:.3g}", rounded.node(i).value)));
-    }
-    found.push_back(
-        {{print(rounded, data.names()), "", true, 0}, evaluated(argument, data).cwiseAbs()});
+    found.push_back({{rounded_text(argument, data), unit_of(argument, data), true, 0},
+                     evaluated(argument, data).cwiseAbs()});
   }
   if (signals.size() == 2) {
     const Signal& a = data.signals[signals[0]];

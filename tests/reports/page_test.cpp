@@ -421,6 +421,35 @@ TEST(LoopPage, WritesItsPicturesAsFiles) {
   }
 }
 
+TEST(Page, OfARunFitsAPhoneSaysItsUnitAndWhatChangedFirst) {
+  if (!has_browser()) GTEST_SKIP() << "no chromium";
+  const fs::path base = whole_run("page_base");
+  const fs::path folder = whole_run("page_phone");
+  write_run_reports(folder, base);
+  const json answer = asked_in_browser(folder / "report.html", looking(R"(
+    const first = document.getElementById('main').firstElementChild;
+    const line = () => [...document.querySelectorAll('#profile .mark-line.role-mark path')].map((p) => p.getAttribute('stroke-opacity') || '1');
+    const label = document.querySelector('#profile .role-legend-label text');
+    const at = label.getBoundingClientRect();
+    const before = line();
+    label.dispatchEvent(new MouseEvent('mouseover', {bubbles: true, clientX: at.x + 2, clientY: at.y + 2}));
+    await new Promise((done) => setTimeout(done, 100));
+    const cell = document.querySelector('table[aria-label^="methods on"] td[data-label^="MAE"]');
+    window.answer = {first: first.id, text: first.textContent, before, hovered: line(), scroll: document.documentElement.scrollWidth,
+      width: innerWidth, label: cell.dataset.label, errors: window.pageErrors};
+  )"),
+                                       "390,844");
+  ASSERT_TRUE(answer.is_object()) << answer;
+  EXPECT_EQ(answer["errors"], json::array());
+  EXPECT_EQ(answer["first"], "changed");
+  EXPECT_THAT(answer["text"].get<std::string>(), HasSubstr("2026-01-31"));
+  EXPECT_EQ(answer["label"], "MAE test (N m)");
+  EXPECT_EQ(answer["width"], 390);
+  EXPECT_LE(answer["scroll"], 390);
+  EXPECT_EQ(answer["before"], (json{"1", "1", "1"}));
+  EXPECT_EQ(answer["hovered"], (json{"1", "0.1", "0.1"}));  // the others fade
+}
+
 TEST(Page, OfAnUnfinishedRunOpensToo) {
   if (!has_browser()) GTEST_SKIP() << "no chromium";
   const fs::path folder = fresh_folder("empty_page");

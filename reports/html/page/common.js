@@ -199,7 +199,7 @@ function dataTable(columns, rows, options) {
     body.replaceChildren(...shown.slice(0, limit).map((row) => {
       const line = el("tr", {class: row.standing === "best" ? "best" : undefined});
       for (const c of columns) {
-        line.append(el("td", {class: c.number || c.count ? "number" : undefined},
+        line.append(el("td", {class: c.number || c.count ? "number" : undefined, "data-label": c.name},
                        c.show ? c.show(row) : c.count ? count(row[c.key]) : c.number ? fig(row[c.key]) : String(row[c.key] ?? "")));
       }
       return line;

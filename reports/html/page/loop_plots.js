@@ -61,7 +61,7 @@ function limitsOf(dots, lines) {
 // Points with their spread, lines with their bands: what friction, effects and residuals share.
 function binnedPlot(picture, look, dots, lines, entries) {
   const {scales, legends} = legendsOf(entries, look);
-  const spec = frame({...look, height: look.height || 280, description: picture.title, methods: [], colors: [], legend: false,
+  const spec = frame({...look, height: look.width < 420 ? 240 + 20 * entries.length : look.height || 280, description: picture.title, methods: [], colors: [], legend: false,
     data: [{name: "points", values: dots.concat(lines).map((r) => ({x: r.x}))}, {name: "dots", values: dots}, {name: "lines", values: lines},
            {name: "marks", values: (picture.marks || []).map((x) => ({x}))}],
     x: {title: picture.x, fields: ["x"], nice: false}, y: {title: picture.y, domain: limitsOf(dots, lines), nice: false, fields: []},
@@ -160,6 +160,13 @@ function errorPlot(picture, look) {
         fill: {value: look.ink}, text: {field: "label"}}}}]};
 }
 
+// A line ends where rows were left out: a step of time five times the usual one.
+function withGaps(rows) {
+  const steps = rows.slice(1).map((r, i) => r.x - rows[i].x).sort((a, b) => a - b);
+  const most = 5 * (steps[Math.floor(steps.length / 2)] || Infinity);
+  return rows.flatMap((r, i) => i > 0 && r.x - rows[i - 1].x > most ? [{x: rows[i - 1].x}, r] : [r]);
+}
+
 // Drag along the time axis to look closer, twice click to see all.
 function tracePlot(picture, look, chosen) {
   const c = loopColours(look.dark);
@@ -167,6 +174,7 @@ function tracePlot(picture, look, chosen) {
   const full = [trace.x[0], trace.x[trace.x.length - 1]];
   const rows = trace.x.map((x, i) => ({x, measured: trace.measured[i], before: trace.before[i], after: trace.after[i],
     rb: trace.measured[i] - trace.before[i], ra: trace.measured[i] - trace.after[i]}));
+  const shown = withGaps(rows);
   const upper = 210, lower = 90, gap = 26;
   const domain = (keys) => {
     const values = rows.flatMap((r) => keys.map((k) => r[k])).filter(finite);
@@ -174,7 +182,7 @@ function tracePlot(picture, look, chosen) {
     return [low - 0.04 * (high - low), high + 0.04 * (high - low)];
   };
   const line = (key, scale, colour, width, dash) => ({type: "line", from: {data: "rows"}, encode: {enter: {stroke: {value: colour},
-    strokeWidth: {value: width}, strokeDash: {value: dash || [1, 0]}}, update: {x: {scale: "x", field: "x"}, y: {scale, field: key}}}});
+    strokeWidth: {value: width}, strokeDash: {value: dash || [1, 0]}, defined: {signal: `isValid(datum.${key})`}}, update: {x: {scale: "x", field: "x"}, y: {scale, field: key}}}});
   const entries = [{label: "measured", colour: look.ink}, ...(picture.changed ? [{label: "base", colour: c.before, dash: [6, 4]}] : []),
                    {label: picture.changed ? "new model" : "model", colour: c.after}];
   const {scales, legends} = legendsOf(lineLegend(entries), look);
@@ -188,7 +196,7 @@ function tracePlot(picture, look, chosen) {
         {events: "window:pointerup", update: "abs(brush[1] - brush[0]) > 8 ? [invert('x', min(brush[0], brush[1])), invert('x', max(brush[0], brush[1]))] : domain"},
         {events: "dblclick", update: `[${full[0]}, ${full[1]}]`}]}],
 
-    data: [{name: "rows", values: rows}],
+    data: [{name: "rows", values: shown}],
     scales: [{name: "x", domain: {signal: "domain"}, range: "width", zero: false, nice: false},
              {name: "y", domain: domain(["measured", "after", ...(picture.changed ? ["before"] : [])]), range: [upper, 0], zero: false},
              {name: "r", domain: domain(["ra", ...(picture.changed ? ["rb"] : [])]), range: [upper + gap + lower, upper + gap], zero: false}, ...scales],

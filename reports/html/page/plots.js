@@ -20,6 +20,13 @@ function plotConfig(c) {
     title: {color: c.ink}, text: {fill: c.ink}};
 }
 
+// A method under the pointer, or its name in the legend, stands out and the others fade.
+const kHovered = {name: "hovered", value: null, on: [
+  {events: "mouseover", update: "datum && isString(datum.method) ? datum.method : datum && isString(datum.value) ? datum.value : null"},
+  {events: "mouseout", update: "null"}]};
+const faded = (shown) => [{test: "hovered && hovered !== datum.method", value: 0.1}, {value: shown}];
+const kHoverLegend = {labels: {interactive: true}, symbols: {interactive: true}};
+
 // The frame that every picture shares: size, scales, axes, a colour for each method.
 function frame(o) {
   const height = o.height || 330;
@@ -32,13 +39,13 @@ function frame(o) {
   return {
     $schema: "https://vega.github.io/schema/vega/v5.json", description: o.description,
     width: o.width || 480, height, padding: 5, autosize: {type: "fit", contains: "padding"},
-    config: plotConfig(o), data: o.data,
+    config: plotConfig(o), data: o.data, signals: [kHovered],
     scales: [scale("x", "width", o.x), scale("y", "height", o.y),
              {name: "color", type: "ordinal", domain: o.methods, range: o.colors}],
     axes: [ticks("bottom", o.x, "x"), ticks("left", o.y, "y")],
     legends: o.legend === false ? []
       : [{fill: "color", orient: "bottom", direction: "horizontal", columns: Math.max(2, Math.floor(o.width / 125)),
-          symbolType: "circle", values: o.shown}],
+          symbolType: "circle", values: o.shown, encode: kHoverLegend}],
     marks: o.marks};
 }
 
@@ -65,9 +72,9 @@ function logAxis(title, values, extra) {
 const grouped = (from, marks) => ({
   type: "group", from: {facet: {name: "series", data: from, groupby: "series"}}, marks});
 
-const lineMark = (extra) => ({
+const lineMark = (extra, shown = 1) => ({
   type: "line", from: {data: "series"},
-  encode: {enter: Object.assign({x: {scale: "x", field: "x"}, y: {scale: "y", field: "y"},
+  encode: {update: {strokeOpacity: faded(shown)}, enter: Object.assign({x: {scale: "x", field: "x"}, y: {scale: "y", field: "y"},
     stroke: {scale: "color", field: "method"}, strokeWidth: {value: 2},
     defined: {signal: "isValid(datum.y) && isFinite(datum.y)"}}, extra || {})}});
 
@@ -80,10 +87,10 @@ function curvePlot(points, look, axes, description) {
     x: {title: axes[0], fields: ["x"]}, y: {title: axes[1], fields: ["y"]},
     marks: [
       {type: "symbol", from: {data: "measured"}, encode: {enter: {x: {scale: "x", field: "x"},
-        y: {scale: "y", field: "y"}, size: {value: 14}, opacity: {value: 0.55},
+        y: {scale: "y", field: "y"}, size: {value: 14},
         fill: {signal: `datum.method === 'data' ? '${look.soft}' : scale('color', datum.method)`},
-        tooltip: {signal: "datum"}}}},
-      grouped("lines", [{type: "line", from: {data: "series"}, encode: {enter: {
+        tooltip: {signal: "datum"}}, update: {opacity: faded(0.55)}}},
+      grouped("lines", [{type: "line", from: {data: "series"}, encode: {update: {strokeOpacity: faded(1)}, enter: {
         x: {scale: "x", field: "x"}, y: {scale: "y", field: "y"},
         stroke: {signal: `datum.method === 'data' ? '${look.ink}' : scale('color', datum.method)`},
         strokeDash: {signal: "datum.method === 'data' ? [5, 4] : [1, 0]"},

@@ -7,6 +7,14 @@ const allMethods = [...new Set(data.tables.flatMap((t) => t.rows.map((r) => r.me
 const state = {problem: data.problems[0], operators: data.operators[0], hidden: new Set()};
 const tableHere = () => data.tables.find((t) => t.problem === state.problem && t.operators === state.operators);
 
+// The unit of a problem's target, as the titles of its curves have it.
+function unitOf(problem) {
+  const curve = data.curves.find((c) => c.problem === problem && / in /.test(c.y_name));
+  return curve ? curve.y_name.split(" in ").pop() : "";
+}
+const inUnit = (problem) => unitOf(problem) ? ` (${unitOf(problem)})` : "";
+const withUnit = (key) => (r) => r[key] === null || r[key] === undefined ? "–" : `${fig(r[key])} ${unitOf(r.problem)}`.trim();
+
 function chooser(key, values, label) {
   const box = el("select", {"aria-label": label, id: "choose-" + key,
                             onchange: (e) => { state[key] = e.target.value; drawProblem(); }},
@@ -26,10 +34,10 @@ function share(number, of) {
 function methodTable(table) {
   const any = (key) => table.rows.some((row) => row[key] !== null && row[key] !== undefined);
   const columns = [
-    {name: "method", key: "method"}, {name: "MAE test", key: "mae", number: true},
+    {name: "method", key: "method"}, {name: "MAE test" + inUnit(table.problem), key: "mae", number: true},
     {name: "lowest", key: "low", number: true}, {name: "highest", key: "high", number: true},
     {name: "against the best", key: "ratio", show: standingCell}];
-  if (any("truth")) columns.push({name: "to the truth", key: "truth", number: true});
+  if (any("truth")) columns.push({name: "to the truth" + inUnit(table.problem), key: "truth", number: true});
   if (any("relative")) columns.push({name: "relative %", key: "relative", number: true});
   columns.push(
     {name: "complexity", key: "complexity", count: true}, {name: "CPU s", key: "cpu", number: true},
@@ -57,8 +65,8 @@ function winnersTable() {
   const columns = [
     {name: "problem", key: "problem"}, {name: "operators", key: "operators"},
     {name: "best method", key: "method", show: (r) => el("b", {}, r.method)},
-    {name: "MAE test", key: "mae", number: true}];
-  if (rows.some((r) => r.ceiling !== null)) columns.push({name: "noise ceiling", key: "ceiling", number: true});
+    {name: "MAE test", key: "mae", number: true, show: withUnit("mae")}];
+  if (rows.some((r) => r.ceiling !== null)) columns.push({name: "noise ceiling", key: "ceiling", number: true, show: withUnit("ceiling")});
   columns.push({name: "complexity", key: "complexity", count: true},
     {name: "singular", key: "refuted", count: true, show: (r) => share(r.refuted, r.ok)},
     {name: "how sure", key: "sure"});
@@ -128,12 +136,16 @@ function changedPart() {
       (cells.length > 10 ? `  and ${cells.length - 10} more` : ""))));
   const rows = changed.quality.filter((r) => r.verdict === "worse" || r.verdict === "better")
     .map((r) => ({...r, problem: r.problem || "all"}));
-  return [el("h2", {id: "changed"}, "What changed since " + changed.base),
-    el("p", {class: changed.regression ? "reading bad" : "reading"}, changed.sentence), ...lists,
+  const day = (started) => started ? started.slice(0, 10) : "no date";
+  const face = changed.regression ? ["Worse", "bad-badge"] : rows.some((r) => r.verdict === "better") ? ["Better", "good"] : ["No loss", "good"];
+  return [el("section", {class: "card compared", id: "changed"},
+    el("div", {class: "verdict"}, el("span", {class: "badge " + face[1]}, face[0]),
+       el("span", {class: "soft"}, `${changed.base} (${day(changed.base_started)}) → ${data.name} (${day(changed.started)})`)),
+    el("p", {class: "next"}, changed.sentence), ...lists,
     ...(rows.length ? [dataTable([{name: "method", key: "method"}, {name: "operators", key: "operators"},
       {name: "problem", key: "problem"}, {name: "new / base", key: "ratio", number: true},
       {name: "lowest", key: "low", number: true}, {name: "highest", key: "high", number: true},
-      {name: "p", key: "p", number: true}, {name: "verdict", key: "verdict"}], rows, {label: "what changed"})] : [])];
+      {name: "p", key: "p", number: true}, {name: "verdict", key: "verdict"}], rows, {label: "what changed"})] : []))];
 }
 
 function sensitivityPart() {
@@ -261,7 +273,7 @@ function build() {
     el("span", {class: "push"}, chooser("problem", data.problems, "problem"),
        chooser("operators", data.operators, "operators"), themeButton()));
   byId("main").append(
-    el("h2", {id: "wins"}, "Who wins where"), winnersTable(), ...changedPart(), ...problemPart(), ...overallPart(),
+    ...changedPart(), el("h2", {id: "wins"}, "Who wins where"), winnersTable(), ...problemPart(), ...overallPart(),
     ...suitePart(), ...referencePart(),
     el("h2", {id: "failed"}, "What failed"), ...failuresPart(),
     el("h2", {id: "records"}, "Records"), ...recordsPart(),

@@ -9,15 +9,14 @@ function frontPlot(points, look) {
     x: {title: "complexity", fields: ["x"], zero: true},
     y: logAxis("MAE on test movements", points.map((p) => p.y)),
     marks: [
-      grouped("points", [lineMark({interpolate: {value: "step-after"}, strokeWidth: {value: 1.3},
-                                   strokeOpacity: {value: 0.55}})]),
+      grouped("points", [lineMark({interpolate: {value: "step-after"}, strokeWidth: {value: 1.3}}, 0.55)]),
       {type: "symbol", name: "dots", from: {data: "points"}, encode: {
         enter: {x: {scale: "x", field: "x"}, y: {scale: "y", field: "y"},
           fill: {scale: "color", field: "method"}, cursor: {value: "pointer"},
           shape: {signal: "datum.singularity === 'refuted' ? 'cross' : 'circle'"},
           stroke: {value: look.ink}, strokeWidth: {signal: "datum.chosen ? 1.6 : 0"},
           size: {signal: "datum.chosen ? 110 : 55"}, tooltip: {signal: "datum"}},
-        hover: {size: {value: 160}}, update: {size: {signal: "datum.chosen ? 110 : 55"}}}}]});
+        hover: {size: {value: 160}}, update: {size: {signal: "datum.chosen ? 110 : 55"}, opacity: faded(1)}}}]});
 }
 
 // One panel a method, all with the same axes; `common` (measured points, the true law) stands in
