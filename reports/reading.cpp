@@ -87,6 +87,16 @@ std::string reading_of(const ProblemTable& table) {
   return text + singularities_of(table) + failures_of(table);
 }
 
+namespace {
+
+// What the seeds could have shown and did not.
+std::string seen_text(const MethodRow& row) {
+  if (!std::isfinite(row.seen_ratio)) return fmt::format("{} seeds show nothing", row.pairs);
+  return fmt::format("x{} would be seen", ratio_figure(row.seen_ratio));
+}
+
+}  // namespace
+
 std::string certainty_of(const ProblemTable& table) {
   if (!table.has_best()) return "nothing to place";
   if (table.rows.size() == 1) return "only method";
@@ -96,8 +106,13 @@ std::string certainty_of(const ProblemTable& table) {
     std::string text;
     if (!equal.empty()) text = fmt::format("as good (1 %): {}", fmt::join(equal, ", "));
     if (!unclear.empty()) {
-      text += fmt::format("{}not distinguishable: {}", text.empty() ? "" : "; ",
-                          fmt::join(unclear, ", "));
+      std::vector<std::string> each;
+      for (const MethodRow& row : table.rows) {
+        if (row.standing != Standing::not_distinguishable) continue;
+        each.push_back(fmt::format("{} ({})", row.method, seen_text(row)));
+      }
+      text +=
+          fmt::format("{}not distinguishable: {}", text.empty() ? "" : "; ", fmt::join(each, ", "));
     }
     return text;
   }
@@ -142,7 +157,7 @@ std::string standing_text(const MethodRow& row) {
     case Standing::equivalent:
       return "within 1 %";
     case Standing::not_distinguishable:
-      return fmt::format("not distinguishable (x{})", ratio_figure(row.ratio));
+      return fmt::format("not distinguishable (x{}; {})", ratio_figure(row.ratio), seen_text(row));
     case Standing::behind_untested:
       return fmt::format("x{} on all {} seeds", ratio_figure(row.ratio), row.pairs);
     case Standing::behind:

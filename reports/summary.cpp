@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "foundation/elementary.hpp"
+#include "reports/statistics/power.hpp"
 
 namespace tribench {
 namespace {
@@ -144,6 +145,10 @@ void hold_against_best(std::vector<MethodRow>& rows, const std::vector<const Cel
   for (std::size_t i = 1; i < rows.size(); ++i) {
     rows[i].p = adjusted[i];
     rows[i].standing = stand(rows[i], ratios[i], tests * smallest_signed_rank_p(rows[i].pairs));
+    if (rows[i].standing == Standing::not_distinguishable) {
+      // As the first of Holm's steps has it.
+      rows[i].seen_ratio = elementary::exp(smallest_seen_shift(ratios[i], kLevel / tests));
+    }
   }
 }
 

@@ -49,6 +49,7 @@ ordered_json row_json(const MethodRow& row) {
           {"ratio",
            row.standing == Standing::failed ? ordered_json(nullptr) : finite_or_null(row.ratio)},
           {"p", finite_or_null(row.p)},
+          {"seen_ratio", finite_or_null(row.seen_ratio)},
           {"standing", standing_name(row.standing)},
           {"standing_text", standing_text(row)},
           {"truth", finite_or_null(row.mae_truth)},
