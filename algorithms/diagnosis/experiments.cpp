@@ -10,6 +10,7 @@
 #include <Eigen/QR>
 
 #include "foundation/elementary.hpp"
+#include "problems/preparation/derived_channels.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -99,6 +100,8 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
       if (signal.name == name) signal.values[row] = value;
     }
   };
+  std::vector<FirstOrderLag> lags;
+  for (const int lag_ms : kLags_ms) lags.emplace_back(lag_ms * 1e-3);
   double distance = 0;
   double v_before = 0;
   double q_before = movement.kind == "two_tone" ? middle : movement.from;
@@ -130,6 +133,9 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
     set("a", i, a);
     set("q", i, q);
     if (std::isfinite(distance)) set("d", i, distance);
+    for (std::size_t k = 0; k < lags.size(); ++k) {
+      set(lagged_velocity_name(kLags_ms[k]), i, lags[k].next(v, movement.duration / kRows));
+    }
     if (gravity.norm() > 0) {
       set("g", i, g);
       set("sgn_g", i, g > 0 ? 1 : -1);

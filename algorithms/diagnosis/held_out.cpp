@@ -101,7 +101,8 @@ Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>&
       options.gear_ratios.empty() ? std::vector<double>{} : options.gear_ratios;
   for (std::size_t f = 0; f < families.size(); ++f) {
     std::vector<std::string> missing;
-    const std::vector<Atom> atoms = instantiate(families[f], f, data, ratios, missing);
+    std::vector<Atom> atoms = instantiate(families[f], f, data, ratios, missing);
+    std::erase_if(atoms, [](const Atom& atom) { return atom.beside_another; });
     // Neighbours on a grid of shapes say nearly the same: some of them will do.
     const std::size_t step = (atoms.size() + kAtomsOfRichModel - 1) / kAtomsOfRichModel;
     for (std::size_t k = 0; k < atoms.size(); k += std::max<std::size_t>(1, step)) {

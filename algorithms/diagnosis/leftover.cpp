@@ -17,6 +17,8 @@ namespace {
 
 constexpr double kSmootherRidge = 0.02;  // of the mean diagonal (specification, 3.8)
 constexpr std::size_t kLargestSubset = 3;
+// Of what an effect adds: what adds less in the same inputs is its shape.
+constexpr double kShapeShare = 0.1;
 
 // Every subset of 1 .. kLargestSubset of n things.
 std::vector<std::vector<std::size_t>> small_subsets(std::size_t n) {
@@ -158,38 +160,73 @@ BlockScores Search::score_modifier(const Modifier& modifier) const {
   return block;
 }
 
-// The signals that the family's columns in the model are functions of, signs left out.
+// The signals that the family's columns in the model are functions of, signs left out. What has a
+// memory of the motion is a function of all of it: near a reversal the path since, the speed and
+// the acceleration tell the same.
 std::vector<std::string> Search::inputs_of(std::size_t family) const {
-  std::vector<std::string> names;
+  std::set<std::string> names;
   for (const Atom& atom : current_.model.atoms) {
     if (atom.family != family) continue;
     for (const Expression& column : atom.columns) {
       for (const Node& node : column.nodes()) {
         if (!node.is_variable()) continue;
-        const std::string& name = data_.signals[node.variable].name;
-        if (!name.starts_with("sgn_") && std::ranges::count(names, name) == 0) {
-          names.push_back(name);
-        }
+        const Signal& signal = data_.signals[node.variable];
+        if (signal.has_memory()) names.insert({"v", "a", "d"});
+        if (!signal.name.starts_with("sgn_")) names.insert(signal.name);
       }
     }
   }
-  return names;
+  return {names.begin(), names.end()};
 }
 
-// What is left over in nothing but the inputs of an effect that stands beside it is that effect, of
-// another shape than the library has.
-void Search::name_shapes() {
-  if (leftover.inputs.empty()) return;
-  for (Found& one : found) {
-    const std::vector<std::string> own = inputs_of(one.family);
-    const bool holds = std::ranges::all_of(leftover.signals, [&](const std::string& name) {
-      return std::ranges::count(own, name) > 0;
-    });
-    if (!holds) continue;
-    one.another_shape = true;
-    leftover.inputs.clear();
-    return;
+// What the present model predicts better than without these families.
+double Search::nats_of(const std::vector<std::size_t>& families) const {
+  LoopModel without = current_.model;
+  for (const std::size_t family : families) remove_family(without, family);
+  return -lead_over_current(fit(std::move(without), FitScope::linear)).nats;
+}
+
+// The effect found before the one at `end` that has all of these inputs, the first of them; none
+// where all that have them add no more than `nats` together: which of them would be at home there
+// matters less than what lives there at all.
+Search::Found* Search::home_of(const std::vector<std::string>& inputs, std::size_t end,
+                               double nats) {
+  Found* home = nullptr;
+  std::vector<std::size_t> families;
+  for (std::size_t k = 0; k < end; ++k) {
+    if (!std::ranges::includes(inputs_of(found[k].family), inputs)) continue;
+    if (home == nullptr) home = &found[k];
+    families.push_back(found[k].family);
   }
+  return home != nullptr && nats_of(families) > nats ? home : nullptr;
+}
+
+// No curve of the library is the true one to the last nat. What lives in nothing but the inputs of
+// a larger effect is that effect in another shape: an effect that came after it and adds far less
+// gives it its columns, and what is left over is no UNKNOWN beside the right name.
+void Search::name_shapes() {
+  for (std::size_t k = found.size(); k-- > 1;) {
+    const std::size_t family = found[k].family;
+    const std::vector<std::string> inputs = inputs_of(family);
+    Found* home = inputs.empty() ? nullptr : home_of(inputs, k, nats_of({family}) / kShapeShare);
+    if (home == nullptr) continue;
+    home->another_shape = true;
+    note(
+        fmt::format("'{}' only shapes '{}': in the same inputs more than {:.0f} times as much is "
+                    "explained without it",
+                    families_[family].name, families_[home->family].name, 1 / kShapeShare));
+    for (Atom& atom : current_.model.atoms) {
+      if (atom.family == family) atom.family = home->family;
+    }
+    found.erase(found.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  if (leftover.inputs.empty()) return;
+  std::vector<std::string> inputs = leftover.signals;
+  std::ranges::sort(inputs);
+  Found* home = home_of(inputs, found.size(), leftover_nats_);
+  if (home == nullptr) return;
+  home->another_shape = true;
+  leftover.inputs.clear();
 }
 
 void Search::test_leftover() {
@@ -250,6 +287,7 @@ void Search::locate_leftover(const std::vector<Smoother>& smoothers,
     }
   }
   if (winner == blocks.size()) return;
+  leftover_nats_ = best.nats;
   leftover.signals = winner < smoothers.size() ? smoothers[winner].signals
                                                : products[winner - smoothers.size()].signals;
   leftover.inputs.clear();

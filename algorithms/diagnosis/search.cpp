@@ -341,12 +341,13 @@ bool Search::add(const Candidate& winner, const Round& round) {
 }
 
 // Two columns that grew together and stand against each other say nothing but their difference.
+// What an effect has besides (a drift of its phase) is meant to take some of it away.
 bool Search::cancels_itself(const LoopModel& model, std::size_t family) const {
   double sum = 0;
   Eigen::VectorXd together = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data_.rows()));
   for (std::size_t k = 0; k < model.atoms.size(); ++k) {
     const Atom& atom = model.atoms[k];
-    if (atom.family != family) continue;
+    if (atom.family != family || atom.beside_another) continue;
     const Eigen::VectorXd one =
         evaluate_columns(atom.columns, data_) *
         model.coefficients.segment(static_cast<Eigen::Index>(model.first_column(k)),

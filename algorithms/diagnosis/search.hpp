@@ -136,6 +136,8 @@ class Search {
                        const std::vector<Modifier>& products,
                        const std::vector<BlockScores>& blocks, const std::vector<double>& maxima);
   std::vector<std::string> inputs_of(std::size_t family) const;
+  double nats_of(const std::vector<std::size_t>& families) const;
+  Found* home_of(const std::vector<std::string>& inputs, std::size_t end, double nats);
   void name_shapes();
   bool drop_varying(const std::vector<Modifier>& products);
   void drop_proxies(const Smoother& smoother);
@@ -167,6 +169,7 @@ class Search {
     double leftover_nats;
   };
   std::optional<WholeModel> whole_;
+  double leftover_nats_ = 0;  // what a smoother in its inputs adds
 };
 
 }  // namespace tribench::loop

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/effects/effect_library.hpp"
 
+#include "problems/preparation/derived_channels.hpp"
+
 namespace tribench::loop {
 namespace {
 
@@ -45,7 +47,7 @@ EffectFamily stribeck() {
               .coefficients = {"excess_half_gap"},
               .shapes = {{"vs", "v", {0.02, 0.045, 0.09, 0.14}, 0.004, kStribeckLimit, true},
                          {"delta", "", {1, 2}, 0.5, 3}},
-              .beside_another = true}};
+              .by_direction = true}};
   f.sanity = {{"excess", 1, 0, 20, "breakaway friction below Coulomb friction"}};
   f.separate_by = {"R6"};
   return f;
@@ -65,12 +67,12 @@ EffectFamily nonlinear_viscous() {
       {{"sgn_v*(1 - exp(-abs(v)/v0))"},
        {"saturating"},
        {{"v0", "v", {0.22, 0.5}, kStribeckLimit, 3}}},
-      {.columns = {"v^2"}, .coefficients = {"quadratic_half_gap"}, .beside_another = true},
-      {.columns = {"abs(v)^3"}, .coefficients = {"cubic_half_gap"}, .beside_another = true},
+      {.columns = {"v^2"}, .coefficients = {"quadratic_half_gap"}, .by_direction = true},
+      {.columns = {"abs(v)^3"}, .coefficients = {"cubic_half_gap"}, .by_direction = true},
       {.columns = {"1 - exp(-abs(v)/v0)"},
        .coefficients = {"saturating_half_gap"},
        .shapes = {{"v0", "v", {0.22, 0.5}, kStribeckLimit, 3}},
-       .beside_another = true}};
+       .by_direction = true}};
   f.separate_by = {"R2"};
   return f;
 }
@@ -87,7 +89,7 @@ EffectFamily load_coulomb() {
                  {}};
   f.atoms = {{{"sgn_v*abs(g)"}, {"mu"}},
              {{"sgn_v*abs(g + J*a)"}, {"mu"}, {inertia_in_load()}, true},
-             {.columns = {"abs(g)"}, .coefficients = {"mu_half_gap"}, .beside_another = true}};
+             {.columns = {"abs(g)"}, .coefficients = {"mu_half_gap"}, .by_direction = true}};
   f.sanity = {{"mu", 1, 0, 1e30, "friction that falls as the load grows"}};
   f.separate_by = {"R3"};
   return f;
@@ -102,7 +104,7 @@ EffectFamily load_viscous() {
                  {}};
   f.atoms = {{{"v*abs(g)"}, {"mu_v"}},
              {{"v*abs(g + J*a)"}, {"mu_v"}, {inertia_in_load()}, true},
-             {.columns = {"abs(v*g)"}, .coefficients = {"mu_v_half_gap"}, .beside_another = true}};
+             {.columns = {"abs(v*g)"}, .coefficients = {"mu_v_half_gap"}, .by_direction = true}};
   f.separate_by = {"R3"};
   return f;
 }
@@ -150,6 +152,35 @@ EffectFamily payload() {
   return f;
 }
 
+// Twice and three times the wave with this angle: what a wave that is no sine has beside itself.
+AtomTemplate harmonics_of(const std::string& angle, std::vector<ShapeTemplate> shapes) {
+  AtomTemplate atom{{}, {}, std::move(shapes)};
+  atom.beside_another = true;
+  for (const char* k : {"2", "3"}) {
+    for (const char* wave : {"cos", "sin"}) {
+      atom.columns.push_back(std::string(wave) + "(" + k + "*" + angle + ")");
+      atom.coefficients.push_back(std::string(wave) + "_" + k);
+    }
+  }
+  return atom;
+}
+
+// The wave with this angle where its phase or its size drifts: by w rad, up or down, while the
+// campaign lasts.
+AtomTemplate drifting(const std::string& angle, std::vector<ShapeTemplate> shapes) {
+  shapes.push_back({.name = "t0", .scale = "t", .grid = {0}, .reference = true});
+  shapes.push_back({"w", "1/t", {1.5}, 0.3, 6});
+  AtomTemplate atom{{}, {}, std::move(shapes)};
+  atom.beside_another = true;
+  for (const char* slow : {"cos", "sin"}) {
+    for (const char* wave : {"cos", "sin"}) {
+      atom.columns.push_back(std::string(wave) + "(" + angle + ")*" + slow + "(w*(t - t0))");
+      atom.coefficients.push_back(std::string(wave) + "_" + slow);
+    }
+  }
+  return atom;
+}
+
 EffectFamily output_ripple() {
   EffectFamily f{"output_ripple",
                  "E8",
@@ -160,6 +191,11 @@ EffectFamily output_ripple() {
   for (int k = 2; k <= 8; ++k) {
     const std::string angle = std::to_string(k) + "*q)";
     f.atoms.push_back({{"cos(" + angle, "sin(" + angle}, {"cosine", "sine"}});
+  }
+  for (int k = 2; k <= 8; ++k) {
+    const std::string angle = std::to_string(k) + "*q";
+    if (3 * k <= 12) f.atoms.push_back(harmonics_of(angle, {}));
+    f.atoms.push_back(drifting(angle, {}));
   }
   f.angular = true;
   f.separate_by = {"R2", "R3"};
@@ -178,7 +214,9 @@ EffectFamily gear_ripple() {
     const ShapeTemplate ratio{"N", "", {}, 0, 0};  // the grid is the gear ratios
     f.atoms.push_back({{"cos(" + angle, "sin(" + angle}, {"cosine", "sine"}, {ratio}});
     f.atoms.push_back({{"sgn_v*cos(" + angle, "sgn_v*sin(" + angle}, {"cosine", "sine"}, {ratio}});
+    f.atoms.push_back(drifting(std::string(k) + "*N*q", {ratio}));
   }
+  f.atoms.push_back(harmonics_of("N*q", {{"N", "", {}, 0, 0}}));
   f.separate_by = {"R6"};
   return f;
 }
@@ -199,11 +237,11 @@ EffectFamily temperature() {
       {.columns = {"abs(v)*(T - T0)"},
        .coefficients = {"viscous_slope_half_gap"},
        .shapes = {reference},
-       .beside_another = true},
+       .by_direction = true},
       {.columns = {"T - T0"},
        .coefficients = {"coulomb_slope_half_gap"},
        .shapes = {reference},
-       .beside_another = true}};
+       .by_direction = true}};
   f.sanity = {{"viscous_slope", -1, 0, 1e30, "viscous friction that grows with temperature"},
               {"viscous_decay", 1, 0, 1e30, "viscous friction that grows with temperature"}};
   f.separate_by = {"R5"};
@@ -229,7 +267,7 @@ EffectFamily drift() {
              {.columns = {"abs(v)*(t - t0)"},
               .coefficients = {"viscous_rate_half_gap"},
               .shapes = {reference},
-              .beside_another = true}};
+              .by_direction = true}};
   f.separate_by = {"R1", "R5"};
   return f;
 }
@@ -247,7 +285,7 @@ EffectFamily hysteresis() {
              {.columns = {"exp(-d/lambda)"},
               .coefficients = {"presliding_half_gap"},
               .shapes = {{"lambda", "d", {0.004, 0.01, 0.03}, 0.001, 0.1}},
-              .beside_another = true}};
+              .by_direction = true}};
   // Both are transients over the path since the torque on the gear turned.
   f.known_aliases = {{"backlash", "load the joint so that its gear stays on one flank (R3)"}};
   f.separate_by = {"R4"};
@@ -263,6 +301,12 @@ EffectFamily lag() {
                  {}};
   f.atoms = {
       {{"sgn_v*exp(-abs(v)/vl)*sgn(v*a)"}, {"lag"}, {{"vl", "v", {0.07, 0.15, 0.3}, 0.02, 0.6}}}};
+  // Friction of the velocity as it was: its viscous part is an inertia, and no lag.
+  for (const int lag_ms : kLags_ms) {
+    const std::string late = lagged_velocity_name(lag_ms);
+    f.atoms.push_back(
+        {{"tanh(" + late + "/vw) - tanh(v/vw)"}, {"late"}, {{"vw", "v", {0.07, 0.2}, 0.02, 0.6}}});
+  }
   f.separate_by = {"R4"};
   return f;
 }

@@ -189,6 +189,7 @@ AtomTemplate read_atom(const Entry& entry) {
   }
   atom.rigid_load = entry.find<bool>("rigid_load").value_or(false);
   atom.beside_another = entry.find<bool>("beside_another").value_or(false);
+  atom.by_direction = entry.find<bool>("by_direction").value_or(false);
   return atom;
 }
 
@@ -287,6 +288,7 @@ toml::table table_of(const AtomTemplate& atom) {
                     {"coefficients", array_of(atom.coefficients)}};
   if (atom.rigid_load) table.insert("rigid_load", true);
   if (atom.beside_another) table.insert("beside_another", true);
+  if (atom.by_direction) table.insert("by_direction", true);
   toml::array shapes;
   for (const ShapeTemplate& shape : atom.shapes) {
     toml::array grid;
@@ -308,10 +310,10 @@ toml::table table_of(const AtomTemplate& atom) {
 std::vector<EffectFamily> read_effects(const std::filesystem::path& file) {
   const toml::table table = parse_file(file);
   const Entry whole(table, file.string(), {"effect"});
-  const std::vector<Entry> effects =
-      whole.entries("effect", {"name", "id", "phrase", "summary", "source", "origin", "title",
-                               "angular", "separate_by", "sanity", "alias", "columns",
-                               "coefficients", "shape", "rigid_load", "beside_another"});
+  const std::vector<Entry> effects = whole.entries(
+      "effect", {"name", "id", "phrase", "summary", "source", "origin", "title", "angular",
+                 "separate_by", "sanity", "alias", "columns", "coefficients", "shape", "rigid_load",
+                 "beside_another", "by_direction"});
   if (effects.empty()) {
     throw_bad_input("there is no [[effect]] in the file", file.string(),
                     "see --save-effect for the form");

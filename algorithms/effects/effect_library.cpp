@@ -87,7 +87,7 @@ Atom make_atom(const AtomTemplate& source, std::size_t family, const Observation
   Atom atom;
   atom.family = family;
   atom.coefficients = source.coefficients;
-  atom.beside_another = source.beside_another;
+  atom.beside_another = source.beside_another || source.by_direction;
   for (std::size_t k = 0; k < source.shapes.size(); ++k) {
     const ShapeTemplate& shape = source.shapes[k];
     names.push_back(shape.name);
@@ -196,7 +196,7 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
       std::ranges::count(data.rigid, "g") > 0 && std::ranges::count(data.rigid, "a") > 0;
   for (const AtomTemplate& source : family.atoms) {
     if (source.rigid_load && !rigid_load) continue;
-    if (source.beside_another && !moves_both_ways(data)) continue;
+    if (source.by_direction && !moves_both_ways(data)) continue;
     std::vector<std::string> lacking;
     for (const std::string& name : variables_of(source)) {
       const auto withheld = std::ranges::find(data.withheld, name, &WithheldSignal::name);

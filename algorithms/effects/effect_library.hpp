@@ -43,9 +43,12 @@ struct AtomTemplate {
   // Only where gravity and acceleration stand in the base because nobody has subtracted the rigid
   // body: the load on the transmission is then their sum, not the gravity alone.
   bool rigid_load = false;
-  // Only beside another atom of the family: what differs by direction in an effect that is there (a
-  // sense forwards only is one half of each).
+  // Only beside another atom of the family: what an effect that is there may have besides
+  // (harmonics, a phase that drifts).
   bool beside_another = false;
+  // The same, and only in motion both ways: what differs by direction (a sense forwards only is one
+  // half of each).
+  bool by_direction = false;
 };
 
 // What a coefficient must satisfy to be physical; a finding that does not is demoted to UNKNOWN.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench::loop {
 namespace {
 
@@ -30,6 +32,26 @@ double DistanceSinceReversal::next(double v, double q, double dt) {
   v_ = v;
   q_ = q;
   return distance_;
+}
+
+double FirstOrderLag::next(double x, double dt_s) {
+  if (!started_) {
+    filtered_ = x;
+    started_ = true;
+  } else if (dt_s > 0) {
+    const double behind = (x - x_) / dt_s * constant_s_;  // of what grows straight on
+    filtered_ = x - behind + (filtered_ - x_ + behind) * elementary::exp(-dt_s / constant_s_);
+  }
+  x_ = x;
+  return filtered_;
+}
+
+std::string lagged_velocity_name(int lag_ms) { return fmt::format("v_lag{}", lag_ms); }
+
+std::string lagged_velocity_recipe(int lag_ms) {
+  return fmt::format(
+      "v after a first-order filter of {} ms, straight between rows; v in a movement's first row",
+      lag_ms);
 }
 
 std::string distance_recipe() {

@@ -8,10 +8,14 @@
 //       0 in a movement's first row. At the first row after a change of the velocity's sign it is
 //       the path from the zero crossing, the velocity taken to be linear in time:
 //       |v| dt/2 * |v|/(|v| + |v_before|); else it grows by |q - q_before|, or |v| dt.
+//   v_lag30 ...  the velocity after a first-order filter of 30 ms (and so on), straight between the
+//       rows; starts with the velocity of a movement's first row. What friction that follows its
+//       velocity late is a function of.
 //
 // Nothing here throws; a value that is not finite makes the distance so until the next reversal.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,6 +46,28 @@ class DistanceSinceReversal {
 
 // The channel's name where it was computed before the recording was cut, and not by `observe`.
 inline constexpr std::string_view kDerivedDistance = "distance_since_reversal (derived)";
+
+// A quantity after a first-order filter, one movement row by row. Exact for what is straight
+// between the rows, however far apart they are.
+class FirstOrderLag {
+ public:
+  explicit FirstOrderLag(double constant_s) : constant_s_(constant_s) {}
+  void start_movement() { started_ = false; }
+  // dt_s: since the row before; not looked at in the first row.
+  double next(double x, double dt_s);
+
+ private:
+  double constant_s_;
+  bool started_ = false;
+  double x_ = 0;
+  double filtered_ = 0;
+};
+
+// A factor of two apart: what lies between is nearly a sum of its neighbours. From what a drive's
+// current loop and filters take (20 ms) to what bristles and lubricant do (0.2 s; Hess, Soom 1990).
+inline constexpr std::array<int, 3> kLags_ms = {30, 60, 120};
+std::string lagged_velocity_name(int lag_ms);
+std::string lagged_velocity_recipe(int lag_ms);
 
 // "d = ..." in words, for reports.
 std::string distance_recipe();

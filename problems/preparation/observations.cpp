@@ -98,6 +98,32 @@ void add_distance(Observations& data) {
   data.signals.push_back(std::move(signal));
 }
 
+// A clock tells the time between rows no better than this (s): a file whose time counts from 1970
+// must give the same filter as one that counts from 0.
+double rounded_step(double dt) {
+  constexpr double kClock = 1e-5;
+  return dt > 100 * kClock ? kClock * std::round(dt / kClock) : dt;
+}
+
+void add_lagged_velocities(Observations& data) {
+  const Signal* t = data.find("t");
+  if (t == nullptr || t->unit != "s") return;
+  const std::vector<double> time = t->values;
+  const Signal v = *data.find("v");
+  for (const int lag_ms : kLags_ms) {
+    Signal signal{lagged_velocity_name(lag_ms), v.channel, v.unit, Role::none, {}, {}};
+    signal.recipe = lagged_velocity_recipe(lag_ms);
+    FirstOrderLag lag(lag_ms * 1e-3);
+    for (std::size_t i = 0; i < data.rows(); ++i) {
+      const bool starts = i == 0 || data.movement[i] != data.movement[i - 1];
+      if (starts) lag.start_movement();
+      signal.values.push_back(
+          lag.next(v.values[i], starts ? 0 : rounded_step(time[i] - time[i - 1])));
+    }
+    data.signals.push_back(std::move(signal));
+  }
+}
+
 const Channel& needed_target(const Dataset& data) {
   for (const Role role : {Role::friction_torque, Role::motor_torque, Role::motor_current}) {
     if (const Channel* channel = data.find(role)) return *channel;
@@ -322,6 +348,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   complete_signals(out);
   add_campaign_time(out);
   add_distance(out);
+  add_lagged_velocities(out);
   out.time = out.find("t")->values;
   check_moving(out);
   if (options.unordered) out.take_away("t", "the movements' order says nothing");

@@ -8,6 +8,7 @@
 //   a        acceleration                 t       time through the campaign
 //   q        position                     v2 a2   the other joint's velocity and acceleration
 //   g sgn_g  gravity torque and its sign  d       distance since the last reversal
+//   v_lag30 v_lag60 v_lag120              velocity after a first-order filter of so many ms
 //
 // NaN policy: rows in which a used channel or the target is not finite are dropped and counted in
 // the warnings. Bad input that no one can mend silently is an Error (bad_input).
@@ -32,6 +33,8 @@ struct Signal {
   Role role = Role::none;
   std::string recipe;  // how it is computed where it is no column of the data, else empty
   std::vector<double> values;
+  // It follows from the motion before (a distance since reversal, a filtered velocity).
+  bool has_memory() const { return role == Role::none && !recipe.empty(); }
 };
 
 // A signal in which no effect can be tested, and why: "there is one movement".

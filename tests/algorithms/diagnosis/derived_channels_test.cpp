@@ -119,5 +119,39 @@ TEST(DerivedChannels, c_code_keeps_the_same_distance_to_the_last_bit_by_either_p
   }
 }
 
+// Behind a ramp of slope a by a times the constant, however far apart the rows are; exact for what
+// is straight between them.
+TEST(DerivedChannels, AFilterFollowsARampAtItsConstantsDistance) {
+  for (const double dt : {0.001, 0.1, 1.0}) {
+    FirstOrderLag lag(0.06);
+    double t = 0;
+    double filtered = lag.next(0, 0);
+    EXPECT_EQ(filtered, 0);
+    for (int i = 0; i < 3; ++i) {
+      t += dt;
+      filtered = lag.next(2 * t, dt);
+      EXPECT_NEAR(filtered, 2 * (t - 0.06 * (1 - std::exp(-t / 0.06))), 1e-12) << dt;
+    }
+    lag.start_movement();
+    EXPECT_EQ(lag.next(-0.4, dt), -0.4);
+  }
+}
+
+TEST(DerivedChannels, FilteredVelocitiesAreTheSameForAClockThatCountsFrom1970) {
+  const Dataset early = kuka::make_planted({}, 3).data;
+  Dataset late = early;
+  for (Channel& channel : late.channels) {
+    if (channel.role != Role::time) continue;
+    for (double& t : channel.values) t += 1.7e9;
+  }
+  const Observations one = observe(early);
+  const Observations other = observe(late);
+  for (const int lag_ms : kLags_ms) {
+    const std::string name = lagged_velocity_name(lag_ms);
+    ASSERT_NE(one.find(name), nullptr);
+    EXPECT_EQ(one.find(name)->values, other.find(name)->values) << name;
+  }
+}
+
 }  // namespace
 }  // namespace tribench::loop

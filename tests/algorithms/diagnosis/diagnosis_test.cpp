@@ -12,6 +12,7 @@
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
 #include "problems/data_problem.hpp"
+#include "problems/joint_simulation/simulated_campaign.hpp"
 #include "problems/kuka/planted.hpp"
 #include "problems/reading/csv.hpp"
 #include "tests/support/paths.hpp"
@@ -85,6 +86,42 @@ TEST(Diagnosis, ChoosesTheShapeThatLeavesTheLeastBetweenMovements) {
   EXPECT_NEAR(power->value, 4, 0.4);
   EXPECT_LT(diagnosis.noise.between_sd, 0.08);  // planted: 0.045
 }
+
+// A joint simulated in time: its causes have a memory, no column of the library is theirs.
+struct SimulatedCause {
+  const char* cause;
+  std::string_view family;
+  simulation::Design design;
+  std::uint64_t seed;
+};
+
+class Simulated : public ::testing::TestWithParam<SimulatedCause> {};
+
+TEST_P(Simulated, IsNamedFirstAndNothingStaysUnknownBesideIt) {
+  const auto& [cause, family, design, seed] = GetParam();
+  const PlantedData planted = simulation::simulate(
+      {.cause = cause, .scale = 1, .noise = simulation::NoiseKind::gaussian, .design = design},
+      seed);
+  DiagnosisOptions options;
+  options.gear_ratios = {simulation::kGearRatio};
+  const Diagnosis diagnosis = diagnose(observe(planted.data), coulomb_viscous_base, options, 1);
+  EXPECT_EQ(diagnosis.verdict, Verdict::effects);
+  ASSERT_FALSE(diagnosis.effects.empty());
+  EXPECT_EQ(diagnosis.effects[0].family, family);
+  // What only corrects the shape of the first stands under its name.
+  for (const EffectFinding& effect : diagnosis.effects) EXPECT_NE(effect.family, "stribeck");
+}
+
+using enum simulation::Design;
+INSTANTIATE_TEST_SUITE_P(
+    Causes, Simulated,
+    ::testing::Values(SimulatedCause{"lag_of_velocity", "lag", mixed, 7},
+                      SimulatedCause{"lag_of_velocity", "lag", many_short, 7},
+                      SimulatedCause{"lag_of_friction", "lag", few_long, 7},
+                      SimulatedCause{"output_ripple_harmonics", "output_ripple", one_way, 7},
+                      SimulatedCause{"output_ripple_drifting", "output_ripple", many_short, 7},
+                      SimulatedCause{"gear_ripple_drifting", "gear_ripple", few_long, 7},
+                      SimulatedCause{"presliding_dahl", "hysteresis", many_short, 7}));
 
 class OutsideTheLibrary
     : public ::testing::TestWithParam<std::pair<const char*, std::vector<std::string>>> {};

@@ -94,13 +94,6 @@ const std::vector<Retelling>& retellings() {
   static const std::vector<Retelling> kAll = {
       {"mirrored", mirror, 1, 0},
       {"torque in 1/8", [](Dataset& d) { scale(d, kTorques, 8); }, 8, 0},
-      {"time in units of 4 s",
-       [](Dataset& d) {
-         scale(d, {Role::time}, 0.25);
-         scale(d, {Role::velocity, Role::other_velocity}, 4);
-         scale(d, {Role::acceleration, Role::other_acceleration}, 16);
-       },
-       1, 0},
       {"torque in m", [](Dataset& d) { scale(d, kTorques, 1000); }, 1000, 1e-9},
       {"from 1970", [](Dataset& d) { shift_time(d, 1.76e9); }, 1, 1e-9},
       {"columns turned", reverse_columns, 1, 0}};
