@@ -171,7 +171,9 @@ std::vector<std::string> Search::inputs_of(std::size_t family) const {
       for (const Node& node : column.nodes()) {
         if (!node.is_variable()) continue;
         const Signal& signal = data_.signals[node.variable];
-        if (signal.has_memory()) names.insert({"v", "a", "d"});
+        for (const char* name : {"v", "a", "d"}) {
+          if (signal.has_memory() && data_.find(name) != nullptr) names.insert(name);
+        }
         if (!signal.name.starts_with("sgn_")) names.insert(signal.name);
       }
     }
@@ -201,15 +203,22 @@ Search::Found* Search::home_of(const std::vector<std::string>& inputs, std::size
   return home != nullptr && nats_of(families) > nats ? home : nullptr;
 }
 
+bool Search::remembers(std::size_t family) const {
+  const std::vector<std::string> inputs = inputs_of(family);
+  return std::ranges::any_of(
+      inputs, [&](const std::string& name) { return data_.find(name)->has_memory(); });
+}
+
 // No curve of the library is the true one to the last nat. What lives in nothing but the inputs of
-// a larger effect is that effect in another shape: an effect that came after it and adds far less
-// gives it its columns, and what is left over is no UNKNOWN beside the right name.
+// a larger effect is that effect in another shape: what is left over is no UNKNOWN beside the right
+// name, and where that effect remembers the motion, one that came after it and adds far less gives
+// it its columns.
 void Search::name_shapes() {
   for (std::size_t k = found.size(); k-- > 1;) {
     const std::size_t family = found[k].family;
     const std::vector<std::string> inputs = inputs_of(family);
     Found* home = inputs.empty() ? nullptr : home_of(inputs, k, nats_of({family}) / kShapeShare);
-    if (home == nullptr) continue;
+    if (home == nullptr || !remembers(home->family)) continue;
     home->another_shape = true;
     note(
         fmt::format("'{}' only shapes '{}': in the same inputs more than {:.0f} times as much is "

@@ -138,6 +138,7 @@ class Search {
   std::vector<std::string> inputs_of(std::size_t family) const;
   double nats_of(const std::vector<std::size_t>& families) const;
   Found* home_of(const std::vector<std::string>& inputs, std::size_t end, double nats);
+  bool remembers(std::size_t family) const;
   void name_shapes();
   bool drop_varying(const std::vector<Modifier>& products);
   void drop_proxies(const Smoother& smoother);

@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
 #include <algorithm>
-
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -342,18 +344,68 @@ TEST(LoopCommand, grows_an_effect_from_what_is_left_over_saves_it_and_reads_it_b
   EXPECT_THAT(broken.errors, HasSubstr("phrase"));
 }
 
+struct PapersRow {
+  std::string movement;
+  double q, qd, g, tau;
+};
+
+std::vector<PapersRow> papers_rows(const std::string& file) {
+  std::vector<PapersRow> rows;
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);  // movement,time_s,q,qd,sgn_qd,g,sgn_g,tau_f
+  while (std::getline(in, line)) {
+    std::vector<std::string> cells;
+    std::istringstream cut(line);
+    for (std::string cell; std::getline(cut, cell, ',');) cells.push_back(cell);
+    rows.push_back({cells[0], std::stod(cells[2]), std::stod(cells[3]), std::stod(cells[5]),
+                    std::stod(cells[7])});
+  }
+  return rows;
+}
+
+// Mean absolute error, on the movements that the loop has held out, of the law that the campaign
+// was made with: its constants by least squares of all rows, the held-out ones too.
+double error_of_the_true_law(const std::vector<PapersRow>& rows, const Json& loop) {
+  Eigen::MatrixXd x(static_cast<Eigen::Index>(rows.size()), 15);
+  Eigen::VectorXd y(x.rows());
+  std::vector<std::string> movements;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const auto& [movement, q, v, g, tau] = rows[static_cast<std::size_t>(i)];
+    if (movements.empty() || movements.back() != movement) movements.push_back(movement);
+    const double s = v > 0 ? 1 : -1;
+    const double f = v > 0 ? 1 : 0;
+    const double v4 = v * v * v * v;
+    x.row(i) << f, f * v, f * v4, 1 - f, (1 - f) * v, (1 - f) * v4, s * std::abs(g), g,
+        std::tanh(g / 0.5), std::cos(160 * q), std::sin(160 * q), std::cos(320 * q),
+        std::sin(320 * q), std::cos(3 * q), std::sin(3 * q);
+    y[i] = tau;
+  }
+  const Eigen::VectorXd error = y - x * x.colPivHouseholderQr().solve(y);
+  double sum = 0;
+  double count = 0;
+  for (const Json& held_out : loop["error"]["movements"]) {
+    const std::string& name = movements.at(held_out["movement"].get<std::size_t>());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (rows[i].movement != name) continue;
+      sum += std::abs(error[static_cast<Eigen::Index>(i)]);
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
 // The paper's own case: what the symmetric model lacks on raw data of joint 2, and nothing else. In
 // the third campaign harmonics of the position stand in for a step of the load until the step is
-// there.
+// there. 720 held-out rows have a noise of 2.8 % more or less than its law says: what the loop
+// leaves is held against what the true law leaves in the very same rows (1.002 and 1.005 times
+// seen).
 TEST(LoopCommand, closes_the_loop_on_the_papers_joint_2_down_to_its_noise) {
   const testing::TemporaryFolder folder;
-  // The noise is normal with 0.80 N m a row and 0.05 a movement: its mean magnitude is the ceiling.
-  const double ceiling = std::sqrt(2 / 3.14159265) * std::hypot(0.80, 0.05);
-  double after = 0;
   for (const char* seed : {"1", "3"}) {
+    const std::string file = generated(folder, "A/j2/load", seed);
     const testing::ProgramRun run =
-        tribench({"loop", generated(folder, "A/j2/load", seed), "--model", "symmetric",
-                  "--gear-ratio", "160", "--json"});
+        tribench({"loop", file, "--model", "symmetric", "--gear-ratio", "160", "--json"});
     ASSERT_EQ(run.status, 0) << run.errors;
     const Json loop = Json::parse(run.output);
     EXPECT_EQ(loop["verdict"], "EFFECTS") << seed;
@@ -367,10 +419,10 @@ TEST(LoopCommand, closes_the_loop_on_the_papers_joint_2_down_to_its_noise) {
     EXPECT_THAT(found, ::testing::UnorderedElementsAre("asymmetry", "load_coulomb",
                                                        "power_quadrant_gain", "power_quadrant_step",
                                                        "gear_ripple", "output_ripple"));
-    EXPECT_GT(loop["error"]["mae_before"].get<double>(), 5 * ceiling);
-    after += loop["error"]["mae_after"].get<double>() / 2;
+    const double least = error_of_the_true_law(papers_rows(file), loop);
+    EXPECT_GT(loop["error"]["mae_before"].get<double>(), 5 * least) << seed;
+    EXPECT_LT(loop["error"]["mae_after"].get<double>(), 1.01 * least) << seed;
   }
-  EXPECT_LT(after, 1.03 * ceiling);
 }
 
 }  // namespace
