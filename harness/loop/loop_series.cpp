@@ -37,7 +37,7 @@ Eigen::VectorXd rigid_part(const LoopModel& model, const Observations& data) {
 }
 
 bool worth_a_look(const Signal& signal) {
-  return !signal.name.starts_with("sgn_") && signal.name != "a2";
+  return !signal.name.starts_with("sgn_") && signal.name != "a2" && !signal.is_filtered();
 }
 
 LoopResidualRows residual_rows(const LoopRows& all) {

@@ -33,8 +33,10 @@ struct Signal {
   Role role = Role::none;
   std::string recipe;  // how it is computed where it is no column of the data, else empty
   std::vector<double> values;
+  // A velocity after a filter: nothing to look at beside the velocity itself.
+  bool is_filtered() const { return name.starts_with("v_lag"); }
   // It follows from the motion before (a distance since reversal, a filtered velocity).
-  bool has_memory() const { return role == Role::none && !recipe.empty(); }
+  bool has_memory() const { return name == "d" || is_filtered(); }
 };
 
 // A signal in which no effect can be tested, and why: "there is one movement".
