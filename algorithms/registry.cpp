@@ -10,6 +10,7 @@
 #include "algorithms/model_based/static_friction.hpp"
 #include "algorithms/parfam/parfam.hpp"
 #include "algorithms/pysr/pysr.hpp"
+#include "algorithms/relay/relay.hpp"
 #include "algorithms/udsr/udsr.hpp"
 #include "foundation/error.hpp"
 #include "foundation/suggestion.hpp"
@@ -27,6 +28,7 @@ Registry::Registry() {
   entries_.push_back(pysr_entry());
   entries_.push_back(parfam_entry());
   entries_.push_back(udsr_entry());
+  entries_.push_back(relay_entry());
 }
 
 const AlgorithmEntry& Registry::find(std::string_view name) const {
@@ -38,11 +40,14 @@ const AlgorithmEntry& Registry::find(std::string_view name) const {
   throw_bad_input(fmt::format("there is no algorithm '{}'", name), {}, did_you_mean(name, names));
 }
 
-std::unique_ptr<Regressor> Registry::make(
-    std::string_view name, const std::map<std::string, ParameterValue>& given) const {
+std::unique_ptr<Regressor> Registry::make(std::string_view name,
+                                          const std::map<std::string, ParameterValue>& given,
+                                          int round) const {
   const AlgorithmEntry& entry = find(name);
-  return entry.make(Parameters(entry.parameters, given),
-                    [this](std::string_view other) { return make(other); });
+  std::map<std::string, ParameterValue> parameters = given;
+  if (round > 0 && entry.widened != nullptr) parameters.merge(entry.widened(round));
+  return entry.make(Parameters(entry.parameters, parameters),
+                    [this](std::string_view other, int its) { return make(other, {}, its); });
 }
 
 }  // namespace tribench

@@ -23,9 +23,11 @@ class Registry {
   void add(AlgorithmEntry entry) { entries_.push_back(std::move(entry)); }
   // Throws Error (bad_input) with the nearest name.
   const AlgorithmEntry& find(std::string_view name) const;
-  // The algorithm with the given parameters; throws as Parameters does.
+  // The algorithm with the given parameters, and in a round after the first with what its entry
+  // widens besides them; throws as Parameters does.
   std::unique_ptr<Regressor> make(std::string_view name,
-                                  const std::map<std::string, ParameterValue>& given = {}) const;
+                                  const std::map<std::string, ParameterValue>& given = {},
+                                  int round = 0) const;
 
  private:
   std::vector<AlgorithmEntry> entries_;

@@ -118,9 +118,10 @@ class Regressor {
   virtual FitResult fit(FitContext& context) const = 0;
 };
 
-// Makes another method by its name, with its defaults: for one that builds on it (the closed loop
-// on its base). Throws Error (bad_input) with the nearest name.
-using MakeMethod = std::function<std::unique_ptr<Regressor>(std::string_view name)>;
+// Makes another method by its name: for one that builds on it (the closed loop on its base, relay
+// on its members). Round 0 has its defaults, a later one what its entry widens. Throws Error
+// (bad_input) with the nearest name.
+using MakeMethod = std::function<std::unique_ptr<Regressor>(std::string_view name, int round)>;
 
 // One algorithm: what it is called, what it accepts, how it is made.
 struct AlgorithmEntry {
@@ -133,6 +134,10 @@ struct AlgorithmEntry {
   // `other` outlives nothing: what a method needs of it is made at once.
   std::unique_ptr<Regressor> (*make)(const Parameters& parameters,
                                      const MakeMethod& other) = nullptr;
+  // Where a budget shall be spent, a fit is followed by further rounds (harness/restarts.hpp): what
+  // the round of this number, from 1 on, sets to search wider than the one before. None: every
+  // round is the same but for its random numbers.
+  std::map<std::string, ParameterValue> (*widened)(int round) = nullptr;
 };
 
 }  // namespace tribench

@@ -63,16 +63,14 @@ OperatorSet parse_operators(const json& object) {
 }
 
 json limits_json(const CellLimits& limits) {
-  return {{"evaluations", limits.evaluations},
-          {"seconds", limits.seconds},
-          {"wall_seconds", limits.wall_seconds},
-          {"cpu_limit_seconds", limits.cpu_limit_seconds},
-          {"memory_mib", limits.memory_mib}};
+  return {{"evaluations", limits.evaluations},   {"seconds", limits.seconds},
+          {"wall_seconds", limits.wall_seconds}, {"cpu_limit_seconds", limits.cpu_limit_seconds},
+          {"memory_mib", limits.memory_mib},     {"spend", limits.spend}};
 }
 
 CellLimits parse_limits(const json& object) {
-  return {object.at("evaluations"), object.at("seconds"), object.at("wall_seconds"),
-          object.at("cpu_limit_seconds"), object.at("memory_mib")};
+  return {object.at("evaluations"),       object.at("seconds"),    object.at("wall_seconds"),
+          object.at("cpu_limit_seconds"), object.at("memory_mib"), object.at("spend")};
 }
 
 json record_json(const Record& r) {
@@ -195,7 +193,7 @@ CellTask make_task(const Grid& grid, const Cell& cell, const std::string& data) 
   const Method& method = grid.method(cell.method);
   CellTask task{
       cell,       method, grid.operator_set(cell.operators), grid.limits_of(method), 1, data,
-      grid.prior, false};
+      grid.prior, {}};
   if (const user::UserProblem* own = grid.own_problem(cell.problem)) task.own = *own;
   return task;
 }

@@ -23,8 +23,6 @@ struct CellTask {
   int threads = 1;
   std::string data;  // folder of the measured sets; empty where there is none
   Prior prior = {};
-  // The budget is what shall be spent, not what may be (restarts.hpp). Never so in a grid.
-  bool spends_all = false;
   std::optional<user::UserProblem> own = {};  // what cell.problem is, where the grid brings it
 };
 

@@ -29,6 +29,8 @@ struct CellLimits {
   double wall_seconds = 180;                   // of the whole cell
   double cpu_limit_seconds = 90;               // CPU seconds of the whole cell
   double memory_mib = 2048;
+  // Evaluations and seconds are what shall be spent, not what may be (restarts.hpp).
+  bool spend = false;
 
   bool operator==(const CellLimits&) const = default;
 };

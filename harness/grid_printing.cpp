@@ -40,6 +40,7 @@ void insert_limits(toml::table& table, const CellLimits& limits) {
   table.insert("wall_seconds", limits.wall_seconds);
   table.insert("cpu_limit_seconds", limits.cpu_limit_seconds);
   table.insert("memory_mib", limits.memory_mib);
+  if (limits.spend) table.insert("spend", true);
 }
 
 toml::table method_table(const Method& method) {

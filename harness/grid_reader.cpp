@@ -50,12 +50,13 @@ CellLimits read_limits(const TomlTable& table, CellLimits limits) {
   table.read("wall_seconds", limits.wall_seconds, 0.01, kMaxSeconds);
   table.read("cpu_limit_seconds", limits.cpu_limit_seconds, 0.01, kMaxSeconds);
   table.read("memory_mib", limits.memory_mib, 16, 1 << 24);
+  table.read("spend", limits.spend);
   return limits;
 }
 
 const std::vector<std::string>& limit_keys() {
-  static const std::vector<std::string> kKeys = {"evaluations", "seconds", "wall_seconds",
-                                                 "cpu_limit_seconds", "memory_mib"};
+  static const std::vector<std::string> kKeys = {"evaluations",       "seconds",    "wall_seconds",
+                                                 "cpu_limit_seconds", "memory_mib", "spend"};
   return kKeys;
 }
 

@@ -3,13 +3,13 @@
 // Fits again from other random numbers until the budget is spent, where the user gave one: every
 // method stops when its own search has come to rest, after a second or so, whatever it was given.
 //
-// All rounds' formulas form one front; the formula chosen is the exact one where there is one
-// (fitting/exact_choice.hpp), else the one of the rounds' choices with the most evidence
-// (fitting/evidence.hpp). It ends early where the rows are explained to rounding, and where a round
-// gives what the round before gave (a method without random numbers). With a budget of evaluations
-// the same rounds are run on any machine.
+// A round searches wider than the one before where its method can (AlgorithmEntry::widened). All
+// rounds' formulas form one front (fitting/joint_front.hpp). It ends early where the rows are
+// explained to rounding, and where rounds give what the one before gave: one of a method that does
+// not widen, three of one that does. With a budget of evaluations the same rounds are run on any
+// machine.
 //
-// Not for cells of a grid, whose budgets are ceilings.
+// Not where budgets are ceilings, as they are in a grid that does not say `spend = true`.
 #pragma once
 
 #include <functional>
@@ -18,11 +18,14 @@
 
 namespace tribench {
 
-// One round: a fit with these random numbers, its front finished (finished_front.hpp).
-using FitRound = std::function<FitResult(RandomStream random)>;
+// The round of this number, from 1 on: a fit with these random numbers, its front finished
+// (finished_front.hpp).
+using FitRound = std::function<FitResult(RandomStream random, int round)>;
 
-// `first` is the round already done; `budget` the one that the rounds spend.
-FitResult fit_until_spent(FitResult first, const FitRound& round, const TrainingData& data,
-                          const Budget& budget, const RandomStream& random);
+// `first` is round 0, already done; `budget` the one that the rounds spend; `widens`: whether a
+// round may find what the one before could not, without other random numbers.
+FitResult fit_until_spent(FitResult first, const FitRound& round, bool widens,
+                          const TrainingData& data, const Budget& budget,
+                          const RandomStream& random);
 
 }  // namespace tribench

@@ -15,6 +15,7 @@
 
 #include "algorithms/admission.hpp"
 #include "algorithms/external/external_method.hpp"
+#include "algorithms/scaled_data.hpp"
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
@@ -207,7 +208,7 @@ void keep_usable_formulas(FitResult& fit, std::span<const Input> inputs) {
 }
 
 StagesResult fit_stages(const Problem& problem, const Regressor& method, const CellTask& task,
-                        Budget& budget, Trace& trace) {
+                        const WidenedMethod& widened, Budget& budget, Trace& trace) {
   StagesResult result;
   Expression so_far;
   const RandomStream random(key_of(task.cell.key()));
@@ -215,22 +216,29 @@ StagesResult fit_stages(const Problem& problem, const Regressor& method, const C
     const Stage& stage = problem.stages[s];
     const StageView view(problem, stage, so_far);
     const TrainingData data = view.data();
+    const ScaledData scaled(data);
     // What is left is shared equally among the stages to come.
     Budget part = budget.share(budget.remaining() / (problem.stages.size() - s));
     trace.start_stage(budget.spent());
-    const auto fit_once = [&](RandomStream stream, Progress* progress) {
-      FitContext context{data, task.operators, part, stream, task.threads, progress};
-      FitResult once = fit_or_refuse(method, context);
+    const auto fit_once = [&](const Regressor& once_method, RandomStream stream,
+                              Progress* progress) {
+      const TrainingData seen = scaled.data();
+      FitContext context{seen, task.operators, part, stream, task.threads, progress};
+      FitResult once = fit_or_refuse(once_method, context);
+      for (Expression& formula : once.front) formula = scaled.unscaled(formula);
       keep_usable_formulas(once, data.inputs);
       finish_front(data, task.operators, once);
       return once;
     };
-    FitResult fit = fit_once(random.split(s), &trace);
-    if (task.spends_all) {
+    FitResult fit = fit_once(method, random.split(s), &trace);
+    if (task.limits.spend) {
       // The trace is the first round's: a later one starts from nothing.
-      fit = fit_until_spent(
-          std::move(fit), [&](RandomStream stream) { return fit_once(stream, nullptr); }, data,
-          part, random.split("again").split(s));
+      const auto again = [&](RandomStream stream, int round) {
+        return widened ? fit_once(*widened(round), stream, nullptr)
+                       : fit_once(method, stream, nullptr);
+      };
+      fit = fit_until_spent(std::move(fit), again, widened != nullptr, data, part,
+                            random.split("again").split(s));
     }
     budget.settle(part);
     if (!fit.note.empty()) {
@@ -272,7 +280,8 @@ void set_yardsticks(const Yardsticks& yardsticks, Record& record) {
 
 }  // namespace
 
-CellResult fit_and_judge(const Problem& problem, const Regressor& method, const CellTask& task) {
+CellResult fit_and_judge(const Problem& problem, const Regressor& method, const CellTask& task,
+                         const WidenedMethod& widened) {
   CellResult result;
   Record& record = result.record;
   record = empty_record(task.cell);
@@ -284,7 +293,7 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
   Budget budget({task.limits.evaluations, task.limits.seconds});
   StagesResult fit;
   try {
-    fit = fit_stages(problem, method, task, budget, trace);
+    fit = fit_stages(problem, method, task, widened, budget, trace);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const Error& error) {
@@ -357,11 +366,15 @@ CellResult CellRunner::run(const CellTask& task,
     name_problem(data.problem, failed.record);
     set_yardsticks(data.yardsticks, failed.record);
     on_problem(failed.record);
-    const std::unique_ptr<Regressor> method =
-        task.method.is_external()
-            ? make_external_method(task.method.command, task.method.parameters)
-            : registry_.make(task.method.algorithm, task.method.parameters);
-    CellResult result = fit_and_judge(data.problem, *method, task);
+    const auto in_round = [&](int round) {
+      return task.method.is_external()
+                 ? make_external_method(task.method.command, task.method.parameters)
+                 : registry_.make(task.method.algorithm, task.method.parameters, round);
+    };
+    const bool widens =
+        !task.method.is_external() && registry_.find(task.method.algorithm).widened != nullptr;
+    CellResult result =
+        fit_and_judge(data.problem, *in_round(0), task, widens ? in_round : WidenedMethod());
     set_yardsticks(data.yardsticks, result.record);
     return result;
   } catch (const Error& error) {

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <list>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -18,10 +19,14 @@
 
 namespace tribench {
 
+// The method as it searches in a round after the first (restarts.hpp); empty: as it is.
+using WidenedMethod = std::function<std::unique_ptr<Regressor>(int round)>;
+
 // Fits every stage of the problem, each to what the stages before have left, and judges the sum.
 // Errors of the method become a failed record; std::bad_alloc is passed on. The record's yardsticks
 // are left to whoever knows them.
-CellResult fit_and_judge(const Problem& problem, const Regressor& method, const CellTask& task);
+CellResult fit_and_judge(const Problem& problem, const Regressor& method, const CellTask& task,
+                         const WidenedMethod& widened = {});
 
 // Keeps the last problems made: cells that follow each other often share one, and making it (20 ms
 // for A without load) can cost more than a baseline's fit.

@@ -88,7 +88,7 @@ class ClosedLoop : public Regressor {
         throw_bad_input(fmt::format("'{}' is no method's name", base_name_), "base",
                         fmt::format("a formula is given as formula:{}", base_name_));
       }
-      method_ = other(base_name_);
+      method_ = other(base_name_, 0);
     }
   }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/parfam/parfam.hpp"
 
+#include <algorithm>
+#include <cstdint>
+
 #include "algorithms/parfam/original.hpp"
 #include "algorithms/parfam/search.hpp"
 
@@ -79,13 +82,27 @@ std::vector<ParameterSpec> specs() {
   };
 }
 
+// More starts and families: two functions at once, a degree more, and denominators of both kinds by
+// turns, for a safe one cannot have the pole that a law may have outside its data.
+std::map<std::string, ParameterValue> widened(int round) {
+  return {{"starts", std::int64_t{std::min(16 + 8 * round, 64)}},
+          {"refined", std::int64_t{std::min(6 + 2 * round, 16)}},
+          {"functions", std::int64_t{round < 2 ? 1 : 2}},
+          {"polynomial_degree", std::int64_t{round < 2 ? 5 : 6}},
+          {"denominators", std::string(round % 2 == 1 ? "free" : "safe")}};
+}
+
 }  // namespace
 
 AlgorithmEntry parfam_entry() {
-  return {"parfam", "ParFam: parametric families by continuous optimisation", specs(), false,
+  return {"parfam",
+          "ParFam: parametric families by continuous optimisation",
+          specs(),
+          false,
           [](const Parameters& parameters, const MakeMethod&) -> std::unique_ptr<Regressor> {
             return std::make_unique<ParFam>(parameters);
-          }};
+          },
+          widened};
 }
 
 }  // namespace tribench

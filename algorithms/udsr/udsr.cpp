@@ -355,16 +355,27 @@ class Udsr : public Regressor {
   Settings settings_;
 };
 
+// Longer formulas, a linear token of the next degree, larger generations, and more steps before a
+// search that finds nothing ends.
+std::map<std::string, ParameterValue> widened(int round) {
+  return {{"max_length", std::int64_t{std::min(30 + 5 * round, 60)}},
+          {"degree", std::int64_t{round < 2 ? 3 : 4}},
+          {"population", std::int64_t{std::min(100 + 50 * round, 400)}},
+          {"patience", std::int64_t{std::min(60 + 30 * round, 200)}}};
+}
+
 }  // namespace
 
 AlgorithmEntry udsr_entry() {
   return {"udsr",
           "unified deep symbolic regression: policy network, genetic programming, linear token, "
           "recursive simplification, pre-training",
-          parameter_specs(), false,
+          parameter_specs(),
+          false,
           [](const Parameters& parameters, const MakeMethod&) -> std::unique_ptr<Regressor> {
             return std::make_unique<Udsr>(settings_from(parameters));
-          }};
+          },
+          widened};
 }
 
 }  // namespace tribench

@@ -95,7 +95,7 @@ CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fix
   if (fixed_form) task.operators = fixed_form_operators();
   task.limits.evaluations = arguments.evaluations;
   task.limits.seconds = arguments.seconds;
-  task.spends_all = arguments.spends_all;
+  task.limits.spend = arguments.spends_all;
   task.threads = usable_processors();
   return task;
 }
@@ -136,6 +136,7 @@ ParameterValue plain_value(const std::string& text) {
 struct ChosenMethod {
   std::unique_ptr<Regressor> method;
   bool fixed_form = false;
+  WidenedMethod widened = {};  // for the rounds after the first
 };
 
 ChosenMethod choose_method(const FitArguments& arguments, const Registry& registry) {
@@ -152,7 +153,13 @@ ChosenMethod choose_method(const FitArguments& arguments, const Registry& regist
     const auto [name, value] = name_and_value(text, "--parameter");
     parameters[name] = parameter_from_text(entry.parameters, name, value);
   }
-  return {registry.make(arguments.method, parameters), entry.fixed_form};
+  WidenedMethod widened;
+  if (entry.widened != nullptr) {
+    widened = [&registry, name = arguments.method, parameters](int round) {
+      return registry.make(name, parameters, round);
+    };
+  }
+  return {registry.make(arguments.method, parameters), entry.fixed_form, std::move(widened)};
 }
 
 // Nothing is held out unless it is asked for; then, as in a grid, by groups or single rows.
@@ -240,7 +247,7 @@ void fit(const FitArguments& arguments, const Registry& registry) {
   const std::vector<double> weights = take_weights(arguments, problem);
   const CellTask task = task_of(arguments, problem, chosen.fixed_form);
   FitAnswer answer;
-  answer.result = weights.empty() ? fit_and_judge(problem, *chosen.method, task)
+  answer.result = weights.empty() ? fit_and_judge(problem, *chosen.method, task, chosen.widened)
                                   : fit_weighted(problem, weights, *chosen.method, task);
   const Record& record = answer.result.record;
   if (record.status != "ok") {
@@ -297,8 +304,8 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
       ->add_option("--inputs", arguments->inputs, "the columns to explain it by; sgn_X is derived")
       ->required()
       ->delimiter(',');
-  CLI::Option* method =
-      command->add_option("--method", arguments->method, "a name of `tribench list methods`");
+  CLI::Option* method = command->add_option("--method", arguments->method,
+                                            "a name of `tribench list methods`; default: relay");
   command
       ->add_option("--external", arguments->external,
                    "'PROGRAM WORDS': a program as the method (docs/external_methods.md)")
@@ -342,10 +349,7 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
   command->add_option("--save", arguments->save, "a file for `tribench predict`, with intervals");
   command->add_flag("--json", arguments->json, "print JSON");
   command->callback([arguments, &registry, seconds, evaluations] {
-    if (arguments->method.empty() && arguments->external.empty()) {
-      throw_bad_input("no method is given", "--method",
-                      "name one of `tribench list methods`, or a program by --external");
-    }
+    if (arguments->external.empty() && arguments->method.empty()) arguments->method = "relay";
     arguments->words = own_words();
     constexpr std::uint64_t kNoLimit = 1'000'000'000'000'000'000;
     arguments->spends_all = seconds->count() > 0;

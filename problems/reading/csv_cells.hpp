@@ -33,8 +33,9 @@ CsvCells split_csv(std::string_view text, std::string_view file);
 // Nothing measured is as large (nanoseconds since 1970 are 2e18), but markers for missing values
 // are (3.4e38, 1.8e308).
 inline constexpr double kLargestMeasured = 1e30;
-// Of a quantity in whatever unit: its square and the square's square are still doubles.
-inline constexpr double kLargestNumber = 1e75;
+// Of a quantity in whatever unit: the sum of its squares is still a double. Methods are handed
+// numbers beyond 1e30 divided by a power of two (algorithms/scaled_data.hpp).
+inline constexpr double kLargestNumber = 1e150;
 
 enum class CellKind { number, missing, text };
 // number: one that makes up the whole cell, however large; missing: empty, nan, na, null, none,

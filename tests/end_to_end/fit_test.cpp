@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -55,6 +56,36 @@ TEST_F(FitTest, FindsAPlantedLineAndJudgesItOnOtherData) {
   for (const char* key : {"formula", "complexity", "nodes", "evaluations", "fit_cpu_s"}) {
     EXPECT_TRUE(answer.contains(key)) << key;
   }
+}
+
+// Squares of the target are no doubles: it is scaled inside, and the law is in the user's numbers.
+TEST_F(FitTest, FindsALawOfNumbersFarFromOne) {
+  std::string text = "m,c,E\n";
+  for (int i = 0; i < 60; ++i) {
+    const double m = 1e-31 * (1 + i % 7);
+    const double c = 1e80 * (2 + i % 11);
+    text += fmt::format("{},{},{}\n", m, c, m * c * c / 2);
+  }
+  write_text(folder_ / "far.csv", text);
+  const ProgramRun run =
+      run_to_end({program().string(), "fit", (folder_ / "far.csv").string(), "--target", "E",
+                  "--inputs", "m,c", "--method", "pysr", "--operators", "full", "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const json answer = json::parse(run.output);
+  EXPECT_LT(answer.at("mae_train").get<double>(), 1e-6 * 1e129) << answer.at("formula");
+  EXPECT_LE(answer.at("complexity").get<int>(), 6) << answer.at("formula");
+}
+
+TEST_F(FitTest, WithoutAMethodRelayIsUsedAndOneMemberThatExplainsTheRowsEndsIt) {
+  const ProgramRun run = fit({"--target", "friction_torque_Nm", "--inputs",
+                              "velocity_rad_s,sgn_velocity_rad_s", "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const json answer = json::parse(run.output);
+  EXPECT_LT(answer.at("mae_train").get<double>(), 1e-5);
+  const ProgramRun alone =
+      fit({"--target", "friction_torque_Nm", "--inputs", "velocity_rad_s,sgn_velocity_rad_s",
+           "--method", "relay", "--json"});
+  EXPECT_EQ(json::parse(alone.output).at("formula"), answer.at("formula"));
 }
 
 TEST_F(FitTest, IsTheSameForTheSameSeed) {

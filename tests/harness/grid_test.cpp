@@ -180,6 +180,7 @@ quarantine = ["*|many|*"]
 evaluations = 1e7
 seconds = 4
 memory_mib = 300
+spend = true
 [retry]
 crashed = 2
 [[method]]
@@ -202,6 +203,7 @@ operators = ["+", "*", "tanh"]
   EXPECT_EQ(again.limits, grid.limits);
   EXPECT_EQ(again.limits_of(again.method("theirs")).wall_seconds, 9);
   EXPECT_EQ(again.limits_of(again.method("many")).memory_mib, 300);
+  EXPECT_TRUE(again.limits_of(again.method("many")).spend);
   EXPECT_TRUE(again.operator_set("mine").allows(Op::tanh));
   EXPECT_FALSE(again.operator_set("mine").allows(Op::exp));
   EXPECT_EQ(again.retry.crashed, 2);

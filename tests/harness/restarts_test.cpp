@@ -32,19 +32,21 @@ class RestartsTest : public ::testing::Test {
     return result;
   }
   // What becomes of the answers, each for ten evaluations.
-  FitResult fit(std::vector<FitResult> answers, std::uint64_t evaluations = 1000) {
+  FitResult fit(std::vector<FitResult> answers, std::uint64_t evaluations = 1000,
+                bool widens = false) {
     const double* column = v_.data();
     const std::vector<Input> inputs = {{"v", "-", Role::none, -1, 2, std::nullopt}};
     const TrainingData data{inputs, {&column, 1}, target_, {}};
     Budget budget({.evaluations = evaluations});
     budget.spend(10);
     asked_ = 1;
-    const auto round = [&](RandomStream stream) {
+    const auto round = [&](RandomStream stream, int number) {
       keys_.push_back(stream.key());
+      EXPECT_EQ(number, static_cast<int>(keys_.size()));
       const bool may = budget.spend(10);
       return may && asked_ < answers.size() ? answers[asked_++] : FitResult{};
     };
-    return fit_until_spent(answers.front(), round, data, budget, RandomStream(1));
+    return fit_until_spent(answers.front(), round, widens, data, budget, RandomStream(1));
   }
   static std::vector<std::string> texts(const FitResult& result) {
     std::vector<std::string> all;
@@ -86,6 +88,15 @@ TEST_F(RestartsTest, EndWhereARoundGivesWhatTheRoundBeforeGave) {
   const FitResult result = fit({answer({"v"}, 0), answer({"v"}, 0), answer({"v^2"}, 0)});
   EXPECT_EQ(asked_, 2U);
   EXPECT_EQ(texts(result), (std::vector<std::string>{"v"}));
+}
+
+TEST_F(RestartsTest, OfAMethodThatWidensGoOnThroughTwoThatGiveNothingNew) {
+  fill(0.1);
+  std::vector<FitResult> answers(10, answer({"v"}, 0));
+  answers[3] = answer({"v^2"}, 0);
+  const FitResult result = fit(answers, 1000, true);
+  EXPECT_EQ(asked_, 8U);  // three alike after the fifth
+  EXPECT_EQ(print(result.front[result.chosen], kNames), "v^2");
 }
 
 TEST_F(RestartsTest, KeepOneFrontByIncreasingComplexityAndFallingError) {
