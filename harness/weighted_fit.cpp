@@ -53,11 +53,12 @@ Table rows_of(const Table& table, const std::vector<std::size_t>& rows) {
 }  // namespace
 
 CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
-                        const Regressor& method, const CellTask& task) {
+                        const Regressor& method, const CellTask& task,
+                        const WidenedMethod& widened) {
   const Table& table = problem.stages.front().train;
   Problem searched = problem;
   searched.stages.front().train = rows_of(table, sampled_rows(weights));
-  CellResult result = fit_and_judge(searched, method, task);
+  CellResult result = fit_and_judge(searched, method, task, widened);
   if (result.record.status != "ok") return result;
   std::vector<Expression> front;
   std::size_t chosen = 0;

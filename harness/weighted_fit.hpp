@@ -17,6 +17,7 @@ namespace tribench {
 // stage. Figures are of all rows, unweighted, as ever. Throws Error (bad_input) naming the row of
 // a weight that is negative.
 CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
-                        const Regressor& method, const CellTask& task);
+                        const Regressor& method, const CellTask& task,
+                        const WidenedMethod& widened = {});
 
 }  // namespace tribench

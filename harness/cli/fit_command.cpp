@@ -247,8 +247,9 @@ void fit(const FitArguments& arguments, const Registry& registry) {
   const std::vector<double> weights = take_weights(arguments, problem);
   const CellTask task = task_of(arguments, problem, chosen.fixed_form);
   FitAnswer answer;
-  answer.result = weights.empty() ? fit_and_judge(problem, *chosen.method, task, chosen.widened)
-                                  : fit_weighted(problem, weights, *chosen.method, task);
+  answer.result = weights.empty()
+                      ? fit_and_judge(problem, *chosen.method, task, chosen.widened)
+                      : fit_weighted(problem, weights, *chosen.method, task, chosen.widened);
   const Record& record = answer.result.record;
   if (record.status != "ok") {
     const bool is_unsupported = record.reason.starts_with("unsupported");
