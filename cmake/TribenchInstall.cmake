@@ -9,7 +9,7 @@ foreach(room foundation problems algorithms reports harness)
   install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tribench
     FILES_MATCHING PATTERN "*.hpp")
 endforeach()
-install(DIRECTORY grids adapters examples DESTINATION ${CMAKE_INSTALL_DATADIR}/tribench
+install(DIRECTORY grids suites adapters python examples DESTINATION ${CMAKE_INSTALL_DATADIR}/tribench
   USE_SOURCE_PERMISSIONS
   PATTERN "*.in" EXCLUDE PATTERN "__pycache__" EXCLUDE PATTERN "*.timer" EXCLUDE)
 install(FILES examples/nightly/tribench-nightly.timer DESTINATION lib/systemd/system)

@@ -142,6 +142,17 @@ void TomlTable::read(std::string_view key, std::vector<double>& value) const {
   }
 }
 
+std::vector<TomlValue> TomlTable::value_array(std::string_view key) const {
+  std::vector<TomlValue> values;
+  if (!has(key)) return values;
+  const toml::array* array = table_->get(key)->as_array();
+  if (array == nullptr || array->empty()) refuse(key, "an array of values, as in [1, 2, 3]");
+  for (const toml::node& node : *array) {
+    values.push_back(plain_value(node, place_of(file_name_, node.source())));
+  }
+  return values;
+}
+
 std::vector<std::string> TomlTable::keys(std::string_view key) const {
   std::vector<std::string> names;
   if (!has(key)) return names;

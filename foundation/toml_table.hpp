@@ -44,6 +44,8 @@ class TomlTable {
   void require(std::string_view key) const;
   // Every key with its value, of an inner table that may have any keys.
   std::map<std::string, TomlValue> values(std::string_view key) const;
+  // An array of values that stand for themselves; none where the key is missing.
+  std::vector<TomlValue> value_array(std::string_view key) const;
   // The keys of an inner table that may have any; none where the key is missing.
   std::vector<std::string> keys(std::string_view key) const;
   // An inner table, with its own keys; empty where the key is missing.

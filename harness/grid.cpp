@@ -9,6 +9,7 @@
 #include "foundation/error.hpp"
 #include "foundation/glob.hpp"
 #include "foundation/suggestion.hpp"
+#include "problems/variant.hpp"
 
 namespace tribench {
 
@@ -106,7 +107,7 @@ OperatorSet Grid::operator_set(std::string_view set_name) const {
 }
 
 const user::UserProblem* Grid::own_problem(std::string_view problem) const {
-  const auto found = std::ranges::find(own, problem, &user::UserProblem::name);
+  const auto found = std::ranges::find(own, split_variant(problem).first, &user::UserProblem::name);
   return found == own.end() ? nullptr : &*found;
 }
 

@@ -15,7 +15,9 @@
 #include "foundation/text.hpp"
 #include "foundation/toml_table.hpp"
 #include "harness/grid.hpp"
+#include "harness/sweep.hpp"
 #include "problems/user/user_problem_text.hpp"
+#include "problems/variant.hpp"
 #include "reports/published.hpp"
 
 namespace tribench {
@@ -229,6 +231,31 @@ void check_suite(std::string_view toml, const std::string& file_name, const Cata
                   file_name, "put the file into DIR/suites and give --data DIR");
 }
 
+// Globs over problems; one with a variant (~noise=0.1) picks that of each problem it picks.
+std::vector<std::string> pick_problems(const TomlTable& table,
+                                       const std::vector<std::string>& known) {
+  std::vector<std::string> globs;
+  table.require("problems");
+  table.read("problems", globs);
+  std::vector<std::string> plain;
+  std::vector<std::string> variants;
+  for (const std::string& glob : globs) {
+    const auto [base, suffix] = split_variant(glob);
+    if (suffix.empty()) {
+      plain.push_back(base);
+      continue;
+    }
+    for (const std::string& name : pick_names({base}, known, "problem", table.place("problems"))) {
+      const std::string whole = name + suffix;
+      at_place(table.place("problems"), [&] { return varied({name, {}, {}, {}}, suffix); });
+      if (std::ranges::count(variants, whole) == 0) variants.push_back(whole);
+    }
+  }
+  std::vector<std::string> picked = pick_names(plain, known, "problem", table.place("problems"));
+  picked.insert(picked.end(), variants.begin(), variants.end());
+  return picked;
+}
+
 // Puts their names before those that are known.
 void read_own_problems(const TomlTable& file, const std::string& file_name,
                        std::vector<std::string>& names, Grid& grid) {
@@ -256,12 +283,16 @@ void read_axes(const TomlTable& file, const TomlTable& table, const Registry& re
     read_own_problems(file, file_name, names, grid);
     // A file that brings problems and names none runs those.
     grid.problems = table.has("problems") || grid.own.empty()
-                        ? pick(table, "problems", names, "problem")
+                        ? pick_problems(table, names)
                         : names_of(grid.own, [](const auto& own) { return own.name; });
-    std::erase_if(grid.own, [&](const user::UserProblem& own) {
-      return std::ranges::count(grid.problems, own.name) == 0;
-    });
   }
+  const Sweep sweep(table, registry);
+  grid.problems = sweep.over_problems(grid.problems);
+  std::erase_if(grid.own, [&](const user::UserProblem& own) {
+    return std::ranges::none_of(grid.problems, [&](const std::string& problem) {
+      return split_variant(problem).first == own.name;
+    });
+  });
   for (const suite::Suite& suite : catalogue.suites()) {
     const std::string prefix = suite.name + "/";
     if (std::ranges::any_of(grid.problems,
@@ -284,8 +315,10 @@ void read_axes(const TomlTable& file, const TomlTable& table, const Registry& re
       pick(table, "methods", names_of(known, [](const Method& method) { return method.name; }),
            "method");
   for (const Method& method : known) {
-    if (std::ranges::count(chosen, method.name) > 0) grid.methods.push_back(method);
+    if (std::ranges::count(chosen, method.name) == 0) continue;
+    for (Method& one : sweep.over_method(method)) grid.methods.push_back(std::move(one));
   }
+  sweep.refuse_unused(grid.methods);
 }
 
 }  // namespace
@@ -301,8 +334,8 @@ Grid parse_grid(std::string_view toml, const std::string& file_name, const Regis
   }
   const TomlTable file(root, file_name, "", keys);
   file.require("grid");
-  const TomlTable table = file.table(
-      "grid", {"name", "problems", "methods", "operators", "seeds", "quarantine", "reference"});
+  const TomlTable table = file.table("grid", {"name", "problems", "methods", "operators", "seeds",
+                                              "quarantine", "reference", "sweep"});
   Grid grid;
   grid.name = std::filesystem::path(file_name).stem().string();
   table.read("name", grid.name);

@@ -333,7 +333,7 @@ Problem make_problem(const CellTask& task) {
     // It was there when the run began: no fault of the cell, which can be run another time.
     throw Error(ErrorKind::environment, error.what());
   }
-  return user::make_user_problem(*task.own, law_reader(), task.cell.seed);
+  return full_catalogue_of(task.data, {&*task.own, 1}).find(task.cell.problem).make(task.cell.seed);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "foundation/error.hpp"
 #include "foundation/output_folder.hpp"
 #include "harness/provenance.hpp"
+#include "problems/variant.hpp"
 #include "reports/published.hpp"
 #include "reports/record_csv.hpp"
 #include "reports/suite_view.hpp"
@@ -30,8 +31,14 @@ std::string suite_text(const Grid& grid) {
   for (const suite::Suite& suite : grid.suites) {
     SuiteInfo info{suite.name, suite.summary, suite.recovered_below, suite.reference_note, {}, {}};
     for (const suite::SuiteProblem& problem : suite.problems) {
-      info.problems.push_back({fmt::format("{}/{}", suite.name, problem.name), problem.law,
-                               problem.law.empty() ? 0 : nodes_of(problem.law)});
+      const std::string name = fmt::format("{}/{}", suite.name, problem.name);
+      const int nodes = problem.law.empty() ? 0 : nodes_of(problem.law);
+      info.problems.push_back({name, problem.law, nodes});
+      for (const std::string& other : grid.problems) {
+        if (other != name && split_variant(other).first == name) {
+          info.problems.push_back({other, problem.law, nodes});
+        }
+      }
     }
     for (const suite::SuiteReference& one : suite.references) {
       info.references.push_back({one.method, one.seconds, one.recovered, one.low, one.high});

@@ -9,6 +9,7 @@
 #include "problems/kuka/entries.hpp"
 #include "problems/kuka/planted_entries.hpp"
 #include "problems/measured/entries.hpp"
+#include "problems/variant.hpp"
 
 namespace tribench {
 namespace {
@@ -32,9 +33,10 @@ Catalogue::Catalogue(std::optional<std::filesystem::path> data, const suite::Law
   measured::add_entries(entries_, data);
 }
 
-const ProblemEntry& Catalogue::find(std::string_view name) const {
+ProblemEntry Catalogue::find(std::string_view name) const {
+  const auto [base, suffix] = split_variant(name);
   for (const ProblemEntry& entry : entries_) {
-    if (entry.name == name) return entry;
+    if (entry.name == base) return suffix.empty() ? entry : varied(entry, suffix);
   }
   throw_bad_input(fmt::format("there is no problem '{}'", name), {}, suggestion(name, entries_));
 }

@@ -27,8 +27,8 @@ class Catalogue {
 
   const std::vector<ProblemEntry>& entries() const { return entries_; }
   const std::vector<suite::Suite>& suites() const { return suites_; }
-  // Throws Error (bad_input) with the nearest name.
-  const ProblemEntry& find(std::string_view name) const;
+  // Also NAME~noise=0.1 (variant.hpp). Throws Error (bad_input) with the nearest name.
+  ProblemEntry find(std::string_view name) const;
 
  private:
   std::vector<ProblemEntry> entries_;

@@ -91,7 +91,7 @@ namespace {
 
 // What the seeds could have shown and did not.
 std::string seen_text(const MethodRow& row) {
-  if (!std::isfinite(row.seen_ratio)) return fmt::format("{} seeds show nothing", row.pairs);
+  if (!std::isfinite(row.seen_ratio)) return fmt::format("{} seeds can show nothing", row.pairs);
   return fmt::format("x{} would be seen", ratio_figure(row.seen_ratio));
 }
 

@@ -30,7 +30,7 @@ struct GenerateOptions {
 void generate(const GenerateOptions& options) {
   const Catalogue catalogue = full_catalogue(measured::find_data_folder(
       options.data.empty() ? std::nullopt : std::optional<std::filesystem::path>(options.data)));
-  const ProblemEntry& entry = catalogue.find(options.problem);
+  const ProblemEntry entry = catalogue.find(options.problem);
   const Dataset data =
       entry.data ? entry.data(options.seed) : dataset_of_tables(entry.make(options.seed));
   write_csv(data, options.out);

@@ -128,7 +128,13 @@ std::vector<double> truth_of(const UserProblem& own, const suite::LawReader& law
                              const std::vector<std::string>& inputs, const Dataset& data) {
   if (own.law.empty()) return {};
   if (!laws) throw Error(ErrorKind::failed, "nobody here reads laws", own.name);
-  const suite::Law law = laws(own.law, inputs);
+  const suite::Law law = [&] {
+    try {
+      return laws(own.law, inputs);
+    } catch (const Error& error) {
+      throw_bad_input(error.what(), fmt::format("the law of problem '{}'", own.name));
+    }
+  }();
   std::vector<std::vector<double>> columns;
   for (const std::string& input : inputs) columns.push_back(input_values(data, input));
   std::vector<double> truth;

@@ -216,5 +216,34 @@ TEST(Grid, ANewCellKeyIsANewStream) {
   }
 }
 
+TEST(Grid, ASweepMultipliesProblemsAndMethods) {
+  const Grid grid = parse(R"([grid]
+problems = ["A/j2/no_load"]
+methods = ["grid_alpha", "grid_fixed"]
+sweep = { noise = [0, 0.1], rows = [20], "grid_alpha.islands" = [2, 8] }
+)");
+  EXPECT_THAT(grid.problems,
+              ElementsAre("A/j2/no_load~noise=0~rows=20", "A/j2/no_load~noise=0.1~rows=20"));
+  std::vector<std::string> methods;
+  for (const Method& method : grid.methods) methods.push_back(method.name);
+  EXPECT_THAT(methods, ElementsAre("grid_alpha-islands-2", "grid_alpha-islands-8", "grid_fixed"));
+  EXPECT_EQ(std::get<std::int64_t>(grid.methods[1].parameters.at("islands")), 8);
+  const Grid again = parse(print_grid(grid));
+  EXPECT_EQ(print_grid(again), print_grid(grid));
+  EXPECT_EQ(again.cells(), grid.cells());
+}
+
+TEST(Grid, RefusesASweepOfWhatIsNotThere) {
+  const auto swept = [](const std::string& sweep) {
+    return refusal(std::string(kAxes) + "sweep = { " + sweep + " }\n");
+  };
+  EXPECT_THAT(swept("nosie = [1]"), AllOf(HasSubstr("g.toml:4"), HasSubstr("METHOD.PARAMETER")));
+  EXPECT_THAT(swept("noise = []"), HasSubstr("g.toml:4"));
+  EXPECT_THAT(swept("noise = [-1]"), HasSubstr("~noise=-1"));
+  EXPECT_THAT(swept("\"grid_alpha.island\" = [1]"), HasSubstr("islands"));
+  EXPECT_THAT(swept("\"grid_alpha.islands\" = [1000]"), HasSubstr("g.toml:4"));
+  EXPECT_THAT(swept("\"pysr.populations\" = [8]"), HasSubstr("does not run it"));
+}
+
 }  // namespace
 }  // namespace tribench

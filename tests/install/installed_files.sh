@@ -33,7 +33,7 @@ expect() { # expect WHAT WORD COMMAND...: the command prints that word on a line
 }
 
 echo "# documents"
-for file in LICENSE README.md CHANGELOG.md CONTRIBUTING.md docs/closed_loop.md docs/install.md; do
+for file in LICENSE README.md CHANGELOG.md CONTRIBUTING.md docs/closed_loop.md docs/install.md docs/peers.md; do
     check "$file" test -s "$prefix/share/doc/tribench/$file"
 done
 cd "$prefix/share/doc/tribench"

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "harness/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "foundation/error.hpp"
+#include "foundation/plain_name.hpp"
+#include "problems/variant.hpp"
+
+namespace tribench {
+namespace {
+
+std::string text_of(const ParameterValue& value) {
+  return std::visit([](const auto& plain) { return fmt::format("{}", plain); }, value);
+}
+
+std::vector<std::string> multiplied(const std::vector<std::string>& suffixes,
+                                    const std::string& key, const std::vector<double>& values) {
+  std::vector<std::string> all;
+  for (const std::string& suffix : suffixes) {
+    for (const double value : values) all.push_back(suffix + variant_suffix(key, value));
+  }
+  return all;
+}
+
+}  // namespace
+
+Sweep::Sweep(const TomlTable& grid, const Registry& registry) : registry_(registry) {
+  const std::vector<std::string> keys = grid.keys("sweep");
+  const TomlTable table = grid.table("sweep", keys);
+  for (const std::string& key : keys) {
+    if (key == kNoiseKey || key == kRowsKey) {
+      std::vector<double> values;
+      table.read(key, values);
+      if (values.empty()) throw_bad_input(fmt::format("'{}' has no value", key), table.place(key));
+      suffixes_ = multiplied(suffixes_, key, values);
+      continue;
+    }
+    const std::size_t dot = key.rfind('.');
+    if (dot == std::string::npos || dot == 0) {
+      throw_bad_input(fmt::format("'{}' cannot be swept", key), table.place(key),
+                      "sweep noise, rows or \"METHOD.PARAMETER\"");
+    }
+    parameters_.push_back(
+        {key.substr(0, dot), key.substr(dot + 1), table.value_array(key), table.place(key)});
+  }
+}
+
+std::vector<std::string> Sweep::over_problems(const std::vector<std::string>& problems) const {
+  std::vector<std::string> all;
+  for (const std::string& problem : problems) {
+    for (const std::string& suffix : suffixes_) {
+      if (!suffix.empty()) varied({problem, {}, {}, {}}, suffix);  // refuses what it cannot be
+      all.push_back(problem + suffix);
+    }
+  }
+  return all;
+}
+
+std::vector<Method> Sweep::over_method(const Method& method) const {
+  std::vector<Method> all = {method};
+  for (const Parameter& parameter : parameters_) {
+    if (parameter.method != method.name) continue;
+    std::vector<Method> more;
+    for (const Method& one : all) {
+      for (const ParameterValue& value : parameter.values) {
+        Method changed = one;
+        changed.name = fmt::format("{}-{}-{}", one.name, parameter.name, text_of(value));
+        require_plain_name(changed.name, "a method of a sweep", parameter.place);
+        changed.parameters[parameter.name] = value;
+        if (!changed.is_external()) {
+          try {
+            registry_.make(changed.algorithm, changed.parameters);
+          } catch (const Error& error) {
+            throw_bad_input(error.what(), parameter.place);
+          }
+        }
+        more.push_back(std::move(changed));
+      }
+    }
+    all = std::move(more);
+  }
+  return all;
+}
+
+void Sweep::refuse_unused(const std::vector<Method>& methods) const {
+  for (const Parameter& parameter : parameters_) {
+    const bool used = std::ranges::any_of(methods, [&](const Method& method) {
+      return method.name.starts_with(parameter.method + "-" + parameter.name + "-") ||
+             (method.name.starts_with(parameter.method + "-") &&
+              method.parameters.contains(parameter.name));
+    });
+    if (used) continue;
+    std::vector<std::string> names;
+    for (const Method& method : methods) names.push_back(method.name);
+    throw_bad_input(fmt::format("'{}' is swept, and the grid does not run it", parameter.method),
+                    parameter.place, fmt::format("methods: {}", fmt::join(names, ", ")));
+  }
+}
+
+}  // namespace tribench
