@@ -4,7 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "foundation/error.hpp"
+#include "problems/preparation/data_options.hpp"
 #include "problems/reading/csv.hpp"
 
 namespace tribench {
@@ -65,6 +69,46 @@ TEST(DataProblem, ComplainsOfColumnsByName) {
   EXPECT_THAT(complaint(small(), "tau_f", {"tau_f"}), HasSubstr("target and an input"));
   EXPECT_THAT(complaint(small(), "tau_f", {"y", "y"}), HasSubstr("twice"));
   EXPECT_THAT(complaint(small(), "tau_f", {}), HasSubstr("no input"));
+}
+
+// For a fit a column is what the user says it is. Whatever columns are called, and in whatever
+// units, any explains any other; what lies in the columns that are not used means nothing.
+TEST(DataProblem, TakesEveryPairOfColumnsWhateverTheyAreCalled) {
+  const std::vector<std::string> names = {
+      "t",       "time",        "time_s",       "stamp",   "movement",   "run",
+      "q",       "position",    "pos_deg",      "v",       "qd",         "velocity_rad_s",
+      "vel_rpm", "qdd",         "acceleration", "tau",     "tau_m",      "tau_g",
+      "tau_f",   "effort",      "torque_mNm",   "force_N", "g",          "gravity_torque_Nm",
+      "T",       "temperature", "temp_degC",    "i",       "current_mA", "voltage_V",
+      "load",    "payload_kg",  "sgn_v"};
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  text += "\n";
+  for (int row = 0; row < 4; ++row) {
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      // Time that runs back, friction against the velocity, positions that are no velocity's.
+      const int value = (7 * row + 3 * static_cast<int>(j)) % 5 - 2;
+      text += (j == 0 ? "" : ",") + std::to_string(value);
+    }
+    text += "\n";
+  }
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "innocent.csv";
+  std::ofstream(file) << text;
+  int pairs = 0;
+  for (const std::string& target : names) {
+    for (const std::string& input : names) {
+      if (input == target) continue;
+      ++pairs;
+      EXPECT_NO_THROW({
+        const std::vector<std::filesystem::path> files = {file};
+        const DataFile read =
+            read_named_columns(files, {}, std::vector<std::string>{target, input});
+        make_data_problem(read.data, nullptr, target, std::vector<std::string>{input});
+      }) << target
+         << " from " << input;
+    }
+  }
+  EXPECT_EQ(pairs, 1056);
 }
 
 }  // namespace
