@@ -193,7 +193,9 @@ Diagnosis diagnose_training(const Observations& data, const std::vector<int>& te
   if (std::ranges::count(train_rows, 1) == 0) check_enough(data.select(train_rows), {});
   const BaseModel base = make_base(data.select(train_rows));
   const Eigen::VectorXd rich = rich_residual(data, train_rows, base, out.families, options);
-  out.events = find_events(data, rich, out.masked, random.split("events"));
+  if (options.has("bursts")) {
+    out.events = find_events(data, rich, out.masked, random.split("events"));
+  }
   const std::vector<char> kept = rows_of(data, test, false, out.masked);
   const Observations train = data.select(kept);
   check_enough(train, base);
@@ -205,7 +207,7 @@ Diagnosis diagnose_training(const Observations& data, const std::vector<int>& te
   const Clusters uncut = make_clusters(train.movement, 1);
   out.correlation_rows = correlation_time(train_rich, uncut.movements);
   Clusters clusters = make_clusters(train.movement, out.correlation_rows);
-  clusters.weight = movement_weights(train_rich, clusters);
+  if (options.has("weights")) clusters.weight = movement_weights(train_rich, clusters);
   Search search(train, base, out.families, options, clusters, random.split("search"));
   search.run();
   out.rows = train.rows();

@@ -7,10 +7,12 @@
 // A movement of the test set is never looked at before the verdict stands.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "algorithms/diagnosis/loop_model.hpp"
@@ -36,6 +38,8 @@ struct DiagnosisOptions {
   bool ceiling = false;   // bound the noise too: what else could be had (ceiling.hpp)
   std::vector<EffectFamily> learned;  // families beside the built-in ones
   std::vector<std::string> families;  // to be tested; empty: all
+  std::vector<std::string> without;   // rules left out, to see what they are worth (rules.hpp)
+  bool has(std::string_view rule) const { return std::ranges::count(without, rule) == 0; }
 };
 
 // cannot_tell: nothing could be tested, neither the library nor what is left over.

@@ -214,7 +214,8 @@ bool Search::remembers(std::size_t family) const {
 // name, and where that effect remembers the motion, one that came after it and adds far less gives
 // it its columns.
 void Search::name_shapes() {
-  for (std::size_t k = found.size(); k-- > 1;) {
+  const bool takes_small_ones = options_.has("shape_of_memory");
+  for (std::size_t k = takes_small_ones ? found.size() : 0; k-- > 1;) {
     const std::size_t family = found[k].family;
     const std::vector<std::string> inputs = inputs_of(family);
     Found* home = inputs.empty() ? nullptr : home_of(inputs, k, nats_of({family}) / kShapeShare);
@@ -229,7 +230,7 @@ void Search::name_shapes() {
     }
     found.erase(found.begin() + static_cast<std::ptrdiff_t>(k));
   }
-  if (leftover.inputs.empty()) return;
+  if (leftover.inputs.empty() || !options_.has("shape_of_leftover")) return;
   std::vector<std::string> inputs = leftover.signals;
   std::ranges::sort(inputs);
   Found* home = home_of(inputs, found.size(), leftover_nats_);
@@ -305,9 +306,9 @@ void Search::locate_leftover(const std::vector<Smoother>& smoothers,
   }
   if (!whole_) whole_ = WholeModel{current_, best.nats};
   const std::size_t before = found.size();
-  const bool varies = drop_varying(products);
+  const bool varies = options_.has("varying") && drop_varying(products);
   const auto home = std::ranges::find(smoothers, leftover.signals, &Smoother::signals);
-  if (home != smoothers.end()) drop_proxies(*home);
+  if (home != smoothers.end() && options_.has("proxies")) drop_proxies(*home);
   if (found.size() == before) return;
   // Without its proxies the leftover shows better where it lives; what an effect varies with is
   // known already.

@@ -153,7 +153,9 @@ std::optional<Candidate> Search::best_atom(std::size_t family, const Round& roun
   const auto holds_known_column = [&](std::size_t k) {
     return static_cast<std::size_t>(round.blocks[k].whitened_sums.cols()) < blocks_[k].count;
   };
-  if (!std::ranges::all_of(atoms, holds_known_column)) std::erase_if(atoms, holds_known_column);
+  if (options_.has("known_columns") && !std::ranges::all_of(atoms, holds_known_column)) {
+    std::erase_if(atoms, holds_known_column);
+  }
   if (atoms.size() > kAtomsTried) atoms.resize(kAtomsTried);
   std::optional<Candidate> best;
   for (const std::size_t k : atoms) {
@@ -209,6 +211,7 @@ Eigen::VectorXd Search::losses_with_own_offsets(const FittedModel& with,
 std::optional<Candidate> Search::rescue(std::size_t family, const Round& round,
                                         const FittedModel& state) const {
   std::optional<Candidate> best;
+  if (!options_.has("rescue")) return best;
   // All atoms: with few carriers their scores tell next to nothing.
   for (std::size_t k = 0; k < library_.size(); ++k) {
     if (library_[k].family != family || !round.blocks[k].test.testable) continue;
@@ -249,7 +252,7 @@ bool Search::differs_between_movements(std::size_t atom, const FittedModel& stat
 // atoms look alike. The best of them is the one that leaves the least of that spread.
 std::size_t Search::best_shape(std::size_t atom, const Round& round,
                                const FittedModel& state) const {
-  if (!differs_between_movements(atom, state)) return atom;
+  if (!options_.has("best_shape") || !differs_between_movements(atom, state)) return atom;
   std::size_t best = atom;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < library_.size(); ++k) {
@@ -314,7 +317,7 @@ void Search::note(std::string text) {
 bool Search::add(const Candidate& winner, const Round& round) {
   const std::size_t known = atoms_of(winner.family, current_.model);
   const bool again = known > 0;
-  if (known >= kMostAtoms) {
+  if (known >= kMostAtoms && options_.has("most_columns")) {
     asked_more_.push_back(winner.family);
     note(fmt::format(
         "more than {} columns of '{}' are asked for: a sign of something that only looks like it",
@@ -343,6 +346,7 @@ bool Search::add(const Candidate& winner, const Round& round) {
 // Two columns that grew together and stand against each other say nothing but their difference.
 // What an effect has besides (a drift of its phase) is meant to take some of it away.
 bool Search::cancels_itself(const LoopModel& model, std::size_t family) const {
+  if (!options_.has("cancelling")) return false;
   double sum = 0;
   Eigen::VectorXd together = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data_.rows()));
   for (std::size_t k = 0; k < model.atoms.size(); ++k) {
@@ -389,7 +393,7 @@ void Search::run() {
     }
     round = test_all(current_);
   }
-  if (!found.empty()) check_exhaustively();
+  if (!found.empty() && options_.has("subsets")) check_exhaustively();
   leave_out_cancelling();
   test_leftover();
   leave_out_cancelling();  // the fit without proxies is another

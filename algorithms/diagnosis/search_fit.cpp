@@ -48,7 +48,7 @@ FittedModel Search::fit(LoopModel model, FitScope scope) const {
     const auto fitted = static_cast<std::size_t>(model.coefficients.size());
     noise = estimate_noise(residual, clusters_, fitted, noise_floor_);
     weighing = noise;
-    if (pass == 0) continue;
+    if (pass == 0 || !options_.has("whitening")) continue;
     noise.whitening = noise.rho;
     weighing = noise;
     if (whitening_is_safe(model, data_, clusters_, noise)) continue;

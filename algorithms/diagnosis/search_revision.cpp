@@ -66,13 +66,14 @@ bool Search::swap_or_drop(std::size_t family) {
   const Round round = test_all(rest);
   const auto entry = std::ranges::find(found, family, &Found::family);
   const double p = family_p_given_rest(family, rest, round, current_);
-  if (p > (entry->few ? kRescueP : options_.alpha_library)) {
+  if (options_.has("removal") && p > (entry->few ? kRescueP : options_.alpha_library)) {
     note(fmt::format("'{}' is not significant given the rest: removed", families_[family].name));
     found.erase(entry);
     current_ = fit(rest.model, FitScope::everything);
     return true;
   }
-  if (renew(family, rest, round)) return true;
+  if (options_.has("renewal") && renew(family, rest, round)) return true;
+  if (!options_.has("swap")) return false;
   std::vector<std::size_t> skip;
   for (const Found& one : found) skip.push_back(one.family);
   const std::vector<Candidate> rivals = admitted(round, rest, skip);

@@ -10,8 +10,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/diagnosis/rules.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/study/external_diagnosis.hpp"
+#include "harness/study/loop_methods.hpp"
 #include "harness/study/loop_study.hpp"
 
 namespace tribench {
@@ -120,15 +122,22 @@ void add_loop_study(CLI::App& study, ExitStatus& status) {
   command->add_option("--command", *command_line,
                       "your own method instead of the loop: a program and its words, run without a "
                       "shell once a case (docs/closed_loop.md)");
+  auto without = std::make_shared<std::vector<std::string>>();
+  std::string rule_lines;
+  for (const loop::Rule& rule : loop::rules()) {
+    rule_lines += fmt::format("\n  {:<18} {}", rule.name, rule.purpose);
+  }
+  command->add_option("--without", *without,
+                      "leave rules of the loop out, to see what they are worth:" + rule_lines);
   auto limit_s = std::make_shared<double>(600);
   command
       ->add_option("--command-seconds", *limit_s, "wall time that the program may take for a case")
       ->transform(real_number(0.01, 1e6))
       ->capture_default_str();
-  command->callback([options, json, command_line, limit_s, &status] {
+  command->callback([options, json, command_line, without, limit_s, &status] {
     options->quiet = false;
     const LoopStudy done = run_loop_study(
-        *options, command_line->empty() ? LoopMethod(diagnose_case)
+        *options, command_line->empty() ? diagnosis_without(*without)
                                         : make_external_diagnosis(*command_line, *limit_s));
     if (*json) {
       print_json(done);

@@ -3,16 +3,22 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "algorithms/diagnosis/diagnosis.hpp"
+#include "algorithms/diagnosis/rules.hpp"
 
 namespace tribench {
 
-LoopAnswer diagnose_case(const LoopCase& one, const PlantedData& planted) {
+namespace {
+
+LoopAnswer diagnose(const LoopCase& one, const PlantedData& planted,
+                    const std::vector<std::string>& without) {
   const loop::Observations data = loop::observe(planted.data);
   loop::DiagnosisOptions options;
   options.physical_vetoes = !one.any_sign;
   options.gear_ratios = {one.gear_ratio};
+  options.without = without;
   const loop::Diagnosis diagnosis =
       loop::diagnose(data, loop::coulomb_viscous_base, options, one.seed);
   LoopAnswer answer;
@@ -38,6 +44,19 @@ LoopAnswer diagnose_case(const LoopCase& one, const PlantedData& planted) {
     answer.after[i] = after[static_cast<Eigen::Index>(i)];
   }
   return answer;
+}
+
+}  // namespace
+
+LoopAnswer diagnose_case(const LoopCase& one, const PlantedData& planted) {
+  return diagnose(one, planted, {});
+}
+
+LoopMethod diagnosis_without(std::vector<std::string> rules) {
+  for (const std::string& rule : rules) loop::find_rule(rule);
+  return [rules = std::move(rules)](const LoopCase& one, const PlantedData& planted) {
+    return diagnose(one, planted, rules);
+  };
 }
 
 }  // namespace tribench

@@ -16,5 +16,8 @@ using LoopMethod = std::function<LoopAnswer(const LoopCase&, const PlantedData&)
 
 // The closed loop itself, from Coulomb and viscous friction by direction.
 LoopAnswer diagnose_case(const LoopCase& one, const PlantedData& planted);
+// The same with rules left out, to see what they are worth (algorithms/diagnosis/rules.hpp). Throws
+// Error (bad_input) where there is no such rule.
+LoopMethod diagnosis_without(std::vector<std::string> rules);
 
 }  // namespace tribench

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/diagnosis/rules.hpp"
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
 #include "problems/data_problem.hpp"
@@ -244,6 +245,32 @@ TEST(Diagnosis, ListsCollisionsAsEventsAndNotAsFriction) {
   const Diagnosis diagnosis = diagnose_planted({.collisions = 3, .collision_scale = 16}, 6);
   EXPECT_EQ(diagnosis.verdict, Verdict::none);
   EXPECT_GE(diagnosis.events.size(), 2U);
+}
+
+// Every rule can be left out, and then it is: what it does is not done.
+TEST(Diagnosis, DoesWithoutTheRulesThatItIsToldToLeaveOut) {
+  const Observations collided =
+      observe(kuka::make_planted({.collisions = 3, .collision_scale = 16}, 6).data);
+  DiagnosisOptions options = options_of_planted();
+  const Diagnosis with = diagnose(collided, coulomb_viscous_base, options, 1);
+  options.without = {"bursts"};
+  const Diagnosis without = diagnose(collided, coulomb_viscous_base, options, 1);
+  EXPECT_EQ(with.events.size(), 3U);
+  EXPECT_TRUE(without.events.empty());
+  EXPECT_GT(without.noise.within_sd, with.noise.within_sd);
+  options.without = {"whitening"};
+  EXPECT_EQ(diagnose(collided, coulomb_viscous_base, options, 1).noise.whitening, 0);
+  EXPECT_GT(with.noise.whitening, 0);
+}
+
+TEST(Rules, AreKnownByTheirNamesAndOthersAreRefusedWithTheNearest) {
+  for (const Rule& rule : rules()) EXPECT_EQ(find_rule(rule.name).purpose, rule.purpose);
+  try {
+    find_rule("whitning");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(error.mend().find("whitening"), std::string::npos) << error.mend();
+  }
 }
 
 TEST(Diagnosis, IsTheSameForTheSameSeed) {

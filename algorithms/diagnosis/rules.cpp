@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/rules.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "foundation/error.hpp"
+#include "foundation/suggestion.hpp"
+
+namespace tribench::loop {
+namespace {
+
+constexpr std::array kRules = {
+    Rule{"whitening", "rows less their share of the row before, where that agrees with plain fits"},
+    Rule{"weights", "movements weigh by their own noise"},
+    Rule{"bursts", "rows of a burst are left out"},
+    Rule{"rescue", "what few movements carry is admitted by its gain"},
+    Rule{"best_shape", "between movements: the shape that leaves the least of their offsets"},
+    Rule{"known_columns", "an atom that holds a column of the model gives way to one without"},
+    Rule{"most_columns", "a family has two columns at most"},
+    Rule{"cancelling", "two columns that cancel each other are one"},
+    Rule{"removal", "what is not significant beside the rest is removed"},
+    Rule{"renewal", "a family's columns are chosen anew beside the rest"},
+    Rule{"swap", "a family that predicts better takes another's place"},
+    Rule{"subsets", "all small sets of families are compared with the choice"},
+    Rule{"varying", "an effect that varies with temperature is part of what is left over"},
+    Rule{"proxies", "what a smoother of the leftover makes superfluous is dropped"},
+    Rule{"shape_of_memory", "a small effect beside one that remembers the motion is its shape"},
+    Rule{"shape_of_leftover", "a leftover in the inputs of a larger effect is its shape"}};
+
+}  // namespace
+
+std::span<const Rule> rules() { return kRules; }
+
+const Rule& find_rule(std::string_view name) {
+  const auto found = std::ranges::find(kRules, name, &Rule::name);
+  if (found != kRules.end()) return *found;
+  std::vector<std::string> names;
+  for (const Rule& rule : kRules) names.emplace_back(rule.name);
+  throw_bad_input(fmt::format("the loop has no rule '{}'", name), {}, did_you_mean(name, names));
+}
+
+}  // namespace tribench::loop
