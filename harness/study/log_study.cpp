@@ -25,8 +25,9 @@ namespace tribench {
 namespace {
 
 constexpr int kCannotTell = 4;  // the loop's exit status for data that cannot tell
-// How far a channel's size may be from the truth's: a unit makes twice that at least.
-constexpr double kSameSize = 1.4;
+// How far a channel's size may be from the truth's (ramps and rests are left out): a wrong unit
+// makes three times that at least.
+constexpr double kSameSize = 2;
 
 // What may be found in a joint that moves for minutes, with what its log tells.
 constexpr std::array<std::string_view, 8> kRotary = {

@@ -12,52 +12,67 @@
 namespace tribench {
 namespace {
 
-constexpr std::size_t kEnoughMovements = 15;
-constexpr std::size_t kMostStrokes = 150;  // more say no more of independence
+constexpr double kForgotten = 0.5;            // s without a message: the joint may have turned
+constexpr std::size_t kEnoughMovements = 30;  // as a diagnosis wants them
+constexpr std::size_t kMostStrokes = 150;     // more say no more of independence
 // Slower rows are near a rest: bristles that have not slid yet carry a part of the friction there.
-constexpr double kSlow = 0.01;  // of the top speed
+constexpr double kSlow = 0.02;  // of the top speed
 constexpr double kNoisy = 3;    // of the velocity's noise
 
-// Strokes that follow one another without a rest, at most `together` of them.
-std::vector<std::vector<RowRange>> grouped(const std::vector<RowRange>& strokes,
-                                           const Dataset& data, std::span<const double> time,
-                                           double longest, std::size_t together) {
-  std::vector<std::vector<RowRange>> groups;
+// A stroke, and which of the stretches between two rests it belongs to.
+struct ChainedStroke {
+  RowRange rows;
+  std::size_t chain = 0;
+};
+
+// Lost messages are no rest.
+std::vector<ChainedStroke> chained(const std::vector<RowRange>& strokes, const Dataset& data,
+                                   std::span<const double> time) {
+  std::vector<ChainedStroke> out;
   for (const RowRange& stroke : strokes) {
-    const bool fits = !groups.empty() && groups.back().size() < together &&
-                      time[stroke.begin] - time[groups.back().back().end - 1] <= longest &&
-                      data.movement[groups.back().back().begin] == data.movement[stroke.begin];
-    if (fits) {
-      groups.back().push_back(stroke);
-    } else {
-      groups.push_back({stroke});
-    }
+    const bool goes_on = !out.empty() && out.back().rows.end == stroke.begin &&
+                         time[stroke.begin] - time[stroke.begin - 1] < kForgotten &&
+                         data.movement[stroke.begin] == data.movement[stroke.begin - 1];
+    out.push_back({stroke, out.empty() ? 0 : out.back().chain + (goes_on ? 0 : 1)});
   }
-  return groups;
+  return out;
 }
 
 // Movements: what lies between two rests, since strokes without one are not independent of each
 // other; where those are too few to tell anything from, the strokes.
-std::vector<std::vector<RowRange>> movements_of(const std::vector<RowRange>& strokes,
-                                                const Dataset& data, std::span<const double> time,
-                                                double longest) {
-  std::vector<std::vector<RowRange>> between_rests =
-      grouped(strokes, data, time, longest, strokes.size());
-  if (between_rests.size() >= kEnoughMovements) return between_rests;
-  return grouped(strokes, data, time, longest, (strokes.size() + kMostStrokes - 1) / kMostStrokes);
+std::vector<std::vector<RowRange>> movements_of(const std::vector<ChainedStroke>& strokes) {
+  std::size_t chains = 0;
+  for (std::size_t k = 0; k < strokes.size(); ++k) {
+    chains += k == 0 || strokes[k].chain != strokes[k - 1].chain ? 1 : 0;
+  }
+  const std::size_t together = chains >= kEnoughMovements
+                                   ? strokes.size()
+                                   : (strokes.size() + kMostStrokes - 1) / kMostStrokes;
+  std::vector<std::vector<RowRange>> groups;
+  std::size_t chain = 0;
+  for (const ChainedStroke& stroke : strokes) {
+    if (!groups.empty() && groups.back().size() < together && stroke.chain == chain) {
+      groups.back().push_back(stroke.rows);
+    } else {
+      groups.push_back({stroke.rows});
+    }
+    chain = stroke.chain;
+  }
+  return groups;
 }
 
 // Around a rest or a reversal a smoothed velocity says nothing for as long as the smoother sees:
 // what friction does there would pass for an effect of slow speed.
-std::vector<RowRange> without_ends(const std::vector<RowRange>& strokes,
-                                   std::span<const double> time, double blur) {
-  std::vector<RowRange> inner;
-  for (RowRange stroke : strokes) {
-    const double begin = time[stroke.begin] + blur;
-    const double end = time[stroke.end - 1] - blur;
-    while (stroke.begin < stroke.end && time[stroke.begin] < begin) ++stroke.begin;
-    while (stroke.end > stroke.begin && time[stroke.end - 1] > end) --stroke.end;
-    if (stroke.end - stroke.begin >= kFewestRows) inner.push_back(stroke);
+std::vector<ChainedStroke> without_ends(const std::vector<ChainedStroke>& strokes,
+                                        std::span<const double> time, double blur) {
+  std::vector<ChainedStroke> inner;
+  for (ChainedStroke stroke : strokes) {
+    RowRange& rows = stroke.rows;
+    const double begin = time[rows.begin] + blur;
+    const double end = time[rows.end - 1] - blur;
+    while (rows.begin < rows.end && time[rows.begin] < begin) ++rows.begin;
+    while (rows.end > rows.begin && time[rows.end - 1] > end) --rows.end;
+    if (rows.end - rows.begin >= kFewestRows) inner.push_back(stroke);
   }
   return inner;
 }
@@ -65,7 +80,6 @@ std::vector<RowRange> without_ends(const std::vector<RowRange>& strokes,
 // The path since the direction last changed, told before a stroke's ends are cut off: the position
 // knows it where the velocity is blurred. Lost messages do not make it start anew.
 void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) {
-  constexpr double kForgotten = 0.5;  // s without a message: the joint may have turned
   const Channel* q = find_channel(out.data, Role::position);
   if (q == nullptr) return;
   const std::vector<double>& v = find_channel(out.data, Role::velocity)->values;
@@ -96,22 +110,21 @@ void cut_strokes(PreparedRecording& out, double noise, double blur) {
   const Channel* t = find_channel(out.data, Role::time);
   const Channel* v = find_channel(out.data, Role::velocity);
   if (t == nullptr || v == nullptr || !is_regular(t->values, out.data.movement)) return;
-  Strokes found = strokes_of(t->values, v->values, pieces_of(t->values, out.data.movement, {}),
-                             noise, kFewestRows);
+  const Strokes found = strokes_of(t->values, v->values,
+                                   pieces_of(t->values, out.data.movement, {}), noise, kFewestRows);
   add_distance(out, found.strokes);
   t = find_channel(out.data, Role::time);
   v = find_channel(out.data, Role::velocity);
-  if (blur > 0) found.strokes = without_ends(found.strokes, t->values, blur);
-  if (found.strokes.size() < 2) return;
-  const double longest = 2 * blur + 3 * median_step(t->values, out.data.movement);
+  const std::vector<ChainedStroke> strokes =
+      without_ends(chained(found.strokes, out.data, t->values), t->values, blur);
+  if (strokes.size() < 2) return;
   const std::size_t all = out.data.rows();
   const std::size_t files = out.data.movement_names.size();
   const double slow = std::max(kSlow * top_speed(v->values), kNoisy * noise);
   std::vector<std::size_t> rows;
   std::vector<int> movement;
   std::vector<std::string> names;
-  for (const std::vector<RowRange>& group :
-       movements_of(found.strokes, out.data, t->values, longest)) {
+  for (const std::vector<RowRange>& group : movements_of(strokes)) {
     const std::size_t before = rows.size();
     for (const RowRange& stroke : group) {
       for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
@@ -131,7 +144,7 @@ void cut_strokes(PreparedRecording& out, double noise, double blur) {
   out.notes.push_back(fmt::format(
       "no column names the movements: {} strokes between {} rests and {} reversals make {}; {:.0f} "
       "% of the rows, at rest, slower than {:.2g} {} or in shorter strokes, are left out",
-      found.strokes.size(), found.rests, found.reversals, out.data.movement_names.size(),
+      strokes.size(), found.rests, found.reversals, out.data.movement_names.size(),
       100.0 * static_cast<double>(all - out.data.rows()) / static_cast<double>(all), slow,
       find_channel(out.data, Role::velocity)->unit));
 }

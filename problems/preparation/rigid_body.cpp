@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t kRows = 20'000;  // that take part, evenly spaced
 constexpr std::size_t kFewest = 100;
 constexpr double kLeastRange = 0.3;  // rad: less does not tell gravity from an offset
+constexpr double kFollows = 1e-6;
 constexpr int kRounds = 4;
 // Neighbouring rows repeat one another: of this many only one is new to the standard errors.
 constexpr double kRowsThatAgree = 20;
@@ -21,13 +22,16 @@ struct Fit {
   Eigen::VectorXd coefficients;
   Eigen::VectorXd errors;
   double squares = 0;
+  bool determined = true;  // no column follows from the others
 };
 
 Fit least_squares(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
   Fit fit;
   const Eigen::VectorXd scale = x.colwise().norm().cwiseMax(1e-300);
   const Eigen::MatrixXd scaled = x * scale.cwiseInverse().asDiagonal();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
+  qr.setThreshold(kFollows);
+  fit.determined = qr.rank() == scaled.cols();
   fit.coefficients = qr.solve(y).cwiseQuotient(scale);
   fit.squares = (y - x * fit.coefficients).squaredNorm();
   const auto free = static_cast<double>(std::max<Eigen::Index>(x.rows() - x.cols(), 1));
@@ -97,13 +101,16 @@ std::optional<RigidBody> fit_rigid_body(const Dataset& data) {
   }
   const Fit without = least_squares(rows.x.leftCols(rows.base), rows.y);
   Fit with = least_squares(rows.x.leftCols(rows.base + 2), rows.y);
+  if (!with.determined) return {};
   // Friction that grows with the load leans on gravity: it is fitted beside it, the load taken
-  // from the fit before.
+  // from the fit before. In one direction, under a load of one sign, the two are the same.
   for (int round = 0; round < kRounds; ++round) {
     const Eigen::VectorXd load =
         rows.x.middleCols(rows.base, 2) * with.coefficients.segment(rows.base, 2);
     rows.x.col(rows.base + 2) = rows.x.col(0).cwiseProduct(load.cwiseAbs());
-    with = least_squares(rows.x, rows.y);
+    Fit next = least_squares(rows.x, rows.y);
+    if (!next.determined) break;
+    with = std::move(next);
   }
   RigidBody body;
   body.sine = with.coefficients(rows.base);

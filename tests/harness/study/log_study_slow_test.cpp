@@ -7,7 +7,8 @@
 namespace tribench {
 namespace {
 
-// Seeds that nothing was settled on. Bounds are what was seen, less two of twenty.
+// Seeds that nothing was settled on. Bounds are what was seen on other seeds (15 and 14), less two
+// of twenty.
 TEST(LogStudy, raw_logs_tell_what_clean_tables_tell) {
   LogStudyOptions options;
   options.logs = 20;
@@ -19,7 +20,7 @@ TEST(LogStudy, raw_logs_tell_what_clean_tables_tell) {
   EXPECT_EQ(bare.read, bare.logs);
   EXPECT_EQ(told.misread + bare.misread, 0U);
   EXPECT_GE(told.right, 13U);
-  EXPECT_GE(bare.right, 11U);
+  EXPECT_GE(bare.right, 12U);
 }
 
 }  // namespace

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "problems/preparation/rigid_body.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tribench {
+namespace {
+
+// A joint that goes from 0.2 rad to 1.4 rad, and back where `back` is set, under 15 sin q.
+Dataset lifted(bool back) {
+  Dataset data;
+  data.movement_names = {"move"};
+  data.channels = {{"q", "rad", Role::position, {}},
+                   {"v", "rad/s", Role::velocity, {}},
+                   {"tau", "N m", Role::motor_torque, {}}};
+  for (int i = 0; i < 4000; ++i) {
+    const double t = 0.001 * i;
+    const double phase = back ? 2 * t : 0.75 * t;
+    const double q = 0.8 - 0.6 * std::cos(phase);
+    const double v = 0.6 * (back ? 2 : 0.75) * std::sin(phase);
+    const double sign = v > 0 ? 1 : v < 0 ? -1 : 0;
+    const double row[] = {q, v, 4 * sign + 6 * v + 15 * std::sin(q) + 0.1 * std::sin(1e3 * t)};
+    for (std::size_t k = 0; k < 3; ++k) data.channels[k].values.push_back(row[k]);
+    data.movement.push_back(0);
+  }
+  return data;
+}
+
+TEST(RigidBody, gravity_is_found_where_the_joint_goes_both_ways) {
+  const auto body = fit_rigid_body(lifted(true));
+  ASSERT_TRUE(body);
+  EXPECT_NEAR(body->sine, 15, 1);
+  EXPECT_NEAR(body->cosine, 0, 1);
+}
+
+// One way, under a load of one sign, friction that grows with the load is gravity itself.
+TEST(RigidBody, one_way_alone_gives_no_absurd_gravity) {
+  const auto body = fit_rigid_body(lifted(false));
+  if (body) {
+    EXPECT_LT(std::abs(body->sine) + std::abs(body->cosine), 100);
+  }
+}
+
+}  // namespace
+}  // namespace tribench
