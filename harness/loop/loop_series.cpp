@@ -36,10 +36,6 @@ Eigen::VectorXd rigid_part(const LoopModel& model, const Observations& data) {
   return part.allFinite() ? part : zero;
 }
 
-bool worth_a_look(const Signal& signal) {
-  return !signal.name.starts_with("sgn_") && signal.name != "a2" && !signal.is_filtered();
-}
-
 LoopResidualRows residual_rows(const LoopRows& all) {
   LoopResidualRows out;
   std::vector<std::size_t> rows;
@@ -168,6 +164,10 @@ double friction_rms(const LoopRows& all) {
     sum += y * y;
   }
   return all.rows.empty() ? kNoFigure : std::sqrt(sum / static_cast<double>(all.rows.size()));
+}
+
+bool worth_a_look(const Signal& signal) {
+  return !signal.name.starts_with("sgn_") && signal.name != "a2" && !signal.is_filtered();
 }
 
 LoopAxis axis_of(const Observations& data, std::string_view signal) {

@@ -41,6 +41,9 @@ EffectShare effect_share(const LoopRows& rows, const EffectFinding& effect);
 // Friction torque's root mean square, the rigid body's part taken off.
 double friction_rms(const LoopRows& rows);
 
+// A signal of its own: no sign, no filtered copy of another.
+bool worth_a_look(const Signal& signal);
+
 LoopAxis axis_of(const Observations& data, std::string_view signal);
 
 LoopFrictionPicture friction_picture(const LoopRows& rows);

@@ -135,7 +135,7 @@ std::vector<LoopInputPicture> input_pictures(const LoopRows& all) {
   const Eigen::VectorXd way = direction(all.data);
   std::vector<LoopInputPicture> pictures;
   for (const Signal& signal : all.data.signals) {
-    if (signal.name.starts_with("sgn_") || signal.name == "a2" || signal.is_filtered()) continue;
+    if (!worth_a_look(signal)) continue;
     LoopInputPicture picture;
     picture.x = axis_of(all.data, signal.name);
     picture.leftover = std::ranges::count(all.diagnosis.leftover.signals, signal.name) > 0;

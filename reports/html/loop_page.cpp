@@ -142,8 +142,8 @@ Json input_picture(const LoopRecord& record, const LoopInputPicture& from, std::
   Json json = picture(
       (from.leftover ? "leftover-" : "input-") + std::to_string(number_of), "input",
       from.leftover ? "Still unexplained, against " + words : "What is left, against " + words,
-      "Mean residual in each direction with its 95 % interval; grey: before the effects were "
-      "added.");
+      std::string("Mean residual in each direction with its 95 % interval") +
+          (record.effects.empty() ? "." : "; grey: before the effects were added."));
   json["leftover"] = from.leftover;
   json["x"] = axis_title(from.x, x);
   json["y"] = fmt::format("mean residual ({})", unit.name);
@@ -334,7 +334,7 @@ Json data_json(const LoopRecord& record) {
   }
   Json columns = Json::array();
   for (const LoopSymbol& symbol : record.symbols) {
-    if (symbol.name.starts_with("sgn_")) continue;
+    if (symbol.name.starts_with("sgn_") || (symbol.column.empty() && !symbol.used)) continue;
     columns.push_back({{"column", symbol.column.empty() ? "computed" : symbol.column},
                        {"meaning", symbol.meaning},
                        {"unit", symbol.unit},

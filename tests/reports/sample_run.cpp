@@ -181,7 +181,7 @@ LoopPictures sample_pictures() {
   }
   pictures.maps.push_back(map);
   LoopTrace trace;
-  trace.movement = "17";
+  trace.movement = "up slow, third repeat, with payload";
   trace.why = "middle";
   trace.held_out = true;
   trace.x = grid(0, 4, 200);

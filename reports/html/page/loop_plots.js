@@ -82,6 +82,7 @@ function binnedPlot(picture, look, dots, lines, entries) {
           encode: {enter: {x: {scale: "x", field: "x"}, y: {scale: "y", field: "y"}, stroke: {field: "colour"}, strokeDash: {field: "dash"},
             strokeWidth: {value: 2.1}, tooltip: {signal: "datum"}}}}]}]}]});
   spec.scales = spec.scales.filter((s) => s.name !== "color").concat(scales);
+  spec.scales[0].padding = 6;  // pixels: no point is cut in half
   spec.legends = legends;
   return spec;
 }
