@@ -268,8 +268,8 @@ std::string next_of(const LoopRecord& record, const LoopWords& words) {
                        next_movement_words(record));
   }
   if (record.verdict == LoopVerdict::unknown && record.learned.empty()) {
-    return "Let a method grow the missing effect from what is left (--learn pysr), or record "
-           "movements that vary its inputs by themselves.";
+    return "Let a method grow it from what is left (--learn pysr), or record movements that vary "
+           "its inputs one by one.";
   }
   if (const LoopCard* card = least_sure(record, words.cards)) {
     std::string ask = card->settle;

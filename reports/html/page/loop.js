@@ -139,7 +139,7 @@ function buildLoop() {
   if (data.verdict === "UNKNOWN" && left.length) heroes.push(left[0]);
   for (const p of heroes) p.hero = true;
   byId("top").append(el("div", {class: "verdict"}, badge(face, kind), el("span", {class: "soft"}, data.title)),
-    el("h1", {class: "headline"}, words.headline), el("p", {class: "matters"}, words.error.replace("->", "→")));
+    el("h1", {class: words.headline.length > 120 ? "headline long" : "headline"}, words.headline), el("p", {class: "matters"}, words.error.replace("->", "→")));
   const error = data.pictures.find((p) => p.id === "error");
   const rest = heroes.filter((p) => p !== error);
   byId("main").append(

@@ -61,7 +61,7 @@ function limitsOf(dots, lines) {
 // Points with their spread, lines with their bands: what friction, effects and residuals share.
 function binnedPlot(picture, look, dots, lines, entries) {
   const {scales, legends} = legendsOf(entries, look);
-  const spec = frame({...look, height: look.width < 420 ? 240 + 20 * entries.length : look.height || 280, description: picture.title, methods: [], colors: [], legend: false,
+  const spec = frame({...look, height: look.width < 360 ? 240 + 20 * entries.length : look.height || 280, description: picture.title, methods: [], colors: [], legend: false,
     data: [{name: "points", values: dots.concat(lines).map((r) => ({x: r.x}))}, {name: "dots", values: dots}, {name: "lines", values: lines},
            {name: "marks", values: (picture.marks || []).map((x) => ({x}))}],
     x: {title: picture.x, fields: ["x"], nice: false}, y: {title: picture.y, domain: limitsOf(dots, lines), nice: false, fields: []},
@@ -217,7 +217,7 @@ function mapPlot(picture, look) {
   const c = loopColours(look.dark);
   const cells = picture.cells.map((r) => ({x0: r[0], x1: r[1], y0: r[2], y1: r[3], value: r[4], rows: r[5]}));
   const size = Math.max(...cells.map((r) => Math.abs(r.value)));
-  const spec = frame({...look, height: 300, description: picture.title, methods: [], colors: [], legend: false, data: [{name: "points", values: cells}],
+  const spec = frame({...look, height: look.height || 300, description: picture.title, methods: [], colors: [], legend: false, data: [{name: "points", values: cells}],
     x: {title: picture.x, fields: ["x0", "x1"], nice: false}, y: {title: picture.y, fields: ["y0", "y1"], nice: false},
     marks: [{type: "rect", from: {data: "points"}, encode: {enter: {x: {scale: "x", field: "x0"}, x2: {signal: "max(scale('x', datum.x1), scale('x', datum.x0) + 2)"},
       y: {scale: "y", field: "y0"}, y2: {signal: "min(scale('y', datum.y1), scale('y', datum.y0) - 2)"}, fill: {scale: "value", field: "value"}, tooltip: {signal: "datum"}}}}]});
