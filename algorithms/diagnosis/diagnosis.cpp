@@ -193,6 +193,7 @@ Diagnosis diagnose_training(const Observations& data, const std::vector<int>& te
   if (std::ranges::count(train_rows, 1) == 0) check_enough(data.select(train_rows), {});
   const BaseModel base = make_base(data.select(train_rows));
   const Eigen::VectorXd rich = rich_residual(data, train_rows, base, out.families, options);
+  out.masked.assign(data.rows(), 0);
   if (options.has("bursts")) {
     out.events = find_events(data, rich, out.masked, random.split("events"));
   }

@@ -257,6 +257,7 @@ TEST(Diagnosis, DoesWithoutTheRulesThatItIsToldToLeaveOut) {
   const Diagnosis without = diagnose(collided, coulomb_viscous_base, options, 1);
   EXPECT_EQ(with.events.size(), 3U);
   EXPECT_TRUE(without.events.empty());
+  EXPECT_EQ(without.masked, std::vector<char>(collided.rows(), 0));
   EXPECT_GT(without.noise.within_sd, with.noise.within_sd);
   options.without = {"whitening"};
   EXPECT_EQ(diagnose(collided, coulomb_viscous_base, options, 1).noise.whitening, 0);
