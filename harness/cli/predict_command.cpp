@@ -90,8 +90,9 @@ void add_predict_command(CLI::App& app, ExitStatus& /*status*/) {
   command->add_flag("--intervals", *intervals,
                     "with a model of `fit --save`: 95 % of the curve, as columns low and high");
   command->callback([model, data, out, intervals] {
-    const std::string text =
-        predictions(*model, read_csv(*data, CsvOptions{.names_tell = false}).data, *intervals);
+    CsvOptions options;
+    options.names_tell = false;
+    const std::string text = predictions(*model, read_csv(*data, options).data, *intervals);
     if (out->empty()) {
       std::fputs(text.c_str(), stdout);
     } else {
