@@ -9,6 +9,7 @@
 #include "foundation/error.hpp"
 #include "foundation/formula_name.hpp"
 #include "problems/reading/channel_names.hpp"
+#include "problems/reading/csv_cells.hpp"
 #include "problems/table.hpp"
 
 namespace tribench {
@@ -45,13 +46,13 @@ double agreement(std::span<const double> friction, std::span<const double> veloc
 
 // Fits square what they are given: numbers that are all as small vanish then.
 void require_squares(const Channel& target, const std::string& place) {
-  constexpr double kSmallest = 1e-75;
+  constexpr double kSmallest = 1 / kLargestNumber;
   double largest = 0;
   for (const double value : target.values) largest = std::max(largest, std::abs(value));
   if (largest == 0 || largest >= kSmallest) return;
   throw_bad_input(
       fmt::format("no value of the target '{}' is larger than {}", target.name, largest), place,
-      "give it in a smaller unit: fits need values from 1e-75 to 1e75");
+      "give it in a smaller unit: squares of such numbers are no doubles");
 }
 
 // Of an input sgn_X that is derived from X.
