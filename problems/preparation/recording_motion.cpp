@@ -15,7 +15,7 @@ namespace tribench {
 namespace {
 
 constexpr std::size_t kEdgeRows = 3;  // of a derived motion, at the ends of a piece
-constexpr double kUnresolved = 0.6;     // standard errors of the acceleration
+constexpr double kUnresolved = 0.6;   // standard errors of the acceleration
 constexpr double kLeastDelay = 0.6;   // steps of time
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
