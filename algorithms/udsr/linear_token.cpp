@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "algorithms/fitting/symmetric_system.hpp"
 
@@ -53,6 +54,20 @@ std::vector<Monomial> monomials(std::span<const int> caps, int degree) {
   enumerate(caps, degree, 0, current, all);
   std::ranges::stable_sort(all, {}, degree_of);
   return all;
+}
+
+double monomial_count(std::span<const int> caps, int degree) {
+  // counts[d]: monomials of total degree d in the inputs so far.
+  std::vector<double> counts(static_cast<std::size_t>(degree) + 1, 0);
+  counts[0] = 1;
+  for (const int cap : caps) {
+    for (int d = degree; d > 0; --d) {
+      for (int e = 1; e <= std::min(cap, d); ++e) {
+        counts[static_cast<std::size_t>(d)] += counts[static_cast<std::size_t>(d - e)];
+      }
+    }
+  }
+  return std::accumulate(counts.begin(), counts.end(), 0.0);
 }
 
 Expression polynomial(std::span<const Monomial> terms, std::span<const double> coefficients) {

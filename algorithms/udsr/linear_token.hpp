@@ -25,6 +25,9 @@ using Monomial = std::vector<std::uint8_t>;
 // increasing degree.
 std::vector<Monomial> monomials(std::span<const int> caps, int degree);
 
+// How many these are, without making them: of 50 inputs and degree 6 there are 32 million.
+double monomial_count(std::span<const int> caps, int degree);
+
 // sum_k coefficients[k] * monomials[k] as a formula; terms with coefficient 0 are left out.
 Expression polynomial(std::span<const Monomial> terms, std::span<const double> coefficients);
 

@@ -85,10 +85,18 @@ std::vector<int> exponent_caps(std::span<const Input> inputs, int degree) {
   return caps;
 }
 
+int affordable_degree(std::span<const Input> inputs, int degree, std::size_t rows) {
+  const double most = std::min(kMostLinearTerms, static_cast<double>(rows) / 2);
+  while (degree > 1 && monomial_count(exponent_caps(inputs, degree), degree) > most) --degree;
+  return degree;
+}
+
 ScoringProblem::ScoringProblem(const TrainingData& data, const TokenLibrary& library, int degree)
-    : library_(&library),
-      data_(data),
-      linear_(data_.pointers(), data_.rows(), exponent_caps(data.inputs, degree), degree) {
+    : library_(&library), data_(data), linear_([&] {
+        const int affordable = affordable_degree(data.inputs, degree, data_.rows());
+        return PolynomialRegression(data_.pointers(), data_.rows(),
+                                    exponent_caps(data.inputs, affordable), affordable);
+      }()) {
   double mean = 0;
   const double n = std::max<double>(1, static_cast<double>(rows()));
   for (const double y : target()) mean += y / n;

@@ -30,6 +30,11 @@ struct Scored {
 
 bool is_sign(const Input& input);
 
+// The degree asked for, or the highest below it whose polynomial has at least two rows a
+// coefficient and no more than kMostLinearTerms of them; at least 1.
+inline constexpr double kMostLinearTerms = 500;  // a weighted solve of more takes a second
+int affordable_degree(std::span<const Input> inputs, int degree, std::size_t rows);
+
 // The highest power of each input in a polynomial of this degree, the declared priors kept. The
 // square of a sign is 1: higher powers would only repeat it.
 std::vector<int> exponent_caps(std::span<const Input> inputs, int degree);
@@ -37,7 +42,8 @@ std::vector<int> exponent_caps(std::span<const Input> inputs, int degree);
 // The rows of one problem and what scoring needs of them. Immutable: threads may share it.
 class ScoringProblem {
  public:
-  // Rows with a value that is not finite are left out. degree: of the linear token.
+  // Rows with a value that is not finite are left out. degree: of the linear token, at most
+  // (affordable_degree).
   ScoringProblem(const TrainingData& data, const TokenLibrary& library, int degree);
 
   const TokenLibrary& library() const { return *library_; }

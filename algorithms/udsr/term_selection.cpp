@@ -99,6 +99,11 @@ std::vector<Monomial> wide_terms(std::span<const Input> inputs, int degree, std:
     for (std::size_t j = 0; j < inputs.size(); ++j) {
       if (is_sign(inputs[j])) caps[j] = 0;
     }
+    const auto signs = static_cast<int>(std::ranges::count_if(inputs, is_sign));
+    if (std::ldexp(monomial_count(caps, degree), signs) * kRowsForATerm >
+        static_cast<double>(rows)) {
+      continue;
+    }
     std::vector<Monomial> terms = monomials(caps, degree);
     for (std::size_t j = 0; j < inputs.size(); ++j) {
       if (!is_sign(inputs[j])) continue;
@@ -108,7 +113,7 @@ std::vector<Monomial> wide_terms(std::span<const Input> inputs, int degree, std:
         terms.back()[j] = 1;
       }
     }
-    if (terms.size() * kRowsForATerm <= rows) return terms;
+    return terms;
   }
   return {};
 }

@@ -50,6 +50,25 @@ struct Rows {
   std::optional<ScoringProblem> problem;
 };
 
+TEST(MonomialCount, IsThatOfTheMonomials) {
+  for (const std::vector<int>& caps :
+       {std::vector<int>{3}, {3, 1, 2}, {0, 4, 4}, {6, 6, 1, 1}, {2, 2, 2, 2, 2}}) {
+    for (int degree = 0; degree <= 6; ++degree) {
+      EXPECT_EQ(monomial_count(caps, degree), static_cast<double>(monomials(caps, degree).size()));
+    }
+  }
+}
+
+// Fifty inputs and 47 rows: neither memory nor more coefficients than rows could tell.
+TEST(AffordableDegree, FallsWithInputsAndRows) {
+  const Input input{"x", "", Role::none, -1, 1, {}};
+  EXPECT_EQ(affordable_degree(std::vector<Input>(2, input), 3, 20), 3);  // 10 terms
+  EXPECT_EQ(affordable_degree(std::vector<Input>(13, input), 3, 47), 1);
+  EXPECT_EQ(affordable_degree(std::vector<Input>(50, input), 3, 500), 1);
+  EXPECT_EQ(affordable_degree(std::vector<Input>(10, input), 3, 31'000), 3);
+  EXPECT_TRUE(wide_terms(std::vector<Input>(50, input), 6, 500).size() <= 500);
+}
+
 TEST(WideTerms, AreAPolynomialOfItsOwnOnEitherSideOfZeroWithFiveRowsATerm) {
   const Rows rows("v", 90, 0);
   EXPECT_EQ(wide_terms(rows.inputs, 6, 90).size(), 14U);
