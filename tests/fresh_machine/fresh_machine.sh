@@ -61,7 +61,7 @@ environment=(HOME=/root USER=root TERM=dumb ${http_proxy:+"http_proxy=$http_prox
     PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin)
 [ -z "$cache" ] || environment+=(CMAKE_CXX_COMPILER_LAUNCHER=/opt/ccache/ccache
     CCACHE_DIR=/opt/ccache/cache "CCACHE_BASEDIR=$home/tribench" CCACHE_COMPILERCHECK=content
-    CCACHE_NOHASHDIR=1)
+    CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=locale)
 
 # in_root NETWORK COMMAND...: in the root, with namespaces of its own; NETWORK is `online` or
 # `offline`. The environment is the root's, not ours.
