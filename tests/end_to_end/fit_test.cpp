@@ -210,8 +210,8 @@ TEST_F(UnequalRowsTest, TheCommandItNamesGivesTheSameAgain) {
               HasSubstr("--evaluations " + clocked.at("evaluations").dump()));
   const json once = answer({"--method", "pysr", "--seed", "7"});
   const std::string line = once.at("reproduce");
-  const ProgramRun again =
-      run_to_end({"bash", "-c", program().string() + line.substr(std::string("tribench").size())});
+  const ProgramRun again = run_to_end(
+      {"bash", "-c", "'" + program().string() + "'" + line.substr(std::string("tribench").size())});
   ASSERT_EQ(again.status, 0) << again.errors;
   EXPECT_EQ(json::parse(again.output).at("formula"), once.at("formula"));
 }
