@@ -49,13 +49,13 @@ const std::vector<Role>& all_roles() {
   return kRoles;
 }
 
-Role find_role(std::string_view name) {
+Role find_role(std::string_view name, std::string_view place) {
   std::vector<std::string> names;
   for (const auto& [role, known] : kRoleNames) {
     if (known == name) return role;
     names.emplace_back(known);
   }
-  throw_bad_input(fmt::format("there is no role '{}'", name), {}, did_you_mean(name, names));
+  throw_bad_input(fmt::format("there is no role '{}'", name), place, did_you_mean(name, names));
 }
 
 const Channel* Dataset::find(std::string_view channel_name) const {

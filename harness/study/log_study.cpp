@@ -3,12 +3,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <omp.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -17,7 +13,7 @@
 #include "foundation/error.hpp"
 #include "foundation/order_statistics.hpp"
 #include "foundation/scratch_folder.hpp"
-#include "harness/progress_line.hpp"
+#include "harness/study/each_case.hpp"
 #include "problems/joint_simulation/causes.hpp"
 #include "problems/preparation/recording.hpp"
 
@@ -218,23 +214,8 @@ LogStudy run_log_study(const std::string& program, const LogStudyOptions& option
                     "as in the lines printed: load, linear_viscous_power/19");
   }
   std::vector<std::vector<LogOutcome>> by_case(cases.size());
-  ProgressLine progress(cases.size(), static_cast<double>(cases.size()), options.quiet);
-  const auto count = static_cast<std::ptrdiff_t>(cases.size());
-  const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
-  std::atomic<bool> stopped = false;
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    if (stopped) continue;
-    const auto at = static_cast<std::size_t>(i);
-    try {
-      by_case[at] = tell_case(program, cases[at], options.raw);
-      progress.cell_ended(1, false);
-    } catch (...) {
-      if (!stopped.exchange(true)) failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
+  for_each_case(cases.size(), options.threads, options.quiet,
+                [&](std::size_t i) { by_case[i] = tell_case(program, cases[i], options.raw); });
   LogStudy study;
   for (std::vector<LogOutcome>& outcomes : by_case) {
     std::ranges::move(outcomes, std::back_inserter(study.outcomes));

@@ -3,19 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <omp.h>
-
 #include <algorithm>
-#include <atomic>
 #include <ctime>
-#include <exception>
 #include <fstream>
 #include <map>
 #include <mutex>
 #include <optional>
 
 #include "foundation/error.hpp"
-#include "harness/progress_line.hpp"
+#include "harness/study/each_case.hpp"
 #include "reports/csv.hpp"
 
 namespace tribench {
@@ -122,24 +118,11 @@ LoopStudy run_loop_study(const LoopStudyOptions& options, const LoopMethod& meth
       left.push_back(i);
     }
   }
-  ProgressLine progress(left.size(), static_cast<double>(left.size()), options.quiet);
-  const auto count = static_cast<std::ptrdiff_t>(left.size());
-  const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
-  std::atomic<bool> failed = false;
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (std::ptrdiff_t k = 0; k < count; ++k) {
-    if (failed) continue;
-    const std::size_t i = left[static_cast<std::size_t>(k)];
-    try {
-      study.outcomes[i] = run_case(cases[i], method);
-      runs.append(study.outcomes[i]);
-      progress.cell_ended(1, false);
-    } catch (...) {
-      if (!failed.exchange(true)) failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
+  for_each_case(left.size(), options.threads, options.quiet, [&](std::size_t k) {
+    LoopOutcome& outcome = study.outcomes[left[k]];
+    outcome = run_case(cases[left[k]], method);
+    runs.append(outcome);
+  });
   study.figures = simulated ? simulated_figures(study.outcomes) : loop_figures(study.outcomes);
   if (simulated) study.answers = cause_answers(study.outcomes);
   return study;

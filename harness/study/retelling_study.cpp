@@ -2,12 +2,8 @@
 #include "harness/study/retelling_study.hpp"
 
 #include <fmt/format.h>
-#include <omp.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,7 +12,7 @@
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/scratch_folder.hpp"
-#include "harness/progress_line.hpp"
+#include "harness/study/each_case.hpp"
 #include "reports/statistics/intervals.hpp"
 
 namespace tribench {
@@ -169,23 +165,8 @@ RetellingStudy run_retelling_study(const std::vector<RecordingToTell>& recording
     for (const Retelling& way : retellings()) ways.push_back(&way);
   }
   std::vector<std::vector<RetellingOutcome>> by_recording(recordings.size());
-  ProgressLine progress(recordings.size(), static_cast<double>(recordings.size()), options.quiet);
-  const auto count = static_cast<std::ptrdiff_t>(recordings.size());
-  const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
-  std::atomic<bool> stopped = false;
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    if (stopped) continue;
-    const auto at = static_cast<std::size_t>(i);
-    try {
-      by_recording[at] = retell(recordings[at], ways, teller);
-      progress.cell_ended(1, false);
-    } catch (...) {
-      if (!stopped.exchange(true)) failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
+  for_each_case(recordings.size(), options.threads, options.quiet,
+                [&](std::size_t i) { by_recording[i] = retell(recordings[i], ways, teller); });
   RetellingStudy study;
   for (std::vector<RetellingOutcome>& outcomes : by_recording) {
     std::ranges::move(outcomes, std::back_inserter(study.outcomes));

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "foundation/error.hpp"
-#include "foundation/suggestion.hpp"
 #include "foundation/text.hpp"
 
 namespace tribench {
@@ -33,21 +32,12 @@ std::vector<std::string_view> parts_of(std::string_view text) {
   return parts;
 }
 
-Role role_named(std::string_view name, std::string_view place) {
-  std::vector<std::string> names;
-  for (const Role role : all_roles()) {
-    if (role_name(role) == name) return role;
-    names.emplace_back(role_name(role));
-  }
-  throw_bad_input(fmt::format("there is no role '{}'", name), place, did_you_mean(name, names));
-}
-
 }  // namespace
 
 GivenRole parse_role(std::string_view text, std::string_view place) {
   GivenRole given;
   const std::size_t open = text.find('[');
-  given.role = role_named(trimmed(text.substr(0, open)), place);
+  given.role = find_role(trimmed(text.substr(0, open)), place);
   if (open == std::string_view::npos) return given;
   if (text.back() != ']') {
     throw_bad_input(fmt::format("'{}' is no ROLE[UNIT]", text), place,

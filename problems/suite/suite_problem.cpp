@@ -253,7 +253,9 @@ Table rows_of(const Dataset& data, const std::string& target, const std::vector<
 
 Problem make_table_problem(const Suite& suite, const SuiteProblem& wanted,
                            const std::optional<std::filesystem::path>& data, std::uint64_t seed) {
-  const Dataset rows = read_csv(data_file(wanted.file, data), CsvOptions{.names_tell = false}).data;
+  CsvOptions options;
+  options.names_tell = false;
+  const Dataset rows = read_csv(data_file(wanted.file, data), options).data;
   rows.at(wanted.target);  // throws with the nearest name
   const std::vector<char> marks = test_rows_of(suite, wanted, rows.rows(), data, seed);
   Table train = rows_of(rows, wanted.target, marks, 0);
