@@ -30,16 +30,26 @@ std::vector<std::string> pick_names(const std::vector<std::string>& globs,
                                     const std::vector<std::string>& known, std::string_view what,
                                     const std::string& place) {
   std::set<std::string> picked;
-  for (const std::string& glob : globs) {
+  for (const std::string& text : globs) {
+    const bool leaves_out = text.starts_with('!');
+    const std::string glob = text.substr(leaves_out ? 1 : 0);
     bool found = false;
     for (const std::string& name : known) {
       if (!glob_matches(glob, name)) continue;
-      picked.insert(name);
+      if (leaves_out) {
+        picked.erase(name);
+      } else {
+        picked.insert(name);
+      }
       found = true;
     }
     if (found) continue;
     throw_bad_input(fmt::format("there is no {} '{}'", what, glob), place,
                     did_you_mean(glob, known));
+  }
+  if (picked.empty() && !globs.empty()) {
+    throw_bad_input(fmt::format("no {} is left", what), place,
+                    "'!' leaves out of what stands before it, as in [\"*\", \"!relay\"]");
   }
   std::vector<std::string> ordered;
   std::ranges::copy_if(known, std::back_inserter(ordered),

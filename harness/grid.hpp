@@ -109,8 +109,9 @@ struct Grid {
   bool quarantined(const std::string& cell_key) const;
 };
 
-// The names that globs pick, in the order of `known`. Throws Error (bad_input) with the place and
-// the nearest name for a glob that picks nothing. `what`: "problem", "method".
+// The names that globs pick, in the order of `known`; "!GLOB" leaves out of what those before it
+// have picked. Throws Error (bad_input) with the place and the nearest name for a glob that matches
+// nothing, and where nothing is left. `what`: "problem", "method".
 std::vector<std::string> pick_names(const std::vector<std::string>& globs,
                                     const std::vector<std::string>& known, std::string_view what,
                                     const std::string& place);

@@ -168,6 +168,17 @@ TEST(Grid, ReadsAPriorAndHandsItToTheProblemsInputs) {
               HasSubstr("no whole number from 1 to 16"));
 }
 
+TEST(Grid, AnExclamationMarkLeavesOutOfWhatStandsBefore) {
+  const std::vector<std::string> known = {"pysr", "parfam", "relay", "udsr"};
+  const auto picked = [&](const std::vector<std::string>& globs) {
+    return pick_names(globs, known, "method", "g.toml");
+  };
+  EXPECT_THAT(picked({"*", "!relay"}), ElementsAre("pysr", "parfam", "udsr"));
+  EXPECT_THAT(picked({"*", "!p*", "parfam"}), ElementsAre("parfam", "relay", "udsr"));
+  EXPECT_THROW(picked({"*", "!rely"}), Error);
+  EXPECT_THROW(picked({"!relay"}), Error);
+}
+
 TEST(Grid, PrintedItReadsBackToTheSameGrid) {
   const std::string toml = R"([grid]
 name = "all-of-it"

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "foundation/error.hpp"
 #include "tests/support/paths.hpp"
@@ -33,6 +34,22 @@ TEST(ShippedGrids, AllParseAndSayWhatTheyAreFor) {
     if (file.path().extension() == ".toml") files.push_back(file.path().stem().string());
   }
   EXPECT_THAT(names, ::testing::UnorderedElementsAreArray(files));
+}
+
+// What a grid declares it runs: a method under a name of the grid's own is one of its methods.
+TEST(ShippedGrids, RunEveryMethodThatTheyDeclare) {
+  const Registry registry;
+  const Catalogue catalogue;
+  for (const ShippedGrid& shipped : shipped_grids()) {
+    const std::string text(shipped.toml);
+    const Grid grid = load_named_grid(shipped.name, registry, catalogue);
+    std::vector<std::string> names;
+    for (const Method& method : grid.methods) names.push_back(method.name);
+    const std::regex declared("\\[\\[method\\]\\]\\s*name = \"([^\"]+)\"");
+    for (std::sregex_iterator at(text.begin(), text.end(), declared), end; at != end; ++at) {
+      EXPECT_THAT(names, ::testing::Contains((*at)[1].str())) << shipped.name;
+    }
+  }
 }
 
 // The schema for editors must not know a key that the reader refuses.
