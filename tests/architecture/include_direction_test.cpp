@@ -22,8 +22,8 @@ using Rooms = std::set<std::string>;
 // What a room may include besides itself. A method's room is "method:<folder>".
 const std::map<std::string, Rooms>& allowed() {
   static const Rooms kBelowTheHarness = {"foundation", "problems",  "expression", "interface",
-                                         "fitting",    "inference", "effects",    "method",
-                                         "registry",   "reports"};
+                                         "fitting",    "inference", "states",     "effects",
+                                         "method",     "registry",  "reports"};
   const auto with = [](Rooms rooms, const Rooms& more) {
     rooms.insert(more.begin(), more.end());
     return rooms;
@@ -32,13 +32,16 @@ const std::map<std::string, Rooms>& allowed() {
       {"foundation", {}},
       {"problems", {"foundation"}},
       {"expression", {"foundation"}},
-      {"interface", {"foundation", "problems", "expression"}},
       {"fitting", {"foundation", "expression"}},
+      {"states", {"foundation", "expression", "fitting"}},
+      {"interface", {"foundation", "problems", "expression", "states"}},
       {"inference", {"foundation", "expression", "fitting"}},
       {"effects", {"foundation", "problems", "expression"}},
       {"method",
-       {"foundation", "problems", "expression", "interface", "fitting", "inference", "effects"}},
-      {"registry", {"foundation", "problems", "expression", "interface", "fitting", "method"}},
+       {"foundation", "problems", "expression", "interface", "fitting", "states", "inference",
+        "effects"}},
+      {"registry",
+       {"foundation", "problems", "expression", "interface", "fitting", "states", "method"}},
       {"reports", {"foundation"}},
       {"harness", kBelowTheHarness},
       {"study", with(kBelowTheHarness, {"harness"})},
@@ -57,7 +60,7 @@ std::string room_of(const std::string& path) {
   const std::size_t slash = rest.find('/');
   if (slash == std::string::npos) return rest.starts_with("registry") ? "registry" : "interface";
   const std::string folder = rest.substr(0, slash);
-  for (const char* floor : {"expression", "fitting", "inference", "effects"}) {
+  for (const char* floor : {"expression", "fitting", "inference", "states", "effects"}) {
     if (folder == floor) return folder;
   }
   return "method:" + folder;
