@@ -21,9 +21,9 @@ using Rooms = std::set<std::string>;
 
 // What a room may include besides itself. A method's room is "method:<folder>".
 const std::map<std::string, Rooms>& allowed() {
-  static const Rooms kBelowTheHarness = {"foundation", "problems",  "expression", "interface",
-                                         "fitting",    "inference", "states",     "effects",
-                                         "method",     "registry",  "reports"};
+  static const Rooms kBelowTheHarness = {
+      "foundation", "problems", "expression", "interface", "fitting", "inference",
+      "states",     "effects",  "method",     "registry",  "reports", "forward_dynamics"};
   const auto with = [](Rooms rooms, const Rooms& more) {
     rooms.insert(more.begin(), more.end());
     return rooms;
@@ -37,6 +37,7 @@ const std::map<std::string, Rooms>& allowed() {
       {"interface", {"foundation", "problems", "expression", "states"}},
       {"inference", {"foundation", "expression", "fitting"}},
       {"effects", {"foundation", "problems", "expression"}},
+      {"forward_dynamics", {"foundation", "problems", "expression", "fitting", "states"}},
       {"method",
        {"foundation", "problems", "expression", "interface", "fitting", "states", "inference",
         "effects"}},
@@ -60,7 +61,8 @@ std::string room_of(const std::string& path) {
   const std::size_t slash = rest.find('/');
   if (slash == std::string::npos) return rest.starts_with("registry") ? "registry" : "interface";
   const std::string folder = rest.substr(0, slash);
-  for (const char* floor : {"expression", "fitting", "inference", "states", "effects"}) {
+  for (const char* floor :
+       {"expression", "fitting", "inference", "states", "effects", "forward_dynamics"}) {
     if (folder == floor) return folder;
   }
   return "method:" + folder;
