@@ -81,19 +81,19 @@ class DeclaredState : public Memory {
     return tried.z;
   }
   void commit(double dt_s, const Reached& at) override {
-    const Drive now = drive_of(at);
+    const StateDrive now = drive_of(at);
     step(memory_, dt_s, now);
     drive_ = now;
   }
 
  private:
-  Drive drive_of(const Reached& at) const {
-    Drive drive;
+  StateDrive drive_of(const Reached& at) const {
+    StateDrive drive;
     if (!drives_.empty()) drive.velocity = value_of(drives_[0], at);
     if (drives_.size() > 1) drive.load = value_of(drives_[1], at);
     return drive;
   }
-  void step(StateMemory& memory, double dt_s, const Drive& to) const {
+  void step(StateMemory& memory, double dt_s, const StateDrive& to) const {
     if (dt_s > 0) {
       advance<double>(state_.law, std::span<const double>(state_.parameters), memory, drive_, to,
                       dt_s);
@@ -103,7 +103,7 @@ class DeclaredState : public Memory {
   StateDeclaration state_;
   std::vector<Binding> drives_;
   StateMemory memory_;
-  Drive drive_;
+  StateDrive drive_;
 };
 
 }  // namespace

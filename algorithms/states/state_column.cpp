@@ -24,7 +24,9 @@ class Drives {
       : velocity_(rows.columns[state.drives[0]]),
         load_(state.drives.size() > 1 ? rows.columns[state.drives[1]] : nullptr) {}
 
-  Drive at(std::size_t row) const { return {velocity_[row], load_ == nullptr ? 1.0 : load_[row]}; }
+  StateDrive at(std::size_t row) const {
+    return {velocity_[row], load_ == nullptr ? 1.0 : load_[row]};
+  }
   const double* velocity() const { return velocity_; }
 
  private:

@@ -116,15 +116,15 @@ void advance(StateLaw law, std::span<const T> p, BasicStateMemory<T>& memory,
   advance_by_law(law, p, memory, from, to, dt);
 }
 
-template StateMemory state_at_rest(StateLaw, const Drive&);
+template StateMemory state_at_rest(StateLaw, const StateDrive&);
 template BasicStateMemory<float> state_at_rest(StateLaw, const BasicDrive<float>&);
-template void advance(StateLaw, std::span<const double>, StateMemory&, const Drive&, const Drive&,
-                      double);
+template void advance(StateLaw, std::span<const double>, StateMemory&, const StateDrive&,
+                      const StateDrive&, double);
 template void advance(StateLaw, std::span<const float>, BasicStateMemory<float>&,
                       const BasicDrive<float>&, const BasicDrive<float>&, float);
 
 double state_rate(StateLaw law, std::span<const double> p, const StateMemory& memory,
-                  const Drive& drive) {
+                  const StateDrive& drive) {
   const double v = drive.velocity;
   const double z = memory.z;
   const auto while_held = [z](double rate, double limit) {

@@ -84,7 +84,7 @@ struct BasicDrive {
   T velocity = 0;  // or whatever the law's first drive is
   T load = 1;      // 1 where the law has no second drive
 };
-using Drive = BasicDrive<double>;
+using StateDrive = BasicDrive<double>;
 
 // What a state carries from step to step.
 template <typename T>
@@ -106,17 +106,17 @@ template <typename T>
 void advance(StateLaw law, std::span<const T> parameters, BasicStateMemory<T>& memory,
              const BasicDrive<T>& from, const BasicDrive<T>& to, T dt);
 
-extern template StateMemory state_at_rest(StateLaw, const Drive&);
+extern template StateMemory state_at_rest(StateLaw, const StateDrive&);
 extern template BasicStateMemory<float> state_at_rest(StateLaw, const BasicDrive<float>&);
-extern template void advance(StateLaw, std::span<const double>, StateMemory&, const Drive&,
-                             const Drive&, double);
+extern template void advance(StateLaw, std::span<const double>, StateMemory&, const StateDrive&,
+                             const StateDrive&, double);
 extern template void advance(StateLaw, std::span<const float>, BasicStateMemory<float>&,
                              const BasicDrive<float>&, const BasicDrive<float>&, float);
 
 // z' at a point; for who integrates states together with a motion by a solver of its own. gms and
 // the held laws are discontinuous: `advance` steps over that, a solver must step to it.
 double state_rate(StateLaw law, std::span<const double> parameters, const StateMemory& memory,
-                  const Drive& drive);
+                  const StateDrive& drive);
 
 struct StateRange {
   double low = 0;

@@ -61,7 +61,7 @@ TEST(StateColumn, HasTheBitsOfTheSingleSteps) {
     std::vector<double> column(rows.rows());
     state_column(state, rows, column);
     const auto drive = [&](std::size_t r) {
-      return Drive{motion.velocity[r], state.drives.size() > 1 ? motion.load[r] : 1.0};
+      return StateDrive{motion.velocity[r], state.drives.size() > 1 ? motion.load[r] : 1.0};
     };
     StateMemory memory;
     for (std::size_t r = 0; r < rows.rows(); ++r) {

@@ -52,12 +52,12 @@ std::vector<double> reference(double z, const Rate& rate, double dt, std::size_t
 
 std::vector<double> ours(StateLaw law, const std::vector<double>& parameters, double dt,
                          std::size_t steps) {
-  Drive from{velocity_at(0), load_at(0)};
+  StateDrive from{velocity_at(0), load_at(0)};
   StateMemory memory = state_at_rest(law, from);
   std::vector<double> ends;
   for (std::size_t k = 1; k <= steps; ++k) {
     const double t = static_cast<double>(k) * dt;
-    const Drive to{velocity_at(t), load_at(t)};
+    const StateDrive to{velocity_at(t), load_at(t)};
     advance(law, std::span<const double>(parameters), memory, from, to, dt);
     ends.push_back(memory.z);
     from = to;
@@ -183,7 +183,7 @@ TEST(StateLaw, NeverLeavesItsRange) {
 TEST(StateLaw, SlidesSteadilyOnItsCurve) {
   const std::vector<double> p = {2e-4, 3e-4, 0.01};
   StateMemory memory;
-  const Drive slow{0.005, 1};
+  const StateDrive slow{0.005, 1};
   for (int k = 0; k < 1000; ++k) {
     advance(StateLaw::lugre, std::span<const double>(p), memory, slow, slow, 0.01);
   }
