@@ -39,6 +39,7 @@ void add_submit_command(CLI::App& app, ExitStatus& status, const Registry& regis
 void add_compare_command(CLI::App& app, ExitStatus& status);
 void add_export_command(CLI::App& app, ExitStatus& status);
 void add_predict_command(CLI::App& app, ExitStatus& status);
+void add_simulate_command(CLI::App& app, ExitStatus& status);
 void add_describe_command(CLI::App& app);
 // Under `list`.
 void add_problem_listing(CLI::App& list);

@@ -5,8 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,6 +15,7 @@
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/fit_output.hpp"
+#include "harness/cli/model_argument.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
 #include "reports/csv.hpp"
@@ -25,22 +24,8 @@
 namespace tribench {
 namespace {
 
-// MODEL: a file with the JSON of `fit --json`, or a formula.
-nlohmann::json model_of(const std::string& model) {
-  std::error_code is_no_path;  // a long formula is none
-  if (!std::filesystem::is_regular_file(model, is_no_path)) return {{"formula", model}};
-  std::ifstream in(model);
-  const nlohmann::json json = nlohmann::json::parse(in, nullptr, false);
-  if (json.is_discarded() || !json.is_object() || !json.contains("formula") ||
-      !json["formula"].is_string()) {
-    throw_bad_input("this is no model: it has no formula", model,
-                    "give a formula, or what 'tribench fit --json' prints");
-  }
-  return json;
-}
-
 std::string predictions(const std::string& file, const Dataset& data, bool intervals) {
-  const nlohmann::json model = model_of(file);
+  const nlohmann::json model = model_argument(file);
   std::vector<std::string> names;
   const Expression formula = parse_collecting_names(model["formula"].get<std::string>(), names);
   std::vector<std::vector<double>> columns;

@@ -99,6 +99,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_compare_command(app, status);
   add_export_command(app, status);
   add_predict_command(app, status);
+  add_simulate_command(app, status);
   add_generate_command(app, status);
   add_loop_command(app, status, registry);
   add_history_command(app, status);

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#include "harness/cli/model_argument.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
+
+namespace tribench {
+
+nlohmann::json model_argument(const std::string& model) {
+  std::error_code is_no_path;  // a long formula is none
+  if (!std::filesystem::is_regular_file(model, is_no_path)) return {{"formula", model}};
+  std::ifstream in(model);
+  const nlohmann::json json = read_json<nlohmann::json>(in);
+  if (json.is_discarded() || !json.is_object() || !json.contains("formula") ||
+      !json["formula"].is_string()) {
+    throw_bad_input("this is no model: it has no formula", model,
+                    "give a formula, or what 'tribench fit --json' prints");
+  }
+  return json;
+}
+
+std::string formula_argument(const std::string& model) {
+  return model_argument(model)["formula"].get<std::string>();
+}
+
+}  // namespace tribench
