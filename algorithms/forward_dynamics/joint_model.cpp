@@ -113,7 +113,8 @@ double JointEquation::motor_torque(const JointInstant& at) const {
   if (!at.is_connected) return 0;
   if (!model_.motor) return at.drive;
   const Motor& motor = *model_.motor;
-  return motor.constant / motor.resistance * (at.drive - motor.constant * at.velocity);
+  const double current = (at.drive - motor.constant * at.velocity) / motor.resistance;
+  return motor.constant * std::clamp(current, -motor.most_current, motor.most_current);
 }
 
 void JointEquation::fill(const JointInstant& at, int direction) {

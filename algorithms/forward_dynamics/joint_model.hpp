@@ -13,6 +13,7 @@
 // Not for more than one joint, nor for the step in time: joint_integrator.hpp.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -31,6 +32,8 @@ namespace tribench::forward {
 struct Motor {
   double constant = 0;    // K: N m/A and V s/rad at the joint (N/A and V s/m)
   double resistance = 0;  // ohm
+  // The amplifier's limit, A.
+  double most_current = std::numeric_limits<double>::infinity();
 };
 
 struct JointModel {

@@ -41,6 +41,7 @@ struct SimulateArguments {
   std::string gravity;
   double motor_constant = 0;
   double resistance = 0;
+  double most_current = 0;
   std::string reference;
   double kp = 0;
   double kd = 0;
@@ -105,6 +106,10 @@ void read_body(const SimulateArguments& arguments, MotionSetup& setup) {
   }
   if (arguments.resistance > 0) {
     setup.motor = forward::Motor{arguments.motor_constant, arguments.resistance};
+    if (arguments.most_current > 0) setup.motor->most_current = arguments.most_current;
+  } else if (arguments.most_current > 0) {
+    throw_bad_input("a limit of the current belongs to a motor under voltage", "--current-limit",
+                    "give --motor-constant and --resistance too");
   }
 }
 
@@ -236,6 +241,10 @@ void add_body_options(CLI::App& command, const std::shared_ptr<SimulateArguments
                   "of a motor under voltage, at the joint: N m/A and V s/rad")
       ->transform(real_number(0, 1e9, LowEnd::above));
   command.add_option("--resistance", arguments->resistance, "of a motor under voltage, ohm")
+      ->transform(real_number(0, 1e9, LowEnd::above));
+  command
+      .add_option("--current-limit", arguments->most_current,
+                  "of that motor's amplifier, A; without it there is none")
       ->transform(real_number(0, 1e9, LowEnd::above));
   command.add_option("--connected", arguments->setup.connected,
                      "a column: 0 where the motor is switched off and carries no current");

@@ -223,6 +223,9 @@ TEST(ForwardSimulation, AVoltageMovesAMotorToItsNoLoadSpeedAndAnOpenCircuitLetsI
   const double rate = 0.4 * 0.4 / 4 / 0.01;
   EXPECT_NEAR(motion.velocity[100], 15 * (1 - std::exp(-rate * 0.2)), 1e-4);
   EXPECT_NEAR(motion.velocity[900], motion.velocity[800], 1e-12);  // no current, no brake
+  model.motor->most_current = 0.5;  // of 1.5 A at a standstill: 0.2 N m
+  EXPECT_NEAR(simulate_motion(model, nullptr, movement.rows(), {}).velocity[100], 0.2 / 0.01 * 0.2,
+              1e-9);
 }
 
 TEST(ForwardSimulation, AControllerSeesTheSimulatedMotionAndItsPast) {
