@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "algorithms/diagnosis/closed_loop.hpp"
+#include "algorithms/model_based/bam_models.hpp"
 #include "algorithms/model_based/branch_polynomial.hpp"
+#include "algorithms/model_based/dynamic_friction.hpp"
 #include "algorithms/model_based/placebos.hpp"
 #include "algorithms/model_based/random_search.hpp"
 #include "algorithms/model_based/static_friction.hpp"
@@ -21,6 +25,10 @@ Registry::Registry() {
   entries_.push_back(symmetric_entry());
   entries_.push_back(asymmetric_entry());
   entries_.push_back(branch_polynomial_entry());
+  for (AlgorithmEntry& entry : bam_entries()) entries_.push_back(std::move(entry));
+  entries_.push_back(dahl_entry());
+  entries_.push_back(lugre_entry());
+  entries_.push_back(maxwell_slip_entry());
   entries_.push_back(constant_entry());
   entries_.push_back(linear_entry());
   entries_.push_back(random_search_entry());

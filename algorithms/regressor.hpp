@@ -26,6 +26,7 @@
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/expression/operator_set.hpp"
+#include "algorithms/states/state_column.hpp"
 #include "foundation/random.hpp"
 #include "problems/problem.hpp"
 
@@ -37,7 +38,12 @@ struct TrainingData {
   std::span<const double* const> columns;  // columns[j]: rows() doubles
   std::span<const double> target;          // in the target's unit; may hold NaN: skip such rows
   std::span<const int> movement;           // per row; whole movements are the unit of validation
+  // All that was recorded, with the same inputs, and where each row stands in it: for formulas with
+  // states. Empty where the problem has no time.
+  MotionRows motion = {};
+  std::span<const std::size_t> motion_row = {};
 
+  bool has_time() const { return !motion_row.empty(); }
   std::size_t rows() const { return target.size(); }
   Inputs table() const { return {columns, rows()}; }
 };
@@ -99,15 +105,18 @@ struct FitContext {
 enum class StopReason { converged, budget, unsupported };
 
 struct FitResult {
-  std::vector<Expression> front;  // over data.inputs; by increasing complexity, no two alike
-  std::size_t chosen = 0;         // place in the front of the formula the method stands for
+  // Over data.inputs and, behind them, `states`; by increasing complexity, no two alike.
+  std::vector<Expression> front;
+  std::size_t chosen = 0;  // place in the front of the formula the method stands for
   StopReason reason = StopReason::converged;
   std::string note;  // one line for the record; says why where unsupported
   // The formulas' form is the user's (a template): whoever shortens formulas leaves them.
   bool keeps_form = false;
+  // What the formulas remember: column data.inputs.size() + k is states[k], driven by data.inputs.
+  std::vector<StateDeclaration> states = {};
 
   static FitResult unsupported(std::string why) {
-    return {{}, 0, StopReason::unsupported, std::move(why), false};
+    return {{}, 0, StopReason::unsupported, std::move(why), false, {}};
   }
 };
 

@@ -34,7 +34,9 @@ ScaledData::ScaledData(const TrainingData& data)
     : inputs_(data.inputs.begin(), data.inputs.end()),
       columns_(data.columns.begin(), data.columns.end()),
       target_(data.target),
-      movement_(data.movement) {
+      movement_(data.movement),
+      motion_(data.motion),
+      motion_row_(data.motion_row) {
   copies_.reserve(columns_.size());
   for (std::size_t j = 0; j < columns_.size(); ++j) {
     const std::span<const double> column(columns_[j], data.rows());

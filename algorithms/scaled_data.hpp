@@ -5,6 +5,8 @@
 // written in the data's own numbers again. A power of two changes no digit: values, and a formula's
 // values, are the same bits as long as nothing overflows.
 //
+// States live in physical units: data that are scaled have no motion for methods to see.
+//
 // Not for data within 1e-30 .. 1e30: they are handed on as they are, so that nothing changes there.
 #pragma once
 
@@ -20,7 +22,13 @@ class ScaledData {
   // or without a finite value is left.
   explicit ScaledData(const TrainingData& data);
 
-  TrainingData data() const { return {inputs_, columns_, target_, movement_}; }
+  TrainingData data() const {
+    TrainingData data{inputs_, columns_, target_, movement_};
+    if (is_scaled_) return data;
+    data.motion = motion_;
+    data.motion_row = motion_row_;
+    return data;
+  }
   bool is_scaled() const { return is_scaled_; }
 
   // A formula over data() as one over the data given: each scaled input times its factor, the whole
@@ -34,6 +42,8 @@ class ScaledData {
   std::span<const double> target_;
   std::vector<double> target_copy_;
   std::span<const int> movement_;
+  MotionRows motion_;
+  std::span<const std::size_t> motion_row_;
   std::vector<int> exponents_;  // of an input: it was divided by two to this power
   int target_exponent_ = 0;
   bool is_scaled_ = false;

@@ -73,8 +73,8 @@ BENCHMARK(sensitivities)->DenseRange(0, 6);
 void single_step(benchmark::State& state) {
   const StateDeclaration declared = state_of(state.range(0));
   StateMemory memory;
-  const Drive from{0.05, 1};
-  const Drive to{0.051, 1};
+  const StateDrive from{0.05, 1};
+  const StateDrive to{0.051, 1};
   for (auto _ : state) {
     advance(declared.law, std::span<const double>(declared.parameters), memory, from, to, 1e-3);
     benchmark::DoNotOptimize(memory);

@@ -10,6 +10,7 @@
 
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/text.hpp"
+#include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/order_statistics.hpp"
 #include "foundation/sign.hpp"
@@ -187,6 +188,7 @@ void sample_problem(const ProblemEntry& entry, const std::vector<const Record*>&
     sample(first, {{}, {}, {}, parse(law, first.input_names())});
   }
   for (const Record* record : records) {
+    if (declares_states(record->formula)) continue;  // no function of one row's inputs
     const Problem& problem = problem_of(record->seed);
     sample(problem, {record->cell, record->method, record->operators,
                      parse(record->formula, problem.input_names())});

@@ -13,7 +13,8 @@
 namespace tribench {
 
 void finish_front(const TrainingData& data, const OperatorSet& operators, FitResult& fit) {
-  if (fit.keeps_form || fit.front.empty()) return;
+  // With states, a formula's numbers stand in the laws too: it is left as it is.
+  if (fit.keeps_form || fit.front.empty() || !fit.states.empty()) return;
   const FiniteRows rows(data);
   FormulaFinisher finisher(rows.table(), rows.target, input_box(data.inputs),
                            [&](const Expression& formula) { return operators.admits(formula); });

@@ -12,8 +12,8 @@
 #include "algorithms/expression/grid_check.hpp"
 #include "algorithms/expression/property.hpp"
 #include "algorithms/expression/singularity.hpp"
-#include "algorithms/expression/text.hpp"
 #include "harness/metrics.hpp"
+#include "harness/stateful_problem.hpp"
 #include "harness/table_evaluator.hpp"
 
 namespace tribench {
@@ -116,7 +116,7 @@ void judge_formula(const Problem& problem, const StagedFormula& staged, Record& 
   }
   judge_singularity(problem, formula, record);
   record.eval_ns_per_row = measure_ns_per_row(formula, problem.test);
-  record.formula = print(formula, problem.input_names());
+  record.formula = formula_text(problem, formula);
   record.status = "ok";
   if (on_test.not_finite > 0) {
     record.status = "failed";
@@ -128,7 +128,6 @@ void judge_formula(const Problem& problem, const StagedFormula& staged, Record& 
 std::vector<FrontRecord> judge_front(const Problem& problem, const std::vector<Expression>& front,
                                      std::size_t chosen, const Record& judged) {
   TableEvaluator evaluator;
-  const std::vector<std::string> names = problem.input_names();
   std::vector<FrontRecord> all;
   for (std::size_t i = 0; i < front.size(); ++i) {
     FrontRecord entry;
@@ -140,7 +139,7 @@ std::vector<FrontRecord> judge_front(const Problem& problem, const std::vector<E
     entry.mae_test =
         compute_errors(evaluator.evaluate(front[i], problem.test), problem.test.target).mae;
     entry.chosen = i == chosen;
-    entry.formula = print(front[i], names);
+    entry.formula = formula_text(problem, front[i]);
     all.push_back(std::move(entry));
   }
   std::vector<FrontRecord> kept;

@@ -14,7 +14,8 @@ namespace tribench {
 FitResult fit_until_spent(FitResult first, const FitRound& round, bool widens,
                           const TrainingData& data, const Budget& budget,
                           const RandomStream& random) {
-  if (first.front.empty()) return first;
+  // Models with states are fitted from a grid of starts: another round would find the same.
+  if (first.front.empty() || !first.states.empty()) return first;
   const FiniteRows rows(data);
   JointFront joint(rows.table(), rows.target);
   joint.add(first.front, first.chosen);

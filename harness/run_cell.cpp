@@ -22,6 +22,7 @@
 #include "harness/finished_front.hpp"
 #include "harness/judge.hpp"
 #include "harness/restarts.hpp"
+#include "harness/stateful_problem.hpp"
 #include "harness/table_evaluator.hpp"
 
 namespace tribench {
@@ -103,21 +104,33 @@ std::vector<std::size_t> telling_inputs(const Stage& stage) {
 class StageView {
  public:
   StageView(const Problem& problem, const Stage& stage, const Expression& so_far)
-      : places_(telling_inputs(stage)),
-        target_(stage.train.target),
-        movement_(stage.train.movement) {
+      : places_(telling_inputs(stage)), target_(stage.train.target), train_(stage.train) {
     for (const std::size_t place : places_) {
       inputs_.push_back(problem.inputs[place]);
       columns_.push_back(stage.train.columns[place].data());
+      if (train_.trail != nullptr) trail_.push_back(train_.trail->columns[place].data());
     }
     relink_signs(problem);
     if (!so_far.empty()) subtract(stage.train, so_far);
   }
 
-  // Of the method's columns among the problem's.
-  std::span<const std::size_t> places() const { return places_; }
+  TrainingData data() const {
+    TrainingData data{inputs_, columns_, target_, train_.movement};
+    if (train_.trail == nullptr) return data;
+    data.motion = {trail_, train_.trail->time, train_.trail->starts};
+    data.motion_row = train_.trail_row;
+    return data;
+  }
 
-  TrainingData data() const { return {inputs_, columns_, target_, movement_}; }
+  // A formula of the method's, and its states, over the problem's inputs; the states' columns begin
+  // at `first_state` there.
+  Expression over_problem(const Expression& formula, std::size_t first_state) const;
+  std::vector<StateDeclaration> over_problem(std::vector<StateDeclaration> states) const {
+    for (StateDeclaration& state : states) {
+      for (std::size_t& drive : state.drives) drive = places_[drive];
+    }
+    return states;
+  }
 
  private:
   // Places among the problem's inputs become places among the stage's.
@@ -140,15 +153,18 @@ class StageView {
   std::vector<std::size_t> places_;
   std::vector<Input> inputs_;
   std::vector<const double*> columns_;
+  std::vector<const double*> trail_;
   std::vector<double> target_;
-  const std::vector<int>& movement_;
+  const Table& train_;
 };
 
-// A formula over a stage's inputs as one over the problem's.
-Expression over_problem(const Expression& formula, std::span<const std::size_t> places) {
+Expression StageView::over_problem(const Expression& formula, std::size_t first_state) const {
   std::vector<Node> nodes(formula.nodes().begin(), formula.nodes().end());
   for (Node& node : nodes) {
-    if (node.is_variable()) node = Node::input(places[node.variable]);
+    if (!node.is_variable()) continue;
+    const std::size_t place = node.variable;
+    node = Node::input(place < places_.size() ? places_[place]
+                                              : first_state + (place - places_.size()));
   }
   return Expression(std::move(nodes));
 }
@@ -160,6 +176,7 @@ struct StagesResult {
   std::size_t chosen_place = 0;
   std::string failure;  // empty where every stage gave a formula
   std::string note;
+  std::optional<Problem> extended;  // by the formulas' states, where they have any
 };
 
 std::string why_no_formula(const FitResult& result) {
@@ -207,12 +224,13 @@ void keep_usable_formulas(FitResult& fit, std::span<const Input> inputs) {
   }
 }
 
-StagesResult fit_stages(const Problem& problem, const Regressor& method, const CellTask& task,
+StagesResult fit_stages(const Problem& given, const Regressor& method, const CellTask& task,
                         const WidenedMethod& widened, Budget& budget, Trace& trace) {
   StagesResult result;
   Expression so_far;
   const RandomStream random(key_of(task.cell.key()));
-  for (std::size_t s = 0; s < problem.stages.size(); ++s) {
+  for (std::size_t s = 0; s < given.stages.size(); ++s) {
+    const Problem& problem = result.extended ? *result.extended : given;
     const Stage& stage = problem.stages[s];
     const StageView view(problem, stage, so_far);
     const TrainingData data = view.data();
@@ -253,13 +271,16 @@ StagesResult fit_stages(const Problem& problem, const Regressor& method, const C
       return result;
     }
     result.front.clear();
+    const std::size_t first_state = problem.inputs.size();
+    if (s > 0) result.chosen.adaptation = view.over_problem(fit.front.at(fit.chosen), first_state);
     for (const Expression& formula : fit.front) {
-      const Expression whole = over_problem(formula, view.places());
+      const Expression whole = view.over_problem(formula, first_state);
       result.front.push_back(so_far.empty() ? whole : Expression::binary(Op::add, so_far, whole));
     }
     result.chosen_place = fit.chosen;
-    if (s > 0) result.chosen.adaptation = over_problem(fit.front.at(fit.chosen), view.places());
     so_far = result.front.at(fit.chosen);
+    // Last: the view looks at the problem that this takes the place of.
+    if (!fit.states.empty()) result.extended = with_states(problem, view.over_problem(fit.states));
   }
   result.chosen.formula = so_far;
   return result;
@@ -314,8 +335,9 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
     record.reason = fit.failure;
     return result;
   }
-  judge_formula(problem, fit.chosen, record);
-  result.front = judge_front(problem, fit.front, fit.chosen_place, record);
+  const Problem& judged = fit.extended ? *fit.extended : problem;
+  judge_formula(judged, fit.chosen, record);
+  result.front = judge_front(judged, fit.front, fit.chosen_place, record);
   if (budget.out_of_time()) {
     record.note +=
         std::string(record.note.empty() ? "" : "; ") + "ended by the clock: not reproducible";

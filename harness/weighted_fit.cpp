@@ -5,10 +5,11 @@
 
 #include <vector>
 
-#include "algorithms/expression/text.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
+#include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "harness/judge.hpp"
+#include "harness/stateful_problem.hpp"
 #include "harness/table_evaluator.hpp"
 
 namespace tribench {
@@ -39,6 +40,7 @@ std::vector<std::size_t> sampled_rows(std::span<const double> weights) {
 
 Table rows_of(const Table& table, const std::vector<std::size_t>& rows) {
   Table taken;
+  taken.trail = table.trail;
   for (const std::vector<double>& column : table.columns) {
     std::vector<double>& values = taken.columns.emplace_back();
     for (const std::size_t r : rows) values.push_back(column[r]);
@@ -46,6 +48,7 @@ Table rows_of(const Table& table, const std::vector<std::size_t>& rows) {
   for (const std::size_t r : rows) {
     taken.target.push_back(table.target[r]);
     taken.movement.push_back(table.movement[r]);
+    if (table.trail != nullptr) taken.trail_row.push_back(table.trail_row[r]);
   }
   return taken;
 }
@@ -60,17 +63,20 @@ CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
   searched.stages.front().train = rows_of(table, sampled_rows(weights));
   CellResult result = fit_and_judge(searched, method, task, widened);
   if (result.record.status != "ok") return result;
+  // All formulas of a front have the same states: their columns are those of the chosen one.
+  const ProblemFormula own = read_problem_formula(result.record.formula, problem);
+  const Problem& judged = own.over(problem);
   std::vector<Expression> front;
   std::size_t chosen = 0;
   ConstantFitter fitter;
-  const TableInputs inputs(table);
+  const TableInputs inputs(judged.stages.front().train);
   for (const FrontRecord& entry : result.front) {
     if (entry.chosen) chosen = front.size();
-    front.push_back(parse(entry.formula, problem.input_names()));
+    front.push_back(parse_stateful(entry.formula, problem.input_names()).formula);
     fitter.fit(front.back(), inputs.inputs(), table.target, weights);
   }
-  judge_formula(problem, {front.at(chosen), {}}, result.record);
-  result.front = judge_front(problem, front, chosen, result.record);
+  judge_formula(judged, {front.at(chosen), {}}, result.record);
+  result.front = judge_front(judged, front, chosen, result.record);
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,14 +32,27 @@ struct Input {
   // A prior, declared by a problem or a grid and the same for every method: the highest power of
   // this input in any product; 0: none is declared. What an input is called declares nothing.
   int max_degree = 0;
+  // An input that is a state of others (algorithms/states): the law it obeys, over the names of the
+  // inputs before it, as a formula's text declares it; empty: it was measured.
+  std::string law = {};
+};
+
+// All that was recorded, whatever rows a table takes of it: what a friction with memory has seen
+// before a row. Inputs alone, of training and test movements alike; never a target.
+struct Trail {
+  std::vector<double> time;                  // s
+  std::vector<std::vector<double>> columns;  // column j belongs to inputs[j]
+  std::vector<std::size_t> starts;           // first rows of stretches without a break in time
 };
 
 // Rows for fitting or judging; column j belongs to inputs[j] of the table's owner.
 struct Table {
   std::vector<std::vector<double>> columns;
   std::vector<double> target;
-  std::vector<int> movement;  // per row; equal numbers stand together
-  std::vector<double> truth;  // noise-free target where the law is known, else empty
+  std::vector<int> movement;                // per row; equal numbers stand together
+  std::vector<double> truth;                // noise-free target where the law is known, else empty
+  std::shared_ptr<const Trail> trail = {};  // none where the problem has no time
+  std::vector<std::size_t> trail_row = {};  // per row: its place in the trail
 
   std::size_t rows() const { return target.size(); }
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "foundation/sign.hpp"
@@ -11,8 +12,53 @@ namespace tribench {
 namespace {
 
 constexpr std::string_view kSignPrefix = "sgn_";
+constexpr double kLeap = 5;  // median steps that are a break in time
+
+std::shared_ptr<const Trail> trail_of(const Dataset& data, std::span<const Input> inputs) {
+  const Channel* time = data.find(Role::time);
+  if (time == nullptr) return nullptr;
+  auto trail = std::make_shared<Trail>();
+  trail->time = time->values;
+  trail->starts = run_starts(trail->time);
+  for (const Input& input : inputs) trail->columns.push_back(input_values(data, input.name));
+  return trail;
+}
 
 }  // namespace
+
+std::vector<std::size_t> run_starts(std::span<const double> time) {
+  std::vector<double> steps;
+  for (std::size_t r = 1; r < time.size(); ++r) {
+    if (time[r] > time[r - 1]) steps.push_back(time[r] - time[r - 1]);
+  }
+  double longest = 0;
+  if (!steps.empty()) {
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::ranges::nth_element(steps, middle);
+    longest = kLeap * *middle;
+  }
+  std::vector<std::size_t> starts;
+  for (std::size_t r = 0; r < time.size(); ++r) {
+    const bool goes_on = r > 0 && time[r] > time[r - 1] && time[r] - time[r - 1] <= longest;
+    if (!goes_on) starts.push_back(r);
+  }
+  return starts;
+}
+
+void lay_trail(const Dataset& recording, const Dataset& drawn, std::span<const Input> inputs,
+               Table& table) {
+  table.trail = trail_of(recording, inputs);
+  if (table.trail == nullptr) return;
+  const std::vector<double>& time = table.trail->time;
+  const std::vector<double>& drawn_time = drawn.find(Role::time)->values;
+  std::vector<std::size_t> places;
+  std::size_t at = 0;
+  for (std::size_t r = 0; r < drawn.rows(); ++r) {
+    while (recording.movement[at] != drawn.movement[r] || time[at] != drawn_time[r]) ++at;
+    places.push_back(at);
+  }
+  for (std::size_t& row : table.trail_row) row = places[row];
+}
 
 std::vector<double> input_values(const Dataset& data, std::string_view name) {
   if (const Channel* channel = data.find(name)) return channel->values;
@@ -58,6 +104,8 @@ Table make_table(const KnownDataset& source, std::span<const Input> inputs, std:
   table.target = gather(data.at(target).values);
   for (const std::size_t r : rows) table.movement.push_back(data.movement[r]);
   if (!source.truth.empty()) table.truth = gather(source.truth);
+  table.trail = trail_of(data, inputs);
+  if (table.trail != nullptr) table.trail_row = rows;
   return table;
 }
 

@@ -27,9 +27,17 @@ std::vector<double> input_values(const Dataset& data, std::string_view name);
 void link_signs(std::vector<Input>& inputs);
 
 // Rows of the movements with take[movement] != 0, in the dataset's order; the movement numbers are
-// the dataset's.
+// the dataset's. Where there is a channel of time, the table has a trail: all rows of the dataset.
 Table make_table(const KnownDataset& source, std::span<const Input> inputs, std::string_view target,
                  std::span<const char> take);
+
+// Puts the trail of a whole recording in the place of the one that the table has, which was made of
+// rows drawn from it (`thin`). Without a channel of time nothing happens.
+void lay_trail(const Dataset& recording, const Dataset& drawn, std::span<const Input> inputs,
+               Table& table);
+
+// Where time breaks: rows where it does not grow or leaps by more than five median steps.
+std::vector<std::size_t> run_starts(std::span<const double> time);
 
 // Marks a share of the movements (at least one, never all where there are two) for testing: drawn
 // from strata of direction and mean speed where there is a velocity, so that the test covers the

@@ -66,6 +66,7 @@ void keep_rows(Table& table, std::size_t count, RandomStream random, const std::
   keep(table.target);
   keep(table.movement);
   keep(table.truth);
+  keep(table.trail_row);
 }
 
 void add_noise(Table& table, double share, RandomStream random) {

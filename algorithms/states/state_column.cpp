@@ -15,7 +15,6 @@ namespace {
 using namespace states;
 
 constexpr std::size_t kBlock = 256;
-constexpr double kLeap = 5;  // median steps that are a break in time
 
 // The drives of a state, one row after the other.
 class Drives {
@@ -136,26 +135,6 @@ class BlockColumn {
 };
 
 }  // namespace
-
-std::vector<std::size_t> run_starts(std::span<const double> time, std::span<const int> unit) {
-  std::vector<double> steps;
-  for (std::size_t r = 1; r < time.size(); ++r) {
-    if (time[r] > time[r - 1]) steps.push_back(time[r] - time[r - 1]);
-  }
-  double longest = 0;
-  if (!steps.empty()) {
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::ranges::nth_element(steps, middle);
-    longest = kLeap * *middle;
-  }
-  std::vector<std::size_t> starts;
-  for (std::size_t r = 0; r < time.size(); ++r) {
-    const bool breaks = r == 0 || (!unit.empty() && unit[r] != unit[r - 1]) ||
-                        !(time[r] > time[r - 1]) || time[r] - time[r - 1] > longest;
-    if (breaks) starts.push_back(r);
-  }
-  return starts;
-}
 
 void state_column(const StateDeclaration& state, const MotionRows& rows, std::span<double> out) {
   const Drives drives(state, rows);

@@ -18,7 +18,7 @@
 
 namespace tribench {
 
-// What happened, row by row; non-owning.
+// What happened, row by row; non-owning. Of a problem's tables: their trail (problems/problem.hpp).
 struct MotionRows {
   std::span<const double* const> columns;  // columns[j]: rows() doubles of input j
   std::span<const double> time;            // s
@@ -26,10 +26,6 @@ struct MotionRows {
 
   std::size_t rows() const { return time.size(); }
 };
-
-// Where time breaks: rows whose `unit` (movements that may not be joined; empty: none) differs from
-// the row before, where time does not grow, or where it leaps by more than five median steps.
-std::vector<std::size_t> run_starts(std::span<const double> time, std::span<const int> unit);
 
 // out.size() == rows. The bits are those of `advance`, row after row.
 void state_column(const StateDeclaration& state, const MotionRows& rows, std::span<double> out);

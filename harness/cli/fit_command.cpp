@@ -15,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/expression/text.hpp"
 #include "algorithms/external/external_method.hpp"
 #include "algorithms/registry.hpp"
 #include "foundation/error.hpp"
@@ -28,6 +27,7 @@
 #include "harness/cli/number_options.hpp"
 #include "harness/machine.hpp"
 #include "harness/run_cell.hpp"
+#include "harness/stateful_problem.hpp"
 #include "harness/table_evaluator.hpp"
 #include "harness/weighted_fit.hpp"
 #include "problems/data_problem.hpp"
@@ -227,11 +227,11 @@ std::string reproducing(const FitArguments& arguments, const Record& record, boo
 
 void add_intervals(const FitArguments& arguments, const Problem& problem,
                    std::span<const double> weights, FitAnswer& answer) {
-  const Table& table = problem.stages.front().train;
+  const ProblemFormula own = read_problem_formula(answer.result.record.formula, problem);
+  const Table& table = own.over(problem).stages.front().train;
   try {
-    answer.intervals = fit_intervals(parse(answer.result.record.formula, problem.input_names()),
-                                     TableInputs(table).inputs(), table.target, table.movement,
-                                     weights, !arguments.sigma.empty());
+    answer.intervals = fit_intervals(own.formula, TableInputs(table).inputs(), table.target,
+                                     table.movement, weights, !arguments.sigma.empty());
   } catch (const Error& error) {
     answer.no_intervals = error.what();
   }

@@ -4,14 +4,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "algorithms/expression/evaluate.hpp"
-#include "algorithms/expression/text.hpp"
+#include "algorithms/states/state_column.hpp"
+#include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/fit_output.hpp"
@@ -24,13 +27,36 @@
 namespace tribench {
 namespace {
 
+// Behind the inputs' columns.
+void add_state_columns(const StatefulFormula& formula, const Dataset& data,
+                       std::vector<std::vector<double>>& columns) {
+  if (formula.states.empty()) return;
+  const Channel* time = data.find(Role::time);
+  if (time == nullptr) {
+    throw_bad_input("the formula has states, and no column is time", data.name,
+                    "say which one is: --time COLUMN");
+  }
+  const std::vector<std::size_t> starts = run_starts(time->values);
+  std::vector<const double*> inputs;
+  for (const std::vector<double>& column : columns) inputs.push_back(column.data());
+  std::vector<std::vector<double>> states;
+  for (const StateDeclaration& state : formula.states) {
+    states.emplace_back(data.rows());
+    state_column(state, {inputs, time->values, starts}, states.back());
+  }
+  std::ranges::move(states, std::back_inserter(columns));
+}
+
 std::string predictions(const std::string& file, const Dataset& data, bool intervals) {
   const nlohmann::json model = model_argument(file);
   std::vector<std::string> names;
-  const Expression formula = parse_collecting_names(model["formula"].get<std::string>(), names);
+  const StatefulFormula read =
+      parse_stateful_collecting(model["formula"].get<std::string>(), names);
+  const Expression& formula = read.formula;
   std::vector<std::vector<double>> columns;
   std::vector<const double*> pointers;
   for (const std::string& name : names) columns.push_back(input_values(data, name));
+  add_state_columns(read, data, columns);
   for (const std::vector<double>& column : columns) pointers.push_back(column.data());
   std::vector<double> values(data.rows());
   const Inputs inputs{pointers, data.rows()};
@@ -74,9 +100,12 @@ void add_predict_command(CLI::App& app, ExitStatus& /*status*/) {
   auto intervals = std::make_shared<bool>(false);
   command->add_flag("--intervals", *intervals,
                     "with a model of `fit --save`: 95 % of the curve, as columns low and high");
-  command->callback([model, data, out, intervals] {
+  auto time = std::make_shared<std::string>();
+  command->add_option("--time", *time, "the column of time (s), for a formula with states");
+  command->callback([model, data, out, intervals, time] {
     CsvOptions options;
     options.names_tell = false;
+    if (!time->empty()) options.roles[*time] = Role::time;
     const std::string text = predictions(*model, read_csv(*data, options).data, *intervals);
     if (out->empty()) {
       std::fputs(text.c_str(), stdout);

@@ -46,6 +46,11 @@ fs::path verified_file(const Manifest& manifest, const std::string& name, const 
   return path;
 }
 
+// What a formula with memory has seen is the whole recording, not the rows drawn from it.
+void lay_trails(const Dataset& recording, const Dataset& drawn, Problem& problem) {
+  for (Stage& stage : problem.stages) lay_trail(recording, drawn, problem.inputs, stage.train);
+}
+
 Dataset thinned(const Dataset& data, const ProblemPlan& plan) {
   if (plan.rows_per_movement == 0) return data;
   return thin({data, {}}, plan.rows_per_movement, RandomStream(key_of(plan.name))).data;
@@ -62,8 +67,8 @@ void widen_box(std::vector<Input>& inputs, const std::vector<Input>& others) {
 
 Problem make_measured_problem(const Manifest& manifest, const ProblemPlan& plan,
                               const DataFolder& data, std::uint64_t seed) {
-  const Dataset recording =
-      thinned(read_recording(plan, verified_file(manifest, plan.file, data)), plan);
+  const Dataset whole = read_recording(plan, verified_file(manifest, plan.file, data));
+  const Dataset recording = thinned(whole, plan);
   Problem problem = make_data_problem(recording, nullptr, plan.target, plan.inputs);
   problem.name = plan.name;
   problem.summary = plan.summary;
@@ -77,11 +82,15 @@ Problem make_measured_problem(const Manifest& manifest, const ProblemPlan& plan,
     for (char& mark : train) mark = mark == 0 ? 1 : 0;
     problem.stages.front().train = make_table({recording, {}}, problem.inputs, plan.target, train);
     problem.test = make_table({recording, {}}, problem.inputs, plan.target, test);
+    lay_trails(whole, recording, problem);
+    lay_trail(whole, recording, problem.inputs, problem.test);
     return problem;
   }
-  const Dataset other =
-      thinned(read_recording(plan, verified_file(manifest, plan.test_file, data)), plan);
-  const Problem tested = make_data_problem(other, nullptr, plan.target, plan.inputs);
+  lay_trails(whole, recording, problem);
+  const Dataset whole_other = read_recording(plan, verified_file(manifest, plan.test_file, data));
+  const Dataset other = thinned(whole_other, plan);
+  Problem tested = make_data_problem(other, nullptr, plan.target, plan.inputs);
+  lay_trails(whole_other, other, tested);
   widen_box(problem.inputs, tested.inputs);
   problem.test = tested.stages.front().train;
   return problem;

@@ -25,18 +25,45 @@ struct Sample {
   std::vector<const double*> pointers;
   std::vector<double> target;
   std::vector<int> movement;
+  std::vector<double> time;  // a hundredth of a second apart
+  std::vector<std::size_t> motion_row;
+  std::vector<std::size_t> starts = {0};
 
   TrainingData data() {
     pointers.clear();
+    time.clear();
+    motion_row.clear();
     for (const auto& column : columns) pointers.push_back(column.data());
-    return {inputs, pointers, target, movement};
+    for (std::size_t r = 0; r < target.size(); ++r) {
+      time.push_back(0.01 * static_cast<double>(r));
+      motion_row.push_back(r);
+    }
+    TrainingData data{inputs, pointers, target, movement};
+    data.motion = {pointers, time, starts};
+    data.motion_row = motion_row;
+    return data;
   }
-  std::vector<std::string> names() const {
+  std::vector<std::string> names(const FitResult& result) const {
     std::vector<std::string> names;
     for (const Input& input : inputs) names.push_back(input.name);
+    for (const StateDeclaration& state : result.states) names.push_back(state.name);
     return names;
   }
 };
+
+std::vector<double> values_of(const FitResult& result, Sample& sample) {
+  const TrainingData data = sample.data();
+  std::vector<std::vector<double>> states;
+  std::vector<const double*> columns(data.columns.begin(), data.columns.end());
+  for (const StateDeclaration& state : result.states) {
+    states.emplace_back(data.rows());
+    state_column(state, data.motion, states.back());
+    columns.push_back(states.back().data());
+  }
+  std::vector<double> values(data.rows());
+  Evaluator().evaluate(result.front[result.chosen], {columns, data.rows()}, values);
+  return values;
+}
 
 Sample friction_sample(std::size_t rows, double scale = 1) {
   Sample sample;
@@ -89,7 +116,8 @@ Outcome run(const Registry& registry, const std::string& name, Sample& sample,
 
 std::vector<std::string> texts(const FitResult& result, const Sample& sample) {
   std::vector<std::string> texts;
-  for (const Expression& formula : result.front) texts.push_back(print(formula, sample.names()));
+  for (const Expression& formula : result.front)
+    texts.push_back(print(formula, sample.names(result)));
   return texts;
 }
 
@@ -103,9 +131,11 @@ void expect_legal(const FitResult& result, const Sample& sample) {
     EXPECT_LT(result.chosen, result.front.size());
   }
   for (const Expression& formula : result.front) {
-    EXPECT_LE(formula.columns_used(), sample.inputs.size());
-    EXPECT_EQ(parse(print(formula, sample.names()), sample.names()), formula);
+    EXPECT_LE(formula.columns_used(), sample.inputs.size() + result.states.size());
+    const std::vector<std::string> names = sample.names(result);
+    EXPECT_EQ(parse(print(formula, names), names), formula);
   }
+  for (const StateDeclaration& state : result.states) check_state(state, sample.inputs.size());
 }
 
 std::vector<std::string> method_names() {
@@ -209,9 +239,7 @@ TEST_P(EveryMethod, AnswersTargetsOfAnyScale) {
     const Outcome outcome = run(registry_, GetParam(), sample);
     expect_legal(outcome.result, sample);
     if (outcome.result.front.empty()) continue;
-    const Expression& chosen = outcome.result.front[outcome.result.chosen];
-    std::vector<double> values(80);
-    Evaluator().evaluate(chosen, sample.data().table(), values);
+    const std::vector<double> values = values_of(outcome.result, sample);
     double error = 0;
     double size = 0;
     for (std::size_t r = 0; r < values.size(); ++r) {
@@ -232,7 +260,7 @@ TEST_P(EveryMethod, KeepsToItsOperatorSetAndRepeatsNoFormula) {
     const Outcome outcome = run(registry_, GetParam(), sample, setting);
     for (const Expression& formula : outcome.result.front) {
       EXPECT_TRUE(find_operator_set(set).admits(formula))
-          << set << ": " << print(formula, sample.names());
+          << set << ": " << print(formula, sample.names(outcome.result));
     }
     std::vector<std::string> formulas = texts(outcome.result, sample);
     std::ranges::sort(formulas);
@@ -252,7 +280,7 @@ TEST_P(EveryMethod, OffersOnlyProvedFormulasWhereTheSetAdmitsNoOthers) {
     const Outcome outcome = run(registry_, GetParam(), sample, setting);
     for (const Expression& formula : outcome.result.front) {
       EXPECT_EQ(prove_free(formula, box).verdict, Verdict::proved_free)
-          << print(formula, sample.names());
+          << print(formula, sample.names(outcome.result));
     }
   }
 }

@@ -41,6 +41,35 @@ TEST(Table, AnUnknownInputIsAnsweredWithTheNearestColumn) {
   }
 }
 
+TEST(Table, TimeBreaksWhereItLeapsOrFalls) {
+  const std::vector<double> time = {0, 1, 2, 3, 12, 13, 14, 0, 1, 2, 2};
+  EXPECT_EQ(run_starts(time), (std::vector<std::size_t>{0, 4, 7, 10}));
+  EXPECT_EQ(run_starts(std::vector<double>{3}), (std::vector<std::size_t>{0}));
+}
+
+// Each movement has a clock of its own, so that times alone do not tell where a row stands.
+TEST(Table, RowsDrawnFromARecordingKnowWhereTheyStandInIt) {
+  KnownDataset whole;
+  whole.data.channels = {{"t", "s", Role::time, {}}, {"v", "rad/s", Role::velocity, {}}};
+  whole.data.movement_names = {"a", "b", "c"};
+  for (int r = 0; r < 90; ++r) {
+    whole.data.channels[0].values.push_back(0.1 * (r % 30));
+    whole.data.channels[1].values.push_back(r);
+    whole.data.movement.push_back(r / 30);
+  }
+  const std::vector<Input> inputs = {{"v", "rad/s", Role::velocity, 0, 90, {}}};
+  const Dataset drawn = thin(whole, 7, RandomStream(2)).data;
+  Table table = make_table({drawn, {}}, inputs, "v", std::vector<char>{1, 0, 1});
+  ASSERT_EQ(table.trail->time.size(), 21U);
+  lay_trail(whole.data, drawn, inputs, table);
+  ASSERT_EQ(table.trail->time.size(), 90U);
+  EXPECT_EQ(table.trail->starts, (std::vector<std::size_t>{0, 30, 60}));
+  ASSERT_EQ(table.trail_row.size(), table.rows());
+  for (std::size_t r = 0; r < table.rows(); ++r) {
+    EXPECT_EQ(table.trail->columns[0][table.trail_row[r]], table.columns[0][r]);
+  }
+}
+
 TEST(Table, ThinningTakesTheSameNumberOfEveryMovementInOrder) {
   KnownDataset known;
   known.data.channels = {{"x", "-", Role::none, {}}};

