@@ -143,7 +143,7 @@ std::vector<EffectFinding> effect_findings(const Search& search, const Observati
 std::string physical_objection(const EffectFinding& finding, const EffectFamily& family) {
   for (const Sanity& sanity : family.sanity) {
     for (const ParameterFinding& p : finding.parameters) {
-      if (p.name != sanity.coefficient || finding.gain > sanity.excused_nats) continue;
+      if (p.name != sanity.coefficient) continue;
       // Against the whole interval: a value that is only perhaps unphysical stands.
       const bool wrong_sign =
           sanity.sign != 0 && sanity.sign * p.low < 0 && sanity.sign * p.high < 0;

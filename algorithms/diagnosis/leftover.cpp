@@ -102,6 +102,7 @@ void Search::check_exhaustively() {
     members.push_back(known != found.end() ? *known : Found{f, round.family_p[f], lead, false, {}});
   }
   FittedModel other = fit(std::move(model), FitScope::everything);
+  if (stands_for_another_cause(other.model)) return;
   for (const Found& member : members) {
     LoopModel without = other.model;
     remove_family(without, member.family);

@@ -101,12 +101,13 @@ Round Search::test_all(const FittedModel& state) const {
     round.blocks[k] = score_block(projected.middleCols(first, count), before.segment(first, count),
                                   state.residual, clusters_, 0);
   }
+  mark_opposed(round, projected, state);
   count_carriers(round);
   round.maxima = flip_maxima(round.blocks, flips_);
   round.family_p.assign(families_.size(), 1);
   round.family_score.assign(families_.size(), 0);
   for (std::size_t k = 0; k < library_.size(); ++k) {
-    if (!round.blocks[k].test.testable) continue;
+    if (!is_choosable(round, k)) continue;
     double& score = round.family_score[library_[k].family];
     score = std::max(score, round.blocks[k].test.score);
   }
@@ -116,6 +117,40 @@ Round Search::test_all(const FittedModel& state) const {
     }
   }
   return round;
+}
+
+// The sign that the coefficient of an atom's one column needs, where the column with the other sign
+// is another cause (friction that falls with speed and friction that rises to a limit); else 0.
+int Search::telling_sign(const Atom& atom) const {
+  if (!options_.physical_vetoes || atom.columns.size() != 1) return 0;
+  const auto& sanity = families_[atom.family].sanity;
+  const auto rule = std::ranges::find(sanity, atom.coefficients[0], &Sanity::coefficient);
+  return rule == sanity.end() || rule->with_other_sign.empty() ? 0 : rule->sign;
+}
+
+void Search::mark_opposed(Round& round, const Eigen::MatrixXd& projected,
+                          const FittedModel& state) const {
+  round.opposed.assign(library_.size(), 0);
+  for (std::size_t k = 0; k < library_.size(); ++k) {
+    const int sign = usable_[k] != 0 ? telling_sign(library_[k]) : 0;
+    if (sign == 0) continue;
+    const double slope =
+        projected.col(static_cast<Eigen::Index>(blocks_[k].first)).dot(state.residual);
+    round.opposed[k] = slope * sign < 0 ? 1 : 0;
+  }
+}
+
+// Its coefficients changed when something else came or went.
+bool Search::stands_for_another_cause(const LoopModel& model) const {
+  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
+    const double coefficient = model.coefficients[static_cast<Eigen::Index>(model.first_column(k))];
+    if (telling_sign(model.atoms[k]) * coefficient < 0) return true;
+  }
+  return false;
+}
+
+bool Search::is_choosable(const Round& round, std::size_t atom) {
+  return round.blocks[atom].test.testable && round.opposed[atom] == 0;
 }
 
 // Atoms that too few clusters carry cannot be tested. A family that has no others may be rescued.
@@ -143,7 +178,7 @@ std::optional<Candidate> Search::best_atom(std::size_t family, const Round& roun
                                            const FittedModel& state) const {
   std::vector<std::size_t> atoms;
   for (std::size_t k = 0; k < library_.size(); ++k) {
-    if (library_[k].family == family && round.blocks[k].test.testable) atoms.push_back(k);
+    if (library_[k].family == family && is_choosable(round, k)) atoms.push_back(k);
   }
   std::ranges::stable_sort(atoms, [&](std::size_t a, std::size_t b) {
     return round.blocks[a].test.score > round.blocks[b].test.score;
@@ -214,7 +249,7 @@ std::optional<Candidate> Search::rescue(std::size_t family, const Round& round,
   if (!options_.has("rescue")) return best;
   // All atoms: with few carriers their scores tell next to nothing.
   for (std::size_t k = 0; k < library_.size(); ++k) {
-    if (library_[k].family != family || !round.blocks[k].test.testable) continue;
+    if (library_[k].family != family || !is_choosable(round, k)) continue;
     if (!(carriers(round, k, state) < kFewClusters)) continue;
     LoopModel model = state.model;
     model.add(library_[k]);
@@ -256,7 +291,7 @@ std::size_t Search::best_shape(std::size_t atom, const Round& round,
   std::size_t best = atom;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < library_.size(); ++k) {
-    if (library_[k].family != library_[atom].family || !round.blocks[k].test.testable) continue;
+    if (library_[k].family != library_[atom].family || !is_choosable(round, k)) continue;
     LoopModel model = state.model;
     model.add(library_[k]);
     const double loss =
@@ -334,7 +369,7 @@ bool Search::add(const Candidate& winner, const Round& round) {
     return false;
   }
   // One fold alone can tell of it: that it holds elsewhere too is beyond these data.
-  if (!extended.losses.allFinite()) return false;
+  if (!extended.losses.allFinite() || stands_for_another_cause(extended.model)) return false;
   if (!again) {
     found.push_back({winner.family, round.family_p[winner.family], winner.gain, winner.rescued,
                      aliases_of(winner, round)});

@@ -49,7 +49,7 @@ bool Search::renew(std::size_t family, const FittedModel& rest, const Round& rou
     model.add(library_[best_shape(best->atom, own, other)]);
     other = fit(model, FitScope::everything);
     const Gain lead = lead_over_current(other);
-    if (!(lead.nats > lead.error)) continue;
+    if (!(lead.nats > lead.error) || stands_for_another_cause(other.model)) continue;
     note(fmt::format("'{}' predicts better by {:.1f} nats with other columns: taken",
                      families_[family].name, lead.nats));
     std::erase(asked_more_, family);
@@ -67,9 +67,11 @@ bool Search::swap_or_drop(std::size_t family) {
   const auto entry = std::ranges::find(found, family, &Found::family);
   const double p = family_p_given_rest(family, rest, round, current_);
   if (options_.has("removal") && p > (entry->few ? kRescueP : options_.alpha_library)) {
+    FittedModel smaller = fit(rest.model, FitScope::everything);
+    if (stands_for_another_cause(smaller.model)) return false;
     note(fmt::format("'{}' is not significant given the rest: removed", families_[family].name));
     found.erase(entry);
-    current_ = fit(rest.model, FitScope::everything);
+    current_ = std::move(smaller);
     return true;
   }
   if (options_.has("renewal") && renew(family, rest, round)) return true;
@@ -82,7 +84,7 @@ bool Search::swap_or_drop(std::size_t family) {
   swapped.add(library_[rivals.front().atom]);
   FittedModel other = fit(std::move(swapped), FitScope::everything);
   const Gain lead = lead_over_current(other);
-  if (!(lead.nats > lead.error)) return false;
+  if (!(lead.nats > lead.error) || stands_for_another_cause(other.model)) return false;
   const Candidate& rival = rivals.front();
   note(fmt::format("'{}' replaced by '{}', which predicts better by {:.1f} nats",
                    families_[family].name, families_[rival.family].name, lead.nats));

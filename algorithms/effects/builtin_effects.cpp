@@ -6,10 +6,9 @@
 namespace tribench::loop {
 namespace {
 
-// Grids are fractions of the signal's scale. Time scales of a fall with speed up to 0.15 of the
-// top speed are Stribeck, above that non-linear viscous: the two are one function with the sign
-// turned.
-constexpr double kStribeckLimit = 0.15;
+// Grids are fractions of the signal's scale. A fall with speed is Stribeck, a rise that saturates
+// is non-linear viscous: the two are one function with the sign turned.
+constexpr double kWidestFall = 0.5;  // of the top speed: a wider one is a parabola
 
 // A step of the load that is wider than this part of it is no step: it would pass for a gain.
 constexpr double kWidestStep = 0.1;
@@ -41,14 +40,15 @@ EffectFamily stribeck() {
                  {}};
   f.atoms = {{{"sgn_v*exp(-(abs(v)/vs)^delta)"},
               {"excess"},
-              {{"vs", "v", {0.02, 0.045, 0.09, 0.14}, 0.004, kStribeckLimit, true},
+              {{"vs", "v", {0.02, 0.045, 0.09, 0.2, 0.4}, 0.004, kWidestFall, true},
                {"delta", "", {1, 2}, 0.5, 3}}},
              {.columns = {"exp(-(abs(v)/vs)^delta)"},
               .coefficients = {"excess_half_gap"},
-              .shapes = {{"vs", "v", {0.02, 0.045, 0.09, 0.14}, 0.004, kStribeckLimit, true},
+              .shapes = {{"vs", "v", {0.02, 0.045, 0.09, 0.2, 0.4}, 0.004, kWidestFall, true},
                          {"delta", "", {1, 2}, 0.5, 3}},
               .by_direction = true}};
-  f.sanity = {{"excess", 1, 0, 20, "breakaway friction below Coulomb friction"}};
+  f.sanity = {
+      {"excess", 1, 0, "breakaway friction below Coulomb friction", "nonlinear_viscous"}};
   f.separate_by = {"R6"};
   return f;
 }
@@ -64,15 +64,14 @@ EffectFamily nonlinear_viscous() {
       {{"v*abs(v)"}, {"quadratic"}},
       {{"v^3"}, {"cubic"}},
       {{"sgn_v*(abs(v)/vr)^n"}, {"power"}, {{"vr", "v", {1}, 1, 1}, {"n", "", {0.5, 4}, 0.3, 6}}},
-      {{"sgn_v*(1 - exp(-abs(v)/v0))"},
-       {"saturating"},
-       {{"v0", "v", {0.22, 0.5}, kStribeckLimit, 3}}},
+      {{"sgn_v*(1 - exp(-abs(v)/v0))"}, {"saturating"}, {{"v0", "v", {0.2, 0.5}, 0.1, 3}}},
       {.columns = {"v^2"}, .coefficients = {"quadratic_half_gap"}, .by_direction = true},
       {.columns = {"abs(v)^3"}, .coefficients = {"cubic_half_gap"}, .by_direction = true},
       {.columns = {"1 - exp(-abs(v)/v0)"},
        .coefficients = {"saturating_half_gap"},
-       .shapes = {{"v0", "v", {0.22, 0.5}, kStribeckLimit, 3}},
+       .shapes = {{"v0", "v", {0.2, 0.5}, 0.1, 3}},
        .by_direction = true}};
+  f.sanity = {{"saturating", 1, 0, "friction that falls with speed", "stribeck"}};
   f.separate_by = {"R2"};
   return f;
 }
@@ -90,7 +89,7 @@ EffectFamily load_coulomb() {
   f.atoms = {{{"sgn_v*abs(g)"}, {"mu"}},
              {{"sgn_v*abs(g + J*a)"}, {"mu"}, {inertia_in_load()}, true},
              {.columns = {"abs(g)"}, .coefficients = {"mu_half_gap"}, .by_direction = true}};
-  f.sanity = {{"mu", 1, 0, 1e30, "friction that falls as the load grows"}};
+  f.sanity = {{"mu", 1, 0, "friction that falls as the load grows"}};
   f.separate_by = {"R3"};
   return f;
 }
@@ -117,7 +116,7 @@ EffectFamily power_quadrant_gain() {
                  "Tadese et al. 2021",
                  {}};
   f.atoms = {{{"g"}, {"gain"}}};
-  f.sanity = {{"gain", 0, 0.2, 1e30, "a share of the load above 20 %"}};
+  f.sanity = {{"gain", 0, 0.2, "a share of the load above 20 %"}};
   const std::string how =
       "known payload and a link-side torque sensor, or a standstill hold approached from both "
       "sides";
@@ -242,8 +241,8 @@ EffectFamily temperature() {
        .coefficients = {"coulomb_slope_half_gap"},
        .shapes = {reference},
        .by_direction = true}};
-  f.sanity = {{"viscous_slope", -1, 0, 1e30, "viscous friction that grows with temperature"},
-              {"viscous_decay", 1, 0, 1e30, "viscous friction that grows with temperature"}};
+  f.sanity = {{"viscous_slope", -1, 0, "viscous friction that grows with temperature"},
+              {"viscous_decay", 1, 0, "viscous friction that grows with temperature"}};
   f.separate_by = {"R5"};
   return f;
 }
@@ -279,13 +278,14 @@ EffectFamily hysteresis() {
                  "friction builds up with the distance after a reversal",
                  "Dahl 1968; LuGre 1995",
                  {}};
-  f.atoms = {{{"sgn_v*exp(-d/lambda)"},
-              {"presliding"},
-              {{"lambda", "d", {0.004, 0.01, 0.03}, 0.001, 0.1}}},
-             {.columns = {"exp(-d/lambda)"},
-              .coefficients = {"presliding_half_gap"},
-              .shapes = {{"lambda", "d", {0.004, 0.01, 0.03}, 0.001, 0.1}},
-              .by_direction = true}};
+  f.atoms = {
+      {{"sgn_v*exp(-d/lambda)"},
+       {"presliding"},
+       {{"lambda", "d", {0.0001, 0.0003, 0.001, 0.004, 0.01, 0.03}, 0.00003, 0.1, true}}},
+      {.columns = {"exp(-d/lambda)"},
+       .coefficients = {"presliding_half_gap"},
+       .shapes = {{"lambda", "d", {0.0001, 0.0003, 0.001, 0.004, 0.01, 0.03}, 0.00003, 0.1, true}},
+       .by_direction = true}};
   // Both are transients over the path since the torque on the gear turned.
   f.known_aliases = {{"backlash", "load the joint so that its gear stays on one flank (R3)"}};
   f.separate_by = {"R4"};

@@ -202,8 +202,8 @@ Sanity read_sanity(const Entry& entry) {
   }
   sanity.sign = static_cast<int>(sign);
   sanity.largest = entry.find<double>("largest").value_or(0);
-  sanity.excused_nats = entry.find<double>("excused_nats").value_or(1e30);
   sanity.why = entry.find<std::string>("why").value_or("not physical");
+  sanity.with_other_sign = entry.find<std::string>("with_other_sign").value_or("");
   return sanity;
 }
 
@@ -219,7 +219,7 @@ EffectFamily read_family(const Entry& entry) {
   family.angular = entry.find<bool>("angular").value_or(false);
   family.separate_by = entry.list<std::string>("separate_by");
   for (const Entry& one :
-       entry.entries("sanity", {"coefficient", "sign", "largest", "excused_nats", "why"})) {
+       entry.entries("sanity", {"coefficient", "sign", "largest", "why", "with_other_sign"})) {
     family.sanity.push_back(read_sanity(one));
   }
   for (const Entry& one : entry.entries("alias", {"name", "separate_by", "coefficient"})) {
@@ -271,8 +271,8 @@ void insert_family(toml::table& table, const EffectFamily& family) {
     sanity.push_back(toml::table{{"coefficient", one.coefficient},
                                  {"sign", one.sign},
                                  {"largest", one.largest},
-                                 {"excused_nats", one.excused_nats},
-                                 {"why", one.why}});
+                                 {"why", one.why},
+                                 {"with_other_sign", one.with_other_sign}});
   }
   if (!sanity.empty()) table.insert("sanity", std::move(sanity));
   toml::array aliases;

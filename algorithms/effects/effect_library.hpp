@@ -56,8 +56,10 @@ struct Sanity {
   std::string coefficient;     // of an atom; applies wherever an atom has it
   int sign = 0;                // +1, -1: required sign; 0: any
   double largest = 0;          // largest magnitude; 0: any
-  double excused_nats = 1e30;  // evidence above which the finding stands all the same
   std::string why;
+  // With the other sign the column is that of another family: the sign alone tells which of the two
+  // is there.
+  std::string with_other_sign = {};
 };
 
 // A cause that has the same column as this one, whatever the data.

@@ -47,9 +47,11 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
         out.data.name, "name the velocity's column: --roles COLUMN=velocity[UNIT]");
   }
   drop_clipped(out);
-  // A file with all of its motion was prepared by somebody: its movement is what it is.
+  // Several files with all of their motion are movements as somebody cut them.
   const bool raw = out.derived_velocity || out.data.find("derived_acceleration") != nullptr;
-  if (!file.has_movements && raw) cut_strokes(out, noise, blur);
+  if (!file.has_movements && (raw || out.data.movement_names.size() == 1)) {
+    cut_strokes(out, noise, blur);
+  }
   drop_unresolved(out);
   check_gravity_factor(out, options);
   fit_gravity(out, gravity);

@@ -92,7 +92,7 @@ bool same(const AtomTemplate& a, const AtomTemplate& b) {
 bool same(const EffectFamily& a, const EffectFamily& b) {
   const auto same_sanity = [](const Sanity& x, const Sanity& y) {
     return x.coefficient == y.coefficient && x.sign == y.sign && x.largest == y.largest &&
-           x.excused_nats == y.excused_nats && x.why == y.why;
+           x.with_other_sign == y.with_other_sign && x.why == y.why;
   };
   const auto same_alias = [](const KnownAlias& x, const KnownAlias& y) {
     return x.name == y.name && x.separate_by == y.separate_by && x.coefficient == y.coefficient;

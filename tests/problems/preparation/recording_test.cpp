@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "foundation/error.hpp"
+#include "problems/joint_simulation/controlled_run.hpp"
 #include "tests/problems/preparation/raw_log.hpp"
 
 namespace tribench {
@@ -81,6 +83,20 @@ TEST(PreparedRecording, position_and_current_alone_become_torque_velocity_and_st
     ASSERT_GT(data.find(Role::velocity)->values[i] * data.find(Role::velocity)->values[i - 1],
               -1e-5);
   }
+}
+
+// The movements that a table does not name are found in it, whoever derived its motion.
+TEST(PreparedRecording, a_table_with_all_of_its_motion_is_cut_into_strokes_too) {
+  std::ostringstream table;
+  write_csv(simulation::run_under_control({}, 1).data, table);
+  const std::string named = table.str();
+  std::string unnamed = named;
+  unnamed.replace(unnamed.find("movement"), 8, "run_name");
+  const PreparedRecording cut = prepared(unnamed, {});
+  EXPECT_GT(cut.data.movement_names.size(), 10U);
+  EXPECT_THAT(cut.notes, Contains(HasSubstr("no column names the movements")));
+  // What a column names is what it is.
+  EXPECT_EQ(prepared(named, {}).data.movement_names.size(), 1U);
 }
 
 TEST(PreparedRecording, gravity_that_no_column_declares_is_found) {
