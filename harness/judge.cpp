@@ -12,6 +12,8 @@
 #include "algorithms/expression/grid_check.hpp"
 #include "algorithms/expression/property.hpp"
 #include "algorithms/expression/singularity.hpp"
+#include "algorithms/states/dissipation.hpp"
+#include "algorithms/states/state_text.hpp"
 #include "harness/metrics.hpp"
 #include "harness/stateful_problem.hpp"
 #include "harness/table_evaluator.hpp"
@@ -65,6 +67,29 @@ std::string verdict_on(Property property, const Expression& formula, const Input
   return verdict == Verdict::proved_free ? "proved" : std::string(verdict_name(verdict));
 }
 
+// The states of a formula, whose inputs stand behind all others; empty where it has none.
+StatefulFormula stateful(const Problem& problem, const Expression& formula) {
+  StatefulFormula result{{}, problem.inputs.size(), formula};
+  std::vector<std::string> names;
+  for (const Input& input : problem.inputs) {
+    if (input.law.empty()) {
+      names.push_back(input.name);
+      continue;
+    }
+    result.first_state = std::min(result.first_state, names.size());
+    result.states.push_back(parse_state_law(input.name, input.law, names));
+  }
+  return result;
+}
+
+// With memory, what is asked is whether the formula can only take energy; the other questions are
+// about the value at a point, which it does not have.
+void judge_memory(const StatefulFormula& formula, const InputBox& box, std::size_t velocity,
+                  Record& record) {
+  const Verdict verdict = prove_dissipation(formula, box, velocity, kPhysicsProof).verdict;
+  record.dissipative = verdict == Verdict::proved_free ? "proved" : verdict_name(verdict);
+}
+
 void judge_singularity(const Problem& problem, const Expression& formula, Record& record) {
   const InputBox box = input_box(problem.inputs);
   const SingularityResult proof = prove_free(formula, box);
@@ -76,6 +101,8 @@ void judge_singularity(const Problem& problem, const Expression& formula, Record
   if (proof.verdict != Verdict::proved_free) return;
   for (std::size_t j = 0; j < problem.inputs.size(); ++j) {
     if (problem.inputs[j].role != Role::velocity) continue;
+    const StatefulFormula memory = stateful(problem, formula);
+    if (!memory.states.empty()) return judge_memory(memory, box, j, record);
     record.dissipative = verdict_on(Property::dissipative, formula, box, j);
     record.monotone = verdict_on(Property::monotone, formula, box, j);
     record.odd = verdict_on(Property::odd, formula, box, j);

@@ -44,8 +44,10 @@ void name_arguments(CodeInputs& inputs, const std::string& function) {
   }
 }
 
-CodeInputs inputs_of(const Expression& formula, std::span<const std::string> names,
-                     const ExportOptions& options) {
+}  // namespace
+
+CodeInputs code_inputs(const Expression& formula, std::span<const std::string> names,
+                       const ExportOptions& options) {
   CodeInputs inputs;
   if (options.box) {
     for (std::size_t i = 0; i < options.box->names.size(); ++i) {
@@ -73,7 +75,11 @@ CodeInputs inputs_of(const Expression& formula, std::span<const std::string> nam
   return inputs;
 }
 
-}  // namespace
+void require_function_name(const std::string& function) {
+  if (is_identifier(function) && !is_reserved_word(function)) return;
+  throw_bad_input(fmt::format("'{}' cannot name a function", function), "--function",
+                  "use letters, digits and _, and no word that a language reserves");
+}
 
 const std::vector<std::string>& code_form_names() {
   static const std::vector<std::string> kNames = {"c", "python", "latex", "sympy", "matlab"};
@@ -93,7 +99,7 @@ std::vector<std::string> export_arguments(const Expression& formula,
                                           std::span<const std::string> names,
                                           const ExportOptions& options) {
   std::vector<std::string> all;
-  for (const CodeInputs::Argument& one : inputs_of(formula, names, options).arguments) {
+  for (const CodeInputs::Argument& one : code_inputs(formula, names, options).arguments) {
     all.push_back(one.code_name);
   }
   return all;
@@ -101,11 +107,8 @@ std::vector<std::string> export_arguments(const Expression& formula,
 
 std::string export_code(const Expression& formula, std::span<const std::string> names,
                         CodeForm form, const ExportOptions& options) {
-  if (!is_identifier(options.function) || is_reserved_word(options.function)) {
-    throw_bad_input(fmt::format("'{}' cannot name a function", options.function), "--function",
-                    "use letters, digits and _, and no word that a language reserves");
-  }
-  const CodeInputs inputs = inputs_of(formula, names, options);
+  require_function_name(options.function);
+  const CodeInputs inputs = code_inputs(formula, names, options);
   const CodeSource source{formula, print(formula, names), options.function, inputs, options.digits};
   switch (form) {
     case CodeForm::c:

@@ -56,6 +56,46 @@ class Writer {
   Statements statements_;
 };
 
+bool uses(const CodeSource& source, Op op) {
+  const auto nodes = source.formula.nodes();
+  return std::any_of(nodes.begin(), nodes.end(), [op](const Node& node) { return node.op == op; });
+}
+
+// An argument of the box that the formula does without would be warned of.
+std::string unused_lines(const CodeSource& source) {
+  std::string text;
+  for (std::size_t i = 0; i < source.inputs.arguments.size(); ++i) {
+    const bool used = std::any_of(
+        source.inputs.columns.begin(), source.inputs.columns.end(),
+        [i](const CodeInputs::Column& each) { return each.is_used && each.argument == i; });
+    if (!used) text += fmt::format("  (void){};\n", source.inputs.arguments[i].code_name);
+  }
+  return text;
+}
+
+std::string infix(Op op, std::string_view a, std::string_view b, std::string_view dot = {}) {
+  const bool elementwise = op == Op::mul || op == Op::div;
+  return fmt::format("{} {}{} {}", a, elementwise ? dot : "", op_name(op), b);
+}
+
+// Whether the inputs are inside the box, for a controller to ask before it trusts the value.
+std::string c_box_check(const CodeSource& source) {
+  std::string tests;
+  for (const CodeInputs::Argument& argument : source.inputs.arguments) {
+    if (!argument.range) continue;
+    tests += fmt::format("{}({} >= {}) & ({} <= {})", tests.empty() ? "" : " & ",
+                         argument.code_name, float_literal(argument.range->low), argument.code_name,
+                         float_literal(argument.range->high));
+  }
+  if (tests.empty()) return {};
+  return fmt::format(
+      "\n/* 1 where the inputs are inside the box above, else 0 (also for NaN). */\n"
+      "int {}_in_box({}) {{\n  return {};\n}}\n",
+      source.function, source.inputs.argument_list("double "), tests);
+}
+
+}  // namespace
+
 std::string ranges_comment(const CodeSource& source, std::string_view mark) {
   std::string text;
   bool any = false;
@@ -81,51 +121,11 @@ std::string sign_lines(const CodeSource& source, const Dialect& dialect) {
   return text;
 }
 
-bool uses(const CodeSource& source, Op op) {
-  const auto nodes = source.formula.nodes();
-  return std::any_of(nodes.begin(), nodes.end(), [op](const Node& node) { return node.op == op; });
-}
-
-// An argument of the box that the formula does without would be warned of.
-std::string unused_lines(const CodeSource& source) {
-  std::string text;
-  for (std::size_t i = 0; i < source.inputs.arguments.size(); ++i) {
-    const bool used = std::any_of(
-        source.inputs.columns.begin(), source.inputs.columns.end(),
-        [i](const CodeInputs::Column& each) { return each.is_used && each.argument == i; });
-    if (!used) text += fmt::format("  (void){};\n", source.inputs.arguments[i].code_name);
-  }
-  return text;
-}
-
 bool uses_sign(const CodeSource& source) {
   return uses(source, Op::sgn) ||
          std::any_of(source.inputs.columns.begin(), source.inputs.columns.end(),
                      [](const CodeInputs::Column& each) { return each.is_used && each.is_sign; });
 }
-
-std::string infix(Op op, std::string_view a, std::string_view b, std::string_view dot = {}) {
-  const bool elementwise = op == Op::mul || op == Op::div;
-  return fmt::format("{} {}{} {}", a, elementwise ? dot : "", op_name(op), b);
-}
-
-// Whether the inputs are inside the box, for a controller to ask before it trusts the value.
-std::string c_box_check(const CodeSource& source) {
-  std::string tests;
-  for (const CodeInputs::Argument& argument : source.inputs.arguments) {
-    if (!argument.range) continue;
-    tests += fmt::format("{}({} >= {}) & ({} <= {})", tests.empty() ? "" : " & ",
-                         argument.code_name, float_literal(argument.range->low), argument.code_name,
-                         float_literal(argument.range->high));
-  }
-  if (tests.empty()) return {};
-  return fmt::format(
-      "\n/* 1 where the inputs are inside the box above, else 0 (also for NaN). */\n"
-      "int {}_in_box({}) {{\n  return {};\n}}\n",
-      source.function, source.inputs.argument_list("double "), tests);
-}
-
-}  // namespace
 
 std::string CodeInputs::argument_list(std::string_view before_each) const {
   std::string text;
@@ -165,7 +165,7 @@ Statements write_statements(const CodeSource& source, const Dialect& dialect) {
   return writer.finish(stack.back());
 }
 
-std::string c_code(const CodeSource& source) {
+Dialect c_dialect() {
   Dialect c;
   c.literal = float_literal;
   c.unary = [](Op op, std::string_view a) {
@@ -178,6 +178,44 @@ std::string c_code(const CodeSource& source) {
   };
   c.declare = "const double ";
   c.terminate.push_back(';');
+  return c;
+}
+
+Dialect python_dialect() {
+  Dialect python;
+  python.literal = float_literal;
+  python.unary = [](Op op, std::string_view a) {
+    if (op == Op::neg) return fmt::format("-{}", a);
+    return fmt::format("np.{}({})", op == Op::sgn ? "sign" : op_name(op), a);
+  };
+  python.binary = [](Op op, std::string_view a, std::string_view b) {
+    if (op == Op::pow) return fmt::format("np.power({}, {})", a, b);
+    // Python's own floats refuse to divide by zero; NumPy's do as IEEE 754 says.
+    const bool literal = a.front() == '(' || (a.front() >= '0' && a.front() <= '9');
+    return literal && op == Op::div ? infix(op, fmt::format("np.float64({})", a), b)
+                                    : infix(op, a, b);
+  };
+  return python;
+}
+
+Dialect matlab_dialect() {
+  Dialect matlab;
+  matlab.literal = float_literal;
+  matlab.unary = [](Op op, std::string_view a) {
+    if (op == Op::neg) return fmt::format("-{}", a);
+    if (op == Op::sgn) return fmt::format("sign({})", a);
+    if (op == Op::sqrt || op == Op::log) return fmt::format("real_{}({})", op_name(op), a);
+    return fmt::format("{}({})", op_name(op), a);
+  };
+  matlab.binary = [](Op op, std::string_view a, std::string_view b) {
+    return op == Op::pow ? fmt::format("real_power({}, {})", a, b) : infix(op, a, b, ".");
+  };
+  matlab.terminate.push_back(';');
+  return matlab;
+}
+
+std::string c_code(const CodeSource& source) {
+  const Dialect c = c_dialect();
   const Statements body = write_statements(source, c);
   const std::string arguments = source.inputs.argument_list("double ");
   std::string text = fmt::format(
@@ -200,19 +238,7 @@ std::string c_code(const CodeSource& source) {
 }
 
 std::string python_code(const CodeSource& source) {
-  Dialect python;
-  python.literal = float_literal;
-  python.unary = [](Op op, std::string_view a) {
-    if (op == Op::neg) return fmt::format("-{}", a);
-    return fmt::format("np.{}({})", op == Op::sgn ? "sign" : op_name(op), a);
-  };
-  python.binary = [](Op op, std::string_view a, std::string_view b) {
-    if (op == Op::pow) return fmt::format("np.power({}, {})", a, b);
-    // Python's own floats refuse to divide by zero; NumPy's do as IEEE 754 says.
-    const bool literal = a.front() == '(' || (a.front() >= '0' && a.front() <= '9');
-    return literal && op == Op::div ? infix(op, fmt::format("np.float64({})", a), b)
-                                    : infix(op, a, b);
-  };
+  Dialect python = python_dialect();
   python.indent = "        ";
   const Statements body = write_statements(source, python);
   std::string text = fmt::format(
@@ -226,25 +252,8 @@ std::string python_code(const CodeSource& source) {
   return text + fmt::format("        return np.float64({})\n", body.result);
 }
 
-std::string matlab_code(const CodeSource& source) {
-  Dialect matlab;
-  matlab.literal = float_literal;
-  matlab.unary = [](Op op, std::string_view a) {
-    if (op == Op::neg) return fmt::format("-{}", a);
-    if (op == Op::sgn) return fmt::format("sign({})", a);
-    if (op == Op::sqrt || op == Op::log) return fmt::format("real_{}({})", op_name(op), a);
-    return fmt::format("{}({})", op_name(op), a);
-  };
-  matlab.binary = [](Op op, std::string_view a, std::string_view b) {
-    return op == Op::pow ? fmt::format("real_power({}, {})", a, b) : infix(op, a, b, ".");
-  };
-  matlab.terminate.push_back(';');
-  const Statements body = write_statements(source, matlab);
-  std::string text = fmt::format(
-      "function tau = {0}({1})\n% {0} = {2}\n%\n{3}% Written by tribench. Takes numbers or "
-      "arrays.\n{4}{5}  tau = {6};\nend\n",
-      source.function, source.inputs.argument_list(), source.text, ranges_comment(source, "%"),
-      sign_lines(source, matlab), body.text, body.result);
+std::string matlab_helpers(const CodeSource& source, const Statements& body) {
+  std::string text;
   // MATLAB answers with complex numbers where the judge says NaN.
   for (const Op op : {Op::sqrt, Op::log}) {
     if (!uses(source, op)) continue;
@@ -258,6 +267,17 @@ std::string matlab_code(const CodeSource& source) {
         "  y(imag(y) ~= 0) = NaN;\n  y = real(y);\nend\n";
   }
   return text;
+}
+
+std::string matlab_code(const CodeSource& source) {
+  const Dialect matlab = matlab_dialect();
+  const Statements body = write_statements(source, matlab);
+  std::string text = fmt::format(
+      "function tau = {0}({1})\n% {0} = {2}\n%\n{3}% Written by tribench. Takes numbers or "
+      "arrays.\n{4}{5}  tau = {6};\nend\n",
+      source.function, source.inputs.argument_list(), source.text, ranges_comment(source, "%"),
+      sign_lines(source, matlab), body.text, body.result);
+  return text + matlab_helpers(source, body);
 }
 
 }  // namespace tribench

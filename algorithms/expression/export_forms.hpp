@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What the writers of single languages share; only export.cpp calls them.
+// What the writers of single languages share: export.cpp calls them, and who writes code with more
+// in it than a formula (algorithms/states).
 #pragma once
 
 #include <functional>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "algorithms/expression/export.hpp"
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/expression/input_box.hpp"
 
@@ -57,11 +59,34 @@ struct Statements {
   std::size_t operations = 0;
 };
 
+// How C, Python and MATLAB write them; indented by two blanks.
+Dialect c_dialect();
+Dialect python_dialect();
+Dialect matlab_dialect();
+
+// The arguments of the code that a formula needs (export.hpp). Throws Error (bad_input) on a name
+// that no formula can hold.
+CodeInputs code_inputs(const Expression& formula, std::span<const std::string> names,
+                       const ExportOptions& options);
+
+// Throws Error (bad_input) where the name is no identifier or is reserved.
+void require_function_name(const std::string& function);
+
+// The lines that make the signs which the formula reads, in front of its statements.
+std::string sign_lines(const CodeSource& source, const Dialect& dialect);
+bool uses_sign(const CodeSource& source);
+
+// "... Input box in which the formula was judged: ..." behind a comment's mark.
+std::string ranges_comment(const CodeSource& source, std::string_view mark);
+
 // Integer powers become the evaluator's products of squares (evaluate.hpp).
 Statements write_statements(const CodeSource& source, const Dialect& dialect);
 
 // Shortest text that reads back, always with a point or an exponent: 2.0, 1e-05.
 std::string float_literal(double value);
+
+// The functions that MATLAB's statements call, to stand behind them.
+std::string matlab_helpers(const CodeSource& source, const Statements& body);
 
 std::string c_code(const CodeSource& source);
 std::string python_code(const CodeSource& source);

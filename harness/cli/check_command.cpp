@@ -17,6 +17,8 @@
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/expression/input_box.hpp"
 #include "algorithms/expression/property.hpp"
+#include "algorithms/states/dissipation.hpp"
+#include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 #include "foundation/text.hpp"
@@ -170,18 +172,55 @@ ExitStatus verify(const CheckOptions& options) {
   return check.accepted ? ExitStatus::done : ExitStatus::found;
 }
 
+// Of a formula with states: by stored energy, or refuted by a cycle that wins some.
+ExitStatus check_dissipation(const CheckOptions& options, const StatefulFormula& formula,
+                             const NamedBox& box, std::size_t velocity) {
+  if (!options.certificate.empty()) {
+    throw_bad_input("there are no certificates for dissipation with memory", "--certificate",
+                    "finite and bounded have them");
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const DissipationResult result = prove_dissipation(formula, box.ranges, velocity);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  const std::string_view verdict = verdict_text(result.verdict, Property::dissipative);
+  const bool is_refuted = result.verdict == Verdict::refuted;
+  const std::string cycle =
+      is_refuted ? work_cycle_json(result, box.names[velocity]) : std::string("null");
+  if (options.json) {
+    const Json json = {{"verdict", verdict},
+                       {"witness", Json::parse(cycle)},
+                       {"boxes", result.boxes},
+                       {"seconds", seconds.count()},
+                       {"complexity", paper_complexity(formula.formula)},
+                       {"nodes", node_count(formula.formula)},
+                       {"property", property_name(Property::dissipative)}};
+    fmt::print("{}\n", write_json(json, 2));
+  } else if (is_refuted) {
+    fmt::print("{}: not dissipative: each round of {} gives energy to the joint", verdict, cycle);
+  } else {
+    fmt::print("{}: dissipative on {}", verdict, print_box(box));
+  }
+  if (!options.json) fmt::print("  ({} boxes, {:.3g} s)\n", result.boxes, seconds.count());
+  return status_of(result.verdict);
+}
+
 ExitStatus run_check(const CheckOptions& options) {
   if (!options.verify.empty()) return verify(options);
   if (options.formula.empty()) {
     throw_bad_input("a formula is needed", "check", "give one, or --verify FILE");
   }
   NamedBox box = parse_box(options.box);
-  const Expression formula = parse_over(options.formula, box);
+  const StatefulFormula read = parse_stateful_over(options.formula, box);
+  const Expression& formula = read.formula;
   PropertyQuestion question;
   question.property = property_of(options.property);
   question.limit = options.limit;
   question.from = options.from;
   if (question.property != Property::finite) question.velocity = velocity_of(options, box);
+  const bool has_memory = !read.states.empty();
+  if (has_memory && question.property == Property::dissipative) {
+    return check_dissipation(options, read, box, question.velocity);
+  }
   CertificateClaim claim;  // asked for before the proof, so that a request in vain fails at once
   if (!options.certificate.empty()) claim = claim_of(question, box);
   const auto start = std::chrono::steady_clock::now();
@@ -207,6 +246,10 @@ void add_check_command(CLI::App& app, ExitStatus& status) {
       "Examples: tribench check 'v/(v^2 - 2*v + 2)' --box 'v=-2:2' --certificate proof.json\n"
       "          tribench check --verify proof.json\n"
       "          tribench check '3*sgn_v + 2*v' --box 'v=-2:2' --property dissipative\n"
+      "          tribench check 'z = lugre(v, sliding=1e-3, breakaway=2e-3, "
+      "stribeck_velocity=0.01);"
+      " 9e3*z + 20*v' --box 'v=-1:1' --property dissipative\n"
+      "A state ranges over what its law allows; with states, dissipative asks for stored energy.\n"
       "A formula that begins with a minus stands behind --.\n"
       "Exit status: 0 proved (or accepted), 1 refuted (or rejected), 4 undecided, 2 bad input.");
   auto options = std::make_shared<CheckOptions>();

@@ -15,6 +15,8 @@
 
 #include "algorithms/expression/export.hpp"
 #include "algorithms/expression/text.hpp"
+#include "algorithms/states/state_export.hpp"
+#include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 #include "harness/cli/commands.hpp"
@@ -32,6 +34,7 @@ struct ExportArguments {
   std::string box;
   std::string derive;
   std::string out;
+  bool single = false;
   ExportOptions options;
 };
 
@@ -72,6 +75,30 @@ std::optional<loop::PathFrom> distance_from(const std::string& text) {
       "write d=q (distance since reversal from the position) or d=v (from the velocity)");
 }
 
+void write_code(const ExportArguments& arguments, const std::string& code) {
+  if (arguments.out.empty()) {
+    fmt::print("{}", code);
+  } else {
+    write_file(arguments.out, code);
+  }
+}
+
+std::string stateful_code(const ExportArguments& arguments, CodeForm form) {
+  if (!arguments.derive.empty()) {
+    throw_bad_input("a formula with states keeps its own history", "--derive", "leave it out");
+  }
+  StatefulExportOptions options{arguments.options.function, {}, arguments.single};
+  std::vector<std::string> names;
+  if (!arguments.box.empty()) {
+    options.box = parse_box(arguments.box);
+    names = options.box->names;
+    NamedBox whole = *options.box;
+    parse_stateful_over(arguments.formula, whole);  // refuses a name that has no range
+  }
+  const StatefulFormula formula = parse_stateful_collecting(arguments.formula, names);
+  return export_stateful(formula, names, form, options);
+}
+
 void write_export(ExportArguments arguments) {
   const CodeForm form = find_code_form(arguments.form);
   std::optional<loop::PathFrom> from = distance_from(arguments.derive);
@@ -79,6 +106,14 @@ void write_export(ExportArguments arguments) {
     LoopFormula loop = read_loop(arguments.formula);
     arguments.formula = std::move(loop.text);
     if (!from) from = loop.distance_from;
+  }
+  if (declares_states(arguments.formula)) {
+    write_code(arguments, stateful_code(arguments, form));
+    return;
+  }
+  if (arguments.single) {
+    throw_bad_input("only a formula with states is written in single precision", "--single",
+                    "leave it out");
   }
   ExportOptions options = arguments.options;
   std::vector<std::string> names;
@@ -98,11 +133,7 @@ void write_export(ExportArguments arguments) {
   }
   const std::string code = has_history ? loop::controller_code(formula, names, options, from)
                                        : export_code(formula, names, form, options);
-  if (arguments.out.empty()) {
-    fmt::print("{}", code);
-  } else {
-    write_file(arguments.out, code);
-  }
+  write_code(arguments, code);
 }
 
 }  // namespace
@@ -113,6 +144,7 @@ void add_export_command(CLI::App& app, ExitStatus& /*status*/) {
   command->footer(
       "Example: tribench export '8.5*sgn_v + 14*v' --as c --box 'v=-2:2' --function friction\n"
       "An input sgn_X is computed from X. In front of a formula that begins with a minus put --.\n"
+      "With states ('z = dahl(v, sliding=1e-5); 2e6*z') the code has init and step.\n"
       "In place of a formula: the loop.json of 'tribench loop', with its channels' history in C.");
   auto arguments = std::make_shared<ExportArguments>();
   command->add_option("formula", arguments->formula, "the formula, or a loop.json")->required();
@@ -128,6 +160,8 @@ void add_export_command(CLI::App& app, ExitStatus& /*status*/) {
       ->add_option("--digits", arguments->options.digits,
                    "significant digits of constants in LaTeX; 0: all")
       ->transform(whole_number(0, 17));
+  command->add_flag("--single", arguments->single,
+                    "C of a formula with states in single precision");
   command->add_option("--out", arguments->out, "a file instead of the screen");
   command->callback([arguments] { write_export(*arguments); });
 }

@@ -115,5 +115,22 @@ TEST(CheckCommand, certifies_the_property_asked_for_or_says_that_it_cannot) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
+TEST(CheckCommand, decides_a_formula_with_memory_by_its_stored_energy) {
+  const std::string state =
+      "z = lugre(v, sliding=1e-3, breakaway=1.5e-3, stribeck_velocity=0.01); ";
+  const std::string force = "1e4*z + 2000*(v - abs(v)*z/(1e-3 + 5e-4*exp(-(v/0.01)^2))) + ";
+  const std::string rest = "*v' --box 'v=-2:2' --property dissipative";
+  EXPECT_EQ(run_check("'" + state + force + "1001" + rest).exit, 0);
+  const Answer refuted = run_check("'" + state + force + "100" + rest + " --json");
+  EXPECT_EQ(refuted.exit, 1);
+  const nlohmann::json json = nlohmann::json::parse(refuted.output);
+  EXPECT_EQ(json["verdict"], "refuted");
+  EXPECT_LT(json["witness"]["work"], 0);
+  EXPECT_EQ(json["witness"]["cycle"].size(), 2U);
+  EXPECT_EQ(run_check("'" + state + "1/(0.0016 - z)' --box 'v=-2:2'").exit, 0);
+  EXPECT_EQ(run_check("'" + state + "1/(0.0014 - z)' --box 'v=-2:2'").exit, 1);
+  EXPECT_EQ(run_check("'z = lugre(v); z' --box 'v=-2:2'").exit, 2);
+}
+
 }  // namespace
 }  // namespace tribench
