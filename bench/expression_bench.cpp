@@ -23,6 +23,7 @@
 #include "algorithms/expression/compile.hpp"
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/random_formula.hpp"
+#include "bench/measured_loop.hpp"
 #include "tests/algorithms/expression/reference.hpp"
 
 namespace tribench {
@@ -168,6 +169,7 @@ double seconds_of(const Trees& trees, const Table<double>& table, std::size_t th
 // One thread and several in turn, so that a machine that slows down slows both; `speedup` is the
 // ratio of the shortest turns. Time is the wall's: nothing else may run.
 void scaling(benchmark::State& state) {
+  if (is_left_out_at_night(state)) return;
   const Trees& trees = trees_of(static_cast<int>(state.range(0)));
   const auto rows = static_cast<std::size_t>(state.range(1));
   const auto threads = static_cast<std::size_t>(state.range(2));

@@ -14,6 +14,7 @@
 #include "algorithms/pysr/scorer.hpp"
 #include "algorithms/pysr/search.hpp"
 #include "algorithms/pysr/simplify.hpp"
+#include "bench/measured_loop.hpp"
 
 namespace tribench {
 namespace {
@@ -45,6 +46,7 @@ pysr::Rows friction_rows(std::size_t count) {
 Budget unlimited() { return Budget(BudgetLimits{}); }
 
 void fitted_children(benchmark::State& state) {
+  if (state.threads() > 1 && is_left_out_at_night(state)) return;
   const pysr::Rows rows = friction_rows(static_cast<std::size_t>(state.range(0)));
   const OperatorSet& operators = find_operator_set("paper");
   const pysr::Options options = pysr::profile_options(pysr::Profile::native);

@@ -75,11 +75,17 @@ function(tribench_test name)
   set_tests_properties(${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
 endfunction()
 
-# tribench_bench(NAME SOURCES ... LINKS ...): one Google Benchmark program.
+# tribench_bench(NAME SOURCES ... LINKS ...): one Google Benchmark program. The two functions that
+# begin and end a case's loop are wrapped by bench/measured_loop.cpp, so that no bench needs to
+# mark what is counted.
 function(tribench_bench name)
   cmake_parse_arguments(BENCH "" "" "SOURCES;LINKS" ${ARGN})
-  add_executable(${name} ${BENCH_SOURCES})
+  add_executable(${name} ${BENCH_SOURCES} ${PROJECT_SOURCE_DIR}/bench/measured_loop.cpp)
   set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(${name} PRIVATE ${BENCH_LINKS} benchmark::benchmark benchmark::benchmark_main)
+  target_link_libraries(${name} PRIVATE
+    ${BENCH_LINKS} tribench::foundation benchmark::benchmark benchmark::benchmark_main)
+  target_link_options(${name} PRIVATE
+    -Wl,--wrap=_ZN9benchmark5State16StartKeepRunningEv
+    -Wl,--wrap=_ZN9benchmark5State17FinishKeepRunningEv)
 endfunction()

@@ -102,6 +102,7 @@ json record_json(const Record& r) {
           {"evaluations", r.evaluations},
           {"fit_cpu_s", number(r.fit_cpu_s)},
           {"fit_wall_s", number(r.fit_wall_s)},
+          {"fit_instructions", number(r.fit_instructions)},
           {"peak_memory_mib", number(r.peak_memory_mib)},
           {"eval_ns_per_row", number(r.eval_ns_per_row)},
           {"singularity", r.singularity},
@@ -144,6 +145,8 @@ Record parse_record(const json& object) {
   r.evaluations = object.at("evaluations");
   r.fit_cpu_s = number(object, "fit_cpu_s");
   r.fit_wall_s = number(object, "fit_wall_s");
+  // Journals of older programs have none.
+  if (object.contains("fit_instructions")) r.fit_instructions = number(object, "fit_instructions");
   r.peak_memory_mib = number(object, "peak_memory_mib");
   r.eval_ns_per_row = number(object, "eval_ns_per_row");
   r.singularity = object.at("singularity");

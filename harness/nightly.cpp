@@ -14,10 +14,13 @@
 #include "foundation/error.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/scratch_folder.hpp"
+#include "harness/benches.hpp"
 #include "harness/provenance.hpp"
 #include "harness/verify.hpp"
 #include "harness/whole_run.hpp"
+#include "reports/bench_comparison.hpp"
 #include "reports/comparison.hpp"
+#include "reports/night_feed.hpp"
 #include "reports/night_page.hpp"
 #include "reports/night_store.hpp"
 #include "reports/night_tests.hpp"
@@ -29,7 +32,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPending = "pending";  // a run that has not been recorded yet
-constexpr std::size_t kLongestWindow = 7;
 
 // One night at a time; the kernel lets go of it however this process ends.
 class StoreLock {
@@ -115,11 +117,11 @@ VerifyResult verify_sample(const Grid& grid, const WholeRun& run, const NightlyO
   return verify_run(grid, run.journal, options.sample, again, stop);
 }
 
-// The nights after the base, the newest last, as far back as the longest window looks.
+// The nights after the base, the newest last, as many as are looked at.
 std::vector<Night> nights_since(const NightStore& store, const Night& base, const Night& now) {
   std::vector<Night> nights;
   const std::vector<std::string> names = store.names();
-  for (auto name = names.rbegin(); name != names.rend() && nights.size() + 1 < kLongestWindow;
+  for (auto name = names.rbegin(); name != names.rend() && nights.size() + 1 < kNightsLookedAt;
        ++name) {
     if (*name >= now.name) continue;
     if (*name <= base.name) break;
@@ -148,22 +150,22 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 struct Verdict {
   std::optional<Comparison> comparison;
   std::vector<NightFinding> losses;
+  BenchComparison benches;
+  std::vector<std::string> bench_complaints;
   VerifyResult verified;
   bool stopped = false;
   bool all_failed = false;
 
   NightEnd end() const {
     if (stopped || all_failed) return NightEnd::failed;
-    if (!verified.different.empty() || !losses.empty()) return NightEnd::regression;
-    if (!comparison) return NightEnd::fine;
-    switch (comparison->outcome()) {
-      case ComparisonOutcome::regression:
-        return NightEnd::regression;
-      case ComparisonOutcome::undecided:
-        return NightEnd::undecided;
-      default:
-        return NightEnd::fine;
+    if (!verified.different.empty() || !losses.empty() || !benches.worse.empty()) {
+      return NightEnd::regression;
     }
+    const ComparisonOutcome outcome = comparison ? comparison->outcome() : ComparisonOutcome::fine;
+    if (outcome == ComparisonOutcome::regression) return NightEnd::regression;
+    const bool is_open = outcome == ComparisonOutcome::undecided || !bench_complaints.empty() ||
+                         !benches.gone.empty() || !benches.why_not_counted.empty();
+    return is_open ? NightEnd::undecided : NightEnd::fine;
   }
 };
 
@@ -180,17 +182,27 @@ const char* name_of(NightEnd end) {
   }
 }
 
+std::string bench_line(const Verdict& verdict) {
+  std::string text = verdict.benches.sentence();
+  for (const std::string& complaint : verdict.bench_complaints) {
+    text += fmt::format("{}{}", text.empty() ? "benches: " : "; ", complaint);
+  }
+  return text.empty() ? text : text + "\n";
+}
+
+// Ten lines at most.
 std::string summary_of(const Verdict& verdict, const Grid& grid, const WholeRun& run,
                        const Night& night, const std::optional<Night>& base,
                        const fs::path& folder) {
-  std::string text = fmt::format("tribench {}: {}\n", grid.name, name_of(verdict.end()));
-  text += fmt::format("night {}, code {} {}\n", night.name, night.code, night.commit);
+  std::string text = fmt::format("tribench {}: {}; night {}, code {}\n", grid.name,
+                                 name_of(verdict.end()), night.name, night.code);
   text += fmt::format("{} of {} cells, {} failed, {:.0f} s\n", run.tally.done(), run.tally.cells,
                       run.tally.failed, run.tally.wall_s);
   text += fmt::format(
       "{} cells run again, {} differ{}\n", verdict.verified.compared,
       verdict.verified.different.size(),
       verdict.verified.different.empty() ? "" : ": " + verdict.verified.different.front());
+  text += bench_line(verdict);
   if (!verdict.comparison) return text + "the first night: it is the base from now on\n";
   const Comparison& comparison = *verdict.comparison;
   text += fmt::format("base {}: {}\n", base->name, comparison.sentence());
@@ -215,6 +227,22 @@ std::string summary_of(const Verdict& verdict, const Grid& grid, const WholeRun&
 }
 
 }  // namespace
+
+ComparisonOptions nightly_comparison() {
+  // A comparison looks for losses in three ways (medians, cells at their limits, singular
+  // formulas), each with a two-sided level of which half is worse.
+  constexpr double kWays = 3;
+  ComparisonOptions options;
+  options.level = kComparisonShare * kNightlyAlarmsAYear / kNightsAYear / kWays * 2;
+  return options;
+}
+
+NightTestOptions nightly_tests() {
+  NightTestOptions options;
+  options.alarms_a_year = (1 - kComparisonShare) * kNightlyAlarmsAYear;
+  options.nights_a_year = kNightsAYear;
+  return options;
+}
 
 std::string night_name(const RunFolder& run) {
   std::string when = run.provenance_of("sessions.0.started");
@@ -247,17 +275,27 @@ NightlyResult run_night(const Grid& grid, const NightlyOptions& options,
             summary_of(verdict, grid, run, night, std::nullopt, running.out)};
   }
   verdict.verified = verify_sample(grid, run, options, stop);
+  if (!options.benches.empty()) {
+    BenchRun benches = run_benches({.folder = options.benches}, stop);
+    night.benches = std::move(benches.benches);
+    night.bench_conditions = std::move(benches.conditions);
+    verdict.bench_complaints = std::move(benches.complaints);
+  }
   if (base) {
-    ComparisonOptions comparing;
+    ComparisonOptions comparing = nightly_comparison();
     comparing.tolerance = options.tolerance;
     verdict.comparison = compare_runs(read_run_folder(store.runs() / base->name), now, comparing);
-    verdict.losses = find_losses(*base, nights_since(store, *base, night));
+    verdict.benches = compare_benches(*base, night);
+    const std::vector<Night> since = nights_since(store, *base, night);
+    verdict.losses = find_losses(*base, since, nightly_tests());
+    settle_by_nights(*verdict.comparison, *base, since);
   }
   night.outcome = name_of(verdict.end());
   const std::string summary = summary_of(verdict, grid, run, night, base, folder);
   if (verdict.comparison) {
-    write_file(running.out / "comparison.md",
-               comparison_markdown(*verdict.comparison) + "\n" + losses_text(verdict.losses));
+    write_file(running.out / "comparison.md", comparison_markdown(*verdict.comparison) + "\n" +
+                                                  losses_text(verdict.losses) +
+                                                  bench_table(verdict.benches));
   }
   write_file(running.out / "summary.txt", summary);
   // In this order: cut short anywhere, the next night finds a whole store and does the rest again.
@@ -265,7 +303,9 @@ NightlyResult run_night(const Grid& grid, const NightlyOptions& options,
   if (store.blessings().empty() && !verdict.all_failed)
     store.bless({night.name, "the first night", utc_now()});
   fs::rename(running.out, folder);
-  write_file(options.store / "nights.html", history_page(read_history(store)));
+  const StoreHistory history = read_history(store);
+  write_file(options.store / "nights.html", history_page(history));
+  write_file(options.store / "nights.atom", history_feed(history));
   keep_last_runs(store, base ? base->name : night.name, options.keep_runs);
   store.prune(options.keep_nights, true);
   return {verdict.end(), night.name, summary};

@@ -17,6 +17,8 @@
 
 #include "harness/grid.hpp"
 #include "harness/run.hpp"
+#include "reports/comparison.hpp"
+#include "reports/night_tests.hpp"
 #include "reports/run_folder.hpp"
 
 namespace tribench {
@@ -29,7 +31,16 @@ struct NightlyOptions {
   std::size_t keep_nights = 4000;  // records that stay, besides blessed ones
   double least_free_mib = 1024;    // of the store's disk
   double tolerance = 0.05;         // as of `compare`
+  std::filesystem::path benches;   // folder of bench programs (benches.hpp); empty: none
 };
+
+// What a nightly job spends in a year: one false alarm, two thirds of it on the comparison with the
+// base, one on the tests over nights.
+inline constexpr double kNightlyAlarmsAYear = 1;
+inline constexpr double kComparisonShare = 2.0 / 3;
+inline constexpr double kNightsAYear = 365.25;
+ComparisonOptions nightly_comparison();
+NightTestOptions nightly_tests();
 
 enum class NightEnd { fine, regression, undecided, failed };
 

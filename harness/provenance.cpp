@@ -151,10 +151,7 @@ std::string code_identity() {
 
 std::string fingerprint(const CellResult& result) {
   CellResult timeless = result;
-  timeless.record.fit_cpu_s = kMissing;
-  timeless.record.fit_wall_s = kMissing;
-  timeless.record.peak_memory_mib = kMissing;
-  timeless.record.eval_ns_per_row = kMissing;
+  forget_costs(timeless.record);
   for (TraceRecord& point : timeless.trace) point.cpu_s = 0;
   return fmt::format("{:016x}", key_of(print_result(timeless)));
 }

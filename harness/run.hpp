@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/calibration.hpp"
+#include "foundation/calibration.hpp"
 #include "harness/grid.hpp"
 #include "harness/journal.hpp"
 #include "harness/plan.hpp"

@@ -20,6 +20,7 @@
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 #include "harness/finished_front.hpp"
+#include "harness/instruction_counter.hpp"
 #include "harness/judge.hpp"
 #include "harness/restarts.hpp"
 #include "harness/stateful_problem.hpp"
@@ -311,6 +312,7 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
   reset_peak_memory();
   const auto wall_start = std::chrono::steady_clock::now();
   const double cpu_start = cpu_seconds_with_children();
+  const InstructionCounter instructions;
   Budget budget({task.limits.evaluations, task.limits.seconds});
   StagesResult fit;
   try {
@@ -324,6 +326,8 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
     fit.failure = fmt::format("error ({})", error.what());
   }
   record.fit_cpu_s = cpu_seconds_with_children() - cpu_start;
+  // Threads that were there before are not seen by the counter.
+  if (task.threads <= 1) record.fit_instructions = instructions.count();
   record.fit_wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
   record.peak_memory_mib = peak_memory_mib();

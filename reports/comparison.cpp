@@ -31,8 +31,7 @@ struct Pair {
 
 // The record without what time and the machine touch: equal text, equal result.
 std::string timeless(Record record) {
-  record.fit_cpu_s = record.fit_wall_s = record.peak_memory_mib = kMissing;
-  record.eval_ns_per_row = kMissing;
+  forget_costs(record);
   return results_csv({record});
 }
 
@@ -43,8 +42,21 @@ double error_of(const Record& record) {
 // Shorter fits have no pace: clocks, caches and the start of a process dominate.
 constexpr double kLeastMeasuredCpu_s = 0.02;
 
-double time_of(const Record& record) {
+double seconds_of(const Record& record) {
   return is_ok(record) && record.fit_cpu_s >= kLeastMeasuredCpu_s ? record.fit_cpu_s : kMissing;
+}
+
+// As few instructions as take that long are the same start of a process.
+constexpr double kLeastInstructions = 2e7;
+
+double instructions_of(const Record& record) {
+  return is_ok(record) && record.fit_instructions >= kLeastInstructions ? record.fit_instructions
+                                                                        : kMissing;
+}
+
+double evaluations_of(const Record& record) {
+  return is_ok(record) && record.evaluations > 0 ? static_cast<double>(record.evaluations)
+                                                 : kMissing;
 }
 
 // log(new / base); 0 for equal figures, infinite where only one of them failed, NaN for no pair.
@@ -168,7 +180,7 @@ double smallest_detectable_loss(std::vector<double> pairs, double level, std::ui
 // it is the one row of its method.
 void look_at_power(const Groups& groups, Comparison& comparison, const ComparisonOptions& options) {
   const double level =
-      options.level / static_cast<double>(comparison.quality.size() + comparison.time.size());
+      options.level / static_cast<double>(comparison.quality.size() + comparison.cost.size());
   for (ComparisonRow& row : comparison.quality) {
     const auto& problems = groups.at({row.method, row.operators});
     if (row.problem.empty() && problems.size() > 1) continue;
@@ -185,14 +197,14 @@ void look_at_power(const Groups& groups, Comparison& comparison, const Compariso
 void decide(Comparison& comparison, const ComparisonOptions& options) {
   std::vector<double> p;
   for (const ComparisonRow& row : comparison.quality) p.push_back(row.p);
-  for (const ComparisonRow& row : comparison.time) p.push_back(row.p);
+  for (const ComparisonRow& row : comparison.cost) p.push_back(row.p);
   const std::vector<double> adjusted = holm(p);
   std::size_t i = 0;
   for (ComparisonRow& row : comparison.quality) {
     row.p = adjusted[i++];
     row.verdict = judge(row, options.level, options.quality_equivalence);
   }
-  for (ComparisonRow& row : comparison.time) {
+  for (ComparisonRow& row : comparison.cost) {
     row.p = adjusted[i++];
     row.verdict = judge(row, options.level, options.time_equivalence);
   }
@@ -211,8 +223,8 @@ std::vector<double> calibration_of(const RunFolder& run) {
   return seconds;
 }
 
-std::string why_no_time(const RunFolder& base, const RunFolder& now,
-                        const ComparisonOptions& options) {
+std::string why_no_seconds(const RunFolder& base, const RunFolder& now,
+                           const ComparisonOptions& options) {
   for (const RunFolder* run : {&base, &now}) {
     const Spread spread = spread_of(calibration_of(*run));
     if (spread.count < 2) {
@@ -229,9 +241,25 @@ std::string why_no_time(const RunFolder& base, const RunFolder& now,
   return {};
 }
 
-std::vector<ComparisonRow> compare_time(const std::vector<Pair>& pairs, const RunFolder& base,
-                                        const RunFolder& now, const ComparisonOptions& options) {
-  Groups groups = log_ratios(pairs, time_of);
+// Whether fits of both runs had their instructions counted, but for the shortest.
+bool has_instructions(const std::vector<Pair>& pairs) {
+  return std::ranges::any_of(pairs, [](const Pair& pair) {
+    return !std::isnan(instructions_of(*pair.base)) && !std::isnan(instructions_of(*pair.now));
+  });
+}
+
+void compare_cost(const std::vector<Pair>& pairs, const RunFolder& base, const RunFolder& now,
+                  const ComparisonOptions& options, Comparison& comparison) {
+  comparison.why_no_seconds = why_no_seconds(base, now, options);
+  if (!comparison.why_no_seconds.empty()) {
+    const bool counted = has_instructions(pairs);
+    comparison.cost_currency = counted ? "instructions" : "evaluations";
+    const Groups groups = log_ratios(pairs, counted ? instructions_of : evaluations_of);
+    comparison.cost = rows_of(groups, false, options);
+    return;
+  }
+  comparison.cost_currency = "CPU seconds";
+  Groups groups = log_ratios(pairs, seconds_of);
   // A machine that was slower throughout is no slower code.
   const double pace = elementary::log(median(calibration_of(now)) / median(calibration_of(base)));
   for (auto& [key, problems] : groups) {
@@ -239,7 +267,7 @@ std::vector<ComparisonRow> compare_time(const std::vector<Pair>& pairs, const Ru
       for (double& value : values) value -= pace;
     }
   }
-  return rows_of(groups, false, options);
+  comparison.cost = rows_of(groups, false, options);
 }
 
 // Failures that depend on the machine's pace as well as on the code.
@@ -335,7 +363,7 @@ bool Comparison::has_regression() const {
       newly_singular.size() > no_longer_singular.size() && singular_p <= level;
   return !newly_broken.empty() || more_limits || more_singular ||
          count_of(quality, ComparisonVerdict::worse) > 0 ||
-         count_of(time, ComparisonVerdict::worse) > 0;
+         count_of(cost, ComparisonVerdict::worse) > 0;
 }
 
 std::vector<std::string> Comparison::doubts() const {
@@ -398,18 +426,19 @@ std::string Comparison::visibility() const {
 std::string Comparison::sentence() const {
   if (common == 0) return "The runs have no cell in common: nothing can be compared.";
   if (common == identical && only_base + only_new == 0) {
-    const std::size_t slower = count_of(time, ComparisonVerdict::worse);
-    return fmt::format("All {} cells are identical apart from time{}.", common,
-                       slower > 0 ? fmt::format(", but {} methods are slower", slower) : "");
+    const std::size_t dearer = count_of(cost, ComparisonVerdict::worse);
+    return fmt::format(
+        "All {} cells are identical apart from time{}.", common,
+        dearer > 0 ? fmt::format(", but {} methods cost more {}", dearer, cost_currency) : "");
   }
   return fmt::format(
       "{}: {} of {} common cells identical; quality worse in {}, better in {}, equivalent in {}, "
-      "not distinguishable in {} of {} verdicts; slower in {} of {}; {} cells newly failed.",
+      "not distinguishable in {} of {} verdicts; dearer in {} of {} ({}); {} cells newly failed.",
       outcome_name(outcome()), identical, common, count_of(quality, ComparisonVerdict::worse),
       count_of(quality, ComparisonVerdict::better),
       count_of(quality, ComparisonVerdict::equivalent),
       count_of(quality, ComparisonVerdict::not_distinguishable), quality.size(),
-      count_of(time, ComparisonVerdict::worse), time.size(), newly_failed.size());
+      count_of(cost, ComparisonVerdict::worse), cost.size(), cost_currency, newly_failed.size());
 }
 
 Comparison compare_runs(const RunFolder& base, const RunFolder& now,
@@ -422,10 +451,7 @@ Comparison compare_runs(const RunFolder& base, const RunFolder& now,
   const std::vector<Pair> pairs = count_cells(base, now, comparison);
   const Groups quality = log_ratios(pairs, error_of);
   comparison.quality = rows_of(quality, true, options);
-  comparison.why_no_time = why_no_time(base, now, options);
-  if (comparison.why_no_time.empty()) {
-    comparison.time = compare_time(pairs, base, now, options);
-  }
+  compare_cost(pairs, base, now, options, comparison);
   decide(comparison, options);
   look_at_power(quality, comparison, options);
   return comparison;

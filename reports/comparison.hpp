@@ -6,8 +6,10 @@
 // that failed or turned singular are counted; quality is then compared on pairs with the same
 // problem, method, operator set and seed: log ratio of the error on test movements, Wilcoxon's
 // signed-rank test Holm-adjusted over all verdicts of the comparison, a bootstrap interval of the
-// median ratio (two levels, problems and seeds, where problems are pooled). Time is compared, on
-// the log ratio of CPU seconds, only where both machines' calibration says that it can be.
+// median ratio (two levels, problems and seeds, where problems are pooled). So is cost, pooled over
+// problems: in CPU seconds where both machines' calibration says that they kept their pace, else in
+// instructions where both runs have them counted, else in evaluations, which no machine changes and
+// which see no slower code; the comparison says in what.
 //
 // What is asked first is whether the two are answers to one question: other budgets, parameters,
 // seeds or data (run_conditions.hpp) leave the comparison undecided unless they are allowed.
@@ -83,8 +85,9 @@ struct Comparison {
   bool conditions_allowed = false;
   double tolerance = 0.05;
   std::vector<ComparisonRow> quality;  // pooled rows first, then by problem
-  std::vector<ComparisonRow> time;     // pooled rows only; empty where it cannot be compared
-  std::string why_no_time;             // empty where time was compared
+  std::vector<ComparisonRow> cost;     // pooled rows only
+  std::string cost_currency;           // "CPU seconds", "instructions", "evaluations"
+  std::string why_no_seconds;          // empty where the currency is CPU seconds
   // Cells that newly ran into a limit against those that no longer do (exact sign test).
   double limits_p = 1;
   double level = 0.005;

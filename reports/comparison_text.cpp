@@ -127,10 +127,14 @@ std::string comparison_markdown(const Comparison& comparison) {
   if (comparison.identical < comparison.common) {
     text += "\n### Quality: error on test movements\n\n" + table_of(comparison.quality);
   }
-  text += "\n### Time: CPU seconds of fits\n\n";
-  text += comparison.why_no_time.empty()
-              ? table_of(comparison.time)
-              : fmt::format("Not compared: {}.\n", comparison.why_no_time);
+  text += fmt::format("\n### Cost: {} of fits\n\n", comparison.cost_currency);
+  if (!comparison.why_no_seconds.empty()) {
+    text += fmt::format("Not CPU seconds: {}.{}\n\n", comparison.why_no_seconds,
+                        comparison.cost_currency == "evaluations"
+                            ? " Slower code is not seen; the benches' instructions would show it."
+                            : "");
+  }
+  if (!comparison.cost.empty()) text += table_of(comparison.cost);
   return text;
 }
 
@@ -151,8 +155,9 @@ ordered_json comparison_json(const Comparison& comparison) {
           {"no_longer_singular", comparison.no_longer_singular},
           {"newly_unproved", comparison.newly_unproved},
           {"quality", rows_json(comparison.quality)},
-          {"time", rows_json(comparison.time)},
-          {"why_no_time", comparison.why_no_time}};
+          {"cost", rows_json(comparison.cost)},
+          {"cost_currency", comparison.cost_currency},
+          {"why_no_seconds", comparison.why_no_seconds}};
 }
 
 }  // namespace tribench

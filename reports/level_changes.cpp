@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "foundation/elementary.hpp"
 #include "foundation/order_statistics.hpp"
@@ -56,6 +57,61 @@ std::vector<double> scaled(std::span<const double> weights, double variance) {
   return result;
 }
 
+// Where a level may end: everywhere in a series of a few years, at every k-th place from the end of
+// a longer one.
+std::vector<std::size_t> places_of(std::size_t n, std::size_t step) {
+  std::vector<std::size_t> places;
+  for (std::size_t place = n; place >= step; place -= step) places.push_back(place);
+  if (places.back() != 0) places.push_back(0);
+  std::ranges::reverse(places);
+  return places;
+}
+
+// And then everywhere near the ends that were found so.
+std::vector<std::size_t> places_near(const std::vector<std::size_t>& ends, std::size_t step) {
+  std::set<std::size_t> places = {0, ends.back()};
+  for (const std::size_t end : ends) {
+    for (std::size_t place = end - std::min(end, 2 * step); place <= end + 2 * step; ++place) {
+      if (place < ends.back()) places.insert(place);
+    }
+  }
+  return {places.begin(), places.end()};
+}
+
+// The ends of the levels of the least cost with a penalty for each.
+std::vector<std::size_t> partition(const Segments& segments, const std::vector<std::size_t>& places,
+                                   double penalty) {
+  const std::size_t m = places.size();
+  std::vector<double> best(m, std::numeric_limits<double>::infinity());
+  std::vector<std::size_t> from(m, 0);
+  best[0] = -penalty;
+  std::vector<std::size_t> candidates;
+  std::size_t next = 0;  // the first place that is no candidate yet
+  for (std::size_t end = 1; end < m; ++end) {
+    while (places[next] + kShortest <= places[end]) {
+      if (best[next] < std::numeric_limits<double>::infinity()) candidates.push_back(next);
+      ++next;
+    }
+    std::vector<double> costs;
+    for (const std::size_t begin : candidates) {
+      costs.push_back(best[begin] + segments.cost(places[begin], places[end]));
+      if (costs.back() + penalty < best[end]) {
+        best[end] = costs.back() + penalty;
+        from[end] = begin;
+      }
+    }
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+      if (costs[k] <= best[end]) candidates[kept++] = candidates[k];
+    }
+    candidates.resize(kept);
+  }
+  std::vector<std::size_t> ends;
+  for (std::size_t end = m - 1; end > 0; end = from[end]) ends.push_back(places[end]);
+  std::ranges::reverse(ends);
+  return ends;
+}
+
 }  // namespace
 
 std::vector<LevelChange> find_level_changes(std::span<const double> values,
@@ -67,28 +123,10 @@ std::vector<LevelChange> find_level_changes(std::span<const double> values,
   for (double& value : centred) value -= values.front();
   const Segments segments(centred, scaled(weights, noise_variance(values, least_noise)));
   const double penalty = 3 * elementary::log(static_cast<double>(n)) + 4;
-  std::vector<double> best(n + 1, std::numeric_limits<double>::infinity());
-  std::vector<std::size_t> from(n + 1, 0);
-  best[0] = -penalty;
-  std::vector<std::size_t> candidates = {0};
-  for (std::size_t end = kShortest; end <= n; ++end) {
-    for (const std::size_t begin : candidates) {
-      if (end - begin < kShortest) continue;
-      const double cost = best[begin] + segments.cost(begin, end) + penalty;
-      if (cost < best[end]) {
-        best[end] = cost;
-        from[end] = begin;
-      }
-    }
-    std::erase_if(candidates, [&](std::size_t begin) {
-      return end - begin >= kShortest && best[begin] + segments.cost(begin, end) > best[end];
-    });
-    const std::size_t next = end + 1 - kShortest;
-    if (next >= kShortest) candidates.push_back(next);
-  }
-  std::vector<std::size_t> ends;
-  for (std::size_t end = n; end > 0; end = from[end]) ends.push_back(end);
-  std::ranges::reverse(ends);
+  constexpr std::size_t kPlaces = 1000;
+  const std::size_t step = (n + kPlaces - 1) / kPlaces;
+  std::vector<std::size_t> ends = partition(segments, places_of(n, step), penalty);
+  if (step > 1) ends = partition(segments, places_near(ends, step), penalty);
   std::vector<LevelChange> changes;
   std::size_t begin = 0;
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -98,6 +99,23 @@ NightSeries read_series(std::string_view line, const std::string& place, bool wi
   return series;
 }
 
+// A case's name may hold anything but the end of a line; it stands last.
+std::string print_bench(const NightBench& bench) {
+  return fmt::format("{},{},{},{},{},{}\n", printed(bench.instructions),
+                     printed(bench.first_level_misses), printed(bench.last_level_misses),
+                     printed(bench.time), printed(bench.time_spread), bench.name);
+}
+
+NightBench read_bench(std::string_view line, const std::string& place) {
+  NightBench bench;
+  for (double* figure : {&bench.instructions, &bench.first_level_misses, &bench.last_level_misses,
+                         &bench.time, &bench.time_spread}) {
+    *figure = number_in<double>(next_field(line, ','), place);
+  }
+  bench.name = line;
+  return bench;
+}
+
 }  // namespace
 
 Night night_of_run(const RunFolder& run, std::string name) {
@@ -119,12 +137,18 @@ Night night_of_run(const RunFolder& run, std::string name) {
 }
 
 std::string print_night(const Night& night) {
-  std::string body =
-      ordered_json{{"name", night.name},     {"started", night.started}, {"code", night.code},
-                   {"commit", night.commit}, {"machine", night.machine}, {"grid", night.grid},
-                   {"data", night.data},     {"outcome", night.outcome}}
-          .dump(-1, ' ', false, ordered_json::error_handler_t::replace) +
-      "\n";
+  std::string body = ordered_json{{"name", night.name},
+                                  {"started", night.started},
+                                  {"code", night.code},
+                                  {"commit", night.commit},
+                                  {"machine", night.machine},
+                                  {"grid", night.grid},
+                                  {"data", night.data},
+                                  {"outcome", night.outcome},
+                                  {"benches", night.benches.size()},
+                                  {"bench_conditions", night.bench_conditions}}
+                         .dump(-1, ' ', false, ordered_json::error_handler_t::replace) +
+                     "\n";
   for (const NightSeries& series : night.series) {
     body +=
         fmt::format("{},{},{},{},{},{},{},{},{},", series.problem, series.method, series.operators,
@@ -136,6 +160,7 @@ std::string print_night(const Night& night) {
     }
     body += "\n";
   }
+  for (const NightBench& bench : night.benches) body += print_bench(bench);
   return fmt::format("{}{:016x}\n{}", kMagic, key_of(body), body);
 }
 
@@ -158,9 +183,14 @@ Night read_night(std::string_view text, const std::string& place, bool with_seed
   night.grid = header.value("grid", "");
   night.data = header.value("data", "");
   night.outcome = header.value("outcome", "");
-  while (!text.empty()) {
+  night.bench_conditions = header.value("bench_conditions", "");
+  const auto benches = header.value("benches", std::size_t{0});
+  const auto lines = static_cast<std::size_t>(std::ranges::count(text, '\n'));
+  if (benches > lines) throw_damaged(place);
+  while (night.series.size() + benches < lines) {
     night.series.push_back(read_series(next_field(text, '\n'), place, with_seeds));
   }
+  while (!text.empty()) night.benches.push_back(read_bench(next_field(text, '\n'), place));
   return night;
 }
 

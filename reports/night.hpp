@@ -32,6 +32,16 @@ struct NightSeries {
   std::string key() const { return problem + "|" + method + "|" + operators; }
 };
 
+// A case of a micro-benchmark (harness/benches.hpp): what one turn of its loop cost.
+struct NightBench {
+  std::string name;                      // "expression_bench interpreter<double>/set:1/rows:200"
+  double instructions = kMissing;        // counted under valgrind, as are the misses
+  double first_level_misses = kMissing;  // of instructions and data
+  double last_level_misses = kMissing;
+  double time = kMissing;         // in times of the reference kernel, median of the repetitions
+  double time_spread = kMissing;  // of the repetitions, robust standard deviation of the log
+};
+
 struct Night {
   std::string name;     // when it started and of which code: sorts by time, names a file
   std::string started;  // UTC, "2026-11-22T02:30:00Z"
@@ -41,7 +51,9 @@ struct Night {
   std::string grid;     // hash of the grid as it took effect
   std::string data;     // hash of the data
   std::string outcome;  // of the comparison with the base: "No regression", "REGRESSION", ...
+  std::string bench_conditions;  // of the counts: tool and vector level
   std::vector<NightSeries> series;
+  std::vector<NightBench> benches;
 };
 
 // `name` names it. Throws Error (bad_input) where the run has no records.

@@ -64,6 +64,7 @@ constexpr Column<Record> kResultColumns[] = {
     {"dissipative", &R::dissipative},
     {"monotone", &R::monotone},
     {"odd", &R::odd},
+    {"fit_instructions", &R::fit_instructions},
     {"note", &R::note},
 };
 

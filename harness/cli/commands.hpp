@@ -34,7 +34,7 @@ void add_merge_command(CLI::App& app, ExitStatus& status);
 void add_pretrain_command(CLI::App& app, ExitStatus& status);
 void add_report_command(CLI::App& app, ExitStatus& status);
 void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry);
-void add_study_command(CLI::App& app, ExitStatus& status);
+void add_study_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_submit_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_compare_command(CLI::App& app, ExitStatus& status);
 void add_export_command(CLI::App& app, ExitStatus& status);
@@ -45,6 +45,7 @@ void add_describe_command(CLI::App& app);
 void add_problem_listing(CLI::App& list);
 // Under `study`.
 void add_comparison_study(CLI::App& study, ExitStatus& status);
+void add_night_study(CLI::App& study, ExitStatus& status, const Registry& registry);
 void add_recovery_study(CLI::App& study);
 
 }  // namespace tribench

@@ -4,18 +4,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/nightly.hpp"
 #include "harness/provenance.hpp"
+#include "reports/night_feed.hpp"
 #include "reports/night_page.hpp"
 #include "reports/night_store.hpp"
 #include "reports/record_csv.hpp"
@@ -29,6 +28,7 @@ struct HistoryArguments {
   std::string night;
   std::string reason;
   std::string page;
+  std::string feed;
   std::size_t keep = 400;
   bool dry_run = false;
   bool json = false;
@@ -45,20 +45,20 @@ NightStore existing(const std::string& folder) {
 
 nlohmann::ordered_json json_of(const StoreHistory& history) {
   nlohmann::ordered_json changes = nlohmann::ordered_json::array();
-  for (const SeriesHistory& series : history.series) {
-    for (const LevelChange& change : series.changes) {
-      const Night& night = history.nights[series.nights[change.at]];
-      changes.push_back({{"night", night.name},
-                         {"commit", night.commit},
-                         {"machine", night.machine},
-                         {"problem", series.problem},
-                         {"method", series.method},
-                         {"operators", series.operators},
-                         {"ratio", elementary::exp(change.after - change.before)}});
-    }
+  for (const HistoryChange& change : changes_of(history)) {
+    const Night& night = history.nights[change.night];
+    changes.push_back({{"night", night.name},
+                       {"commit", night.commit},
+                       {"machine", night.machine},
+                       {"figure", change.figure},
+                       {"problem", change.problem},
+                       {"method", change.method},
+                       {"operators", change.operators},
+                       {"ratio", change.ratio}});
   }
   return {{"nights", history.nights.size()},
           {"series", history.series.size()},
+          {"benches", history.benches.size()},
           {"damaged", history.damaged},
           {"base", history.blessings.empty() ? "" : history.blessings.back().night},
           {"changes", changes}};
@@ -72,6 +72,7 @@ void show(const HistoryArguments& arguments) {
     fmt::print("{}", history_text(history));
   }
   if (!arguments.page.empty()) write_file(arguments.page, history_page(history));
+  if (!arguments.feed.empty()) write_file(arguments.feed, history_feed(history));
 }
 
 void record(const HistoryArguments& arguments) {
@@ -114,7 +115,8 @@ void add_history_command(CLI::App& app, ExitStatus& /*status*/) {
   };
   CLI::App* shown = add("show", "Nights, changes of level and the base", show);
   shown->add_option("--page", arguments->page, "write a page with trend lines");
-  shown->add_flag("--json", arguments->json, "{nights, series, damaged, base, changes}");
+  shown->add_option("--feed", arguments->feed, "write a feed (Atom) of the changes");
+  shown->add_flag("--json", arguments->json, "{nights, series, benches, damaged, base, changes}");
   add("record", "Keeps what matters of a run; a night is never changed", record)
       ->add_option("run", arguments->run, "the run's folder")
       ->required();

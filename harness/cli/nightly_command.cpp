@@ -102,6 +102,8 @@ void add_nightly_command(CLI::App& app, ExitStatus& status, const Registry& regi
   command->add_option("--store", options.store, "the folder that keeps the nights")->required();
   command->add_option("--notify", arguments->notify,
                       "a line of shell that gets the summary on its standard input");
+  command->add_option("--benches", options.benches,
+                      "folder of bench programs that are counted under valgrind and timed");
   command->add_option("--data", arguments->data, "folder of the measured sets");
   command->add_option("--jobs", arguments->jobs, "worker processes at a time (default: all cores)")
       ->transform(whole_number(1, 4096));

@@ -105,7 +105,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_history_command(app, status);
   add_nightly_command(app, status, registry);
   add_list_command(app, status, registry);
-  add_study_command(app, status);
+  add_study_command(app, status, registry);
   add_submit_command(app, status, registry);
   add_describe_command(app);
   try {

@@ -150,7 +150,7 @@ void add_external_torque_study(CLI::App& study) {
 
 }  // namespace
 
-void add_study_command(CLI::App& app, ExitStatus& status) {
+void add_study_command(CLI::App& app, ExitStatus& status, const Registry& registry) {
   CLI::App* study = app.add_subcommand("study", "Experiments of the program with itself");
   study->require_subcommand(1);
   add_comparison_study(*study, status);
@@ -159,6 +159,7 @@ void add_study_command(CLI::App& app, ExitStatus& status) {
   add_external_torque_study(*study);
   add_log_study(*study, status);
   add_loop_study(*study, status);
+  add_night_study(*study, status, registry);
   add_recovery_study(*study);
   add_retelling_study(*study, status);
 }

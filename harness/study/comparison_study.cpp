@@ -60,7 +60,7 @@ RunFolder made_up_run(const std::string& name, const ComparisonStudyOptions& opt
 // Whether every worse verdict, and there is one, is on the planted method.
 bool names_the_planted(const Comparison& comparison) {
   bool any = false;
-  for (const auto* rows : {&comparison.quality, &comparison.time}) {
+  for (const auto* rows : {&comparison.quality, &comparison.cost}) {
     for (const ComparisonRow& row : *rows) {
       if (row.verdict != ComparisonVerdict::worse) continue;
       if (row.method != kPlantedMethod) return false;

@@ -101,27 +101,65 @@ TEST(Comparison, CallsAChangeBelowOnePerCentEquivalent) {
 TEST(Comparison, FindsAMethodMadeTenPerCentSlowerUnlessTheMachineExplainsIt) {
   const RunFolder base = noisy_run("base", 20);
   RunFolder slower = noisy_run("new", 20, {1, 1.10});
-  EXPECT_EQ(pooled(compare_runs(base, slower).time, "b").verdict, ComparisonVerdict::worse);
-  EXPECT_NE(pooled(compare_runs(base, slower).time, "a").verdict, ComparisonVerdict::worse);
+  EXPECT_EQ(pooled(compare_runs(base, slower).cost, "b").verdict, ComparisonVerdict::worse);
+  EXPECT_NE(pooled(compare_runs(base, slower).cost, "a").verdict, ComparisonVerdict::worse);
 
   RunFolder slow_machine = noisy_run("new", 20, {1, 1});
   for (Record& record : slow_machine.records) record.fit_cpu_s *= 1.3;
   slow_machine.provenance[1].second = "0.026";
   slow_machine.provenance[2].second = "0.02613";
-  EXPECT_EQ(pooled(compare_runs(base, slow_machine).time, "b").verdict,
+  EXPECT_EQ(pooled(compare_runs(base, slow_machine).cost, "b").verdict,
             ComparisonVerdict::equivalent);
+}
+
+// A machine that others use has a pace that changes: cost is judged all the same.
+TEST(Comparison, JudgesCostInInstructionsOrEvaluationsWhereSecondsCannotBeTrusted) {
+  const auto busy = [](const std::string& name) {
+    RunFolder run = noisy_run(name, 20);
+    run.provenance[2].second = "0.03";
+    RandomStream random(key_of(name));
+    for (Record& record : run.records) {
+      record.fit_cpu_s *= 1 + random.uniform();
+      record.evaluations = 1'000'000;
+      record.fit_instructions = 1e10 * (1 + 1e-4 * random.uniform());
+    }
+    return run;
+  };
+  const RunFolder base = busy("base");
+  RunFolder now = busy("new");
+  const Comparison same = compare_runs(base, now);
+  EXPECT_EQ(same.cost_currency, "instructions");
+  EXPECT_EQ(pooled(same.cost, "b").verdict, ComparisonVerdict::equivalent);
+  for (Record& record : now.records) {
+    if (record.method == "b") record.fit_instructions *= 1.08;
+  }
+  const Comparison dearer = compare_runs(base, now);
+  EXPECT_EQ(pooled(dearer.cost, "b").verdict, ComparisonVerdict::worse);
+  EXPECT_EQ(pooled(dearer.cost, "a").verdict, ComparisonVerdict::equivalent);
+  EXPECT_EQ(dearer.outcome(), ComparisonOutcome::regression);
+  EXPECT_THAT(dearer.sentence(), HasSubstr("dearer in 1 of 3 (instructions)"));
+  EXPECT_THAT(comparison_markdown(dearer), HasSubstr("Not CPU seconds: the machine's pace"));
+  for (Record& record : now.records) {
+    record.fit_instructions = kMissing;
+    if (record.method == "c") record.evaluations = 1'200'000;
+  }
+  const Comparison evaluations = compare_runs(base, now);
+  EXPECT_EQ(evaluations.cost_currency, "evaluations");
+  EXPECT_EQ(pooled(evaluations.cost, "b").verdict, ComparisonVerdict::equivalent);
+  EXPECT_EQ(pooled(evaluations.cost, "c").verdict, ComparisonVerdict::worse);
+  EXPECT_THAT(comparison_markdown(evaluations), HasSubstr("Slower code is not seen"));
 }
 
 TEST(Comparison, RefusesToCompareTimesWhereTheCalibrationForbidsIt) {
   const RunFolder base = noisy_run("base", 5);
   RunFolder now = noisy_run("new", 5);
   now.provenance[2].second = "0.03";
-  EXPECT_THAT(compare_runs(base, now).why_no_time, HasSubstr("pace changed by 50 %"));
+  EXPECT_THAT(compare_runs(base, now).why_no_seconds, HasSubstr("pace changed by 50 %"));
   now.provenance.clear();
-  EXPECT_THAT(compare_runs(base, now).why_no_time, HasSubstr("no calibration"));
+  EXPECT_THAT(compare_runs(base, now).why_no_seconds, HasSubstr("no calibration"));
   now = noisy_run("new", 5);
   now.provenance[0].second = "y";
-  EXPECT_EQ(compare_runs(base, now).why_no_time, "the CPUs differ");
+  EXPECT_EQ(compare_runs(base, now).why_no_seconds, "the CPUs differ");
 }
 
 // A run's folder with nothing but the grid that took effect.

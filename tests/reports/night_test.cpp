@@ -14,7 +14,9 @@
 
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
+#include "reports/bench_comparison.hpp"
 #include "reports/level_changes.hpp"
+#include "reports/night_feed.hpp"
 #include "reports/night_page.hpp"
 #include "reports/night_store.hpp"
 #include "reports/night_tests.hpp"
@@ -66,6 +68,23 @@ Night made_night(int k, double loss, std::uint64_t key, const Made& made = {}) {
   return night;
 }
 
+// What a loop costs, with a factor on its instructions; times differ by 3 % from night to night.
+std::vector<NightBench> made_benches(int count, int night, double factor) {
+  std::vector<NightBench> benches;
+  for (int k = 0; k < count; ++k) {
+    RandomStream noise(key_of(fmt::format("bench {} {}", k, night)));
+    NightBench bench;
+    bench.name = fmt::format("some_bench loop<double, {}>/rows:{}", k, 10 * k);
+    bench.instructions = 1e6 * (k + 1) * (k == 1 ? factor : 1) * (1 + 5e-4 * noise.uniform());
+    bench.first_level_misses = 4000 + static_cast<double>(noise.below(200));
+    bench.last_level_misses = 900;
+    bench.time = 0.1 * (k + 1) * std::exp(0.03 * noise.normal());
+    bench.time_spread = 0.02;
+    benches.push_back(bench);
+  }
+  return benches;
+}
+
 std::string refusal(const std::function<void()>& action) {
   try {
     action();
@@ -80,6 +99,13 @@ TEST(Night, ReadsBackAsItWasPrintedAndIsRefusedWhereDamaged) {
   const std::string text = print_night(night);
   EXPECT_EQ(print_night(read_night(text, "here")), text);
   EXPECT_TRUE(read_night(text, "here", false).series.at(0).log_errors.empty());
+  Night with_benches = night;
+  with_benches.benches = made_benches(3, 1, 1);
+  with_benches.bench_conditions = "valgrind-3.19.0, avx2";
+  const Night read = read_night(print_night(with_benches), "here");
+  EXPECT_EQ(print_night(read), print_night(with_benches));
+  EXPECT_EQ(read.series.size(), night.series.size());
+  EXPECT_EQ(read.benches.at(2).name, "some_bench loop<double, 2>/rows:20");
   for (std::size_t at = 0; at < text.size(); at += 37) {
     std::string damaged = text;
     damaged[at] = damaged[at] == 'x' ? 'y' : 'x';
@@ -87,6 +113,45 @@ TEST(Night, ReadsBackAsItWasPrintedAndIsRefusedWhereDamaged) {
   }
   EXPECT_THAT(refusal([&] { read_night(text.substr(0, text.size() / 2), "here"); }),
               HasSubstr("damaged"));
+}
+
+TEST(Benches, OfEqualCodeAreNeverDearerAndOnePerCentIs) {
+  Night base;
+  base.benches = made_benches(40, 0, 1);
+  Night now;
+  for (int night = 1; night <= 200; ++night) {
+    now.benches = made_benches(40, night, 1);
+    const BenchComparison same = compare_benches(base, now);
+    EXPECT_THAT(same.worse, IsEmpty()) << night;
+    EXPECT_THAT(same.slower, IsEmpty()) << night;
+    now.benches = made_benches(40, night, 1.01);
+    const BenchComparison dearer = compare_benches(base, now);
+    ASSERT_EQ(dearer.worse.size(), 1U) << night;
+    EXPECT_EQ(dearer.worse.front().name, base.benches[1].name);
+  }
+  EXPECT_THAT(compare_benches(base, now).sentence(), HasSubstr("1.0 % more instructions"));
+}
+
+TEST(Benches, SayWhatCannotBeComparedAndWhatIsGone) {
+  Night base;
+  base.benches = made_benches(3, 0, 1);
+  base.bench_conditions = "valgrind-3.19.0, avx2";
+  Night now = base;
+  now.benches.pop_back();
+  EXPECT_EQ(compare_benches(base, now).gone.size(), 1U);
+  now = base;
+  now.benches[0].first_level_misses += 20'000;
+  now.benches[2].time *= 2;
+  const BenchComparison cache = compare_benches(base, now);
+  ASSERT_EQ(cache.worse.size(), 1U);
+  EXPECT_EQ(cache.worse.front().figure, BenchChange::Figure::first_level_misses);
+  EXPECT_EQ(cache.slower.size(), 1U);
+  EXPECT_THAT(cache.sentence(), HasSubstr("by the clock alone"));
+  now.bench_conditions = "valgrind-3.22.0, avx2";
+  EXPECT_THAT(compare_benches(base, now).worse, IsEmpty());
+  EXPECT_THAT(compare_benches(base, now).sentence(), HasSubstr("valgrind-3.22.0"));
+  EXPECT_THAT(compare_benches({}, now).sentence(), HasSubstr("the base has none"));
+  EXPECT_EQ(compare_benches(base, {}).sentence(), "");
 }
 
 TEST(NightStore, KeepsNightsAsTheyAreAndNeverReplacesABase) {
@@ -186,6 +251,71 @@ TEST(NightTests, FindMoreTheMoreNightsTheyHave) {
   EXPECT_GE(within_seven, kTrials - 3);
 }
 
+// A search that draws anew each night makes its noise known: what the base alone could not decide,
+// a night with others before it does.
+TEST(NightTests, KnowTheNoiseFromTheNightsBefore) {
+  constexpr int kTrials = 20;
+  const Made quiet{4, 20, 0.3, 0.02};
+  const auto found = [&](int before) {
+    int hits = 0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const auto key = static_cast<std::uint64_t>(7000 + trial);
+      std::vector<Night> since;
+      for (int k = 1; k <= before; ++k) since.push_back(made_night(k, 1, key, quiet));
+      since.push_back(made_night(before + 1, 1.03, key, quiet));
+      hits += find_losses(made_night(0, 1, key, quiet), since).empty() ? 0 : 1;
+    }
+    return hits;
+  };
+  const int alone = found(0);
+  const int known = found(15);
+  std::printf("3 %% at 2 %% noise, one night: %d of %d after the base, %d after 15 nights\n", alone,
+              kTrials, known);
+  EXPECT_GE(known, kTrials - 4);
+  EXPECT_GT(known, alone);
+}
+
+// Nights of code that does not touch a method repeat its figures: no witnesses of their own.
+TEST(NightTests, ARepeatedFigureIsNoSecondWitness) {
+  const Night base = made_night(0, 1, 11);
+  const Night worse = made_night(1, 1.04, 11);
+  std::vector<Night> since = {worse};
+  const bool once = !find_losses(base, since).empty();
+  for (int k = 2; k <= 7; ++k) {
+    since.push_back(worse);
+    since.back().name = fmt::format("2026-{:06}", k);
+  }
+  EXPECT_FALSE(once);
+  EXPECT_THAT(find_losses(base, since), IsEmpty());
+}
+
+TEST(NightTests, ALuckyBaseLeavesNothingUndecidedForEver) {
+  const Made made{2, 20, 0.3, 0.10};
+  Night lucky = made_night(0, 1, 21, made);
+  for (NightSeries& series : lucky.series) {
+    for (auto& [seed, value] : series.log_errors) value -= 0.12F;
+  }
+  std::vector<Night> since;
+  for (int k = 1; k <= 8; ++k) since.push_back(made_night(k, 1, 21, made));
+  Comparison comparison;
+  ComparisonRow row;
+  row.method = "c";
+  row.operators = "paper";
+  row.problem = "p1";
+  row.undecided = true;
+  comparison.quality = {row};
+  settle_by_nights(comparison, lucky, std::span(since).first(2));
+  EXPECT_TRUE(comparison.quality.front().undecided) << "too few nights to say";
+  settle_by_nights(comparison, lucky, since);
+  EXPECT_FALSE(comparison.quality.front().undecided);
+  for (NightSeries& series : since.back().series) {
+    for (auto& [seed, value] : series.log_errors) value += 0.2F;
+  }
+  comparison.quality.front().undecided = true;
+  settle_by_nights(comparison, lucky, since);
+  EXPECT_TRUE(comparison.quality.front().undecided) << "worse than all nights before it";
+}
+
 TEST(NightTests, LeavesNightsOfAnotherGridOut) {
   const Night base = made_night(0, 1, 9);
   std::vector<Night> since = {made_night(1, 3, 9)};
@@ -227,11 +357,21 @@ TEST(NightPage, HoldsTenYears) {
   NightStore store(folder / "store");
   Made made;
   made.problems = 33;  // times 3 methods times 20 seeds
-  for (int k = 0; k < 100; ++k) store.record(made_night(k, k < 50 ? 1 : 1.3, 2, made));
-  // The other nights are copies: only the count matters.
-  const std::string text = testing::read_text(folder / "store" / "nights" / "2026-000099.night");
-  for (int k = 100; k < 3650; ++k) {
-    std::ofstream(folder / "store" / "nights" / fmt::format("2026-{:06}.night", k)) << text;
+  // Forty nights of either level, again and again: only how many they are matters.
+  constexpr int kDifferent = 40;
+  const auto made_text = [&](int k, bool is_late) {
+    Night night = made_night(k, is_late ? 1.3 : 1, 2, made);
+    night.started = is_late ? "2027-01-01T02:30:00Z" : "2026-01-01T02:30:00Z";
+    night.benches = made_benches(150, k, is_late ? 1.01 : 1);
+    return print_night(night);
+  };
+  std::vector<std::string> texts;
+  for (int k = 0; k < kDifferent; ++k) texts.push_back(made_text(k, false));
+  for (int k = 0; k < kDifferent; ++k) texts.push_back(made_text(k, true));
+  for (int k = 0; k < 3650; ++k) {
+    const int text = k % kDifferent + (k < 2000 ? 0 : kDifferent);
+    std::ofstream(folder / "store" / "nights" / fmt::format("2026-{:06}.night", k))
+        << texts[static_cast<std::size_t>(text)];
   }
   store.bless({"2026-000000", "<b>first</b>", "2026-01-01T00:00:00Z"});
   const std::clock_t start = std::clock();  // CPU: the machine may be busy
@@ -240,11 +380,54 @@ TEST(NightPage, HoldsTenYears) {
   const double taken_s =
       static_cast<double>(std::clock() - start) / static_cast<double>(CLOCKS_PER_SEC);
   EXPECT_EQ(history.nights.size(), 3650U);
+  EXPECT_EQ(history.benches.size(), 150U);
   EXPECT_LT(page.size(), 5U << 20);
   EXPECT_LT(taken_s, 2);
   std::printf("%zu bytes, %.2f s\n", page.size(), taken_s);
-  EXPECT_THAT(page, HasSubstr("&lt;b>first"));
-  EXPECT_THAT(history_text(history), HasSubstr("2026-000050"));
+  EXPECT_TRUE(page.find("&lt;b&gt;first") != std::string::npos);
+  const std::vector<HistoryChange> changes = changes_of(history);
+  EXPECT_LE(changes.size(), 8U);  // 249 lines of ten years: two or three by chance
+  const auto ratio_of = [&](const std::string& problem, const std::string& method) {
+    for (const HistoryChange& each : changes) {
+      if (each.problem == problem && each.method == method && each.night == 2000) return each.ratio;
+    }
+    return 0.0;
+  };
+  EXPECT_NEAR(ratio_of("p0", "b"), 1.3, 0.01);
+  EXPECT_NEAR(ratio_of("some_bench loop<double, 1>/rows:10", ""), 1.01, 2e-4);
+  const std::string feed = history_feed(history);
+  EXPECT_THAT(feed, HasSubstr("loop&lt;double, 1&gt;/rows:10: +1.0 % instructions"));
+  EXPECT_THAT(feed, HasSubstr("<updated>2027-01-01T02:30:00Z</updated>"));
+}
+
+// What a reader of feeds takes: well-formed XML whose entries keep their names.
+TEST(NightFeed, IsWellFormedAndItsEntriesKeepTheirNames) {
+  const testing::TemporaryFolder folder;
+  NightStore store(folder / "store");
+  for (int k = 0; k < 30; ++k) {
+    Night night = made_night(k, k < 15 ? 1 : 1.5, 2, {2, 20, 0.3, 0.02});
+    night.started = fmt::format("2026-01-{:02}T02:30:00Z", k + 1);
+    night.machine = "a <fast> & \"quiet\" one";
+    store.record(night);
+  }
+  store.bless({"2026-000000", "]]> & <b>", "2026-01-01T03:00:00Z"});
+  const std::string feed = history_feed(read_history(store));
+  EXPECT_THAT(feed, HasSubstr("b (paper) on p0: +5"));
+  EXPECT_THAT(feed, HasSubstr("<updated>2026-01-16T02:30:00Z</updated>"));
+  const auto names_of = [](const std::string& text) {
+    std::vector<std::string> names;
+    for (std::size_t at = 0; (at = text.find("<id>", at)) != std::string::npos; ++at) {
+      names.push_back(text.substr(at, text.find("</id>", at) - at));
+    }
+    return names;
+  };
+  store.record(made_night(30, 1.5, 2, {2, 20, 0.3, 0.02}));
+  EXPECT_EQ(names_of(history_feed(read_history(store))), names_of(feed));
+  testing::write_text(folder / "feed.xml", feed);
+  const testing::ProgramRun parsed = testing::run_to_end(
+      {"python3", "-c", "import sys, xml.etree.ElementTree as t; t.parse(sys.argv[1])",
+       (folder / "feed.xml").string()});
+  EXPECT_EQ(parsed.status, 0) << parsed.errors;
 }
 
 }  // namespace

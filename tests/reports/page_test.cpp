@@ -9,8 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "foundation/random.hpp"
 #include "reports/html/html_report.hpp"
 #include "reports/loop_report.hpp"
+#include "reports/night_page.hpp"
 #include "reports/pictures.hpp"
 #include "reports/record_csv.hpp"
 #include "reports/run_reports.hpp"
@@ -107,6 +109,54 @@ TEST(Page, AsksForNothingFromOutsideAndRunsNoTextOfTheData) {
   for (const char* outside : {"src=\"http", "href=\"http", "url(http", "@import"}) {
     EXPECT_THAT(page, Not(HasSubstr(outside))) << outside;
   }
+}
+
+// Two hundred nights of two series and a bench, a change in one of each.
+TEST(Page, OfNightsDrawsALineForEverySeriesAndFigureWithinItsWindow) {
+  if (!has_browser()) GTEST_SKIP() << "no chromium";
+  StoreHistory history;
+  history.nights.resize(200);
+  BenchHistory bench;
+  bench.name = "expression_bench interpreter<double>/set:1/rows:1000/level:-1";
+  history.series.resize(2);
+  RandomStream random(key_of("page of nights"));
+  for (std::size_t k = 0; k < 200; ++k) {
+    history.nights[k].name = "night " + std::to_string(k);
+    bench.nights.push_back(k);
+    bench.instructions.push_back(k < 120 ? 14 : 14.01);
+    bench.misses.push_back(8);
+    bench.time.push_back(0.03 * random.normal());
+    for (SeriesHistory& series : history.series) {
+      series.problem = "A/j2/load";
+      series.method = "pysr";
+      series.operators = "paper+div";
+      series.nights.push_back(k);
+      series.log_errors.push_back(0.05 * random.normal());
+    }
+  }
+  history.series[1].changes = {{80, 0.0, 0.2}};
+  bench.changes = {{120, 14, 14.01}};
+  history.benches = {bench};
+  const fs::path folder = fresh_folder("page_of_nights");
+  write_file(folder / "nights.html", history_page(history));
+  const json answer = asked_in_browser(folder / "nights.html", R"(
+    const inside = (e) => e.getBBox().y >= -1 && e.getBBox().y + e.getBBox().height <= 91;
+    window.answer = {
+      lines: document.querySelectorAll('polyline').length,
+      inside: [...document.querySelectorAll('polyline')].every(inside),
+      marks: document.querySelectorAll('line.worse').length,
+      rows: document.querySelectorAll('td.worse').length,
+      wide: document.documentElement.scrollWidth > window.innerWidth,
+      loaded: performance.getEntriesByType('resource').length};
+  )",
+                                       "390,800");
+  ASSERT_TRUE(answer.is_object()) << answer;
+  EXPECT_EQ(answer["lines"], 5);
+  EXPECT_EQ(answer["inside"], true);
+  EXPECT_EQ(answer["marks"], 2);
+  EXPECT_EQ(answer["rows"], 2);
+  EXPECT_EQ(answer["wide"], false) << "a phone scrolls in one direction only";
+  EXPECT_EQ(answer["loaded"], 0);
 }
 
 TEST(Page, DrawsEveryPictureSortsFiltersAndShowsAFormulaOnHover) {

@@ -66,8 +66,8 @@ bool is_running(int pid) {
 }
 
 std::string timeless_results(const std::filesystem::path& run_folder) {
-  static constexpr std::array kTimes = {"fit_cpu_s", "fit_wall_s", "peak_memory_mib",
-                                        "eval_ns_per_row"};
+  static constexpr std::array kTimes = {"fit_cpu_s", "fit_wall_s", "fit_instructions",
+                                        "peak_memory_mib", "eval_ns_per_row"};
   const Rows rows = read_rows(run_folder / "results.csv");
   std::string text;
   for (const std::vector<std::string>& row : rows) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "harness/calibration.hpp"
+#include "foundation/calibration.hpp"
 
 #include <algorithm>
 #include <chrono>

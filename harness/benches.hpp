@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+//
+// The micro-benchmarks of a night: every program of a folder is counted under valgrind and timed
+// against its reference kernel (bench/measured_loop.hpp).
+//
+// Counting: callgrind with cache simulation, the loops' first to last turn, one turn each, so that
+// no clock decides how much is done. The vector level is pinned to one that valgrind knows
+// (it has no AVX-512), the environment is emptied and paths are made alike: what lies on the stack
+// moves addresses, and addresses decide misses.
+//
+// Timing: Google Benchmark, several repetitions, each case's CPU time divided by that of the
+// reference kernel run before and after it in the same thread.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "reports/night.hpp"
+
+namespace tribench {
+
+struct BenchOptions {
+  std::filesystem::path folder;  // with the programs; what lies in folders below it is left alone
+  int repetitions = 5;           // of each case's timing
+  double least_time_s = 0.02;    // of a repetition
+  double patience_s = 1800;      // for one program, counted or timed
+};
+
+struct BenchRun {
+  std::vector<NightBench> benches;  // by program and case
+  std::string conditions;           // "valgrind-3.19.0, avx2"; "not counted" without valgrind
+  std::vector<std::string> complaints;
+};
+
+// Throws Error (bad_input) where the folder has no program. One that fails is a complaint, and its
+// cases are missing. Cost: some fifty times a turn of every case.
+BenchRun run_benches(const BenchOptions& options, const std::atomic<bool>& stop);
+
+}  // namespace tribench
