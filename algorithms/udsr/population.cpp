@@ -16,6 +16,9 @@ namespace {
 // Node-rows from which a batch is scored by several threads: about a millisecond of one.
 constexpr std::uint64_t kWorthThreads = 1'000'000;
 
+// Node-rows that are scored between two looks at the clock: a tenth of a second or two.
+constexpr std::uint64_t kSlice = 10'000'000;
+
 // Puts an entry into its place among the `most` best.
 void remember(const Scoreboard::Entry& entry, std::size_t most,
               std::vector<Scoreboard::Entry>& best) {
@@ -46,15 +49,27 @@ Scoreboard::Scoreboard(const ScoringProblem& problem, Budget& budget, Progress* 
 }
 
 std::vector<double> Scoreboard::rewards(std::span<const Sequence> batch) {
-  std::vector<std::string> keys;
+  for (std::size_t next = 0; next < batch.size() && !budget_->exhausted();) {
+    next = score_slice(batch, next);
+  }
+  std::vector<double> rewards(batch.size(), 0.0);
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    const auto found = known_.find(key_of_sequence(batch[i]));
+    if (found != known_.end()) rewards[i] = found->second;
+  }
+  return rewards;
+}
+
+// Sequences from `next` on, as many as leave the clock a chance to stop the rest; where it stopped.
+std::size_t Scoreboard::score_slice(std::span<const Sequence> batch, std::size_t next) {
   const std::uint64_t spent_before = budget_->spent();
   std::vector<std::size_t> fresh;  // places whose sequence has to be scored, in order
-  for (std::size_t i = 0; i < batch.size(); ++i) {
-    keys.push_back(key_of_sequence(batch[i]));
-    if (known_.contains(keys[i])) continue;
-    if (!budget_->spend(scoring_cost(*problem_, batch[i]))) break;
-    known_.emplace(keys[i], 0.0);
-    fresh.push_back(i);
+  for (; next < batch.size() && budget_->spent() - spent_before < kSlice; ++next) {
+    const std::string key = key_of_sequence(batch[next]);
+    if (known_.contains(key)) continue;
+    if (!budget_->spend(scoring_cost(*problem_, batch[next]))) break;
+    known_.emplace(key, 0.0);
+    fresh.push_back(next);
   }
   std::vector<Scored> scores(fresh.size());
   // Threads that wait for each other cost more than a small batch.
@@ -68,15 +83,10 @@ std::vector<double> Scoreboard::rewards(std::span<const Sequence> batch) {
       },
       kChunk);
   for (std::size_t k = 0; k < fresh.size(); ++k) {
-    known_[keys[fresh[k]]] = scores[k].reward;
+    known_[key_of_sequence(batch[fresh[k]])] = scores[k].reward;
     book(batch[fresh[k]], scores[k]);
   }
-  std::vector<double> rewards(batch.size(), 0.0);
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const auto found = known_.find(keys[i]);
-    if (found != known_.end()) rewards[i] = found->second;
-  }
-  return rewards;
+  return next;
 }
 
 void Scoreboard::book(const Sequence& sequence, const Scored& scored) {

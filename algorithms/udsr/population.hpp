@@ -55,6 +55,7 @@ class Scoreboard {
   static constexpr std::size_t kRemembered = 32;
   static constexpr std::size_t kRememberedOfLength = 8;
   static constexpr std::size_t kPromising = 16;  // of the best of all
+  std::size_t score_slice(std::span<const Sequence> batch, std::size_t next);
   void book(const Sequence& sequence, const Scored& scored);
 
   const ScoringProblem* problem_;

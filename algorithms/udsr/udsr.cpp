@@ -36,6 +36,11 @@ using udsr::ScoringProblem;
 constexpr int kMaxRecursion = 2;
 constexpr std::size_t kFewestConstants = 2;
 
+// Of more rows a search sees a sample, drawn at random; what it finds is fitted and judged on all
+// of them. (PySR goes over to batches from 10 000 rows on.)
+constexpr std::size_t kMostSearchedRows = 10000;
+constexpr std::size_t kSampledRows = 4000;
+
 struct Settings {
   udsr::TokenOptions tokens;
   udsr::PriorOptions prior;
@@ -199,6 +204,13 @@ class Search {
     add(std::move(formula), error);
   }
 
+  // The same, with the constants that it has where there is no time left to fit them.
+  void take(Expression formula) {
+    const double error = scorer_.nrmse(formula);
+    add(formula, error);
+    offer(std::move(formula));
+  }
+
   // By increasing complexity, each more accurate than all before it; constants converged.
   std::vector<Expression> front() {
     std::map<int, Candidate> raw;
@@ -276,7 +288,9 @@ class Udsr : public Regressor {
     Search search(settings_, context.data, context.operators, context.budget, context.progress,
                   context.threads);
     if (search.rows() == 0) return FitResult::unsupported("no training row is finite");
-    const std::vector<Expression> front = solve(search, context, context.data, context.random, 0);
+    const std::vector<Expression> front =
+        search.rows() > kMostSearchedRows ? solve_sample(search, context)
+                                          : solve(search, context, context.data, context.random, 0);
     FitResult result;
     result.reason = context.budget.exhausted() ? StopReason::budget : StopReason::converged;
     if (front.empty()) {
@@ -294,6 +308,41 @@ class Udsr : public Regressor {
     double mean = 0;
     for (const double y : target) mean += y / static_cast<double>(target.size());
     return Expression::constant(mean);
+  }
+
+  // Finds formulas on a sample of the rows and offers them to the search that has them all.
+  std::vector<Expression> solve_sample(Search& all, FitContext& context) const {
+    const ScoringProblem& problem = all.problem();
+    RandomStream random = context.random.split("sample");
+    std::vector<std::size_t> rows(problem.rows());
+    std::iota(rows.begin(), rows.end(), 0);
+    random.shuffle(std::span(rows));
+    rows.resize(kSampledRows);
+    std::ranges::sort(rows);
+    std::vector<std::vector<double>> columns;
+    std::vector<const double*> pointers;
+    for (const double* column : problem.inputs().columns) {
+      columns.push_back(at_rows(std::span(column, problem.rows()), rows));
+      pointers.push_back(columns.back().data());
+    }
+    const std::vector<double> target = at_rows(problem.target(), rows);
+    const std::vector<int> movement = at_rows(problem.movement(), rows);
+    const TrainingData sample = {context.data.inputs, pointers, target, movement};
+    Budget searching = context.budget.share(context.budget.remaining() / 5 * 4);
+    Search search(settings_, sample, context.operators, searching, context.progress,
+                  context.threads);
+    for (Expression& formula : solve(search, context, sample, context.random, 0)) {
+      all.take(std::move(formula));
+    }
+    context.budget.settle(searching);
+    return all.front();
+  }
+
+  template <typename T>
+  static std::vector<T> at_rows(std::span<const T> values, std::span<const std::size_t> rows) {
+    std::vector<T> out;
+    for (const std::size_t row : rows) out.push_back(values[row]);
+    return out;
   }
 
   // The unreduced search always runs; a reduction only adds formulas.
