@@ -161,6 +161,8 @@ std::string time(const fs::path& program, const BenchOptions& options, Benches& 
 
 }  // namespace
 
+void require_benches(const fs::path& folder) { programs_in(folder); }
+
 BenchRun run_benches(const BenchOptions& options, const std::atomic<bool>& stop) {
   BenchRun run;
   Benches benches;

@@ -34,7 +34,10 @@ struct BenchRun {
   std::vector<std::string> complaints;
 };
 
-// Throws Error (bad_input) where the folder has no program. One that fails is a complaint, and its
+// Throws Error (bad_input) where the folder has no program: to be asked before hours are spent.
+void require_benches(const std::filesystem::path& folder);
+
+// As require_benches. A program that fails is a complaint, and its
 // cases are missing. Cost: some fifty times a turn of every case.
 BenchRun run_benches(const BenchOptions& options, const std::atomic<bool>& stop);
 

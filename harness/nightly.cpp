@@ -260,6 +260,7 @@ NightlyResult run_night(const Grid& grid, const NightlyOptions& options,
   make_output_folder(store.runs());
   const StoreLock lock(options.store);
   require_free_disk(options);
+  if (!options.benches.empty()) require_benches(options.benches);
   const std::optional<Night> base = usable_base(store);
   RunOptions running = options.run;
   running.out = store.runs() / kPending;

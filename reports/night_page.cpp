@@ -81,11 +81,12 @@ std::string figure_of(const SeriesHistory& series, std::size_t nights) {
     picture.mark(series.nights[change.at], change.after > change.before);
   }
   picture.line("error", series.nights, series.log_errors);
-  return fmt::format("<figure>{}<figcaption>{} <b>{}</b> {}: {} &rarr; {}</figcaption></figure>",
-                     picture.text(), markup_text(series.problem), markup_text(series.method),
-                     markup_text(series.operators),
-                     figure(elementary::exp(series.log_errors.front()), 3),
-                     figure(elementary::exp(series.log_errors.back()), 3));
+  const auto error = [](double log_error) { return figure(elementary::exp(log_error), 3); };
+  return fmt::format(
+      "<figure>{}<figcaption>{} <b>{}</b> {}: {} &rarr; {} (within {} .. {})</figcaption></figure>",
+      picture.text(), markup_text(series.problem), markup_text(series.method),
+      markup_text(series.operators), error(series.log_errors.front()),
+      error(series.log_errors.back()), error(least), error(most));
 }
 
 // Relative to its own median.
@@ -145,7 +146,7 @@ constexpr const char* kStyle =
     "polyline{fill:none;stroke:#0072b2;stroke-width:1.3}"
     "polyline.time{stroke:#bbb;stroke-width:1}polyline.misses{stroke:#cc79a7;stroke-width:1}"
     "line.worse{stroke:#d55e00;stroke-width:1.5}line.better{stroke:#009e73;stroke-width:1.5}"
-    "td.worse{color:#a84a00}td.better{color:#00694d}"
+    "td:first-child{white-space:nowrap}td.worse{color:#a84a00}td.better{color:#00694d}"
     "td,th{padding:2px 10px;text-align:left;border-bottom:1px solid #ddd}table{border-collapse:"
     "collapse;display:block;overflow-x:auto}";
 
