@@ -57,6 +57,23 @@ void add_column(const Problem& problem, const StateDeclaration& state, Table& ta
   for (const std::size_t row : table.trail_row) taken.push_back(whole[row]);
 }
 
+// States stand behind all other inputs.
+Problem without_states(Problem problem) {
+  const auto keep = [](auto& columns, std::size_t count) {
+    if (columns.size() > count) columns.resize(count);
+  };
+  const auto first =
+      std::ranges::find_if(problem.inputs, [](const Input& input) { return !input.law.empty(); });
+  const auto count = static_cast<std::size_t>(first - problem.inputs.begin());
+  keep(problem.inputs, count);
+  for (Stage& stage : problem.stages) {
+    std::erase_if(stage.inputs, [count](std::size_t place) { return place >= count; });
+    keep(stage.train.columns, count);
+  }
+  keep(problem.test.columns, count);
+  return problem;
+}
+
 }  // namespace
 
 Problem with_states(const Problem& problem, std::span<const StateDeclaration> states) {
@@ -84,9 +101,10 @@ std::string formula_text(const Problem& problem, const Expression& formula) {
 }
 
 ProblemFormula read_problem_formula(const std::string& text, const Problem& problem) {
-  StatefulFormula read = parse_stateful(text, problem.input_names());
+  const Problem measured = without_states(problem);
+  StatefulFormula read = parse_stateful(text, measured.input_names());
   ProblemFormula result{std::move(read.formula), std::nullopt};
-  if (!read.states.empty()) result.extended = with_states(problem, read.states);
+  if (!read.states.empty()) result.extended = with_states(measured, read.states);
   return result;
 }
 

@@ -23,7 +23,8 @@ Problem with_states(const Problem& problem, std::span<const StateDeclaration> st
 // A formula over the problem's inputs as text: the states that it reads are declared before it.
 std::string formula_text(const Problem& problem, const Expression& formula);
 
-// The reverse: a formula of a record of this problem. `extended` has the states' columns.
+// The reverse: a formula of a record of this problem, whatever states the problem had then.
+// `extended` has the states' columns. Copies the problem.
 struct ProblemFormula {
   Expression formula;
   std::optional<Problem> extended;  // where the formula has states

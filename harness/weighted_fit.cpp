@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "algorithms/fitting/constant_fit.hpp"
-#include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "harness/judge.hpp"
 #include "harness/stateful_problem.hpp"
@@ -63,7 +62,7 @@ CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
   searched.stages.front().train = rows_of(table, sampled_rows(weights));
   CellResult result = fit_and_judge(searched, method, task, widened);
   if (result.record.status != "ok") return result;
-  // All formulas of a front have the same states: their columns are those of the chosen one.
+  // A method's formulas have the same states: their columns are those of the chosen one.
   const ProblemFormula own = read_problem_formula(result.record.formula, problem);
   const Problem& judged = own.over(problem);
   std::vector<Expression> front;
@@ -72,7 +71,7 @@ CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
   const TableInputs inputs(judged.stages.front().train);
   for (const FrontRecord& entry : result.front) {
     if (entry.chosen) chosen = front.size();
-    front.push_back(parse_stateful(entry.formula, problem.input_names()).formula);
+    front.push_back(read_problem_formula(entry.formula, problem).formula);
     fitter.fit(front.back(), inputs.inputs(), table.target, weights);
   }
   judge_formula(judged, {front.at(chosen), {}}, result.record);

@@ -27,6 +27,7 @@
 #include "harness/cli/number_options.hpp"
 #include "harness/machine.hpp"
 #include "harness/run_cell.hpp"
+#include "harness/state_refit.hpp"
 #include "harness/stateful_problem.hpp"
 #include "harness/table_evaluator.hpp"
 #include "harness/weighted_fit.hpp"
@@ -51,6 +52,7 @@ struct FitArguments {
   std::vector<std::string> words;  // of the command line, after the program's name
   std::string operators = "paper";
   std::vector<std::string> parameters;  // name=value
+  std::vector<std::string> states;      // declarations
   std::uint64_t seed = 1;
   std::uint64_t evaluations = 2'000'000'000;
   double seconds = 60;
@@ -237,6 +239,19 @@ void add_intervals(const FitArguments& arguments, const Problem& problem,
   }
 }
 
+// Declared states are inputs of the search; what it finds is fitted once more together with them.
+CellResult run_method(const FitArguments& arguments, const Problem& problem,
+                      std::span<const double> weights, const ChosenMethod& chosen,
+                      const CellTask& task) {
+  const bool has_states = !arguments.states.empty();
+  const Problem declared = has_states ? with_declared_states(problem, arguments.states) : Problem();
+  const Problem& seen = has_states ? declared : problem;
+  if (!weights.empty()) return fit_weighted(seen, weights, *chosen.method, task, chosen.widened);
+  CellResult result = fit_and_judge(seen, *chosen.method, task, chosen.widened);
+  if (has_states && result.record.status == "ok") refit_states(problem, result);
+  return result;
+}
+
 void fit(const FitArguments& arguments, const Registry& registry) {
   const ChosenMethod chosen = choose_method(arguments, registry);
   std::vector<std::string> inputs = arguments.inputs;
@@ -247,9 +262,7 @@ void fit(const FitArguments& arguments, const Registry& registry) {
   const std::vector<double> weights = take_weights(arguments, problem);
   const CellTask task = task_of(arguments, problem, chosen.fixed_form);
   FitAnswer answer;
-  answer.result = weights.empty()
-                      ? fit_and_judge(problem, *chosen.method, task, chosen.widened)
-                      : fit_weighted(problem, weights, *chosen.method, task, chosen.widened);
+  answer.result = run_method(arguments, problem, weights, chosen, task);
   const Record& record = answer.result.record;
   if (record.status != "ok") {
     const bool is_unsupported = record.reason.starts_with("unsupported");
@@ -315,6 +328,9 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
       ->capture_default_str();
   command->add_option("--parameter", arguments->parameters, "name=value of the method; repeatable");
   add_data_options(*command, arguments->reading);
+  command->add_option("--state", arguments->states,
+                      "a state as an input, as in 'z = dahl(v, sliding=1e-4)': its parameters are "
+                      "fitted with what is found; needs a column with role time; repeatable");
   command->add_option("--seed", arguments->seed, "same seed, same result")
       ->transform(whole_number(0))
       ->capture_default_str();

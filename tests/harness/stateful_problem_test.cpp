@@ -14,6 +14,7 @@
 #include "algorithms/states/state_column.hpp"
 #include "foundation/error.hpp"
 #include "harness/run_cell.hpp"
+#include "harness/state_refit.hpp"
 #include "harness/table_evaluator.hpp"
 #include "problems/data_problem.hpp"
 #include "problems/table.hpp"
@@ -109,6 +110,23 @@ TEST(StatefulProblem, ACellWithMemoryIsJudgedProvedAndReadBack) {
     error += std::abs(values[r] - problem.test.target[r]) / static_cast<double>(values.size());
   }
   EXPECT_NEAR(error, record.mae_test, 1e-15);
+}
+
+// A user's guess of a state beside a method that knows nothing of states.
+TEST(StatefulProblem, ADeclaredStateIsAnInputWhoseParametersAreFittedAfterwards) {
+  const Problem problem = problem_of(recording(true));
+  const Problem seen = with_declared_states(problem, {"z = dahl(v, sliding=0.002)"});
+  const Registry registry;
+  CellResult result = fit_and_judge(seen, *registry.make("linear"), task_of("linear"), {});
+  ASSERT_EQ(result.record.status, "ok") << result.record.reason;
+  EXPECT_THAT(result.record.formula, StartsWith("z = dahl(v, sliding=0.002); "));
+  const double before = result.record.mae_test;
+  refit_states(problem, result);
+  EXPECT_LT(result.record.mae_test, 0.2 * before);
+  EXPECT_THAT(result.record.formula, StartsWith("z = dahl(v, sliding=0.00"));
+  const ProblemFormula read = read_problem_formula(result.record.formula, seen);
+  EXPECT_EQ(formula_text(*read.extended, read.formula), result.record.formula);
+  EXPECT_THROW(with_declared_states(problem, {"v = dahl(v, sliding=0.002)"}), Error);
 }
 
 TEST(StatefulProblem, WithoutTimeACellSaysWhy) {
