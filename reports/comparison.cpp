@@ -250,16 +250,19 @@ bool has_instructions(const std::vector<Pair>& pairs) {
 
 void compare_cost(const std::vector<Pair>& pairs, const RunFolder& base, const RunFolder& now,
                   const ComparisonOptions& options, Comparison& comparison) {
+  Groups groups = log_ratios(pairs, seconds_of);
   comparison.why_no_seconds = why_no_seconds(base, now, options);
+  if (comparison.why_no_seconds.empty() && groups.empty()) {
+    comparison.why_no_seconds = fmt::format("no fit took {} s", kLeastMeasuredCpu_s);
+  }
   if (!comparison.why_no_seconds.empty()) {
     const bool counted = has_instructions(pairs);
     comparison.cost_currency = counted ? "instructions" : "evaluations";
-    const Groups groups = log_ratios(pairs, counted ? instructions_of : evaluations_of);
+    groups = log_ratios(pairs, counted ? instructions_of : evaluations_of);
     comparison.cost = rows_of(groups, false, options);
     return;
   }
   comparison.cost_currency = "CPU seconds";
-  Groups groups = log_ratios(pairs, seconds_of);
   // A machine that was slower throughout is no slower code.
   const double pace = elementary::log(median(calibration_of(now)) / median(calibration_of(base)));
   for (auto& [key, problems] : groups) {

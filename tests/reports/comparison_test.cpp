@@ -160,6 +160,15 @@ TEST(Comparison, RefusesToCompareTimesWhereTheCalibrationForbidsIt) {
   now = noisy_run("new", 5);
   now.provenance[0].second = "y";
   EXPECT_EQ(compare_runs(base, now).why_no_seconds, "the CPUs differ");
+  // Fits of a moment have no pace.
+  RunFolder soon = base;
+  for (Record& record : soon.records) {
+    record.fit_cpu_s = 1e-3;
+    record.evaluations = 5000;
+  }
+  EXPECT_EQ(compare_runs(soon, soon).why_no_seconds, "no fit took 0.02 s");
+  EXPECT_EQ(compare_runs(soon, soon).cost_currency, "evaluations");
+  EXPECT_EQ(compare_runs(soon, soon).cost.size(), 3U);
 }
 
 // A run's folder with nothing but the grid that took effect.
