@@ -159,6 +159,11 @@ class Parser {
         at_ = start;
         fail(fmt::format("'{}' is not an input", name), suggestion(name, names_));
       }
+      if (!is_formula_name(name)) {
+        at_ = start;
+        fail(fmt::format("'{}' cannot name an input", name),
+             fmt::format("call it {}", formula_name_for(name)));
+      }
       names_.emplace_back(name);
       found = names_.end() - 1;
     }
