@@ -11,6 +11,7 @@
 #include <functional>
 #include <vector>
 
+#include "algorithms/model_based/dynamic_models.hpp"
 #include "algorithms/states/state_column.hpp"
 #include "foundation/random.hpp"
 #include "problems/data_problem.hpp"
@@ -196,6 +197,53 @@ TEST(DynamicFriction, FrictionWithoutMemoryGetsNone) {
   const Dataset data = simulate(planted, 5000, 0.1);
   const FitResult result = fit(data, "dahl");
   EXPECT_LT(result.states.at(0).parameters[0], 2 * 0.002 * 0.04);
+}
+
+// What Levenberg-Marquardt walks by: each feature's slope against a difference quotient.
+TEST(DynamicFriction, SlopesOfItsFeaturesAreExact) {
+  Dataset data = simulate(dahl(2000, 4), 800, 0.1);
+  data.channels[2].role = Role::gravity_torque;  // any second column will do
+  const std::vector<std::string> names = {"v", "a"};
+  const Problem problem = make_data_problem(data, nullptr, "tau", names);
+  const Training training(problem);
+  const TrainingData rows = training.data();
+  std::vector<std::size_t> used;
+  for (std::size_t r = 0; r < rows.rows(); r += 2) used.push_back(r);
+  for (const DynamicModel model :
+       {DynamicModel::dahl, DynamicModel::lugre, DynamicModel::maxwell_slip}) {
+    Budget budget({});
+    DynamicFeatures features(model, {true, true, true}, *find_friction_inputs(rows.inputs), rows,
+                             used, budget);
+    std::vector<double> theta = {std::log(1e-3), 1.5, std::log(0.02), 0.7, std::log(0.01)};
+    theta.resize(features.parameters());
+    const std::size_t size = features.features() * features.rows();
+    std::vector<double> slopes(features.parameters() * size);
+    ASSERT_TRUE(features.differentiate(theta, slopes));
+    for (std::size_t j = 0; j < theta.size(); ++j) {
+      std::vector<double> up(size);
+      std::vector<double> down(size);
+      std::vector<double> moved = theta;
+      moved[j] = theta[j] + 1e-6;
+      ASSERT_TRUE(features.evaluate(moved, up));
+      moved[j] = theta[j] - 1e-6;
+      ASSERT_TRUE(features.evaluate(moved, down));
+      for (std::size_t k = 0; k < features.features(); ++k) {
+        double largest = 0;
+        std::size_t off = 0;
+        for (std::size_t r = 0; r < used.size(); ++r) {
+          largest = std::max(largest, std::abs(slopes[j * size + k * used.size() + r]));
+        }
+        for (std::size_t r = 0; r < used.size(); ++r) {
+          const std::size_t place = k * used.size() + r;
+          const double slope = (up[place] - down[place]) / 2e-6;
+          off += std::abs(slope - slopes[j * size + place]) > 1e-4 * largest + 1e-12 ? 1U : 0U;
+        }
+        // An element that lets go between the two points has no slope there.
+        EXPECT_LE(off, used.size() / 50)
+            << static_cast<int>(model) << " theta " << j << " feature " << k;
+      }
+    }
+  }
 }
 
 TEST(DynamicFriction, SaysWhatIsMissing) {
