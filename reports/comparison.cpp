@@ -193,21 +193,23 @@ void look_at_power(const Groups& groups, Comparison& comparison, const Compariso
   }
 }
 
-// Holm over every row of the comparison, quality and time together.
+// Holm over every row of the comparison, quality and cost together, that could say anything: given
+// how much its pairs differ, a row whose pairs are all equal has no p but 1 and costs the others
+// nothing (Tarone 1990).
 void decide(Comparison& comparison, const ComparisonOptions& options) {
   std::vector<double> p;
-  for (const ComparisonRow& row : comparison.quality) p.push_back(row.p);
-  for (const ComparisonRow& row : comparison.cost) p.push_back(row.p);
+  for (const auto* rows : {&comparison.quality, &comparison.cost}) {
+    for (const ComparisonRow& row : *rows) p.push_back(row.equal < row.pairs ? row.p : kMissing);
+  }
   const std::vector<double> adjusted = holm(p);
   std::size_t i = 0;
-  for (ComparisonRow& row : comparison.quality) {
-    row.p = adjusted[i++];
-    row.verdict = judge(row, options.level, options.quality_equivalence);
-  }
-  for (ComparisonRow& row : comparison.cost) {
-    row.p = adjusted[i++];
-    row.verdict = judge(row, options.level, options.time_equivalence);
-  }
+  const auto settle = [&](ComparisonRow& row, double equivalence) {
+    const double own = adjusted[i++];
+    row.p = std::isnan(own) ? 1 : own;
+    row.verdict = judge(row, options.level, equivalence);
+  };
+  for (ComparisonRow& row : comparison.quality) settle(row, options.quality_equivalence);
+  for (ComparisonRow& row : comparison.cost) settle(row, options.time_equivalence);
 }
 
 // CPU seconds of the calibration kernel in every session of a run.

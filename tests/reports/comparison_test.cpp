@@ -150,6 +150,17 @@ TEST(Comparison, JudgesCostInInstructionsOrEvaluationsWhereSecondsCannotBeTruste
   EXPECT_THAT(comparison_markdown(evaluations), HasSubstr("Slower code is not seen"));
 }
 
+TEST(Comparison, RowsThatCannotDifferCostTheOthersNothing) {
+  // Only "b" differs at all: its own rows are the family, not those of "a" and "c" nor of the cost.
+  RunFolder base = noisy_run("x", 12);
+  RunFolder now = noisy_run("x", 12, {1.3, 1});
+  const double least = 2 / std::pow(2.0, 12);
+  for (const ComparisonRow& row : compare_runs(base, now).quality) {
+    if (row.method != "b") EXPECT_EQ(row.p, 1);
+    if (row.method == "b") EXPECT_LE(row.p, least * (kProblems + 1) * (1 + 1e-9));
+  }
+}
+
 TEST(Comparison, RefusesToCompareTimesWhereTheCalibrationForbidsIt) {
   const RunFolder base = noisy_run("base", 5);
   RunFolder now = noisy_run("new", 5);
