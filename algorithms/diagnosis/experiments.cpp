@@ -15,10 +15,8 @@
 namespace tribench::loop {
 namespace {
 
-constexpr std::size_t kRows = 600;     // enough for what happens just after a reversal
-constexpr double kPeriods = 3;         // of the first tone
-constexpr double kLongest = 120;       // s; nobody records a longer one by the dozen
-constexpr double kTwoToneRatio = 1.9;  // of the second tone's frequency to the first's
+constexpr std::size_t kRows = 600;  // enough for what happens just after a reversal
+constexpr double kLongest = 120;    // s; nobody records a longer one by the dozen
 
 struct Rival {
   LoopModel model;
@@ -147,33 +145,6 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
   return out;
 }
 
-ProposedMovement constant(double velocity, double low, double high, double load_factor) {
-  ProposedMovement movement;
-  movement.kind = "constant";
-  movement.velocity = velocity;
-  movement.from = velocity > 0 ? low : high;
-  movement.to = velocity > 0 ? high : low;
-  movement.load_factor = load_factor;
-  movement.duration = std::abs((high - low) / velocity);
-  return movement;
-}
-
-// Both tones at their fastest at the start, where the speed is `peak`.
-ProposedMovement two_tone(double peak, double low, double high, double load_factor) {
-  ProposedMovement movement;
-  movement.kind = "two_tone";
-  movement.velocity = peak;
-  movement.from = low;
-  movement.to = high;
-  movement.load_factor = load_factor;
-  const double half = 0.5 * (high - low);
-  const double frequency = peak / half / (2 * std::numbers::pi);
-  movement.tones = {
-      {{0.6 * half, frequency}, {0.4 / kTwoToneRatio * half, kTwoToneRatio * frequency}}};
-  movement.duration = kPeriods / frequency;
-  return movement;
-}
-
 std::vector<ProposedMovement> candidates(const Observations& data) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const double top = signal_scale(data, "v");
@@ -186,8 +157,8 @@ std::vector<ProposedMovement> candidates(const Observations& data) {
     high = range.max;
   }
   std::vector<ProposedMovement> all;
-  const auto add = [&](const ProposedMovement& movement) {
-    if (!(movement.duration > kLongest)) all.push_back(movement);
+  const auto add = [&](const PlannedMovement& movement) {
+    if (!(movement.duration > kLongest)) all.push_back({movement, 0, {}});
   };
   const double centre = 0.5 * (low + high);
   const double narrow = 0.0625 * (high - low);
@@ -196,13 +167,13 @@ std::vector<ProposedMovement> candidates(const Observations& data) {
     for (const double factor : {1.0, 1.5, 0.5}) {
       if (!loaded && factor != 1.0) continue;
       for (const double direction : {1.0, -1.0}) {
-        add(constant(direction * part * top, low, high, factor));
-        add(constant(direction * part * top, low, centre, factor));
-        add(constant(direction * part * top, centre - narrow, centre + narrow, factor));
+        add(constant_movement(direction * part * top, low, high, factor));
+        add(constant_movement(direction * part * top, low, centre, factor));
+        add(constant_movement(direction * part * top, centre - narrow, centre + narrow, factor));
       }
       if (data.find("a") != nullptr && q != nullptr) {
-        add(two_tone(part * top, low, high, factor));
-        add(two_tone(part * top, centre - narrow, centre + narrow, factor));
+        add(two_tone_movement(part * top, low, high, factor));
+        add(two_tone_movement(part * top, centre - narrow, centre + narrow, factor));
       }
     }
   }
@@ -257,31 +228,15 @@ std::vector<ProposedMovement> propose_movements(const Diagnosis& diagnosis,
 
 std::string movements_csv(const std::vector<ProposedMovement>& movements,
                           const Observations& data) {
-  // As the project's files name their columns: rad/s is _rad_s.
-  const auto suffix = [&](std::string_view signal) {
+  const auto unit = [&](std::string_view signal) {
     const Signal* found = data.find(signal);
-    std::string text = found == nullptr || found->unit.empty() ? "" : "_" + found->unit;
-    std::ranges::replace(text, '/', '_');
-    std::erase(text, '^');
-    return text;
+    return found == nullptr ? std::string() : found->unit;
   };
-  const std::string q = suffix("q");
-  std::string text = fmt::format(
-      "order,kind,velocity{0},from{1},to{1},load_factor,duration_s,tone1{1},tone1_Hz,tone2{1},"
-      "tone2_Hz,separation,between\n",
-      suffix("v"), q);
-  const auto place = [](double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : ""; };
-  for (std::size_t i = 0; i < movements.size(); ++i) {
-    const ProposedMovement& m = movements[i];
-    text += fmt::format("{},{},{:.6g},{},{},{:.3g},{}", i + 1, m.kind, m.velocity, place(m.from),
-                        place(m.to), m.load_factor, place(m.duration));
-    for (const Tone& tone : m.tones) {
-      text += m.kind == "two_tone" ? fmt::format(",{:.6g},{:.6g}", tone.amplitude, tone.frequency)
-                                   : ",,";
-    }
-    text += fmt::format(",{:.4g},{}\n", m.separation, m.between);
+  std::vector<std::string> extra = {"separation,between"};
+  for (const ProposedMovement& one : movements) {
+    extra.push_back(fmt::format("{:.4g},{}", one.separation, one.between));
   }
-  return text;
+  return movements_text({movements.begin(), movements.end()}, unit("q"), unit("v"), extra);
 }
 
 }  // namespace tribench::loop

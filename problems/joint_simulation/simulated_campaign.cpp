@@ -7,71 +7,13 @@
 #include <cmath>
 #include <span>
 
-#include "foundation/elementary.hpp"
+#include "problems/joint_simulation/joint_recording.hpp"
 
 namespace tribench::simulation {
 namespace {
 
 constexpr double kStep_s = 0.004;
-constexpr double kRows = 5500;        // about so many are recorded
-constexpr double kWarming_degc = 16;  // at the usual speed, without end
-constexpr double kUsualSpeed_rad_s = 0.25;
-constexpr double kOffset = 0.15;  // sd of the movements' offsets, in sd of the rows' noise
-constexpr double kSensorStep_degc = 0.1;
-
-double root_mean_square(std::span<const double> values) {
-  double squares = 0;
-  for (const double value : values) squares += value * value;
-  return std::sqrt(squares / static_cast<double>(values.size()));
-}
-
-// Motion warms the lubricant, the lubricant warms the housing with its sensor.
-class Thermal {
- public:
-  Thermal(double campaign_s, RandomStream random)
-      : oil_s_(campaign_s * random.uniform(0.1, 0.2)),
-        housing_s_(campaign_s * random.uniform(0.04, 0.1)) {}
-  void advance(double speed_rad_s, double dt_s) {
-    const double goal = kCoolest_degc + kWarming_degc * speed_rad_s / kUsualSpeed_rad_s;
-    oil_ += (goal - oil_) * -elementary::expm1(-dt_s / oil_s_);
-    housing_ += (oil_ - housing_) * -elementary::expm1(-dt_s / housing_s_);
-  }
-  double oil_degc() const { return oil_; }
-  double sensor_degc() const { return kSensorStep_degc * std::round(housing_ / kSensorStep_degc); }
-
- private:
-  double oil_s_;
-  double housing_s_;
-  double oil_ = kCoolest_degc;
-  double housing_ = kCoolest_degc;
-};
-
-Dataset blank_dataset(const SimulatedCase& wanted) {
-  Dataset data;
-  data.name = fmt::format("simulated {}", design_name(wanted.design));
-  data.channels = {{"time_s", "s", Role::time, {}},
-                   {"position_rad", "rad", Role::position, {}},
-                   {"velocity_rad_s", "rad/s", Role::velocity, {}},
-                   {"acceleration_rad_s2", "rad/s^2", Role::acceleration, {}},
-                   {"gravity_torque_Nm", "N m", Role::gravity_torque, {}},
-                   {"temperature_degC", "degC", Role::temperature, {}},
-                   {"other_velocity_rad_s", "rad/s", Role::other_velocity, {}},
-                   {"other_acceleration_rad_s2", "rad/s^2", Role::other_acceleration, {}}};
-  return data;
-}
-
-void record(Dataset& data, int movement, double time_s, const Instant& now, double sensor_degc) {
-  const std::array row = {time_s,
-                          now.joint.position_rad,
-                          now.joint.velocity_rad_s,
-                          now.joint.acceleration_rad_s2,
-                          now.gravity_nm,
-                          sensor_degc,
-                          now.other.velocity_rad_s,
-                          now.other.acceleration_rad_s2};
-  for (std::size_t c = 0; c < row.size(); ++c) data.channels[c].values.push_back(row[c]);
-  data.movement.push_back(movement);
-}
+constexpr double kRows = 5500;  // about so many are recorded
 
 // Half way through the joint stands still long enough to cool down, so that time and temperature
 // are not the same.
@@ -82,7 +24,7 @@ double pause_after(std::size_t movement, std::size_t movements, double pause_s, 
 // Records the campaign and, row by row, the response.
 Dataset run_campaign(const SimulatedCase& wanted, const std::vector<Movement>& movements,
                      const Response& response, RandomStream random, std::vector<double>& values) {
-  Dataset data = blank_dataset(wanted);
+  Dataset data = blank_recording(fmt::format("simulated {}", design_name(wanted.design)));
   double moving_s = 0;
   for (const Movement& movement : movements) moving_s += movement.duration_s();
   double campaign_s = 0;
@@ -92,7 +34,7 @@ Dataset run_campaign(const SimulatedCase& wanted, const std::vector<Movement>& m
   }
   const auto stride =
       std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(moving_s / (kRows * kStep_s))));
-  Thermal thermal(campaign_s, random.split("thermal"));
+  Thermal thermal = draw_thermal(campaign_s, random.split("thermal"));
   double start_s = 0;
   for (std::size_t m = 0; m < movements.size(); ++m) {
     const Movement& movement = movements[m];
@@ -100,19 +42,13 @@ Dataset run_campaign(const SimulatedCase& wanted, const std::vector<Movement>& m
     const auto steps = static_cast<std::size_t>(movement.duration_s() / kStep_s);
     for (std::size_t i = 0; i <= steps; ++i) {
       const double t_s = static_cast<double>(i) * kStep_s;
-      Instant now;
+      Instant now = instant_of(movement, t_s);
       now.part = (start_s + t_s) / campaign_s;
-      now.joint = movement.at(t_s);
-      now.other = motion_of(movement.other, t_s);
-      now.gravity_amplitude_nm = movement.gravity_nm;
-      now.gravity_phase_rad = movement.gravity_phase_rad;
-      now.gravity_nm = movement.gravity_nm *
-                       elementary::sin(now.joint.position_rad + movement.gravity_phase_rad);
       thermal.advance(std::abs(now.joint.velocity_rad_s), kStep_s);
       now.oil_degc = thermal.oil_degc();
       const double value = response ? response(now, kStep_s) : 0;
       if (i % stride != 0 || now.sign() == 0) continue;
-      record(data, static_cast<int>(m), start_s + t_s, now, thermal.sensor_degc());
+      append_row(data, static_cast<int>(m), start_s + t_s, now, thermal.sensor_degc());
       values.push_back(value);
     }
     const double pause_s = pause_after(m, movements.size(), movement.pause_s, moving_s);
@@ -120,21 +56,6 @@ Dataset run_campaign(const SimulatedCase& wanted, const std::vector<Movement>& m
     start_s += movement.duration_s() + pause_s;
   }
   return data;
-}
-
-std::vector<double> base_friction(const Dataset& data, RandomStream random) {
-  struct Branch {
-    double coulomb_nm;
-    double viscous_nms;
-  };
-  const std::array<Branch, 2> branches = {{{random.uniform(4, 9), random.uniform(8, 18)},
-                                           {random.uniform(4, 9), random.uniform(8, 18)}}};
-  std::vector<double> friction;
-  for (const double v : data.find(Role::velocity)->values) {
-    const Branch& branch = branches[v > 0 ? 0 : 1];
-    friction.push_back((v > 0 ? 1 : -1) * branch.coulomb_nm + branch.viscous_nms * v);
-  }
-  return friction;
 }
 
 // Sets noise and noise_sd; quantised torques are rounded once the rest is there.
@@ -156,7 +77,7 @@ void add_noise(const SimulatedCase& wanted, const Dataset& data, RandomStream ra
   for (std::size_t i = 0; i < data.rows(); ++i) {
     RandomStream offset =
         random.split("offset").split(static_cast<std::uint64_t>(data.movement[i]));
-    truth.noise[i] += kOffset * sd_nm * offset.normal();
+    truth.noise[i] += kMovementOffset * sd_nm * offset.normal();
   }
 }
 
@@ -178,7 +99,7 @@ PlantedData simulate(const SimulatedCase& wanted, std::uint64_t seed) {
   std::vector<double> values;
   PlantedData run;
   run.data = run_campaign(wanted, movements, response, random.split("campaign"), values);
-  run.truth.base = base_friction(run.data, random.split("base"));
+  run.truth.base = base_friction(run.data.find(Role::velocity)->values, random.split("base"));
   add_noise(wanted, run.data, random.split("noise"), run.truth);
   if (cause != nullptr) {
     PlantedEffect effect{std::string(cause->name), wanted.scale,     0, cause->names, cause->beside,
