@@ -22,6 +22,7 @@ enum class ExitStatus : int {
 // The hidden word that makes the program a worker process.
 inline constexpr const char* kWorkerCommand = "worker";
 
+void add_challenge_command(CLI::App& app, ExitStatus& status);
 void add_check_command(CLI::App& app, ExitStatus& status);
 void add_data_command(CLI::App& app, ExitStatus& status);
 void add_fit_command(CLI::App& app, ExitStatus& status, const Registry& registry);
@@ -37,15 +38,18 @@ void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry
 void add_study_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_submit_command(CLI::App& app, ExitStatus& status, const Registry& registry);
 void add_compare_command(CLI::App& app, ExitStatus& status);
+void add_explore_command(CLI::App& app, ExitStatus& status);
 void add_export_command(CLI::App& app, ExitStatus& status);
 void add_predict_command(CLI::App& app, ExitStatus& status);
 void add_simulate_command(CLI::App& app, ExitStatus& status);
+void add_world_command(CLI::App& app, ExitStatus& status);
 void add_describe_command(CLI::App& app);
 // Under `list`.
 void add_problem_listing(CLI::App& list);
 // Under `study`.
 void add_comparison_study(CLI::App& study, ExitStatus& status);
 void add_night_study(CLI::App& study, ExitStatus& status, const Registry& registry);
+void add_exploration_study(CLI::App& study);
 void add_recovery_study(CLI::App& study);
 
 }  // namespace tribench

@@ -104,6 +104,9 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_loop_command(app, status, registry);
   add_history_command(app, status);
   add_nightly_command(app, status, registry);
+  add_world_command(app, status);
+  add_explore_command(app, status);
+  add_challenge_command(app, status);
   add_list_command(app, status, registry);
   add_study_command(app, status, registry);
   add_submit_command(app, status, registry);

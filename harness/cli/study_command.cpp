@@ -154,6 +154,7 @@ void add_study_command(CLI::App& app, ExitStatus& status, const Registry& regist
   CLI::App* study = app.add_subcommand("study", "Experiments of the program with itself");
   study->require_subcommand(1);
   add_comparison_study(*study, status);
+  add_exploration_study(*study);
   add_generator_study(*study, status);
   add_reference_study(*study, status);
   add_external_torque_study(*study);

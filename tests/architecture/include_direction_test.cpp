@@ -22,8 +22,9 @@ using Rooms = std::set<std::string>;
 // What a room may include besides itself. A method's room is "method:<folder>".
 const std::map<std::string, Rooms>& allowed() {
   static const Rooms kBelowTheHarness = {
-      "foundation", "problems", "expression", "interface", "fitting", "inference",
-      "states",     "effects",  "method",     "registry",  "reports", "forward_dynamics"};
+      "foundation", "problems",         "expression", "interface", "fitting",
+      "inference",  "states",           "effects",    "method",    "registry",
+      "reports",    "forward_dynamics", "exploration"};
   const auto with = [](Rooms rooms, const Rooms& more) {
     rooms.insert(more.begin(), more.end());
     return rooms;
@@ -41,6 +42,9 @@ const std::map<std::string, Rooms>& allowed() {
       {"method",
        {"foundation", "problems", "expression", "interface", "fitting", "states", "inference",
         "effects"}},
+      {"exploration",  // above the diagnosis, which it asks
+       {"foundation", "problems", "expression", "interface", "fitting", "inference", "effects",
+        "method"}},
       {"registry",
        {"foundation", "problems", "expression", "interface", "fitting", "states", "method"}},
       {"reports", {"foundation"}},
@@ -61,8 +65,8 @@ std::string room_of(const std::string& path) {
   const std::size_t slash = rest.find('/');
   if (slash == std::string::npos) return rest.starts_with("registry") ? "registry" : "interface";
   const std::string folder = rest.substr(0, slash);
-  for (const char* floor :
-       {"expression", "fitting", "inference", "states", "effects", "forward_dynamics"}) {
+  for (const char* floor : {"expression", "fitting", "inference", "states", "effects",
+                            "forward_dynamics", "exploration"}) {
     if (folder == floor) return folder;
   }
   return "method:" + folder;

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+//
+// tribench explore: asks a world, or a program, for the movements that tell what is missing.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algorithms/exploration/fixed_plans.hpp"
+#include "foundation/error.hpp"
+#include "foundation/output_folder.hpp"
+#include "harness/cli/commands.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/number_options.hpp"
+#include "harness/exploration/executing_program.hpp"
+#include "harness/exploration/exploration_report.hpp"
+#include "harness/exploration/world_folder.hpp"
+#include "problems/reading/csv.hpp"
+#include "problems/reading/file_text.hpp"
+#include "reports/record_csv.hpp"
+
+namespace tribench {
+namespace {
+
+struct ExploreArguments {
+  std::string world;
+  std::vector<std::string> command;
+  std::string limits;
+  double command_seconds = 600;
+  double budget_s = 600;
+  double alpha = 0.01;
+  std::string plan = "informative";
+  std::uint64_t seed = 1;
+  std::string out;
+  bool json = false;
+};
+
+// "600s" is 600.
+CLI::Validator seconds_of_text() {
+  return CLI::Validator(
+      [](std::string& text) {
+        if (text.size() > 1 && text.back() == 's') text.pop_back();
+        return std::string();
+      },
+      "");
+}
+
+void check(const ExploreArguments& arguments) {
+  if (arguments.world.empty() == arguments.command.empty()) {
+    throw_bad_input(
+        arguments.world.empty() ? "there is nothing to ask" : "a world and a program are given",
+        "explore", "name a world's folder, or a program with --command");
+  }
+  if (!arguments.command.empty() && arguments.limits.empty()) {
+    throw_bad_input("a program needs limits to plan within", "--limits",
+                    "a file with the limits as world.json has them");
+  }
+}
+
+ExitStatus run_explore(const ExploreArguments& arguments) {
+  check(arguments);
+  if (!arguments.out.empty()) make_output_folder(arguments.out);
+  const loop::NamedPlan& plan = loop::find_plan(arguments.plan);
+  std::optional<WorldFolder> folder;
+  MotionLimits limits;
+  loop::ExecuteMovement execute;
+  loop::ExplorerOptions options;
+  options.alpha = arguments.alpha;
+  if (!arguments.world.empty()) {
+    folder.emplace(std::filesystem::path(arguments.world));
+    limits = folder->world().limits();
+    limits.seconds = std::max(0.0, limits.seconds - folder->world().seconds_used());
+    options.start_rad = folder->world().position_rad();
+    execute = [&](const PlannedMovement& movement) {
+      return folder->execute({movement}, "the plan");
+    };
+  } else {
+    limits = read_limits(read_file_text(arguments.limits), arguments.limits);
+    execute = executing_program(arguments.command, arguments.command_seconds);
+  }
+  options.budget_s = std::min(arguments.budget_s, limits.seconds);
+  options.stop = &stop_requested_by({SIGINT, SIGTERM});
+  if (!arguments.json) {
+    options.told = [](const loop::ExplorationStep& step) {
+      if (step.looked) fmt::print("  {}\n", step_line(step));
+    };
+  }
+  const loop::Exploration done = loop::explore(limits, execute, options, plan.make(arguments.seed));
+  const SecondOpinion second = second_opinion(done, limits.gear_ratio);
+  const std::string json = exploration_json(done, second, arguments.alpha);
+  if (!arguments.out.empty()) {
+    const std::filesystem::path out = arguments.out;
+    write_file(out / "exploration.json", json);
+    write_file(out / "exploration.md", exploration_markdown(done, second, arguments.alpha));
+    std::vector<PlannedMovement> movements;
+    for (const loop::ExplorationStep& step : done.steps) movements.push_back(step.movement);
+    write_file(out / "movements.csv", movements_text(movements, "rad", "rad/s"));
+    if (done.data.rows() > 0) write_csv(done.data, out / "data.csv");
+  }
+  fmt::print("{}", arguments.json ? json : exploration_terminal(done, second, arguments.alpha));
+  return done.end == loop::ExplorationEnd::sure ? ExitStatus::done : ExitStatus::undecided;
+}
+
+}  // namespace
+
+void add_explore_command(CLI::App& app, ExitStatus& status) {
+  CLI::App* command = app.add_subcommand(
+      "explore", "Ask a joint for the movements that tell what its friction model lacks");
+  command->footer(
+      "Example: tribench world 7 --out w && tribench explore w --budget 600s --out answer\n"
+      "         tribench explore --command ./robot.py --limits limits.json --budget 300s\n"
+      "Exit status 4 where it is not sure when the seconds are spent.");
+  auto arguments = std::make_shared<ExploreArguments>();
+  command->add_option("WORLD", arguments->world, "a world's folder (tribench world)");
+  command->add_option("--command", arguments->command,
+                      "a program and its words in the place of a world: a movements file in, a "
+                      "recording as CSV out (docs/explore.md)");
+  command->add_option("--limits", arguments->limits,
+                      "what the program's joint allows: JSON as in world.json");
+  command
+      ->add_option("--command-seconds", arguments->command_seconds,
+                   "wall time that the program may take for a movement")
+      ->transform(real_number(0.01, 1e6))
+      ->capture_default_str();
+  command->add_option("--budget", arguments->budget_s, "seconds of motion at most: 600 or 600s")
+      ->transform(real_number(0.1, 1e9))
+      ->transform(seconds_of_text())  // before the number is read
+      ->capture_default_str();
+  command
+      ->add_option("--alpha", arguments->alpha,
+                   "share of wrong verdicts among those it stops with, whenever it stops")
+      ->transform(real_number(1e-6, 0.5))
+      ->capture_default_str();
+  std::string plans;
+  for (const loop::NamedPlan& plan : loop::movement_plans()) {
+    plans += fmt::format("\n  {:<12} {}", plan.name, plan.summary);
+  }
+  command->add_option("--plan", arguments->plan, "who chooses the movements:" + plans)
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "of plans that draw")
+      ->transform(whole_number(0))
+      ->capture_default_str();
+  command->add_option("--out", arguments->out,
+                      "folder for exploration.json, exploration.md, movements.csv, data.csv");
+  command->add_flag("--json", arguments->json, "print exploration.json");
+  command->callback([arguments, &status] { status = run_explore(*arguments); });
+}
+
+}  // namespace tribench

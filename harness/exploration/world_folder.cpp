@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+#include "harness/exploration/world_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "algorithms/exploration/explorer.hpp"
+#include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
+#include "foundation/output_folder.hpp"
+#include "foundation/suggestion.hpp"
+#include "problems/file_hash.hpp"
+#include "reports/record_csv.hpp"
+
+namespace tribench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct LimitField {
+  const char* name;
+  double MotionLimits::*value;
+  double low;
+  double high;
+};
+
+constexpr double kLargest = 1e9;
+constexpr std::array kFields = {
+    LimitField{"lowest_rad", &MotionLimits::lowest_rad, -kLargest, kLargest},
+    LimitField{"highest_rad", &MotionLimits::highest_rad, -kLargest, kLargest},
+    LimitField{"speed_rad_s", &MotionLimits::speed_rad_s, 1e-9, kLargest},
+    LimitField{"acceleration_rad_s2", &MotionLimits::acceleration_rad_s2, 1e-9, kLargest},
+    LimitField{"torque_Nm", &MotionLimits::torque_nm, 0, kLargest},
+    LimitField{"temperature_rise_K", &MotionLimits::temperature_rise_k, 0, 1000},
+    LimitField{"ambient_degC", &MotionLimits::ambient_degc, -273, 1000},
+    LimitField{"seconds", &MotionLimits::seconds, 1e-3, kLargest},
+    LimitField{"least_load_factor", &MotionLimits::least_load_factor, -1000, 1000},
+    LimitField{"greatest_load_factor", &MotionLimits::greatest_load_factor, -1000, 1000},
+    LimitField{"other_velocity_rad_s", &MotionLimits::greatest_other_velocity_rad_s, 0, kLargest},
+    LimitField{"longest_rest_s", &MotionLimits::longest_rest_s, 0, kLargest},
+    LimitField{"rate_Hz", &MotionLimits::rate_hz, 1e-3, 1e6},
+    LimitField{"gear_ratio", &MotionLimits::gear_ratio, 0, 1e6},
+    LimitField{"gravity_Nm", &MotionLimits::gravity_nm, 0, kLargest},
+    LimitField{"gravity_phase_rad", &MotionLimits::gravity_phase_rad, -10, 10}};
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) {
+    throw_bad_input("there is no world here", file.parent_path().string(),
+                    "make one: tribench world SEED --out FOLDER");
+  }
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+simulation::WorldPlan read_plan(const std::filesystem::path& file) {
+  const Json json = read_json_or_throw<Json>(text_of(file), file.string());
+  simulation::WorldPlan plan;
+  try {
+    plan.seed = json.at("seed").get<std::uint64_t>();
+    const auto level = json.at("level").get<std::string>();
+    for (const simulation::WorldLevel one : simulation::kWorldLevels) {
+      if (simulation::world_level_name(one) == level) plan.level = one;
+    }
+    const auto kind = json.value("kind", std::string());
+    for (const simulation::WorldKind one : simulation::kWorldKinds) {
+      if (simulation::world_kind_name(one) == kind) plan.kind = one;
+    }
+  } catch (const Json::exception& error) {
+    throw_bad_input(fmt::format("this is no sealed world: {}", error.what()), file.string(),
+                    "make the world again");
+  }
+  return plan;
+}
+
+}  // namespace
+
+std::string truth_json(const simulation::WorldTruth& truth) {
+  Json causes = Json::array();
+  for (const PlantedEffect& effect : truth.effects) {
+    Json lives_in = Json::array();
+    for (const Role role : effect.lives_in) lives_in.push_back(role_name(role));
+    causes.push_back({{"cause", effect.family},
+                      {"families", effect.names},
+                      {"beside", effect.beside},
+                      {"lives_in", lives_in},
+                      {"scale", effect.scale}});
+  }
+  return write_json(Json{{"kind", world_kind_name(truth.kind)},
+                         {"level", world_level_name(truth.plan.level)},
+                         {"seed", truth.plan.seed},
+                         {"noise", noise_name(truth.noise)},
+                         {"noise_sd_Nm", truth.noise_sd_nm},
+                         {"causes", causes}});
+}
+
+std::string seal_key(const simulation::WorldPlan& plan) {
+  RandomStream random = RandomStream(key_of("world/seal")).split(plan.seed);
+  return fmt::format("{:016x}{:016x}", random.next(), random.next());
+}
+
+std::string seal_of(const simulation::WorldTruth& truth) {
+  return sha256_of_text(seal_key(truth.plan) + "\n" + truth_json(truth));
+}
+
+std::string limits_json(const MotionLimits& limits) {
+  Json json;
+  for (const LimitField& field : kFields) json[field.name] = limits.*field.value;
+  return write_json(json, 1);
+}
+
+MotionLimits read_limits(std::string_view text, const std::string& place) {
+  Json json = read_json_or_throw<Json>(text, place);
+  if (json.is_object() && json.contains("limits")) json = json.at("limits");
+  if (!json.is_object()) throw_bad_input("this is no list of limits", place, "as in world.json");
+  MotionLimits limits;
+  std::vector<std::string> names;
+  for (const LimitField& field : kFields) names.emplace_back(field.name);
+  for (const auto& [name, value] : json.items()) {
+    const auto found = std::ranges::find(
+        kFields, name, [](const LimitField& f) { return std::string_view(f.name); });
+    if (found == kFields.end()) {
+      throw_bad_input(fmt::format("there is no limit '{}'", name), place,
+                      did_you_mean(name, names));
+    }
+    if (!value.is_number() || !(value.get<double>() >= found->low) ||
+        !(value.get<double>() <= found->high)) {
+      throw_bad_input(fmt::format("{} is no {}", write_json(value), name), place,
+                      fmt::format("a number from {:g} to {:g}", found->low, found->high));
+    }
+    limits.*(found->value) = value.get<double>();
+  }
+  if (!(limits.lowest_rad < limits.highest_rad)) {
+    throw_bad_input("lowest_rad is not below highest_rad", place, "give a range of positions");
+  }
+  if (limits.least_load_factor > limits.greatest_load_factor) {
+    throw_bad_input("least_load_factor is above greatest_load_factor", place, "turn them round");
+  }
+  return limits;
+}
+
+WorldFolder::WorldFolder(std::filesystem::path folder, const simulation::WorldPlan& plan)
+    : folder_(std::move(folder)), world_(plan) {}
+
+WorldFolder WorldFolder::create(const std::filesystem::path& folder,
+                                const simulation::WorldPlan& plan) {
+  if (std::filesystem::exists(folder / "world.json")) {
+    throw_bad_input("there is a world already", folder.string(), "choose another folder");
+  }
+  make_output_folder(folder);
+  WorldFolder out(folder, plan);
+  Json sealed = {
+      {"seed", plan.seed}, {"level", world_level_name(plan.level)}, {"key", seal_key(plan)}};
+  if (plan.kind) sealed["kind"] = world_kind_name(*plan.kind);
+  write_file(folder / "sealed.json", write_json(sealed) + "\n");
+  const Json known = {{"world", 1},
+                      {"truth_sha256", seal_of(out.world_.truth())},
+                      {"limits", Json::parse(limits_json(out.world_.limits()))}};
+  write_file(folder / "world.json", write_json(known, 1) + "\n");
+  return out;
+}
+
+WorldFolder::WorldFolder(const std::filesystem::path& folder)
+    : WorldFolder(folder, read_plan(folder / "sealed.json")) {
+  const std::filesystem::path file = folder / "executed.csv";
+  if (!std::filesystem::exists(file)) return;
+  executed_ = read_movements(text_of(file), file.string());
+  for (const PlannedMovement& movement : executed_) world_.execute(movement, file.string());
+}
+
+bool WorldFolder::revealed() const { return std::filesystem::exists(folder_ / "revealed.json"); }
+
+Dataset WorldFolder::execute(const std::vector<PlannedMovement>& movements,
+                             const std::string& file) {
+  if (revealed()) {
+    throw_bad_input("the truth of this world has been revealed", folder_.string(),
+                    "ask before you reveal; another SEED is another world");
+  }
+  simulation::World world = world_;
+  Dataset data;
+  for (std::size_t i = 0; i < movements.size(); ++i) {
+    loop::append_movement(data,
+                          world.execute(movements[i], fmt::format("{}, movement {}", file, i + 1)));
+  }
+  world_ = std::move(world);
+  append(movements);
+  return data;
+}
+
+// A whole file in the place of the old one: a world that is stopped is as before or as after.
+void WorldFolder::append(const std::vector<PlannedMovement>& movements) {
+  executed_.insert(executed_.end(), movements.begin(), movements.end());
+  const std::filesystem::path part = folder_ / "executed.csv.part";
+  write_file(part, movements_text(executed_, "rad", "rad/s"));
+  std::filesystem::rename(part, folder_ / "executed.csv");
+}
+
+std::string WorldFolder::reveal() {
+  const std::filesystem::path file = folder_ / "world.json";
+  const Json known = read_json_or_throw<Json>(text_of(file), file.string());
+  const std::string seal = seal_of(world_.truth());
+  if (known.value("truth_sha256", std::string()) != seal) {
+    throw_bad_input("the seal does not fit the truth: sealed.json or world.json was changed",
+                    folder_.string(), "make the world again");
+  }
+  const Json revealed = {{"key", seal_key(world_.truth().plan)},
+                         {"truth_sha256", seal},
+                         {"truth", Json::parse(truth_json(world_.truth()))}};
+  write_file(folder_ / "revealed.json", write_json(revealed, 1) + "\n");
+  return write_json(revealed, 1);
+}
+
+}  // namespace tribench

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+#include "harness/study/challenge.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/effects/effect_library.hpp"
+#include "foundation/child_process.hpp"
+#include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
+#include "foundation/output_folder.hpp"
+#include "foundation/plain_name.hpp"
+#include "harness/exploration/world_folder.hpp"
+#include "problems/file_hash.hpp"
+#include "reports/record_csv.hpp"
+
+namespace tribench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kProtocol = 1;
+constexpr std::size_t kLongestLine = 1U << 20;
+constexpr std::size_t kMostRequests = 5000;
+
+// A program that answers lines with lines.
+class Talk {
+ public:
+  Talk(const std::vector<std::string>& command, double wall_s)
+      : child_(ChildOptions{command}),
+        end_(Clock::now() +
+             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wall_s))) {}
+
+  void say(const Json& message) {
+    if (!child_.write(write_json(message) + "\n")) {
+      throw Error(ErrorKind::failed, "the program no longer reads");
+    }
+  }
+
+  // The next line that is a JSON object; others are chatter.
+  Json hear() {
+    while (true) {
+      while (text_.find('\n') != std::string::npos) {
+        const std::size_t end = text_.find('\n');
+        const Json line = read_json<Json>(std::string_view(text_).substr(0, end));
+        text_.erase(0, end + 1);
+        if (line.is_object()) return line;
+      }
+      if (text_.size() > kLongestLine) {
+        throw Error(ErrorKind::failed, "the program prints a line without end");
+      }
+      const double left_s = std::chrono::duration<double>(end_ - Clock::now()).count();
+      if (left_s <= 0) throw Error(ErrorKind::failed, "the program took too long");
+      const ChildOutput heard = child_.read(std::min(left_s, 1.0));
+      text_ += heard.output;
+      errors_ = (errors_ + heard.errors);
+      if (errors_.size() > 400) errors_.erase(0, errors_.size() - 400);
+      if (heard.ended && text_.find('\n') == std::string::npos) {
+        throw Error(ErrorKind::failed, "the program ended without a verdict: " + errors_);
+      }
+    }
+  }
+
+ private:
+  ChildProcess child_;
+  Clock::time_point end_;
+  std::string text_;
+  std::string errors_;
+};
+
+// The same reader as for files: a line under the columns' names.
+PlannedMovement movement_in(const Json& wanted) {
+  std::string names;
+  std::string values;
+  for (const auto& [name, value] : wanted.items()) {
+    names += (names.empty() ? "" : ",") + name;
+    values += (values.empty() ? "" : ",") +
+              (value.is_string() ? value.get<std::string>() : write_json(value));
+  }
+  return read_movements(names + "\n" + values + "\n", "movement").front();
+}
+
+Json rows_of(const Dataset& data) {
+  Json out;
+  for (const Channel& channel : data.channels) out[channel.name] = channel.values;
+  return out;
+}
+
+void take_verdict(const Json& verdict, const simulation::World& world, ChallengeResult& result) {
+  const auto families = verdict.value("families", std::vector<std::string>());
+  const bool unknown = verdict.value("unknown", false);
+  std::vector<std::string> words = families;
+  if (unknown) words.emplace_back("UNKNOWN");
+  result.verdict = words.empty() ? "NONE" : fmt::format("{}", fmt::join(words, "+"));
+  result.right = is_right(judge_verdict(families, unknown, world.truth()));
+  result.wrong = !result.right;
+}
+
+void converse(Talk& talk, simulation::World& world, ChallengeResult& result) {
+  Json families = Json::array();
+  for (const loop::EffectFamily& family : loop::builtin_effects()) families.push_back(family.name);
+  talk.say({{"protocol", kProtocol},
+            {"seal", result.seal},
+            {"families", families},
+            {"limits", Json::parse(limits_json(world.limits()))}});
+  for (std::size_t k = 0; k < kMostRequests; ++k) {
+    const Json heard = talk.hear();
+    if (heard.contains("verdict")) {
+      if (heard.at("verdict").is_null()) {
+        result.verdict = "abstained";
+      } else {
+        take_verdict(heard.at("verdict"), world, result);
+      }
+      return;
+    }
+    try {
+      const Dataset data = world.execute(movement_in(heard.at("movement")), "movement");
+      result.movements += 1;
+      talk.say({{"rows", rows_of(data)},
+                {"seconds_left", world.limits().seconds - world.seconds_used()}});
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::bad_input) throw;
+      result.refused += 1;
+      talk.say({{"refused", error.what()},
+                {"seconds_left", world.limits().seconds - world.seconds_used()}});
+    }
+  }
+  throw Error(ErrorKind::failed, "the program asks without end");
+}
+
+Json score_json(const ChallengeScore& score) {
+  Json worlds = Json::array();
+  for (const ChallengeResult& one : score.results) {
+    worlds.push_back({{"seal", one.seal},
+                      {"verdict", one.verdict},
+                      {"right", one.right},
+                      {"wrong", one.wrong},
+                      {"seconds", one.seconds},
+                      {"movements", one.movements},
+                      {"refused", one.refused},
+                      {"reason", one.reason}});
+  }
+  return {{"name", score.name},
+          {"right", score.right()},
+          {"wrong", score.wrong()},
+          {"worlds", score.results.size()},
+          {"median_seconds", score.median_seconds()},
+          {"results", worlds}};
+}
+
+// Of every score in the folder: most right first, then fewest wrong, then fewest seconds.
+std::string leaderboard_of(const std::filesystem::path& folder) {
+  std::vector<Json> scores;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".json" || entry.path().stem() == "seals") continue;
+    std::ifstream in(entry.path());
+    const Json score = read_json<Json>(in);
+    if (score.is_object() && score.contains("median_seconds")) scores.push_back(score);
+  }
+  const auto key = [](const Json& one) {
+    return std::tuple(-one.value("right", 0.0) / std::max(1.0, one.value("worlds", 1.0)),
+                      one.value("wrong", 0.0), one.value("median_seconds", 0.0),
+                      one.value("name", std::string()));
+  };
+  std::ranges::sort(scores, [&](const Json& a, const Json& b) { return key(a) < key(b); });
+  std::string text =
+      "# Name what is missing\n\n| | entry | worlds | right | wrong | silent | median s |\n"
+      "|--:|---|--:|--:|--:|--:|--:|\n";
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const Json& one = scores[i];
+    const auto worlds = one.value("worlds", std::size_t{0});
+    const auto right = one.value("right", std::size_t{0});
+    const auto wrong = one.value("wrong", std::size_t{0});
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {:.0f} |\n", i + 1,
+                        one.value("name", std::string()), worlds, right, wrong,
+                        worlds - right - wrong, one.value("median_seconds", 0.0));
+  }
+  return text +
+         "\nA verdict that is not right counts as all of a world's seconds. Worlds are the same\n"
+         "where seals.json is the same.\n";
+}
+
+}  // namespace
+
+std::size_t ChallengeScore::right() const {
+  return static_cast<std::size_t>(std::ranges::count(results, true, &ChallengeResult::right));
+}
+
+std::size_t ChallengeScore::wrong() const {
+  return static_cast<std::size_t>(std::ranges::count(results, true, &ChallengeResult::wrong));
+}
+
+double ChallengeScore::median_seconds() const {
+  std::vector<double> seconds;
+  for (const ChallengeResult& one : results) {
+    seconds.push_back(one.right ? one.seconds : MotionLimits().seconds);
+  }
+  if (seconds.empty()) return 0;
+  std::ranges::sort(seconds);
+  const std::size_t middle = seconds.size() / 2;
+  return seconds.size() % 2 == 1 ? seconds[middle] : 0.5 * (seconds[middle - 1] + seconds[middle]);
+}
+
+std::vector<simulation::WorldPlan> challenge_worlds(const ChallengePlan& plan) {
+  const RandomStream random(key_of(sha256_of_text(plan.secret)));
+  std::vector<simulation::WorldPlan> worlds;
+  for (int k = 0; k < plan.worlds; ++k) {
+    RandomStream own = random.split(static_cast<std::uint64_t>(k));
+    worlds.push_back({own.next(), plan.level, {}});
+  }
+  return worlds;
+}
+
+ChallengeResult run_challenge_world(const std::vector<std::string>& command,
+                                    const simulation::WorldPlan& plan, double wall_s) {
+  simulation::World world(plan);
+  ChallengeResult result;
+  result.seal = seal_of(world.truth());
+  result.kind = world_kind_name(world.truth().kind);
+  Talk talk(command, wall_s);
+  try {
+    converse(talk, world, result);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::environment) throw;
+    result.verdict = "failed";
+    result.reason = error.what();
+  } catch (const Json::exception& error) {
+    result.verdict = "failed";
+    result.reason = fmt::format("the program's line is malformed: {}", error.what());
+  }
+  result.seconds = world.seconds_used();
+  return result;
+}
+
+ChallengeScore run_challenge(const ChallengePlan& plan, const std::string& name,
+                             const std::vector<std::string>& command,
+                             const std::filesystem::path& folder, const std::atomic<bool>& stop) {
+  make_output_folder(folder);
+  const std::vector<simulation::WorldPlan> worlds = challenge_worlds(plan);
+  Json seals = Json::array();
+  for (const simulation::WorldPlan& one : worlds) {
+    seals.push_back(seal_of(simulation::World(one).truth()));
+  }
+  write_file(folder / "seals.json", write_json(Json{{"truth_sha256", seals}}, 1) + "\n");
+  ChallengeScore score{name, {}};
+  for (const simulation::WorldPlan& one : worlds) {
+    if (stop) break;
+    score.results.push_back(run_challenge_world(command, one, plan.wall_s));
+  }
+  write_file(folder / (name + ".json"), write_json(score_json(score), 1) + "\n");
+  write_file(folder / "leaderboard.md", leaderboard_of(folder));
+  return score;
+}
+
+std::string revealed_challenge(const ChallengePlan& plan) {
+  Json worlds = Json::array();
+  for (const simulation::WorldPlan& one : challenge_worlds(plan)) {
+    const simulation::World world(one);
+    worlds.push_back({{"key", seal_key(one)},
+                      {"truth_sha256", seal_of(world.truth())},
+                      {"truth", Json::parse(truth_json(world.truth()))}});
+  }
+  return write_json(Json{{"secret", plan.secret}, {"worlds", worlds}}, 1) + "\n";
+}
+
+}  // namespace tribench

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "algorithms/exploration/fixed_plans.hpp"
+#include "algorithms/inference/evidence.hpp"
+#include "foundation/error.hpp"
+#include "foundation/random.hpp"
+#include "problems/joint_simulation/world.hpp"
+
+namespace tribench::loop {
+namespace {
+
+struct Drawn {
+  Eigen::MatrixXd base;
+  Eigen::MatrixXd columns;
+  Eigen::VectorXd target;
+};
+
+// `size`: of the first of four columns, in the noise's.
+Drawn draw(int rows, double size, std::uint64_t seed) {
+  RandomStream random(seed);
+  Drawn out{Eigen::MatrixXd::Ones(rows, 2), Eigen::MatrixXd(rows, 4), Eigen::VectorXd(rows)};
+  for (int i = 0; i < rows; ++i) {
+    out.base(i, 1) = random.normal();
+    for (int j = 0; j < 4; ++j) out.columns(i, j) = random.normal();
+    out.target[i] = 5 - 3 * out.base(i, 1) + 0.2 * (size * out.columns(i, 0) + random.normal());
+  }
+  return out;
+}
+
+double log_factor(const Drawn& data, const ColumnBlock& block) {
+  const std::array<const ColumnBlock*, 1> blocks = {&block};
+  return EvidenceTable(data.base, data.columns, data.target).log_factor(blocks);
+}
+
+TEST(Evidence, GrowsWithWhatIsThereAndFallsWithWhatIsNot) {
+  const Drawn few = draw(100, 1, 1);
+  const Drawn many = draw(1000, 1, 1);
+  EXPECT_GT(log_factor(few, {0}), 10);
+  EXPECT_GT(log_factor(many, {0}), 100);
+  EXPECT_LT(log_factor(few, {1}), -2);
+  EXPECT_LT(log_factor(many, {1}), log_factor(few, {1}) - 1);
+  EXPECT_LT(log_factor(many, {1, 2}), -4);
+}
+
+TEST(Evidence, IsTheSameForAnyBaseCoefficientsAndAnyNoise) {
+  const Drawn data = draw(200, 0.5, 2);
+  Drawn other = data;
+  other.target = 7 * data.target + data.base * Eigen::Vector2d(-11, 4);
+  EXPECT_NEAR(log_factor(data, {0}), log_factor(other, {0}), 1e-7);
+}
+
+// The mean of a Bayes factor where the base alone is true is 1: rarely is it large, at any time.
+TEST(Evidence, IsRarelyLargeWhereNothingIsMissingHoweverOftenOneLooks) {
+  int large = 0;
+  constexpr int kRuns = 300;
+  for (int run = 0; run < kRuns; ++run) {
+    const Drawn data = draw(300, 0, 100 + static_cast<std::uint64_t>(run));
+    bool ever = false;
+    for (int rows = 10; rows <= 300; rows += 10) {
+      const Drawn part{data.base.topRows(rows), data.columns.topRows(rows), data.target.head(rows)};
+      ever = ever || log_factor(part, {0}) > std::log(20.0);
+    }
+    large += ever ? 1 : 0;
+  }
+  EXPECT_LE(large, kRuns / 20);
+}
+
+TEST(Evidence, PosteriorIsWhatWasPlanted) {
+  const Drawn data = draw(2000, 2, 3);
+  const ColumnBlock block = {0};
+  const std::array<const ColumnBlock*, 1> blocks = {&block};
+  const EvidenceTable::Posterior found =
+      EvidenceTable(data.base, data.columns, data.target).posterior(blocks);
+  EXPECT_NEAR(found.mean[0], 0.4, 0.02);
+  EXPECT_NEAR(std::sqrt(found.variance), 0.2, 0.01);
+}
+
+Exploration explored(std::uint64_t seed, simulation::WorldKind kind, std::string_view plan,
+                     double budget_s = 600) {
+  simulation::World world({seed, simulation::WorldLevel::easy, kind});
+  ExplorerOptions options;
+  options.budget_s = budget_s;
+  return explore(
+      world.limits(),
+      [&](const PlannedMovement& movement) { return world.execute(movement, "the plan"); }, options,
+      find_plan(plan).make(seed));
+}
+
+TEST(Explorer, NamesWhatAnEasyWorldHides) {
+  const simulation::World world({3, simulation::WorldLevel::easy, simulation::WorldKind::single});
+  const Exploration done = explored(3, simulation::WorldKind::single, "informative");
+  ASSERT_EQ(done.end, ExplorationEnd::sure);
+  ASSERT_FALSE(done.families.empty());
+  EXPECT_FALSE(done.unknown);
+  for (const std::string& family : done.families) {
+    const PlantedEffect& truth = world.truth().effects[0];
+    EXPECT_TRUE(std::ranges::count(truth.names, family) + std::ranges::count(truth.beside, family))
+        << family << " for " << truth.family;
+  }
+  EXPECT_GE(done.weight, 0.99);
+}
+
+TEST(Explorer, AsksTheSameAgain) {
+  const Exploration first = explored(3, simulation::WorldKind::single, "informative", 22);
+  const Exploration again = explored(3, simulation::WorldKind::single, "informative", 22);
+  EXPECT_GT(first.weight, 0);
+  EXPECT_EQ(again.seconds, first.seconds);
+  EXPECT_EQ(again.weight, first.weight);
+  EXPECT_EQ(again.steps.size(), first.steps.size());
+}
+
+TEST(Explorer, KeepsToItsSeconds) {
+  for (const NamedPlan& plan : movement_plans()) {
+    const Exploration done = explored(8, simulation::WorldKind::none, plan.name, 30);
+    EXPECT_LE(done.seconds, 30) << plan.name;
+    EXPECT_GE(done.steps.size(), 1U) << plan.name;  // a slow sweep takes long
+    EXPECT_NE(done.end, ExplorationEnd::sure) << plan.name;
+    double sum = 0;
+    for (const ExplorationStep& step : done.steps) sum += step.cost_s;
+    EXPECT_NEAR(sum, done.seconds, 1e-9);
+  }
+}
+
+TEST(Explorer, AsksForSomethingElseWhereAMovementIsRefused) {
+  simulation::World world({3, simulation::WorldLevel::easy, simulation::WorldKind::single});
+  ExplorerOptions options;
+  options.budget_s = 30;
+  std::size_t refused = 0;
+  const Exploration done = explore(
+      world.limits(),
+      [&](const PlannedMovement& movement) {
+        if (movement.load_factor > 1) {
+          ++refused;
+          throw Error(ErrorKind::bad_input, "no payload today");
+        }
+        return world.execute(movement, "the plan");
+      },
+      options, informative_movements());
+  EXPECT_EQ(done.refused.size(), refused);
+  EXPECT_GE(done.steps.size(), 6U);
+  for (const ExplorationStep& step : done.steps) EXPECT_LE(step.movement.load_factor, 1);
+}
+
+TEST(Plans, AnUnknownNameIsAnsweredWithTheNearest) {
+  try {
+    find_plan("sweeep");
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("sweep"));
+  }
+}
+
+}  // namespace
+}  // namespace tribench::loop

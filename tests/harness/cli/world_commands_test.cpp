@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+//
+// world, explore and challenge, as a user calls them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "problems/file_hash.hpp"
+#include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace tribench::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+constexpr const char* kHeader = "kind,velocity_rad_s,from_rad,to_rad\n";
+constexpr const char* kThere = "constant,0.3,-1,1\n";
+constexpr const char* kBack = "constant,-0.4,1,-1\n";
+
+ProgramRun run_tribench(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), program().string());
+  return run_to_end(arguments);
+}
+
+// The lines of a recording without their movement's name.
+std::vector<std::string> rows_of(const std::string& text) {
+  std::vector<std::string> rows;
+  std::size_t begin = text.find('\n') + 1;
+  while (begin < text.size()) {
+    const std::size_t end = text.find('\n', begin);
+    rows.push_back(
+        text.substr(begin, end - begin).substr(text.substr(begin, end - begin).find(',')));
+    begin = end + 1;
+  }
+  return rows;
+}
+
+TEST(WorldCommand, RecordsTheSameInOneCallAndInTwo) {
+  const TemporaryFolder folder;
+  const auto path = [&](const char* name) { return (folder / name).string(); };
+  for (const char* world : {"a", "b"}) {
+    ASSERT_EQ(run_tribench({"world", "7", "--out", path(world)}).status, 0);
+  }
+  write_text(folder / "both.csv", std::string(kHeader) + kThere + kBack);
+  write_text(folder / "there.csv", std::string(kHeader) + kThere);
+  write_text(folder / "back.csv", std::string(kHeader) + kBack);
+  const auto run = [&](const char* world, const char* movements, const char* out) {
+    const ProgramRun done = run_tribench(
+        {"world", path(world), "execute", path(movements), "--out", path(out), "--json"});
+    EXPECT_EQ(done.status, 0) << done.errors;
+    return json::parse(done.output);
+  };
+  const json both = run("a", "both.csv", "ab.csv");
+  run("b", "there.csv", "b1.csv");
+  const json back = run("b", "back.csv", "b2.csv");
+  EXPECT_EQ(both["seconds_used"], back["seconds_used"]);
+  EXPECT_GT(both["seconds_used"].get<double>(), 2 / 0.3 + 2 / 0.4);
+  std::vector<std::string> parts = rows_of(read_text(folder / "b1.csv"));
+  for (const std::string& row : rows_of(read_text(folder / "b2.csv"))) parts.push_back(row);
+  EXPECT_EQ(rows_of(read_text(folder / "ab.csv")), parts);
+}
+
+TEST(WorldCommand, RefusesWithRowAndMendAndDoesNothing) {
+  const TemporaryFolder folder;
+  const std::string world = (folder / "w").string();
+  ASSERT_EQ(run_tribench({"world", "7", "--out", world}).status, 0);
+  write_text(folder / "m.csv", std::string(kHeader) + kThere + "constant,9,-1,1\n");
+  const ProgramRun refused = run_tribench({"world", world, "execute", (folder / "m.csv").string(),
+                                           "--out", (folder / "d.csv").string()});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("m.csv, movement 2"));
+  EXPECT_THAT(refused.errors, HasSubstr("rad/s at most"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "d.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "w/executed.csv"));
+  EXPECT_EQ(run_tribench({"world", "7", "--out", world}).status, 2);
+  EXPECT_EQ(run_tribench({"world", (folder / "none").string(), "reveal"}).status, 2);
+  EXPECT_EQ(run_tribench({"world", "seven", "--out", (folder / "x").string()}).status, 2);
+}
+
+TEST(WorldCommand, RevealsWhatTheSealSaidAndNothingIsAskedAfterwards) {
+  const TemporaryFolder folder;
+  const std::string world = (folder / "w").string();
+  const ProgramRun made = run_tribench({"world", "11", "--kind", "pair", "--out", world, "--json"});
+  ASSERT_EQ(made.status, 0) << made.errors;
+  const std::string seal = json::parse(made.output)["truth_sha256"];
+  EXPECT_THAT(read_text(folder / "w/world.json"), Not(HasSubstr("cause")));
+  const ProgramRun revealed = run_tribench({"world", world, "reveal", "--json"});
+  ASSERT_EQ(revealed.status, 0) << revealed.errors;
+  const auto answer = nlohmann::ordered_json::parse(revealed.output);
+  EXPECT_EQ(answer["truth"]["causes"].size(), 2U);
+  EXPECT_EQ(sha256_of_text(answer["key"].get<std::string>() + "\n" + answer["truth"].dump()), seal);
+  write_text(folder / "m.csv", std::string(kHeader) + kThere);
+  const ProgramRun late = run_tribench({"world", world, "execute", (folder / "m.csv").string(),
+                                        "--out", (folder / "d.csv").string()});
+  EXPECT_EQ(late.status, 2);
+  EXPECT_THAT(late.errors, HasSubstr("revealed"));
+}
+
+TEST(ExploreCommand, WritesItsPathAndSaysWhenItIsNotSure) {
+  const TemporaryFolder folder;
+  const std::string world = (folder / "w").string();
+  ASSERT_EQ(run_tribench({"world", "7", "--out", world}).status, 0);
+  const ProgramRun done = run_tribench(
+      {"explore", world, "--budget", "25s", "--out", (folder / "x").string(), "--json"});
+  EXPECT_EQ(done.status, 4) << done.errors;
+  const json answer = json::parse(done.output);
+  EXPECT_LE(answer["seconds"].get<double>(), 25);
+  EXPECT_GE(answer["path"].size(), 5U);
+  EXPECT_NE(answer["end"], "sure");
+  EXPECT_EQ(read_text(folder / "x/exploration.json"), done.output);
+  EXPECT_THAT(read_text(folder / "x/exploration.md"), HasSubstr("| movement |"));
+  // What was asked can be asked again: the same recording.
+  const std::string again = (folder / "again").string();
+  ASSERT_EQ(run_tribench({"world", "7", "--out", again}).status, 0);
+  ASSERT_EQ(run_tribench({"world", again, "execute", (folder / "x/movements.csv").string(), "--out",
+                          (folder / "d.csv").string()})
+                .status,
+            0);
+  EXPECT_EQ(read_text(folder / "d.csv"), read_text(folder / "x/data.csv"));
+}
+
+TEST(ExploreCommand, AProgramTakesTheWorldsPlace) {
+  const TemporaryFolder folder;
+  const std::string world = (folder / "w").string();
+  const std::string direct = (folder / "direct").string();
+  for (const std::string& one : {world, direct}) {
+    ASSERT_EQ(run_tribench({"world", "7", "--out", one}).status, 0);
+  }
+  write_text(folder / "robot.sh", "d=$(mktemp) && '" + program().string() + "' world '" + world +
+                                      "' execute \"$1\" --out $d >&2 || exit $?\ncat $d; rm $d\n");
+  const ProgramRun done =
+      run_tribench({"explore", "--limits", (folder / "w/world.json").string(), "--budget", "18",
+                    "--json", "--command", "sh", (folder / "robot.sh").string()});
+  EXPECT_EQ(done.status, 4) << done.errors;
+  const ProgramRun same = run_tribench({"explore", direct, "--budget", "18", "--json"});
+  EXPECT_EQ(json::parse(done.output)["path"], json::parse(same.output)["path"]);
+  EXPECT_EQ(run_tribench({"explore"}).status, 2);
+  EXPECT_EQ(run_tribench({"explore", "--command", "true"}).status, 2);
+  const ProgramRun broken = run_tribench(
+      {"explore", "--limits", (folder / "w/world.json").string(), "--command", "false"});
+  EXPECT_EQ(broken.status, 3);
+  EXPECT_THAT(broken.errors, HasSubstr("status 1"));
+}
+
+// A program that asks for two movements, one of which is refused, and says what it was told to.
+std::string entry(const std::string& verdict) {
+  return "read hello\n"
+         "echo '{\"movement\": {\"kind\": \"constant\", \"velocity_rad_s\": 0.3, "
+         "\"from_rad\": -0.5, \"to_rad\": 0.5}}'\nread rows\n"
+         "echo '{\"movement\": {\"kind\": \"constant\", \"velocity_rad_s\": 30, "
+         "\"from_rad\": -0.5, \"to_rad\": 0.5}}'\nread refusal\n"
+         "case $refusal in *refused*) ;; *) exit 1;; esac\n"
+         "echo chatter\necho '{\"verdict\": " +
+         verdict + "}'\n";
+}
+
+TEST(ChallengeCommand, SealsScoresAndRanksPrograms) {
+  const TemporaryFolder folder;
+  const std::string board = (folder / "board").string();
+  const auto take = [&](const std::string& name, const std::string& verdict) {
+    const std::string script = (folder / (name + ".sh")).string();
+    write_text(script, entry(verdict));
+    return run_tribench({"challenge", "--worlds", "6", "--name", name, "--out", board, "--json",
+                         "--command", "sh", script});
+  };
+  const ProgramRun nothing = take("says-nothing", "{\"families\": [], \"unknown\": false}");
+  ASSERT_EQ(nothing.status, 0) << nothing.errors << nothing.output;
+  const ProgramRun silent = take("silent", "null");
+  ASSERT_EQ(silent.status, 0);
+  const ProgramRun broken = take("broken", "{]");
+  EXPECT_EQ(broken.status, 3);
+  const ProgramRun revealed = run_tribench({"challenge", "--worlds", "6", "--reveal"});
+  const auto truths = nlohmann::ordered_json::parse(revealed.output);
+  const auto seals = json::parse(read_text(folder / "board/seals.json"))["truth_sha256"];
+  int none = 0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const auto& world = truths["worlds"][k];
+    none += world["truth"]["kind"] == "none" ? 1 : 0;
+    EXPECT_EQ(sha256_of_text(world["key"].get<std::string>() + "\n" + world["truth"].dump()),
+              seals[k]);
+  }
+  const json score = json::parse(nothing.output);
+  EXPECT_EQ(score["right"], none);
+  EXPECT_EQ(score["wrong"], 6 - none);
+  EXPECT_EQ(json::parse(silent.output)["wrong"], 0);
+  const std::string leaderboard = read_text(folder / "board/leaderboard.md");
+  for (const char* name : {"says-nothing", "silent", "broken"}) {
+    EXPECT_THAT(leaderboard, HasSubstr(name));
+  }
+  EXPECT_LT(leaderboard.find("| silent |"), leaderboard.size());
+}
+
+TEST(ChallengeCommand, AnotherSecretIsAnotherSetOfWorlds) {
+  const TemporaryFolder folder;
+  write_text(folder / "secret.txt", "nobody knows this\n");
+  const ProgramRun one = run_tribench({"challenge", "--worlds", "3", "--reveal"});
+  const ProgramRun two = run_tribench({"challenge", "--worlds", "3", "--secret-file",
+                                       (folder / "secret.txt").string(), "--reveal"});
+  EXPECT_NE(json::parse(one.output)["worlds"], json::parse(two.output)["worlds"]);
+  EXPECT_EQ(run_tribench({"challenge"}).status, 2);
+}
+
+TEST(StudyCommand, ExploreCountsSecondsAndErrors) {
+  const TemporaryFolder folder;
+  const ProgramRun done =
+      run_tribench({"study", "explore", "--worlds", "2", "--plans", "sweep,sines", "--budget", "30",
+                    "--json", "--out", folder.path().string()});
+  ASSERT_EQ(done.status, 0) << done.errors;
+  const json figures = json::parse(done.output);
+  EXPECT_EQ(figures[0]["group"], "all");
+  EXPECT_EQ(figures[0]["worlds"], 2);
+  EXPECT_THAT(read_text(folder / "explorations.csv"), HasSubstr("seed,kind,causes,plan"));
+  EXPECT_EQ(run_tribench({"study", "explore", "--plans", "swep"}).status, 2);
+}
+
+}  // namespace
+}  // namespace tribench::testing
