@@ -170,9 +170,8 @@ class Explorer {
     return sure_looks_ >= kSureLooks && diagnosis_agrees();
   }
 
-  // The loop's own diagnosis of the rows so far, which knows nothing of weights, says nothing else:
-  // it names no other family, and finds something of no library left over just where the verdict
-  // does. It may miss what it has too few movements to test.
+  // The loop's own diagnosis of the rows so far, which knows nothing of weights, names the same
+  // families, and finds something of no library left over just where the verdict does.
   bool diagnosis_agrees() const {
     DiagnosisOptions options;
     options.test_share = 0;
@@ -184,10 +183,12 @@ class Explorer {
                                  [&](std::size_t f) { return space_->families()[f].name == name; });
     };
     const bool unknown = best.verdict.ends_with(kUnknownVerdict);
+    const auto known = std::ranges::count_if(
+        best.families, [&](std::size_t f) { return !space_->families()[f].unknown; });
     return (found.verdict == Verdict::unknown) == unknown &&
-           std::ranges::all_of(found.effects, [&](const EffectFinding& effect) {
-             return has(effect.family) || effect.provisional;
-           });
+           std::cmp_equal(found.effects.size(), known) &&
+           std::ranges::all_of(found.effects,
+                               [&](const EffectFinding& effect) { return has(effect.family); });
   }
 
   bool can_look() const { return out_.steps.size() >= kFewestMovements; }

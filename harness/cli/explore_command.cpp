@@ -133,8 +133,10 @@ void add_explore_command(CLI::App& app, ExitStatus& status) {
       ->transform(seconds_of_text())  // before the number is read
       ->capture_default_str();
   command
-      ->add_option("--alpha", arguments->alpha,
-                   "share of wrong verdicts among those it stops with, whenever it stops")
+      ->add_option(
+          "--alpha", arguments->alpha,
+          "share of wrong verdicts among those it stops with, whenever it stops, where the "
+          "truth is one of the explanations (docs/explore.md)")
       ->transform(real_number(1e-6, 0.5))
       ->capture_default_str();
   std::string plans;

@@ -195,6 +195,17 @@ TEST(ChallengeCommand, SealsScoresAndRanksPrograms) {
   EXPECT_LT(leaderboard.find("| silent |"), leaderboard.size());
 }
 
+TEST(ChallengeCommand, TheEntryToBeginWithTakesPart) {
+  const TemporaryFolder folder;
+  const ProgramRun done = run_tribench({"challenge", "--worlds", "5", "--out",
+                                        folder.path().string(), "--json", "--command", "python3",
+                                        (source_dir() / "adapters/challenge_entry.py").string()});
+  ASSERT_EQ(done.status, 0) << done.errors << done.output;
+  const json score = json::parse(done.output);
+  EXPECT_EQ(score["right"].get<int>() + score["wrong"].get<int>(), 5);
+  EXPECT_GE(score["right"], 2);  // inertia and a ripple stand out
+}
+
 TEST(ChallengeCommand, AnotherSecretIsAnotherSetOfWorlds) {
   const TemporaryFolder folder;
   write_text(folder / "secret.txt", "nobody knows this\n");
