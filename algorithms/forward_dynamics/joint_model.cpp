@@ -69,7 +69,8 @@ int degree_in(const Expression& formula, std::size_t column) {
 JointModel parse_joint(std::string_view friction, std::string_view gravity, NamedColumns columns,
                        std::string_view place) {
   JointModel model;
-  if (!gravity.empty()) {
+  const bool is_recorded = gravity == kRecordedGravity;
+  if (!gravity.empty() && !is_recorded) {
     model.gravity = parse(gravity, std::vector<std::string>{"q"});
     columns.has_gravity = true;
   }
@@ -81,7 +82,20 @@ JointModel parse_joint(std::string_view friction, std::string_view gravity, Name
   }
   model.friction = std::move(formula.formula);
   model.states = std::move(formula.states);
+  if (is_recorded) {
+    const auto column =
+        std::ranges::find(columns.columns, Role::gravity_torque, &NamedColumns::Column::role);
+    if (column == columns.columns.end()) {
+      throw_bad_input("there is no recorded gravity torque", place,
+                      "say which column it is: --roles COLUMN=gravity_torque");
+    }
+    names.push_back(column->name);
+  }
   model.inputs = bind_inputs(names, columns, place);
+  if (is_recorded) {
+    model.recorded_gravity = model.inputs.bindings.back().place;
+    model.inputs.bindings.pop_back();
+  }
   return model;
 }
 
@@ -104,9 +118,10 @@ JointEquation::JointEquation(const JointModel& model, std::string_view place)
   mass_guess_ = model.inertia > 0 ? model.inertia : 1;
 }
 
-double JointEquation::gravity(double position) {
+double JointEquation::gravity(const JointInstant& at) {
+  if (model_.recorded_gravity) return at.recorded[*model_.recorded_gravity];
   if (!model_.gravity) return 0;
-  return gravity_evaluator_.evaluate_at(*model_.gravity, std::span(&position, 1));
+  return gravity_evaluator_.evaluate_at(*model_.gravity, std::span(&at.position, 1));
 }
 
 double JointEquation::motor_torque(const JointInstant& at) const {
@@ -144,10 +159,10 @@ void JointEquation::fill(const JointInstant& at, int direction) {
         value = motor_torque(at);
         break;
       case Source::gravity:
-        value = gravity(at.position);
+        value = gravity(at);
         break;
       case Source::gravity_sign:
-        value = sign(gravity(at.position));
+        value = sign(gravity(at));
         break;
       case Source::recorded:
         value = at.recorded[binding.place];
@@ -174,7 +189,7 @@ double JointEquation::friction(const JointInstant& at, int direction, double acc
 
 double JointEquation::acceleration(const JointInstant& at, int direction) {
   fill(at, direction);
-  const double driving = motor_torque(at) - gravity(at.position);
+  const double driving = motor_torque(at) - (model_.is_whole ? 0 : gravity(at));
   const double at_rest = friction_at(0);
   const double free = driving - at_rest;
   if (acceleration_places_.empty()) return free / model_.inertia;
@@ -201,7 +216,7 @@ double JointEquation::acceleration(const JointInstant& at, int direction) {
 }
 
 Reached JointEquation::reached(const JointInstant& at) {
-  return {at.time, at.position, at.velocity, gravity(at.position), motor_torque(at), at.recorded};
+  return {at.time, at.position, at.velocity, gravity(at), motor_torque(at), at.recorded};
 }
 
 void JointEquation::begin(const JointInstant& at) {

@@ -39,6 +39,9 @@ struct Motor {
 struct JointModel {
   double inertia = 0;                 // kg m^2, kg; 0 where the formula reads the acceleration
   std::optional<Expression> gravity;  // over the one input q
+  std::optional<std::size_t> recorded_gravity;  // in its place: a column, among inputs.recorded
+  // The formula is the motor's whole torque: gravity is what it reads by that name, and not added.
+  bool is_whole = false;
   Expression friction;
   JointInputs inputs;                    // of the friction and of what drives its states
   std::vector<StateDeclaration> states;  // drives are places among `inputs`
@@ -63,7 +66,7 @@ class JointEquation {
   // acceleration.
   JointEquation(const JointModel& model, std::string_view place);
 
-  double gravity(double position);
+  double gravity(const JointInstant& at);
   double motor_torque(const JointInstant& at) const;
   // Of a joint that slides in `direction` (-1, 1), or is about to: the friction takes that sign at
   // a standstill. Not finite where the formula is not, or where the equation has no solution.
@@ -91,8 +94,11 @@ class JointEquation {
   double mass_guess_ = 1;  // of the whole, from the last solution
 };
 
+inline constexpr std::string_view kRecordedGravity = "recorded";
+
 // A model from texts: friction (with declared states, where there are any) over `columns`, gravity
-// over q (may be empty). Throws Error (bad_input) with the place and the nearest name.
+// over q, kRecordedGravity (the column with that role), or empty. Throws Error (bad_input) with the
+// place and the nearest name.
 JointModel parse_joint(std::string_view friction, std::string_view gravity, NamedColumns columns,
                        std::string_view place);
 

@@ -43,7 +43,7 @@ JointInstant measured_instant(const MovementRows& rows, std::size_t row,
 void add_rows(const JointModel& model, const RigidBodyTerms& terms, const MovementRows& rows,
               std::span<const double> acceleration, double slowest, EquationRows& all) {
   JointModel without = model;
-  without.gravity.reset();
+  if (!terms.gravity.empty()) without.gravity.reset();
   if (without.inertia <= 0) without.inertia = 1;  // not looked at: only the friction is
   JointEquation equation(without, "the model");
   Evaluator evaluator;
@@ -59,7 +59,7 @@ void add_rows(const JointModel& model, const RigidBodyTerms& terms, const Moveme
     }
     if (std::abs(at.velocity) < slowest || at.velocity == 0) continue;
     const double friction = equation.friction(at, at.velocity > 0 ? 1 : -1, acceleration[row]);
-    double target = equation.motor_torque(at) - friction;
+    double target = equation.motor_torque(at) - friction - equation.gravity(at);
     std::size_t k = 0;
     if (terms.inertia) {
       all.columns[k++].push_back(acceleration[row]);

@@ -19,9 +19,11 @@
 #include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "foundation/suggestion.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/loop/controller_code.hpp"
+#include "harness/motion/simulator_friction.hpp"
 #include "problems/preparation/derived_channels.hpp"
 #include "reports/record_csv.hpp"
 
@@ -36,7 +38,20 @@ struct ExportArguments {
   std::string out;
   bool single = false;
   ExportOptions options;
+  std::string joint = "joint";
+  std::string velocity = "v";
+  std::string acceleration = "a";
+  std::optional<double> inertia;
+  bool is_linear = false;
 };
+
+// Of code; an unknown name is answered with the nearest of code and simulators.
+CodeForm find_form(const std::string& name) {
+  std::vector<std::string> names = code_form_names();
+  if (std::ranges::count(names, name) > 0) return find_code_form(name);
+  names.insert(names.end(), simulator_names().begin(), simulator_names().end());
+  throw_bad_input(fmt::format("there is no form '{}'", name), "--as", did_you_mean(name, names));
+}
 
 // The formula of a loop.json, and how its channels that no sensor gives are computed.
 struct LoopFormula {
@@ -99,8 +114,27 @@ std::string stateful_code(const ExportArguments& arguments, CodeForm form) {
   return export_stateful(formula, names, form, options);
 }
 
+// The parameters that a simulator's joint can take of it.
+void write_simulator(const ExportArguments& arguments, Simulator simulator) {
+  if (arguments.box.empty()) {
+    throw_bad_input("a simulator's parameters are fitted over a box", "--box",
+                    "give it: --box 'v=-2:2,g=-60:60'");
+  }
+  const std::string formula =
+      arguments.formula.ends_with(".json") ? read_loop(arguments.formula).text : arguments.formula;
+  const SimulatorFriction friction =
+      fit_simulator_friction(formula, parse_box(arguments.box), arguments.velocity,
+                             arguments.acceleration, simulator, arguments.inertia);
+  write_code(arguments,
+             simulator_text(friction, simulator, formula, arguments.joint, arguments.is_linear));
+}
+
 void write_export(ExportArguments arguments) {
-  const CodeForm form = find_code_form(arguments.form);
+  if (const std::optional<Simulator> simulator = find_simulator(arguments.form)) {
+    write_simulator(arguments, *simulator);
+    return;
+  }
+  const CodeForm form = find_form(arguments.form);
   std::optional<loop::PathFrom> from = distance_from(arguments.derive);
   if (arguments.formula.ends_with(".json")) {
     LoopFormula loop = read_loop(arguments.formula);
@@ -139,16 +173,20 @@ void write_export(ExportArguments arguments) {
 }  // namespace
 
 void add_export_command(CLI::App& app, ExitStatus& /*status*/) {
-  CLI::App* command =
-      app.add_subcommand("export", "Code for a controller (C), a notebook, MATLAB or a paper");
+  CLI::App* command = app.add_subcommand(
+      "export",
+      "Code for a controller (C), a notebook, MATLAB, a paper; parameters for a simulator");
   command->footer(
       "Example: tribench export '8.5*sgn_v + 14*v' --as c --box 'v=-2:2' --function friction\n"
       "An input sgn_X is computed from X. In front of a formula that begins with a minus put --.\n"
       "With states ('z = dahl(v, sliding=1e-5); 2e6*z') the code has init and step.\n"
+      "A simulator takes Coulomb and viscous friction alone: what that loses is said beside them.\n"
       "In place of a formula: the loop.json of 'tribench loop', with its channels' history in C.");
   auto arguments = std::make_shared<ExportArguments>();
   command->add_option("formula", arguments->formula, "the formula, or a loop.json")->required();
-  command->add_option("--as", arguments->form, "c, python, latex, sympy or matlab")->required();
+  command
+      ->add_option("--as", arguments->form, "c, python, latex, sympy, matlab; mujoco, urdf, isaac")
+      ->required();
   command->add_option(
       "--box", arguments->box,
       "where the formula was judged: 'v=-2:2,g=-60:60'; fixes the arguments' order");
@@ -162,6 +200,20 @@ void add_export_command(CLI::App& app, ExitStatus& /*status*/) {
       ->transform(whole_number(0, 17));
   command->add_flag("--single", arguments->single,
                     "C of a formula with states in single precision");
+  command->add_option("--joint", arguments->joint, "a simulator's joint (class)")
+      ->capture_default_str();
+  command
+      ->add_option("--velocity", arguments->velocity, "the box's name for a simulator's velocity")
+      ->capture_default_str();
+  command
+      ->add_option("--acceleration", arguments->acceleration,
+                   "the box's name for the acceleration, of which an armature is made")
+      ->capture_default_str();
+  command
+      ->add_option("--inertia", arguments->inertia,
+                   "of the joint: says what a simulator's parameters cost in motion too")
+      ->transform(real_number(0, 1e9, LowEnd::above));
+  command->add_flag("--linear", arguments->is_linear, "a slide: N and m, for N m and rad");
   command->add_option("--out", arguments->out, "a file instead of the screen");
   command->callback([arguments] { write_export(*arguments); });
 }

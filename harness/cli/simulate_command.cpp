@@ -99,6 +99,10 @@ void read_body(const SimulateArguments& arguments, MotionSetup& setup) {
   } else if (arguments.gravity != "none") {
     setup.gravity = arguments.gravity;
   }
+  if (setup.is_whole && (setup.inertia || setup.fit_inertia || setup.fit_gravity)) {
+    throw_bad_input("nothing is added to a formula that is the whole torque", "--whole",
+                    "leave out --inertia and --gravity fit, or --whole");
+  }
   if ((arguments.motor_constant > 0) != (arguments.resistance > 0)) {
     throw_bad_input("a motor under voltage has a constant and a resistance",
                     arguments.resistance > 0 ? "--motor-constant" : "--resistance",
@@ -209,6 +213,15 @@ std::vector<char> held_out_movements(const SimulateArguments& arguments, const D
   return held_out;
 }
 
+// In the unit of the drive, or of a motor's torque.
+bool has_recorded_gravity(const Dataset& data) {
+  const Channel* gravity = data.find(Role::gravity_torque);
+  if (gravity == nullptr) return false;
+  const Channel* drive = data.find(Role::motor_torque);
+  return drive == nullptr || drive->unit == gravity->unit ||
+         (drive->unit == "V" && (gravity->unit == "N m" || gravity->unit == "N"));
+}
+
 void simulate(const SimulateArguments& arguments) {
   if (!arguments.out.empty()) make_output_folder(arguments.out);
   MotionSetup setup = arguments.setup;
@@ -220,6 +233,9 @@ void simulate(const SimulateArguments& arguments) {
   std::optional<DataFile> test;
   if (!arguments.test.empty()) test = read_recording(arguments, setup, {arguments.test});
   read_unit(arguments, train.data, setup);
+  if (arguments.gravity.empty() && has_recorded_gravity(train.data)) {
+    setup.gravity = forward::kRecordedGravity;
+  }
   const MotionRecord record = try_motion(train.data, test ? &test->data : nullptr, setup,
                                          held_out_movements(arguments, train));
   if (!arguments.out.empty()) {
@@ -235,7 +251,10 @@ void add_body_options(CLI::App& command, const std::shared_ptr<SimulateArguments
   command.add_option("--inertia", arguments->inertia,
                      "kg m^2 (kg of a slide), or fit; not needed where the formula reads a");
   command.add_option("--gravity", arguments->gravity,
-                     "the torque against gravity, a formula in q: '4.9*sin(q)'; fit, or none");
+                     "the torque against gravity: a formula in q ('4.9*sin(q)'), recorded (the "
+                     "column; the default where there is one), fit, or none");
+  command.add_flag("--whole", arguments->setup.is_whole,
+                   "the formula is the motor's whole torque, inertia and gravity in it");
   command
       .add_option("--motor-constant", arguments->motor_constant,
                   "of a motor under voltage, at the joint: N m/A and V s/rad")

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "algorithms/expression/text.hpp"
 #include "algorithms/forward_dynamics/forward_simulation.hpp"
@@ -161,6 +162,7 @@ class Trial {
     forward::NamedColumns columns = columns_of(data);
     model_ = forward::parse_joint(setup_.formula, setup_.gravity, columns, "the formula");
     model_.motor = setup_.motor;
+    model_.is_whole = setup_.is_whole;
     model_.inertia = setup_.inertia.value_or(0);
     if (setup_.control.empty()) {
       if (!setup_.limit.empty()) {
@@ -307,6 +309,7 @@ class Trial {
     fitted.formula = model_.friction;
     record_.formula = print_stateful(fitted, std::span(names).first(given.first_state));
     if (model_.inertia > 0) record_.inertia = model_.inertia;
+    if (model_.recorded_gravity) record_.gravity = "as recorded";
     if (model_.gravity) record_.gravity = print(*model_.gravity, std::vector<std::string>{"q"});
     if (model_.motor) {
       record_.motor_constant = model_.motor->constant;

@@ -29,9 +29,10 @@ namespace tribench {
 struct MotionSetup {
   std::string formula;
   std::optional<double> inertia;
-  bool fit_inertia = false;             // least squares, else as given
-  std::string gravity;                  // a formula in q
-  bool fit_gravity = false;             // A sin q + B cos q
+  bool fit_inertia = false;  // least squares, else as given
+  std::string gravity;       // a formula in q, or forward::kRecordedGravity
+  bool is_whole = false;     // the formula is the motor's whole torque: nothing is added to it
+  bool fit_gravity = false;  // A sin q + B cos q
   std::optional<forward::Motor> motor;  // the drive is a voltage
   std::string control;                  // a law in place of the recorded drive (drive.hpp)
   std::string limit;

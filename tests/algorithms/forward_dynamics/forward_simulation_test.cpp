@@ -212,6 +212,31 @@ TEST(ForwardSimulation, AFormulaThatHoldsTheInertiaMovesAsTheInertiaDoes) {
   }
 }
 
+// Gravity known as a formula, recorded along the motion, or inside the formula of the whole torque.
+TEST(ForwardSimulation, GravityIsAFormulaARecordedColumnOrPartOfTheWhole) {
+  Movement movement(201, 0.005, 0.4);
+  for (std::size_t i = 0; i < movement.time.size(); ++i) {
+    movement.drive[i] = 1 + 2 * std::sin(3 * movement.time[i]);
+  }
+  const SimulatedMotion known =
+      simulate_motion(joint(0.3, "0.1*sgn_v + 0.2*v", "2*sin(q)"), nullptr, movement.rows(), {});
+  JointModel whole = joint(0, "0.1*sgn_v + 0.2*v + 0.3*a + g", "2*sin(q)");
+  whole.is_whole = true;
+  const SimulatedMotion inside = simulate_motion(whole, nullptr, movement.rows(), {});
+  NamedColumns columns;
+  columns.columns = {{"load", Role::gravity_torque}};
+  const JointModel recorded =
+      joint(0.3, "0.1*sgn_v + 0.2*v", std::string(kRecordedGravity), columns);
+  ASSERT_EQ(recorded.inputs.recorded.size(), 1U);
+  movement.recorded.resize(1);
+  for (const double q : known.position) movement.recorded[0].push_back(2 * std::sin(q));
+  const SimulatedMotion along = simulate_motion(recorded, nullptr, movement.rows(), {});
+  for (std::size_t i = 0; i < movement.time.size(); ++i) {
+    EXPECT_NEAR(inside.position[i], known.position[i], 1e-9);
+    EXPECT_NEAR(along.position[i], known.position[i], 1e-4);  // straight between the rows
+  }
+}
+
 TEST(ForwardSimulation, AVoltageMovesAMotorToItsNoLoadSpeedAndAnOpenCircuitLetsItRun) {
   JointModel model = joint(0.01, "0*v");
   model.motor = Motor{0.4, 4};
