@@ -74,45 +74,48 @@ CellLimits parse_limits(const json& object) {
 }
 
 json record_json(const Record& r) {
-  return {{"cell", r.cell},
-          {"problem", r.problem},
-          {"dataset", r.dataset},
-          {"joint", r.joint},
-          {"load", r.load},
-          {"method", r.method},
-          {"operators", r.operators},
-          {"seed", r.seed},
-          {"status", r.status},
-          {"reason", r.reason},
-          {"mae_train", number(r.mae_train)},
-          {"mae_test", number(r.mae_test)},
-          {"rmse_test", number(r.rmse_test)},
-          {"max_error_test", number(r.max_error_test)},
-          {"r2_test", number(r.r2_test)},
-          {"mae_truth", number(r.mae_truth)},
-          {"mae_ceiling", number(r.mae_ceiling)},
-          {"mae_law", number(r.mae_law)},
-          {"mae_refitted", number(r.mae_refitted)},
-          {"mae_truth_refitted", number(r.mae_truth_refitted)},
-          {"relative_error_train", number(r.relative_error_train)},
-          {"relative_error_test", number(r.relative_error_test)},
-          {"complexity", r.complexity},
-          {"nodes", r.nodes},
-          {"complexity_adaptation", r.complexity_adaptation},
-          {"evaluations", r.evaluations},
-          {"fit_cpu_s", number(r.fit_cpu_s)},
-          {"fit_wall_s", number(r.fit_wall_s)},
-          {"fit_instructions", number(r.fit_instructions)},
-          {"peak_memory_mib", number(r.peak_memory_mib)},
-          {"eval_ns_per_row", number(r.eval_ns_per_row)},
-          {"singularity", r.singularity},
-          {"witness", r.witness},
-          {"grid_check", r.grid_check},
-          {"dissipative", r.dissipative},
-          {"monotone", r.monotone},
-          {"odd", r.odd},
-          {"formula", r.formula},
-          {"note", r.note}};
+  json object = {{"cell", r.cell},
+                 {"problem", r.problem},
+                 {"dataset", r.dataset},
+                 {"joint", r.joint},
+                 {"load", r.load},
+                 {"method", r.method},
+                 {"operators", r.operators},
+                 {"seed", r.seed},
+                 {"status", r.status},
+                 {"reason", r.reason},
+                 {"mae_train", number(r.mae_train)},
+                 {"mae_test", number(r.mae_test)},
+                 {"rmse_test", number(r.rmse_test)},
+                 {"max_error_test", number(r.max_error_test)},
+                 {"r2_test", number(r.r2_test)},
+                 {"mae_truth", number(r.mae_truth)},
+                 {"mae_ceiling", number(r.mae_ceiling)},
+                 {"mae_law", number(r.mae_law)},
+                 {"mae_refitted", number(r.mae_refitted)},
+                 {"mae_truth_refitted", number(r.mae_truth_refitted)},
+                 {"relative_error_train", number(r.relative_error_train)},
+                 {"relative_error_test", number(r.relative_error_test)},
+                 {"complexity", r.complexity},
+                 {"nodes", r.nodes},
+                 {"complexity_adaptation", r.complexity_adaptation},
+                 {"evaluations", r.evaluations},
+                 {"fit_cpu_s", number(r.fit_cpu_s)},
+                 {"fit_wall_s", number(r.fit_wall_s)},
+                 {"fit_instructions", number(r.fit_instructions)},
+                 {"peak_memory_mib", number(r.peak_memory_mib)},
+                 {"eval_ns_per_row", number(r.eval_ns_per_row)},
+                 {"singularity", r.singularity},
+                 {"witness", r.witness},
+                 {"grid_check", r.grid_check},
+                 {"dissipative", r.dissipative},
+                 {"monotone", r.monotone},
+                 {"odd", r.odd},
+                 {"formula", r.formula},
+                 {"note", r.note}};
+  // Few problems have it: the others' records, and their fingerprints, stay as they are.
+  if (std::isfinite(r.motion_error)) object["motion_error"] = r.motion_error;
+  return object;
 }
 
 Record parse_record(const json& object) {
@@ -157,6 +160,7 @@ Record parse_record(const json& object) {
   r.odd = object.at("odd");
   r.formula = object.at("formula");
   r.note = object.at("note");
+  if (object.contains("motion_error")) r.motion_error = number(object, "motion_error");
   return r;
 }
 

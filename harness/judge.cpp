@@ -15,6 +15,7 @@
 #include "algorithms/states/dissipation.hpp"
 #include "algorithms/states/state_text.hpp"
 #include "harness/metrics.hpp"
+#include "harness/motion/motion_trial.hpp"
 #include "harness/stateful_problem.hpp"
 #include "harness/table_evaluator.hpp"
 
@@ -142,6 +143,7 @@ void judge_formula(const Problem& problem, const StagedFormula& staged, Record& 
     record.complexity_adaptation = paper_complexity(staged.adaptation);
   }
   judge_singularity(problem, formula, record);
+  if (problem.motion) record.motion_error = motion_error_of(problem, formula);
   record.eval_ns_per_row = measure_ns_per_row(formula, problem.test);
   record.formula = formula_text(problem, formula);
   record.status = "ok";

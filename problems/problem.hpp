@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "problems/dataset.hpp"
+#include "problems/motion_case.hpp"
 
 namespace tribench {
 
@@ -77,6 +78,9 @@ struct Problem {
   std::vector<Input> inputs;
   std::vector<Stage> stages;  // at least one
   Table test;
+  // The test movements as a formula's motion is judged by; empty where the problem declares none.
+  // Reads files where the data are measured. Throws Error where one is missing or has changed.
+  std::function<MotionCase()> motion = {};
 
   // The laws of all stages together, in print form; empty where one of them is not known.
   std::string true_law() const;

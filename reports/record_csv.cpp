@@ -65,6 +65,7 @@ constexpr Column<Record> kResultColumns[] = {
     {"monotone", &R::monotone},
     {"odd", &R::odd},
     {"fit_instructions", &R::fit_instructions},
+    {"motion_error", &R::motion_error},
     {"note", &R::note},
 };
 

@@ -11,6 +11,7 @@
 #include "algorithms/forward_dynamics/forward_simulation.hpp"
 #include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
+#include "harness/stateful_problem.hpp"
 #include "problems/preparation/motion_smoother.hpp"
 
 namespace tribench {
@@ -353,6 +354,24 @@ forward::NamedColumns columns_of(const Dataset& data) {
 MotionRecord try_motion(const Dataset& train, const Dataset* test, const MotionSetup& setup,
                         const std::vector<char>& held_out) {
   return Trial(train, test, setup, held_out).run();
+}
+
+double motion_error_of(const Problem& problem, const Expression& formula) {
+  const MotionCase judged = problem.motion();
+  MotionSetup setup;
+  setup.formula = formula_text(problem, formula);
+  setup.inertia = judged.terms.inertia;
+  setup.gravity = judged.terms.gravity;
+  const Channel* target = judged.test.find(problem.target);
+  setup.is_whole = target != nullptr && target->role == Role::motor_torque;
+  setup.hold = judged.terms.hold;
+  setup.horizon_s = judged.terms.horizon_s;
+  try {
+    return try_motion(judged.test, nullptr, setup, {}).training.mean_position;
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::bad_input) throw;
+    return std::numeric_limits<double>::quiet_NaN();  // no inertia: no motion
+  }
 }
 
 }  // namespace tribench

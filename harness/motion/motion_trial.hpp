@@ -22,6 +22,7 @@
 #include "algorithms/forward_dynamics/joint_model.hpp"
 #include "algorithms/forward_dynamics/motion_fit.hpp"
 #include "problems/dataset.hpp"
+#include "problems/problem.hpp"
 #include "reports/record/motion_record.hpp"
 
 namespace tribench {
@@ -51,6 +52,11 @@ struct MotionSetup {
 // what is missing, with the option or role that mends it.
 MotionRecord try_motion(const Dataset& train, const Dataset* test, const MotionSetup& setup,
                         const std::vector<char>& held_out);
+
+// Mean absolute error of the simulated position, rad or m, over the problem's test movements; NaN
+// where the formula holds no inertia, has no value on the way, or leaves the range. problem.motion
+// must be there. Throws Error where its data are not.
+double motion_error_of(const Problem& problem, const Expression& formula);
 
 // The columns of a dataset as formulas see them.
 forward::NamedColumns columns_of(const Dataset& data);

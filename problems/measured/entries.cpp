@@ -56,6 +56,21 @@ Dataset thinned(const Dataset& data, const ProblemPlan& plan) {
   return thin({data, {}}, plan.rows_per_movement, RandomStream(key_of(plan.name))).data;
 }
 
+// The test movements row by row, whatever the problem's tables keep of them.
+MotionCase motion_case(const Manifest& manifest, const ProblemPlan& plan, const DataFolder& data,
+                       const std::vector<char>& test) {
+  ProblemPlan whole = plan;
+  whole.decimate = 1;
+  whole.average = false;
+  const std::string& file = plan.test_file.empty() ? plan.file : plan.test_file;
+  const Dataset rows = read_recording(whole, verified_file(manifest, file, data));
+  std::vector<std::size_t> kept;
+  for (std::size_t r = 0; r < rows.rows(); ++r) {
+    if (test.empty() || test[static_cast<std::size_t>(rows.movement[r])] != 0) kept.push_back(r);
+  }
+  return {select_rows({rows, {}}, kept).data, *plan.motion};
+}
+
 void widen_box(std::vector<Input>& inputs, const std::vector<Input>& others) {
   for (std::size_t j = 0; j < inputs.size(); ++j) {
     inputs[j].low = std::min(inputs[j].low, others[j].low);
@@ -84,6 +99,9 @@ Problem make_measured_problem(const Manifest& manifest, const ProblemPlan& plan,
     problem.test = make_table({recording, {}}, problem.inputs, plan.target, test);
     lay_trails(whole, recording, problem);
     lay_trail(whole, recording, problem.inputs, problem.test);
+    if (plan.motion) {
+      problem.motion = [=] { return motion_case(manifest, plan, data, test); };
+    }
     return problem;
   }
   lay_trails(whole, recording, problem);
@@ -93,6 +111,9 @@ Problem make_measured_problem(const Manifest& manifest, const ProblemPlan& plan,
   lay_trails(whole_other, other, tested);
   widen_box(problem.inputs, tested.inputs);
   problem.test = tested.stages.front().train;
+  if (plan.motion) {
+    problem.motion = [=] { return motion_case(manifest, plan, data, {}); };
+  }
   return problem;
 }
 

@@ -187,6 +187,23 @@ void read_settings(Reader& table, ProblemPlan& plan) {
   }
 }
 
+// motion = {gravity = "5*sin(q)", hold = true, horizon = 0.5, inertia = 1.2}; an empty table
+// declares that the formula holds all of it.
+std::optional<MotionTerms> read_motion(Reader& problem) {
+  std::optional<Reader> table = problem.table("motion");
+  if (!table) return std::nullopt;
+  MotionTerms terms;
+  terms.gravity = table->value<std::string>("gravity", "");
+  terms.inertia = table->value("inertia", 0.0);
+  terms.hold = table->value("hold", false);
+  terms.horizon_s = table->value("horizon", 0.0);
+  table->refuse_unknown();
+  if (terms.inertia < 0 || terms.horizon_s < 0) {
+    throw_bad_input("inertia and horizon are not negative", table->place());
+  }
+  return terms;
+}
+
 std::string for_joint(std::string text, int joint) {
   constexpr std::string_view kPlaceholder = "{joint}";
   for (std::size_t at = text.find(kPlaceholder); at != std::string::npos;
@@ -216,6 +233,7 @@ std::vector<ProblemPlan> read_problem(Reader& table, const Columns& columns) {
   read_columns(table, plan.columns);
   for (Reader& derived : table.tables("derived")) plan.derived.push_back(read_derived(derived));
   plan.movements = read_movements(table);
+  plan.motion = read_motion(table);
   read_settings(table, plan);
   std::vector<ProblemPlan> plans;
   if (const toml::node* joints = table.find("joints")) {

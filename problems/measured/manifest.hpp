@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "problems/dataset.hpp"
+#include "problems/motion_case.hpp"
 
 namespace tribench::measured {
 
@@ -73,6 +74,7 @@ struct ProblemPlan {
   bool average = false;               // one row a movement: the mean of every channel
   std::size_t rows_per_movement = 0;  // 0: all
   double test_share = 0.2;            // of the movements
+  std::optional<MotionTerms> motion;  // formulas are judged by their motion too
   // Published error on this problem, 100 |y - f| / |y|, by model; NaN-free, may be empty.
   std::map<std::string, double, std::less<>> published_percent;
 };
