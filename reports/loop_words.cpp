@@ -74,6 +74,17 @@ std::string where_judged(const LoopError& error) {
   return "on movements that it never saw";
 }
 
+// " Simulated 0.5 s ahead, the joint is 0.82 -> 0.31 deg off."
+std::string motion_sentence(const LoopRecord& record) {
+  const LoopMotion& motion = record.motion;
+  if (!known(motion.after)) return {};
+  const std::string after = figure(motion.after, kDigits);
+  return fmt::format(" Simulated {} s ahead, the joint is {}{} {} off{}.",
+                     figure(motion.horizon_s, 2),
+                     record.effects.empty() ? "" : figure(motion.before, kDigits) + " -> ", after,
+                     motion.unit, motion.held_out ? "" : " on the movements of the fit");
+}
+
 std::string error_sentence(const LoopRecord& record) {
   const LoopError& error = record.error;
   const LoopUnit unit = torque_unit(record);
@@ -99,7 +110,7 @@ std::string error_sentence(const LoopRecord& record) {
                                                         figure(unit.factor * room, 2), unit.name)
                                           : std::string("; the rest is noise");
   }
-  return text + '.';
+  return text + '.' + motion_sentence(record);
 }
 
 std::string grade_of(const LoopEffect& effect) {

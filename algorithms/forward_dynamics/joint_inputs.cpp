@@ -22,6 +22,7 @@ const std::vector<std::pair<std::string_view, Source>>& known_names() {
       {"a", Source::acceleration}, {"sgn_v", Source::direction},
       {"t", Source::time},         {"tau_m", Source::motor_torque},
       {"g", Source::gravity},      {"sgn_g", Source::gravity_sign},
+      {"sin_q", Source::sine},     {"cos_q", Source::cosine},
   };
   return kNames;
 }

@@ -4,6 +4,7 @@
 // the data have a measured one; everything else is taken as it was recorded.
 //
 //   q v a sgn_v     position, velocity, acceleration, direction of motion
+//   sin_q cos_q     of the position
 //   t               time (s)
 //   tau_m           torque of the motor
 //   g sgn_g         gravity torque of the model, at the simulated position
@@ -28,6 +29,8 @@ enum class Source {
   position,
   velocity,
   direction,
+  sine,  // of the position
+  cosine,
   acceleration,
   time,
   motor_torque,

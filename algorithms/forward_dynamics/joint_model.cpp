@@ -7,6 +7,7 @@
 
 #include "algorithms/expression/text.hpp"
 #include "algorithms/states/state_text.hpp"
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/sign.hpp"
 
@@ -148,6 +149,12 @@ void JointEquation::fill(const JointInstant& at, int direction) {
         break;
       case Source::direction:
         value = direction;
+        break;
+      case Source::sine:
+        value = elementary::sin(at.position);
+        break;
+      case Source::cosine:
+        value = elementary::cos(at.position);
         break;
       case Source::acceleration:
         value = 0;

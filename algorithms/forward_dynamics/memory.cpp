@@ -6,6 +6,7 @@
 #include <charconv>
 #include <vector>
 
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/sign.hpp"
 #include "problems/preparation/derived_channels.hpp"
@@ -47,6 +48,10 @@ double value_of(const Binding& binding, const Reached& at) {
       return at.velocity;
     case Source::direction:
       return sign(at.velocity);
+    case Source::sine:
+      return elementary::sin(at.position);
+    case Source::cosine:
+      return elementary::cos(at.position);
     case Source::time:
       return at.time;
     case Source::motor_torque:

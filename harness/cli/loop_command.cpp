@@ -27,6 +27,7 @@
 #include "harness/cli/commands.hpp"
 #include "harness/cli/data_options.hpp"
 #include "harness/cli/number_options.hpp"
+#include "harness/loop/loop_motion.hpp"
 #include "harness/loop/loop_record_of.hpp"
 #include "problems/preparation/recording.hpp"
 #include "problems/reading/explanation.hpp"
@@ -207,10 +208,17 @@ void grow_library(const LoopArguments& arguments, const Registry& registry,
   write_file(arguments.save_effect, loop::write_effects(std::vector{learned->family}));
 }
 
+// What was read, before neighbouring rows are averaged: the motion is simulated along it.
+struct LoopRecording {
+  Dataset data;
+  loop::PositionUnit unit;
+};
+
 loop::Observations read_observations(const LoopArguments& arguments,
-                                     std::vector<LoopDataStep>& steps) {
+                                     std::vector<LoopDataStep>& steps, LoopRecording& whole) {
   DataFile file = read_files(arguments);
   steps.push_back({"read from the file", file.data.rows()});
+  whole.unit = loop::position_unit(file);
   PreparedRecording recording = prepare(std::move(file), *arguments.reading, arguments.gravity);
   steps.push_back({"cut into movements, derived channels added", recording.data.rows()});
   std::vector<std::string> rigid = arguments.rigid;
@@ -222,7 +230,7 @@ loop::Observations read_observations(const LoopArguments& arguments,
     data.group_name = arguments.leave_out;
   }
   std::vector<std::string>& notes = recording.notes;
-  recording.data = {};
+  whole.data = std::move(recording.data);
   const std::size_t all_rows = data.rows();
   steps.push_back({"rows that count for friction", all_rows});
   const loop::Shortened shortened = data.averaged(static_cast<std::size_t>(arguments.rows));
@@ -269,7 +277,8 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
   }
   loop::LoopExtras extras;
   extras.title = title_of(arguments);
-  const loop::Observations data = read_observations(arguments, extras.steps);
+  LoopRecording whole;
+  const loop::Observations data = read_observations(arguments, extras.steps, whole);
   std::unique_ptr<Regressor> method;
   Budget budget(BudgetLimits{.evaluations = arguments.evaluations});
   const loop::BaseMaker base = base_of(arguments, registry, method, budget);
@@ -282,6 +291,7 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
     extras.suggestions =
         loop::propose_movements(diagnosis, data, static_cast<std::size_t>(arguments.suggest));
   }
+  extras.motion = loop::loop_motion(diagnosis, data, std::move(whole.data), whole.unit);
   const LoopRecord record = loop::loop_record_of(diagnosis, data, extras);
   if (!arguments.out.empty()) {
     const std::filesystem::path folder = arguments.out;

@@ -225,6 +225,7 @@ LoopRecord loop_record_of(const Diagnosis& diagnosis, const Observations& data,
                   diagnosis.noise.effective_rows};
   add_lists(record, diagnosis);
   record.error = error_of(diagnosis.error);
+  record.motion = extras.motion;
   record.base = diagnosis.before.base.name;
   record.base_formula = formula_text(diagnosis.before, data);
   record.formula = formula_text(diagnosis.after, data);

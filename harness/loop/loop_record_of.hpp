@@ -19,6 +19,7 @@ struct LoopExtras {
   std::vector<LearnedEffect> learned;
   std::vector<ProposedMovement> suggestions;
   std::vector<LoopDataStep> steps;  // what became of the rows
+  LoopMotion motion;                // loop_motion.hpp
 };
 
 // data: what was diagnosed. Cost: a few evaluations of both models on every row.

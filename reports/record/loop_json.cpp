@@ -89,6 +89,16 @@ Json error_json(const LoopError& error) {
           {"movements", movements}};
 }
 
+// Absent where no motion could be simulated.
+void add_motion(Json& json, const LoopMotion& motion) {
+  if (!std::isfinite(motion.after)) return;
+  json["motion"] = {{"before", number(motion.before)},
+                    {"after", number(motion.after)},
+                    {"unit", motion.unit},
+                    {"horizon_s", number(motion.horizon_s)},
+                    {"held_out", motion.held_out}};
+}
+
 void add_lists(Json& json, const LoopRecord& record) {
   json["untestable"] = Json::array();
   for (const LoopUntestable& one : record.untestable) {
@@ -299,6 +309,7 @@ Json loop_json(const LoopRecord& record) {
   json["leftover"] = leftover_json(record.leftover);
   add_lists(json, record);
   json["error"] = error_json(record.error);
+  add_motion(json, record.motion);
   json["base"] = record.base;
   json["base_formula"] = record.base_formula;
   json["formula"] = record.formula;

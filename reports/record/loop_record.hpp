@@ -127,6 +127,15 @@ struct LoopMovementError {
   std::size_t rows = 0;
 };
 
+// Mean absolute error of the simulated position, so many seconds ahead of where it was measured.
+struct LoopMotion {
+  double before = kNoFigure;
+  double after = kNoFigure;
+  std::string unit;
+  double horizon_s = kNoFigure;
+  bool held_out = false;  // on test movements; else on those of the fit
+};
+
 // Mean absolute errors on what took no part in the fit, before and after.
 struct LoopError {
   std::size_t test_movements = 0;
@@ -231,6 +240,7 @@ struct LoopRecord {
   std::vector<LoopCandidate> candidates;
   std::vector<std::string> needed;  // where it cannot tell: what would be
   LoopError error;
+  LoopMotion motion;
   std::string base;
   std::string base_formula;
   std::string formula;
