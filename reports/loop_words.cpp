@@ -78,11 +78,12 @@ std::string where_judged(const LoopError& error) {
 std::string motion_sentence(const LoopRecord& record) {
   const LoopMotion& motion = record.motion;
   if (!known(motion.after)) return {};
-  const std::string after = figure(motion.after, kDigits);
-  return fmt::format(" Simulated {} s ahead, the joint is {}{} {} off{}.",
-                     figure(motion.horizon_s, 2),
-                     record.effects.empty() ? "" : figure(motion.before, kDigits) + " -> ", after,
-                     motion.unit, motion.held_out ? "" : " on the movements of the fit");
+  const LoopUnit unit = length_unit(motion.unit, motion.after);
+  const auto shown = [&](double value) { return figure(unit.factor * value, kDigits); };
+  return fmt::format(
+      " Simulated {} s ahead, the joint is {}{} {} off{}.", figure(motion.horizon_s, 2),
+      record.effects.empty() ? "" : shown(motion.before) + " -> ", shown(motion.after), unit.name,
+      motion.held_out ? "" : " on the movements of the fit");
 }
 
 std::string error_sentence(const LoopRecord& record) {

@@ -35,13 +35,13 @@ struct Record {
   double rmse_test = kMissing;
   double max_error_test = kMissing;
   double r2_test = kMissing;
-  double mae_truth = kMissing;             // against the noise-free law on the test rows
-  double mae_ceiling = kMissing;           // of the noise-free target itself: the noise ceiling
-  double mae_law = kMissing;               // of the true law, where it is a formula of the inputs
-  double mae_refitted = kMissing;          // of the true law, its constants fitted to the same rows
-  double mae_truth_refitted = kMissing;    // of that against the noise-free law
-  // Mean absolute error of the simulated position on the test movements, rad or m, where the problem
-  // declares what that needs and the formula moves the joint through all of them.
+  double mae_truth = kMissing;           // against the noise-free law on the test rows
+  double mae_ceiling = kMissing;         // of the noise-free target itself: the noise ceiling
+  double mae_law = kMissing;             // of the true law, where it is a formula of the inputs
+  double mae_refitted = kMissing;        // of the true law, its constants fitted to the same rows
+  double mae_truth_refitted = kMissing;  // of that against the noise-free law
+  // Mean absolute error of the simulated position on the test movements, rad or m, where the
+  // problem declares what that needs and the formula moves the joint through all of them.
   double motion_error = kMissing;
   double relative_error_train = kMissing;  // 100 |y - f| / |y|, 2-norms, percent
   double relative_error_test = kMissing;

@@ -16,7 +16,9 @@ namespace {
 
 // Stands for a velocity of 0 of which the direction is known: sgn(v) and v/abs(v) have a value.
 constexpr double kBarelyMoving = 1e-150;
-constexpr int kMostSteps = 50;       // of the search for an acceleration
+constexpr int kMostSecants = 8;
+constexpr int kMostDoublings = 40;
+constexpr int kMostHalvings = 60;
 constexpr double kSolved = 1e-12;    // of the torques in the equation
 constexpr double kBalanced = 1e-13;  // of these
 
@@ -203,23 +205,40 @@ double JointEquation::acceleration(const JointInstant& at, int direction) {
   // Where the torques balance but for rounding no slope can be told.
   const double size = std::abs(driving) + std::abs(at_rest);
   if (std::abs(free) <= kBalanced * size) return free / mass_guess_;
+  return solve(driving, free, size);
+}
+
+// The root of the residual, which falls with the acceleration: by secants from 0, and where those
+// do not get there (the formula jumps at some acceleration) between two signs of the residual.
+double JointEquation::solve(double driving, double at_zero, double size) {
+  const auto residual = [&](double a) { return driving - model_.inertia * a - friction_at(a); };
   double before = 0;
-  double residual_before = free;
-  double now = free / mass_guess_;
-  for (int step = 0; step < kMostSteps; ++step) {
-    const double residual = driving - model_.inertia * now - friction_at(now);
-    const double mass = (residual_before - residual) / (now - before);
-    if (!(mass > 0)) return std::numeric_limits<double>::quiet_NaN();
+  double residual_before = at_zero;
+  double now = at_zero / mass_guess_;
+  for (int step = 0; step < kMostSecants; ++step) {
+    const double there = residual(now);
+    if (!is_affine_ && std::abs(there) <= kSolved * size) return now;
+    const double mass = (residual_before - there) / (now - before);
+    if (!(mass > 0)) break;
     mass_guess_ = mass;
-    const double next = now + residual / mass;
-    if (is_affine_ || std::abs(residual) <= kSolved * size) {
-      return next;
-    }
     before = now;
-    residual_before = residual;
-    now = next;
+    residual_before = there;
+    now += there / mass;
+    if (is_affine_) return now;
   }
-  return std::numeric_limits<double>::quiet_NaN();
+  if (is_affine_) return std::numeric_limits<double>::quiet_NaN();
+  double near = 0;  // the residual has the sign that it has at 0
+  double far = at_zero / mass_guess_;
+  for (int k = 0; k < kMostDoublings && residual(far) * at_zero > 0; ++k) {
+    near = far;
+    far *= 2;
+  }
+  if (!(residual(far) * at_zero <= 0)) return std::numeric_limits<double>::quiet_NaN();
+  for (int k = 0; k < kMostHalvings && std::abs(far - near) > kSolved * std::abs(far); ++k) {
+    const double middle = 0.5 * (near + far);
+    (residual(middle) * at_zero > 0 ? near : far) = middle;
+  }
+  return 0.5 * (near + far);
 }
 
 Reached JointEquation::reached(const JointInstant& at) {

@@ -83,6 +83,7 @@ class JointEquation {
   void fill(const JointInstant& at, int direction);
   Reached reached(const JointInstant& at);
   double friction_at(double acceleration);
+  double solve(double driving, double at_zero, double size);
 
   const JointModel& model_;
   std::vector<std::unique_ptr<Memory>> memories_;

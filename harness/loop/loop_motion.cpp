@@ -34,7 +34,8 @@ void rename_channels(const Observations& data, Dataset& recording) {
       continue;
     }
     for (Channel& channel : recording.channels) {
-      if (channel.name == signal.channel) channel.name = signal.name;
+      // A sign comes from its quantity's column, which keeps its own name.
+      if (channel.name == signal.channel && channel.role == signal.role) channel.name = signal.name;
     }
   }
 }

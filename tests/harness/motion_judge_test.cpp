@@ -91,7 +91,8 @@ TEST(MotionJudge, MeasuredSetsDeclareItInTheirManifests) {
                "95.1089*acceleration_m_s2 + 203.5034*velocity_m_s + 20.3935*direction - 3.1648")
             .motion_error;
     const double frictionless = judged(problem, "95.1089*acceleration_m_s2").motion_error;
-    EXPECT_LT(published, 4e-3) << plan.name;  // of strokes of 0.24 m
+    // Of strokes of 0.24 m; with force pulses that took no part in the published fit, more.
+    EXPECT_LT(published, plan.name == "emps/pulses" ? 6e-3 : 3e-3) << plan.name;
     EXPECT_GT(published, 1e-4) << plan.name;
     EXPECT_GT(frictionless, 10 * published) << plan.name;
   }

@@ -237,6 +237,24 @@ TEST(ForwardSimulation, GravityIsAFormulaARecordedColumnOrPartOfTheWhole) {
   }
 }
 
+// A formula that jumps with the sign of the acceleration (pre-sliding told by v a): while the
+// torque lies in the jump the speed is held.
+TEST(ForwardSimulation, AJumpAtNoAccelerationHoldsTheSpeed) {
+  Movement movement(301, 0.01, 0.0, 1.0);
+  for (std::size_t i = 0; i < movement.time.size(); ++i) {
+    const double t = movement.time[i];
+    movement.drive[i] = t < 1 ? 3.2 : t < 2 ? 5 : 3.2;
+  }
+  SimulationOptions options;
+  options.hold = true;
+  const SimulatedMotion motion =
+      simulate_motion(joint(0, "3*sgn_v + 0.5*sgn(v*a) + 2*a"), nullptr, movement.rows(), options);
+  ASSERT_EQ(motion.status, MotionStatus::complete);
+  EXPECT_NEAR(motion.velocity[100], 1, 1e-6);
+  EXPECT_NEAR(motion.velocity[200], 1.75, 1e-6);  // (5 - 3 - 0.5) / 2
+  EXPECT_NEAR(motion.velocity[300], 1.75, 1e-6);
+}
+
 TEST(ForwardSimulation, AVoltageMovesAMotorToItsNoLoadSpeedAndAnOpenCircuitLetsItRun) {
   JointModel model = joint(0.01, "0*v");
   model.motor = Motor{0.4, 4};

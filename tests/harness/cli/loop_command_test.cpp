@@ -188,6 +188,37 @@ TEST(LoopCommand, poor_input_is_warned_of_and_nothing_is_claimed) {
               HasSubstr("one direction"));
 }
 
+// Sines of a joint with inertia 1.5, Coulomb friction and an offset by direction, positions in
+// degrees: half a second ahead either model keeps to the motion, and says so in degrees.
+TEST(LoopCommand, says_what_the_models_are_worth_in_motion_where_the_inertia_is_known) {
+  const testing::TemporaryFolder folder;
+  const auto line = [](int m, int i) {
+    const double t = 0.005 * i;
+    const double rate = 1.5 + 0.2 * m;
+    const double size = 0.6 / rate;
+    const double q = -size * std::cos(rate * t);
+    const double v = size * rate * std::sin(rate * t);
+    const double a = size * rate * rate * std::cos(rate * t);
+    const double tau = 1.5 * a + 3 * v + (v > 0 ? 5 : v < 0 ? -5 : 0) + 0.1 * noise_of(m, i);
+    return std::to_string(m) + "," + csv({t, 57.29577951 * q, v, a, tau});
+  };
+  const std::string file =
+      file_of(folder, "movement,time_s,pos_deg,vel_rad_s,acc_rad_s2,tau_Nm", 12, 200, line);
+  const testing::ProgramRun run =
+      tribench({"loop", file, "--gravity", "none", "--roles",
+                "pos_deg=position[deg],vel_rad_s=velocity,acc_rad_s2=acceleration,"
+                "tau_Nm=motor_torque[N m]",
+                "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const Json loop = Json::parse(run.output);
+  ASSERT_TRUE(loop.contains("motion")) << run.output.substr(0, 2000);
+  EXPECT_EQ(loop["motion"]["unit"], "deg");
+  EXPECT_EQ(loop["motion"]["horizon_s"], 0.5);
+  EXPECT_GT(loop["motion"]["after"].get<double>(), 0);
+  EXPECT_LT(loop["motion"]["after"].get<double>(), 0.3);
+  EXPECT_LT(loop["motion"]["before"].get<double>(), 0.3);
+}
+
 TEST(LoopCommand, files_without_movements_are_one_movement_each) {
   const testing::TemporaryFolder folder;
   std::vector<std::string> command = {"loop"};
