@@ -101,13 +101,12 @@ Round Search::test_all(const FittedModel& state) const {
     round.blocks[k] = score_block(projected.middleCols(first, count), before.segment(first, count),
                                   state.residual, clusters_, 0);
   }
-  mark_opposed(round, projected, state);
   count_carriers(round);
   round.maxima = flip_maxima(round.blocks, flips_);
   round.family_p.assign(families_.size(), 1);
   round.family_score.assign(families_.size(), 0);
   for (std::size_t k = 0; k < library_.size(); ++k) {
-    if (!is_choosable(round, k)) continue;
+    if (!round.blocks[k].test.testable) continue;
     double& score = round.family_score[library_[k].family];
     score = std::max(score, round.blocks[k].test.score);
   }
@@ -119,38 +118,68 @@ Round Search::test_all(const FittedModel& state) const {
   return round;
 }
 
-// The sign that the coefficient of an atom's one column needs, where the column with the other sign
-// is another cause (friction that falls with speed and friction that rises to a limit); else 0.
-int Search::telling_sign(const Atom& atom) const {
-  if (!options_.physical_vetoes || atom.columns.size() != 1) return 0;
-  const auto& sanity = families_[atom.family].sanity;
-  const auto rule = std::ranges::find(sanity, atom.coefficients[0], &Sanity::coefficient);
-  return rule == sanity.end() || rule->with_other_sign.empty() ? 0 : rule->sign;
+namespace {
+
+bool reads_velocity_alone(const Expression& formula, const Observations& data) {
+  return std::ranges::all_of(formula.nodes(), [&](const Node& node) {
+    if (!node.is_variable()) return true;
+    const std::string& name = data.signals[node.variable].name;
+    return name == "v" || name == "sgn_v";
+  });
 }
 
-void Search::mark_opposed(Round& round, const Eigen::MatrixXd& projected,
-                          const FittedModel& state) const {
-  round.opposed.assign(library_.size(), 0);
-  for (std::size_t k = 0; k < library_.size(); ++k) {
-    const int sign = usable_[k] != 0 ? telling_sign(library_[k]) : 0;
-    if (sign == 0) continue;
-    const double slope =
-        projected.col(static_cast<Eigen::Index>(blocks_[k].first)).dot(state.residual);
-    round.opposed[k] = slope * sign < 0 ? 1 : 0;
+}  // namespace
+
+// Whether there is less friction somewhere than at the slowest row, in one direction: by the base
+// and this family, as far as they read the velocity alone.
+bool Search::falls_with_speed(const LoopModel& model, std::size_t family) const {
+  std::vector<Expression> terms;
+  std::vector<double> coefficients;
+  const auto take = [&](const Expression& term, std::size_t column) {
+    if (!reads_velocity_alone(term, data_)) return;
+    terms.push_back(term);
+    coefficients.push_back(model.coefficients[static_cast<Eigen::Index>(column)]);
+  };
+  for (std::size_t k = 0; k < model.base.linear_terms.size(); ++k) {
+    take(model.base.linear_terms[k], k);
   }
-}
-
-// Its coefficients changed when something else came or went.
-bool Search::stands_for_another_cause(const LoopModel& model) const {
   for (std::size_t k = 0; k < model.atoms.size(); ++k) {
-    const double coefficient = model.coefficients[static_cast<Eigen::Index>(model.first_column(k))];
-    if (telling_sign(model.atoms[k]) * coefficient < 0) return true;
+    if (model.atoms[k].family != family) continue;
+    for (std::size_t j = 0; j < model.atoms[k].columns.size(); ++j) {
+      take(model.atoms[k].columns[j], model.first_column(k) + j);
+    }
+  }
+  const Eigen::VectorXd friction =
+      evaluate_columns(terms, data_) *
+      Eigen::Map<const Eigen::VectorXd>(coefficients.data(),
+                                        static_cast<Eigen::Index>(coefficients.size()));
+  const std::vector<double>& v = data_.find("v")->values;
+  for (const double direction : {1.0, -1.0}) {
+    double slowest = std::numeric_limits<double>::infinity();
+    double there = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      if (!(direction * v[i] > 0)) continue;
+      const double against = direction * friction[static_cast<Eigen::Index>(i)];
+      least = std::min(least, against);
+      if (std::abs(v[i]) < slowest) {
+        slowest = std::abs(v[i]);
+        there = against;
+      }
+    }
+    if (least < there) return true;
   }
   return false;
 }
 
-bool Search::is_choosable(const Round& round, std::size_t atom) {
-  return round.blocks[atom].test.testable && round.opposed[atom] == 0;
+// Curves of speed that two families can draw are told apart by whether friction falls. A base that
+// is a formula has its own curve, which nobody knows.
+bool Search::stands_for_another_cause(const LoopModel& model) const {
+  if (!options_.physical_vetoes || !model.base.formula.empty()) return false;
+  return std::ranges::any_of(model.atoms, [&](const Atom& atom) {
+    return atom.curve != SpeedCurve::any &&
+           falls_with_speed(model, atom.family) != (atom.curve == SpeedCurve::falls);
+  });
 }
 
 // Atoms that too few clusters carry cannot be tested. A family that has no others may be rescued.
@@ -178,7 +207,7 @@ std::optional<Candidate> Search::best_atom(std::size_t family, const Round& roun
                                            const FittedModel& state) const {
   std::vector<std::size_t> atoms;
   for (std::size_t k = 0; k < library_.size(); ++k) {
-    if (library_[k].family == family && is_choosable(round, k)) atoms.push_back(k);
+    if (library_[k].family == family && round.blocks[k].test.testable) atoms.push_back(k);
   }
   std::ranges::stable_sort(atoms, [&](std::size_t a, std::size_t b) {
     return round.blocks[a].test.score > round.blocks[b].test.score;
@@ -249,7 +278,7 @@ std::optional<Candidate> Search::rescue(std::size_t family, const Round& round,
   if (!options_.has("rescue")) return best;
   // All atoms: with few carriers their scores tell next to nothing.
   for (std::size_t k = 0; k < library_.size(); ++k) {
-    if (library_[k].family != family || !is_choosable(round, k)) continue;
+    if (library_[k].family != family || !round.blocks[k].test.testable) continue;
     if (!(carriers(round, k, state) < kFewClusters)) continue;
     LoopModel model = state.model;
     model.add(library_[k]);
@@ -291,7 +320,7 @@ std::size_t Search::best_shape(std::size_t atom, const Round& round,
   std::size_t best = atom;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < library_.size(); ++k) {
-    if (library_[k].family != library_[atom].family || !is_choosable(round, k)) continue;
+    if (library_[k].family != library_[atom].family || !round.blocks[k].test.testable) continue;
     LoopModel model = state.model;
     model.add(library_[k]);
     const double loss =

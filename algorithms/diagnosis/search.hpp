@@ -43,7 +43,6 @@ struct Round {
   std::vector<double> family_p;     // adjusted; 1 where untestable
   std::vector<double> family_score;
   std::vector<char> rescue_only;  // carried by fewer clusters than a test by flips needs
-  std::vector<char> opposed;      // per atom: its coefficient would have a sign that nothing has
 };
 
 struct Candidate {
@@ -91,10 +90,8 @@ class Search {
   std::vector<Candidate> admitted(const Round& round, const FittedModel& state,
                                   const std::vector<std::size_t>& skip) const;
   Round test_all(const FittedModel& state) const;
-  void mark_opposed(Round& round, const Eigen::MatrixXd& projected, const FittedModel& state) const;
-  int telling_sign(const Atom& atom) const;
+  bool falls_with_speed(const LoopModel& model, std::size_t family) const;
   bool stands_for_another_cause(const LoopModel& model) const;
-  static bool is_choosable(const Round& round, std::size_t atom);
   void count_carriers(Round& round) const;
 
  private:

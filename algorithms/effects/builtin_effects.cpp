@@ -6,9 +6,8 @@
 namespace tribench::loop {
 namespace {
 
-// Grids are fractions of the signal's scale. A fall with speed is Stribeck, a rise that saturates
-// is non-linear viscous: the two are one function with the sign turned.
-constexpr double kWidestFall = 0.5;  // of the top speed: a wider one is a parabola
+// Grids are fractions of the signal's scale.
+constexpr double kNarrowFall = 0.15;  // of the top speed
 
 // A step of the load that is wider than this part of it is no step: it would pass for a gain.
 constexpr double kWidestStep = 0.1;
@@ -38,17 +37,21 @@ EffectFamily stribeck() {
                  "friction falls with speed near standstill",
                  "Armstrong-Helouvry 1991; Canudas de Wit 1995",
                  {}};
-  f.atoms = {{{"sgn_v*exp(-(abs(v)/vs)^delta)"},
-              {"excess"},
-              {{"vs", "v", {0.02, 0.045, 0.09, 0.2, 0.4}, 0.004, kWidestFall, true},
-               {"delta", "", {1, 2}, 0.5, 3}}},
-             {.columns = {"exp(-(abs(v)/vs)^delta)"},
+  // A wide one can be mistaken for a parabola of the speed: there friction has to fall.
+  const ShapeTemplate narrow{"vs", "v", {0.02, 0.045, 0.09, 0.14}, 0.004, kNarrowFall, true};
+  const ShapeTemplate wide{"vs", "v", {0.2, 0.4}, kNarrowFall, 0.5, true};
+  const ShapeTemplate delta{"delta", "", {1, 2}, 0.5, 3};
+  const std::string curve = "exp(-(abs(v)/vs)^delta)";
+  f.atoms = {{{"sgn_v*" + curve}, {"excess"}, {narrow, delta}},
+             {.columns = {"sgn_v*" + curve},
+              .coefficients = {"excess"},
+              .shapes = {wide, delta},
+              .curve = SpeedCurve::falls},
+             {.columns = {curve},
               .coefficients = {"excess_half_gap"},
-              .shapes = {{"vs", "v", {0.02, 0.045, 0.09, 0.2, 0.4}, 0.004, kWidestFall, true},
-                         {"delta", "", {1, 2}, 0.5, 3}},
+              .shapes = {narrow, delta},
               .by_direction = true}};
-  f.sanity = {
-      {"excess", 1, 0, "breakaway friction below Coulomb friction", "nonlinear_viscous"}};
+  f.sanity = {{"excess", 1, 0, "breakaway friction below Coulomb friction"}};
   f.separate_by = {"R6"};
   return f;
 }
@@ -71,7 +74,7 @@ EffectFamily nonlinear_viscous() {
        .coefficients = {"saturating_half_gap"},
        .shapes = {{"v0", "v", {0.2, 0.5}, 0.1, 3}},
        .by_direction = true}};
-  f.sanity = {{"saturating", 1, 0, "friction that falls with speed", "stribeck"}};
+  for (AtomTemplate& atom : f.atoms) atom.curve = SpeedCurve::rises;
   f.separate_by = {"R2"};
   return f;
 }

@@ -8,6 +8,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -171,6 +172,20 @@ void check_columns(const AtomTemplate& atom, const std::string& place) {
   }
 }
 
+constexpr std::array kCurves = {SpeedCurve::any, SpeedCurve::falls, SpeedCurve::rises};
+
+std::string_view curve_name(SpeedCurve curve) {
+  if (curve == SpeedCurve::any) return "any";
+  return curve == SpeedCurve::falls ? "falls" : "rises";
+}
+
+SpeedCurve read_curve(const Entry& entry) {
+  const std::string text = entry.find<std::string>("curve").value_or("any");
+  const auto* found = std::ranges::find(kCurves, text, curve_name);
+  if (found != kCurves.end()) return *found;
+  throw_bad_input(fmt::format("'curve' is '{}'", text), entry.place(), "give any, falls or rises");
+}
+
 AtomTemplate read_atom(const Entry& entry) {
   AtomTemplate atom;
   atom.columns = entry.list<std::string>("columns");
@@ -190,6 +205,7 @@ AtomTemplate read_atom(const Entry& entry) {
   atom.rigid_load = entry.find<bool>("rigid_load").value_or(false);
   atom.beside_another = entry.find<bool>("beside_another").value_or(false);
   atom.by_direction = entry.find<bool>("by_direction").value_or(false);
+  atom.curve = read_curve(entry);
   return atom;
 }
 
@@ -203,7 +219,6 @@ Sanity read_sanity(const Entry& entry) {
   sanity.sign = static_cast<int>(sign);
   sanity.largest = entry.find<double>("largest").value_or(0);
   sanity.why = entry.find<std::string>("why").value_or("not physical");
-  sanity.with_other_sign = entry.find<std::string>("with_other_sign").value_or("");
   return sanity;
 }
 
@@ -218,8 +233,7 @@ EffectFamily read_family(const Entry& entry) {
   family.title = entry.find<std::string>("title").value_or("");
   family.angular = entry.find<bool>("angular").value_or(false);
   family.separate_by = entry.list<std::string>("separate_by");
-  for (const Entry& one :
-       entry.entries("sanity", {"coefficient", "sign", "largest", "why", "with_other_sign"})) {
+  for (const Entry& one : entry.entries("sanity", {"coefficient", "sign", "largest", "why"})) {
     family.sanity.push_back(read_sanity(one));
   }
   for (const Entry& one : entry.entries("alias", {"name", "separate_by", "coefficient"})) {
@@ -271,8 +285,7 @@ void insert_family(toml::table& table, const EffectFamily& family) {
     sanity.push_back(toml::table{{"coefficient", one.coefficient},
                                  {"sign", one.sign},
                                  {"largest", one.largest},
-                                 {"why", one.why},
-                                 {"with_other_sign", one.with_other_sign}});
+                                 {"why", one.why}});
   }
   if (!sanity.empty()) table.insert("sanity", std::move(sanity));
   toml::array aliases;
@@ -289,6 +302,7 @@ toml::table table_of(const AtomTemplate& atom) {
   if (atom.rigid_load) table.insert("rigid_load", true);
   if (atom.beside_another) table.insert("beside_another", true);
   if (atom.by_direction) table.insert("by_direction", true);
+  if (atom.curve != SpeedCurve::any) table.insert("curve", std::string(curve_name(atom.curve)));
   toml::array shapes;
   for (const ShapeTemplate& shape : atom.shapes) {
     toml::array grid;
@@ -311,7 +325,7 @@ std::vector<EffectFamily> read_effects(const std::filesystem::path& file) {
   const toml::table table = parse_file(file);
   const Entry whole(table, file.string(), {"effect"});
   const std::vector<Entry> effects = whole.entries(
-      "effect", {"name", "id", "phrase", "summary", "source", "origin", "title", "angular",
+      "effect", {"name", "id", "phrase", "summary", "source", "origin", "title", "angular", "curve",
                  "separate_by", "sanity", "alias", "columns", "coefficients", "shape", "rigid_load",
                  "beside_another", "by_direction"});
   if (effects.empty()) {

@@ -88,6 +88,7 @@ Atom make_atom(const AtomTemplate& source, std::size_t family, const Observation
   atom.family = family;
   atom.coefficients = source.coefficients;
   atom.beside_another = source.beside_another || source.by_direction;
+  atom.curve = source.curve;
   for (std::size_t k = 0; k < source.shapes.size(); ++k) {
     const ShapeTemplate& shape = source.shapes[k];
     names.push_back(shape.name);

@@ -36,6 +36,11 @@ struct ShapeTemplate {
   bool reference = false;
 };
 
+// What tells an atom from one of another family that can draw the same curve: beside Coulomb and
+// viscous friction sgn(v) exp(-|v|/v0) may be Stribeck or viscous friction that is not proportional
+// to speed. Of friction against speed, with the base.
+enum class SpeedCurve { any, falls, rises };
+
 struct AtomTemplate {
   std::vector<std::string> columns;
   std::vector<std::string> coefficients;  // names of the columns' coefficients, for the report
@@ -49,17 +54,15 @@ struct AtomTemplate {
   // The same, and only in motion both ways: what differs by direction (a sense forwards only is one
   // half of each).
   bool by_direction = false;
+  SpeedCurve curve = SpeedCurve::any;
 };
 
 // What a coefficient must satisfy to be physical; a finding that does not is demoted to UNKNOWN.
 struct Sanity {
-  std::string coefficient;     // of an atom; applies wherever an atom has it
-  int sign = 0;                // +1, -1: required sign; 0: any
-  double largest = 0;          // largest magnitude; 0: any
+  std::string coefficient;  // of an atom; applies wherever an atom has it
+  int sign = 0;             // +1, -1: required sign; 0: any
+  double largest = 0;       // largest magnitude; 0: any
   std::string why;
-  // With the other sign the column is that of another family: the sign alone tells which of the two
-  // is there.
-  std::string with_other_sign = {};
 };
 
 // A cause that has the same column as this one, whatever the data.
@@ -117,6 +120,7 @@ struct Atom {
   std::vector<std::string> coefficients;
   std::vector<Shape> shapes;
   bool beside_another = false;
+  SpeedCurve curve = SpeedCurve::any;
 
   void set_shape(std::size_t shape, double value);
 };

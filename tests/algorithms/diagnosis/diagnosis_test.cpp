@@ -240,20 +240,19 @@ TEST(Diagnosis, PreslidingOfAThousandthOfTheStrokeIsNoLagAndNoFallWithSpeed) {
   }
 }
 
-// The sign tells them apart, wherever on the axis of speed they stand.
-TEST(Diagnosis, FrictionThatFallsIsStribeckAndFrictionThatRisesIsNot) {
-  for (const double width : {0.1, 0.3}) {
-    const auto curve = [&](double sign) {
-      return campaign_with([&](double v, double) {
-        return sign * std::copysign(1.2 * std::exp(-std::abs(v) / width), v);
-      });
-    };
-    EXPECT_EQ(families(diagnose(curve(1), coulomb_viscous_base, {}, 1)),
-              std::vector<std::string>{"stribeck"})
-        << width;
-    EXPECT_EQ(families(diagnose(curve(-1), coulomb_viscous_base, {}, 1)),
+// The same curve up to its sign, at a third of the top speed: whether friction falls tells whose it
+// is.
+TEST(Diagnosis, AWideCurveIsStribeckWhereFrictionFallsAndNonlinearWhereItRises) {
+  const auto with_curve = [](double size) {
+    return campaign_with(
+        [&](double v, double) { return std::copysign(size * std::exp(-std::abs(v) / 0.35), v); });
+  };
+  EXPECT_EQ(families(diagnose(with_curve(12), coulomb_viscous_base, {}, 1)),
+            std::vector<std::string>{"stribeck"});
+  for (const double rising : {1.2, -1.2}) {
+    EXPECT_EQ(families(diagnose(with_curve(rising), coulomb_viscous_base, {}, 1)),
               std::vector<std::string>{"nonlinear_viscous"})
-        << width;
+        << rising;
   }
 }
 

@@ -86,21 +86,21 @@ bool same(const AtomTemplate& a, const AtomTemplate& b) {
            x.high == y.high && x.recorded == y.recorded;
   };
   return a.columns == b.columns && a.coefficients == b.coefficients &&
-         a.rigid_load == b.rigid_load && std::ranges::equal(a.shapes, b.shapes, same_shape);
+         a.rigid_load == b.rigid_load && a.curve == b.curve && std::ranges::equal(a.shapes, b.shapes, same_shape);
 }
 
 bool same(const EffectFamily& a, const EffectFamily& b) {
   const auto same_sanity = [](const Sanity& x, const Sanity& y) {
     return x.coefficient == y.coefficient && x.sign == y.sign && x.largest == y.largest &&
-           x.with_other_sign == y.with_other_sign && x.why == y.why;
+           x.why == y.why;
   };
   const auto same_alias = [](const KnownAlias& x, const KnownAlias& y) {
     return x.name == y.name && x.separate_by == y.separate_by && x.coefficient == y.coefficient;
   };
   const auto same_atom = [](const AtomTemplate& x, const AtomTemplate& y) { return same(x, y); };
   return a.name == b.name && a.id == b.id && a.summary == b.summary && a.phrase == b.phrase &&
-         a.source == b.source && a.angular == b.angular && a.separate_by == b.separate_by &&
-         std::ranges::equal(a.atoms, b.atoms, same_atom) &&
+         a.source == b.source && a.angular == b.angular &&
+         a.separate_by == b.separate_by && std::ranges::equal(a.atoms, b.atoms, same_atom) &&
          std::ranges::equal(a.sanity, b.sanity, same_sanity) &&
          std::ranges::equal(a.known_aliases, b.known_aliases, same_alias);
 }
@@ -172,6 +172,7 @@ TEST(EffectFile, RefusesWhatItDoesNotKnow) {
       {shaped + "shape = [{name = 'k', grid = [1.0]}]\n", "no column holds the shape 'k'"},
       {"columns = [\"cos(N*q)\"]\nshape = [{name = 'N', grid = [7.0]}]\n", "is the gear ratio"},
       {columns + "sanity = [{coefficient = 'c1', sign = 2}]\n", "'sign' is 2"},
+      {columns + "curve = 'up'\n", "'curve' is 'up'"},
       {columns + "[[efect]]\nname = 'z'\n", "did you mean effect"}};
   for (const auto& [text, wanted] : cases) {
     EXPECT_NE(complaint(text).find(wanted), std::string::npos) << text << complaint(text);
