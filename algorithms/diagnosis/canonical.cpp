@@ -76,6 +76,7 @@ Canonical canonical(const Observations& told) {
   reorder(out.data.target);
   reorder(out.data.movement);
   reorder(out.data.time);
+  reorder(out.data.place);
   std::ranges::sort(out.data.rigid);
   return out;
 }

@@ -183,10 +183,11 @@ std::vector<std::string> Search::inputs_of(std::size_t family) const {
 }
 
 // What the present model predicts better than without these families.
-double Search::nats_of(const std::vector<std::size_t>& families) const {
+Gain Search::gain_of(const std::vector<std::size_t>& families) const {
   LoopModel without = current_.model;
   for (const std::size_t family : families) remove_family(without, family);
-  return -lead_over_current(fit(std::move(without), FitScope::linear)).nats;
+  const Gain lead = lead_over_current(fit(std::move(without), FitScope::linear));
+  return {-lead.nats, lead.error};
 }
 
 // The effect found before the one at `end` that has all of these inputs, the first of them; none
@@ -201,7 +202,7 @@ Search::Found* Search::home_of(const std::vector<std::string>& inputs, std::size
     if (home == nullptr) home = &found[k];
     families.push_back(found[k].family);
   }
-  return home != nullptr && nats_of(families) > nats ? home : nullptr;
+  return home != nullptr && gain_of(families).nats > nats ? home : nullptr;
 }
 
 bool Search::remembers(std::size_t family) const {
@@ -219,7 +220,8 @@ void Search::name_shapes() {
   for (std::size_t k = takes_small_ones ? found.size() : 0; k-- > 1;) {
     const std::size_t family = found[k].family;
     const std::vector<std::string> inputs = inputs_of(family);
-    Found* home = inputs.empty() ? nullptr : home_of(inputs, k, nats_of({family}) / kShapeShare);
+    Found* home =
+        inputs.empty() ? nullptr : home_of(inputs, k, gain_of({family}).nats / kShapeShare);
     if (home == nullptr || !remembers(home->family)) continue;
     home->another_shape = true;
     note(
@@ -298,6 +300,13 @@ void Search::locate_leftover(const std::vector<Smoother>& smoothers,
     }
   }
   if (winner == blocks.size()) return;
+  const bool smooth = winner < smoothers.size();
+  if (leftover_is_slight(smooth ? with_direction(smoothers[winner], data_)
+                                : products[winner - smoothers.size()].columns,
+                         smooth ? kSmootherRidge : 0)) {
+    note("what is left over is next to nothing beside the effects found");
+    return;
+  }
   leftover_nats_ = best.nats;
   leftover.signals = winner < smoothers.size() ? smoothers[winner].signals
                                                : products[winner - smoothers.size()].signals;
@@ -323,7 +332,8 @@ void Search::locate_leftover(const std::vector<Smoother>& smoothers,
 
 // An effect whose size varies with temperature is part of what is left over: c f(q) + d f(q) T is
 // d f(q) (T - T0), and the origin of T is nobody's. (Nelder 1977: no main effect is to be read
-// where an interaction holds it.) Where it varies with speed, load or position it is still itself.
+// where an interaction holds it.) Where it varies with speed, load or position,
+// or is ten times what is left over, it is still itself.
 bool Search::drop_varying(const std::vector<Modifier>& products) {
   LoopModel model = current_.model;
   for (const Modifier& product : products) {
@@ -331,6 +341,9 @@ bool Search::drop_varying(const std::vector<Modifier>& products) {
     std::vector<BlockScores> own = {score_modifier(product)};
     if (!own[0].test.testable) continue;
     if (adjusted_p(own[0].test.score, flip_maxima(own, flips_)) > options_.alpha_library) continue;
+    LoopModel without = model;
+    remove_family(without, product.family);
+    if (explains_more_than_is_left(fit(without, FitScope::linear), 1 / kShapeShare)) continue;
     leftover.proxies_removed.push_back(families_[product.family].name);
     note(fmt::format("the size of '{}' varies with {}: it is part of what is left over",
                      families_[product.family].name, fmt::join(leftover.inputs, " or ")));
@@ -376,13 +389,13 @@ void Search::drop_proxies(const Smoother& smoother) {
 }
 
 // What the whole model has and `rest` has not, against what the whole model leaves over.
-bool Search::explains_more_than_is_left(const FittedModel& rest) const {
+bool Search::explains_more_than_is_left(const FittedModel& rest, double times) const {
   const Noise& noise = whole_->fit.noise;
   const Eigen::MatrixXd x = whitened(tangent(rest.model, data_), clusters_, noise);
   const Eigen::VectorXd y =
       whitened(target_vector(data_) - predict(rest.model, data_), clusters_, noise);
   const Gain own = paired_gain(held_out_losses(x, y, clusters_, noise), whole_->fit.losses);
-  return own.nats > whole_->leftover_nats && own.nats > own.error;
+  return own.nats > times * whole_->leftover_nats && own.nats > own.error;
 }
 
 }  // namespace tribench::loop

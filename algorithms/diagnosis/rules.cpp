@@ -27,6 +27,7 @@ constexpr std::array kRules = {
     Rule{"renewal", "a family's columns are chosen anew beside the rest"},
     Rule{"swap", "a family that predicts better takes another's place"},
     Rule{"subsets", "all small sets of families are compared with the choice"},
+    Rule{"slight", "what is next to nothing beside the other effects is left out"},
     Rule{"varying", "an effect that varies with temperature is part of what is left over"},
     Rule{"proxies", "what a smoother of the leftover makes superfluous is dropped"},
     Rule{"shape_of_memory", "a small effect beside one that remembers the motion is its shape"},

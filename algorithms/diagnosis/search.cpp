@@ -459,9 +459,12 @@ void Search::run() {
   }
   if (!found.empty() && options_.has("subsets")) check_exhaustively();
   leave_out_cancelling();
+  leave_out_slight();
   test_leftover();
   leave_out_cancelling();  // the fit without proxies is another
   name_shapes();
+  // As they stand beside each other, whatever way the search has come.
+  for (Found& one : found) one.gain = gain_of({one.family});
   // What its gain has rescued was testable after all.
   for (const Found& one : found) {
     std::erase_if(untestable, [&](const UntestableFinding& finding) {

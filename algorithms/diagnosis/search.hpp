@@ -25,6 +25,10 @@ inline constexpr std::size_t kFewestToRescue = 10;
 // Up to this p a family carried by few clusters may be rescued by its gain (specification, 6.4).
 inline constexpr double kRescueP = 0.15;
 
+// Worth less than this share of what is left, and of what the largest effect is worth: no more than
+// the error of the other effects' shapes may be (docs/closed_loop.md).
+inline constexpr double kSlight = 0.03;
+
 // A model fitted to the training movements, in the coordinates of its own noise.
 struct FittedModel {
   LoopModel model;
@@ -123,6 +127,11 @@ class Search {
   Gain lead_over_current(const FittedModel& other) const;
   double family_p_given_rest(std::size_t family, const FittedModel& rest, const Round& round,
                              const FittedModel& with) const;
+  Eigen::VectorXd plain_losses(const LoopModel& model, const Eigen::MatrixXd& features = {},
+                               double ridge = 0) const;
+  std::vector<double> worths() const;
+  void leave_out_slight();
+  bool leftover_is_slight(const Eigen::MatrixXd& features, double ridge) const;
   void check_exhaustively();
   // A found effect times another input.
   struct Modifier {
@@ -138,13 +147,13 @@ class Search {
                        const std::vector<Modifier>& products,
                        const std::vector<BlockScores>& blocks, const std::vector<double>& maxima);
   std::vector<std::string> inputs_of(std::size_t family) const;
-  double nats_of(const std::vector<std::size_t>& families) const;
+  Gain gain_of(const std::vector<std::size_t>& families) const;
   Found* home_of(const std::vector<std::string>& inputs, std::size_t end, double nats);
   bool remembers(std::size_t family) const;
   void name_shapes();
   bool drop_varying(const std::vector<Modifier>& products);
   void drop_proxies(const Smoother& smoother);
-  bool explains_more_than_is_left(const FittedModel& rest) const;
+  bool explains_more_than_is_left(const FittedModel& rest, double times = 1) const;
   static std::size_t atoms_of(std::size_t family, const LoopModel& model);
   void remove_family(LoopModel& model, std::size_t family) const;
 

@@ -122,6 +122,58 @@ void Search::leave_out_cancelling() {
   }
 }
 
+// Squared errors in rows as they are, each stretch predicted from the others.
+Eigen::VectorXd Search::plain_losses(const LoopModel& model, const Eigen::MatrixXd& features,
+                                     double ridge) const {
+  Noise plain;
+  plain.within_sd = 1;
+  Eigen::MatrixXd x = tangent(model, data_);
+  if (features.size() > 0) x = beside(x, features);
+  return held_out_losses(whitened(std::move(x), clusters_, plain),
+                         whitened(target_vector(data_) - predict(model, data_), clusters_, plain),
+                         clusters_, plain, ridge > 0 ? features.cols() : 0, ridge);
+}
+
+// How much larger the squared error is without each of the families found.
+std::vector<double> Search::worths() const {
+  const double with = plain_losses(current_.model).sum();
+  std::vector<double> all;
+  for (const Found& one : found) {
+    LoopModel without = current_.model;
+    remove_family(without, one.family);
+    all.push_back(plain_losses(without).sum() / with - 1);
+  }
+  return all;
+}
+
+// No form of the library is the true one to the last per cent, and what a large effect's form lacks
+// some small effect can mimic. However many rows say so, that is no cause; and it is where stories
+// change when the recording is told again.
+void Search::leave_out_slight() {
+  while (options_.has("slight") && found.size() > 1) {
+    const std::vector<double> worth = worths();
+    const auto least = std::ranges::min_element(worth);
+    if (*least >= kSlight * std::min(1.0, *std::ranges::max_element(worth))) return;
+    const auto slight = found.begin() + (least - worth.begin());
+    note(
+        fmt::format("'{}' is worth {:.1f} % of what is left, next to nothing beside the others: "
+                    "left out",
+                    families_[slight->family].name, 100 * *least));
+    LoopModel model = current_.model;
+    remove_family(model, slight->family);
+    found.erase(slight);
+    current_ = fit(std::move(model), FitScope::everything);
+  }
+}
+
+bool Search::leftover_is_slight(const Eigen::MatrixXd& features, double ridge) const {
+  if (!options_.has("slight") || found.empty()) return false;
+  const std::vector<double> worth = worths();
+  const double with = plain_losses(current_.model, features, ridge).sum();
+  const double own = plain_losses(current_.model).sum() / with - 1;
+  return own < kSlight * std::min(1.0, *std::ranges::max_element(worth));
+}
+
 void Search::reconsider() {
   if (found.size() < 2) return;
   std::vector<std::size_t> families;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -14,6 +15,8 @@
 
 namespace tribench::loop {
 namespace {
+
+constexpr double kFewestAveraged = 1.2;  // rows of a mean; fewer gain nothing
 
 constexpr std::array<std::pair<Role, std::string_view>, 10> kSignalNames = {{
     {Role::velocity, "v"},
@@ -105,9 +108,11 @@ double rounded_step(double dt) {
   return dt > 100 * kClock ? kClock * std::round(dt / kClock) : dt;
 }
 
+// To first order a late velocity differs from the velocity by the acceleration: without one, an
+// inertia that the data do not hold would pass for late friction.
 void add_lagged_velocities(Observations& data) {
   const Signal* t = data.find("t");
-  if (t == nullptr || t->unit != "s") return;
+  if (t == nullptr || t->unit != "s" || data.find("a") == nullptr) return;
   const std::vector<double> time = t->values;
   const Signal v = *data.find("v");
   for (const int lag_ms : kLags_ms) {
@@ -226,6 +231,7 @@ Observations Observations::select(const std::vector<char>& keep) const {
   out.target = chosen(target);
   out.movement = chosen(movement);
   out.time = chosen(time);
+  out.place = chosen(place);
   for (const Signal& signal : signals) {
     Signal copy{signal.name, signal.channel, signal.unit, signal.role, signal.recipe, {}};
     copy.values = chosen(signal.values);
@@ -242,14 +248,30 @@ Observations Observations::select(const std::vector<char>& keep) const {
   return out;
 }
 
+namespace {
+
+// The number of each row within its movement.
+std::vector<std::size_t> places_of(const std::vector<int>& movement) {
+  std::vector<std::size_t> place(movement.size(), 0);
+  for (std::size_t i = 1; i < movement.size(); ++i) {
+    place[i] = movement[i] == movement[i - 1] ? place[i - 1] + 1 : 0;
+  }
+  return place;
+}
+
+// The least power of two such that one in so many of `rows` are at most `most`.
+std::size_t step_to(std::size_t most, std::size_t rows) {
+  return std::bit_ceil((rows + most - 1) / most);
+}
+
+}  // namespace
+
 Observations Observations::thinned(std::size_t most) const {
   if (rows() <= most) return *this;
-  const std::size_t step = (rows() + most - 1) / most;
+  const std::size_t step = step_to(most, rows());
+  const std::vector<std::size_t> recorded = place.empty() ? places_of(movement) : place;
   std::vector<char> keep(rows(), 0);
-  for (std::size_t i = 0, place = 0; i < rows(); ++i, ++place) {
-    if (i > 0 && movement[i] != movement[i - 1]) place = 0;
-    keep[i] = place % step == 0 ? 1 : 0;
-  }
+  for (std::size_t i = 0; i < rows(); ++i) keep[i] = recorded[i] % step == 0 ? 1 : 0;
   return select(keep);
 }
 
@@ -274,50 +296,87 @@ std::vector<std::size_t> blocks_of(const Observations& data, std::size_t longest
   return block;
 }
 
+// Where the mean that begins with each row ends: one for each cell of `size` recorded rows, over
+// the rows from its first on that say the same. 0 where none begins.
+std::vector<std::size_t> ends_of_means(const Observations& data, std::size_t size,
+                                       const std::vector<std::size_t>& place) {
+  const std::vector<double>& v = data.find("v")->values;
+  const Signal* q = data.find("q");
+  const double reach = q != nullptr && q->unit == "m" ? kBlockLength : kBlockAngle;
+  double top = 0;
+  for (const double speed : v) top = std::max(top, std::abs(speed));
+  const auto same_cell = [&](std::size_t a, std::size_t b) {
+    return data.movement[a] == data.movement[b] && place[a] / size == place[b] / size;
+  };
+  std::vector<std::size_t> end(data.rows(), 0);
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (i > 0 && same_cell(i - 1, i)) continue;
+    end[i] = i + 1;
+    while (end[i] < data.rows() && same_cell(i, end[i]) && sign_of(v[end[i]]) == sign_of(v[i]) &&
+           std::abs(v[end[i]] - v[i]) <= kBlockSpeed * top &&
+           (q == nullptr || std::abs(q->values[end[i]] - q->values[i]) <= reach)) {
+      ++end[i];
+    }
+  }
+  return end;
+}
+
+// Means of the rows from each that one begins with to its end.
+Observations means_of(const Observations& data, const std::vector<std::size_t>& end) {
+  std::vector<char> first(data.rows(), 0);
+  for (std::size_t i = 0; i < data.rows(); ++i) first[i] = end[i] > 0 ? 1 : 0;
+  Observations out = data.select(first);
+  const auto average = [&](const std::vector<double>& values, std::vector<double>& means) {
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (end[i] == 0) continue;
+      double sum = 0;
+      for (std::size_t j = i; j < end[i]; ++j) sum += values[j];
+      means[k++] = sum / static_cast<double>(end[i] - i);
+    }
+  };
+  average(data.target, out.target);
+  average(data.time, out.time);
+  for (std::size_t j = 0; j < data.signals.size(); ++j) {
+    average(data.signals[j].values, out.signals[j].values);
+  }
+  for (Signal& signal : out.signals) {
+    const Signal* of = signal.name.starts_with("sgn_") ? out.find(signal.name.substr(4)) : nullptr;
+    for (std::size_t k = 0; of != nullptr && k < signal.values.size(); ++k) {
+      signal.values[k] = sign_of(of->values[k]);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 Shortened Observations::averaged(std::size_t most) const {
   if (rows() <= most) return {*this, 1, {}};
   const std::vector<std::size_t> block = blocks_of(*this, (rows() + most - 1) / most);
   const std::size_t blocks = block.back() + 1;
-  // Means of a row or two here and there gain nothing.
-  if (rows() < 2 * blocks) return {thinned(most), 1, ", evenly spaced"};
-  const std::size_t step = (blocks + most - 1) / most;
-  std::vector<char> first(rows(), 0);
-  for (std::size_t i = 0, place = 0; i < rows(); ++i) {
-    if (i > 0 && block[i] == block[i - 1]) continue;
-    if (i > 0 && movement[i] != movement[i - 1]) place = 0;
-    first[i] = place++ % step == 0 ? 1 : 0;
+  std::vector<std::size_t> end(rows(), 0);
+  std::size_t step = 1;
+  if (rows() >= 2 * blocks) {
+    step = (blocks + most - 1) / most;
+    for (std::size_t i = 0, place = 0; i < rows(); ++i) {
+      if (i > 0 && block[i] == block[i - 1]) continue;
+      if (i > 0 && movement[i] != movement[i - 1]) place = 0;
+      if (place++ % step != 0) continue;
+      for (end[i] = i; end[i] < rows() && block[end[i]] == block[i];) ++end[i];
+    }
+  } else {
+    end = ends_of_means(*this, step_to(most, rows()), place.empty() ? places_of(movement) : place);
   }
-  Shortened out{select(first), 1, {}};
+  std::size_t means = 0;
   std::size_t averaged_rows = 0;
-  const auto average = [&](const std::vector<double>& values, std::vector<double>& means) {
-    std::size_t k = 0;
-    averaged_rows = 0;
-    for (std::size_t i = 0; i < rows(); ++i) {
-      if (first[i] == 0) continue;
-      double sum = 0;
-      std::size_t end = i;
-      while (end < rows() && block[end] == block[i]) sum += values[end++];
-      averaged_rows += end - i;
-      means[k++] = sum / static_cast<double>(end - i);
-    }
-  };
-  average(target, out.data.target);
-  if (!time.empty()) average(time, out.data.time);
-  for (std::size_t j = 0; j < signals.size(); ++j) {
-    average(signals[j].values, out.data.signals[j].values);
+  for (std::size_t i = 0; i < rows(); ++i) {
+    means += end[i] > 0 ? 1 : 0;
+    averaged_rows += end[i] > 0 ? end[i] - i : 0;
   }
-  for (Signal& signal : out.data.signals) {
-    const Signal* of =
-        signal.name.starts_with("sgn_") ? out.data.find(signal.name.substr(4)) : nullptr;
-    for (std::size_t k = 0; of != nullptr && k < signal.values.size(); ++k) {
-      signal.values[k] = sign_of(of->values[k]);
-    }
-  }
-  out.rows_each = static_cast<double>(averaged_rows) / static_cast<double>(out.data.rows());
-  if (step > 1) out.left_between = fmt::format(", one mean in {}", step);
-  return out;
+  const double rows_each = static_cast<double>(averaged_rows) / static_cast<double>(means);
+  if (rows_each < kFewestAveraged) return {thinned(most), 1, ", evenly spaced"};
+  return {means_of(*this, end), rows_each, step > 1 ? fmt::format(", one mean in {}", step) : ""};
 }
 
 Observations observe(const Dataset& data, const ObservationOptions& options) {
@@ -330,6 +389,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   set_target(out, data);
   out.movement = data.movement;
   out.movement_names = data.movement_names;
+  out.place = places_of(data.movement);
   for (const Channel& channel : data.channels) {
     if (channel.values.size() != data.rows()) continue;  // a text column: movement
     const std::string name = signal_name(channel.role, channel.name);

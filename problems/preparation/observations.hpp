@@ -57,7 +57,10 @@ struct Observations {
   // trajectory at several gains says little of the others). Empty: each movement by itself.
   std::vector<int> group;
   std::string group_name;
-  std::vector<double> time;        // per row, within the campaign or the row's number
+  std::vector<double> time;  // per row, within the campaign or the row's number
+  // Per row: its number within its movement as it was recorded, before any row was left out. Empty:
+  // no row was.
+  std::vector<std::size_t> place;
   std::vector<std::string> rigid;  // signals whose coefficient is fitted with the base (see below)
   std::vector<WithheldSignal> withheld;  // of those in `signals`, or taken from them
   std::vector<std::string> warnings;
@@ -69,7 +72,9 @@ struct Observations {
   void take_away(std::string_view name, std::string why);
   // The rows for which keep[row] != 0.
   Observations select(const std::vector<char>& keep) const;
-  // Every k-th row of each movement, so that at most about `rows` are left.
+  // Every 2nd, 4th, 8th ... recorded row of each movement, so that at most about `rows` are left.
+  // Powers of two of the recording's own clock: the same motion recorded at half the rate gives the
+  // same rows.
   Observations thinned(std::size_t rows) const;
   // Means over neighbouring rows of a fast recording, about `rows` of them. No mean reaches over a
   // reversal, over more of the path than a gear's ripple leaves (kBlockAngle, kBlockLength) or over

@@ -40,6 +40,38 @@ Dataset movements_of(int movements, int rows, Velocity velocity) {
 
 double steady_speed(int m, int i) { return (m % 2 == 0 ? 1 : -1) * (1 + m + 0.5 * std::sin(i)); }
 
+// Every second row of each movement, the first among them.
+Dataset at_half_the_rate(const Dataset& data, int rows) {
+  Dataset half;
+  half.name = data.name;
+  half.movement_names = data.movement_names;
+  for (const Channel& one : data.channels)
+    half.channels.push_back({one.name, one.unit, one.role, {}});
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (static_cast<int>(i) % rows % 2 != 0) continue;
+    half.movement.push_back(data.movement[i]);
+    for (std::size_t c = 0; c < data.channels.size(); ++c) {
+      half.channels[c].values.push_back(data.channels[c].values[i]);
+    }
+  }
+  return half;
+}
+
+TEST(Observations, a_recording_at_half_the_rate_is_thinned_to_the_same_rows) {
+  constexpr int kRows = 501;
+  const auto turning = [](int m, int i) { return (2 + m) * std::sin(0.013 * i + 0.3 * m); };
+  const Dataset data = movements_of(6, kRows, turning);
+  // Rows are left out first, so that the rows kept stand anywhere on the clock.
+  const ObservationOptions moving{.min_speed = 0.7};
+  const Observations whole = observe(data, moving).thinned(700);
+  const Observations half = observe(at_half_the_rate(data, kRows), moving).thinned(700);
+  EXPECT_LE(whole.rows(), 700U);
+  EXPECT_GT(whole.rows(), 300U);
+  EXPECT_EQ(whole.target, half.target);
+  EXPECT_EQ(whole.time, half.time);
+  EXPECT_EQ(whole.movement, half.movement);
+}
+
 TEST(Observations, steady_movements_are_averaged_in_equal_parts_of_whole_movements) {
   const Dataset data = movements_of(6, 50, steady_speed);
   const Observations means = observe(data, {.steady = true});
