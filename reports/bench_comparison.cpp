@@ -58,7 +58,8 @@ void compare_counts(const NightBench& before, const NightBench& now,
 void compare_time(const NightBench& before, const NightBench& now,
                   const BenchThresholds& thresholds, BenchComparison& comparison) {
   const double ratio = now.time / before.time;
-  const double noise = std::hypot(before.time_spread, now.time_spread);
+  const double noise =
+      std::sqrt(before.time_spread * before.time_spread + now.time_spread * now.time_spread);
   if (ratio > 1 + thresholds.time && elementary::log(ratio) > thresholds.time_spreads * noise) {
     comparison.slower.push_back({BenchChange::Figure::time, now.name, ratio});
   }
