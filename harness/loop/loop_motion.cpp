@@ -10,11 +10,27 @@
 #include "harness/motion/motion_trial.hpp"
 #include "problems/preparation/derived_channels.hpp"
 #include "problems/reading/units.hpp"
+#include "problems/table.hpp"
 
 namespace tribench::loop {
 namespace {
 
 constexpr double kAhead_s = 0.5;
+
+// A simulation takes far longer than a diagnosis: it is run on some of a long recording's rows.
+constexpr std::size_t kMostRows = 1000;
+
+// Rows from the begin of every movement, so many of each that together they are about kMostRows.
+Dataset beginnings(const Dataset& recording) {
+  if (recording.rows() <= kMostRows) return recording;
+  const std::size_t each = kMostRows / recording.movement_names.size() + 1;
+  std::vector<std::size_t> taken(recording.movement_names.size(), 0);
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < recording.rows(); ++i) {
+    if (taken[static_cast<std::size_t>(recording.movement[i])]++ < each) rows.push_back(i);
+  }
+  return select_rows({recording, {}}, rows).data;
+}
 
 bool reads(const Expression& formula, const Observations& data, std::string_view name) {
   return std::ranges::any_of(formula.nodes(), [&](const Node& node) {
@@ -88,6 +104,7 @@ LoopMotion loop_motion(const Diagnosis& diagnosis, const Observations& data, Dat
   if (!setup.is_whole) setup.gravity = forward::kRecordedGravity;
   setup.horizon_s = kAhead_s;
   setup.unit_size = unit.si;
+  recording = beginnings(recording);
   rename_channels(data, recording);
   std::vector<char> held_out(recording.movement_names.size(), 0);
   for (const int m : diagnosis.test_movements) held_out[static_cast<std::size_t>(m)] = 1;
