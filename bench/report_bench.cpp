@@ -17,8 +17,9 @@
 #include <vector>
 
 #include "bench/measured_loop.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/random.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 #include "reports/run_reports.hpp"
 
 namespace tribench {
@@ -46,11 +47,11 @@ Record made_up(int problem, int method, int set, std::uint64_t seed) {
   r.cell = fmt::format("{}|{}|{}|{}", r.problem, r.method, r.operators, seed);
   RandomStream random(key_of(r.cell));
   const double error = (1 + 0.1 * method) * (1 + 0.1 * random.uniform());
-  r.status = random.uniform() < 0.01 ? "failed" : "ok";
-  if (r.status == "failed") {
-    r.reason = "timeout";
+  if (random.uniform() < 0.01) {
+    mark_failed(r, FailureKind::timeout);
     return r;
   }
+  r.status = CellStatus::ok;
   r.mae_train = 0.9 * error;
   r.mae_test = error;
   r.rmse_test = 1.25 * error;
@@ -60,8 +61,8 @@ Record made_up(int problem, int method, int set, std::uint64_t seed) {
   r.nodes = 20 + method;
   r.evaluations = 1'000'000 + random.below(1000);
   r.fit_cpu_s = 1 + random.uniform();
-  r.singularity = random.uniform() < 0.02 ? "refuted" : "proved_free";
-  if (r.singularity == "refuted") r.witness = R"({"qd":0.25,"g":3.5})";
+  r.singularity = random.uniform() < 0.02 ? Singularity::refuted : Singularity::proved_free;
+  if (r.singularity == Singularity::refuted) r.witness = R"({"qd":0.25,"g":3.5})";
   r.formula = fmt::format("{:.15g}*qd + {:.15g}*sgn_qd*exp(-0.78*qd^2) + 0.01*g/(qd - 0.25)",
                           random.uniform(3, 4), random.uniform(8, 9));
   return r;
@@ -94,10 +95,10 @@ fs::path made_up_run(std::uint64_t cells) {
       for (int set = 0; set < kSets; ++set) {
         for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
           Record r = made_up(problem, method, set, seed);
-          if (r.status == "ok") {
+          if (is_ok(r)) {
             for (int i = 0; i < 3; ++i) {
               front.push_back({r.cell, 5 + 5 * i, 8 + 6 * i, 3.0 - i, (3.0 - i) * r.mae_test,
-                               "proved_free", i == 2, r.formula});
+                               Singularity::proved_free, i == 2, r.formula});
             }
             for (int i = 1; i <= 4; ++i) {
               trace.push_back({r.cell, static_cast<std::uint64_t>(i) * 250'000, 0.25 * i,

@@ -11,7 +11,7 @@
 
 #include "harness/cell.hpp"
 #include "harness/grid.hpp"
-#include "reports/record.hpp"
+#include "reports/record/record.hpp"
 
 namespace tribench {
 

@@ -13,9 +13,10 @@
 #include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/order_statistics.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/sign.hpp"
 #include "problems/kuka/trials.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 
 namespace tribench {
 namespace {
@@ -146,7 +147,7 @@ using Chosen = std::map<std::string, std::vector<const Record*>>;
 Chosen choose(const std::vector<Record>& records) {
   std::map<std::tuple<std::string, std::string, std::string>, std::vector<const Record*>> groups;
   for (const Record& record : records) {
-    if (record.status != "ok" || !std::isfinite(record.mae_test)) continue;
+    if (!is_ok(record) || !std::isfinite(record.mae_test)) continue;
     groups[{record.problem, record.method, record.operators}].push_back(&record);
   }
   Chosen chosen;

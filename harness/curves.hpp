@@ -14,7 +14,7 @@
 
 #include "harness/cell_task.hpp"
 #include "problems/catalogue.hpp"
-#include "reports/record.hpp"
+#include "reports/record/record.hpp"
 
 namespace tribench {
 

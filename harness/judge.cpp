@@ -55,17 +55,40 @@ constexpr ProofLimits kFrontProof{200'000, 0};
 constexpr ProofLimits kPhysicsProof{200'000, 0};
 constexpr double kStribeckShare = 0.25;  // of the largest speed
 
-std::string verdict_on(Property property, const Expression& formula, const InputBox& box,
-                       std::size_t velocity) {
+Singularity singularity_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::proved_free:
+      return Singularity::proved_free;
+    case Verdict::refuted:
+      return Singularity::refuted;
+    case Verdict::undecided:
+      break;
+  }
+  return Singularity::undecided;
+}
+
+PhysicsProof physics_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::proved_free:
+      return PhysicsProof::proved;
+    case Verdict::refuted:
+      return PhysicsProof::refuted;
+    case Verdict::undecided:
+      break;
+  }
+  return PhysicsProof::undecided;
+}
+
+std::optional<PhysicsProof> physics_on(Property property, const Expression& formula,
+                                       const InputBox& box, std::size_t velocity) {
   const double fastest = std::max(std::abs(box[velocity].low), std::abs(box[velocity].high));
   const bool both_ways = box[velocity].low < 0 && box[velocity].high > 0;
-  if (property == Property::odd && !both_ways) return "";
+  if (property == Property::odd && !both_ways) return std::nullopt;
   PropertyQuestion question;
   question.property = property;
   question.velocity = velocity;
   question.from = kStribeckShare * fastest;
-  const Verdict verdict = prove_property(formula, box, question, kPhysicsProof).verdict;
-  return verdict == Verdict::proved_free ? "proved" : std::string(verdict_name(verdict));
+  return physics_of(prove_property(formula, box, question, kPhysicsProof).verdict);
 }
 
 // The states of a formula, whose inputs stand behind all others; empty where it has none.
@@ -87,26 +110,25 @@ StatefulFormula stateful(const Problem& problem, const Expression& formula) {
 // about the value at a point, which it does not have.
 void judge_memory(const StatefulFormula& formula, const InputBox& box, std::size_t velocity,
                   Record& record) {
-  const Verdict verdict = prove_dissipation(formula, box, velocity, kPhysicsProof).verdict;
-  record.dissipative = verdict == Verdict::proved_free ? "proved" : verdict_name(verdict);
+  record.dissipative = physics_of(prove_dissipation(formula, box, velocity, kPhysicsProof).verdict);
 }
 
 void judge_singularity(const Problem& problem, const Expression& formula, Record& record) {
   const InputBox box = input_box(problem.inputs);
   const SingularityResult proof = prove_free(formula, box);
-  record.singularity = verdict_name(proof.verdict);
+  record.singularity = singularity_of(proof.verdict);
   if (proof.witness) record.witness = witness_json(*proof.witness, problem.input_names());
   if (proof.verdict == Verdict::refuted) {
-    record.grid_check = is_finite_on_grid(formula, box) ? "missed" : "seen";
+    record.grid_check = is_finite_on_grid(formula, box) ? GridCheck::missed : GridCheck::seen;
   }
   if (proof.verdict != Verdict::proved_free) return;
   for (std::size_t j = 0; j < problem.inputs.size(); ++j) {
     if (problem.inputs[j].role != Role::velocity) continue;
     const StatefulFormula memory = stateful(problem, formula);
     if (!memory.states.empty()) return judge_memory(memory, box, j, record);
-    record.dissipative = verdict_on(Property::dissipative, formula, box, j);
-    record.monotone = verdict_on(Property::monotone, formula, box, j);
-    record.odd = verdict_on(Property::odd, formula, box, j);
+    record.dissipative = physics_on(Property::dissipative, formula, box, j);
+    record.monotone = physics_on(Property::monotone, formula, box, j);
+    record.odd = physics_on(Property::odd, formula, box, j);
     return;
   }
 }
@@ -146,11 +168,11 @@ void judge_formula(const Problem& problem, const StagedFormula& staged, Record& 
   if (problem.motion) record.motion_error = motion_error_of(problem, formula);
   record.eval_ns_per_row = measure_ns_per_row(formula, problem.test);
   record.formula = formula_text(problem, formula);
-  record.status = "ok";
+  record.status = CellStatus::ok;
   if (on_test.not_finite > 0) {
-    record.status = "failed";
-    record.reason = fmt::format("error (the formula has no finite value at {} of {} test rows)",
-                                on_test.not_finite, on_test.rows);
+    mark_failed(record, FailureKind::error,
+                fmt::format("the formula has no finite value at {} of {} test rows",
+                            on_test.not_finite, on_test.rows));
   }
 }
 
@@ -179,7 +201,7 @@ std::vector<FrontRecord> judge_front(const Problem& problem, const std::vector<E
     all[i].singularity =
         all[i].chosen
             ? judged.singularity
-            : verdict_name(prove_free(front[i], input_box(problem.inputs), kFrontProof).verdict);
+            : singularity_of(prove_free(front[i], input_box(problem.inputs), kFrontProof).verdict);
     kept.push_back(all[i]);
   }
   std::ranges::stable_sort(kept, {}, &FrontRecord::complexity);

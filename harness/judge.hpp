@@ -8,7 +8,7 @@
 
 #include "algorithms/expression/expression.hpp"
 #include "problems/problem.hpp"
-#include "reports/record.hpp"
+#include "reports/record/record.hpp"
 
 namespace tribench {
 

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <span>
 
-#include "reports/record.hpp"
+#include "reports/record/record.hpp"
 
 namespace tribench {
 

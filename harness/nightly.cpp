@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/scratch_folder.hpp"
 #include "harness/benches.hpp"
@@ -24,7 +25,6 @@
 #include "reports/night_page.hpp"
 #include "reports/night_store.hpp"
 #include "reports/night_tests.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

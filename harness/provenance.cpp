@@ -13,12 +13,12 @@
 #include <sstream>
 
 #include "foundation/json_text.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/random.hpp"
 #include "foundation/text.hpp"
 #include "harness/build_info.hpp"
 #include "harness/machine.hpp"
 #include "problems/user/user_problem_text.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {
@@ -115,7 +115,7 @@ ordered_json files_json(const RunIdentity& identity) {
 void write_all(const std::filesystem::path& folder, const RunIdentity& identity,
                const ordered_json& sessions, const std::vector<CellResult>& results) {
   const auto failed = std::ranges::count_if(
-      results, [](const CellResult& result) { return result.record.status != "ok"; });
+      results, [](const CellResult& result) { return !is_ok(result.record); });
   const ordered_json all = {{"code", code_json()},
                             {"grid_hash", fmt::format("{:016x}", key_of(identity.grid))},
                             {"data_hash", identity.data},

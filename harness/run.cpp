@@ -50,7 +50,7 @@ int retries_allowed(const RetryPolicy& retry, const CellOutcome& outcome) {
     case CellEnd::finished:
       break;
   }
-  return outcome.result.record.reason.starts_with("error") ? retry.error : 0;
+  return outcome.result.record.reason.kind == FailureKind::error ? retry.error : 0;
 }
 
 // A worker that has run other cells may have been spoilt by them: that is no fault of this cell.
@@ -116,7 +116,7 @@ class GridRun {
       const std::optional<CellResult> result = result_of(item.cell, worker);
       if (!result) return;
       journal_.append(*result);
-      const bool failed = result->record.status != "ok";
+      const bool failed = !is_ok(result->record);
       count(result->record, failed);
       progress.cell_ended(item.predicted_s, failed);
     } catch (...) {
@@ -130,8 +130,7 @@ class GridRun {
     if (grid_.quarantined(cell.key())) {
       CellResult result;
       result.record = empty_record(cell);
-      result.record.status = "failed";
-      result.record.reason = "quarantined";
+      mark_failed(result.record, FailureKind::quarantined);
       return result;
     }
     CellTask task = make_task(grid_, cell, options_.data);
@@ -139,8 +138,8 @@ class GridRun {
     for (int used = 0;;) {
       CellOutcome outcome = worker.run(task, stop_);
       if (outcome.end == CellEnd::stopped) return std::nullopt;
-      const bool is_done =
-          outcome.end == CellEnd::finished && !outcome.result.record.reason.starts_with("error");
+      const bool is_done = outcome.end == CellEnd::finished &&
+                           outcome.result.record.reason.kind != FailureKind::error;
       if (is_done) return std::move(outcome.result);
       if (!blames_the_worker(outcome) && used++ >= retries_allowed(grid_.retry, outcome)) {
         return std::move(outcome.result);
@@ -217,7 +216,7 @@ Journal open_journal(const RunOptions& options, const RunIdentity& identity,
   }
   for (const CellResult& result : contents.results) {
     done.insert(result.record.cell);
-    if (result.record.status != "ok") ++tally.failed;
+    if (!is_ok(result.record)) ++tally.failed;
   }
   tally.journal_damage = contents.damage;
   return Journal::resume(file, contents);

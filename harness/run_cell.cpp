@@ -175,15 +175,16 @@ struct StagesResult {
   StagedFormula chosen;
   std::vector<Expression> front;  // of the last stage, added to what the first explain
   std::size_t chosen_place = 0;
-  std::string failure;  // empty where every stage gave a formula
+  FailureReason failure;  // none where every stage gave a formula
   std::string note;
   std::optional<Problem> extended;  // by the formulas' states, where they have any
 };
 
-std::string why_no_formula(const FitResult& result) {
-  if (result.reason == StopReason::unsupported) return fmt::format("unsupported ({})", result.note);
-  return fmt::format("error (no formula: {})",
-                     result.note.empty() ? "the method returned an empty front" : result.note);
+FailureReason why_no_formula(const FitResult& result) {
+  if (result.reason == StopReason::unsupported) return {FailureKind::unsupported, result.note};
+  return {
+      FailureKind::error,
+      "no formula: " + (result.note.empty() ? "the method returned an empty front" : result.note)};
 }
 
 // Some parameters can be judged only beside the data (a template names the stage's inputs): what a
@@ -321,9 +322,9 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
     throw;
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::environment) throw;
-    fit.failure = fmt::format("error ({})", error.what());
+    fit.failure = {FailureKind::error, error.what()};
   } catch (const std::exception& error) {
-    fit.failure = fmt::format("error ({})", error.what());
+    fit.failure = {FailureKind::error, error.what()};
   }
   record.fit_cpu_s = cpu_seconds_with_children() - cpu_start;
   // Threads that were there before are not seen by the counter.
@@ -334,18 +335,14 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
   record.evaluations = budget.spent();
   record.note = fit.note;
   result.trace = trace.records();
-  if (!fit.failure.empty()) {
-    record.status = "failed";
-    record.reason = fit.failure;
+  if (fit.failure.kind != FailureKind::none) {
+    mark_failed(record, fit.failure.kind, std::move(fit.failure.detail));
     return result;
   }
   const Problem& judged = fit.extended ? *fit.extended : problem;
   judge_formula(judged, fit.chosen, record);
   result.front = judge_front(judged, fit.front, fit.chosen_place, record);
-  if (budget.out_of_time()) {
-    record.note +=
-        std::string(record.note.empty() ? "" : "; ") + "ended by the clock: not reproducible";
-  }
+  if (budget.out_of_time()) note_end_by_clock(record);
   return result;
 }
 
@@ -386,7 +383,6 @@ CellResult CellRunner::run(const CellTask& task,
                            const std::function<void(const Record&)>& on_problem) {
   CellResult failed;
   failed.record = empty_record(task.cell);
-  failed.record.status = "failed";
   try {
     const Measured& data = problem(task);
     name_problem(data.problem, failed.record);
@@ -405,7 +401,7 @@ CellResult CellRunner::run(const CellTask& task,
     return result;
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::environment) throw;
-    failed.record.reason = fmt::format("error ({})", error.what());
+    mark_failed(failed.record, FailureKind::error, error.what());
   }
   return failed;
 }

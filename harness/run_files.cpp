@@ -9,11 +9,12 @@
 
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "harness/provenance.hpp"
 #include "problems/variant.hpp"
 #include "reports/published.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 #include "reports/suite_view.hpp"
 
 namespace tribench {
@@ -79,8 +80,7 @@ void write_result_files(const std::filesystem::path& folder, std::vector<CellRes
 }
 
 bool is_harmful(const Record& record) {
-  return record.reason == "timeout" || record.reason == "cpu_limit" ||
-         record.reason == "out_of_memory" || record.reason.starts_with("crashed");
+  return is_limit(record.reason.kind) || record.reason.kind == FailureKind::crashed;
 }
 
 void write_quarantine_file(const std::filesystem::path& folder,

@@ -13,10 +13,10 @@
 
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/shell_word.hpp"
 #include "harness/run_files.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

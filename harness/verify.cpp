@@ -14,15 +14,16 @@ namespace tribench {
 namespace {
 
 bool is_reproducible(const Record& record) {
-  return !is_harmful(record) && record.reason != "quarantined" &&
-         record.note.find("ended by the clock") == std::string::npos;
+  return !is_harmful(record) && record.reason.kind != FailureKind::quarantined &&
+         !was_ended_by_clock(record);
 }
 
 std::string difference(const CellResult& before, const CellResult& after) {
   const Record& a = before.record;
   const Record& b = after.record;
   if (a.status != b.status || a.reason != b.reason) {
-    return fmt::format("{} {} -> {} {}", a.status, a.reason, b.status, b.reason);
+    return fmt::format("{} {} -> {} {}", record_word(a.status), reason_text(a.reason),
+                       record_word(b.status), reason_text(b.reason));
   }
   if (a.formula != b.formula) return fmt::format("{} -> {}", a.formula, b.formula);
   if (a.evaluations != b.evaluations) {

@@ -61,7 +61,7 @@ CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
   Problem searched = problem;
   searched.stages.front().train = rows_of(table, sampled_rows(weights));
   CellResult result = fit_and_judge(searched, method, task, widened);
-  if (result.record.status != "ok") return result;
+  if (!is_ok(result.record)) return result;
   // A method's formulas have the same states: their columns are those of the chosen one.
   const ProblemFormula own = read_problem_formula(result.record.formula, problem);
   const Problem& judged = own.over(problem);

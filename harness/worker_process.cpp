@@ -162,19 +162,15 @@ CellOutcome WorkerProcess::wait_for_answer(const CellTask& task, const std::atom
 void WorkerProcess::finish_failed(const CellTask& task, Reading& reading, CellOutcome& outcome) {
   outcome.result.record = reading.started ? reading.started->record : empty_record(task.cell);
   Record& record = outcome.result.record;
-  record.status = "failed";
   switch (outcome.end) {
     case CellEnd::timeout:
-      record.reason = "timeout";
-      break;
+      return mark_failed(record, FailureKind::timeout);
     case CellEnd::cpu_limit:
-      record.reason = "cpu_limit";
-      break;
+      return mark_failed(record, FailureKind::cpu_limit);
     case CellEnd::out_of_memory:
-      record.reason = "out_of_memory";
-      break;
+      return mark_failed(record, FailureKind::out_of_memory);
     default:
-      record.reason = fmt::format("crashed ({})", last_end_);
+      mark_failed(record, FailureKind::crashed, last_end_);
       record.note = last_line(reading.errors);
   }
 }

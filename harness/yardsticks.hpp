@@ -5,7 +5,7 @@
 #pragma once
 
 #include "problems/problem.hpp"
-#include "reports/record.hpp"
+#include "reports/record/record.hpp"
 
 namespace tribench {
 

@@ -14,7 +14,7 @@
 #include "foundation/elementary.hpp"
 #include "foundation/order_statistics.hpp"
 #include "foundation/random.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 #include "reports/run_conditions.hpp"
 #include "reports/statistics/rank_tests.hpp"
 
@@ -259,12 +259,12 @@ void compare_cost(const std::vector<Pair>& pairs, const RunFolder& base, const R
   }
   if (!comparison.why_no_seconds.empty()) {
     const bool counted = has_instructions(pairs);
-    comparison.cost_currency = counted ? "instructions" : "evaluations";
+    comparison.cost_currency = counted ? CostCurrency::instructions : CostCurrency::evaluations;
     groups = log_ratios(pairs, counted ? instructions_of : evaluations_of);
     comparison.cost = rows_of(groups, false, options);
     return;
   }
-  comparison.cost_currency = "CPU seconds";
+  comparison.cost_currency = CostCurrency::cpu_seconds;
   // A machine that was slower throughout is no slower code.
   const double pace = elementary::log(median(calibration_of(now)) / median(calibration_of(base)));
   for (auto& [key, problems] : groups) {
@@ -273,11 +273,6 @@ void compare_cost(const std::vector<Pair>& pairs, const RunFolder& base, const R
     }
   }
   comparison.cost = rows_of(groups, false, options);
-}
-
-// Failures that depend on the machine's pace as well as on the code.
-bool is_limit(const std::string& reason) {
-  return reason == "timeout" || reason == "cpu_limit" || reason == "out_of_memory";
 }
 
 // Two-sided exact sign test of `worse` against `better` cells.
@@ -308,16 +303,18 @@ std::vector<Pair> count_cells(const RunFolder& base, const RunFolder& now, Compa
     if (timeless(before) == timeless(record)) ++comparison.identical;
     if (is_ok(before) && !is_ok(record)) {
       comparison.newly_failed.push_back(record.cell);
-      if (!is_limit(record.reason)) comparison.newly_broken.push_back(record.cell);
+      if (!is_limit(record.reason.kind)) comparison.newly_broken.push_back(record.cell);
     }
     if (!is_ok(before) && is_ok(record)) comparison.newly_fine.push_back(record.cell);
-    if (record.singularity == "refuted" && before.singularity != "refuted") {
+    if (record.singularity == Singularity::refuted && before.singularity != Singularity::refuted) {
       comparison.newly_singular.push_back(record.cell);
     }
-    if (before.singularity == "refuted" && is_ok(record) && record.singularity != "refuted") {
+    if (before.singularity == Singularity::refuted && is_ok(record) &&
+        record.singularity != Singularity::refuted) {
       comparison.no_longer_singular.push_back(record.cell);
     }
-    if (before.singularity == "proved_free" && record.singularity == "undecided") {
+    if (before.singularity == Singularity::proved_free &&
+        record.singularity == Singularity::undecided) {
       comparison.newly_unproved.push_back(record.cell);
     }
   }
@@ -336,6 +333,18 @@ std::size_t count_of(const std::vector<ComparisonRow>& rows, ComparisonVerdict v
 }
 
 }  // namespace
+
+std::string_view cost_currency_name(CostCurrency currency) {
+  switch (currency) {
+    case CostCurrency::cpu_seconds:
+      return "CPU seconds";
+    case CostCurrency::instructions:
+      return "instructions";
+    case CostCurrency::evaluations:
+      break;
+  }
+  return "evaluations";
+}
 
 std::string comparison_verdict_name(ComparisonVerdict verdict) {
   switch (verdict) {
@@ -432,9 +441,10 @@ std::string Comparison::sentence() const {
   if (common == 0) return "The runs have no cell in common: nothing can be compared.";
   if (common == identical && only_base + only_new == 0) {
     const std::size_t dearer = count_of(cost, ComparisonVerdict::worse);
-    return fmt::format(
-        "All {} cells are identical apart from time{}.", common,
-        dearer > 0 ? fmt::format(", but {} methods cost more {}", dearer, cost_currency) : "");
+    return fmt::format("All {} cells are identical apart from time{}.", common,
+                       dearer > 0 ? fmt::format(", but {} methods cost more {}", dearer,
+                                                cost_currency_name(cost_currency))
+                                  : "");
   }
   return fmt::format(
       "{}: {} of {} common cells identical; quality worse in {}, better in {}, equivalent in {}, "
@@ -443,7 +453,8 @@ std::string Comparison::sentence() const {
       count_of(quality, ComparisonVerdict::better),
       count_of(quality, ComparisonVerdict::equivalent),
       count_of(quality, ComparisonVerdict::not_distinguishable), quality.size(),
-      count_of(cost, ComparisonVerdict::worse), cost.size(), cost_currency, newly_failed.size());
+      count_of(cost, ComparisonVerdict::worse), cost.size(), cost_currency_name(cost_currency),
+      newly_failed.size());
 }
 
 Comparison compare_runs(const RunFolder& base, const RunFolder& now,

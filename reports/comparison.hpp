@@ -27,6 +27,7 @@
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "reports/run_folder.hpp"
@@ -37,6 +38,10 @@ namespace tribench {
 enum class ComparisonVerdict { better, worse, equivalent, not_distinguishable };
 std::string comparison_verdict_name(
     ComparisonVerdict verdict);  // "better", "not distinguishable", ...
+
+// In what costs are compared: the first that both runs can be trusted in.
+enum class CostCurrency { cpu_seconds, instructions, evaluations };
+std::string_view cost_currency_name(CostCurrency currency);  // "CPU seconds", ...
 
 struct ComparisonOptions {
   double level = 0.005;               // family-wise, over all verdicts, two-sided
@@ -86,8 +91,8 @@ struct Comparison {
   double tolerance = 0.05;
   std::vector<ComparisonRow> quality;  // pooled rows first, then by problem
   std::vector<ComparisonRow> cost;     // pooled rows only
-  std::string cost_currency;           // "CPU seconds", "instructions", "evaluations"
-  std::string why_no_seconds;          // empty where the currency is CPU seconds
+  CostCurrency cost_currency = CostCurrency::cpu_seconds;
+  std::string why_no_seconds;  // empty where the currency is CPU seconds
   // Cells that newly ran into a limit against those that no longer do (exact sign test).
   double limits_p = 1;
   double level = 0.005;

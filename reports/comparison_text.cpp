@@ -127,10 +127,10 @@ std::string comparison_markdown(const Comparison& comparison) {
   if (comparison.identical < comparison.common) {
     text += "\n### Quality: error on test movements\n\n" + table_of(comparison.quality);
   }
-  text += fmt::format("\n### Cost: {} of fits\n\n", comparison.cost_currency);
+  text += fmt::format("\n### Cost: {} of fits\n\n", cost_currency_name(comparison.cost_currency));
   if (!comparison.why_no_seconds.empty()) {
     text += fmt::format("Not CPU seconds: {}.{}\n\n", comparison.why_no_seconds,
-                        comparison.cost_currency == "evaluations"
+                        comparison.cost_currency == CostCurrency::evaluations
                             ? " Slower code is not seen; the benches' instructions would show it."
                             : "");
   }
@@ -156,7 +156,7 @@ ordered_json comparison_json(const Comparison& comparison) {
           {"newly_unproved", comparison.newly_unproved},
           {"quality", rows_json(comparison.quality)},
           {"cost", rows_json(comparison.cost)},
-          {"cost_currency", comparison.cost_currency},
+          {"cost_currency", cost_currency_name(comparison.cost_currency)},
           {"why_no_seconds", comparison.why_no_seconds}};
 }
 

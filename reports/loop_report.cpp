@@ -5,12 +5,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "foundation/output_file.hpp"
 #include "reports/html/embedded.hpp"
 #include "reports/html/html_report.hpp"
 #include "reports/html/loop_page.hpp"
 #include "reports/picture_files.hpp"
 #include "reports/record/loop_json.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 

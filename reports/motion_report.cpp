@@ -10,6 +10,7 @@
 #include "foundation/json_text.hpp"
 #include "reports/csv.hpp"
 #include "reports/figures.hpp"
+#include "reports/markup.hpp"
 
 namespace tribench {
 namespace {
@@ -59,20 +60,6 @@ std::string model_lines(const MotionRecord& record) {
   return text + "\n";
 }
 
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "&lt;";
-    } else if (c == '&') {
-      safe += "&amp;";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
-
 struct Frame {
   double x0, x1, y0, y1;
   double x(double t) const { return kLeft + (kWidth - kLeft - 10) * (t - x0) / (x1 - x0); }
@@ -110,7 +97,7 @@ std::string picture(const MotionMovement& movement, const std::string& unit) {
       "<svg viewBox=\"0 0 {0} {1}\" role=\"img\"><title>{2}: measured and simulated "
       "position</title><defs><clipPath id=\"c\"><rect x=\"{3}\" y=\"0\" width=\"{0}\" "
       "height=\"{4}\"/></clipPath></defs>",
-      kWidth, kHeight, escaped(movement.name), kLeft, kHeight - kFoot + 8);
+      kWidth, kHeight, markup_text(movement.name), kLeft, kHeight - kFoot + 8);
   for (int k = 0; k <= 4; ++k) {
     const double q = frame.y0 + (frame.y1 - frame.y0) * k / 4;
     const double t = frame.x0 + (frame.x1 - frame.x0) * k / 4;
@@ -126,7 +113,7 @@ std::string picture(const MotionMovement& movement, const std::string& unit) {
   svg += line_of(frame, trace.time, trace.simulated, "class=\"simulated\"");
   return svg +
          fmt::format("</g><text x=\"{}\" y=\"{}\">s</text><text x=\"4\" y=\"14\">{}</text></svg>",
-                     kWidth - 14, kHeight - 2, escaped(unit));
+                     kWidth - 14, kHeight - 2, markup_text(unit));
 }
 
 constexpr const char* kStyle =
@@ -159,9 +146,9 @@ std::string motion_terminal(const MotionRecord& record) {
         fmt::format("{:24}{:>8}{:>14}{:>14}{:>14}{:>16}{}\n", one.name, one.figures.rows,
                     figure(one.figures.mean_position, 4), figure(one.figures.rms_position, 4),
                     figure(one.figures.largest_position, 4), figure(one.figures.mean_velocity, 4),
-                    one.status != "complete" ? "  " + one.status
-                    : one.held_out           ? "  held out"
-                                             : "");
+                    !one.broken_off.empty() ? "  " + one.broken_off
+                    : one.held_out          ? "  held out"
+                                            : "");
   }
   text += "\n" + summary_line("training", record.training, record.unit);
   return text + summary_line("held out", record.held_out, record.unit);
@@ -170,7 +157,9 @@ std::string motion_terminal(const MotionRecord& record) {
 std::string write_motion_json(const MotionRecord& record) {
   Json movements = Json::array();
   for (const MotionMovement& one : record.movements) {
-    Json json = {{"name", one.name}, {"held_out", one.held_out}, {"status", one.status}};
+    Json json = {{"name", one.name},
+                 {"held_out", one.held_out},
+                 {"status", one.broken_off.empty() ? "complete" : one.broken_off}};
     json.update(figures_json(one.figures));
     json.erase("movements");
     movements.push_back(std::move(json));
@@ -215,18 +204,18 @@ std::string motion_html(const MotionRecord& record) {
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\"><title>Simulated motion: {0}</title><style>{1}</style>"
       "<h1>Simulated motion: {0}</h1><p>{2}{3}</p><pre>{4}</pre>",
-      escaped(record.title), kStyle,
-      escaped(summary_line("Held out", record.held_out, record.unit)),
-      escaped(record.held_out.movements == 0
-                  ? summary_line("All movements", record.training, record.unit)
-                  : ""),
-      escaped(model_lines(record)));
+      markup_text(record.title), kStyle,
+      markup_text(summary_line("Held out", record.held_out, record.unit)),
+      markup_text(record.held_out.movements == 0
+                      ? summary_line("All movements", record.training, record.unit)
+                      : ""),
+      markup_text(model_lines(record)));
   page += "<p><b>measured</b> and <b class=\"simulated\">simulated</b> position:</p>";
   for (const MotionMovement& one : record.movements) {
     page += fmt::format("<figure><figcaption>{}{}: {} {} on average{}</figcaption>{}</figure>",
-                        escaped(one.name), one.held_out ? " (held out)" : "",
-                        figure(one.figures.mean_position, 4), escaped(record.unit),
-                        one.status == "complete" ? "" : ", " + escaped(one.status),
+                        markup_text(one.name), one.held_out ? " (held out)" : "",
+                        figure(one.figures.mean_position, 4), markup_text(record.unit),
+                        one.broken_off.empty() ? "" : ", " + markup_text(one.broken_off),
                         picture(one, record.unit));
   }
   return page + "</html>\n";

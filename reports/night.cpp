@@ -37,7 +37,7 @@ NightSeries series_of(const std::vector<const Record*>& records) {
       ++series.failed;
       continue;
     }
-    if (record->singularity == "refuted") ++series.singular;
+    if (record->singularity == Singularity::refuted) ++series.singular;
     errors.push_back(record->mae_test);
     cpu.push_back(record->fit_cpu_s);
     evaluations.push_back(static_cast<double>(record->evaluations));

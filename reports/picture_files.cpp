@@ -8,8 +8,8 @@
 
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "reports/html/embedded.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

@@ -15,7 +15,7 @@
 #include "foundation/random.hpp"
 #include "reports/figures.hpp"
 #include "reports/markdown.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 #include "reports/statistics/rank_tests.hpp"
 #include "reports/summary.hpp"
 
@@ -48,13 +48,13 @@ struct Counts {
   void add(const Record& r) {
     ++formulas;
     dividing += divides(r.formula) ? 1 : 0;
-    proved += r.singularity == "proved_free" ? 1 : 0;
-    refuted += r.singularity == "refuted" ? 1 : 0;
-    missed += r.grid_check == "missed" ? 1 : 0;
-    undecided += r.singularity == "undecided" ? 1 : 0;
-    dissipative += r.dissipative == "proved" ? 1 : 0;
-    monotone += r.monotone == "proved" ? 1 : 0;
-    odd += r.odd == "proved" ? 1 : 0;
+    proved += r.singularity == Singularity::proved_free ? 1 : 0;
+    refuted += r.singularity == Singularity::refuted ? 1 : 0;
+    missed += r.grid_check == GridCheck::missed ? 1 : 0;
+    undecided += r.singularity == Singularity::undecided ? 1 : 0;
+    dissipative += r.dissipative == PhysicsProof::proved ? 1 : 0;
+    monotone += r.monotone == PhysicsProof::proved ? 1 : 0;
+    odd += r.odd == PhysicsProof::proved ? 1 : 0;
   }
 };
 
@@ -64,7 +64,7 @@ AllCounts count_verdicts(const RunFolder& run) {
   AllCounts all;
   std::unordered_map<std::string_view, Counts*> of_cell;
   for (const Record& record : run.records) {
-    if (!is_ok(record) || record.singularity.empty()) continue;
+    if (!is_ok(record) || !record.singularity) continue;
     Counts& counts = all[{record.operators, record.method}];
     counts.add(record);
     of_cell.emplace(record.cell, &counts);
@@ -75,7 +75,7 @@ AllCounts count_verdicts(const RunFolder& run) {
     if (found == of_cell.end()) return;
     ++found->second->on_fronts;
     found->second->dividing_on_fronts += divides(front.formula) ? 1 : 0;
-    found->second->refuted_on_fronts += front.singularity == "refuted" ? 1 : 0;
+    found->second->refuted_on_fronts += front.singularity == Singularity::refuted ? 1 : 0;
   });
   return all;
 }

@@ -11,7 +11,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 
 namespace tribench {
 namespace {

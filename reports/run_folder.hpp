@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "reports/record.hpp"
+#include "reports/record/record.hpp"
 
 namespace tribench {
 
@@ -34,8 +34,5 @@ struct RunFolder {
 
 // Throws Error (bad_input) where the folder does not exist or holds no file of a run.
 RunFolder read_run_folder(const std::filesystem::path& folder);
-
-// True for a record whose cell gave a formula.
-inline bool is_ok(const Record& record) { return record.status == "ok"; }
 
 }  // namespace tribench

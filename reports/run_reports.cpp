@@ -5,13 +5,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "foundation/output_file.hpp"
 #include "reports/comparison.hpp"
 #include "reports/html/html_report.hpp"
 #include "reports/html/page_data.hpp"
 #include "reports/latex.hpp"
 #include "reports/leaderboard.hpp"
 #include "reports/published.hpp"
-#include "reports/record_csv.hpp"
 #include "reports/run_folder.hpp"
 #include "reports/suite_view.hpp"
 #include "reports/summary.hpp"

@@ -16,7 +16,7 @@
 
 #include "reports/figures.hpp"
 #include "reports/markdown.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 #include "reports/statistics/rank_tests.hpp"
 
 namespace tribench {

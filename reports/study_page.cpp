@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/text.hpp"
 #include "reports/figures.hpp"
 #include "reports/leaderboard.hpp"
@@ -15,7 +16,6 @@
 #include "reports/pictures.hpp"
 #include "reports/proofs.hpp"
 #include "reports/published.hpp"
-#include "reports/record_csv.hpp"
 #include "reports/sensitivity.hpp"
 
 namespace tribench {

@@ -28,7 +28,7 @@ constexpr std::array<const char*, 3> kSizes = {"small", "middle", "large"};
 using Records = std::vector<const Record*>;
 
 bool is_recovered(const Record& record, double below) {
-  return record.status == "ok" && 1 - record.r2_test <= below;
+  return is_ok(record) && 1 - record.r2_test <= below;
 }
 
 template <typename Hit>
@@ -77,11 +77,10 @@ SuiteMethodRow row_of(const SuiteView& view, const ByProblem& by_problem) {
     recovered.push_back(share_of(
         records, [&](const Record& one) { return is_recovered(one, view.suite.recovered_below); }));
     for (std::size_t b = 0; b < kBands.size(); ++b) {
-      row.r2_at_least[b] += share_of(records,
-                                     [&](const Record& one) {
-                                       return one.status == "ok" && one.r2_test >= kBands[b];
-                                     }) /
-                            static_cast<double>(by_problem.size());
+      row.r2_at_least[b] +=
+          share_of(records,
+                   [&](const Record& one) { return is_ok(one) && one.r2_test >= kBands[b]; }) /
+          static_cast<double>(by_problem.size());
     }
     const auto info = std::ranges::find(view.suite.problems, problem, &SuiteProblemInfo::problem);
     if (info != view.suite.problems.end() && info->nodes > 0) {
@@ -93,7 +92,7 @@ SuiteMethodRow row_of(const SuiteView& view, const ByProblem& by_problem) {
   row.operators = all.front()->operators;
   row.problems = by_problem.size();
   row.cells = all.size();
-  for (const Record* one : all) row.failed += one->status == "ok" ? 0 : 1;
+  for (const Record* one : all) row.failed += is_ok(*one) ? 0 : 1;
   row.recovered = mean_of(recovered);
   row.interval = bootstrap(recovered, mean_of, kConfidence, kRounds,
                            RandomStream(key_of(view.suite.name + row.method + row.operators)));

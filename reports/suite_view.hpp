@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "reports/record.hpp"
+#include "reports/record/record.hpp"
 #include "reports/run_folder.hpp"
 #include "reports/statistics/intervals.hpp"
 

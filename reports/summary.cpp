@@ -42,9 +42,9 @@ double placing_error(const Record& record) {
 }
 
 void count_singularities(MethodRow& row, const Record& record) {
-  if (record.singularity == "proved_free") ++row.proved_free;
-  if (record.singularity == "undecided") ++row.undecided;
-  if (record.singularity != "refuted") return;
+  if (record.singularity == Singularity::proved_free) ++row.proved_free;
+  if (record.singularity == Singularity::undecided) ++row.undecided;
+  if (record.singularity != Singularity::refuted) return;
   ++row.refuted;
   if (row.singular == nullptr) row.singular = &record;
 }
@@ -81,7 +81,7 @@ MethodRow row_of(const Cells& cells) {
       count_singularities(row, *record);
     } else {
       ++row.failed;
-      ++row.reasons[record->reason];
+      ++row.reasons[reason_text(record->reason)];
     }
   }
   row.mae_test = spread_of(errors);
@@ -224,7 +224,7 @@ Ranking rank_methods(const std::string& operators, const std::vector<ProblemTabl
 std::vector<Failure> failures_of(const std::vector<Record>& records) {
   std::map<std::pair<std::string, std::string>, Cells> by_reason;
   for (const Record& record : records) {
-    if (!is_ok(record)) by_reason[{record.method, record.reason}].push_back(&record);
+    if (!is_ok(record)) by_reason[{record.method, reason_text(record.reason)}].push_back(&record);
   }
   std::vector<Failure> failures;
   for (auto& [key, cells] : by_reason) {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "foundation/order_statistics.hpp"
-#include "reports/record.hpp"
+#include "reports/record/record.hpp"
 #include "reports/run_folder.hpp"
 #include "reports/statistics/intervals.hpp"
 #include "reports/statistics/rank_tests.hpp"

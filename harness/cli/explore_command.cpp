@@ -14,6 +14,7 @@
 
 #include "algorithms/exploration/fixed_plans.hpp"
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
@@ -23,7 +24,6 @@
 #include "harness/exploration/world_folder.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/reading/file_text.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

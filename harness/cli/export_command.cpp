@@ -19,13 +19,13 @@
 #include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/suggestion.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/loop/controller_code.hpp"
 #include "harness/motion/simulator_friction.hpp"
 #include "problems/preparation/derived_channels.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

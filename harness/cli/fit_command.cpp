@@ -19,6 +19,7 @@
 #include "algorithms/registry.hpp"
 #include "foundation/error.hpp"
 #include "foundation/number_text.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/shell_word.hpp"
 #include "foundation/text.hpp"
 #include "harness/cli/commands.hpp"
@@ -33,7 +34,6 @@
 #include "harness/weighted_fit.hpp"
 #include "problems/data_problem.hpp"
 #include "problems/user/user_problem.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {
@@ -248,7 +248,7 @@ CellResult run_method(const FitArguments& arguments, const Problem& problem,
   const Problem& seen = has_states ? declared : problem;
   if (!weights.empty()) return fit_weighted(seen, weights, *chosen.method, task, chosen.widened);
   CellResult result = fit_and_judge(seen, *chosen.method, task, chosen.widened);
-  if (has_states && result.record.status == "ok") refit_states(problem, result);
+  if (has_states && is_ok(result.record)) refit_states(problem, result);
   return result;
 }
 
@@ -264,15 +264,16 @@ void fit(const FitArguments& arguments, const Registry& registry) {
   FitAnswer answer;
   answer.result = run_method(arguments, problem, weights, chosen, task);
   const Record& record = answer.result.record;
-  if (record.status != "ok") {
-    const bool is_unsupported = record.reason.starts_with("unsupported");
-    throw Error(
-        is_unsupported ? ErrorKind::bad_input : ErrorKind::failed, record.reason, arguments.method,
-        is_unsupported ? "say what the columns are (--roles COLUMN=ROLE), or choose another "
-                         "method"
-                       : "");
+  if (!is_ok(record)) {
+    const bool is_unsupported = record.reason.kind == FailureKind::unsupported;
+    throw Error(is_unsupported ? ErrorKind::bad_input : ErrorKind::failed,
+                reason_text(record.reason), arguments.method,
+                is_unsupported
+                    ? "say what the columns are (--roles COLUMN=ROLE), or choose another "
+                      "method"
+                    : "");
   }
-  const bool by_clock = record.note.find("ended by the clock") != std::string::npos;
+  const bool by_clock = was_ended_by_clock(record);
   // A search stops before the step that would overdraw its budget.
   constexpr double kSpent = 0.99;
   const bool by_evaluations = static_cast<double>(record.evaluations) >=

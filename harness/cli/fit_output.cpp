@@ -46,7 +46,7 @@ Json fit_json(const FitAnswer& answer) {
                      {"complexity", entry.complexity},
                      {"mae_train", number(entry.mae_train)},
                      {"mae_test", number(entry.mae_test)},
-                     {"singularity", entry.singularity}});
+                     {"singularity", record_word(entry.singularity)}});
   }
   Json all = {{"formula", record.formula},
               {"complexity", record.complexity},
@@ -55,7 +55,7 @@ Json fit_json(const FitAnswer& answer) {
               {"mae_test", number(record.mae_test)},
               {"evaluations", record.evaluations},
               {"fit_cpu_s", number(record.fit_cpu_s)},
-              {"singularity", record.singularity}};
+              {"singularity", record_word(record.singularity)}};
   if (!record.witness.empty()) all["witness"] = nlohmann::json::parse(record.witness);
   if (!record.note.empty()) all["note"] = record.note;
   all["target"] = answer.target;
@@ -71,7 +71,8 @@ void print_fit(const FitAnswer& answer) {
   fmt::print("  complexity     MAE train      MAE test  singularity  formula\n");
   for (const FrontRecord& entry : answer.result.front) {
     fmt::print("{} {:10}  {:>12}  {:>12}  {:11}  {}\n", entry.chosen ? '*' : ' ', entry.complexity,
-               figure(entry.mae_train), figure(entry.mae_test), entry.singularity, entry.formula);
+               figure(entry.mae_train), figure(entry.mae_test), record_word(entry.singularity),
+               entry.formula);
   }
   const Record& record = answer.result.record;
   fmt::print("\nchosen: {}\n", record.formula);

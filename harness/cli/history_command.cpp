@@ -10,6 +10,7 @@
 #include <string>
 
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/nightly.hpp"
@@ -17,7 +18,6 @@
 #include "reports/night_feed.hpp"
 #include "reports/night_page.hpp"
 #include "reports/night_store.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

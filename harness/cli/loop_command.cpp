@@ -23,6 +23,7 @@
 #include "algorithms/diagnosis/diagnosis.hpp"
 #include "foundation/error.hpp"
 #include "foundation/number_text.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/data_options.hpp"
@@ -34,7 +35,6 @@
 #include "reports/loop_report.hpp"
 #include "reports/loop_words.hpp"
 #include "reports/record/loop_json.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "foundation/output_file.hpp"
 #include "foundation/text.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
@@ -17,7 +18,6 @@
 #include "harness/run_files.hpp"
 #include "problems/user/user_problem_text.hpp"
 #include "reports/published.hpp"
-#include "reports/record_csv.hpp"
 #include "reports/run_reports.hpp"
 
 namespace tribench {

@@ -16,13 +16,13 @@
 #include "algorithms/states/state_column.hpp"
 #include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/fit_output.hpp"
 #include "harness/cli/model_argument.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
 #include "reports/csv.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "foundation/output_file.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/curves.hpp"
@@ -17,7 +18,6 @@
 #include "harness/study/external_torque_study.hpp"
 #include "reports/picture_files.hpp"
 #include "reports/pictures.hpp"
-#include "reports/record_csv.hpp"
 #include "reports/run_reports.hpp"
 #include "reports/study_page.hpp"
 

@@ -34,7 +34,6 @@
 #include "harness/verify.hpp"
 #include "harness/whole_run.hpp"
 #include "problems/measured/data_folder.hpp"
-#include "reports/record_csv.hpp"
 #include "reports/run_folder.hpp"
 
 namespace tribench {
@@ -147,7 +146,7 @@ void run_to_the_end(const Grid& grid, const RunArguments& arguments, const RunOp
   print_end(arguments, run.tally, options.out, run.board);
   if (run.all_failed()) {
     fmt::print(stderr, "every cell failed, the first one by: {}\n",
-               run.journal.results.front().record.reason);
+               reason_text(run.journal.results.front().record.reason));
   }
   if (run.tally.stopped || run.all_failed()) status = ExitStatus::failed;
 }

@@ -16,6 +16,7 @@
 #include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/number_text.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/random.hpp"
 #include "harness/cli/commands.hpp"
@@ -26,7 +27,6 @@
 #include "problems/table.hpp"
 #include "problems/user/user_problem.hpp"
 #include "reports/motion_report.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

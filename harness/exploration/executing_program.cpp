@@ -7,9 +7,9 @@
 
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/scratch_folder.hpp"
 #include "problems/reading/csv.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

@@ -13,10 +13,10 @@
 #include "algorithms/exploration/explorer.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/suggestion.hpp"
 #include "problems/file_hash.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

@@ -255,7 +255,6 @@ class Trial {
       MotionMovement one;
       one.name = from.data->movement_names[static_cast<std::size_t>(movement)];
       one.held_out = is_held_out(recording, movement);
-      one.status = "complete";
       Sums sums;
       sums.movements = 1;
       for (; s < from.stretches.size() && from.movement[s] == movement; ++s) {
@@ -273,7 +272,7 @@ class Trial {
     const SimulatedMotion motion = forward::simulate_motion(model_, controller(), rows, options());
     if (motion.status != forward::MotionStatus::complete) {
       sums.is_whole = false;
-      movement.status = std::string(forward::motion_status_name(motion.status));
+      movement.broken_off = std::string(forward::motion_status_name(motion.status));
     }
     pushed_ += motion.counts.pushed;
     std::size_t next = 0;

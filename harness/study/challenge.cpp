@@ -13,11 +13,11 @@
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/plain_name.hpp"
 #include "harness/exploration/world_folder.hpp"
 #include "problems/file_hash.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

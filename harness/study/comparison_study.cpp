@@ -40,7 +40,7 @@ RunFolder made_up_run(const std::string& name, const ComparisonStudyOptions& opt
         record.operators = std::string("paper");
         record.seed = seed;
         record.cell = fmt::format("{}|{}|paper|{}", problem, method, seed);
-        record.status = std::string("ok");
+        record.status = CellStatus::ok;
         record.formula = std::string("v");
         RandomStream own(key_of(record.cell));
         RandomStream noise(key_of(record.cell + name));

@@ -10,10 +10,10 @@
 
 #include "algorithms/exploration/fixed_plans.hpp"
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "harness/study/each_case.hpp"
 #include "reports/csv.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

@@ -14,7 +14,7 @@
 #include "foundation/error.hpp"
 #include "foundation/order_statistics.hpp"
 #include "problems/kuka/trials.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 
 namespace tribench {
 namespace {
@@ -86,7 +86,7 @@ ExternalTorqueFigure summarise(const Key& key, const std::vector<TrialError>& er
 }
 
 bool is_loaded_b(const Record& record) {
-  return record.dataset == "B" && record.load && record.status == "ok";
+  return record.dataset == "B" && record.load && is_ok(record);
 }
 
 void add_yardsticks(const Trials& trials, std::map<Key, std::vector<TrialError>>& errors) {

@@ -88,7 +88,7 @@ RunFolder run_of(const Night& night) {
       record.method = series.method;
       record.operators = series.operators;
       record.seed = seed;
-      record.status = "ok";
+      record.status = CellStatus::ok;
       record.mae_test = elementary::exp(static_cast<double>(value));
       run.records.push_back(std::move(record));
     }

@@ -7,7 +7,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/order_statistics.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 
 namespace tribench {
 namespace {
@@ -26,9 +26,7 @@ int number_of(const std::string& problem) {
 
 }  // namespace
 
-bool is_recovered(const Record& record) {
-  return record.status == "ok" && 1 - record.r2_test < kExactNmse;
-}
+bool is_recovered(const Record& record) { return is_ok(record) && 1 - record.r2_test < kExactNmse; }
 
 std::vector<RecoveryFigure> run_recovery_study(const std::filesystem::path& run) {
   std::map<std::tuple<std::string, std::string, int>, Cells> cells;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/record.hpp"
+#include "reports/record/record.hpp"
 
 namespace tribench {
 

@@ -78,20 +78,6 @@ std::string script_safe(std::string text) {
   return safe;
 }
 
-std::string text_safe(std::string_view text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "&lt;";
-    } else if (c == '&') {
-      safe += "&amp;";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
-
 void append_script(std::string& page, std::string_view script) {
   page += "<script>\n";
   page += script;
@@ -112,7 +98,7 @@ std::string html_page(std::string_view title, PageKind kind, const nlohmann::ord
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
       "script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; font-src data:; "
       "img-src data:\">\n<title>{}</title>\n<style>\n",
-      text_safe(title));
+      markup_text(title));
   page += font_faces();
   page += katex_rules();
   page += '\n';

@@ -11,6 +11,7 @@
 #include "foundation/json_text.hpp"
 #include "reports/figures.hpp"
 #include "reports/html/page_series.hpp"
+#include "reports/record/record_json.hpp"
 #include "reports/suite_view.hpp"
 
 namespace tribench {
@@ -107,7 +108,7 @@ ordered_json witness_point(const std::string& witness) {
 ordered_json singular_json(const RunFolder& run) {
   ordered_json all = ordered_json::array();
   for (const Record& record : run.records) {
-    if (record.singularity != "refuted" || all.size() >= kSingular) continue;
+    if (record.singularity != Singularity::refuted || all.size() >= kSingular) continue;
     ordered_json point = witness_point(record.witness);
     if (point.is_null()) continue;
     all.push_back({{"problem", record.problem},
@@ -148,7 +149,7 @@ std::vector<const Record*> chosen_records(const RunFolder& run, const RunSummary
   if (run.records.size() > kRecords) {
     std::size_t special = 0;
     for (const Record& record : run.records) {
-      const bool is_special = !is_ok(record) || record.singularity == "refuted";
+      const bool is_special = !is_ok(record) || record.singularity == Singularity::refuted;
       if (is_special && ++special <= kRecords / 2) take(&record);
     }
     for (const ProblemTable& table : summary.tables) {
@@ -160,19 +161,15 @@ std::vector<const Record*> chosen_records(const RunFolder& run, const RunSummary
 }
 
 ordered_json records_json(const RunFolder& run, const RunSummary& summary) {
+  const std::vector<std::string> columns = {"problem",     "method",     "operators",   "seed",
+                                            "status",      "reason",     "mae_train",   "mae_test",
+                                            "r2_test",     "complexity", "evaluations", "fit_cpu_s",
+                                            "singularity", "witness",    "formula",     "note"};
   ordered_json rows = ordered_json::array();
   for (const Record* r : chosen_records(run, summary)) {
-    rows.push_back({r->problem, r->method, r->operators, r->seed, r->status, r->reason,
-                    finite_or_null(r->mae_train), finite_or_null(r->mae_test),
-                    finite_or_null(r->r2_test), r->complexity, r->evaluations,
-                    finite_or_null(r->fit_cpu_s), r->singularity, r->witness, r->formula, r->note});
+    rows.push_back(record_row(*r, columns));
   }
-  return {{"columns",
-           {"problem", "method", "operators", "seed", "status", "reason", "mae_train", "mae_test",
-            "r2_test", "complexity", "evaluations", "fit_cpu_s", "singularity", "witness",
-            "formula", "note"}},
-          {"total", run.records.size()},
-          {"rows", std::move(rows)}};
+  return {{"columns", columns}, {"total", run.records.size()}, {"rows", std::move(rows)}};
 }
 
 ordered_json counts_json(const RunFolder& run, const RunSummary& summary) {

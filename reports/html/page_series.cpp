@@ -11,7 +11,7 @@
 #include <unordered_map>
 
 #include "foundation/elementary.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 
 namespace tribench {
 namespace {
@@ -265,7 +265,7 @@ ordered_json fronts_json(const RunFolder& run) {
                      {"cell", front.cell},
                      {"complexity", front.complexity},
                      {"mae", front.mae_test},
-                     {"singularity", front.singularity},
+                     {"singularity", record_word(front.singularity)},
                      {"chosen", front.chosen},
                      {"formula", front.formula}});
     }

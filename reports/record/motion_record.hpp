@@ -35,7 +35,7 @@ struct MotionTrace {
 struct MotionMovement {
   std::string name;
   bool held_out = false;
-  std::string status;  // "complete", or why there is no figure
+  std::string broken_off;  // why there is no figure; empty where it was simulated to its end
   MotionFigures figures;
   MotionTrace trace;
 };

@@ -128,7 +128,7 @@ TEST(IncludeDirection, TheRuleItselfCatchesAnArrowThatRunsBack) {
   EXPECT_NE(objection("harness/study/loop_study.cpp", "harness/cli/commands.hpp"), "");
   EXPECT_NE(objection("reports/csv.cpp", "problems/problem.hpp"), "");
   EXPECT_NE(objection("algorithms/pysr/pysr.cpp", "harness/judge.hpp"), "");
-  EXPECT_EQ(objection("harness/judge.cpp", "reports/record.hpp"), "");
+  EXPECT_EQ(objection("harness/judge.cpp", "reports/record/record.hpp"), "");
   EXPECT_EQ(objection("algorithms/pysr/pysr.cpp", "algorithms/fitting/constant_fit.hpp"), "");
   EXPECT_EQ(objection("algorithms/registry.cpp", "algorithms/pysr/pysr.hpp"), "");
 }

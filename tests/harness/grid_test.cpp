@@ -7,8 +7,8 @@
 #include <set>
 
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "harness/run_files.hpp"
-#include "reports/record_csv.hpp"
 
 namespace tribench {
 namespace {

@@ -20,10 +20,10 @@ const RunIdentity kIdentity{"[grid]\nname = 'x'\n", "0.1.0 (abc)", "0123"};
 CellResult result(int seed) {
   CellResult r;
   r.record = empty_record({"A/j2/no_load", "m", "paper", static_cast<std::uint64_t>(seed)});
-  r.record.status = "ok";
+  r.record.status = CellStatus::ok;
   r.record.mae_test = 0.1 + seed;
   r.record.formula = "a \"quoted\" \\ formula\n";
-  r.front.push_back({r.record.cell, 3, 4, 0.1, 1.0 / 3.0, "undecided", true, "v + 1"});
+  r.front.push_back({r.record.cell, 3, 4, 0.1, 1.0 / 3.0, Singularity::undecided, true, "v + 1"});
   r.trace.push_back({r.record.cell, 100, 0.5, 1e-300});
   return r;
 }

@@ -74,7 +74,7 @@ TEST(FitAndJudge, AddsTheStagesFormulasAndCountsTheAdaptationApart) {
   task.operators = find_operator_set("paper");
   const CellResult result = fit_and_judge(problem, LineMethod(), task);
   const Record& record = result.record;
-  EXPECT_EQ(record.status, "ok") << record.reason;
+  EXPECT_TRUE(is_ok(record)) << reason_text(record.reason);
   EXPECT_NEAR(record.mae_test, 0, 1e-12);
   EXPECT_NEAR(record.mae_truth, 0, 1e-12);
   EXPECT_NEAR(record.r2_test, 1, 1e-12);
@@ -82,7 +82,7 @@ TEST(FitAndJudge, AddsTheStagesFormulasAndCountsTheAdaptationApart) {
   EXPECT_EQ(record.complexity, 6);
   EXPECT_EQ(record.complexity_adaptation, 2);
   EXPECT_EQ(record.evaluations, 200U);
-  EXPECT_EQ(record.singularity, "proved_free");
+  EXPECT_EQ(record.singularity, Singularity::proved_free);
   ASSERT_EQ(result.front.size(), 2U);
   EXPECT_TRUE(result.front.back().chosen);
   // What is exported is what was judged.
@@ -113,11 +113,11 @@ TEST(FitAndJudge, TakesWhatAMethodRefusesBesideTheDataForUnsupported) {
   task.cell = {problem.name, "particular", "paper", 1};
   task.operators = find_operator_set("paper");
   const Record first = fit_and_judge(problem, ParticularMethod("v"), task).record;
-  EXPECT_EQ(first.status, "ok") << first.reason;
+  EXPECT_TRUE(is_ok(first)) << reason_text(first.reason);
   EXPECT_EQ(first.note, "no adapt: template: 'v' is not an input");
   EXPECT_EQ(first.complexity_adaptation, 0);
   const Record none = fit_and_judge(problem, ParticularMethod("g"), task).record;
-  EXPECT_EQ(none.reason, "unsupported (template: 'g' is not an input)");
+  EXPECT_EQ(reason_text(none.reason), "unsupported (template: 'g' is not an input)");
 }
 
 TEST(FitAndJudge, ShowsAMethodNoInputThatDoesNotVaryInItsRows) {
@@ -131,7 +131,7 @@ TEST(FitAndJudge, ShowsAMethodNoInputThatDoesNotVaryInItsRows) {
   task.cell = {problem.name, "line", "paper", 1};
   task.operators = find_operator_set("paper");
   const CellResult result = fit_and_judge(problem, LineMethod(), task);
-  EXPECT_NEAR(result.record.mae_test, 0, 1e-12) << result.record.reason;
+  EXPECT_NEAR(result.record.mae_test, 0, 1e-12) << reason_text(result.record.reason);
   EXPECT_EQ(result.record.formula.find("sgn_g"), std::string::npos) << result.record.formula;
 }
 
@@ -139,10 +139,10 @@ TEST(JudgeFormula, FailsAFormulaWithoutAValueAtATestRow) {
   const Problem problem = two_stage_problem();
   Record record;
   judge_formula(problem, {parse("log(v)", problem.input_names()), {}}, record);
-  EXPECT_EQ(record.status, "failed");
-  EXPECT_THAT(record.reason, HasSubstr("no finite value at 2"));
+  EXPECT_EQ(record.status, CellStatus::failed);
+  EXPECT_THAT(reason_text(record.reason), HasSubstr("no finite value at 2"));
   EXPECT_TRUE(std::isnan(record.mae_test));
-  EXPECT_EQ(record.singularity, "refuted");
+  EXPECT_EQ(record.singularity, Singularity::refuted);
   EXPECT_THAT(record.witness, HasSubstr("\"v\""));
   EXPECT_EQ(record.formula, "log(v)");
 }
@@ -158,15 +158,15 @@ TEST(JudgeFront, KeepsWhatNoOtherBeatsAndTheChosenOne) {
   };
   Record judged;
   judged.cell = "cell";
-  judged.singularity = "as judged";
+  judged.singularity = Singularity::undecided;
   const std::vector<FrontRecord> kept = judge_front(problem, front, 3, judged);
   ASSERT_EQ(kept.size(), 3U);
   EXPECT_EQ(kept[0].formula, "2*v + 1");
   EXPECT_TRUE(kept[1].chosen);
   EXPECT_EQ(kept[2].formula, "2*v + 1 + 3*g");
-  EXPECT_EQ(kept[1].singularity, "as judged");  // not proved a second time
-  EXPECT_EQ(kept[0].singularity, "proved_free");
-  EXPECT_EQ(kept[2].singularity, "proved_free");
+  EXPECT_EQ(kept[1].singularity, Singularity::undecided);  // not proved a second time
+  EXPECT_EQ(kept[0].singularity, Singularity::proved_free);
+  EXPECT_EQ(kept[2].singularity, Singularity::proved_free);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "harness/judge.hpp"
 #include "problems/measured/entries.hpp"
 #include "problems/measured/manifest.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 #include "tests/support/paths.hpp"
 
 namespace tribench {

@@ -94,10 +94,10 @@ TEST(StatefulProblem, ACellWithMemoryIsJudgedProvedAndReadBack) {
   const Registry registry;
   const CellResult result = fit_and_judge(problem, *registry.make("dahl"), task_of("dahl"), {});
   const Record& record = result.record;
-  ASSERT_EQ(record.status, "ok") << record.reason;
+  ASSERT_TRUE(is_ok(record)) << reason_text(record.reason);
   EXPECT_THAT(record.formula, StartsWith("z = dahl(v, sliding=0.00"));
   EXPECT_LT(record.mae_test, 0.05);
-  EXPECT_EQ(record.singularity, "proved_free");
+  EXPECT_EQ(record.singularity, Singularity::proved_free);
   ASSERT_EQ(result.front.size(), 1U);
   EXPECT_EQ(result.front[0].formula, record.formula);
   const ProblemFormula read = read_problem_formula(record.formula, problem);
@@ -118,7 +118,7 @@ TEST(StatefulProblem, ADeclaredStateIsAnInputWhoseParametersAreFittedAfterwards)
   const Problem seen = with_declared_states(problem, {"z = dahl(v, sliding=0.002)"});
   const Registry registry;
   CellResult result = fit_and_judge(seen, *registry.make("linear"), task_of("linear"), {});
-  ASSERT_EQ(result.record.status, "ok") << result.record.reason;
+  ASSERT_TRUE(is_ok(result.record)) << reason_text(result.record.reason);
   EXPECT_THAT(result.record.formula, StartsWith("z = dahl(v, sliding=0.002); "));
   const double before = result.record.mae_test;
   refit_states(problem, result);
@@ -133,8 +133,8 @@ TEST(StatefulProblem, WithoutTimeACellSaysWhy) {
   const Problem problem = problem_of(recording(false));
   const Registry registry;
   const CellResult result = fit_and_judge(problem, *registry.make("lugre"), task_of("lugre"), {});
-  EXPECT_EQ(result.record.status, "failed");
-  EXPECT_THAT(result.record.reason, HasSubstr("time"));
+  EXPECT_EQ(result.record.status, CellStatus::failed);
+  EXPECT_THAT(reason_text(result.record.reason), HasSubstr("time"));
   const std::vector<StateDeclaration> states = {{"z", StateLaw::dahl, {0}, {0.005}}};
   EXPECT_THROW(with_states(problem, states), Error);
 }

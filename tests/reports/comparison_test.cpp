@@ -40,7 +40,7 @@ RunFolder noisy_run(const std::string& noise, std::uint64_t seeds, Planted plant
         record.operators = "paper";
         record.seed = seed;
         record.cell = record.problem + "|" + method + "|paper|" + std::to_string(seed);
-        record.status = "ok";
+        record.status = CellStatus::ok;
         record.formula = "x";
         RandomStream own(key_of(record.cell));
         RandomStream random(key_of(record.cell + noise));
@@ -128,7 +128,7 @@ TEST(Comparison, JudgesCostInInstructionsOrEvaluationsWhereSecondsCannotBeTruste
   const RunFolder base = busy("base");
   RunFolder now = busy("new");
   const Comparison same = compare_runs(base, now);
-  EXPECT_EQ(same.cost_currency, "instructions");
+  EXPECT_EQ(same.cost_currency, CostCurrency::instructions);
   EXPECT_EQ(pooled(same.cost, "b").verdict, ComparisonVerdict::equivalent);
   for (Record& record : now.records) {
     if (record.method == "b") record.fit_instructions *= 1.08;
@@ -144,7 +144,7 @@ TEST(Comparison, JudgesCostInInstructionsOrEvaluationsWhereSecondsCannotBeTruste
     if (record.method == "c") record.evaluations = 1'200'000;
   }
   const Comparison evaluations = compare_runs(base, now);
-  EXPECT_EQ(evaluations.cost_currency, "evaluations");
+  EXPECT_EQ(evaluations.cost_currency, CostCurrency::evaluations);
   EXPECT_EQ(pooled(evaluations.cost, "b").verdict, ComparisonVerdict::equivalent);
   EXPECT_EQ(pooled(evaluations.cost, "c").verdict, ComparisonVerdict::worse);
   EXPECT_THAT(comparison_markdown(evaluations), HasSubstr("Slower code is not seen"));
@@ -178,7 +178,7 @@ TEST(Comparison, RefusesToCompareTimesWhereTheCalibrationForbidsIt) {
     record.evaluations = 5000;
   }
   EXPECT_EQ(compare_runs(soon, soon).why_no_seconds, "no fit took 0.02 s");
-  EXPECT_EQ(compare_runs(soon, soon).cost_currency, "evaluations");
+  EXPECT_EQ(compare_runs(soon, soon).cost_currency, CostCurrency::evaluations);
   EXPECT_EQ(compare_runs(soon, soon).cost.size(), 3U);
 }
 
@@ -289,23 +289,23 @@ TEST(Comparison, MissingCellsAndSingularFormulasCount) {
   now.records.pop_back();
   EXPECT_EQ(compare_runs(base, now).outcome(), ComparisonOutcome::undecided);
   now = base;
-  for (std::size_t i = 0; i < 6; ++i) now.records[i].singularity = "refuted";
+  for (std::size_t i = 0; i < 6; ++i) now.records[i].singularity = Singularity::refuted;
   EXPECT_EQ(compare_runs(base, now).outcome(), ComparisonOutcome::undecided);
-  for (std::size_t i = 0; i < 12; ++i) now.records[i].singularity = "refuted";
+  for (std::size_t i = 0; i < 12; ++i) now.records[i].singularity = Singularity::refuted;
   EXPECT_EQ(compare_runs(base, now).outcome(), ComparisonOutcome::regression);
 }
 
 TEST(Comparison, ACrashIsARegressionAndASingleTimeoutIsNot) {
   const RunFolder base = noisy_run("x", 20);
   RunFolder now = base;
-  now.records[3].status = "failed";
-  now.records[3].reason = "timeout";
+  now.records[3].status = CellStatus::failed;
+  now.records[3].reason = {FailureKind::timeout, {}};
   EXPECT_FALSE(compare_runs(base, now).has_regression());
-  now.records[3].reason = "crashed (SIGSEGV)";
+  now.records[3].reason = {FailureKind::crashed, "SIGSEGV"};
   EXPECT_TRUE(compare_runs(base, now).has_regression());
   for (std::size_t i = 0; i < 12; ++i) {
-    now.records[i].status = "failed";
-    now.records[i].reason = "timeout";
+    now.records[i].status = CellStatus::failed;
+    now.records[i].reason = {FailureKind::timeout, {}};
   }
   EXPECT_TRUE(compare_runs(base, now).has_regression());
 }
@@ -315,7 +315,7 @@ TEST(Comparison, CountsCellsThatOnlyOneRunHas) {
   RunFolder now = base;
   now.records.pop_back();
   now.records[0].cell += "0";
-  now.records[1].singularity = "refuted";
+  now.records[1].singularity = Singularity::refuted;
   const Comparison comparison = compare_runs(base, now);
   EXPECT_EQ(comparison.only_base, 2U);
   EXPECT_EQ(comparison.only_new, 1U);

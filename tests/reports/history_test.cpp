@@ -61,7 +61,7 @@ TEST(History, NamesTheMethodAndTheRun) {
       record.method = method;
       record.problem = "p";
       record.operators = "paper";
-      record.status = "ok";
+      record.status = CellStatus::ok;
       record.mae_test = method == "b" && i >= 14 ? 1.2 : 1 + 0.001 * static_cast<double>(i % 3);
       runs[i].records.push_back(record);
     }

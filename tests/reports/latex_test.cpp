@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "reports/record_csv.hpp"
+#include "foundation/output_file.hpp"
 #include "reports/run_folder.hpp"
 #include "tests/reports/sample_run.hpp"
 

@@ -4,7 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "reports/record_csv.hpp"
+#include "foundation/output_file.hpp"
+#include "reports/record/record_csv.hpp"
 #include "reports/run_reports.hpp"
 #include "tests/reports/sample_run.hpp"
 
@@ -41,8 +42,8 @@ TEST(Leaderboard, SaysOnItsFirstScreenWhatChangedSinceABaseRun) {
   std::vector<Record> records = sample_records(2);
   for (Record& record : records) {
     if (record.cell != "A/j2/no_load|pysr|paper|1") continue;
-    record.status = "failed";
-    record.reason = "timeout";
+    record.status = CellStatus::failed;
+    record.reason = {FailureKind::timeout, {}};
     record.formula.clear();
     record.mae_test = kMissing;
   }

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 #include "tests/reports/sample_run.hpp"
 
 namespace tribench {
@@ -25,7 +25,7 @@ TEST(Fronts, KeepTheChosenTheSimplestAndTheMostAccurateHoweverLongTheyAre) {
                      .nodes = k,
                      .mae_train = 1.0 / k,
                      .mae_test = k == 498 ? 1e-3 : 1.0 / k,
-                     .singularity = "proved_free",
+                     .singularity = Singularity::proved_free,
                      .chosen = k == 341,
                      .formula = "formula_" + std::to_string(k)});
   }

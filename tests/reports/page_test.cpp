@@ -9,12 +9,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "foundation/output_file.hpp"
 #include "foundation/random.hpp"
 #include "reports/html/html_report.hpp"
 #include "reports/loop_report.hpp"
 #include "reports/night_page.hpp"
 #include "reports/pictures.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 #include "reports/run_reports.hpp"
 #include "reports/study_page.hpp"
 #include "tests/reports/sample_run.hpp"
@@ -79,10 +80,10 @@ fs::path whole_run(const std::string& name) {
   std::vector<TraceRecord> trace;
   std::vector<CurveRecord> curves;
   for (const Record& record : sample_records(4)) {
-    if (record.status != "ok") continue;
+    if (!is_ok(record)) continue;
     front.push_back({record.cell, record.complexity, record.nodes, record.mae_train,
                      record.mae_test, record.singularity, true, record.formula});
-    front.push_back({record.cell, 5, 7, 1, 1, "proved_free", false, "14*qd"});
+    front.push_back({record.cell, 5, 7, 1, 1, Singularity::proved_free, false, "14*qd"});
     trace.push_back({record.cell, 1000, 0.01, 2 * record.mae_train});
     trace.push_back({record.cell, 900'000, 0.5, record.mae_train});
     if (record.seed != 1) continue;

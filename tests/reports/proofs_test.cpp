@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "foundation/output_file.hpp"
 #include "foundation/random.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 #include "tests/reports/sample_run.hpp"
 
 namespace tribench {
@@ -25,9 +26,9 @@ Record record_of(const std::string& operators, std::uint64_t seed, double error)
   r.operators = operators;
   r.seed = seed;
   r.cell = "A/j2/load|pysr|" + operators + "|" + std::to_string(seed);
-  r.status = "ok";
+  r.status = CellStatus::ok;
   r.mae_test = error;
-  r.singularity = "proved_free";
+  r.singularity = Singularity::proved_free;
   r.formula = operators == "paper" ? "2*qd" : "2/(qd + 1)";
   return r;
 }
@@ -48,16 +49,16 @@ TEST(Proofs, CountVerdictsOfCellsAndFronts) {
   run.path = fresh_folder("proofs");
   run.records = {record_of("paper", 1, 1), record_of("paper+div", 1, 1),
                  record_of("paper+div", 2, 4), record_of("paper+safe_div", 1, 2)};
-  run.records[1].singularity = "refuted";
-  run.records[1].grid_check = "missed";
-  run.records[2].dissipative = "proved";
+  run.records[1].singularity = Singularity::refuted;
+  run.records[1].grid_check = GridCheck::missed;
+  run.records[2].dissipative = PhysicsProof::proved;
   run.records.push_back(record_of("paper", 2, 1));
-  run.records.back().status = "failed";
+  run.records.back().status = CellStatus::failed;
   const std::string cell = run.records[1].cell;
   write_file(run.path / "front.csv",
-             front_csv({{cell, 3, 3, 1, 1, "refuted", true, "1/qd"},
-                        {cell, 1, 1, 2, 2, "proved_free", false, "qd"},
-                        {"nobody's", 1, 1, 2, 2, "refuted", false, "1/qd"}}));
+             front_csv({{cell, 3, 3, 1, 1, Singularity::refuted, true, "1/qd"},
+                        {cell, 1, 1, 2, 2, Singularity::proved_free, false, "qd"},
+                        {"nobody's", 1, 1, 2, 2, Singularity::refuted, false, "1/qd"}}));
   const std::string text = proofs_section(run);
   EXPECT_THAT(text,
               HasSubstr("| paper+div      | pysr   |        2 |        2 |           1 |         0 "
@@ -96,7 +97,7 @@ TEST(OperatorPrice, FindsAPlantedCostAndSaysWhenThereIsNone) {
 
 TEST(OperatorPrice, CountsAFailedCellAsInfinite) {
   std::vector<Record> records = {record_of("paper", 1, 1), record_of("paper+safe_div", 1, 1)};
-  records[1].status = "failed";
+  records[1].status = CellStatus::failed;
   const std::vector<OperatorPrice> prices = operator_prices(records);
   ASSERT_EQ(prices.size(), 1U);
   EXPECT_TRUE(std::isinf(prices[0].ratio));

@@ -12,8 +12,9 @@
 #include <tuple>
 
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "reports/csv.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 #include "reports/run_reports.hpp"
 #include "tests/reports/sample_run.hpp"
 #include "tests/support/paths.hpp"
@@ -34,8 +35,8 @@ Record record_of(const std::string& problem, const std::string& method, std::uin
   r.method = method;
   r.operators = "paper";
   r.seed = seed;
-  r.status = std::isnan(mae) ? "failed" : "ok";
-  r.reason = std::isnan(mae) ? "timeout" : "";
+  r.status = std::isnan(mae) ? CellStatus::failed : CellStatus::ok;
+  r.reason.kind = std::isnan(mae) ? FailureKind::timeout : FailureKind::none;
   r.mae_test = mae;
   r.mae_ceiling = std::isnan(mae) ? kMissing : 1.0;
   r.mae_law = r.mae_ceiling;
@@ -43,7 +44,7 @@ Record record_of(const std::string& problem, const std::string& method, std::uin
   r.formula = std::isnan(mae) ? "" : "qd";
   r.complexity = 15;
   r.complexity_adaptation = problem.starts_with("B/") ? 4 : 0;
-  r.singularity = "proved_free";
+  r.singularity = Singularity::proved_free;
   return r;
 }
 

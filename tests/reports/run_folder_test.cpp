@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "foundation/error.hpp"
-#include "reports/record_csv.hpp"
+#include "foundation/output_file.hpp"
+#include "reports/record/record_csv.hpp"
 #include "reports/run_reports.hpp"
 #include "tests/reports/sample_run.hpp"
 

@@ -8,8 +8,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "foundation/output_file.hpp"
 #include "foundation/random.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 #include "tests/support/paths.hpp"
 
 namespace tribench {
@@ -41,7 +42,7 @@ Record sample_record(const std::string& problem, const SampleMethod& method, std
   record.cell = problem + "|" + method.name + "|" + method.operators + "|" + std::to_string(seed);
   RandomStream noise(key_of(record.cell));
   const double error = method.error * (1 + 0.05 * noise.uniform(-1, 1));
-  record.status = "ok";
+  record.status = CellStatus::ok;
   record.mae_train = 0.95 * error;
   record.mae_test = error;
   record.rmse_test = 1.25 * error;
@@ -55,7 +56,7 @@ Record sample_record(const std::string& problem, const SampleMethod& method, std
   record.fit_wall_s = record.fit_cpu_s + 0.01;
   record.peak_memory_mib = 12.5;
   record.eval_ns_per_row = 3.25;
-  record.singularity = "proved_free";
+  record.singularity = Singularity::proved_free;
   record.formula = "3.66*qd + 8.52*sgn_qd*exp(-0.78*qd^2)";
   return record;
 }
@@ -63,18 +64,18 @@ Record sample_record(const std::string& problem, const SampleMethod& method, std
 void spoil(Record& record) {
   const bool division = record.operators == "paper+div";
   if (record.method == "pysr" && division && record.seed == 2) {
-    record.singularity = "refuted";
+    record.singularity = Singularity::refuted;
     record.witness = R"({"qd": 0.25})";
     record.formula = "qd/(qd - 0.25) + 8.1*sgn_qd";
   }
   if (record.method == "parfam" && division && record.joint == 4) {
     const Record empty;
-    record.status = "failed";
-    record.reason = record.seed == 1 ? "timeout" : "crashed (SIGSEGV)";
+    mark_failed(record, FailureKind::timeout);
+    if (record.seed != 1) mark_failed(record, FailureKind::crashed, "SIGSEGV");
     record.mae_train = record.mae_test = record.rmse_test = record.max_error_test = kMissing;
     record.r2_test = record.mae_truth = record.eval_ns_per_row = kMissing;
     record.complexity = record.nodes = 0;
-    record.singularity.clear();
+    record.singularity.reset();
     record.formula.clear();
   }
 }

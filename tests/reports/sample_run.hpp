@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "reports/record.hpp"
 #include "reports/record/loop_record.hpp"
+#include "reports/record/record.hpp"
 
 namespace tribench {
 

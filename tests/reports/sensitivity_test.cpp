@@ -4,7 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "reports/record_csv.hpp"
+#include "foundation/output_file.hpp"
+#include "reports/record/record_csv.hpp"
 #include "reports/run_folder.hpp"
 #include "tests/reports/sample_run.hpp"
 
@@ -29,7 +30,7 @@ RunFolder planted() {
         r.operators = "paper";
         r.seed = seed;
         r.cell = problem + "|" + method + "|paper|" + std::to_string(seed);
-        r.status = "ok";
+        r.status = CellStatus::ok;
         const bool late = seed > 2;
         const double b = problem == "r" ? 0.5 : (late ? 0.9 : 2);
         r.mae_test = method == "a" ? 1 : (method == "b" ? b : 3);

@@ -18,7 +18,7 @@ Record record(const std::string& problem, const std::string& method, std::uint64
   one.method = method;
   one.operators = std::string("full");
   one.seed = seed;
-  one.status = std::string("ok");
+  one.status = CellStatus::ok;
   one.r2_test = r2_test;
   one.fit_cpu_s = 2;
   one.fit_wall_s = 3;
@@ -38,7 +38,7 @@ SuiteInfo small_suite() {
 // a: both seeds recovered; b: one of two; c: failed and missed.
 std::vector<Record> small_records() {
   Record failed = record("s/c", "m", 1, kMissing);
-  failed.status = std::string("failed");
+  failed.status = CellStatus::failed;
   return {record("s/a", "m", 1, 1),
           record("s/a", "m", 2, 1 - 1e-9),
           record("s/b", "m", 1, 1 - 1e-8),

@@ -20,8 +20,8 @@ Record cell(const std::string& method, std::uint64_t seed, double error) {
   record.method = method;
   record.operators = "paper";
   record.seed = seed;
-  record.status = std::isnan(error) ? "failed" : "ok";
-  record.reason = std::isnan(error) ? "timeout" : "";
+  record.status = std::isnan(error) ? CellStatus::failed : CellStatus::ok;
+  record.reason.kind = std::isnan(error) ? FailureKind::timeout : FailureKind::none;
   record.mae_test = error;
   record.complexity = 5;
   record.formula = std::isnan(error) ? "" : "x";

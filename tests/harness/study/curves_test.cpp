@@ -17,7 +17,7 @@ Record record(const std::string& problem, std::uint64_t seed, double mae,
   made.method = "m";
   made.operators = "paper";
   made.seed = seed;
-  made.status = "ok";
+  made.status = CellStatus::ok;
   made.mae_test = mae;
   made.formula = formula;
   return made;

@@ -6,8 +6,9 @@
 #include <filesystem>
 
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "problems/kuka/joint.hpp"
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 
 namespace tribench {
 namespace {
@@ -24,7 +25,7 @@ Record loaded_record(const std::string& method, std::uint64_t seed, const std::s
   record.method = method;
   record.operators = "paper";
   record.seed = seed;
-  record.status = "ok";
+  record.status = CellStatus::ok;
   record.formula = formula;
   return record;
 }
@@ -38,7 +39,7 @@ TEST(ExternalTorqueStudy, RanksTheTrueLawBeforeAConstantBeforeNothing) {
     records.push_back(loaded_record("coulomb", seed, "10*sgn_qd"));
   }
   Record failed = loaded_record("broken", 1, "");
-  failed.status = "failed";
+  failed.status = CellStatus::failed;
   records.push_back(failed);
   write_file(run / "results.csv", results_csv(records));
   const std::vector<ExternalTorqueFigure> figures = run_external_torque_study(run);

@@ -28,7 +28,7 @@ RunFolder made_streams() {
           record.operators = "paper";
           record.seed = seed;
           record.cell = fmt::format("{}|{}|paper|{}", problem, record.method, seed);
-          record.status = "ok";
+          record.status = CellStatus::ok;
           record.mae_test = std::exp(0.3 * level + (method == "noisy" ? 0.02 * own.normal() : 0.0));
           run.records.push_back(record);
         }

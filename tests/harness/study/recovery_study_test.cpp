@@ -6,7 +6,8 @@
 #include <filesystem>
 
 #include "foundation/error.hpp"
-#include "reports/record_csv.hpp"
+#include "foundation/output_file.hpp"
+#include "reports/record/record_csv.hpp"
 
 namespace tribench {
 namespace {
@@ -21,7 +22,7 @@ Record nguyen_record(int number, std::uint64_t seed, double r2_test) {
   record.operators = "koza";
   record.seed = seed;
   record.cell = record.problem + "|udsr|koza|" + std::to_string(seed);
-  record.status = "ok";
+  record.status = CellStatus::ok;
   record.r2_test = r2_test;
   record.fit_cpu_s = static_cast<double>(seed);
   return record;
@@ -36,7 +37,7 @@ fs::path folder_with(const std::string& name, std::vector<Record> records) {
 
 TEST(RecoveryStudy, CountsWhatIsExactAndFailuresAsMissesInTheOrderOfTheNumbers) {
   Record failed = nguyen_record(2, 3, 1.0);
-  failed.status = "failed";
+  failed.status = CellStatus::failed;
   const std::vector<RecoveryFigure> figures = run_recovery_study(
       folder_with("tribench_recovery", {nguyen_record(10, 1, 1.0), nguyen_record(2, 1, 1 - 1e-9),
                                         nguyen_record(2, 2, 1 - 1e-14), failed}));

@@ -2,7 +2,7 @@
 //
 // The files of a run that hold records: results.csv (one cell a row), front.csv (one formula of a
 // cell's front a row), trace.csv (one improvement a row), curves.csv (one point of a picture a
-// row) and planned.csv (the cells the grid asks for). The one place that knows their columns.
+// row) and planned.csv (the cells the grid asks for). Their columns are in record_columns.hpp.
 //
 // Rows of results.csv are sorted by problem, method, operator set and seed, so that the same cells
 // give the same file whatever the order they ended in. A column that a reader does not know is
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "reports/csv.hpp"
-#include "reports/record.hpp"
+#include "reports/record/record.hpp"
 
 namespace tribench {
 
@@ -39,10 +39,6 @@ CsvReading read_curves(const std::filesystem::path& file,
                        const std::function<void(CurveRecord&&)>& take);
 CsvReading read_planned(const std::filesystem::path& file,
                         const std::function<void(PlannedCell&&)>& take);
-
-// Writes the text beside its place and renames it, so that a reader sees the old file or the new,
-// never half of one. Throws Error (failed) naming the file.
-void write_file(const std::filesystem::path& file, std::string_view text);
 
 // The order of results.csv.
 bool comes_before(const Record& a, const Record& b);

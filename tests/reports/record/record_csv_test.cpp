@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "reports/record_csv.hpp"
+#include "reports/record/record_csv.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "tests/reports/sample_run.hpp"
 
 namespace tribench {
@@ -55,7 +56,7 @@ TEST(ResultsCsv, RefusesAFileThatIsNone) {
 TEST(FrontTraceAndCurves, ReadBackAsWritten) {
   const auto folder = fresh_folder("others");
   write_file(folder / "front.csv",
-             front_csv({{"a|b", 3, 4, 0.5, 0.6, "refuted", true, "x, \"y\""}}));
+             front_csv({{"a|b", 3, 4, 0.5, 0.6, Singularity::refuted, true, "x, \"y\""}}));
   write_file(folder / "trace.csv", trace_csv({{"a|b", 12, 0.25, 1e-9}}));
   write_file(
       folder / "curves.csv",

@@ -2,17 +2,69 @@
 //
 // One row of results per cell, a failed cell's too; what the judge writes and every report reads.
 // Torques are in the problem's torque unit (N m for A and B), times in s. A figure that does not
-// exist is NaN, and an empty field in CSV.
+// exist is NaN, a judgement that was not made is no value; both are empty fields in CSV. The names
+// of the columns, and how each is written, are in record_columns.hpp.
 #pragma once
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tribench {
 
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+enum class CellStatus : std::uint8_t { failed, ok };
+
+// Why a cell failed. `other`: a reason that this program does not write, kept as it was read.
+enum class FailureKind : std::uint8_t {
+  none,
+  timeout,
+  cpu_limit,
+  out_of_memory,
+  crashed,
+  error,
+  unsupported,
+  quarantined,
+  other
+};
+
+struct FailureReason {
+  FailureKind kind = FailureKind::none;
+  std::string detail;  // the signal of a crash, the message of an error
+
+  bool operator==(const FailureReason&) const = default;
+};
+
+// Failures that depend on the machine's pace and memory as well as on the code.
+bool is_limit(FailureKind kind);
+
+// Whether the formula has a finite value everywhere in its input box.
+enum class Singularity : std::uint8_t { proved_free, refuted, undecided };
+// Whether a physical property holds everywhere in the box.
+enum class PhysicsProof : std::uint8_t { proved, refuted, undecided };
+// Whether 2001 points on a grid over the box would have shown a singularity.
+enum class GridCheck : std::uint8_t { seen, missed };
+
+// The words of the files, those of the enumerators; "" for no value.
+std::string_view record_word(std::optional<CellStatus> value);
+std::string_view record_word(std::optional<Singularity> value);
+std::string_view record_word(std::optional<PhysicsProof> value);
+std::string_view record_word(std::optional<GridCheck> value);
+
+// The reverse; false, and `value` untouched, where the text is no such word. "" is no value.
+bool read_record_word(std::string_view text, std::optional<CellStatus>& value);
+bool read_record_word(std::string_view text, std::optional<Singularity>& value);
+bool read_record_word(std::string_view text, std::optional<PhysicsProof>& value);
+bool read_record_word(std::string_view text, std::optional<GridCheck>& value);
+
+// "timeout", "crashed (SIGSEGV)", "error (no formula: ...)"; "" for none. Reading accepts any text
+// and loses nothing of it: reason_text(read_reason(text)) == text.
+std::string reason_text(const FailureReason& reason);
+FailureReason read_reason(std::string_view text);
 
 struct Record {
   // Which cell: the key names it everywhere.
@@ -25,10 +77,9 @@ struct Record {
   std::string operators;
   std::uint64_t seed = 0;
 
-  // How it ended: "ok" or "failed", and why: timeout, cpu_limit, out_of_memory, crashed (SIGSEGV),
-  // error (message), unsupported (message).
-  std::string status;
-  std::string reason;
+  // How it ended; no value until the cell has run.
+  std::optional<CellStatus> status;
+  FailureReason reason;
 
   double mae_train = kMissing;
   double mae_test = kMissing;
@@ -57,20 +108,25 @@ struct Record {
   double peak_memory_mib = kMissing;
   double eval_ns_per_row = kMissing;
 
-  std::string singularity;  // proved_free, refuted, undecided
-  std::string witness;      // JSON object, or empty
-  // Of a refuted formula: whether 2001 points on a grid over the box would have shown it, "seen" or
-  // "missed".
-  std::string grid_check;
-  // Physics, of a formula that is proved free and has a velocity among its inputs: proved, refuted
-  // or undecided. Dissipative: f v >= 0; monotone: f grows with v beyond a quarter of the largest
-  // speed; odd: f(-v) = -f(v).
-  std::string dissipative;
-  std::string monotone;
-  std::string odd;
+  std::optional<Singularity> singularity;
+  std::string witness;  // JSON object, or empty
+  // Of a refuted formula.
+  std::optional<GridCheck> grid_check;
+  // Physics, of a formula that is proved free and has a velocity among its inputs. Dissipative: f v
+  // >= 0; monotone: f grows with v beyond a quarter of the largest speed; odd: f(-v) = -f(v).
+  std::optional<PhysicsProof> dissipative;
+  std::optional<PhysicsProof> monotone;
+  std::optional<PhysicsProof> odd;
   std::string formula;
   std::string note;
 };
+
+inline bool is_ok(const Record& record) { return record.status == CellStatus::ok; }
+void mark_failed(Record& record, FailureKind kind, std::string detail = {});
+
+// A fit that the clock ended cannot be repeated; the record's note says so.
+void note_end_by_clock(Record& record);
+bool was_ended_by_clock(const Record& record);
 
 // Takes out what time and machine decide: two records of equal results are equal then.
 void forget_costs(Record& record);
@@ -82,7 +138,7 @@ struct FrontRecord {
   int nodes = 0;
   double mae_train = kMissing;
   double mae_test = kMissing;
-  std::string singularity;
+  std::optional<Singularity> singularity;
   bool chosen = false;
   std::string formula;
 };

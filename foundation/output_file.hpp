@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+//
+// A file that is written whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace tribench {
+
+// Writes the text beside its place and renames it, so that a reader sees the old file or the new,
+// never half of one. Throws Error (failed) naming the file.
+void write_file(const std::filesystem::path& file, std::string_view text);
+
+}  // namespace tribench

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "reports/record/record.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "reports/record/record_columns.hpp"
+
+namespace tribench {
+namespace {
+
+using std::string_view_literals::operator""sv;
+
+// The words of each enumeration, in the order of its enumerators.
+constexpr std::array kStatusWords = {"failed"sv, "ok"sv};
+constexpr std::array kSingularityWords = {"proved_free"sv, "refuted"sv, "undecided"sv};
+constexpr std::array kPhysicsWords = {"proved"sv, "refuted"sv, "undecided"sv};
+constexpr std::array kGridCheckWords = {"seen"sv, "missed"sv};
+constexpr std::array kFailureWords = {""sv,        "timeout"sv, "cpu_limit"sv,   "out_of_memory"sv,
+                                      "crashed"sv, "error"sv,   "unsupported"sv, "quarantined"sv};
+static_assert(kFailureWords.size() == static_cast<std::size_t>(FailureKind::other));
+
+constexpr std::string_view kEndedByClock = "ended by the clock";
+
+template <typename Enum, std::size_t N>
+std::string_view word_of(std::optional<Enum> value, const std::array<std::string_view, N>& words) {
+  return value ? words[static_cast<std::size_t>(*value)] : std::string_view();
+}
+
+template <typename Enum, std::size_t N>
+bool read_word(std::string_view text, const std::array<std::string_view, N>& words,
+               std::optional<Enum>& value) {
+  if (text.empty()) {
+    value.reset();
+    return true;
+  }
+  const auto found = std::ranges::find(words, text);
+  if (found == words.end()) return false;
+  value = static_cast<Enum>(found - words.begin());
+  return true;
+}
+
+}  // namespace
+
+std::string_view record_word(std::optional<CellStatus> value) {
+  return word_of(value, kStatusWords);
+}
+
+std::string_view record_word(std::optional<Singularity> value) {
+  return word_of(value, kSingularityWords);
+}
+
+std::string_view record_word(std::optional<PhysicsProof> value) {
+  return word_of(value, kPhysicsWords);
+}
+
+std::string_view record_word(std::optional<GridCheck> value) {
+  return word_of(value, kGridCheckWords);
+}
+
+bool read_record_word(std::string_view text, std::optional<CellStatus>& value) {
+  return read_word(text, kStatusWords, value);
+}
+
+bool read_record_word(std::string_view text, std::optional<Singularity>& value) {
+  return read_word(text, kSingularityWords, value);
+}
+
+bool read_record_word(std::string_view text, std::optional<PhysicsProof>& value) {
+  return read_word(text, kPhysicsWords, value);
+}
+
+bool read_record_word(std::string_view text, std::optional<GridCheck>& value) {
+  return read_word(text, kGridCheckWords, value);
+}
+
+std::string reason_text(const FailureReason& reason) {
+  if (reason.kind == FailureKind::other) return reason.detail;
+  std::string text(kFailureWords[static_cast<std::size_t>(reason.kind)]);
+  if (!reason.detail.empty()) text += " (" + reason.detail + ")";
+  return text;
+}
+
+FailureReason read_reason(std::string_view text) {
+  for (std::size_t i = 0; i < kFailureWords.size(); ++i) {
+    const std::string_view word = kFailureWords[i];
+    if (text == word) return {static_cast<FailureKind>(i), {}};
+    if (word.empty() || !text.starts_with(word)) continue;
+    const std::string_view rest = text.substr(word.size());
+    if (rest.size() > 3 && rest.starts_with(" (") && rest.ends_with(')')) {
+      return {static_cast<FailureKind>(i), std::string(rest.substr(2, rest.size() - 3))};
+    }
+  }
+  return {FailureKind::other, std::string(text)};
+}
+
+bool is_limit(FailureKind kind) {
+  return kind == FailureKind::timeout || kind == FailureKind::cpu_limit ||
+         kind == FailureKind::out_of_memory;
+}
+
+void mark_failed(Record& record, FailureKind kind, std::string detail) {
+  record.status = CellStatus::failed;
+  record.reason = {kind, std::move(detail)};
+}
+
+void note_end_by_clock(Record& record) {
+  if (!record.note.empty()) record.note += "; ";
+  record.note += kEndedByClock;
+  record.note += ": not reproducible";
+}
+
+bool was_ended_by_clock(const Record& record) {
+  return record.note.find(kEndedByClock) != std::string::npos;
+}
+
+void forget_costs(Record& record) {
+  for (const RecordColumn<Record>& column : result_columns()) {
+    if (column.rules.is_cost) record.*std::get<double Record::*>(column.member) = kMissing;
+  }
+}
+
+}  // namespace tribench
