@@ -9,7 +9,7 @@
 //   libfranka  franka::RobotState (q, dq, tau_J, tau_ext_hat_filtered): rad, rad/s, N m
 //   RTDE       Universal Robots' Real-Time Data Exchange (actual_q, actual_qd, actual_current)
 //   FRI, RSI   KUKA's Fast Research Interface (measured position, torque: rad, N m) and Robot
-//              Sensor Interface (AIPos: deg)
+//              Sensor Interface (AIPos: deg; MACur)
 //   usual      what people write; says what the channel is and not in which unit
 #include <array>
 
@@ -41,6 +41,12 @@ constexpr std::array kAliases = {
     ChannelAlias{"rosbagtimestamp", time, "", kRos},
     ChannelAlias{"rosbag_timestamp", time, "", kRos},
     ChannelAlias{"sim_time", time, "", kUsual},
+    ChannelAlias{"ts", time, "", kUsual},
+    ChannelAlias{"clock", time, "", kUsual},
+    ChannelAlias{"datetime", time, "", kUsual},
+    ChannelAlias{"date_time", time, "", kUsual},
+    ChannelAlias{"uhrzeit", time, "", kUsual},
+    ChannelAlias{"zeitstempel", time, "", kUsual},
     ChannelAlias{"movement", movement, "", kOwn},
     ChannelAlias{"position", position, "rad", kRos},
     ChannelAlias{"q", position, "rad", kFranka},
@@ -50,6 +56,10 @@ constexpr std::array kAliases = {
     ChannelAlias{"aipos", position, "deg", kRsi},
     ChannelAlias{"ai_pos", position, "deg", kRsi},
     ChannelAlias{"winkel", position, "", kUsual},
+    ChannelAlias{"lage", position, "", kUsual},
+    ChannelAlias{"lageistwert", position, "", kUsual},
+    ChannelAlias{"ang", position, "", kUsual},
+    ChannelAlias{"angular_position", position, "", kUsual},
     ChannelAlias{"pos", position, "", kUsual},
     ChannelAlias{"angle", position, "", kUsual},
     ChannelAlias{"theta", position, "", kUsual},
@@ -66,6 +76,12 @@ constexpr std::array kAliases = {
     ChannelAlias{"actual_qd", velocity, "rad/s", kRtde},
     ChannelAlias{"qd_actual", velocity, "rad/s", kRtde},
     ChannelAlias{"geschwindigkeit", velocity, "", kUsual},
+    ChannelAlias{"drehzahl", velocity, "", kUsual},
+    ChannelAlias{"drehzahlistwert", velocity, "", kUsual},
+    ChannelAlias{"angular_velocity", velocity, "", kUsual},
+    ChannelAlias{"ang_vel", velocity, "", kUsual},
+    ChannelAlias{"velo", velocity, "", kUsual},
+    ChannelAlias{"spd", velocity, "", kUsual},
     ChannelAlias{"vel", velocity, "", kUsual},
     ChannelAlias{"speed", velocity, "", kUsual},
     ChannelAlias{"omega", velocity, "", kUsual},
@@ -77,6 +93,8 @@ constexpr std::array kAliases = {
     ChannelAlias{"qdd", acceleration, "rad/s^2", kOwn},
     ChannelAlias{"ddq", acceleration, "rad/s^2", kFranka},
     ChannelAlias{"qddot", acceleration, "rad/s^2", kUsual},
+    ChannelAlias{"angular_acceleration", acceleration, "", kUsual},
+    ChannelAlias{"beschleunigung", acceleration, "", kUsual},
     ChannelAlias{"acc", acceleration, "", kUsual},
     ChannelAlias{"accel", acceleration, "", kUsual},
     ChannelAlias{"gravity_torque", gravity_torque, "", kOwn},
@@ -96,6 +114,9 @@ constexpr std::array kAliases = {
     ChannelAlias{"torque", motor_torque, "", kUsual},
     ChannelAlias{"force", motor_torque, "", kUsual},
     ChannelAlias{"drehmoment", motor_torque, "", kUsual},
+    ChannelAlias{"drehmomentistwert", motor_torque, "", kUsual},
+    ChannelAlias{"momentenistwert", motor_torque, "", kUsual},
+    ChannelAlias{"moment", motor_torque, "", kUsual},
     ChannelAlias{"kraft", motor_torque, "", kUsual},
     ChannelAlias{"trq", motor_torque, "", kUsual},
     ChannelAlias{"friction_torque", friction_torque, "", kOwn},
@@ -116,7 +137,9 @@ constexpr std::array kAliases = {
     ChannelAlias{"current", motor_current, "", kOwn},
     ChannelAlias{"actual_current", motor_current, "A", kRtde},
     ChannelAlias{"current_motor", motor_current, "", kUsual},
+    ChannelAlias{"macur", motor_current, "", kRsi},
     ChannelAlias{"strom", motor_current, "", kUsual},
+    ChannelAlias{"stromistwert", motor_current, "", kUsual},
     ChannelAlias{"motorstrom", motor_current, "", kUsual},
     ChannelAlias{"cur", motor_current, "", kUsual},
     ChannelAlias{"curr", motor_current, "", kUsual},
@@ -126,6 +149,12 @@ constexpr std::array kAliases = {
     ChannelAlias{"i_m", motor_current, "", kUsual},
     ChannelAlias{"i_mot", motor_current, "", kUsual},
     ChannelAlias{"imot", motor_current, "", kUsual},
+    // Letters that stand for anything, unless a unit tells.
+    ChannelAlias{"p", position, "", kUsual, true},
+    ChannelAlias{"x", position, "", kUsual, true},
+    ChannelAlias{"n", velocity, "", kUsual, true},
+    ChannelAlias{"f", motor_torque, "", kUsual, true},
+    ChannelAlias{"m", motor_torque, "", kUsual, true},
     ChannelAlias{"other_velocity", other_velocity, "rad/s", kOwn},
     ChannelAlias{"v2", other_velocity, "rad/s", kOwn},
     ChannelAlias{"other_acceleration", other_acceleration, "rad/s^2", kOwn},

@@ -24,16 +24,22 @@ std::string lower(std::string_view text) {
 }
 
 // Words that name the setting and not the measurement.
-constexpr std::array<std::string_view, 20> kSetPoints = {
-    "desired", "des",       "commanded", "command",  "cmd",    "target", "goal",
-    "ref",     "reference", "set",       "setpoint", "demand", "error",  "err",
-    "min",     "max",       "limit",     "offset",   "bias",   "std"};
+constexpr std::array<std::string_view, 22> kSetPoints = {
+    "desired",   "des",    "commanded", "command", "cmd",   "target",  "goal", "ref",
+    "reference", "set",    "setpoint",  "demand",  "error", "err",     "min",  "max",
+    "limit",     "offset", "bias",      "std",     "soll",  "sollwert"};
 
 // Words that add nothing to what a channel is.
-constexpr std::array<std::string_view, 25> kFillers = {
-    "joint",    "joints", "state", "states", "actual", "act", "measured", "meas", "msr",
-    "axis",     "robot",  "arm",   "link",   "value",  "val", "feedback", "fb",   "raw",
-    "filtered", "filt",   "data",  "msg",    "output", "jnt", "ax"};
+constexpr std::array<std::string_view, 36> kFillers = {
+    "joint",    "joints",    "state", "states",  "actual", "act",   "measured", "meas",     "msr",
+    "axis",     "robot",     "arm",   "link",    "value",  "val",   "feedback", "fb",       "raw",
+    "filtered", "filt",      "data",  "msg",     "output", "jnt",   "ax",       "actuator", "drive",
+    "estimate", "estimated", "est",   "present", "active", "field", "sensor",   "fbk",      "ist"};
+
+// In a path before the last name ("/dc_bus/current"): what is measured there is not the joint.
+constexpr std::array<std::string_view, 18> kElsewhere = {
+    "bus", "dc",  "supply", "battery", "tcp",     "tool",   "tool0", "cartesian", "ee",
+    "fan", "imu", "brake",  "base",    "gripper", "wrench", "ft",    "gps",       "odom"};
 
 template <std::size_t N>
 bool is_among(const std::array<std::string_view, N>& list, std::string_view word) {
@@ -78,23 +84,34 @@ const ChannelAlias* find_alias(std::string_view name) {
 void take_alias(NameReading& reading, const ChannelAlias& alias) {
   reading.role = alias.role;
   reading.source = alias.source;
-  if (reading.known_unit == nullptr && !alias.unit.empty()) {
-    reading.known_unit = find_unit(alias.unit);
+  if (reading.known.unit == nullptr && !alias.unit.empty()) {
+    reading.known.unit = find_unit(alias.unit);
   }
 }
 
 // A name that is in the list as it stands.
 bool read_whole_name(std::string_view text, NameReading& reading) {
-  // Time and temperature differ by case alone.
+  // Time and temperature differ by case alone; a torque is told by its unit.
+  if (text == "T" && reading.known.unit != nullptr &&
+      reading.known.unit->dimension == Dimension::torque) {
+    reading.role = Role::motor_torque;
+    reading.doubt = 3;
+    return true;
+  }
   if (text == "T") {
     reading.role = Role::temperature;
     reading.source = "tribench";
-    if (reading.known_unit == nullptr) reading.known_unit = find_unit("degC");
+    if (reading.known.unit == nullptr) reading.known.unit = find_unit("degC");
     return true;
   }
   const ChannelAlias* alias = find_alias(text);
-  if (alias != nullptr) take_alias(reading, *alias);
-  return alias != nullptr;
+  if (alias == nullptr) return false;
+  if (alias->by_unit) {
+    if (reading.known.unit == nullptr || !suits(*reading.known.unit, alias->role)) return false;
+    reading.doubt = 3;
+  }
+  take_alias(reading, *alias);
+  return true;
 }
 
 // What a name without its unit says; false: nothing that is known.
@@ -120,6 +137,10 @@ bool read_stem(std::string_view text, NameReading& reading) {
   const ChannelAlias* alias = find_alias(joined(all, 0, all.size()));
   if (alias == nullptr) alias = find_alias(joined(kept, 0, kept.size()));
   reading.doubt = 1;
+  // "Current position" is the one of now.
+  if (alias == nullptr && kept.size() > 1 && lower(kept.front()) == "current") {
+    alias = find_alias(joined(kept, 1, kept.size()));
+  }
   if (alias == nullptr && motor) {
     std::erase_if(kept, [](const std::string& word) {
       return lower(word) == "motor" || lower(word) == "mot";
@@ -129,7 +150,7 @@ bool read_stem(std::string_view text, NameReading& reading) {
     reading.at_motor = true;
     reading.doubt = 2;
   }
-  if (alias == nullptr) return false;
+  if (alias == nullptr || alias->by_unit) return false;
   take_alias(reading, *alias);
   return true;
 }
@@ -158,7 +179,7 @@ bool read_written_unit(const Words& words, NameReading& reading) {
     const Unit* unit = find_unit(joined(words, cut, words.size()));
     if (unit == nullptr) continue;
     NameReading stem;
-    stem.known_unit = unit;
+    stem.known.unit = unit;
     if (!read_stem(joined(words, 0, cut), stem) || !suits(*unit, stem.role)) continue;
     reading = stem;
     reading.unit_written = true;
@@ -176,20 +197,21 @@ void read_unit_alone(std::string_view name, NameReading& reading) {
       continue;
     }
     reading = {};
-    reading.known_unit = unit;
+    reading.known.unit = unit;
     reading.unit_written = true;
     return;
   }
 }
 
-// A name without a sign prefix.
-NameReading read_plain(std::string_view whole) {
+// A name without a sign prefix and a path before it.
+NameReading read_last(std::string_view whole) {
   std::string_view name = whole;
   const std::string inside = take_brackets(name);
   NameReading reading;
-  reading.known_unit = find_unit(inside);
-  reading.unit_written = reading.known_unit != nullptr;
-  if (!inside.empty() && reading.known_unit == nullptr) reading.unknown_unit = inside;
+  reading.known = find_written_unit(inside);
+  reading.at_motor = reading.known.at_motor;
+  reading.unit_written = reading.known.unit != nullptr;
+  if (!inside.empty() && reading.known.unit == nullptr) reading.unknown_unit = inside;
   NameReading plain = reading;
   NameReading written;
   if (read_whole_name(name, plain)) {
@@ -202,13 +224,36 @@ NameReading read_plain(std::string_view whole) {
   } else if (!reading.unit_written) {
     read_unit_alone(name, reading);
   }
-  if (reading.known_unit != nullptr && reading.role != Role::none &&
-      !suits(*reading.known_unit, reading.role)) {
-    reading.unknown_unit = std::string(reading.known_unit->symbol);
-    reading.known_unit = nullptr;
+  if (reading.known.unit != nullptr && reading.role != Role::none &&
+      !suits(*reading.known.unit, reading.role)) {
+    reading.unknown_unit = std::string(reading.known.unit->symbol);
+    reading.known = {};
     reading.unit_written = false;
   }
   return reading;
+}
+
+// A name without a sign prefix. Where it tells nothing as a whole the last part of a path does:
+// "/js/position_deg", "MAIN.fbAxis.ActPos [deg]".
+NameReading read_plain(std::string_view name) {
+  NameReading whole = read_last(name);
+  const std::size_t cut = name.substr(0, name.find_first_of("[({")).find_last_of("./:");
+  if (whole.role != Role::none || cut == std::string_view::npos || cut + 1 == name.size()) {
+    return whole;
+  }
+  std::optional<int> joint;
+  for (const std::string& word : split_words(name.substr(0, cut), true)) {
+    const std::string plain = lower(word);
+    if (is_among(kSetPoints, plain) || is_among(kElsewhere, plain)) return whole;
+    const std::size_t letters = plain.find_last_not_of("0123456789") + 1;
+    if (letters < plain.size() && plain.size() - letters < 4)
+      joint = std::stoi(plain.substr(letters));
+  }
+  NameReading last = read_last(name.substr(cut + 1));
+  if (last.role == Role::none) return whole;
+  last.doubt += 2;
+  if (!last.joint) last.joint = joint;
+  return last;
 }
 
 }  // namespace
@@ -223,7 +268,7 @@ NameReading read_channel_name(std::string_view name) {
     if (of == Role::velocity) reading.role = Role::velocity_sign;
     if (of == Role::gravity_torque) reading.role = Role::gravity_sign;
   }
-  reading.unit = reading.known_unit != nullptr ? std::string(reading.known_unit->symbol) : "-";
+  reading.unit = reading.known.unit != nullptr ? reading.known.symbol() : "-";
   return reading;
 }
 

@@ -19,12 +19,12 @@ namespace tribench {
 struct NameReading {
   Role role = Role::none;
   std::string unit;  // symbol; "-" where the name has none
-  // The unit that is written in the name, else the one that its source always uses; null: neither.
-  const Unit* known_unit = nullptr;
+  // The unit that is written in the name, else the one that its source always uses; or neither.
+  WrittenUnit known = {};
   bool unit_written = false;  // in the name itself
   std::string unknown_unit;   // in brackets, and nobody's
   std::string_view source;    // who names a channel so
-  bool at_motor = false;      // the name says the motor's side of the gear
+  bool at_motor = false;      // the name or its unit says the motor's side of the gear
   std::optional<int> joint;   // the number in the name
   int doubt = 0;              // of two columns with one role the lower one has it
 };
@@ -41,6 +41,7 @@ struct ChannelAlias {
   Role role;
   std::string_view unit;    // that this source always uses; empty where it differs
   std::string_view source;  // whose name it is
+  bool by_unit = false;     // means nothing without a written unit that suits
 };
 std::span<const ChannelAlias> channel_aliases();
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "foundation/error.hpp"
+#include "foundation/order_statistics.hpp"
 #include "foundation/suggestion.hpp"
 #include "problems/reading/channel_names.hpp"
 
@@ -60,15 +61,15 @@ const Unit* si_unit(Role role) {
   }
 }
 
-const Unit* unit_in_row(const CsvLayout& layout, std::size_t column, Role role) {
-  if (layout.units.empty() || layout.units[column].empty()) return nullptr;
-  const Unit* unit = find_unit(layout.units[column]);
-  return unit != nullptr && suits(*unit, role) ? unit : nullptr;
+WrittenUnit unit_in_row(const CsvLayout& layout, std::size_t column, Role role) {
+  if (layout.units.empty()) return {};
+  const WrittenUnit unit = find_written_unit(layout.units[column]);
+  return unit.unit != nullptr && suits(*unit.unit, role) ? unit : WrittenUnit{};
 }
 
-void take_unit(ColumnPlan& plan, const Unit* unit, std::string_view from) {
+void take_unit(ColumnPlan& plan, const WrittenUnit& unit, std::string_view from) {
   plan.unit = unit;
-  plan.reading.unit = std::string(unit->symbol) + (plan.at_motor ? "@motor" : "");
+  plan.reading.unit = unit.symbol();
   plan.reading.unit_from = std::string(from);
 }
 
@@ -81,7 +82,7 @@ ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions&
   if (options.names_tell) heard = read_channel_name(name);
   plan.reading.role = heard.role;
   plan.doubt = heard.doubt;
-  plan.at_motor = heard.at_motor;
+  bool at_motor = heard.at_motor;
   if (heard.role != Role::none) {
     plan.reading.role_from = fmt::format("name ({})", heard.source);
     if (heard.source.empty()) plan.reading.role_from = "name";
@@ -91,29 +92,34 @@ ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions&
     plan.role_given = true;
     plan.reading.role = given->second.role;
     plan.reading.role_from = "--roles";
-    plan.at_motor = given->second.at_motor;
+    at_motor = given->second.in.at_motor;
     plan.doubt = 0;
     // What is written in the name counts whatever else the name says.
     if (!options.names_tell) heard = read_channel_name(name);
-    if (heard.known_unit != nullptr && !suits(*heard.known_unit, plan.reading.role)) heard = {};
+    if (heard.known.unit != nullptr && !suits(*heard.known.unit, plan.reading.role)) heard = {};
+    at_motor = at_motor || (heard.unit_written && heard.known.at_motor);
   }
   const Role role = plan.reading.role;
-  if (given != options.roles.end() && given->second.unit != nullptr) {
-    take_unit(plan, given->second.unit, "--roles");
-  } else if (const Unit* row = unit_in_row(layout, j, role)) {
-    take_unit(plan, row, "row of units");
+  const auto on_side = [&](WrittenUnit unit) {
+    unit.at_motor = unit.at_motor || at_motor;
+    return unit;
+  };
+  if (given != options.roles.end() && given->second.in.unit != nullptr) {
+    take_unit(plan, given->second.in, "--roles");
+  } else if (const WrittenUnit row = unit_in_row(layout, j, role); row.unit != nullptr) {
+    take_unit(plan, on_side(row), "row of units");
   } else if (heard.unit_written) {
-    take_unit(plan, heard.known_unit, "name");
+    take_unit(plan, on_side(heard.known), "name");
   } else if (!heard.unknown_unit.empty() && needs_unit(role)) {
     throw_bad_input(fmt::format("'{}' is no unit of a {}", heard.unknown_unit, role_name(role)),
                     fmt::format("{}, column '{}'", file, name),
                     fmt::format("say it with --roles '{}={}[UNIT]'; known: {}", name,
                                 role_name(role), units_of(role)));
-  } else if (heard.known_unit != nullptr && role != Role::none && !plan.role_given) {
-    take_unit(plan, heard.known_unit, heard.source);
+  } else if (heard.known.unit != nullptr && role != Role::none && !plan.role_given) {
+    take_unit(plan, on_side(heard.known), heard.source);
     plan.reading.unit_assumed = true;
   } else if (plan.role_given && si_unit(role) != nullptr) {
-    take_unit(plan, si_unit(role), "--roles without a unit");
+    take_unit(plan, on_side({si_unit(role)}), "--roles without a unit");
     plan.reading.unit_assumed = true;
   } else {
     plan.reading.unit_asked = needs_unit(role);
@@ -155,11 +161,14 @@ void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, Dat
   }
   if (joints.size() < 2) return;
   if (!options.joint) {
-    const bool unnumbered = std::ranges::any_of(plans, [](const ColumnPlan& plan) {
-      return plan.reading.role == Role::velocity && plan.doubt == 0;
+    // Where the motion is told without a number, or by hand, the numbers are of others.
+    const bool is_told = std::ranges::any_of(plans, [](const ColumnPlan& plan) {
+      const Role role = plan.reading.role;
+      return (role == Role::velocity && plan.doubt == 0) ||
+             (plan.role_given && (role == Role::velocity || role == Role::position));
     });
     for (const auto& [joint, columns] : joints) {
-      if (!unnumbered) out.joints.push_back(joint);
+      if (!is_told) out.joints.push_back(joint);
       for (const std::size_t j : columns) lose_role(plans[j], "of one of several joints");
     }
     return;
@@ -183,8 +192,8 @@ void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, Dat
 
 // Seconds and nanoseconds of one stamp in two columns.
 bool completes_time(const ColumnPlan& first, const ColumnPlan& second) {
-  return first.reading.role == Role::time && first.unit != nullptr && second.unit != nullptr &&
-         first.unit->symbol == "s" && second.unit->symbol == "ns";
+  return first.reading.role == Role::time && first.unit.symbol() == "s" &&
+         second.unit.symbol() == "ns";
 }
 
 // A role given by hand takes it away from columns that only sound like it; of several that sound
@@ -203,7 +212,7 @@ void settle_roles(std::vector<ColumnPlan>& plans, DataFile& out) {
     ColumnPlan& first = plans[place->second];
     if (completes_time(first, plan) || completes_time(plan, first)) {
       // The seconds are the time, the nanoseconds are added to it.
-      ColumnPlan& part = plan.unit->symbol == "ns" ? plan : first;
+      ColumnPlan& part = plan.unit.symbol() == "ns" ? plan : first;
       part.adds_to_time = true;
       part.reading.remark = "added to the seconds";
       if (&part == &first) place->second = j;
@@ -248,6 +257,7 @@ std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& 
     const Role role = plan.reading.role;
     plan.used = !options.used || role != Role::none || used.contains(plan.reading.column);
     plan.kind = role == Role::movement ? ColumnKind::text
+                : role == Role::time   ? ColumnKind::time
                 : role != Role::none   ? ColumnKind::number
                 : plan.used            ? ColumnKind::found
                                        : ColumnKind::unused;
@@ -255,46 +265,82 @@ std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& 
   return plans;
 }
 
-const Unit* unit_of_epoch(double time) {
-  // From 2001 to 2096.
+namespace {
+
+// The usual step forward; 0: there is none.
+double step_of(const std::vector<double>& time) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    if (time[i] > time[i - 1]) steps.push_back(time[i] - time[i - 1]);
+  }
+  return steps.empty() ? 0 : upper_median(std::move(steps));
+}
+
+// Of stamps of unknown unit: steps of 0.1 to 20 ms, if they are seconds, are nothing else (a
+// fiftieth of a millisecond at most, if they are milliseconds).
+bool steps_in_seconds(double step) { return step >= 1e-4 && step < 0.02; }
+
+// Settles the unit of time by what the values say; time since 1970 starts at 0.
+void settle_time(ColumnPlan& plan, std::vector<double>& values, std::string_view place) {
+  ColumnReading& reading = plan.reading;
+  const double step = step_of(values);
+  const Unit* epoch = unit_of_epoch(values.front(), step);
+  const auto settle = [&](const Unit* unit, std::string_view from) {
+    take_unit(plan, {unit}, from);
+    reading.unit_assumed = false;
+    reading.unit_asked = false;
+  };
+  if (epoch != nullptr && (plan.unit.unit == nullptr || reading.unit_assumed)) {
+    settle(epoch, "size");
+  } else if (plan.unit.unit == nullptr && steps_in_seconds(step)) {
+    settle(find_unit("s"), "size of the steps");
+  }
+  if (plan.unit.unit == nullptr) return;
+  if (values.front() * plan.unit.unit->factor * plan.unit.scale > 1e10) {
+    throw_bad_input(
+        fmt::format("{} {} are more than 300 years", values.front(), plan.unit.symbol()), place,
+        epoch == nullptr ? "check the unit of time"
+                         : fmt::format("it looks like {} since 1970: --roles '{}=time[{}]'",
+                                       epoch->symbol, reading.column, epoch->symbol));
+  }
+  if (epoch != nullptr && plan.unit.unit == epoch && plan.unit.scale == 1) {
+    const double first = values.front();
+    for (double& value : values) value -= first;
+    reading.remark = "since 1970; starts at 0 here";
+  }
+}
+
+}  // namespace
+
+const Unit* unit_of_epoch(double time, double step) {
+  // From 2001 to 2096; rows further apart than minutes are no recording of a motion.
   constexpr double kFirst = 1e9;
   constexpr double kLast = 4e9;
+  constexpr double kLongestStep = 1000;
   for (const std::string_view symbol : {"s", "ms", "us", "ns"}) {
     const Unit* unit = find_unit(symbol);
-    if (time * unit->factor >= kFirst && time * unit->factor <= kLast) return unit;
+    if (time * unit->factor < kFirst || time * unit->factor > kLast) continue;
+    return step * unit->factor <= kLongestStep ? unit : nullptr;
   }
   return nullptr;
+}
+
+void take_time_text(ColumnPlan& plan) {
+  take_unit(plan, {find_unit("s")}, "its text");
+  plan.reading.unit_assumed = false;
+  plan.reading.unit_asked = false;
 }
 
 void convert(ColumnPlan& plan, std::vector<double>& values, const Drive& drive,
              std::string_view file) {
   ColumnReading& reading = plan.reading;
   const std::string place = fmt::format("{}, column '{}'", file, reading.column);
-  if (reading.role == Role::time && !values.empty()) {
-    const Unit* epoch = unit_of_epoch(values.front());
-    if (epoch != nullptr && (plan.unit == nullptr || reading.unit_assumed)) {
-      take_unit(plan, epoch, "size");
-      reading.unit_assumed = false;
-      reading.unit_asked = false;
-    }
-    if (plan.unit != nullptr && values.front() * plan.unit->factor > 1e10) {
-      throw_bad_input(
-          fmt::format("{} {} are more than 300 years", values.front(), plan.unit->symbol), place,
-          epoch == nullptr ? "check the unit of time"
-                           : fmt::format("it looks like {} since 1970: --roles '{}=time[{}]'",
-                                         epoch->symbol, reading.column, epoch->symbol));
-    }
-    if (epoch != nullptr && plan.unit == epoch) {
-      const double first = values.front();
-      for (double& value : values) value -= first;
-      reading.remark = "since 1970; starts at 0 here";
-    }
-  }
-  if (plan.unit == nullptr || reading.role == Role::none) {
+  if (reading.role == Role::time && !values.empty()) settle_time(plan, values, place);
+  if (plan.unit.unit == nullptr || reading.role == Role::none) {
     reading.si = reading.unit.empty() ? "-" : reading.unit;
     return;
   }
-  const auto [conversion, needs] = conversion_of(*plan.unit, plan.at_motor, drive);
+  const auto [conversion, needs] = conversion_of(plan.unit, drive);
   if (!needs.empty()) {
     reading.needs = needs;
     reading.si = "-";

@@ -15,9 +15,8 @@ namespace tribench {
 struct ColumnPlan {
   ColumnReading reading;
   ColumnKind kind = ColumnKind::found;
-  bool used = true;            // a missing value in it is an error
-  const Unit* unit = nullptr;  // null: not known, or not needed
-  bool at_motor = false;
+  bool used = true;       // a missing value in it is an error
+  WrittenUnit unit = {};  // none: not known, or not needed
   bool role_given = false;
   int doubt = 0;
   bool adds_to_time = false;  // nanoseconds beside a column of seconds
@@ -28,8 +27,11 @@ struct ColumnPlan {
 std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& options,
                                      std::string_view file, DataFile& out);
 
-// The unit of a time by its size, where it counts since 1970; null: it does not.
-const Unit* unit_of_epoch(double time);
+// The unit of a time by its size, where it counts since 1970 by steps of `step`; null: it does not.
+const Unit* unit_of_epoch(double time, double step);
+
+// The column's times are written as text: they are in seconds.
+void take_time_text(ColumnPlan& plan);
 
 // Converts a channel to SI and says so in the reading. Time that counts since 1970 starts at 0.
 void convert(ColumnPlan& plan, std::vector<double>& values, const Drive& drive,

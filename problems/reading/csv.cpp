@@ -47,10 +47,9 @@ double largest_of(const ColumnPlan& plan) {
                            : kind == CellKind::number
                                ? fmt::format("'{}' is too large for what is measured", cell)
                                : fmt::format("'{}' is not a finite number", cell);
-  const bool mixed = in.layout.decimal_comma && cell.find('.') != std::string::npos;
+  const bool mixed = cell.find('.') != std::string::npos && cell.find(',') != std::string::npos;
   throw_bad_input(what, csv_place(in.file, line_of(in.text, place), in.layout.header[column]),
-                  mixed ? "this file has decimal commas: write numbers in one way, and without "
-                          "signs for thousands"
+                  mixed ? "write numbers in one way, and without signs for thousands"
                         : "mend the value, or drop such rows with --drop-missing");
 }
 
@@ -75,6 +74,23 @@ bool is_missing(const Reading& in, std::size_t row, std::size_t j) {
          !(std::abs(column.numbers[row]) <= largest_of(in.plans[j]));
 }
 
+// Every row has a missing value.
+[[noreturn]] void refuse_gaps(const Reading& in, const std::vector<std::size_t>& looked_at) {
+  const std::string what = fmt::format("all {} rows have missing values", in.columns.rows());
+  for (const std::size_t j : looked_at) {
+    bool empty = true;
+    for (std::size_t row = 0; row < in.columns.rows() && empty; ++row) {
+      empty = is_missing(in, row, j);
+    }
+    if (!empty) continue;
+    throw_bad_input(fmt::format("{}: '{}' is empty", what, in.layout.header[j]), in.file,
+                    "remove the column, or give its role to another");
+  }
+  throw_bad_input(what + ": the columns were recorded at instants of their own", in.file,
+                  "write them at common instants (in PlotJuggler: export one resampled table; in "
+                  "pandas: merge_asof)");
+}
+
 void choose_rows(Reading& in, DataFile& out) {
   check_texts(in);
   std::vector<std::size_t> looked_at;
@@ -93,10 +109,7 @@ void choose_rows(Reading& in, DataFile& out) {
       ++out.dropped_rows;
     }
   }
-  if (in.rows.empty()) {
-    throw_bad_input(fmt::format("all {} rows have missing values", out.dropped_rows), in.file,
-                    "remove the column that is empty");
-  }
+  if (in.rows.empty()) refuse_gaps(in, looked_at);
 }
 
 template <typename Value>
@@ -133,8 +146,21 @@ void fill_movements(Reading& in, DataFile& out) {
     number_movements(in, kept(in.columns.columns[j].texts, in.rows), out);
     return;
   }
-  out.data.movement_names = {stem_of(in.file)};
-  out.data.movement.assign(in.rows.size(), 0);
+  // Without one each recording in the file is a movement.
+  const std::vector<std::size_t>& parts = in.columns.parts;
+  if (parts.empty()) {
+    out.data.movement_names = {stem_of(in.file)};
+    out.data.movement.assign(in.rows.size(), 0);
+    return;
+  }
+  std::vector<std::string> names;
+  for (const std::size_t row : in.rows) {
+    const auto part = std::ranges::upper_bound(parts, row) - parts.begin();
+    names.push_back(fmt::format("{}, part {}", stem_of(in.file), part + 1));
+  }
+  number_movements(in, names, out);
+  out.warnings.push_back(fmt::format(
+      "the columns' names stand again {} times: another recording begins there", parts.size()));
 }
 
 // Nanoseconds of a stamp, to its seconds.
@@ -158,6 +184,7 @@ void fill_channels(Reading& in, DataFile& out) {
     CsvColumn& column = in.columns.columns[j];
     if (plan.reading.role != Role::movement && column.kind == ColumnKind::number) {
       Channel channel{in.layout.header[j], {}, plan.reading.role, kept(column.numbers, in.rows)};
+      if (column.told_in_text) take_time_text(plan);
       convert(plan, channel.values, in.options.drive, in.file);
       channel.unit = plan.reading.si;
       out.data.channels.push_back(std::move(channel));

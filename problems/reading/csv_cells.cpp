@@ -42,6 +42,13 @@ CellKind read_cell(std::string_view cell, bool decimal_comma, double& value) {
     plain[comma] = '.';
     digits = {plain.data(), digits.size()};
   }
+  // Fortran writes 1.5D-03.
+  const std::size_t exponent = digits.find_first_of("dD");
+  if (exponent != std::string_view::npos && exponent > 0 && digits.size() <= plain.size()) {
+    if (digits.data() != plain.data()) std::ranges::copy(digits, plain.begin());
+    plain[exponent] = 'e';
+    digits = {plain.data(), digits.size()};
+  }
   const char* end = digits.data() + digits.size();
   const auto [stop, code] = std::from_chars(digits.data(), end, value);
   if (stop != end || code == std::errc::invalid_argument) {

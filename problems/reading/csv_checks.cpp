@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -81,6 +82,9 @@ void demote_current(const CsvOptions& options, DataFile& reading) {
       const bool torque = other.role == Role::motor_torque || other.role == Role::friction_torque;
       if (!torque || other.unit == "-" || other.unit == current.unit) continue;
       current.role = Role::none;
+      const auto said = std::ranges::find(reading.readings, current.name, &ColumnReading::column);
+      said->role = Role::none;
+      said->remark = fmt::format("'{}' is the torque", other.name);
       reading.warnings.push_back(fmt::format("column '{}' is read without a role: '{}' is in {}",
                                              current.name, other.name, other.unit));
       break;

@@ -7,8 +7,10 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "problems/reading/csv_cells.hpp"
+#include "problems/reading/time_text.hpp"
 
 namespace tribench {
 namespace {
@@ -29,19 +31,52 @@ class ColumnReader {
   CsvColumns read() {
     const std::size_t width = out_.columns.size();
     while (scanner_.find_record(width)) {
+      if (begins_anew()) continue;
       const std::size_t line = scanner_.line();
       const std::size_t place = scanner_.place();
-      if (!read_row(line)) break;
+      if (!read_row(line, place)) break;
       out_.places.push_back(place);
       if (out_.places.size() == 100) reserve(place);
     }
     for (CsvColumn& column : out_.columns) {
-      if (column.kind == ColumnKind::found) column.kind = ColumnKind::number;
+      if (column.kind == ColumnKind::found || column.kind == ColumnKind::time) {
+        column.kind = ColumnKind::number;
+      }
     }
     return std::move(out_);
   }
 
  private:
+  // The line of names stands here again.
+  bool begins_anew() {
+    const std::size_t place = scanner_.place();
+    if (text_[place] != layout_.head.front() || !text_.substr(place).starts_with(layout_.head)) {
+      return false;
+    }
+    if (out_.rows() > 0) out_.parts.push_back(out_.rows());
+    while (scanner_.place() < place + layout_.head.size()) scanner_.skip_line();
+    return true;
+  }
+
+  // Words after the last row ("Recording stopped"): no line from `place` on has a number or is as
+  // wide as a row.
+  bool is_closing_text(std::size_t place, std::size_t line) const {
+    constexpr std::size_t kMostLines = 20;
+    CsvScanner probe(text_, file_, layout_.delimiter, place, line);
+    for (std::size_t lines = 0; probe.find_record(0); ++lines) {
+      std::size_t cells = 0;
+      do {
+        double value = 0;
+        if (read_cell(probe.next_cell(), layout_.decimal_comma, value) == CellKind::number) {
+          return false;
+        }
+        ++cells;
+      } while (probe.goes_on());
+      if (lines == kMostLines || cells == out_.columns.size()) return false;
+    }
+    return true;
+  }
+
   // From the first hundred rows the size of the whole is plain.
   void reserve(std::size_t place) {
     const double share = static_cast<double>(text_.size()) /
@@ -53,8 +88,8 @@ class ColumnReader {
     }
   }
 
-  // False: the last line is cut off, and nothing of it is kept.
-  bool read_row(std::size_t line) {
+  // False: what is left is no row, and nothing of it is kept.
+  bool read_row(std::size_t line, std::size_t place) {
     std::size_t cells = 0;
     bool more = true;
     while (more && cells < out_.columns.size()) {
@@ -72,6 +107,11 @@ class ColumnReader {
         out_.rows() > 0) {
       take_back();
       out_.notes.push_back(fmt::format("the last line ({}) is cut off and left out", line));
+      return false;
+    }
+    if (out_.rows() > 0 && is_closing_text(place, line)) {
+      take_back();
+      out_.notes.push_back(fmt::format("the text after the last row (line {}) is left out", line));
       return false;
     }
     check_width(cells, last_is_empty, layout_, file_, line);
@@ -100,6 +140,9 @@ class ColumnReader {
         return;
       case ColumnKind::number:
         add_number(column, cell);
+        return;
+      case ColumnKind::time:
+        add_time(column, cell);
         return;
     }
   }
@@ -139,6 +182,24 @@ class ColumnReader {
     const CellKind kind = read_cell(cell, layout_.decimal_comma, value);
     if (kind == CellKind::text && column.first_text == kNoRow) column.first_text = out_.rows();
     column.numbers.push_back(kind == CellKind::number ? value : kMissing);
+  }
+
+  void add_time(CsvColumn& column, std::string_view cell) {
+    const std::optional<double> time = read_time_text(cell);
+    if (!time && !column.told_in_text) {
+      column.kind = ColumnKind::number;
+      add_number(column, cell);
+      return;
+    }
+    column.told_in_text = true;
+    if (time) {
+      column.numbers.push_back(*time);
+    } else if (double value = 0; read_cell(cell, false, value) == CellKind::missing) {
+      column.numbers.push_back(kMissing);
+    } else {
+      if (column.first_text == kNoRow) column.first_text = out_.rows();
+      column.numbers.push_back(kMissing);
+    }
   }
 
   std::string_view text_;

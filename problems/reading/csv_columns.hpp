@@ -19,6 +19,7 @@ namespace tribench {
 enum class ColumnKind {
   found,  // number or text, as the first cell that is not missing has it
   number,
+  time,  // numbers, or times written as text (time_text.hpp): the first cell decides
   text,
   unused,  // not looked at
 };
@@ -30,11 +31,14 @@ struct CsvColumn {
   std::vector<double> numbers;      // NaN where a cell is missing or no number
   std::vector<std::string> texts;   // of a column of text
   std::size_t first_text = kNoRow;  // row of a cell that is no number, in a column of numbers
+  bool told_in_text = false;        // times, in seconds
 };
 
 struct CsvColumns {
   std::vector<CsvColumn> columns;
   std::vector<std::size_t> places;  // byte of each row, from which a message finds line and cell
+  // Rows before which the line of names stands again: another recording begins there.
+  std::vector<std::size_t> parts;
   std::vector<std::string> notes;
 
   std::size_t rows() const { return places.size(); }
@@ -42,7 +46,7 @@ struct CsvColumns {
 
 // kinds: as many as the header has columns. Throws Error (bad_input) where a row is ragged. A last
 // line that is cut off (fewer cells, no line end: the recording stopped while writing) is dropped
-// and noted.
+// and noted; so is text without a number after the last row.
 CsvColumns read_columns(std::string_view text, std::string_view file, const CsvLayout& layout,
                         std::span<const ColumnKind> kinds);
 

@@ -86,7 +86,7 @@ bool names_units(const Cells& cells) {
     if (cell.size() > 2 && (cell.front() == '[' || cell.front() == '(')) {
       cell = cell.substr(1, cell.size() - 2);
     }
-    if (find_unit(cell) != nullptr) {
+    if (find_written_unit(cell).unit != nullptr) {
       ++units;
     } else if (!cell.empty() && cell != "-" && cell != "1") {
       return false;
@@ -245,6 +245,11 @@ CsvLayout find_layout(std::string_view text, std::string_view file) {
   if (lines.empty()) {
     throw_bad_input("the file is empty", std::string(file), "give a header line and rows");
   }
+  if (lines.front().text.starts_with('{')) {
+    throw_bad_input("these are JSON objects, no table", csv_place(file, lines.front().number),
+                    "write a line of names and then the numbers (in pandas: "
+                    "read_json(FILE, lines=True).to_csv(OTHER))");
+  }
   const Found found = best_layout(lines);
   const HeadLine& header = lines[*found.header];
   CsvLayout layout;
@@ -261,6 +266,7 @@ CsvLayout find_layout(std::string_view text, std::string_view file) {
   if (!has_rows) throw_bad_input("there is a header and no row", std::string(file), "add rows");
   layout.begin = lines[found.row].begin;
   layout.line = lines[found.row].number;
+  layout.head = text.substr(header.begin, layout.begin - header.begin);
   layout.decimal_comma = uses_decimal_commas(lines, found);
   if (found.units) {
     for (const std::string& cell : cells_of(lines[*found.units], found.delimiter)) {

@@ -20,6 +20,7 @@ struct CsvLayout {
   bool decimal_comma = false;
   std::vector<std::string> header;
   std::vector<std::string> units;  // per column where there is such a row, else empty
+  std::string head;                // the bytes from the line of names up to the rows
   std::size_t begin = 0;           // byte at which the rows begin
   std::size_t line = 1;            // its number in the file, from 1
   std::vector<std::string> notes;  // what was passed over, one sentence each

@@ -69,6 +69,17 @@ std::string roles_line(const DataFile& file) {
   return line;
 }
 
+namespace {
+
+// As a shell takes it back, whatever the columns are called.
+std::string in_quotes(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace
+
 std::string explanation(const DataFile& file) {
   std::size_t width = 6;
   for (const ColumnReading& reading : file.readings) {
@@ -93,7 +104,7 @@ std::string explanation(const DataFile& file) {
                              : std::string(", no movement column: strokes are found\n");
   for (const std::string& one : what_is_missing(file)) text += "missing: " + one + "\n";
   const std::string line = roles_line(file);
-  if (!line.empty()) text += fmt::format("--roles '{}'\n", line);
+  if (!line.empty()) text += fmt::format("--roles {}\n", in_quotes(line));
   return text;
 }
 
@@ -103,7 +114,7 @@ void check_complete(const DataFile& file) {
   const std::string line = roles_line(file);
   throw_bad_input(fmt::format("{}", fmt::join(missing, "; ")), file.data.name,
                   line.empty() ? "tribench loop --explain FILE says what each column was taken for"
-                               : fmt::format("so far understood: --roles '{}'", line));
+                               : "so far understood: --roles " + in_quotes(line));
 }
 
 void check_converted(const DataFile& file) {

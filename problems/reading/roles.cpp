@@ -43,25 +43,23 @@ GivenRole parse_role(std::string_view text, std::string_view place) {
     throw_bad_input(fmt::format("'{}' is no ROLE[UNIT]", text), place,
                     "write for example position[deg]");
   }
-  std::string_view unit = text.substr(open + 1, text.size() - open - 2);
+  const std::string_view unit = trimmed(text.substr(open + 1, text.size() - open - 2));
   if (const std::size_t at = unit.find('@'); at != std::string_view::npos) {
-    if (trimmed(unit.substr(at + 1)) != "motor") {
+    if (unit.substr(at + 1) != "motor") {
       throw_bad_input(fmt::format("'{}' is no side of the gear", unit.substr(at + 1)), place,
                       "write @motor, or nothing for the joint");
     }
-    given.at_motor = true;
-    unit = trimmed(unit.substr(0, at));
   }
-  if (given.role == Role::time && trimmed(unit) == "epoch") return given;  // its size tells
-  given.unit = find_unit(unit);
+  if (given.role == Role::time && unit == "epoch") return given;  // its size tells
+  given.in = find_written_unit(unit);
   const std::string known = units_of(given.role);
   if (known.empty()) {
     throw_bad_input(fmt::format("a {} has no unit", role_name(given.role)), place,
                     fmt::format("leave out [{}]", unit));
   }
-  if (given.unit == nullptr || !suits(*given.unit, given.role)) {
+  if (given.in.unit == nullptr || !suits(*given.in.unit, given.role)) {
     throw_bad_input(fmt::format("'{}' is no unit of a {}", unit, role_name(given.role)), place,
-                    fmt::format("known: {}", known));
+                    fmt::format("known: {}; a number may stand before it: [0.1 deg]", known));
   }
   return given;
 }

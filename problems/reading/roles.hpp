@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What a user says a column is: "q=position[deg],w=velocity[rpm@motor],stamp=time[ns]".
+// What a user says a column is: "q=position[deg],w=velocity[rpm@motor],i=motor_current[2.69 mA]".
 #pragma once
 
 #include <map>
@@ -14,8 +14,7 @@ namespace tribench {
 
 struct GivenRole {
   Role role = Role::none;
-  const Unit* unit = nullptr;  // null: as the header says, else SI
-  bool at_motor = false;
+  WrittenUnit in = {};  // no unit: as the header says, else SI
 
   GivenRole() = default;
   GivenRole(Role given) : role(given) {}  // NOLINT(google-explicit-constructor): a role alone

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -169,6 +171,30 @@ const Unit* find_unit(std::string_view text) {
   return find_spelling([&](std::string_view s) { return lower(s) == small; });
 }
 
+std::string WrittenUnit::symbol() const {
+  if (unit == nullptr) return {};
+  return fmt::format("{}{}{}", scale == 1 ? std::string() : fmt::format("{} ", scale), unit->symbol,
+                     at_motor ? "@motor" : "");
+}
+
+WrittenUnit find_written_unit(std::string_view text) {
+  WrittenUnit written;
+  constexpr std::string_view kMotor = "@motor";
+  if (text.ends_with(kMotor)) {
+    written.at_motor = true;
+    text.remove_suffix(kMotor.size());
+  }
+  written.unit = find_unit(text);
+  if (written.unit != nullptr) return written;  // "1/min" too
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  double scale = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), scale);
+  if (code != std::errc() || !std::isfinite(scale) || scale == 0) return {};
+  written.scale = scale;
+  written.unit = find_unit(text.substr(static_cast<std::size_t>(end - text.data())));
+  return written.unit != nullptr ? written : WrittenUnit{};
+}
+
 bool suits(const Unit& unit, Role role) {
   const std::vector<Dimension> dimensions = dimensions_of(role);
   return dimensions.empty() || std::ranges::count(dimensions, unit.dimension) > 0;
@@ -184,14 +210,16 @@ std::string units_of(Role role) {
   return fmt::format("{}", fmt::join(symbols, ", "));
 }
 
-Converted conversion_of(const Unit& unit, bool at_motor, const Drive& drive) {
-  Converted out{{unit.factor, unit.offset, std::string(unit.si)}, {}};
+Converted conversion_of(const WrittenUnit& written, const Drive& drive) {
+  const Unit& unit = *written.unit;
+  Converted out{{unit.factor * written.scale, unit.offset / written.scale, std::string(unit.si)},
+                {}};
   if (unit.counts && !drive.counts_per_turn) {
     out.needs = "--counts-per-turn N (of the encoder, after quadrature)";
   } else if (unit.counts) {
     out.conversion.factor /= *drive.counts_per_turn;
   }
-  if (!at_motor || (!is_motion(unit.dimension) && unit.dimension != torque)) return out;
+  if (!written.at_motor || (!is_motion(unit.dimension) && unit.dimension != torque)) return out;
   if (!drive.gear_ratio) {
     out.needs += fmt::format("{}--gear-ratio N (turns of the motor a turn of the joint)",
                              out.needs.empty() ? "" : " and ");

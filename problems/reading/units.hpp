@@ -46,6 +46,17 @@ struct Unit {
 // never. Null where the word is no unit.
 const Unit* find_unit(std::string_view text);
 
+// A unit as a header or a user writes it: "deg", "0.229 rpm" (a number of it, as drives count),
+// "counts@motor" (on the motor's side of the gear). No unit: unit is null.
+struct WrittenUnit {
+  const Unit* unit = nullptr;
+  double scale = 1;
+  bool at_motor = false;
+
+  std::string symbol() const;  // reads back as the same
+};
+WrittenUnit find_written_unit(std::string_view text);
+
 // Whether a channel of this role can be measured in the unit; true for a role that says nothing.
 bool suits(const Unit& unit, Role role);
 
@@ -65,13 +76,13 @@ struct Conversion {
   std::string unit;  // SI symbol
 };
 
-// The conversion of a unit, for a quantity at the joint or (`at_motor`) on the motor's side of the
-// gear: motion is divided, torque multiplied by the ratio. `needs` says what the drive lacks for
+// The conversion of a unit. Of a quantity on the motor's side of the gear motion is divided, torque
+// multiplied by the ratio. `needs` says what the drive lacks for
 // it ("--counts-per-turn N"); the conversion is then not to be used.
 struct Converted {
   Conversion conversion;
   std::string needs;
 };
-Converted conversion_of(const Unit& unit, bool at_motor, const Drive& drive);
+Converted conversion_of(const WrittenUnit& written, const Drive& drive);
 
 }  // namespace tribench

@@ -186,9 +186,8 @@ void insert_sources(toml::table& table, std::span<const DataSource> sources, Fil
 }
 
 std::string role_text(const GivenRole& given) {
-  if (given.unit == nullptr) return std::string(role_name(given.role));
-  return fmt::format("{}[{}{}]", role_name(given.role), given.unit->symbol,
-                     given.at_motor ? "@motor" : "");
+  if (given.in.unit == nullptr) return std::string(role_name(given.role));
+  return fmt::format("{}[{}]", role_name(given.role), given.in.symbol());
 }
 
 void insert_options(toml::table& table, const DataOptions& options) {

@@ -65,6 +65,23 @@ TEST(ChannelNames, SayRoleAndUnit) {
       {"desired_current_A", Role::none, "A"},
       {"rigid_current_A", Role::none, "A"},
       {"torque_enabled", Role::none, "-"},
+      {"MAIN.fbAxis.ActPos [\xC2\xB0]", Role::position, "deg"},
+      {"axis0.motor.current_control.Iq_measured", Role::motor_current, "-"},
+      {"axis0.encoder.vel_estimate [turns/s@motor]", Role::velocity, "rev/s@motor"},
+      {"/js/position_deg", Role::position, "deg"},
+      {"actuator_torque_Nm", Role::motor_torque, "N m"},
+      {"Current Position (deg)", Role::position, "deg"},
+      {"present_current", Role::motor_current, "-"},
+      {"Speed [0.1 rpm]", Role::velocity, "0.1 rpm"},
+      {"p_rad", Role::position, "rad"},
+      {"x [mm]", Role::position, "mm"},
+      {"F [N]", Role::motor_torque, "N"},
+      {"T [Nm]", Role::motor_torque, "N m"},
+      {"p", Role::none, "-"},
+      {"p [bar]", Role::none, "-"},
+      {"dc_bus.current", Role::none, "-"},
+      {"tcp.position", Role::none, "-"},
+      {"target.position", Role::none, "-"},
   };
   for (const Case& c : cases) {
     const NameReading reading = read_channel_name(c.name);
@@ -84,11 +101,28 @@ TEST(ChannelNames, say_the_joint_and_the_side_of_the_gear) {
 
 TEST(ChannelNames, every_alias_is_read_as_itself) {
   for (const ChannelAlias& alias : channel_aliases()) {
+    if (alias.by_unit) {
+      EXPECT_EQ(read_channel_name(alias.name).role, Role::none) << alias.name;
+      continue;
+    }
     const NameReading reading = read_channel_name(alias.name);
     EXPECT_EQ(reading.role, alias.role) << alias.name;
     EXPECT_EQ(reading.unit, alias.unit.empty() ? "-" : alias.unit) << alias.name;
     EXPECT_EQ(reading.doubt, 0) << alias.name;
   }
+}
+
+TEST(Units, a_number_before_a_unit_is_how_many_of_it_a_count_is) {
+  EXPECT_EQ(find_written_unit("0.229rpm").symbol(), "0.229 rpm");
+  EXPECT_EQ(find_written_unit("2.69 mA").scale, 2.69);
+  EXPECT_EQ(find_written_unit("0.1%").symbol(), "0.1 %");
+  EXPECT_EQ(find_written_unit("-1 rad@motor").symbol(), "-1 rad@motor");
+  EXPECT_EQ(find_written_unit("1/min").symbol(), "rpm");
+  for (const char* text : {"0 rad", "nan rad", "3", "2 furlong", "rad 2", ""}) {
+    EXPECT_EQ(find_written_unit(text).unit, nullptr) << text;
+  }
+  const Converted fahrenheit = conversion_of(find_written_unit("0.1 degF"), {});
+  EXPECT_NEAR((500 + fahrenheit.conversion.offset) * fahrenheit.conversion.factor, 10, 1e-12);
 }
 
 TEST(Units, spellings_are_one_unit_and_strangers_none) {

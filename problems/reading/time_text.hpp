@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+//
+// A time that is written as text: a date with a clock ("2024-05-14T09:12:33.5Z",
+// "14.05.2024 09:12:33,500"), a clock alone ("09:12:33.500"), a duration with its unit
+// ("0.002 sec").
+//
+// A date with slashes and the year last is not read: day and month cannot be told apart.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace tribench {
+
+// In seconds: of a date since 1970 (UTC where it names no zone), of a clock since midnight. None
+// where the text is no such time; a bare number is none either, since its unit stands elsewhere.
+std::optional<double> read_time_text(std::string_view text);
+
+}  // namespace tribench

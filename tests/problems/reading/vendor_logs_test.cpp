@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+//
+// Logs as drives, controllers, recorders and spreadsheets write them: each is read as what it is,
+// or refused with the place and the mend; and the line of roles that is proposed reads the same
+// again.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "foundation/error.hpp"
+#include "problems/reading/csv.hpp"
+#include "problems/reading/explanation.hpp"
+#include "problems/reading/time_text.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kDegree = M_PI / 180;
+
+CsvOptions told(const std::string& roles, std::optional<int> joint = {}, Drive drive = {}) {
+  CsvOptions options;
+  options.roles = parse_roles(roles, "--roles");
+  options.used.emplace();  // what has no role is not looked at, as for the loop
+  options.joint = joint;
+  options.drive = drive;
+  return options;
+}
+
+struct Sample {
+  double time;
+  double position;
+  double effort;  // torque or current
+};
+
+void expect_sample(const DataFile& file, std::size_t row, const Sample& sample) {
+  const Channel* effort = file.data.find(Role::motor_torque);
+  if (effort == nullptr) effort = file.data.find(Role::motor_current);
+  ASSERT_NE(file.data.find(Role::time), nullptr);
+  ASSERT_NE(file.data.find(Role::position), nullptr);
+  ASSERT_NE(effort, nullptr);
+  EXPECT_NEAR(file.data.find(Role::time)->values[row], sample.time, 1e-6);
+  EXPECT_NEAR(file.data.find(Role::position)->values[row], sample.position, 1e-9);
+  EXPECT_NEAR(effort->values[row], sample.effort, 1e-9);
+}
+
+// The file, its options and its second row; then the same with the roles that were proposed.
+void expect_read(const std::string& text, const CsvOptions& options, const Sample& second) {
+  const DataFile file = parse_csv(text, "log.csv", options);
+  EXPECT_THAT(what_is_missing(file), ::testing::IsEmpty());
+  expect_sample(file, 1, second);
+  const DataFile again = parse_csv(text, "log.csv", told(roles_line(file), {}, options.drive));
+  EXPECT_THAT(what_is_missing(again), ::testing::IsEmpty());
+  EXPECT_EQ(roles_line(again), roles_line(file));
+  expect_sample(again, 1, second);
+}
+
+std::string complaint(const std::string& text, const CsvOptions& options) {
+  try {
+    parse_csv(text, "log.csv", options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "read";
+}
+
+TEST(VendorLogs, controllers) {
+  // KUKA's sensor interface, joints numbered.
+  expect_read(
+      "Time[ms];AIPos.A1[deg];AIPos.A2[deg];MACur.A1[A];MACur.A2[A]\r\n"
+      "0;1;90;0.5;2\r\n4;1;45;0.5;3\r\n",
+      told("", 2), {0.004, 45 * kDegree, 3});
+  // Universal Robots' recorder: blanks, seconds that no word names.
+  expect_read(
+      "timestamp target_q_0 actual_q_0 actual_q_1 actual_current_0 actual_current_1\n"
+      "81234.512 0.1 0.1 0.2 1 2\n81234.514 0.1 0.1 0.3 1 4\n",
+      told("", 1), {81234.514, 0.3, 4});
+  // Kinova: torque and current side by side.
+  expect_read(
+      "time_s,actuator_position_deg,actuator_torque_Nm,actuator_current_motor_A,actuator_voltage\n"
+      "0,10,5,1,24\n0.001,20,6,2,24\n",
+      told(""), {0.001, 20 * kDegree, 6});
+  // TwinCAT: lines of its own first, paths, decimal commas.
+  expect_read(
+      "TwinCAT Scope Export;Version 3.4\r\nAxis;Joint2\r\nSampleTime;2 ms\r\n\r\n"
+      "Time [ms];MAIN.fbAxis.ActPos [\xC2\xB0];MAIN.fbAxis.ActTorque [Nm]\r\n"
+      "0;1,5;2,5\r\n2;3,5;4,5\r\n",
+      told(""), {0.002, 3.5 * kDegree, 4.5});
+}
+
+TEST(VendorLogs, drives) {
+  const double turn = 2 * M_PI;
+  expect_read(
+      "timestamp_s,axis0.encoder.pos_estimate [turns@motor],"
+      "axis0.motor.current_control.Iq_measured [A]\n0,0,1\n0.001,4.5,2\n",
+      told("", {}, {{}, 9}), {0.001, turn / 2, 2});
+  expect_read("t_ms,id,present_position,present_current\n0,3,2048,10\n8,3,3072,20\n",
+              told("present_position=position[counts],present_current=motor_current[2.69mA]", {},
+                   {4096, {}}),
+              {0.008, 0.75 * turn, 20 * 2.69e-3});
+  expect_read("time_ms,0x6064,0x6077\n0,0,0\n2,65536,125\n",
+              told("0x6064=position[counts@motor],0x6077=motor_torque[0.1%]", {}, {65536, 80}),
+              {0.002, turn / 80, 12.5});
+  // A counter of samples of 2 ms; a position counted the other way round.
+  expect_read("sample,angle,iq_A\n0,0,1\n1,30,2\n",
+              told("sample=time[2 ms],angle=position[-1 deg]"), {0.002, -30 * kDegree, 2});
+}
+
+TEST(VendorLogs, recorders) {
+  expect_read(
+      "__time,/joint_states/joint_1/position,/joint_states/joint_1/effort,"
+      "/joint_states/joint_2/position,/joint_states/joint_2/effort\n"
+      "1715673153.250,0.1,1,0.2,2\n1715673153.252,0.1,1,0.3,4\n",
+      told("", 2), {0.002, 0.3, 4});
+  expect_read(
+      "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.name0,field.position0,"
+      "field.effort0\n1715673153000000000,0,1715673153000000000,,elbow,0.1,1\n"
+      "1715673153002000000,1,1715673153002000000,,elbow,0.2,2\n",
+      told(""), {0.002, 0.2, 2});
+  const CsvOptions gaps = [] {
+    CsvOptions options = told("");
+    options.drop_missing = true;
+    return options;
+  }();
+  EXPECT_THAT(complaint("__time,/js/position_deg,/drive/current_A\n0,1,\n0.001,,2\n", gaps),
+              HasSubstr("instants of their own"));
+}
+
+TEST(VendorLogs, spreadsheets_and_their_encodings) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("tribench-vendor-" + std::to_string(::getpid()));
+  const auto read = [&](const std::string& bytes) {
+    std::ofstream(file, std::ios::binary) << bytes;
+    return read_csv(file, told(""));
+  };
+  const std::string text =
+      "Zeit [s];Winkel [\xB0];Motorstrom [mA]\r\n0,000;1,5;20\r\n0,002;2,5;30\r\n";
+  expect_sample(read(text), 1, {0.002, 2.5 * kDegree, 0.03});  // Latin-1
+  std::string low_first = "\xFF\xFE";
+  std::string high_first = "\xFE\xFF";
+  for (const char c : text) {
+    low_first += {c, '\0'};
+    high_first += {'\0', c};
+  }
+  expect_sample(read(low_first), 1, {0.002, 2.5 * kDegree, 0.03});
+  const DataFile wide = read(high_first);
+  expect_sample(wide, 1, {0.002, 2.5 * kDegree, 0.03});
+  EXPECT_EQ(wide.readings[1].column, "Winkel [\xC2\xB0]");
+  std::filesystem::remove(file);
+  expect_read("  tim   ang_deg  trq_Nm\n 0.0D+00  1.5D+01  2.0D+00\n 2.0D-03  3.0D+01 4.0D+00\n",
+              told("tim=time"), {0.002, 30 * kDegree, 4});
+}
+
+TEST(VendorLogs, times_in_words) {
+  expect_read(
+      "timestamp,q_rad,tau_Nm\n2024-05-14T09:12:33.500000Z,0.1,1\n2024-05-14T09:12:33.502Z,0.2,2\n",
+      told(""), {0.002, 0.2, 2});
+  expect_read("Clock;q [rad];tau [Nm]\n09:12:33.500;0.1;1\n09:12:33.502;0.2;2\n", told(""),
+              {33153.502, 0.2, 2});
+  expect_read("Time,q_rad,tau_Nm\n0 sec,0.1,1\n0.002 sec,0.2,2\n", told(""), {0.002, 0.2, 2});
+  EXPECT_EQ(read_time_text("1970-01-02 00:00:01"), 86401);
+  EXPECT_EQ(read_time_text("2024-02-29T12:00:00+02:00"), 1709200800);
+  EXPECT_EQ(read_time_text("14.05.2024 09:12:33,25"), read_time_text("2024/05/14 09:12:33.25"));
+  for (const char* none : {"", "12", "0.5", "2024-02-30 00:00:00", "05/06/2024 01:02:03",
+                           "25:00:00", "1:2:3", "12 rad", "2024-05-14", "09:12:33.5 x"}) {
+    EXPECT_FALSE(read_time_text(none)) << none;
+  }
+  EXPECT_THAT(complaint("time,q_rad,tau_Nm\n09:12:33,0.1,1\n5,0.2,2\n", told("")),
+              HasSubstr("log.csv:3:time"));
+}
+
+TEST(VendorLogs, recordings_one_after_the_other_and_words_at_the_end) {
+  const DataFile file = parse_csv(
+      "time_s,pos_deg,torque_Nm\n0,1,1\n0.002,2,2\ntime_s,pos_deg,torque_Nm\n0,3,3\n0.002,4,4\n"
+      "Recording stopped by user\n\n",
+      "log.csv", told(""));
+  EXPECT_EQ(file.data.rows(), 4U);
+  EXPECT_EQ(file.data.movement, (std::vector<int>{0, 0, 1, 1}));
+  EXPECT_FALSE(file.has_movements);
+  EXPECT_EQ(file.warnings.size(), 2U);
+  // A row that is torn in the middle of a file is no closing text.
+  EXPECT_THAT(complaint("time_s,pos_deg\n0,1\nstopped\n0.1,2\n", told("")), HasSubstr("log.csv:3"));
+  EXPECT_THAT(complaint("time_s,pos_deg,i_A\n0,1,1\n0.1,2\n", told("")), HasSubstr("log.csv:3"));
+}
+
+TEST(VendorLogs, what_is_no_table_or_cannot_be_told_is_refused) {
+  EXPECT_THAT(complaint("{\"t\": 0.1, \"pos\": 2}\n{\"t\": 0.2, \"pos\": 2}\n", told("")),
+              HasSubstr("log.csv:1: these are JSON objects"));
+  EXPECT_THAT(complaint("time [ms],pos [mdeg]\n\"1.0\",\"19,607.5\"\n", told("")),
+              HasSubstr("signs for thousands"));
+  const DataFile bare = parse_csv("t,pos,cur\n0,1,2\n0.002,3,4\n", "log.csv", told(""));
+  EXPECT_EQ(roles_line(bare), "t=time[s],pos=position[?],cur=motor_current[?]");
+  EXPECT_EQ(what_is_missing(bare).size(), 2U);
+  // Slow stamps of unknown unit are asked for: seconds, or milliseconds of a fast recorder.
+  const DataFile slow =
+      parse_csv("timestamp,q_rad,i_A\n0,1,2\n1,3,4\n2,3,4\n", "log.csv", told(""));
+  EXPECT_THAT(roles_line(slow), HasSubstr("timestamp=time[?]"));
+  // Nanoseconds since the recorder was switched on are no milliseconds since 1970.
+  const DataFile boot =
+      parse_csv("stamp,q_rad,i_A\n2000000000000,1,2\n2000002000000,3,4\n", "log.csv", told(""));
+  EXPECT_THAT(roles_line(boot), HasSubstr("stamp=time[?]"));
+}
+
+}  // namespace
+}  // namespace tribench
