@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+//
+// The quantities that products are made of, besides the inputs: functions of an input of order one,
+// sums and differences of alike inputs. One list for all searches of this room.
+#pragma once
+
+#include <vector>
+
+#include "algorithms/relay/log_rows.hpp"
+
+namespace tribench::relay {
+
+enum class FactorKind {
+  input,
+  wave,        // sine, cosine of an input or of a difference
+  difference,  // sum or difference of two inputs
+  other,       // 1 + x, tanh x, ...
+};
+
+struct KnownFactor {
+  Factor factor;
+  FactorKind kind = FactorKind::input;
+  std::vector<std::size_t> inputs;  // that it is made of
+};
+
+// The inputs, then what `kinds` names, as far as operators have it. Finite on all rows.
+std::vector<KnownFactor> known_factors(const LogRows& rows, const OperatorSet& operators,
+                                       std::initializer_list<FactorKind> kinds);
+
+}  // namespace tribench::relay

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/relay/index_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "algorithms/expression/build.hpp"
+#include "algorithms/fitting/constant_fit.hpp"
+#include "algorithms/fitting/linear_least_squares.hpp"
+#include "algorithms/relay/target_forms.hpp"
+#include "foundation/elementary.hpp"
+
+namespace tribench::relay {
+namespace {
+
+using namespace build;
+
+constexpr int kScales = 160;  // on the logarithmic grid
+constexpr int kFrequencies = 1024;
+constexpr std::size_t kTried = 3;  // of the grid's minima, a function
+
+struct Trial {
+  double scale;
+  double left;
+};
+
+class FunctionSearch {
+ public:
+  FunctionSearch(const LogRows& rows, TargetForm form, Budget& budget)
+      : rows_(rows),
+        form_(form),
+        budget_(budget),
+        x_(rows.inputs()[0].values),
+        z_(formed_target(rows, form)),
+        scale_(relative_scale(z_, form)),
+        scaled_target_(z_) {
+    for (std::size_t r = 0; r < z_.size(); ++r) scaled_target_[r] *= scale_[r];
+  }
+
+  bool is_usable() const {
+    return std::ranges::all_of(scaled_target_, [](double v) { return std::isfinite(v); });
+  }
+
+  std::optional<Expression> find(Op op) {
+    std::vector<Trial> trials;
+    for (const double scale : scales_of(op)) {
+      if (!budget_.spend(6 * x_.size())) return std::nullopt;
+      trials.push_back({scale, left_of(op, scale)});
+    }
+    for (const double scale : minima_of(trials)) {
+      // Two phases a quarter apart: from one of them the fit finds any.
+      for (const double phase : {0.8, 0.8 + std::numbers::pi / 2}) {
+        if (auto found = polished(op, scale, phase)) return found;
+        if (op != Op::sin) break;
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::vector<double> scales_of(Op op) const {
+    const auto [low, high] = std::ranges::minmax(x_);
+    const double largest = std::max(std::abs(low), std::abs(high));
+    std::vector<double> scales;
+    if (op == Op::sin) {
+      for (int k = 1; k <= kFrequencies; ++k) {
+        scales.push_back(k * std::numbers::pi / 2 / (high - low));
+      }
+      return scales;
+    }
+    if (op == Op::exp) scales.push_back(steepest());
+    for (int k = 0; k < kScales; ++k) {
+      // From a hundredth to thirty thousand across the range.
+      const double decades = -2.0 + 6.5 * k / (kScales - 1);
+      const double scale = elementary::exp(decades * std::numbers::ln10) / largest;
+      scales.push_back(scale);
+      if (op == Op::exp || op == Op::log) scales.push_back(-scale);
+    }
+    return scales;
+  }
+
+  // Of an exponential over many decades the largest rows tell the scale.
+  double steepest() const {
+    std::vector<std::size_t> order(z_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(
+        order, [&](std::size_t a, std::size_t b) { return std::abs(z_[a]) > std::abs(z_[b]); });
+    const auto log_at = [&](std::size_t k) { return elementary::log(std::abs(z_[order[k]])); };
+    const std::size_t other = order.size() / 20 + 1;
+    return (log_at(0) - log_at(other)) / (x_[order[0]] - x_[order[other]]);
+  }
+
+  // The columns beside the constant.
+  double value_of(Op op, double argument) const {
+    switch (op) {
+      case Op::exp:
+        return elementary::exp(argument);
+      case Op::log:
+        return elementary::log(1 + argument);
+      case Op::tanh:
+        return elementary::tanh(argument);
+      default:
+        return elementary::sin(argument);
+    }
+  }
+
+  double left_of(Op op, double scale) const {
+    const std::size_t n = x_.size();
+    std::vector<std::vector<double>> columns = {scale_, std::vector<double>(n)};
+    for (std::size_t r = 0; r < n; ++r) columns[1][r] = scale_[r] * value_of(op, scale * x_[r]);
+    if (op == Op::sin) {
+      columns.emplace_back(n);
+      for (std::size_t r = 0; r < n; ++r) {
+        columns[2][r] = scale_[r] * elementary::cos(scale * x_[r]);
+      }
+    }
+    std::vector<const double*> pointers;
+    for (const auto& column : columns) {
+      if (!std::ranges::all_of(column, [](double v) { return std::isfinite(v); })) return HUGE_VAL;
+      pointers.push_back(column.data());
+    }
+    return solve_least_squares(pointers, scaled_target_).sum_squares;
+  }
+
+  static std::vector<double> minima_of(std::vector<Trial> trials) {
+    std::ranges::stable_sort(trials, {}, &Trial::left);
+    std::vector<double> scales;
+    for (const Trial& trial : trials) {
+      if (scales.size() == kTried || !std::isfinite(trial.left)) break;
+      scales.push_back(trial.scale);
+    }
+    return scales;
+  }
+
+  std::optional<Expression> polished(Op op, double scale, double phase) const {
+    const Expression argument = constant(scale) * input(0);
+    Expression formed;
+    if (op == Op::sin) {
+      formed = constant(0) + constant(1) * function(Op::sin, argument + constant(phase));
+    } else if (op == Op::log) {
+      formed = constant(0) + constant(1) * function(Op::log, constant(1) + argument);
+    } else {
+      formed = constant(0) + constant(1) * function(op, argument);
+    }
+    std::vector<double> weights = scale_;
+    for (double& w : weights) w *= w;
+    const double* column = x_.data();
+    ConstantFitOptions options;
+    options.max_iterations = 60;
+    options.function_tolerance = 1e-15;
+    const ConstantFitResult fit =
+        ConstantFitter().fit(formed, {{&column, 1}, x_.size()}, z_, weights, options);
+    budget_.spend(fit.node_rows);
+    const double sign = rows_.target().values[0] < 0 ? -1.0 : 1.0;
+    Expression formula = solved_for_target(form_, formed, sign);
+    if (!explains(formula, rows_)) return std::nullopt;
+    return formula;
+  }
+
+  const LogRows& rows_;
+  TargetForm form_;
+  Budget& budget_;
+  const std::vector<double>& x_;
+  std::vector<double> z_;
+  std::vector<double> scale_;
+  std::vector<double> scaled_target_;
+};
+
+}  // namespace
+
+std::optional<Expression> find_function(const LogRows& rows, const OperatorSet& operators,
+                                        Budget& budget) {
+  if (rows.rows() < 20 || !operators.allows(Op::mul) || !operators.allows(Op::add)) {
+    return std::nullopt;
+  }
+  for (const TargetForm form : kTargetForms) {
+    if (!keeps_sign(form) && (rows.target().changes_sign || !rows.target().has_logs())) continue;
+    FunctionSearch search(rows, form, budget);
+    if (!search.is_usable()) continue;
+    for (const Op op : {Op::exp, Op::tanh, Op::log, Op::sin}) {
+      if (!operators.allows(op)) continue;
+      auto found = search.find(op);
+      if (found && operators.admits(*found)) return found;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace tribench::relay

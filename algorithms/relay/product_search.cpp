@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/relay/product_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "algorithms/expression/build.hpp"
+#include "algorithms/fitting/linear_least_squares.hpp"
+#include "algorithms/relay/factors.hpp"
+#include "foundation/elementary.hpp"
+
+namespace tribench::relay {
+namespace {
+
+using namespace build;
+
+// Root mean square of what is left of log |y|: rounding, not noise.
+constexpr double kExact = 1e-8;
+constexpr double kNoPart = 1e-6;  // of log |y| that a column explains
+constexpr double kOffRational = 1e-5;
+
+// A column of the regression: the logarithm of a factor, or what stands in an exponential.
+struct Column {
+  Expression formula;
+  std::vector<double> values;
+  bool is_exponent = false;
+};
+
+std::vector<Column> columns_of(const LogRows& rows, const OperatorSet& operators, int stage) {
+  std::vector<Column> columns;
+  const auto factors =
+      stage == 0 ? known_factors(rows, operators, {})
+                 : known_factors(rows, operators,
+                                 {FactorKind::wave, FactorKind::difference, FactorKind::other});
+  for (const KnownFactor& known : factors) {
+    if (!known.factor.has_logs() || (stage == 1 && known.inputs.size() > 1)) continue;
+    columns.push_back({known.factor.formula, known.factor.logs, false});
+  }
+  const auto add_exponent = [&](const Expression& formula) {
+    if (!operators.admits(function(Op::exp, formula))) return;
+    Factor factor = factor_of(formula, rows);
+    if (std::ranges::all_of(factor.values, [](double x) { return std::isfinite(x); })) {
+      columns.push_back({formula, std::move(factor.values), true});
+    }
+  };
+  const std::size_t n = rows.inputs().size();
+  for (std::size_t i = 0; i < n && stage > 0; ++i) {
+    add_exponent(input(i));
+    add_exponent(power(input(i), 2));
+    for (std::size_t j = i + 1; j < n && stage > 1; ++j) {
+      add_exponent(input(i) * input(j));
+      add_exponent(input(i) / input(j));
+      add_exponent(input(j) / input(i));
+    }
+  }
+  return columns;
+}
+
+struct Regression {
+  std::vector<std::size_t> places;  // among the columns
+  std::vector<double> coefficients;
+  double offset = 0;
+  double rms = HUGE_VAL;
+};
+
+Regression regress(const std::vector<Column>& columns, std::vector<std::size_t> places,
+                   const std::vector<double>& target, Budget& budget) {
+  Regression result;
+  const std::size_t rows = target.size();
+  const std::size_t p = places.size() + 1;
+  if (2 * p > rows || !budget.spend(p * p / 4 * rows)) return result;
+  const std::vector<double> ones(rows, 1.0);
+  std::vector<const double*> pointers = {ones.data()};
+  for (const std::size_t k : places) pointers.push_back(columns[k].values.data());
+  const LinearFit fit = solve_least_squares(pointers, target);
+  result.places = std::move(places);
+  result.offset = fit.coefficients[0];
+  result.coefficients.assign(fit.coefficients.begin() + 1, fit.coefficients.end());
+  result.rms = std::sqrt(fit.sum_squares / static_cast<double>(rows));
+  return result;
+}
+
+double spread_of(const std::vector<double>& values) {
+  double mean = 0;
+  for (const double x : values) mean += x / static_cast<double>(values.size());
+  double square = 0;
+  for (const double x : values) square += (x - mean) * (x - mean);
+  return std::sqrt(square / static_cast<double>(values.size()));
+}
+
+// Leaves out what explains nothing, then whatever can go.
+Regression sparse(const std::vector<Column>& columns, Regression full,
+                  const std::vector<double>& target, Budget& budget) {
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k < full.places.size(); ++k) {
+    const double part = std::abs(full.coefficients[k]) * spread_of(columns[full.places[k]].values);
+    if (part > kNoPart) kept.push_back(full.places[k]);
+  }
+  Regression best = regress(columns, kept, target, budget);
+  if (!(best.rms <= kExact)) return full;
+  for (std::size_t i = best.places.size(); i-- > 0;) {
+    std::vector<std::size_t> fewer = best.places;
+    fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+    Regression without = regress(columns, std::move(fewer), target, budget);
+    if (without.rms <= kExact) best = std::move(without);
+  }
+  return best;
+}
+
+Expression formula_of(const std::vector<Column>& columns, const Regression& found, double sign) {
+  std::vector<Expression> factors;
+  std::vector<double> exponents;
+  Expression exponent;
+  for (std::size_t k = 0; k < found.places.size(); ++k) {
+    const Column& column = columns[found.places[k]];
+    const double c = found.coefficients[k];
+    if (column.is_exponent) {
+      exponent = sum_of(exponent, constant(c) * column.formula);
+      continue;
+    }
+    factors.push_back(column.formula);
+    exponents.push_back(std::abs(c - nearest_half(c)) <= kOffRational ? nearest_half(c) : c);
+  }
+  if (!exponent.empty()) {
+    factors.push_back(function(Op::exp, exponent));
+    exponents.push_back(1);
+  }
+  return product_of(sign * elementary::exp(found.offset), factors, exponents);
+}
+
+}  // namespace
+
+std::optional<Expression> find_product(const LogRows& rows, const OperatorSet& operators,
+                                       Budget& budget) {
+  if (!rows.target().has_logs() || !operators.allows(Op::mul)) return std::nullopt;
+  // Inputs, then functions of one, then of two.
+  for (int stage = 0; stage < 3; ++stage) {
+    const std::vector<Column> columns = columns_of(rows, operators, stage);
+    std::vector<std::size_t> all(columns.size());
+    std::iota(all.begin(), all.end(), 0);
+    Regression full = regress(columns, all, rows.target().logs, budget);
+    if (!(full.rms <= kExact)) continue;
+    const Regression found = sparse(columns, std::move(full), rows.target().logs, budget);
+    Expression formula = formula_of(columns, found, 1);
+    // The sign follows from the factors' where the exponents are whole; a constant one is set here.
+    const Factor values = factor_of(formula, rows);
+    if (values.values[0] * rows.target().values[0] < 0) {
+      formula = formula_of(columns, found, -1);
+    }
+    return formula;
+  }
+  return std::nullopt;
+}
+
+}  // namespace tribench::relay

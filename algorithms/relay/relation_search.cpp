@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/relay/relation_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "algorithms/expression/build.hpp"
+#include "algorithms/expression/column_kernels.hpp"
+#include "algorithms/fitting/cholesky.hpp"
+#include "algorithms/fitting/linear_least_squares.hpp"
+#include "algorithms/relay/factors.hpp"
+#include "algorithms/relay/target_forms.hpp"
+#include "foundation/elementary.hpp"
+
+namespace tribench::relay {
+namespace {
+
+using namespace build;
+
+constexpr double kExact = 1e-7;      // of a row's target, root mean square
+constexpr double kPromising = 1e-5;  // in the Gram matrix, whose rounding is larger
+constexpr std::size_t kBeam = 300;
+constexpr std::size_t kMostTerms = 6;
+constexpr int kMostDegree = 4;
+
+// A column: a known factor that is no input, to the power 0, 1 or 2, and powers of the inputs.
+struct Product {
+  std::optional<std::size_t> factor;  // among those beyond the inputs
+  int factor_power = 1;
+  std::vector<int> exponents;              // per input
+  bool is_beside = false;                  // times the target
+  std::optional<std::size_t> log_of = {};  // log |input|, where T is the logarithm
+
+  int degree() const {
+    int sum = factor ? factor_power + 1 : 0;
+    for (const int a : exponents) sum += std::abs(a);
+    return sum;
+  }
+};
+
+// The inputs whose signs make the target's, for T that do not keep it.
+std::optional<std::vector<std::size_t>> signs_of_target(const LogRows& rows) {
+  std::vector<std::size_t> turning;
+  for (std::size_t j = 0; j < rows.inputs().size(); ++j) {
+    if (rows.inputs()[j].changes_sign) turning.push_back(j);
+  }
+  if (turning.size() > 8) return std::nullopt;
+  for (unsigned subset = 0; subset < (1U << turning.size()); ++subset) {
+    std::vector<std::size_t> chosen;
+    for (std::size_t i = 0; i < turning.size(); ++i) {
+      if ((subset >> i & 1U) != 0) chosen.push_back(turning[i]);
+    }
+    const auto is_negative = [&](std::size_t r) {
+      bool negative = rows.target().values[r] < 0;
+      for (const std::size_t j : chosen) {
+        negative = negative != (rows.inputs()[j].values[r] < 0);
+      }
+      return negative;
+    };
+    bool is_constant = true;
+    for (std::size_t r = 1; r < rows.rows() && is_constant; ++r) {
+      is_constant = is_negative(r) == is_negative(0);
+    }
+    if (is_constant) return chosen;
+  }
+  return std::nullopt;
+}
+
+struct Sum {
+  std::vector<std::size_t> terms;  // columns, in increasing order
+  double left = HUGE_VAL;          // of the target's square, 1 without terms
+};
+
+// Least squares of subsets of columns scaled to unit length, from one Gram matrix; the target is
+// the last column.
+class SubsetFits {
+ public:
+  // Of the columns marked `once` a sum has at most one: two multiples of the target, x and 1/x,
+  // come near to the target whatever it is.
+  SubsetFits(std::vector<double> gram, std::vector<char> once)
+      : gram_(std::move(gram)),
+        once_(std::move(once)),
+        columns_(once_.size()),
+        stride_(columns_ + 1) {
+    std::vector<double> scale(stride_);
+    for (std::size_t i = 0; i < stride_; ++i) {
+      const double square = gram_[i * stride_ + i];
+      scale[i] = square > 0 && std::isfinite(square) ? 1 / std::sqrt(square) : 0;
+    }
+    for (std::size_t i = 0; i < stride_; ++i) {
+      for (std::size_t j = 0; j < stride_; ++j) gram_[i * stride_ + j] *= scale[i] * scale[j];
+    }
+  }
+
+  std::vector<Sum> best_pairs() const {
+    Best best;
+    for (std::size_t i = 0; i < columns_; ++i) {
+      const double a = with_target(i);
+      for (std::size_t j = i + 1; j < columns_; ++j) {
+        if (once_[i] != 0 && once_[j] != 0) continue;
+        const double b = with_target(j);
+        const double c = gram_[i * stride_ + j];
+        const double determinant = 1 - c * c;
+        if (!(determinant > 1e-12)) continue;
+        const double left = 1 - (a * a + b * b - 2 * a * b * c) / determinant;
+        if (left < best.bound) best.add({{i, j}, left});
+      }
+    }
+    return best.taken();
+  }
+
+  // Every sum with every further column.
+  std::vector<Sum> grown(const std::vector<Sum>& sums) const {
+    Best best;
+    std::vector<double> solved;
+    for (const Sum& sum : sums) {
+      const std::size_t p = sum.terms.size();
+      std::vector<double> factor(p * p);
+      std::vector<double> target(p);
+      for (std::size_t i = 0; i < p; ++i) {
+        target[i] = with_target(sum.terms[i]);
+        for (std::size_t j = 0; j < p; ++j) {
+          factor[i * p + j] = gram_[sum.terms[i] * stride_ + sum.terms[j]];
+        }
+      }
+      if (!cholesky_factor(factor, p)) continue;
+      cholesky_solve_lower(factor, p, target);
+      const bool has_once =
+          std::ranges::any_of(sum.terms, [&](std::size_t k) { return once_[k] != 0; });
+      for (std::size_t k = 0; k < columns_; ++k) {
+        if (has_once && once_[k] != 0) continue;
+        solved.resize(p);
+        for (std::size_t i = 0; i < p; ++i) solved[i] = gram_[sum.terms[i] * stride_ + k];
+        cholesky_solve_lower(factor, p, solved);
+        double square = gram_[k * stride_ + k];
+        double product = with_target(k);
+        for (std::size_t i = 0; i < p; ++i) {
+          square -= solved[i] * solved[i];
+          product -= solved[i] * target[i];
+        }
+        if (!(square > 1e-10)) continue;
+        const double left = sum.left - product * product / square;
+        if (!(left < best.bound)) continue;
+        Sum longer{sum.terms, left};
+        longer.terms.insert(std::ranges::lower_bound(longer.terms, k), k);
+        best.add(std::move(longer));
+      }
+    }
+    return best.taken();
+  }
+
+ private:
+  // The kBeam sums that leave least, each once.
+  struct Best {
+    std::vector<Sum> sums;
+    double bound = HUGE_VAL;
+
+    void add(Sum sum) {
+      sums.push_back(std::move(sum));
+      if (sums.size() >= 4 * kBeam) cut();
+    }
+    void cut() {
+      std::ranges::stable_sort(sums, {}, &Sum::left);
+      std::set<std::vector<std::size_t>> seen;
+      std::erase_if(sums, [&](const Sum& sum) { return !seen.insert(sum.terms).second; });
+      if (sums.size() > kBeam) sums.resize(kBeam);
+      if (sums.size() == kBeam) bound = sums.back().left;
+    }
+    std::vector<Sum> taken() {
+      cut();
+      return std::move(sums);
+    }
+  };
+
+  double with_target(std::size_t i) const { return gram_[i * stride_ + columns_]; }
+
+  std::vector<double> gram_;
+  std::vector<char> once_;
+  std::size_t columns_;
+  std::size_t stride_;
+};
+
+class Search {
+ public:
+  Search(const LogRows& rows, const OperatorSet& operators, Columns columns, std::size_t most)
+      : rows_(rows), operators_(operators), signs_(signs_of_target(rows)) {
+    if (columns == Columns::with_factors) {
+      factors_ = known_factors(rows, operators, {FactorKind::wave, FactorKind::difference});
+      std::erase_if(factors_,
+                    [](const KnownFactor& known) { return known.kind == FactorKind::input; });
+    }
+    list_products(most);
+  }
+
+  // `is_ratio`: with one multiple of the target on the right, for the plain form.
+  std::optional<Expression> run(TargetForm form, bool is_ratio, Budget& budget);
+
+ private:
+  void list_products(std::size_t most);
+  std::vector<double> values_of(const Product& product) const;
+  Expression formula_of(const Product& product, double coefficient, TargetForm form) const;
+  std::optional<Expression> exact(TargetForm form, const Sum& sum,
+                                  const std::vector<std::vector<double>>& columns,
+                                  const std::vector<double>& target) const;
+  Expression assembled(TargetForm form, const Sum& sum, std::span<const double> coefficients) const;
+
+  const LogRows& rows_;
+  const OperatorSet& operators_;
+  std::vector<KnownFactor> factors_;
+  std::optional<std::vector<std::size_t>> signs_;
+  std::vector<Product> products_;
+};
+
+// By increasing degree.
+void Search::list_products(std::size_t most) {
+  const std::size_t n = rows_.inputs().size();
+  std::vector<std::vector<std::vector<int>>> by_degree(kMostDegree + 1);
+  std::vector<int> exponents(n, 0);
+  std::size_t count = 0;
+  const auto extend = [&](auto&& self, std::size_t next, int degree, int left) -> void {
+    if (count > 4 * most) return;
+    if (next == n) {
+      if (left > 0) return;
+      by_degree[static_cast<std::size_t>(degree)].push_back(exponents);
+      ++count;
+      return;
+    }
+    for (int a = -left; a <= left; ++a) {
+      if (a < 0 && !rows_.inputs()[next].has_logs()) continue;
+      exponents[next] = a;
+      self(self, next + 1, degree, left - std::abs(a));
+    }
+    exponents[next] = 0;
+  };
+  for (int degree = 0; degree <= kMostDegree; ++degree) extend(extend, 0, degree, degree);
+  for (std::size_t j = 0; j < n; ++j) {
+    if (!rows_.inputs()[j].has_logs()) continue;
+    products_.push_back({std::nullopt, 1, std::vector<int>(n, 0), false, j});
+  }
+  for (int degree = 0; degree <= kMostDegree; ++degree) {
+    for (const auto& powers : by_degree[static_cast<std::size_t>(degree)]) {
+      products_.push_back({std::nullopt, 1, powers, false});
+    }
+    // A factor to the power of one or two counts as one degree more.
+    for (int rest = 2; rest <= 3 && rest <= degree; ++rest) {
+      for (const auto& powers : by_degree[static_cast<std::size_t>(degree - rest)]) {
+        for (std::size_t f = 0; f < factors_.size(); ++f) {
+          products_.push_back({f, rest - 1, powers, false});
+        }
+      }
+    }
+    if (degree < 1 || degree > 3) continue;
+    const std::size_t so_far = products_.size();
+    for (std::size_t k = 0; k < so_far; ++k) {
+      if (products_[k].is_beside || products_[k].log_of || products_[k].degree() != degree)
+        continue;
+      products_.push_back(products_[k]);
+      products_.back().is_beside = true;
+    }
+  }
+  if (products_.size() > most) products_.resize(most);
+}
+
+std::vector<double> Search::values_of(const Product& product) const {
+  if (product.log_of) return rows_.inputs()[*product.log_of].logs;
+  std::vector<double> values(rows_.rows(), 1.0);
+  std::vector<double> power(rows_.rows());
+  for (std::size_t j = 0; j < product.exponents.size(); ++j) {
+    if (product.exponents[j] == 0) continue;
+    columns::integer_power(rows_.inputs()[j].values.data(), product.exponents[j], power.data(),
+                           power.size());
+    columns::mul(values.data(), power.data(), values.data(), values.size());
+  }
+  if (product.factor) {
+    columns::integer_power(factors_[*product.factor].factor.values.data(), product.factor_power,
+                           power.data(), power.size());
+    columns::mul(values.data(), power.data(), values.data(), values.size());
+  }
+  return values;
+}
+
+std::optional<Expression> Search::run(TargetForm form, bool is_ratio, Budget& budget) {
+  if (!keeps_sign(form) && !signs_) return std::nullopt;
+  const std::size_t n = rows_.rows();
+  std::vector<double> target = formed_target(rows_, form);
+  const bool is_log = form == TargetForm::logarithm;
+  const std::vector<double> scale = relative_scale(target, form);
+  std::vector<std::vector<double>> columns;
+  std::vector<std::size_t> places;  // of the columns, among the products
+  std::vector<char> once;
+  const auto add = [&](std::vector<double> values) {
+    columns::mul(values.data(), scale.data(), values.data(), n);
+    const double square = columns::dot(values.data(), values.data(), n);
+    if (!std::isfinite(square) || square == 0) return false;
+    columns.push_back(std::move(values));
+    return true;
+  };
+  for (std::size_t k = 0; k < products_.size(); ++k) {
+    if (products_[k].is_beside && !is_ratio) continue;
+    if (products_[k].log_of && !is_log) continue;
+    std::vector<double> values = values_of(products_[k]);
+    if (products_[k].is_beside) {
+      columns::mul(values.data(), rows_.target().values.data(), values.data(), n);
+    }
+    if (!add(std::move(values))) continue;
+    places.push_back(k);
+    once.push_back(products_[k].is_beside ? 1 : 0);
+  }
+  const std::size_t count = columns.size();
+  if (count < 2 || !budget.spend(count * count / 2 * n)) return std::nullopt;
+  columns::mul(target.data(), scale.data(), target.data(), n);
+  if (!std::ranges::all_of(target, [](double x) { return std::isfinite(x); })) return std::nullopt;
+  std::vector<const double*> pointers;
+  for (const auto& column : columns) pointers.push_back(column.data());
+  pointers.push_back(target.data());
+  std::vector<double> gram((count + 1) * (count + 1));
+  columns::gram(pointers.data(), count + 1, n, gram.data());
+  const SubsetFits fits(std::move(gram), std::move(once));
+  std::vector<Sum> sums = fits.best_pairs();
+  for (std::size_t terms = 2; !sums.empty(); ++terms) {
+    for (const Sum& sum : sums) {
+      if (sum.left > kPromising * kPromising) break;
+      Sum named = sum;
+      std::vector<std::vector<double>> chosen;
+      for (std::size_t& term : named.terms) {
+        chosen.push_back(columns[term]);
+        term = places[term];
+      }
+      if (auto found = exact(form, named, chosen, target)) return found;
+    }
+    if (terms == kMostTerms || !budget.spend(kBeam * count * terms * terms)) break;
+    sums = fits.grown(sums);
+  }
+  return std::nullopt;
+}
+
+std::optional<Expression> Search::exact(TargetForm form, const Sum& sum,
+                                        const std::vector<std::vector<double>>& columns,
+                                        const std::vector<double>& target) const {
+  std::vector<const double*> pointers;
+  for (const auto& column : columns) pointers.push_back(column.data());
+  const LinearFit fit = solve_least_squares(pointers, target);
+  if (!(std::sqrt(fit.sum_squares / static_cast<double>(target.size())) <= kExact)) {
+    return std::nullopt;
+  }
+  Expression formula = assembled(form, sum, fit.coefficients);
+  if (!operators_.admits(formula) || !explains(formula, rows_)) return std::nullopt;
+  return formula;
+}
+
+// Below a root, less the inputs that bring the sign and stand before it.
+Expression Search::formula_of(const Product& product, double coefficient, TargetForm form) const {
+  std::vector<Expression> factors;
+  std::vector<double> exponents(product.exponents.begin(), product.exponents.end());
+  for (const Factor& input : rows_.inputs()) factors.push_back(input.formula);
+  if (is_even_power(form)) {
+    for (const std::size_t j : *signs_) exponents[j] += form == TargetForm::square ? -2 : 2;
+  }
+  if (product.factor) {
+    factors.push_back(factors_[*product.factor].factor.formula);
+    exponents.push_back(product.factor_power);
+  }
+  return product_of(coefficient, factors, exponents);
+}
+
+Expression Search::assembled(TargetForm form, const Sum& sum,
+                             std::span<const double> coefficients) const {
+  Expression right;
+  Expression beside;
+  std::vector<Expression> powers;
+  std::vector<double> exponents;
+  for (std::size_t k = 0; k < sum.terms.size(); ++k) {
+    const Product& product = products_[sum.terms[k]];
+    if (product.log_of) {
+      powers.push_back(rows_.inputs()[*product.log_of].formula);
+      const double power = coefficients[k];
+      const bool is_half = std::abs(power - nearest_half(power)) <= kExact;
+      exponents.push_back(is_half ? nearest_half(power) : power);
+      continue;
+    }
+    Expression& side = product.is_beside ? beside : right;
+    const double c = product.is_beside ? -coefficients[k] : coefficients[k];
+    side = sum_of(side, formula_of(product, c, form));
+  }
+  if (right.empty()) right = constant(0);
+  if (!beside.empty()) right = right / (constant(1) + beside);
+  if (keeps_sign(form)) return solved_for_target(form, right, 1);
+  double sign = rows_.target().values[0] < 0 ? -1.0 : 1.0;
+  if (form == TargetForm::logarithm) {
+    powers.push_back(function(Op::exp, right));
+    exponents.push_back(1);
+    return product_of(sign, powers, exponents);
+  }
+  for (const std::size_t j : *signs_) {
+    if (rows_.inputs()[j].values[0] < 0) sign = -sign;
+  }
+  Expression root = solved_for_target(form, right, sign);
+  for (const std::size_t j : *signs_) root = rows_.inputs()[j].formula * root;
+  return root;
+}
+
+}  // namespace
+
+std::optional<Expression> find_relation(const LogRows& rows, const OperatorSet& operators,
+                                        Columns columns, std::size_t most, Budget& budget) {
+  if (rows.rows() < 20 || !operators.allows(Op::mul) || !operators.allows(Op::div)) {
+    return std::nullopt;
+  }
+  Search search(rows, operators, columns, most);
+  std::optional<Expression> shortest;
+  const auto look = [&](TargetForm form, bool is_ratio) {
+    if (budget.exhausted()) return;
+    auto found = search.run(form, is_ratio, budget);
+    if (found && (!shortest || found->size() < shortest->size())) shortest = std::move(found);
+  };
+  for (const TargetForm form : kTargetForms) look(form, false);
+  if (!shortest) look(TargetForm::plain, true);
+  return shortest;
+}
+
+}  // namespace tribench::relay

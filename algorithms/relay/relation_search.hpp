@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+//
+// Laws that are a short sum of products of powers, of the target itself, of a power or the
+// logarithm of it, or a ratio of two such sums:
+//
+//   T(y) = sum_k c_k P_k(x)   or   y = sum_k c_k P_k(x) + d y Q(x),
+//   P, Q = (cosine, difference, ...) prod x_i^a_i
+//
+// with T one of y, y^2, 1/y, 1/y^2, log y (there powers of the inputs as factors besides). All
+// products of small whole exponents are columns of one regression, relative to the size of each
+// row's target, so that rows of all decades count alike; all pairs of columns are tried, the best
+// pairs grown term by term, in one Gram matrix.
+//
+// Finds nothing where there is noise (product_search.hpp says why).
+// Cost: with `most` columns most^2 / 2 node-rows a row and T; 0.1 s for 600 and 500 rows.
+#pragma once
+
+#include <optional>
+
+#include "algorithms/budget.hpp"
+#include "algorithms/relay/log_rows.hpp"
+
+namespace tribench::relay {
+
+enum class Columns { powers_alone, with_factors };  // factors.hpp: waves, sums and differences
+
+// The shortest sum that is exact to rounding on the rows, of at most `most` columns; none where
+// none is, or the budget is spent.
+std::optional<Expression> find_relation(const LogRows& rows, const OperatorSet& operators,
+                                        Columns columns, std::size_t most, Budget& budget);
+
+}  // namespace tribench::relay

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/relay/target_forms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/expression/build.hpp"
+#include "foundation/elementary.hpp"
+
+namespace tribench::relay {
+namespace {
+
+constexpr double kExplained = 1e-6;    // of the largest target
+constexpr double kSmallTarget = 1e-3;  // of the median: rows below it count for less
+
+double median_size(std::vector<double> values) {
+  for (double& x : values) x = std::abs(x);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<double> formed_target(const LogRows& rows, TargetForm form) {
+  if (form == TargetForm::logarithm) return rows.target().logs;
+  std::vector<double> values = rows.target().values;
+  for (double& y : values) {
+    if (is_even_power(form)) y = y * y;
+    if (form == TargetForm::inverse || form == TargetForm::inverse_square) y = 1 / y;
+  }
+  return values;
+}
+
+Expression solved_for_target(TargetForm form, const Expression& formed, double sign) {
+  using namespace build;
+  if (form == TargetForm::plain) return formed;
+  if (form == TargetForm::inverse) return constant(1) / formed;
+  const Expression size = form == TargetForm::logarithm ? function(Op::exp, formed)
+                          : form == TargetForm::square  ? function(Op::sqrt, formed)
+                                                        : function(Op::sqrt, constant(1) / formed);
+  return sign < 0 ? -size : size;
+}
+
+std::vector<double> relative_scale(const std::vector<double>& formed, TargetForm form) {
+  std::vector<double> scale(formed.size(), 1.0);
+  if (form == TargetForm::logarithm) return scale;
+  const double small = kSmallTarget * median_size(formed);
+  for (std::size_t r = 0; r < scale.size(); ++r) scale[r] = 1 / (std::abs(formed[r]) + small);
+  return scale;
+}
+
+bool explains(const Expression& formula, const LogRows& rows) {
+  const Factor found = factor_of(formula, rows);
+  double worst = 0;
+  double size = 0;
+  for (std::size_t r = 0; r < rows.rows(); ++r) {
+    if (!std::isfinite(found.values[r])) return false;
+    worst = std::max(worst, std::abs(found.values[r] - rows.target().values[r]));
+    size = std::max(size, std::abs(rows.target().values[r]));
+  }
+  return worst <= kExplained * size;
+}
+
+}  // namespace tribench::relay

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+//
+// The forms of the target that a law may be simple in: y, y^2, 1/y, 1/y^2, log y.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "algorithms/expression/expression.hpp"
+#include "algorithms/relay/log_rows.hpp"
+
+namespace tribench::relay {
+
+enum class TargetForm { plain, square, inverse, inverse_square, logarithm };
+inline constexpr std::array kTargetForms = {TargetForm::plain, TargetForm::square,
+                                            TargetForm::inverse, TargetForm::inverse_square,
+                                            TargetForm::logarithm};
+
+constexpr bool is_even_power(TargetForm form) {
+  return form == TargetForm::square || form == TargetForm::inverse_square;
+}
+// Whether y's sign can be told from T(y).
+constexpr bool keeps_sign(TargetForm form) {
+  return form == TargetForm::plain || form == TargetForm::inverse;
+}
+
+// T(y) on the rows.
+std::vector<double> formed_target(const LogRows& rows, TargetForm form);
+
+// y of what T(y) is; times `sign` where T does not keep it.
+Expression solved_for_target(TargetForm form, const Expression& formed, double sign);
+
+// Rows of all decades alike: 1 / (|z| + a thousandth of the median |z|); ones for the logarithm.
+std::vector<double> relative_scale(const std::vector<double>& formed, TargetForm form);
+
+// Whether a formula gives the target to a millionth of the largest.
+bool explains(const Expression& formula, const LogRows& rows);
+
+}  // namespace tribench::relay

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algorithms/finite_rows.hpp"
+#include "algorithms/relay/collapse.hpp"
+#include "algorithms/relay/index_fit.hpp"
+#include "algorithms/relay/product_search.hpp"
+#include "algorithms/relay/relation_search.hpp"
+#include "tests/algorithms/relay/drawn_law.hpp"
+
+namespace tribench {
+namespace {
+
+using testing::DrawnInput;
+using testing::DrawnLaw;
+
+const OperatorSet& full() { return find_operator_set("full"); }
+
+constexpr std::size_t kMostRows = 512;
+
+class Rows {
+ public:
+  explicit Rows(const DrawnLaw& law) : finite_(law.data()), logs_(finite_, kMostRows) {}
+  const relay::LogRows& operator*() const { return logs_; }
+
+ private:
+  FiniteRows finite_;
+  relay::LogRows logs_;
+};
+
+const std::vector<DrawnInput> kFive = {{"a", 0.1, 10, true, true},
+                                       {"b", 1e-9, 1e-7, true},
+                                       {"c", 1, 100, true},
+                                       {"d", 0, 6.2},
+                                       {"e", 1, 100, true}};
+
+TEST(ProductSearch, FindsProductsOfPowersSinesAndDifferences) {
+  for (const std::string text : {"3*a*sqrt(b)/c^2", "-2.5*b^2*sin(d)/a", "a*(c - e)*b/cos(d)^2",
+                                 "7*b*exp(-2*d)*a/(c + e)^2"}) {
+    const DrawnLaw law(text, kFive, 300);
+    Budget budget({});
+    const auto found = relay::find_product(*Rows(law), full(), budget);
+    ASSERT_TRUE(found) << text;
+    EXPECT_LT(law.error_of(*found), 1e-10) << text << ": " << print(*found, law.names);
+  }
+}
+
+TEST(ProductSearch, FindsNothingInASumOrUnderNoise) {
+  Budget budget({});
+  const DrawnLaw sum("a*c + e^2", kFive, 300);
+  EXPECT_FALSE(relay::find_product(*Rows(sum), full(), budget));
+  const DrawnLaw noisy("3*a*sqrt(b)/c^2", kFive, 300, 1e-3);
+  EXPECT_FALSE(relay::find_product(*Rows(noisy), full(), budget));
+}
+
+TEST(RelationSearch, FindsSumsRootsReciprocalsRatiosAndExponentials) {
+  const std::vector<DrawnInput> inputs = {
+      {"a", 0.1, 10, true, true}, {"c", 1, 100, true}, {"e", 1, 100, true}};
+  for (const std::string text :
+       {"2*c^2 - 3*e + a*c", "a*sqrt(c^2 + 2*e^2)", "1/(1/c + 2/e)", "(c + e)/(1 + 0.1*c*e)",
+        "5*exp(-3*c/e)/c", "4*c/sqrt(1 + 0.001*e^2)"}) {
+    const DrawnLaw law(text, inputs, 300);
+    Budget budget({});
+    const auto found =
+        relay::find_relation(*Rows(law), full(), relay::Columns::powers_alone, 400, budget);
+    ASSERT_TRUE(found) << text;
+    EXPECT_LT(law.error_of(*found), 1e-7) << text << ": " << print(*found, law.names);
+  }
+}
+
+TEST(RelationSearch, FindsSumsWithCosinesOnlyWhereTheyAreAskedFor) {
+  const DrawnLaw law("c^2 + e^2 - 2*c*e*cos(d)", {{"c", 1, 9}, {"d", 0, 6.2}, {"e", 1, 9}}, 300);
+  Budget budget({});
+  EXPECT_FALSE(relay::find_relation(*Rows(law), full(), relay::Columns::powers_alone, 400, budget));
+  const auto found =
+      relay::find_relation(*Rows(law), full(), relay::Columns::with_factors, 800, budget);
+  ASSERT_TRUE(found);
+  EXPECT_LT(law.error_of(*found), 1e-9) << print(*found, law.names);
+}
+
+TEST(RelationSearch, KeepsItsBudgetAndFindsNothingUnderNoise) {
+  const DrawnLaw law("2*c^2 - 3*e + a*c", kFive, 300);
+  Budget little({.evaluations = 1000});
+  EXPECT_FALSE(relay::find_relation(*Rows(law), full(), relay::Columns::powers_alone, 400, little));
+  EXPECT_LE(little.spent(), 1000U);
+  const DrawnLaw noisy("2*c^2 - 3*e + a*c", kFive, 300, 1e-3);
+  Budget budget({});
+  EXPECT_FALSE(
+      relay::find_relation(*Rows(noisy), full(), relay::Columns::powers_alone, 400, budget));
+}
+
+TEST(Collapse, FindsWhatALawDependsOn) {
+  const DrawnLaw law("a*c^2*tanh(3e8*b*e/c)", kFive, 400);
+  Budget budget({});
+  const auto found = relay::find_collapses(*Rows(law), full(), 1500, 3, budget);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(print(found[0].inner, law.names), "b*e/c");
+  EXPECT_EQ(print(found[0].outer, law.names), "a*c^2");
+  EXPECT_LT(found[0].roughness, 0.02);
+}
+
+TEST(Collapse, FindsNoneWhereTwoVariablesRemain) {
+  const DrawnLaw law("a*tanh(c/50)*(2 + cos(d + 0.03*e))", kFive, 400);
+  Budget budget({});
+  for (const relay::Collapse& collapse :
+       relay::find_collapses(*Rows(law), full(), 1500, 3, budget)) {
+    EXPECT_FALSE(collapse.is_smooth) << print(collapse.inner, law.names);
+  }
+}
+
+TEST(IndexFit, FindsExponentialsWavesAndTheirReciprocals) {
+  for (const std::string text : {"2*exp(-3*x) + 1", "4/(exp(2*x) - 1)", "sin(40*x)^2",
+                                 "sqrt(1 + 0.5*cos(9*x))", "3*tanh(0.7*x)", "2*log(1 + 5*x)"}) {
+    const DrawnLaw law(text, {{"x", 0.05, 4}}, 300);
+    Budget budget({});
+    const auto found = relay::find_function(*Rows(law), full(), budget);
+    ASSERT_TRUE(found) << text;
+    EXPECT_LT(law.error_of(*found), 1e-6) << text << ": " << print(*found, law.names);
+  }
+}
+
+}  // namespace
+}  // namespace tribench
