@@ -8,15 +8,18 @@
 #include <limits>
 #include <numbers>
 
+#include "foundation/order_statistics.hpp"
 #include "problems/preparation/motion_check.hpp"
 #include "problems/preparation/segments.hpp"
 
 namespace tribench {
 namespace {
 
-constexpr std::size_t kEdgeRows = 3;  // of a derived motion, at the ends of a piece
-constexpr double kUnresolved = 0.6;   // standard errors of the acceleration
-constexpr double kLeastDelay = 0.6;   // steps of time
+constexpr std::size_t kEdgeRows = 3;      // of a derived motion, at the ends of a piece
+constexpr double kUnresolved = 0.6;       // standard errors of the acceleration
+constexpr double kLeastDelay = 0.6;       // steps of time
+constexpr double kMuchNoisier = 4;        // than the derived velocity
+constexpr double kNormalMedian = 1.4826;  // standard deviations in a median magnitude
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -58,6 +61,18 @@ void replace_velocity(PreparedRecording& out, const DerivedMotion& derived) {
       q->name, motion.bandwidth, motion.velocity_noise, q->unit));
 }
 
+// What a velocity has beside the derived one, as a standard deviation; where the smoother does not
+// follow the two differ much, which the median does not see.
+double noise_beside(const DerivedMotion& derived, const std::vector<double>& velocity) {
+  std::vector<double> differences;
+  for (const RowRange& piece : derived.pieces) {
+    for (std::size_t i = piece.begin; i < piece.end; ++i) {
+      differences.push_back(std::abs(velocity[i] - derived.motion.velocity[i]));
+    }
+  }
+  return kNormalMedian * upper_median(std::move(differences));
+}
+
 }  // namespace
 
 void settle_velocity(PreparedRecording& out, const DerivedMotion& derived) {
@@ -71,10 +86,17 @@ void settle_velocity(PreparedRecording& out, const DerivedMotion& derived) {
       delay_of(t, derived.motion.velocity, v->values, derived.pieces);
   const double step = median_step(t, out.data.movement);
   // No filter runs ahead: a velocity that does was derived otherwise, and is left as it is.
-  if (!delay || *delay < kLeastDelay * step) return;
-  out.notes.push_back(
-      fmt::format("'{}' lags behind its position by {:.3g} ms, as a filtered velocity does",
-                  v->name, 1e3 * *delay));
+  if (delay && *delay >= kLeastDelay * step) {
+    out.notes.push_back(
+        fmt::format("'{}' lags behind its position by {:.3g} ms, as a filtered velocity does",
+                    v->name, 1e3 * *delay));
+    replace_velocity(out, derived);
+    return;
+  }
+  const double noise = noise_beside(derived, v->values);
+  if (noise < kMuchNoisier * derived.motion.velocity_noise) return;
+  out.notes.push_back(fmt::format("'{}' has more noise than its position gives ({:.2g} {})",
+                                  v->name, noise, v->unit));
   replace_velocity(out, derived);
 }
 

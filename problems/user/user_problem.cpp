@@ -98,9 +98,23 @@ std::optional<std::vector<std::string>> used_columns(const UserProblem& own) {
   return used;
 }
 
+// The column that has the role movement is no channel: what it says row by row is kept where a
+// group or a split asks for it.
+void keep_movement_names(const UserProblem& own, DataFile& rows) {
+  const auto column = std::ranges::find(rows.readings, Role::movement, &ColumnReading::role);
+  if (column == rows.readings.end()) return;
+  if (column->column != own.group && column->column != own.held_out.column) return;
+  TextColumn names{column->column, {}};
+  for (const int movement : rows.data.movement) {
+    names.values.push_back(rows.data.movement_names[static_cast<std::size_t>(movement)]);
+  }
+  rows.texts.push_back(std::move(names));
+}
+
 DataFile read_rows(const UserProblem& own, std::span<const DataSource> sources) {
   DataFile rows = read_named_columns(paths_of(sources), own.reading, used_columns(own));
   rows.data.name = sources.size() == 1 ? sources.front().file.string() : own.name;
+  keep_movement_names(own, rows);
   if (!own.group.empty()) {
     group_rows(rows, labels_in(rows, own.group));
   } else if (!rows.has_movements && sources.size() == 1) {
@@ -220,6 +234,39 @@ std::vector<char> test_movements(const UserProblem& own, const DataFile& rows, s
                              RandomStream(key_of(own.name)).split(seed).split("split"));
 }
 
+void check_motion_roles(const Dataset& data) {
+  for (const Role role : {Role::time, Role::position, Role::motor_torque}) {
+    if (data.find(role) != nullptr) continue;
+    throw_bad_input(
+        fmt::format("no column has the role {}", role_name(role)), data.name,
+        fmt::format("motion is simulated: say roles = \"COLUMN={}\" (with its unit), or "
+                    "leave out 'motion'",
+                    role_name(role)));
+  }
+}
+
+// What the motion is judged on: rows of test movements with every column.
+void set_motion(const UserProblem& own, const Dataset& data, const std::vector<char>& test,
+                const suite::LawReader& laws, Problem& problem) {
+  if (!own.motion) return;
+  check_motion_roles(data);
+  if (!own.motion->gravity.empty() && laws) {
+    try {
+      laws(own.motion->gravity, std::vector<std::string>{"q"});
+    } catch (const Error& error) {
+      throw_bad_input(error.what(), fmt::format("the gravity of problem '{}'", own.name),
+                      "write a formula in q, the position");
+    }
+  }
+  std::vector<std::size_t> kept;
+  for (std::size_t r = 0; r < data.rows(); ++r) {
+    if (test.empty() || test[static_cast<std::size_t>(data.movement[r])] != 0) kept.push_back(r);
+  }
+  const auto rows =
+      std::make_shared<const MotionCase>(select_rows({data, {}}, kept).data, *own.motion);
+  problem.motion = [rows] { return *rows; };
+}
+
 void widen_box(std::vector<Input>& inputs, const std::vector<Input>& others) {
   for (std::size_t j = 0; j < inputs.size(); ++j) {
     inputs[j].low = std::min(inputs[j].low, others[j].low);
@@ -263,12 +310,14 @@ Problem make_user_problem(const UserProblem& own, const suite::LawReader& laws,
     widen_box(problem.inputs, tested.inputs);
     problem.test = tested.stages.front().train;
     problem.test.truth = truth_of(own, laws, names, other.data);
+    set_motion(own, other.data, {}, laws, problem);
   } else if (own.held_out.kind != HeldOut::Kind::nothing) {
     const std::vector<char> test = test_movements(own, rows, seed);
     std::vector<char> train(test);
     for (char& mark : train) mark = mark == 0 ? 1 : 0;
     stage.train = make_table(known, problem.inputs, own.target, train);
     problem.test = make_table(known, problem.inputs, own.target, test);
+    set_motion(own, rows.data, test, laws, problem);
   }
   set_units_and_box(own, problem);
   return problem;

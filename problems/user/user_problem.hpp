@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -55,6 +56,9 @@ struct UserProblem {
   std::string law;                           // over the inputs, where it is known
   std::map<std::string, std::string> units;  // what figures are labelled with; converts nothing
   std::map<std::string, std::pair<double, double>> box;  // else the rows' ranges
+  // What a formula's motion is judged by on the rows that test; their roles say which columns are
+  // the time, the position and the motor torque.
+  std::optional<MotionTerms> motion = {};
 
   // Of all its files: 12 hexadecimal digits, of a single file the first of its SHA-256.
   std::string hash() const;

@@ -20,7 +20,7 @@ const std::vector<std::string>& problem_keys() {
   static const std::vector<std::string> kKeys = [] {
     std::vector<std::string> keys = {"name",   "file",   "files",  "folder", "glob",
                                      "sha256", "target", "inputs", "group",  "split",
-                                     "law",    "units",  "box"};
+                                     "law",    "units",  "box",    "motion"};
     keys.insert(keys.end(), data_option_keys().begin(), data_option_keys().end());
     return keys;
   }();
@@ -125,6 +125,27 @@ std::map<std::string, std::pair<double, double>> read_box(const TomlTable& table
   return box;
 }
 
+std::optional<MotionTerms> read_motion(const TomlTable& problem) {
+  if (!problem.has("motion")) return {};
+  constexpr double kLargest = 1e12;
+  const TomlTable table = problem.table("motion", {"gravity", "inertia", "hold", "horizon"});
+  MotionTerms terms;
+  table.read("gravity", terms.gravity);
+  table.read("inertia", terms.inertia, 0, kLargest);
+  table.read("hold", terms.hold);
+  table.read("horizon", terms.horizon_s, 0, kLargest);
+  return terms;
+}
+
+toml::table motion_table(const MotionTerms& terms) {
+  toml::table table;
+  if (!terms.gravity.empty()) table.insert("gravity", terms.gravity);
+  if (terms.inertia != 0) table.insert("inertia", terms.inertia);
+  if (terms.hold) table.insert("hold", true);
+  if (terms.horizon_s != 0) table.insert("horizon", terms.horizon_s);
+  return table;
+}
+
 UserProblem read_one(const TomlTable& table, const fs::path& folder) {
   UserProblem own;
   table.require("target");
@@ -145,6 +166,7 @@ UserProblem read_one(const TomlTable& table, const fs::path& folder) {
   table.read("law", own.law);
   own.units = read_units(table);
   own.box = read_box(table);
+  own.motion = read_motion(table);
   return own;
 }
 
@@ -246,6 +268,7 @@ toml::table problem_table(const UserProblem& own, FileNames names, const fs::pat
     box.insert(input, toml::array{range.first, range.second});
   }
   if (!box.empty()) table.insert("box", std::move(box));
+  if (own.motion) table.insert("motion", motion_table(*own.motion));
   return table;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "reports/html/embedded.hpp"
+#include "reports/markup.hpp"
 
 namespace tribench {
 namespace {

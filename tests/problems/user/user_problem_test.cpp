@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <set>
 
@@ -168,6 +169,55 @@ TEST_F(UserProblems, TheHashIsTheFilesAndAChangedFileIsRefused) {
   }
 }
 
+// Two recordings of three rows each, cut by a column that names them.
+constexpr const char* kRecordings =
+    "t,q,v,u,run\n0,0,1,2,up\n0.1,0.1,1,2,up\n0.2,0.2,1,2,up\n"
+    "0,0.2,-1,-2,down\n0.1,0.1,-1,-2,down\n0.2,0,-1,-2,down\n";
+
+TEST_F(UserProblems, TheColumnThatIsTheMovementSplitsAndGroups) {
+  write("logs/two.csv", kRecordings);
+  const std::string head =
+      "[[problem]]\nname = \"m\"\nfile = \"logs/two.csv\"\ntarget = \"u\"\ninputs = [\"v\"]\n"
+      "roles = \"run=movement\"\n";
+  for (const char* group : {"", "group = \"run\"\n"}) {
+    const Problem problem = make_user_problem(
+        parse(head + group + "split = { column = \"run\", values = [\"down\"] }\n").front(), {}, 1);
+    EXPECT_THAT(problem.test.target, ElementsAre(-2, -2, -2));
+    EXPECT_THAT(problem.stages.front().train.target, ElementsAre(2, 2, 2));
+  }
+  const std::string text = head + "split = { column = \"run\", values = [\"left\"] }\n";
+  try {
+    make_user_problem(parse(text).front(), {}, 1);
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("values there: down, up"));
+  }
+}
+
+TEST_F(UserProblems, MotionIsJudgedOnTheRowsThatTestAndWantsItsColumns) {
+  write("logs/two.csv", kRecordings);
+  const std::string head =
+      "[[problem]]\nname = \"m\"\nfile = \"logs/two.csv\"\ntarget = \"u\"\ninputs = [\"v\"]\n"
+      "split = { column = \"run\", values = [\"down\"] }\nmotion = { inertia = 3 }\n";
+  const std::string roles =
+      "roles = \"run=movement,t=time[ms],q=position[deg],u=motor_torque,v=velocity\"\n";
+  const Problem problem = make_user_problem(parse(head + roles).front(), {}, 1);
+  ASSERT_TRUE(problem.motion);
+  const MotionCase judged = problem.motion();
+  EXPECT_EQ(judged.terms.inertia, 3);
+  EXPECT_THAT(judged.test.at("u").values, ElementsAre(-2, -2, -2));
+  EXPECT_NEAR(judged.test.find(Role::time)->values[1], 1e-4, 1e-18);
+  EXPECT_NEAR(judged.test.find(Role::position)->values[1], 0.1 * M_PI / 180, 1e-18);
+  try {
+    make_user_problem(parse(head + "roles = \"run=movement,t=time,u=motor_torque\"\n").front(), {},
+                      1);
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("two.csv"), HasSubstr("role position"), HasSubstr("motion")));
+  }
+}
+
 TEST_F(UserProblems, PrintsAsItReads) {
   write("logs/two.csv", "v,tau\n1,2\n3,4\n");
   const std::vector<UserProblem> own = parse(R"([[problem]]
@@ -187,6 +237,7 @@ split = { share = 0.125, seeds = [3, 4] }
 law = "v"
 units = { v = "rad/s" }
 box = { v = [-100, 100] }
+motion = { gravity = "sin(q)*5", inertia = 1.5, hold = true, horizon = 0.5 }
 
 [[problem]]
 name = "other"
@@ -199,7 +250,11 @@ name = "third"
 files = ["logs/one.csv"]
 target = "tau"
 split = { column = "fold", values = ["0", "1"] }
+motion = {}
 )");
+  EXPECT_EQ(own[0].motion, (MotionTerms{1.5, "sin(q)*5", true, 0.5}));
+  EXPECT_FALSE(own[1].motion);
+  EXPECT_EQ(own[2].motion, MotionTerms{});
   for (const UserProblem& one : own) {
     const std::string text = print_user_problem(one);
     const std::vector<UserProblem> again = parse_user_problems(text, "t.toml", {});
