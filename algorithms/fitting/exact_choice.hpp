@@ -4,6 +4,9 @@
 // explain them to rounding. Evidence and posterior weigh errors against each other however small
 // they are; between 1e-9 and 1e-12 of the target that compares how far constants were polished.
 //
+// A formula that meets the few largest rows of a target over many decades, and those alone, is none
+// of them: nine tenths of the rows, those nearest to the median, count by themselves too.
+//
 // Where the best formula leaves more than kNearlyExact of the target there is noise, or the law was
 // not found, and there is no such choice: see posterior_choice.hpp.
 #pragma once

@@ -34,19 +34,27 @@ bool share_an_input(const KnownFactor& a, const KnownFactor& b) {
 }
 
 // Exponents of one to four factors that share no input, the first of them positive, small ones
-// first.
+// first; of the first `inputs` factors alone before those with others.
 std::vector<std::vector<double>> inner_exponents(const Factors& factors, std::size_t most) {
   std::vector<std::vector<double>> all;
   std::vector<std::size_t> chosen;
   std::vector<double> b(factors.size(), 0.0);
+  const std::size_t inputs =
+      static_cast<std::size_t>(std::ranges::count(factors, FactorKind::input, &KnownFactor::kind));
+  bool with_others = false;
+  const auto is_new = [&] {
+    // (2, -2) says what (1, -1) says.
+    return std::ranges::any_of(b, [](double x) { return std::abs(x) == 1; }) &&
+           (!with_others || chosen.back() >= inputs);
+  };
   const auto extend = [&](auto&& self, std::size_t next, int left) -> void {
     if (left == 0) {
-      // (2, -2) says what (1, -1) says.
-      if (std::ranges::any_of(b, [](double x) { return std::abs(x) == 1; })) all.push_back(b);
+      if (is_new()) all.push_back(b);
       return;
     }
     if (chosen.size() == 4) return;
-    for (std::size_t k = next; k < factors.size() && all.size() < most; ++k) {
+    const std::size_t end = with_others ? factors.size() : inputs;
+    for (std::size_t k = next; k < end && all.size() < most; ++k) {
       if (std::ranges::any_of(chosen, [&](std::size_t other) {
             return share_an_input(factors[k], factors[other]);
           })) {
@@ -62,7 +70,14 @@ std::vector<std::vector<double>> inner_exponents(const Factors& factors, std::si
       }
     }
   };
-  for (int degree = 1; degree <= 8 && all.size() < most; ++degree) extend(extend, 0, degree);
+  for (const bool others : {false, true}) {
+    with_others = others;
+    // The inputs alone leave half of the orders to the others.
+    const std::size_t quota = most;
+    if (!others) most = (most + 1) / 2;
+    for (int degree = 1; degree <= 8 && all.size() < most; ++degree) extend(extend, 0, degree);
+    most = quota;
+  }
   return all;
 }
 

@@ -76,6 +76,28 @@ struct Sum {
   double left = HUGE_VAL;          // of the target's square, 1 without terms
 };
 
+// The kBeam sums that leave least, each once.
+struct Best {
+  std::vector<Sum> sums;
+  double bound = HUGE_VAL;
+
+  void add(Sum sum) {
+    sums.push_back(std::move(sum));
+    if (sums.size() >= 4 * kBeam) cut();
+  }
+  void cut() {
+    std::ranges::stable_sort(sums, {}, &Sum::left);
+    std::set<std::vector<std::size_t>> seen;
+    std::erase_if(sums, [&](const Sum& sum) { return !seen.insert(sum.terms).second; });
+    if (sums.size() > kBeam) sums.resize(kBeam);
+    if (sums.size() == kBeam) bound = sums.back().left;
+  }
+  std::vector<Sum> taken() {
+    cut();
+    return std::move(sums);
+  }
+};
+
 // Least squares of subsets of columns scaled to unit length, from one Gram matrix; the target is
 // the last column.
 class SubsetFits {
@@ -99,17 +121,40 @@ class SubsetFits {
 
   std::vector<Sum> best_pairs() const {
     Best best;
-    for (std::size_t i = 0; i < columns_; ++i) {
-      const double a = with_target(i);
-      for (std::size_t j = i + 1; j < columns_; ++j) {
-        if (once_[i] != 0 && once_[j] != 0) continue;
-        const double b = with_target(j);
-        const double c = gram_[i * stride_ + j];
-        const double determinant = 1 - c * c;
-        if (!(determinant > 1e-12)) continue;
-        const double left = 1 - (a * a + b * b - 2 * a * b * c) / determinant;
-        if (left < best.bound) best.add({{i, j}, left});
+    std::vector<std::size_t> all(columns_);
+    std::iota(all.begin(), all.end(), 0);
+    add_pairs(all, gram_, {}, 1, best);
+    return best.taken();
+  }
+
+  // All sums of one column marked `once` and two others.
+  std::vector<Sum> best_with_one_marked() const {
+    Best best;
+    std::vector<std::size_t> others;
+    for (std::size_t k = 0; k < columns_; ++k) {
+      if (once_[k] == 0) others.push_back(k);
+    }
+    std::vector<double> gram;
+    for (std::size_t k = 0; k < columns_; ++k) {
+      if (once_[k] == 0) continue;
+      gram = gram_;
+      const double with_it = with_target(k);
+      // What is left of all columns without their part along column k, scaled to unit length.
+      std::vector<double> scale(stride_, 1.0);
+      for (std::size_t i = 0; i < stride_; ++i) {
+        const double along = gram_[i * stride_ + k];
+        const double square = gram_[i * stride_ + i] - along * along;
+        scale[i] = square > 1e-10 ? 1 / std::sqrt(square) : 0;
       }
+      scale[columns_] = 1;
+      for (std::size_t i = 0; i < stride_; ++i) {
+        const double along = gram_[i * stride_ + k];
+        for (std::size_t j = 0; j < stride_; ++j) {
+          gram[i * stride_ + j] =
+              (gram[i * stride_ + j] - along * gram_[k * stride_ + j]) * scale[i] * scale[j];
+        }
+      }
+      add_pairs(others, gram, {k}, 1 - with_it * with_it, best);
     }
     return best.taken();
   }
@@ -155,28 +200,30 @@ class SubsetFits {
   }
 
  private:
-  // The kBeam sums that leave least, each once.
-  struct Best {
-    std::vector<Sum> sums;
-    double bound = HUGE_VAL;
-
-    void add(Sum sum) {
-      sums.push_back(std::move(sum));
-      if (sums.size() >= 4 * kBeam) cut();
+  // All pairs of `among` beside `terms`, which leave `left`; the Gram matrix has unit diagonal, or
+  // 0 where nothing is left of a column.
+  void add_pairs(std::span<const std::size_t> among, const std::vector<double>& gram,
+                 const std::vector<std::size_t>& terms, double left, Best& best) const {
+    for (std::size_t p = 0; p < among.size(); ++p) {
+      const std::size_t i = among[p];
+      const double a = gram[i * stride_ + columns_];
+      for (std::size_t q = p + 1; q < among.size(); ++q) {
+        const std::size_t j = among[q];
+        if (once_[i] != 0 && once_[j] != 0) continue;
+        const double b = gram[j * stride_ + columns_];
+        const double c = gram[i * stride_ + j];
+        const double determinant = 1 - c * c;
+        if (!(determinant > 1e-12)) continue;
+        const double rest = left - (a * a + b * b - 2 * a * b * c) / determinant;
+        if (!(rest < best.bound)) continue;
+        Sum sum{terms, rest};
+        sum.terms.push_back(i);
+        sum.terms.push_back(j);
+        std::ranges::sort(sum.terms);
+        best.add(std::move(sum));
+      }
     }
-    void cut() {
-      std::ranges::stable_sort(sums, {}, &Sum::left);
-      std::set<std::vector<std::size_t>> seen;
-      std::erase_if(sums, [&](const Sum& sum) { return !seen.insert(sum.terms).second; });
-      if (sums.size() > kBeam) sums.resize(kBeam);
-      if (sums.size() == kBeam) bound = sums.back().left;
-    }
-    std::vector<Sum> taken() {
-      cut();
-      return std::move(sums);
-    }
-  };
-
+  }
   double with_target(std::size_t i) const { return gram_[i * stride_ + columns_]; }
 
   std::vector<double> gram_;
@@ -322,6 +369,7 @@ std::optional<Expression> Search::run(TargetForm form, bool is_ratio, Budget& bu
   columns::gram(pointers.data(), count + 1, n, gram.data());
   const SubsetFits fits(std::move(gram), std::move(once));
   std::vector<Sum> sums = fits.best_pairs();
+  bool is_marked_tried = !is_ratio;
   for (std::size_t terms = 2; !sums.empty(); ++terms) {
     for (const Sum& sum : sums) {
       if (sum.left > kPromising * kPromising) break;
@@ -335,6 +383,10 @@ std::optional<Expression> Search::run(TargetForm form, bool is_ratio, Budget& bu
     }
     if (terms == kMostTerms || !budget.spend(kBeam * count * terms * terms)) break;
     sums = fits.grown(sums);
+    if (is_marked_tried || !budget.spend(count * count * count / 8)) continue;
+    is_marked_tried = true;
+    std::ranges::copy(fits.best_with_one_marked(), std::back_inserter(sums));
+    std::ranges::stable_sort(sums, {}, &Sum::left);
   }
   return std::nullopt;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "algorithms/expression/text.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 namespace {
@@ -42,6 +43,22 @@ TEST(ExactChoice, LeavesTheChoiceWhereThereIsNoiseOrTheLawWasNotFound) {
 
 TEST(ExactChoice, DoesNotTakeASimplerFormulaThatIsMerelyGood) {
   EXPECT_EQ(choice_of({"2.00001*v^2", "2*v^2 + 1e-14*v"}), 1U);
+}
+
+TEST(ExactChoice, AsksForTheBulkOfTheRowsToo) {
+  std::vector<double> v;
+  std::vector<double> target;
+  for (int r = 0; r < 100; ++r) {
+    v.push_back(0.5 * r);
+    target.push_back(elementary::exp(v.back()) - 1);
+  }
+  const double* column = v.data();
+  const Inputs rows{{&column, 1}, v.size()};
+  const std::vector<Expression> formulas = {parse("exp(v)", kNames),
+                                            parse("exp(49.5*exp(20*v - 990))", kNames),
+                                            parse("exp(v) - 1", kNames)};
+  EXPECT_EQ(simplest_exact({formulas.data(), 2}, rows, target), 0U);
+  EXPECT_EQ(simplest_exact({formulas.data() + 1, 1}, rows, target), std::nullopt);
 }
 
 }  // namespace
