@@ -10,177 +10,14 @@
 #include <limits>
 #include <utility>
 
-#include "algorithms/exploration/foresight.hpp"
 #include "foundation/elementary.hpp"
 
 namespace tribench::loop {
 namespace {
 
-// Of the prior: what share each number of missing effects has.
-constexpr double kNone = 0.2;
-constexpr double kOne = 0.25;
-constexpr double kUnknown = 0.1;
-constexpr double kTwo = 0.25;
-constexpr double kWithUnknown = 0.1;
-constexpr double kThree = 0.1;
-
-constexpr std::size_t kBlocksInPairs = 6;  // of a family, the best by themselves
-constexpr std::size_t kBlocksBesideUnknown = 2;
-constexpr std::size_t kBlocksInTriples = 2;
-constexpr std::size_t kPairsToExtend = 5;
-
-double log_sum(std::span<const double> logs) {
-  if (logs.empty()) return -std::numeric_limits<double>::infinity();
-  const double top = *std::ranges::max_element(logs);
-  double sum = 0;
-  for (const double x : logs) sum += elementary::exp(x - top);
-  return top + elementary::log(sum);
-}
-
-double choose(double n, int k) { return k == 2 ? n * (n - 1) / 2 : n * (n - 1) * (n - 2) / 6; }
-
-// All explanations with their evidence on one table.
-class ExplanationSearch {
- public:
-  ExplanationSearch(const ExplanationSpace& space, const EvidenceTable& table)
-      : space_(space), table_(table) {
-    for (const ExplainingFamily& family : space.families()) {
-      (family.unknown ? unknown_ : library_) += 1;
-    }
-    add({}, {}, 0, elementary::log(kNone));
-    add_singles();
-    add_pairs();
-    add_triples();
-  }
-
-  std::vector<Explanation> found;
-
- private:
-  void add(std::vector<std::size_t> families, std::vector<const ColumnBlock*> blocks,
-           double log_evidence, double log_prior) {
-    Explanation one;
-    one.verdict = verdict_of(space_, families);
-    one.families = std::move(families);
-    one.blocks = std::move(blocks);
-    one.log_evidence = log_evidence;
-    one.log_prior = log_prior;
-    found.push_back(std::move(one));
-  }
-
-  void add_singles() {
-    const auto& families = space_.families();
-    top_.resize(families.size());
-    for (std::size_t f = 0; f < families.size(); ++f) {
-      std::vector<double> logs;
-      std::vector<std::pair<double, const ColumnBlock*>> ranked;
-      for (const ColumnBlock& block : families[f].blocks) {
-        const std::array<const ColumnBlock*, 1> one = {&block};
-        logs.push_back(table_.log_factor(one));
-        ranked.emplace_back(logs.back(), &block);
-      }
-      std::ranges::stable_sort(ranked,
-                               [](const auto& a, const auto& b) { return a.first > b.first; });
-      for (std::size_t k = 0; k < std::min(ranked.size(), kBlocksInPairs); ++k) {
-        top_[f].push_back(ranked[k].second);
-      }
-      // What lives somewhere is looked for as a whole and where it is most, however narrow.
-      if (families[f].unknown) {
-        const auto& blocks = families[f].blocks;
-        const ColumnBlock& whole = *std::ranges::max_element(blocks, {}, &ColumnBlock::size);
-        std::erase(top_[f], &whole);
-        top_[f].insert(top_[f].begin(), &whole);
-      }
-      const bool unknown = families[f].unknown;
-      const double prior = unknown ? kUnknown / unknown_ : kOne / library_;
-      add({f}, {ranked.front().second},
-          log_sum(logs) - elementary::log(static_cast<double>(logs.size())),
-          elementary::log(prior));
-    }
-  }
-
-  // Each combination of the families' best blocks; the others count as nothing.
-  void add_set(const std::vector<std::size_t>& families, std::span<const ColumnBlock* const> fixed,
-               std::size_t most, double prior) {
-    std::vector<double> logs;
-    double all = 1;
-    for (const std::size_t f : families) {
-      all *= static_cast<double>(space_.families()[f].blocks.size());
-    }
-    std::vector<const ColumnBlock*> best;
-    double best_log = -std::numeric_limits<double>::infinity();
-    std::vector<const ColumnBlock*> blocks(families.size());
-    const auto try_block = [&](auto&& self, std::size_t place) -> void {
-      if (place == families.size()) {
-        logs.push_back(table_.log_factor(blocks));
-        if (logs.back() > best_log) {
-          best_log = logs.back();
-          best = blocks;
-        }
-        return;
-      }
-      if (place < fixed.size()) {
-        blocks[place] = fixed[place];
-        self(self, place + 1);
-        return;
-      }
-      const auto& top = top_[families[place]];
-      for (std::size_t k = 0; k < std::min(most, top.size()); ++k) {
-        blocks[place] = top[k];
-        self(self, place + 1);
-      }
-    };
-    try_block(try_block, 0);
-    add(families, best, log_sum(logs) - elementary::log(all), elementary::log(prior));
-  }
-
-  void add_pairs() {
-    const auto& families = space_.families();
-    for (std::size_t f = 0; f < families.size(); ++f) {
-      if (families[f].unknown) continue;
-      for (std::size_t g = f + 1; g < families.size(); ++g) {
-        const double prior =
-            families[g].unknown ? kWithUnknown / (library_ * unknown_) : kTwo / choose(library_, 2);
-        // Those of many columns take long.
-        add_set({f, g}, {}, families[g].unknown ? kBlocksBesideUnknown : kBlocksInPairs, prior);
-      }
-    }
-  }
-
-  void add_triples() {
-    std::vector<std::size_t> pairs;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      if (found[i].families.size() == 2) pairs.push_back(i);
-    }
-    const auto likelier = [&](std::size_t a, std::size_t b) {
-      return found[a].log_evidence + found[a].log_prior >
-             found[b].log_evidence + found[b].log_prior;
-    };
-    std::ranges::stable_sort(pairs, likelier);
-    pairs.resize(std::min(pairs.size(), kPairsToExtend));
-    std::vector<std::vector<std::size_t>> done;
-    for (const std::size_t i : pairs) {
-      for (std::size_t f = 0; f < space_.families().size(); ++f) {
-        const Explanation pair = found[i];
-        if (std::ranges::count(pair.families, f) > 0) continue;
-        const bool two_unknown =
-            space_.families()[f].unknown && space_.families()[pair.families[1]].unknown;
-        std::vector<std::size_t> families = pair.families;
-        families.push_back(f);
-        std::vector<std::size_t> sorted = families;
-        std::ranges::sort(sorted);
-        if (two_unknown || std::ranges::count(done, sorted) > 0) continue;
-        done.push_back(sorted);
-        add_set(families, pair.blocks, kBlocksInTriples, kThree / choose(library_ + unknown_, 3));
-      }
-    }
-  }
-
-  const ExplanationSpace& space_;
-  const EvidenceTable& table_;
-  double library_ = 0;
-  double unknown_ = 0;
-  std::vector<std::vector<const ColumnBlock*>> top_;  // per family
-};
+// Changes of the noise that are worth summing up all rows again.
+constexpr double kOtherCorrelation = 0.04;
+constexpr double kOtherRatio = 1.2;
 
 // Posterior and e-values; the most likely first.
 void weigh(std::vector<Explanation>& all) {
@@ -194,54 +31,27 @@ void weigh(std::vector<Explanation>& all) {
   std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.weight > b.weight; });
 }
 
-// What is left of the target with base and explanation in, by plain least squares with the blocks'
-// priors.
-Eigen::VectorXd residual_of(const Explanation& one, const Eigen::MatrixXd& base,
-                            const Eigen::MatrixXd& columns, const Eigen::VectorXd& target,
-                            std::size_t& fitted) {
+// Of an explanation's columns in one matrix of all columns.
+Eigen::MatrixXd own_columns(const Explanation& one, const Eigen::MatrixXd& columns) {
   ColumnBlock all;
-  for (const ColumnBlock* block : one.blocks) all.insert(all.end(), block->begin(), block->end());
-  fitted = static_cast<std::size_t>(base.cols()) + all.size();
-  Eigen::VectorXd rest = target;
-  if (!all.empty()) {
-    Eigen::MatrixXd own(columns.rows(), static_cast<Eigen::Index>(all.size()));
-    ColumnBlock place;
-    for (const Eigen::Index j : all) {
-      place.push_back(static_cast<Eigen::Index>(place.size()));
-      own.col(place.back()) = columns.col(j);
-    }
-    const std::array<const ColumnBlock*, 1> block = {&place};
-    rest -= own * EvidenceTable(base, own, target).posterior(block).mean;
+  for (const EffectBlock* block : one.blocks) {
+    all.insert(all.end(), block->columns.begin(), block->columns.end());
   }
-  return rest - base * least_squares(base, rest);
+  all.insert(all.end(), one.misfit.begin(), one.misfit.end());
+  return columns(Eigen::all, all);
 }
+
+Clusters clusters_of(std::span<const std::size_t> sizes) {
+  std::vector<int> movement;
+  for (std::size_t m = 0; m < sizes.size(); ++m) {
+    movement.insert(movement.end(), sizes[m], static_cast<int>(m));
+  }
+  return make_clusters(movement, 1);
+}
+
+bool alike(double a, double b) { return a <= kOtherRatio * b && b <= kOtherRatio * a; }
 
 }  // namespace
-
-std::string verdict_of(const ExplanationSpace& space, const std::vector<std::size_t>& families) {
-  std::vector<std::string> names;
-  std::vector<std::string> inputs;
-  for (const std::size_t f : families) {
-    const ExplainingFamily& family = space.families()[f];
-    if (family.unknown) continue;
-    names.push_back(family.name);
-    inputs.insert(inputs.end(), family.inputs.begin(), family.inputs.end());
-  }
-  const bool elsewhere = std::ranges::any_of(families, [&](std::size_t f) {
-    const ExplainingFamily& family = space.families()[f];
-    return family.unknown && std::ranges::any_of(family.inputs, [&](const std::string& input) {
-             return std::ranges::count(inputs, input) == 0;
-           });
-  });
-  std::ranges::sort(names);
-  if (elsewhere) names.emplace_back(kUnknownVerdict);
-  return names.empty() ? "NONE" : fmt::format("{}", fmt::join(names, "+"));
-}
-
-bool Assessment::sure() const {
-  return std::ranges::all_of(
-      alive, [&](std::size_t i) { return explanations[i].verdict == best().verdict; });
-}
 
 double Assessment::weight_of(const std::string& verdict) const {
   double sum = 0;
@@ -249,37 +59,122 @@ double Assessment::weight_of(const std::string& verdict) const {
   return sum;
 }
 
-Assessment assess(const ExplanationSpace& space, const Observations& rows,
-                  const Observations& foreseen, double alpha, const Explanation& before) {
-  Assessment out;
-  // Together: what a smoother's interval is follows from all rows it is asked for.
-  const std::array<const Observations*, 2> parts = {&rows, &foreseen};
-  const Eigen::MatrixXd all = space.columns(joined(parts));
-  const auto count = static_cast<Eigen::Index>(rows.rows());
-  out.base = space.base_columns(rows);
-  out.columns = all.topRows(count);
-  out.foreseen_base = space.base_columns(foreseen);
-  out.foreseen_columns = all.bottomRows(all.rows() - count);
+void Assessor::add(const Observations& rows) {
+  if (rows.rows() == 0) return;
+  const Eigen::MatrixXd base = space_.base_columns(rows);
+  const Eigen::MatrixXd columns = space_.columns(rows);
   const Eigen::VectorXd target = target_vector(rows);
-  Clusters clusters = make_clusters(rows.movement, 1);
-  std::size_t fitted = 0;
-  const Eigen::VectorXd rest = residual_of(before, out.base, out.columns, target, fitted);
-  const double floor = 1e-9 * std::sqrt(target.squaredNorm() / static_cast<double>(rows.rows()));
-  clusters.weight = movement_weights(rest, clusters);
-  out.noise = estimate_noise(rest, clusters, fitted, floor);
-  out.noise.whitening = out.noise.rho;
-  out.base = whitened(std::move(out.base), clusters, out.noise);
-  out.columns = whitened(std::move(out.columns), clusters, out.noise);
-  out.table = EvidenceTable(out.base, out.columns, whitened(target, clusters, out.noise));
-  ExplanationSearch search(space, out.table);
-  weigh(search.found);
-  out.explanations = std::move(search.found);
-  out.variance = out.table.posterior(out.best().blocks).variance;
-  const double limit = -elementary::log(alpha);
-  for (std::size_t i = 0; i < out.explanations.size(); ++i) {
-    if (out.explanations[i].log_e_value < limit) out.alive.push_back(i);
+  for (const RowRange& range : make_clusters(rows.movement, 1).movements) {
+    const auto first = static_cast<Eigen::Index>(range.begin);
+    const auto count = static_cast<Eigen::Index>(range.size());
+    seen_.push_back({base.middleRows(first, count), columns.middleRows(first, count),
+                     target.segment(first, count)});
   }
-  return out;
+}
+
+Noise Assessor::noise_left_by(const Explanation& one, std::vector<double>& weights) const {
+  std::vector<std::size_t> sizes;
+  std::size_t rows = 0;
+  for (const SeenMovement& movement : seen_) {
+    sizes.push_back(static_cast<std::size_t>(movement.base.rows()));
+    rows += sizes.back();
+  }
+  const Eigen::Index base_count = seen_.front().base.cols();
+  auto own_count = static_cast<Eigen::Index>(one.misfit.size());
+  for (const EffectBlock* block : one.blocks) {
+    own_count += static_cast<Eigen::Index>(block->columns.size());
+  }
+  Eigen::MatrixXd base(static_cast<Eigen::Index>(rows), base_count);
+  Eigen::MatrixXd own(static_cast<Eigen::Index>(rows), own_count);
+  Eigen::VectorXd rest(static_cast<Eigen::Index>(rows));
+  Eigen::Index next = 0;
+  for (const SeenMovement& movement : seen_) {
+    const Eigen::Index count = movement.base.rows();
+    base.middleRows(next, count) = movement.base;
+    own.middleRows(next, count) = own_columns(one, movement.columns);
+    rest.segment(next, count) = movement.target;
+    next += count;
+  }
+  const double squares = rest.squaredNorm();
+  if (!one.blocks.empty()) {
+    // The same blocks by their places in `own`.
+    std::vector<EffectBlock> blocks;
+    std::vector<const EffectBlock*> pointers;
+    Eigen::Index column = 0;
+    const auto renumbered = [&](std::size_t count) {
+      ColumnBlock block;
+      while (block.size() < count) block.push_back(column++);
+      return block;
+    };
+    for (const EffectBlock* block : one.blocks) {
+      blocks.push_back({renumbered(block->columns.size()), block->size});
+    }
+    for (const EffectBlock& block : blocks) pointers.push_back(&block);
+    const ColumnBlock misfit = renumbered(one.misfit.size());
+    EvidenceSums sums;
+    sums.add(base, own, rest);
+    rest -= own * EvidenceTable(sums).posterior(pointers, misfit).mean;
+  }
+  rest -= base * least_squares(base, rest);
+  Clusters clusters = clusters_of(sizes);
+  weights = movement_weights(rest, clusters);
+  clusters.weight = weights;
+  const double floor = 1e-9 * std::sqrt(squares / static_cast<double>(rows));
+  Noise noise =
+      estimate_noise(rest, clusters, static_cast<std::size_t>(base_count + own_count), floor);
+  noise.whitening = noise.rho;
+  return noise;
+}
+
+bool Assessor::noise_is_as_it_was(const Noise& noise, const std::vector<double>& weights) const {
+  if (last_.sums.rows() == 0) return false;
+  const Noise& before = last_.noise;
+  if (std::abs(noise.rho - before.rho) > kOtherCorrelation) return false;
+  // As they shrink a movement's offset.
+  const auto offsets = [](const Noise& one) {
+    return 1 + one.between_sd * one.between_sd / (one.within_sd * one.within_sd);
+  };
+  if (!alike(offsets(noise), offsets(before))) return false;
+  for (std::size_t m = 0; m < seen_.size(); ++m) {
+    if (seen_[m].weight > 0 && !alike(seen_[m].weight, weights[m])) return false;
+  }
+  return true;
+}
+
+void Assessor::sum_up(SeenMovement& movement, double weight) {
+  const std::array<std::size_t, 1> size = {static_cast<std::size_t>(movement.base.rows())};
+  Clusters clusters = clusters_of(size);
+  clusters.weight = {weight};
+  last_.sums.add(whitened(movement.base, clusters, last_.noise),
+                 whitened(movement.columns, clusters, last_.noise),
+                 whitened(movement.target, clusters, last_.noise));
+  movement.weight = weight;
+}
+
+const Assessment& Assessor::look() {
+  std::vector<double> weights;
+  const Explanation before = last_.explanations.empty() ? Explanation() : Explanation(last_.best());
+  const Noise noise = noise_left_by(before, weights);
+  if (!noise_is_as_it_was(noise, weights)) {
+    last_.noise = noise;
+    last_.sums = {};
+    for (SeenMovement& movement : seen_) movement.weight = 0;
+  }
+  for (std::size_t m = 0; m < seen_.size(); ++m) {
+    if (seen_[m].weight == 0) sum_up(seen_[m], weights[m]);
+  }
+  last_.table = EvidenceTable(last_.sums);
+  FoundExplanations found = find_explanations(space_, last_.table);
+  weigh(found.explanations);
+  last_.explanations = std::move(found.explanations);
+  last_.blocks = std::move(found.blocks);
+  last_.variance = last_.table.posterior(last_.best().blocks, last_.best().misfit).variance;
+  const double limit = -elementary::log(alpha_);
+  last_.alive.clear();
+  for (std::size_t i = 0; i < last_.explanations.size(); ++i) {
+    if (last_.explanations[i].log_e_value < limit) last_.alive.push_back(i);
+  }
+  return last_;
 }
 
 }  // namespace tribench::loop

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,15 +13,38 @@
 
 #include "algorithms/diagnosis/smoothers.hpp"
 #include "algorithms/effects/effect_library.hpp"
-#include "algorithms/exploration/foresight.hpp"
 
 namespace tribench::loop {
 namespace {
 
 // More columns than this are not tried as one block: most would be there for nothing.
 constexpr std::size_t kWholeFamily = 10;
-constexpr double kExpected = 1.5;          // root mean square of an effect, in the noise's
+// Root mean squares of an effect, in the noise's, that one expects: it may be small.
+constexpr std::array<double, 2> kSizes = {1.5, 0.4};
 constexpr double kExplainedByBase = 1e-4;  // of a column's squares, on the reference
+
+constexpr double kMisfit = 0.4;  // of the noise: what one expects of a family's misfit
+constexpr Eigen::Index kMisfitColumns = 6;
+constexpr Eigen::Index kMisfitCentres = 3;
+constexpr double kLeastMisfit = 1e-4;  // of the variance of the direction of most
+
+// Where something else is looked for as a whole, and the finer grid for something narrow.
+struct PlaceGrid {
+  const char* signal;
+  Eigen::Index centres;
+  Eigen::Index narrow;
+};
+constexpr std::array<PlaceGrid, 8> kGrids = {{{"v", 10, 24},
+                                              {"q", 20, 40},
+                                              {"g", 8, 0},
+                                              {"T", 6, 0},
+                                              {"t", 12, 0},
+                                              {"d", 8, 0},
+                                              {"a", 8, 0},
+                                              {"v2", 6, 0}}};
+// Of a product: the coarser, the position finer.
+constexpr Eigen::Index kCoarse = 3;
+constexpr Eigen::Index kFiner = 6;
 
 // Atoms of one template: a curve whose shape parameter lies between grid points is nearly a sum of
 // its neighbours.
@@ -54,19 +79,19 @@ ColumnBlock merged(const ColumnBlock& first, const ColumnBlock& second) {
   return out;
 }
 
-std::vector<ColumnBlock> blocks_of(const std::vector<Template>& templates) {
-  std::vector<ColumnBlock> blocks;
+std::vector<EffectBlock> blocks_of(const std::vector<Template>& templates) {
+  std::vector<EffectBlock> blocks;
   ColumnBlock whole;
   for (const Template& main : templates) {
     if (main.beside) continue;
-    blocks.push_back(main.columns);
+    blocks.push_back({main.columns});
     whole = merged(whole, main.columns);
     for (const Template& beside : templates) {
-      if (beside.beside) blocks.push_back(merged(main.columns, beside.columns));
+      if (beside.beside) blocks.push_back({merged(main.columns, beside.columns)});
     }
   }
-  const bool several = !blocks.empty() && whole.size() > blocks.front().size();
-  if (several && whole.size() <= kWholeFamily) blocks.push_back(whole);
+  const bool several = !blocks.empty() && whole.size() > blocks.front().columns.size();
+  if (several && whole.size() <= kWholeFamily) blocks.push_back({whole});
   return blocks;
 }
 
@@ -76,31 +101,9 @@ ExplanationSpace::ExplanationSpace(const Observations& reference,
                                    const std::vector<double>& gear_ratios)
     : reference_(reference) {
   add_library(gear_ratios);
-  add_smoothers();
-  scale_.setOnes(static_cast<Eigen::Index>(formulas_.size()));
-  for (const Eigen::Index size : smoother_sizes_) {
-    scale_.conservativeResize(scale_.size() + size);
-  }
-  const Eigen::MatrixXd all = raw_columns(reference_);
-  const Eigen::MatrixXd base = base_columns(reference_);
-  const EvidenceTable table(base, all, target_vector(reference_));
-  const auto rows = static_cast<double>(reference_.rows());
-  std::vector<char> dead(static_cast<std::size_t>(all.cols()), 0);
-  for (Eigen::Index j = 0; j < all.cols(); ++j) {
-    const double squares = all.col(j).squaredNorm();
-    const bool vanishes = !(table.left_by_base(j) > kExplainedByBase * squares);
-    dead[static_cast<std::size_t>(j)] = vanishes || !std::isfinite(squares) ? 1 : 0;
-    scale_[j] = dead[static_cast<std::size_t>(j)] != 0 ? 0 : kExpected / std::sqrt(squares / rows);
-  }
-  for (ExplainingFamily& family : families_) {
-    for (ColumnBlock& block : family.blocks) {
-      std::erase_if(block, [&](Eigen::Index j) { return dead[static_cast<std::size_t>(j)] != 0; });
-    }
-    std::erase_if(family.blocks, [](const ColumnBlock& block) { return block.empty(); });
-    std::ranges::sort(family.blocks);
-    family.blocks.erase(std::ranges::unique(family.blocks).begin(), family.blocks.end());
-    if (family.blocks.empty()) untestable_.push_back(family.name);
-  }
+  add_places();
+  settle_scale();
+  add_misfits();
   std::erase_if(families_, [](const ExplainingFamily& family) { return family.blocks.empty(); });
 }
 
@@ -114,75 +117,222 @@ void ExplanationSpace::add_library(const std::vector<double>& gear_ratios) {
       untestable_.push_back(library[f].name);
       continue;
     }
-    const std::size_t first = formulas_.size();
-    ExplainingFamily family{library[f].name, false, {}, blocks_of(templates_of(atoms, formulas_))};
-    for (std::size_t k = first; k < formulas_.size(); ++k) add_inputs(formulas_[k], family.inputs);
+    Misfit misfit;
+    misfit.first = static_cast<Eigen::Index>(formulas_.size());
+    ExplainingFamily family;
+    family.name = library[f].name;
+    family.blocks = blocks_of(templates_of(atoms, formulas_));
+    misfit.count = static_cast<Eigen::Index>(formulas_.size()) - misfit.first;
+    const std::vector<std::string> signals =
+        signals_of(std::span(formulas_).subspan(static_cast<std::size_t>(misfit.first)));
+    family.inputs = inputs_of(signals);
+    std::vector<Expression> main;
+    for (const Atom& atom : atoms) {
+      if (!atom.beside_another) main.insert(main.end(), atom.columns.begin(), atom.columns.end());
+    }
+    std::vector<std::string> own = signals_of(main);
+    const bool remembers = std::ranges::count(own, "d") > 0;
+    if (own.size() > 1 && !remembers) std::erase(own, "v");
+    family.characteristic = inputs_of(own);
+    for (const std::string& signal : signals) {
+      if (SignalAxis axis(reference_, signal); axis.varies()) misfit.axes.push_back(axis);
+    }
     families_.push_back(std::move(family));
+    misfits_.push_back(std::move(misfit));
   }
 }
 
-// What remembers the motion lives in all of it: a misfit of presliding shows as Stribeck.
-void ExplanationSpace::add_inputs(const Expression& formula,
-                                  std::vector<std::string>& inputs) const {
-  const auto add = [&](std::string_view signal) {
-    const std::string name = input_name(reference_, signal);
-    if (std::ranges::count(inputs, name) == 0) inputs.push_back(name);
+// What remembers the motion lives in all of it.
+std::vector<std::string> ExplanationSpace::signals_of(std::span<const Expression> formulas) const {
+  std::vector<std::string> signals;
+  const auto add = [&](const std::string& signal) {
+    if (std::ranges::count(signals, signal) == 0) signals.push_back(signal);
   };
-  for (const Node& node : formula.nodes()) {
-    if (!node.is_variable()) continue;
-    const Signal& signal = reference_.signals[node.variable];
-    if (signal.role == Role::velocity_sign) continue;
-    if (signal.has_memory()) {
-      for (const char* name : {"v", "a", "d"}) add(name);
-    } else {
-      add(signal.role == Role::gravity_sign ? "g" : signal.name);
+  for (const Expression& formula : formulas) {
+    for (const Node& node : formula.nodes()) {
+      if (!node.is_variable()) continue;
+      const Signal& signal = reference_.signals[node.variable];
+      if (signal.role == Role::velocity_sign) continue;
+      if (!signal.has_memory()) {
+        add(signal.role == Role::gravity_sign ? "g" : signal.name);
+        continue;
+      }
+      for (const char* name : {"v", "a", "d"}) {
+        if (reference_.find(name) != nullptr) add(name);
+      }
     }
+  }
+  return signals;
+}
+
+std::vector<std::string> ExplanationSpace::inputs_of(
+    const std::vector<std::string>& signals) const {
+  std::vector<std::string> inputs;
+  for (const std::string& signal : signals) inputs.push_back(input_name(reference_, signal));
+  return inputs;
+}
+
+void ExplanationSpace::add_places() {
+  auto next = static_cast<Eigen::Index>(formulas_.size());
+  const auto add = [&](Place place, bool each, ExplainingFamily& family) {
+    const Eigen::Index size = place_columns(place, reference_).cols();
+    ColumnBlock whole;
+    for (Eigen::Index j = next; j < next + size; ++j) {
+      whole.push_back(j);
+      if (each) family.blocks.push_back({{j}});
+    }
+    if (!each) family.blocks.push_back({whole});
+    places_.push_back(std::move(place));
+    next += size;
+  };
+  std::map<std::string, SignalAxis> axes;
+  for (const PlaceGrid& grid : kGrids) {
+    const SignalAxis axis(reference_, grid.signal);
+    if (!axis.varies()) continue;
+    axes.emplace(grid.signal, axis);
+    const std::string input = input_name(reference_, grid.signal);
+    ExplainingFamily family;
+    family.name = "unknown:" + input;
+    family.unknown = true;
+    family.inputs = {input};
+    add({{axis}, {grid.centres}}, false, family);
+    if (grid.narrow > 0) add({{axis}, {grid.narrow}}, true, family);
+    families_.push_back(std::move(family));
+  }
+  for (const auto& [first, second] : smoothed_pairs()) {
+    const auto a = axes.find(std::string(first));
+    const auto b = axes.find(std::string(second));
+    if (a == axes.end() || b == axes.end()) continue;
+    const std::vector<std::string> inputs = {input_name(reference_, first),
+                                             input_name(reference_, second)};
+    ExplainingFamily family;
+    family.name = fmt::format("unknown:{}", fmt::join(inputs, " x "));
+    family.unknown = true;
+    family.inputs = inputs;
+    const auto centres = [](std::string_view name) { return name == "q" ? kFiner : kCoarse; };
+    add({{a->second, b->second}, {centres(first), centres(second)}}, false, family);
+    families_.push_back(std::move(family));
   }
 }
 
-void ExplanationSpace::add_smoothers() {
-  auto next = static_cast<Eigen::Index>(formulas_.size());
-  const bool directed = direction_of(reference_).size() > 0;
-  for (const Smoother& smoother : make_smoothers(reference_, RandomStream(1))) {
-    const Eigen::Index size =
-        smoother.features.cols() * (directed && smoother.signals.size() == 1 ? 2 : 1);
-    ExplainingFamily family{
-        fmt::format("unknown:{}", fmt::join(smoother.inputs, " x ")), true, smoother.inputs, {}};
-    ColumnBlock whole;
-    for (Eigen::Index j = 0; j < size; ++j) {
-      whole.push_back(next + j);
-      // One radial function alone: something narrow.
-      if (smoother.signals.size() == 1) family.blocks.push_back({next + j});
-    }
-    family.blocks.push_back(whole);
-    families_.push_back(std::move(family));
-    smoother_sizes_.push_back(size);
-    next += size;
+// What the base explains on the reference is no column of anything.
+void ExplanationSpace::settle_scale() {
+  const Eigen::MatrixXd all = raw_columns(reference_);
+  const Eigen::MatrixXd base = base_columns(reference_);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(base);
+  const Eigen::MatrixXd own =
+      factor.householderQ() * Eigen::MatrixXd::Identity(base.rows(), factor.rank());
+  const Eigen::RowVectorXd explained = (own.transpose() * all).colwise().squaredNorm();
+  const auto rows = static_cast<double>(reference_.rows());
+  scale_.setZero(all.cols());
+  std::vector<char> dead(static_cast<std::size_t>(all.cols()), 0);
+  for (Eigen::Index j = 0; j < all.cols(); ++j) {
+    const double squares = all.col(j).squaredNorm();
+    const bool vanishes = !(squares - explained[j] > kExplainedByBase * squares);
+    dead[static_cast<std::size_t>(j)] = vanishes || !std::isfinite(squares) ? 1 : 0;
+    if (dead[static_cast<std::size_t>(j)] == 0) scale_[j] = 1 / std::sqrt(squares / rows);
   }
+  for (ExplainingFamily& family : families_) {
+    for (EffectBlock& block : family.blocks) {
+      std::erase_if(block.columns,
+                    [&](Eigen::Index j) { return dead[static_cast<std::size_t>(j)] != 0; });
+    }
+    std::erase_if(family.blocks, [](const EffectBlock& block) { return block.columns.empty(); });
+    std::ranges::sort(family.blocks);
+    family.blocks.erase(std::ranges::unique(family.blocks).begin(), family.blocks.end());
+    std::vector<EffectBlock> sized;
+    for (const double size : kSizes) {
+      for (const EffectBlock& block : family.blocks) sized.push_back({block.columns, size});
+    }
+    family.blocks = std::move(sized);
+    if (family.blocks.empty()) untestable_.push_back(family.name);
+  }
+}
+
+// The family's shapes, then the same times radial functions of each of its signals.
+Eigen::MatrixXd ExplanationSpace::shaped(const Misfit& misfit, const Observations& rows,
+                                         const Eigen::MatrixXd& formulas) const {
+  const Eigen::MatrixXd own = formulas.middleCols(misfit.first, misfit.count) *
+                              scale_.segment(misfit.first, misfit.count).asDiagonal();
+  const auto axes = static_cast<Eigen::Index>(misfit.axes.size());
+  Eigen::MatrixXd out(own.rows(), own.cols() * (1 + kMisfitCentres * axes));
+  out.leftCols(own.cols()) = own;
+  Eigen::Index next = own.cols();
+  for (const SignalAxis& axis : misfit.axes) {
+    const Eigen::MatrixXd radial = radial_columns(axis.unit(rows), kMisfitCentres);
+    out.middleCols(next, own.cols() * kMisfitCentres) = column_products(radial, own);
+    next += own.cols() * kMisfitCentres;
+  }
+  return out;
+}
+
+// The directions of most variance over the reference that the base does not have.
+void ExplanationSpace::add_misfits() {
+  const Eigen::MatrixXd formulas = evaluate_columns(formulas_, reference_);
+  const Eigen::MatrixXd base = base_columns(reference_);
+  const auto rows = static_cast<double>(reference_.rows());
+  std::vector<Eigen::Index> sizes;
+  for (std::size_t f = 0; f < misfits_.size(); ++f) {
+    const Eigen::MatrixXd all = shaped(misfits_[f], reference_, formulas);
+    EvidenceSums sums;
+    sums.add(base, all, target_vector(reference_));
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(EvidenceTable(sums).gram());
+    const double most = parts.eigenvalues().maxCoeff();
+    const Eigen::Index kept = std::min<Eigen::Index>(
+        kMisfitColumns, (parts.eigenvalues().array() > kLeastMisfit * most).count());
+    Eigen::MatrixXd fold = parts.eigenvectors().rightCols(kept);
+    const Eigen::VectorXd values = parts.eigenvalues().tail(kept);
+    for (Eigen::Index k = 0; k < kept; ++k) {
+      // Later directions are smaller, but less than variance would have it: nobody knows the
+      // misfit.
+      fold.col(k) *= kMisfit * std::sqrt(std::sqrt(values[k] / most) * rows / values[k]);
+    }
+    ColumnBlock& own = families_[f].misfit;
+    for (Eigen::Index k = 0; k < kept; ++k) own.push_back(scale_.size() + k);
+    scale_.conservativeResize(scale_.size() + kept);
+    scale_.tail(kept).setOnes();
+    misfits_[f].fold = std::move(fold);
+  }
+}
+
+Eigen::MatrixXd ExplanationSpace::place_columns(const Place& place,
+                                                const Observations& rows) const {
+  Eigen::MatrixXd out = radial_columns(place.axes[0].unit(rows), place.centres[0]);
+  if (place.axes.size() > 1) {
+    out = column_products(out, radial_columns(place.axes[1].unit(rows), place.centres[1]));
+  }
+  const Signal* direction = rows.find("sgn_v");
+  if (direction == nullptr) return out;
+  const Eigen::Map<const Eigen::VectorXd> sign(direction->values.data(), out.rows());
+  Eigen::MatrixXd both(out.rows(), 2 * out.cols());
+  both << out, sign.asDiagonal() * out;
+  return both;
 }
 
 Eigen::MatrixXd ExplanationSpace::raw_columns(const Observations& rows) const {
-  const auto count = static_cast<Eigen::Index>(rows.rows());
-  Eigen::MatrixXd out(count, scale_.size());
-  auto next = static_cast<Eigen::Index>(formulas_.size());
-  out.leftCols(next) = evaluate_columns(formulas_, rows);
-  // The smoothers' intervals are those of the reference and the rows.
-  const std::array<const Observations*, 2> parts = {&reference_, &rows};
-  const bool same = &rows == &reference_;
-  const Observations both = same ? Observations() : joined(parts);
-  const Observations& all = same ? reference_ : both;
-  for (const Smoother& smoother : make_smoothers(all, RandomStream(1))) {
-    const Eigen::MatrixXd features = smoother.signals.size() == 1
-                                         ? with_direction(smoother, all)
-                                         : Eigen::MatrixXd(smoother.features.cast<double>());
-    out.middleCols(next, features.cols()) = features.bottomRows(count);
-    next += features.cols();
+  std::vector<Eigen::MatrixXd> parts = {evaluate_columns(formulas_, rows)};
+  for (const Place& place : places_) parts.push_back(place_columns(place, rows));
+  Eigen::Index count = 0;
+  for (const Eigen::MatrixXd& part : parts) count += part.cols();
+  Eigen::MatrixXd out(parts.front().rows(), count);
+  Eigen::Index next = 0;
+  for (const Eigen::MatrixXd& part : parts) {
+    out.middleCols(next, part.cols()) = part;
+    next += part.cols();
   }
   return out;
 }
 
 Eigen::MatrixXd ExplanationSpace::columns(const Observations& rows) const {
-  return raw_columns(rows) * scale_.asDiagonal();
+  const Eigen::MatrixXd raw = raw_columns(rows);
+  Eigen::MatrixXd out(raw.rows(), scale_.size());
+  out.leftCols(raw.cols()) = raw * scale_.head(raw.cols()).asDiagonal();
+  Eigen::Index next = raw.cols();
+  for (const Misfit& misfit : misfits_) {
+    out.middleCols(next, misfit.fold.cols()) = shaped(misfit, rows, raw) * misfit.fold;
+    next += misfit.fold.cols();
+  }
+  return out;
 }
 
 Eigen::MatrixXd ExplanationSpace::base_columns(const Observations& rows) const {

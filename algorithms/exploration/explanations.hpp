@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: MIT
 //
 // What friction may have beside its base: the families of the library and, for each signal or pair
-// of signals of the smoothers, "something else that lives there". A family is one of several blocks
-// of columns; a block is scaled so that a coefficient of 1 is an effect as large as the noise over
-// the reference campaign (foresight.hpp).
+// of signals, "something else that lives there". A family is one of several blocks of columns; a
+// block is scaled so that a coefficient of 1 is an effect as large as the noise over the reference
+// campaign (foresight.hpp).
+//
+// No joint has just the library's shapes. Beside its block a family of the library has columns for
+// its own misfit: what its shapes become where their size varies smoothly with the family's own
+// signals, the few directions of most variance over the reference. Where the family's shapes vanish
+// (a lag at constant speed, a ripple's mean over a turn) they vanish too, so that a misfit is no
+// reason to name another family.
+//
+// Columns of a row depend on that row and the reference alone.
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "algorithms/diagnosis/loop_model.hpp"
+#include "algorithms/exploration/smooth_columns.hpp"
 #include "algorithms/inference/evidence.hpp"
 #include "problems/preparation/observations.hpp"
 
@@ -20,7 +30,11 @@ struct ExplainingFamily {
   std::string name;                 // "stribeck", "unknown:position", "unknown:velocity x position"
   bool unknown = false;             // of no library: its name is where it lives
   std::vector<std::string> inputs;  // role names
-  std::vector<ColumnBlock> blocks;
+  // Of a family of the library: those that tell it from others. Speed only carries an effect of
+  // anything else.
+  std::vector<std::string> characteristic;
+  std::vector<EffectBlock> blocks;  // the same columns in several sizes
+  ColumnBlock misfit;               // of a family of the library
 };
 
 class ExplanationSpace {
@@ -32,24 +46,44 @@ class ExplanationSpace {
   const std::vector<std::string>& untestable() const { return untestable_; }
   const Observations& reference() const { return reference_; }
 
-  // The scaled columns on rows that follow the reference's: rows x columns. Signals as the
-  // reference has them.
+  // The scaled columns on rows with the reference's signals: rows x columns.
   Eigen::MatrixXd columns(const Observations& rows) const;
   Eigen::MatrixXd base_columns(const Observations& rows) const;
   Eigen::Index column_count() const { return scale_.size(); }
 
  private:
+  // Where something else may live; one axis or two.
+  struct Place {
+    std::vector<SignalAxis> axes;
+    std::vector<Eigen::Index> centres;
+  };
+  // A family's shapes times smooth functions of its signals, folded into few columns.
+  struct Misfit {
+    Eigen::Index first = 0;  // of the formulas
+    Eigen::Index count = 0;
+    std::vector<SignalAxis> axes;
+    Eigen::MatrixXd fold;  // shapes x (1 + axes) -> columns
+  };
+
   void add_library(const std::vector<double>& gear_ratios);
-  void add_inputs(const Expression& formula, std::vector<std::string>& inputs) const;
-  void add_smoothers();
+  std::vector<std::string> signals_of(std::span<const Expression> formulas) const;
+  std::vector<std::string> inputs_of(const std::vector<std::string>& signals) const;
+  void add_places();
+  void settle_scale();
+  void add_misfits();
+  Eigen::MatrixXd shaped(const Misfit& misfit, const Observations& rows,
+                         const Eigen::MatrixXd& formulas) const;
+  // Unscaled; without the misfits' columns.
   Eigen::MatrixXd raw_columns(const Observations& rows) const;
+  Eigen::MatrixXd place_columns(const Place& place, const Observations& rows) const;
 
   Observations reference_;
   std::vector<ExplainingFamily> families_;
   std::vector<std::string> untestable_;
   std::vector<Expression> formulas_;
-  std::vector<Eigen::Index> smoother_sizes_;  // columns with direction, in order
-  Eigen::VectorXd scale_;
+  std::vector<Place> places_;
+  std::vector<Misfit> misfits_;
+  Eigen::VectorXd scale_;  // of the formulas, the places, then the misfits (1)
 };
 
 }  // namespace tribench::loop

@@ -15,13 +15,16 @@
 namespace tribench::loop {
 namespace {
 
-constexpr double kForeseenRate = 0.5;  // foreseen rows for a recorded one
-constexpr double kReferenceRate_hz = 2;
+constexpr double kForeseenRate = 0.25;  // foreseen rows for a recorded one
+constexpr double kReferenceRate_hz = 1;
+constexpr double kForeseeAgain = 1.3;  // time since it was foreseen
+constexpr double kWarmer_k = 2;
 constexpr double kLookAgain = 1.05;  // seconds since the last look
 constexpr std::size_t kMostRefused = 40;
 constexpr std::size_t kFewestMovements = 5;
 constexpr std::size_t kVerdictsTold = 5;
-constexpr int kSureLooks = 3;  // running
+constexpr int kSureLooks = 3;      // running
+constexpr double kAskAgain = 1.5;  // seconds since the diagnosis said otherwise
 
 // Both ways at two speeds, and reversals: without one nobody knows how far back the last one lies.
 std::vector<PlannedMovement> opening_movements(const MotionLimits& limits) {
@@ -60,6 +63,7 @@ std::vector<WeighedVerdict> verdicts_of(const Assessment& now, bool alive_only) 
 
 std::vector<MovementRows> rows_of(const Observations& foreseen, std::size_t movements) {
   std::vector<MovementRows> rows(movements);
+  for (MovementRows& one : rows) one.counts = 1 / kForeseenRate;
   for (std::size_t i = 0; i < foreseen.rows(); ++i) {
     RowRange& range = rows[static_cast<std::size_t>(foreseen.movement[i])].rows;
     if (range.size() == 0) range.begin = i;
@@ -68,19 +72,38 @@ std::vector<MovementRows> rows_of(const Observations& foreseen, std::size_t move
   return rows;
 }
 
-std::optional<NextMovement> informative(const ExplorationState& state) {
-  std::vector<MovementRows> rows(state.foreseen.begin(), state.foreseen.end());
-  for (std::size_t m = 0; m < rows.size(); ++m) {
-    rows[m].cost_s = seconds_of(state.candidates[m], state.now.position_rad, state.limits);
-    rows[m].counts = 1 / kForeseenRate;
+// Gains are those of the last look; what a movement costs changes with where the joint stands.
+class RankedMovements {
+ public:
+  std::optional<NextMovement> best(const ExplorationState& state);
+
+ private:
+  Eigen::Index ranked_at_ = -1;  // rows
+  std::vector<MovementChoice> choices_;
+};
+
+std::optional<NextMovement> RankedMovements::best(const ExplorationState& state) {
+  std::vector<double> cost_s;
+  for (const PlannedMovement& candidate : state.candidates) {
+    cost_s.push_back(seconds_of(candidate, state.now.position_rad, state.limits));
   }
-  for (const MovementChoice& choice : rank_movements(*state.last, state.options.alpha, rows)) {
+  if (ranked_at_ != state.last->sums.rows()) {
+    choices_ = movement_gains(*state.last, state.foreseen, state.options.alpha);
+    ranked_at_ = state.last->sums.rows();
+  }
+  const MovementChoice* best = nullptr;
+  double most = 0;
+  for (const MovementChoice& choice : choices_) {
     if (state.refused[choice.movement] != 0) continue;
-    if (state.so_far.seconds + rows[choice.movement].cost_s > state.options.budget_s) continue;
-    return NextMovement{state.candidates[choice.movement], choice.between, choice.gain,
-                        choice.movement};
+    const double cost = cost_s[choice.movement];
+    if (state.so_far.seconds + cost > state.options.budget_s || !(choice.gain > most * cost)) {
+      continue;
+    }
+    best = &choice;
+    most = choice.gain / cost;
   }
-  return std::nullopt;
+  if (best == nullptr) return std::nullopt;
+  return NextMovement{state.candidates[best->movement], best->between, best->gain, best->movement};
 }
 
 class Explorer {
@@ -102,7 +125,7 @@ class Explorer {
         out_.end = ExplorationEnd::stopped;
         break;
       }
-      const ExplorationState state{limits_, options_,    out_,      last_.get(),
+      const ExplorationState state{limits_, options_,    out_,      last(),
                                    now_,    candidates_, foreseen_, refused_};
       const std::optional<NextMovement> next = plan_(state);
       if (!next) {
@@ -127,7 +150,7 @@ class Explorer {
       }
     }
     if (can_look() && looked_at_s_ < out_.seconds) look();
-    if (last_) tell_end();
+    if (assessor_) tell_end();
     return std::move(out_);
   }
 
@@ -162,78 +185,94 @@ class Explorer {
 
   // Once could be luck of a few rows, whose noise nobody knows yet.
   bool sure() {
-    const std::vector<WeighedVerdict> verdicts = verdicts_of(*last_, false);
+    const std::vector<WeighedVerdict> verdicts = verdicts_of(*last(), false);
     const bool again = verdicts.front().verdict == sure_of_;
     const bool now = verdicts.front().weight >= 1 - options_.alpha;
     sure_looks_ = now ? (again ? sure_looks_ + 1 : 1) : 0;
     sure_of_ = verdicts.front().verdict;
-    return sure_looks_ >= kSureLooks && diagnosis_agrees();
+    if (sure_looks_ < kSureLooks) return false;
+    if (denied_ == sure_of_ && out_.seconds < kAskAgain * denied_at_s_) return false;
+    if (diagnosis_agrees()) return true;
+    denied_ = sure_of_;
+    denied_at_s_ = out_.seconds;
+    return false;
   }
 
   // The loop's own diagnosis of the rows so far, which knows nothing of weights, names the same
   // families, and finds something of no library left over just where the verdict does.
-  bool diagnosis_agrees() const {
+  bool diagnosis_agrees() {
     DiagnosisOptions options;
     options.test_share = 0;
     if (limits_.gear_ratio > 0) options.gear_ratios = {limits_.gear_ratio};
     const Diagnosis found = diagnose(observe(out_.data), coulomb_viscous_base, options, 1);
-    const Explanation& best = last_->best();
-    const auto has = [&](const std::string& name) {
-      return std::ranges::any_of(best.families,
-                                 [&](std::size_t f) { return space_->families()[f].name == name; });
-    };
-    const bool unknown = best.verdict.ends_with(kUnknownVerdict);
-    const auto known = std::ranges::count_if(
-        best.families, [&](std::size_t f) { return !space_->families()[f].unknown; });
-    return (found.verdict == Verdict::unknown) == unknown &&
-           std::cmp_equal(found.effects.size(), known) &&
-           std::ranges::all_of(found.effects,
-                               [&](const EffectFinding& effect) { return has(effect.family); });
+    std::vector<std::string> names;
+    for (const EffectFinding& effect : found.effects) names.push_back(effect.family);
+    out_.diagnosis = verdict_text(std::move(names), found.verdict == Verdict::unknown);
+    return out_.diagnosis == last()->best().verdict;
   }
 
   bool can_look() const { return out_.steps.size() >= kFewestMovements; }
+  const Assessment* last() const { return assessor_ ? &assessor_->last() : nullptr; }
 
-  void look() {
-    if (!space_) {
-      const Dataset reference = reference_rows(candidates_, out_.data, limits_, kReferenceRate_hz);
-      std::vector<double> ratios;
-      if (limits_.gear_ratio > 0) ratios.push_back(limits_.gear_ratio);
-      space_ = std::make_unique<ExplanationSpace>(observe_plan(reference), ratios);
-      out_.untestable = space_->untestable();
-    }
-    const Observations rows = with_signals_of(space_->reference(), observe(out_.data), out_.data);
+  void make_space() {
+    const Dataset reference = reference_rows(candidates_, out_.data, limits_, kReferenceRate_hz);
+    std::vector<double> ratios;
+    if (limits_.gear_ratio > 0) ratios.push_back(limits_.gear_ratio);
+    space_ = std::make_unique<ExplanationSpace>(observe_plan(reference), ratios);
+    out_.untestable = space_->untestable();
+    assessor_ = std::make_unique<Assessor>(*space_, options_.alpha);
+  }
+
+  // The candidates' rows, where time or warmth have moved on.
+  void foresee() {
+    const double warm = now_.temperature_degc.value_or(0);
+    const bool stale = foreseen_.movements.empty() ||
+                       now_.time_s > kForeseeAgain * foreseen_at_.time_s ||
+                       std::abs(warm - foreseen_at_.temperature_degc.value_or(0)) > kWarmer_k;
+    if (!stale) return;
+    foreseen_at_ = now_;
     const Dataset plan =
         foreseen_rows(candidates_, out_.data, limits_, now_, kForeseenRate * limits_.rate_hz);
-    const Observations foreseen = with_signals_of(space_->reference(), observe_plan(plan), plan);
-    foreseen_ = rows_of(foreseen, candidates_.size());
+    const Observations rows = with_signals_of(space_->reference(), observe_plan(plan), plan);
+    foreseen_.base = space_->base_columns(rows);
+    foreseen_.columns = space_->columns(rows);
+    foreseen_.movements = rows_of(rows, candidates_.size());
+  }
+
+  void look() {
+    const bool first = !space_;
+    if (first) make_space();
+    const Observations rows = with_signals_of(space_->reference(), observe(out_.data), out_.data);
+    std::vector<char> fresh;
+    for (const int m : rows.movement) fresh.push_back(std::cmp_less(m, assessed_) ? 0 : 1);
+    assessor_->add(rows.select(fresh));
+    assessed_ = out_.steps.size();
     // The first look says twice what is noise: before it nothing was known to be missing.
-    const auto again = [&](const Explanation& before) {
-      last_ = std::make_unique<Assessment>(assess(*space_, rows, foreseen, options_.alpha, before));
-    };
-    if (!last_) again({});
-    again(Explanation(last_->best()));
+    if (first) assessor_->look();
+    assessor_->look();
+    foresee();
     looked_at_s_ = out_.seconds;
     ExplorationStep& step = out_.steps.back();
     step.looked = true;
-    step.verdicts = verdicts_of(*last_, false);
+    step.verdicts = verdicts_of(*last(), false);
     step.verdicts.resize(std::min(step.verdicts.size(), kVerdictsTold));
-    step.left = verdicts_of(*last_, true).size();
+    step.left = verdicts_of(*last(), true).size();
   }
 
   void tell_end() {
-    const std::vector<WeighedVerdict> verdicts = verdicts_of(*last_, false);
+    const std::vector<WeighedVerdict> verdicts = verdicts_of(*last(), false);
     out_.verdict = verdicts.front().verdict;
     out_.weight = verdicts.front().weight;
-    out_.left = verdicts_of(*last_, true);
-    for (const Explanation& one : last_->explanations) {
+    out_.left = verdicts_of(*last(), true);
+    out_.unknown = out_.verdict.ends_with(kUnknownVerdict);
+    for (const Explanation& one : last()->explanations) {
       if (one.verdict != out_.verdict) continue;
       for (const std::size_t f : one.families) {
         const ExplainingFamily& family = space_->families()[f];
-        if (family.unknown) {
-          out_.unknown = true;
-          out_.inputs = family.inputs;
-        } else {
+        if (!family.unknown) {
           out_.families.push_back(family.name);
+        } else if (out_.unknown) {
+          out_.inputs = family.inputs;
         }
       }
       break;
@@ -245,14 +284,18 @@ class Explorer {
   const ExplorerOptions& options_;
   const MovementPlan& plan_;
   std::vector<PlannedMovement> candidates_;
-  std::vector<MovementRows> foreseen_;
+  Foreseen foreseen_;
+  JointNow foreseen_at_;
   std::vector<char> refused_;
   std::unique_ptr<ExplanationSpace> space_;
-  std::unique_ptr<Assessment> last_;
+  std::unique_ptr<Assessor> assessor_;
+  std::size_t assessed_ = 0;  // movements
   JointNow now_;
   double looked_at_s_ = 0;
   std::string sure_of_;
   int sure_looks_ = 0;
+  std::string denied_;  // the verdict that the diagnosis did not share, and when
+  double denied_at_s_ = 0;
   Exploration out_;
 };
 
@@ -264,7 +307,8 @@ std::string_view exploration_end_name(ExplorationEnd end) {
 }
 
 MovementPlan informative_movements() {
-  return [](const ExplorationState& state) -> std::optional<NextMovement> {
+  return [ranked = RankedMovements()](
+             const ExplorationState& state) mutable -> std::optional<NextMovement> {
     const std::size_t done = state.so_far.steps.size() + state.so_far.refused.size();
     if (state.last == nullptr) {
       const std::vector<PlannedMovement> opening = opening_movements(state.limits);
@@ -275,7 +319,7 @@ MovementPlan informative_movements() {
       }
       return std::nullopt;
     }
-    return informative(state);
+    return ranked.best(state);
   };
 }
 

@@ -8,7 +8,8 @@
 //
 // Who executes is the caller's business: a simulated world, a program, a robot. Deterministic given
 // the answers. Cost: an assessment (assessment.hpp) a look; a look after every movement at first,
-// then whenever the seconds have grown by a twentieth.
+// then whenever the seconds have grown by a twentieth. The loop's own diagnosis, which takes
+// longer, is asked only where the weights would stop.
 #pragma once
 
 #include <atomic>
@@ -68,6 +69,9 @@ struct Exploration {
   std::vector<std::string> inputs;   // where it lives, where unknown
   double weight = 0;                 // posterior of the verdict
   std::vector<WeighedVerdict> left;  // that cannot be excluded, the likeliest first
+  // What the loop's own diagnosis said when it was last asked, in the verdict's words; empty:
+  // never.
+  std::string diagnosis;
   std::vector<std::string> untestable;
   std::vector<std::string> refused;  // movements that were refused, and why
   double seconds = 0;
@@ -83,8 +87,8 @@ struct ExplorationState {
   const Assessment* last = nullptr;  // the last look, once there was one
   JointNow now;
   std::span<const PlannedMovement> candidates;
-  std::span<const MovementRows> foreseen;  // of the candidates, at the last look
-  const std::vector<char>& refused;        // per candidate
+  const Foreseen& foreseen;          // of the candidates, once there was a look
+  const std::vector<char>& refused;  // per candidate
 };
 
 struct NextMovement {

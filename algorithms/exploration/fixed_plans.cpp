@@ -109,8 +109,10 @@ MovementPlan d_optimal_plan(std::uint64_t /*seed*/) {
   return [opening = informative_movements()](
              const ExplorationState& state) -> std::optional<NextMovement> {
     if (state.last == nullptr) return opening(state);
-    const Eigen::MatrixXd& base = state.last->base;
-    const Eigen::MatrixXd seen = base.transpose() * base;
+    const EvidenceSums& sums = state.last->sums;
+    const Eigen::MatrixXd seen = sums.products()
+                                     .topLeftCorner(sums.base_count(), sums.base_count())
+                                     .selfadjointView<Eigen::Lower>();
     const Eigen::MatrixXd information =
         seen + 1e-9 * seen.trace() * Eigen::MatrixXd::Identity(seen.rows(), seen.cols());
     const double before = log_determinant(information);
@@ -118,12 +120,14 @@ MovementPlan d_optimal_plan(std::uint64_t /*seed*/) {
     std::optional<NextMovement> next;
     for (std::size_t m = 0; m < state.candidates.size(); ++m) {
       if (state.refused[m] != 0) continue;
-      const RowRange& range = state.foreseen[m].rows;
-      const Eigen::MatrixXd rows = state.last->foreseen_base.middleRows(
+      const MovementRows& movement = state.foreseen.movements[m];
+      const RowRange& range = movement.rows;
+      const Eigen::MatrixXd rows = state.foreseen.base.middleRows(
           static_cast<Eigen::Index>(range.begin), static_cast<Eigen::Index>(range.size()));
       const double cost = seconds_of(state.candidates[m], state.now.position_rad, state.limits);
       const double gain =
-          (log_determinant(information + 2 * rows.transpose() * rows) - before) / cost;
+          (log_determinant(information + movement.counts * rows.transpose() * rows) - before) /
+          cost;
       if (!(gain > best)) continue;
       best = gain;
       next = NextMovement{state.candidates[m], "planned", 0, m};

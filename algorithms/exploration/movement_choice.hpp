@@ -13,7 +13,6 @@
 // (discrimination over a posterior).
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -23,20 +22,25 @@ namespace tribench::loop {
 
 struct MovementRows {
   RowRange rows;      // of the foreseen columns
-  double cost_s = 0;  // of the movement from where the joint stands
   double counts = 1;  // recorded rows a foreseen row stands for
+};
+
+// Movements to choose from as rows: not whitened, as ExplanationSpace has them.
+struct Foreseen {
+  Eigen::MatrixXd base;
+  Eigen::MatrixXd columns;
+  std::vector<MovementRows> movements;
 };
 
 struct MovementChoice {
   std::size_t movement = 0;
-  double gain = 0;  // nats, up to what is needed
-  double per_second = 0;
+  double gain = 0;      // nats, up to what is needed
   std::string between;  // the rival that it tells from the likeliest explanation best
 };
 
-// The best first; empty where no movement tells anything. movements: of the assessment's foreseen
-// rows.
-std::vector<MovementChoice> rank_movements(const Assessment& now, double alpha,
-                                           std::span<const MovementRows> movements);
+// Those that tell anything, in the movements' order. Cost: rivals x foreseen rows x their
+// columns^2, some 20 ms.
+std::vector<MovementChoice> movement_gains(const Assessment& now, const Foreseen& foreseen,
+                                           double alpha);
 
 }  // namespace tribench::loop

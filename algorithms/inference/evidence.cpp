@@ -2,61 +2,93 @@
 #include "algorithms/inference/evidence.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "foundation/elementary.hpp"
 
 namespace tribench::loop {
+namespace {
 
-// Of the blocks' columns, each over the root of its block's size: (I + gram)^-1 and what follows.
+constexpr double kSameDirection = 1e-10;  // of base columns of unit length
+
+// Columns z with z z' the inverse of the base's products, in the directions that the rows have.
+Eigen::MatrixXd inverse_root(const Eigen::MatrixXd& products) {
+  const Eigen::VectorXd length =
+      products.diagonal().cwiseSqrt().unaryExpr([](double x) { return x > 0 ? x : 1.0; });
+  const Eigen::MatrixXd unit =
+      length.cwiseInverse().asDiagonal() * products * length.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(unit);
+  const double least = kSameDirection * parts.eigenvalues().maxCoeff();
+  const auto dropped = static_cast<Eigen::Index>(
+      std::ranges::count_if(parts.eigenvalues(), [&](double value) { return !(value > least); }));
+  const Eigen::Index rank = unit.rows() - dropped;
+  return length.cwiseInverse().asDiagonal() * parts.eigenvectors().rightCols(rank) *
+         parts.eigenvalues().tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+}
+
+}  // namespace
+
+// Of the columns, those of a block times its size, over the root of how many they are: (I +
+// gram)^-1 and what follows.
 struct EvidenceTable::Solved {
+  ColumnBlock columns;
   Eigen::LLT<Eigen::MatrixXd> factor;
   Eigen::VectorXd scale;  // of each column
   Eigen::VectorXd mean;
   double squares = 0;  // left of the target, the prior's share included
 };
 
-EvidenceTable::EvidenceTable(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
-                             const Eigen::VectorXd& target) {
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(base);
-  const Eigen::Index rank = qr.rank();
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(base.rows(), rank);
-  const Eigen::MatrixXd rest = columns - q * (q.transpose() * columns);
-  const Eigen::VectorXd y = target - q * (q.transpose() * target);
-  gram_.setZero(columns.cols(), columns.cols());
-  gram_.selfadjointView<Eigen::Lower>().rankUpdate(rest.transpose());
-  gram_.triangularView<Eigen::StrictlyUpper>() = gram_.transpose();
-  cross_ = rest.transpose() * y;
-  left_ = gram_.diagonal();
-  squares_ = y.squaredNorm();
-  dof_ = std::max(1.0, static_cast<double>(target.size() - rank));
+void EvidenceSums::add(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
+                       const Eigen::VectorXd& target) {
+  Eigen::MatrixXd all(base.rows(), base.cols() + columns.cols() + 1);
+  all << base, columns, target;
+  if (products_.size() == 0) products_.setZero(all.cols(), all.cols());
+  products_.selfadjointView<Eigen::Lower>().rankUpdate(all.transpose());
+  rows_ += base.rows();
+  base_ = base.cols();
 }
 
-EvidenceTable::Solved EvidenceTable::solve(std::span<const ColumnBlock* const> blocks) const {
-  Eigen::Index count = 0;
-  for (const ColumnBlock* block : blocks) count += static_cast<Eigen::Index>(block->size());
+EvidenceTable::EvidenceTable(const EvidenceSums& sums) {
+  const Eigen::Index base = sums.base_count();
+  const Eigen::Index rest = sums.products().cols() - base;
+  const Eigen::MatrixXd& lower = sums.products();
+  const Eigen::MatrixXd own = lower.topLeftCorner(base, base).selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd root = inverse_root(own);
+  const Eigen::MatrixXd across = lower.bottomLeftCorner(rest, base) * root;
+  Eigen::MatrixXd left = lower.bottomRightCorner(rest, rest);
+  left.selfadjointView<Eigen::Lower>().rankUpdate(across, -1.0);
+  gram_ = left.topLeftCorner(rest - 1, rest - 1).selfadjointView<Eigen::Lower>();
+  cross_ = left.row(rest - 1).head(rest - 1);
+  squares_ = std::max(left(rest - 1, rest - 1), 0.0);
+  dof_ = std::max(1.0, static_cast<double>(sums.rows() - root.cols()));
+}
+
+EvidenceTable::Solved EvidenceTable::solve(std::span<const EffectBlock* const> blocks,
+                                           const ColumnBlock& beside) const {
+  Solved solved;
+  ColumnBlock& columns = solved.columns;
+  std::vector<double> scale;
+  for (const EffectBlock* block : blocks) {
+    columns.insert(columns.end(), block->columns.begin(), block->columns.end());
+    const auto count = static_cast<double>(block->columns.size());
+    scale.resize(columns.size(), block->size / std::sqrt(count));
+  }
+  columns.insert(columns.end(), beside.begin(), beside.end());
+  scale.resize(columns.size(), 1);
+  const auto count = static_cast<Eigen::Index>(columns.size());
   Eigen::MatrixXd gram(count, count);
   Eigen::VectorXd cross(count);
-  Solved solved;
-  solved.scale.resize(count);
-  std::vector<Eigen::Index> columns;
-  for (const ColumnBlock* block : blocks) {
-    for (const Eigen::Index column : *block) {
-      solved.scale[static_cast<Eigen::Index>(columns.size())] =
-          1 / std::sqrt(static_cast<double>(block->size()));
-      columns.push_back(column);
-    }
-  }
+  solved.scale = Eigen::Map<const Eigen::VectorXd>(scale.data(), count);
   for (Eigen::Index j = 0; j < count; ++j) {
-    for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index column = columns[static_cast<std::size_t>(j)];
+    for (Eigen::Index i = j; i < count; ++i) {
       gram(i, j) =
-          solved.scale[i] * solved.scale[j] *
-          gram_(columns[static_cast<std::size_t>(i)], columns[static_cast<std::size_t>(j)]);
+          solved.scale[i] * solved.scale[j] * gram_(columns[static_cast<std::size_t>(i)], column);
     }
     gram(j, j) += 1;
-    cross[j] = solved.scale[j] * cross_[columns[static_cast<std::size_t>(j)]];
+    cross[j] = solved.scale[j] * cross_[column];
   }
   solved.factor.compute(gram);
   solved.mean = solved.factor.solve(cross);
@@ -65,20 +97,29 @@ EvidenceTable::Solved EvidenceTable::solve(std::span<const ColumnBlock* const> b
   return solved;
 }
 
-double EvidenceTable::log_factor(std::span<const ColumnBlock* const> blocks) const {
+double EvidenceTable::log_factor(std::span<const EffectBlock* const> blocks,
+                                 const ColumnBlock& beside) const {
   if (blocks.empty() || squares_ <= 0) return 0;
-  const Solved solved = solve(blocks);
-  const Eigen::Index count = solved.mean.size();
+  const Solved solved = solve(blocks, beside);
   double nats = -0.5 * dof_ * elementary::log(solved.squares / squares_);
-  const Eigen::MatrixXd lower = solved.factor.matrixL();
-  for (Eigen::Index i = 0; i < count; ++i) nats -= elementary::log(lower(i, i));
-  const Eigen::MatrixXd inverse =
-      lower.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(count, count));
+  const auto& lower = solved.factor.matrixLLT();
+  double determinant = 1;
+  for (Eigen::Index i = 0; i < lower.rows(); ++i) {
+    determinant *= lower(i, i);
+    if (determinant > 1e100 || i + 1 == lower.rows()) {
+      nats -= elementary::log(determinant);
+      determinant = 1;
+    }
+  }
+  Eigen::Index own = 0;
+  for (const EffectBlock* block : blocks) own += static_cast<Eigen::Index>(block->columns.size());
+  // The diagonal of the inverse is the squared length of the columns of L^-1.
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(lower.rows(), own);
+  solved.factor.matrixL().solveInPlace(inverse);
   const double precision = dof_ / solved.squares;
   Eigen::Index first = 0;
-  for (const ColumnBlock* block : blocks) {
-    const auto size = static_cast<Eigen::Index>(block->size());
-    // The diagonal of the inverse is the squared length of the columns of L^-1.
+  for (const EffectBlock* block : blocks) {
+    const auto size = static_cast<Eigen::Index>(block->columns.size());
     const double spread = inverse.middleCols(first, size).squaredNorm();
     const double length = solved.mean.segment(first, size).squaredNorm() * precision;
     nats += elementary::log((length + spread) / static_cast<double>(size));
@@ -87,21 +128,29 @@ double EvidenceTable::log_factor(std::span<const ColumnBlock* const> blocks) con
   return nats;
 }
 
-EvidenceTable::Posterior EvidenceTable::posterior(
-    std::span<const ColumnBlock* const> blocks) const {
+EvidenceTable::Posterior EvidenceTable::posterior(std::span<const EffectBlock* const> blocks,
+                                                  const ColumnBlock& beside) const {
   Posterior out;
   if (blocks.empty()) {
     out.variance = squares_ / dof_;
     return out;
   }
-  const Solved solved = solve(blocks);
-  const Eigen::Index count = solved.mean.size();
+  const Solved solved = solve(blocks, beside);
   out.mean = solved.scale.cwiseProduct(solved.mean);
-  out.covariance = solved.scale.asDiagonal() *
-                   solved.factor.solve(Eigen::MatrixXd::Identity(count, count)) *
-                   solved.scale.asDiagonal();
   out.variance = solved.squares / dof_;
   return out;
+}
+
+Eigen::VectorXd EvidenceTable::left_of_products(std::span<const EffectBlock* const> blocks,
+                                                const ColumnBlock& beside) const {
+  if (blocks.empty()) return cross_;
+  const Solved solved = solve(blocks, beside);
+  Eigen::VectorXd left = cross_;
+  for (std::size_t k = 0; k < solved.columns.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    left -= solved.scale[i] * solved.mean[i] * gram_.col(solved.columns[k]);
+  }
+  return left;
 }
 
 }  // namespace tribench::loop

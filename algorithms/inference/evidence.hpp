@@ -11,6 +11,9 @@
 // ruled out at the rate n^(1 + p/2) instead of n^(p/2). The length's expectation is taken at the
 // posterior, block by block.
 //
+// Columns beside the blocks are what an effect may have besides and need not: a normal prior of
+// unit covariance (times sigma^2), with nothing against a coefficient of 0.
+//
 // Columns are scaled by the caller so that 1 is a coefficient one expects, in units of the noise.
 // Rows are whitened (clusters.hpp). Not for models in which columns enter non-linearly.
 //
@@ -24,38 +27,67 @@
 
 namespace tribench::loop {
 
-// Columns of one block, by number.
+// Columns by number.
 using ColumnBlock = std::vector<Eigen::Index>;
+
+// A block whose coefficients are expected to be as large as `size`.
+struct EffectBlock {
+  ColumnBlock columns;
+  double size = 1;
+  auto operator<=>(const EffectBlock&) const = default;
+};
+
+// Cross products of base, columns and target over whitened rows: all that evidence needs, so that
+// further rows cost what they cost alone. Rows are independent of those added before.
+class EvidenceSums {
+ public:
+  // Costs rows x (base + columns)^2.
+  void add(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
+           const Eigen::VectorXd& target);
+
+  Eigen::Index rows() const { return rows_; }
+  Eigen::Index base_count() const { return base_; }
+  // The base's columns first, the target last.
+  const Eigen::MatrixXd& products() const { return products_; }
+
+ private:
+  Eigen::Index rows_ = 0;
+  Eigen::Index base_ = 0;
+  Eigen::MatrixXd products_;
+};
 
 class EvidenceTable {
  public:
   EvidenceTable() = default;
-  // Whitened rows of the base, of all columns and of the target. Costs rows x columns^2.
-  EvidenceTable(const Eigen::MatrixXd& base, const Eigen::MatrixXd& columns,
-                const Eigen::VectorXd& target);
+  explicit EvidenceTable(const EvidenceSums& sums);
 
   // ln of the Bayes factor of the blocks together against the base alone. Cost: p^3.
-  double log_factor(std::span<const ColumnBlock* const> blocks) const;
+  double log_factor(std::span<const EffectBlock* const> blocks,
+                    const ColumnBlock& beside = {}) const;
 
   struct Posterior {
-    Eigen::VectorXd mean;        // of the blocks' columns in order, in the caller's scale
-    Eigen::MatrixXd covariance;  // over sigma^2
-    double variance = 0;         // sigma^2
+    Eigen::VectorXd
+        mean;             // of the blocks' columns in order and those beside, in the caller's scale
+    double variance = 0;  // sigma^2
   };
-  Posterior posterior(std::span<const ColumnBlock* const> blocks) const;
+  Posterior posterior(std::span<const EffectBlock* const> blocks,
+                      const ColumnBlock& beside = {}) const;
 
-  // Of a column's squares what the base leaves.
-  double left_by_base(Eigen::Index column) const { return left_[column]; }
+  // Products of all columns with what base and blocks leave of the target.
+  Eigen::VectorXd left_of_products(std::span<const EffectBlock* const> blocks,
+                                   const ColumnBlock& beside = {}) const;
+
+  // Cross products of what the base leaves of the columns.
+  const Eigen::MatrixXd& gram() const { return gram_; }
   double degrees_of_freedom() const { return dof_; }
 
  private:
   struct Solved;
-  Solved solve(std::span<const ColumnBlock* const> blocks) const;
+  Solved solve(std::span<const EffectBlock* const> blocks, const ColumnBlock& beside) const;
 
-  Eigen::MatrixXd gram_;   // of what the base leaves of the columns
+  Eigen::MatrixXd gram_;
   Eigen::VectorXd cross_;  // with the target
-  Eigen::VectorXd left_;
-  double squares_ = 0;  // of what the base leaves of the target
+  double squares_ = 0;     // of what the base leaves of the target
   double dof_ = 0;
 };
 

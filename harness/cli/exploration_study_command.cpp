@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "foundation/json_text.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/cli/world_options.hpp"
 #include "harness/study/exploration_study.hpp"
@@ -17,11 +19,17 @@ namespace tribench {
 namespace {
 
 void print_exploration_table(const ExplorationStudy& study) {
-  fmt::print("| worlds | plan | n | sure and right | sure and wrong | median s | movements |\n");
-  fmt::print("|---|---|--:|--:|--:|--:|--:|\n");
+  fmt::print(
+      "| worlds | plan | n | sure and right | sure and wrong | median s | movements | aliases "
+      "told apart |\n");
+  fmt::print("|---|---|--:|--:|--:|--:|--:|--:|\n");
   for (const ExplorationFigure& one : study.figures) {
-    fmt::print("| {} | {} | {} | {} | {} | {:.0f} | {:.0f} |\n", one.group, one.plan, one.worlds,
-               one.sure_right, one.sure_wrong, one.median_seconds, one.median_movements);
+    fmt::print("| {} | {} | {} | {} | {} | {:.0f} | {:.0f} | {} of {} |\n", one.group, one.plan,
+               one.worlds, one.sure_right, one.sure_wrong, one.median_seconds, one.median_movements,
+               one.aliases - one.aliases_left, one.aliases);
+  }
+  if (study.left_out > 0) {
+    fmt::print("{} explorations left: the same command goes on with them\n", study.left_out);
   }
 }
 
@@ -36,7 +44,9 @@ void print_exploration_json(const ExplorationStudy& study) {
                      {"sure_right", one.sure_right},
                      {"sure_wrong", one.sure_wrong},
                      {"median_seconds", one.median_seconds},
-                     {"median_movements", one.median_movements}});
+                     {"median_movements", one.median_movements},
+                     {"aliases", one.aliases},
+                     {"aliases_left", one.aliases_left}});
   }
   fmt::print("{}\n", write_json(array, 1));
 }
@@ -70,17 +80,19 @@ void add_exploration_study(CLI::App& study) {
   command->add_option("--jobs", options->threads, "threads; the figures are the same for any")
       ->transform(whole_number(0, 1024));
   command->add_option("--out", options->out,
-                      "folder for explorations.csv, a line a world and plan");
+                      "folder for explorations.csv, a line a world and plan as it is done; with "
+                      "the same folder again it goes on");
   command->add_flag("--json", *json, "an array of figures");
   command->callback([options, choice, json] {
     options->quiet = false;
     options->level = choice->level;
     options->kind = choice->kind;
-    const ExplorationStudy study = run_exploration_study(*options);
+    if (!options->out.empty()) options->stop = &stop_requested_by({SIGINT, SIGTERM});
+    const ExplorationStudy done = run_exploration_study(*options);
     if (*json) {
-      print_exploration_json(study);
+      print_exploration_json(done);
     } else {
-      print_exploration_table(study);
+      print_exploration_table(done);
     }
   });
 }

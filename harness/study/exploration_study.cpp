@@ -6,13 +6,12 @@
 
 #include <algorithm>
 #include <ctime>
-#include <fstream>
+#include <string_view>
 
 #include "algorithms/exploration/fixed_plans.hpp"
 #include "foundation/error.hpp"
-#include "foundation/output_file.hpp"
-#include "foundation/output_folder.hpp"
 #include "harness/study/each_case.hpp"
+#include "harness/study/runs_file.hpp"
 #include "reports/csv.hpp"
 
 namespace tribench {
@@ -24,32 +23,95 @@ double thread_cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-ExplorationRun explore_world(const ExplorationStudyOptions& options, std::uint64_t seed,
-                             const loop::NamedPlan& plan) {
-  simulation::World world({seed, options.level, options.kind});
+std::string worlds_name(const ExplorationStudyOptions& options) {
+  const std::string level(simulation::world_level_name(options.level));
+  return options.kind ? fmt::format("{} {}", level, world_kind_name(*options.kind)) : level;
+}
+
+std::string key_of_run(const ExplorationRun& run) {
+  return fmt::format("{}/{}/{}/{}/{}", run.worlds, run.seed, run.plan, run.budget_s, run.alpha);
+}
+
+// "lag+stribeck", "load_coulomb+UNKNOWN", "NONE".
+Says says_of(std::string_view verdict, const simulation::WorldTruth& truth) {
+  std::vector<std::string> families;
+  bool unknown = false;
+  while (!verdict.empty()) {
+    const std::size_t end = std::min(verdict.find('+'), verdict.size());
+    const std::string_view name = verdict.substr(0, end);
+    if (name == loop::kUnknownVerdict) {
+      unknown = true;
+    } else if (name != "NONE") {
+      families.emplace_back(name);
+    }
+    verdict.remove_prefix(std::min(end + 1, verdict.size()));
+  }
+  return judge_verdict(families, unknown, truth);
+}
+
+void count_aliases(const loop::Exploration& done, const simulation::WorldTruth& truth,
+                   ExplorationRun& run) {
+  constexpr double kAlias = 0.05;
+  constexpr double kToldApart = 0.01;
+  const auto first = std::ranges::find_if(done.steps, &loop::ExplorationStep::looked);
+  if (first == done.steps.end()) return;
+  const auto right_weight = [&](const std::vector<loop::WeighedVerdict>& verdicts) {
+    double most = 0;
+    for (const loop::WeighedVerdict& one : verdicts) {
+      if (is_right(says_of(one.verdict, truth))) most = std::max(most, one.weight);
+    }
+    return most;
+  };
+  const double right_first = right_weight(first->verdicts);
+  if (right_first == 0) return;
+  const double right_last = right_weight(done.steps.back().verdicts);
+  for (const loop::WeighedVerdict& one : first->verdicts) {
+    if (is_right(says_of(one.verdict, truth)) || one.weight < kAlias * right_first) continue;
+    ++run.aliases;
+    const auto& last = done.steps.back().verdicts;
+    const auto now = std::ranges::find(last, one.verdict, &loop::WeighedVerdict::verdict);
+    const double weight = now == last.end() ? 0 : now->weight;
+    if (right_last == 0 || weight > kToldApart * right_last) ++run.aliases_left;
+  }
+}
+
+ExplorationRun planned_run(const ExplorationStudyOptions& options, std::uint64_t seed,
+                           const loop::NamedPlan& plan) {
+  ExplorationRun run;
+  run.worlds = worlds_name(options);
+  run.seed = seed;
+  run.budget_s = options.budget_s;
+  run.alpha = options.alpha;
+  run.plan = plan.name;
+  return run;
+}
+
+void explore_world(const ExplorationStudyOptions& options, ExplorationRun& run) {
+  simulation::World world({run.seed, options.level, options.kind});
   loop::ExplorerOptions how;
   how.alpha = options.alpha;
   how.budget_s = options.budget_s;
+  how.stop = options.stop;
   const loop::ExecuteMovement execute = [&](const PlannedMovement& movement) {
     return world.execute(movement, "the plan");
   };
   const double start_s = thread_cpu_seconds();
-  const loop::Exploration done = loop::explore(world.limits(), execute, how, plan.make(seed));
-  ExplorationRun run;
+  const loop::Exploration done =
+      loop::explore(world.limits(), execute, how, loop::find_plan(run.plan).make(run.seed));
   run.cpu_s = thread_cpu_seconds() - start_s;
-  run.seed = seed;
   run.kind = world_kind_name(world.truth().kind);
   std::vector<std::string> causes;
   for (const PlantedEffect& effect : world.truth().effects) causes.push_back(effect.family);
   run.causes = causes.empty() ? "none" : fmt::format("{}", fmt::join(causes, "+"));
-  run.plan = plan.name;
   run.verdict = done.verdict;
-  run.stopped_sure = done.end == loop::ExplorationEnd::sure;
+  run.weight = done.weight;
+  run.end = loop::exploration_end_name(done.end);
+  run.diagnosis = done.diagnosis;
   run.says = judge_verdict(done.families, done.unknown, world.truth());
   run.right = is_right(run.says);
   run.seconds = done.seconds;
   run.movements = done.steps.size();
-  return run;
+  count_aliases(done, world.truth(), run);
 }
 
 double median_of(std::vector<double> values) {
@@ -68,9 +130,11 @@ ExplorationFigure figure_of(const std::vector<ExplorationRun>& runs, const std::
     if (run.plan != plan) continue;
     if (group != "all" && run.kind != group && run.causes != group) continue;
     ++figure.worlds;
-    const bool ended = run.stopped_sure && run.right;
+    const bool ended = run.stopped_sure() && run.right;
     figure.sure_right += ended ? 1 : 0;
-    figure.sure_wrong += run.stopped_sure && !run.right ? 1 : 0;
+    figure.sure_wrong += run.stopped_sure() && !run.right ? 1 : 0;
+    figure.aliases += run.aliases;
+    figure.aliases_left += run.aliases_left;
     seconds.push_back(ended ? run.seconds : budget_s);
     if (ended) movements.push_back(static_cast<double>(run.movements));
   }
@@ -79,19 +143,80 @@ ExplorationFigure figure_of(const std::vector<ExplorationRun>& runs, const std::
   return figure;
 }
 
-void write_runs(const std::vector<ExplorationRun>& runs, const std::filesystem::path& folder) {
-  if (folder.empty()) return;
+std::string run_row(const ExplorationRun& run) {
   std::string text;
-  append_csv_row(text, std::vector<std::string>{"seed", "kind", "causes", "plan", "verdict", "sure",
-                                                "right", "says", "seconds", "movements", "cpu_s"});
-  for (const ExplorationRun& run : runs) {
-    append_csv_row(text, std::vector<std::string>{
-                             fmt::format("{}", run.seed), run.kind, run.causes, run.plan,
-                             run.verdict, run.stopped_sure ? "1" : "0", run.right ? "1" : "0",
-                             std::string(says_name(run.says)), fmt::format("{:.2f}", run.seconds),
-                             fmt::format("{}", run.movements), fmt::format("{:.2f}", run.cpu_s)});
+  append_csv_row(
+      text, std::vector<std::string>{
+                run.worlds, fmt::format("{}", run.seed), csv_number(run.budget_s),
+                csv_number(run.alpha), run.kind, run.causes, run.plan, run.verdict,
+                fmt::format("{:.4f}", run.weight), run.end, run.diagnosis, run.right ? "1" : "0",
+                std::string(says_name(run.says)), fmt::format("{:.2f}", run.seconds),
+                fmt::format("{}", run.movements), fmt::format("{:.2f}", run.cpu_s),
+                fmt::format("{}", run.aliases), fmt::format("{}", run.aliases_left)});
+  return text;
+}
+
+double number_of(std::string_view text) {
+  double value = 0;
+  if (!read_csv_number(text, value)) {
+    throw_bad_input(fmt::format("'{}' is no number", text), "explorations.csv",
+                    "give --out a folder of its own");
   }
-  write_file(folder / "explorations.csv", text);
+  return value;
+}
+
+ExplorationRun read_run(std::span<const std::string_view> fields) {
+  ExplorationRun run;
+  run.worlds = fields[0];
+  run.seed = static_cast<std::uint64_t>(number_of(fields[1]));
+  run.budget_s = number_of(fields[2]);
+  run.alpha = number_of(fields[3]);
+  run.kind = fields[4];
+  run.causes = fields[5];
+  run.plan = fields[6];
+  run.verdict = fields[7];
+  run.weight = number_of(fields[8]);
+  run.end = fields[9];
+  run.diagnosis = fields[10];
+  run.right = fields[11] == "1";
+  run.says = find_says(fields[12]);
+  run.seconds = number_of(fields[13]);
+  run.movements = static_cast<std::size_t>(number_of(fields[14]));
+  run.cpu_s = number_of(fields[15]);
+  run.aliases = static_cast<std::size_t>(number_of(fields[16]));
+  run.aliases_left = static_cast<std::size_t>(number_of(fields[17]));
+  return run;
+}
+
+RunFormat<ExplorationRun> run_format() {
+  return {
+      {"worlds", "seed", "budget_s", "alpha", "kind", "causes", "plan", "verdict", "weight", "end",
+       "diagnosis", "right", "says", "seconds", "movements", "cpu_s", "aliases", "aliases_left"},
+      run_row,
+      read_run,
+      key_of_run};
+}
+
+std::vector<ExplorationFigure> figures_of(const std::vector<ExplorationRun>& runs,
+                                          const std::vector<const loop::NamedPlan*>& plans,
+                                          double budget_s) {
+  std::vector<std::string> groups = {"all", "none", "single", "pair", "unknown"};
+  std::vector<std::string> causes;
+  for (const ExplorationRun& run : runs) {
+    if (run.kind == "single" && std::ranges::count(causes, run.causes) == 0) {
+      causes.push_back(run.causes);
+    }
+  }
+  std::ranges::sort(causes);
+  groups.insert(groups.end(), causes.begin(), causes.end());
+  std::vector<ExplorationFigure> figures;
+  for (const std::string& group : groups) {
+    for (const loop::NamedPlan* plan : plans) {
+      const ExplorationFigure figure = figure_of(runs, group, plan->name, budget_s);
+      if (figure.worlds > 0) figures.push_back(figure);
+    }
+  }
+  return figures;
 }
 
 }  // namespace
@@ -112,29 +237,36 @@ ExplorationStudy run_exploration_study(const ExplorationStudyOptions& options) {
   if (plans.empty()) {
     for (const loop::NamedPlan& plan : loop::movement_plans()) plans.push_back(&plan);
   }
-  if (!options.out.empty()) make_output_folder(options.out);
-  ExplorationStudy study;
-  study.runs.resize(static_cast<std::size_t>(options.worlds) * plans.size());
-  for_each_case(study.runs.size(), options.threads, options.quiet, [&](std::size_t k) {
-    study.runs[k] =
-        explore_world(options, options.first_seed + k / plans.size(), *plans[k % plans.size()]);
-  });
-  write_runs(study.runs, options.out);
-  std::vector<std::string> groups = {"all", "none", "single", "pair", "unknown"};
-  std::vector<std::string> causes;
-  for (const ExplorationRun& run : study.runs) {
-    if (run.kind == "single" && std::ranges::count(causes, run.causes) == 0) {
-      causes.push_back(run.causes);
-    }
-  }
-  std::ranges::sort(causes);
-  groups.insert(groups.end(), causes.begin(), causes.end());
-  for (const std::string& group : groups) {
+  const std::filesystem::path file =
+      options.out.empty() ? options.out : options.out / "explorations.csv";
+  RunsFile<ExplorationRun> written(file, run_format());
+  std::vector<ExplorationRun> runs;
+  std::vector<std::size_t> left;
+  for (int w = 0; w < options.worlds; ++w) {
     for (const loop::NamedPlan* plan : plans) {
-      const ExplorationFigure figure = figure_of(study.runs, group, plan->name, options.budget_s);
-      if (figure.worlds > 0) study.figures.push_back(figure);
+      ExplorationRun run =
+          planned_run(options, options.first_seed + static_cast<std::uint64_t>(w), *plan);
+      if (std::optional<ExplorationRun> known = written.done(key_of_run(run))) {
+        run = std::move(*known);
+      } else {
+        left.push_back(runs.size());
+      }
+      runs.push_back(std::move(run));
     }
   }
+  const auto stopped = [&] { return options.stop != nullptr && *options.stop; };
+  for_each_case(left.size(), options.threads, options.quiet, [&](std::size_t k) {
+    if (stopped()) return;
+    ExplorationRun run = runs[left[k]];
+    explore_world(options, run);
+    if (stopped()) return;
+    written.append(run);
+    runs[left[k]] = std::move(run);
+  });
+  ExplorationStudy study;
+  study.left_out = std::erase_if(runs, [](const ExplorationRun& run) { return run.end.empty(); });
+  study.runs = std::move(runs);
+  study.figures = figures_of(study.runs, plans, options.budget_s);
   return study;
 }
 

@@ -27,22 +27,36 @@ struct ExplorationStudyOptions {
   double budget_s = 600;
   double alpha = 0.01;
   int threads = 0;
-  std::filesystem::path out;  // explorations.csv is written there; empty: nowhere
+  // Takes explorations.csv, a line an exploration, written as they end; what it holds of these is
+  // not explored again. Empty: nothing is written.
+  std::filesystem::path out;
+  const std::atomic<bool>* stop = nullptr;  // explorations under way are dropped
   bool quiet = true;
 };
 
 struct ExplorationRun {
+  std::string worlds;  // "medium", "medium pair": how they were drawn
   std::uint64_t seed = 0;
+  double budget_s = 0;
+  double alpha = 0;
   std::string kind;
   std::string causes;  // "load+stribeck_forwards", "none"
   std::string plan;
   std::string verdict;
-  bool stopped_sure = false;
-  bool right = false;  // the causes and nothing else, in whatever shape
+  double weight = 0;
+  std::string end;        // "sure", "budget", ...
+  std::string diagnosis;  // what the loop's own diagnosis said when it was last asked
+  bool right = false;     // the causes and nothing else, in whatever shape
   Says says = Says::nothing;
   double seconds = 0;
   std::size_t movements = 0;
   double cpu_s = 0;
+  // Wrong verdicts that the first look could not tell from a right one (at least a twentieth of its
+  // weight), and those of them that the last look could not (a hundredth).
+  std::size_t aliases = 0;
+  std::size_t aliases_left = 0;
+
+  bool stopped_sure() const { return end == "sure"; }
 };
 
 struct ExplorationFigure {
@@ -55,11 +69,14 @@ struct ExplorationFigure {
   // budget.
   double median_seconds = 0;
   double median_movements = 0;  // of those that ended with the right verdict
+  std::size_t aliases = 0;
+  std::size_t aliases_left = 0;
 };
 
 struct ExplorationStudy {
   std::vector<ExplorationRun> runs;
   std::vector<ExplorationFigure> figures;
+  std::size_t left_out = 0;  // explorations that were stopped, or not begun
 };
 
 ExplorationStudy run_exploration_study(const ExplorationStudyOptions& options);

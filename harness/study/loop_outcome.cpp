@@ -53,14 +53,6 @@ bool is_located(const LoopAnswer& answer, const std::vector<PlantedEffect>& effe
   return wanted == named;
 }
 
-Says find_says(std::string_view name) {
-  for (const Says says : kSays) {
-    if (says_name(says) == name) return says;
-  }
-  throw_bad_input(fmt::format("'{}' is no answer of this study", name), "runs.csv",
-                  "give --out a folder of its own");
-}
-
 void judge_errors(LoopOutcome& out, const LoopAnswer& answer, const PlantedData& planted) {
   const std::vector<double>& target = planted.data.find(Role::friction_torque)->values;
   double rows = 0;
@@ -117,6 +109,14 @@ std::string_view says_name(Says says) {
       "exact", "another_shape", "with_unknown", "with_more", "partly",
       "alias", "wrong",         "unknown",      "nothing"};
   return kNames[static_cast<std::size_t>(says)];
+}
+
+Says find_says(std::string_view name) {
+  for (const Says says : kSays) {
+    if (says_name(says) == name) return says;
+  }
+  throw_bad_input(fmt::format("'{}' is no answer of this study", name), "a list of runs",
+                  "give --out a folder of its own");
 }
 
 Says judge_story(const LoopAnswer& answer, const std::vector<PlantedEffect>& effects) {

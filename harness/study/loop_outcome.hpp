@@ -53,6 +53,8 @@ enum class Says {
   nothing,        // something is missing, and the answer is NONE
 };
 std::string_view says_name(Says says);
+// Throws Error (bad_input).
+Says find_says(std::string_view name);
 inline constexpr std::array kSays = {Says::exact,     Says::another_shape, Says::with_unknown,
                                      Says::with_more, Says::partly,        Says::alias,
                                      Says::wrong,     Says::unknown,       Says::nothing};

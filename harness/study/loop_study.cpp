@@ -5,14 +5,11 @@
 
 #include <algorithm>
 #include <ctime>
-#include <fstream>
-#include <map>
-#include <mutex>
 #include <optional>
 
 #include "foundation/error.hpp"
 #include "harness/study/each_case.hpp"
-#include "reports/csv.hpp"
+#include "harness/study/runs_file.hpp"
 
 namespace tribench {
 namespace {
@@ -36,65 +33,12 @@ LoopOutcome run_case(const LoopCase& one, const LoopMethod& method) {
   return out;
 }
 
-std::string header_row() {
-  std::string row;
-  append_csv_row(row, std::vector<std::string>(kOutcomeColumns.begin(), kOutcomeColumns.end()));
-  return row;
+RunFormat<LoopOutcome> outcome_format() {
+  return {{kOutcomeColumns.begin(), kOutcomeColumns.end()},
+          outcome_row,
+          read_outcome,
+          [](const LoopOutcome& one) { return one.key; }};
 }
-
-// runs.csv: what is there already, and a line more for every run that ends.
-class RunsFile {
- public:
-  explicit RunsFile(const std::filesystem::path& folder) {
-    if (folder.empty()) return;
-    std::filesystem::create_directories(folder);
-    file_ = folder / "runs.csv";
-    read_back();
-    write_afresh();
-  }
-
-  std::optional<LoopOutcome> done(const std::string& key) const {
-    const auto found = done_.find(key);
-    return found == done_.end() ? std::nullopt : std::optional(found->second);
-  }
-
-  // Safe from several threads.
-  void append(const LoopOutcome& outcome) {
-    if (file_.empty()) return;
-    const std::lock_guard lock(mutex_);
-    stream_ << outcome_row(outcome) << std::flush;
-    if (!stream_) throw Error(ErrorKind::failed, "cannot write", file_.string());
-  }
-
- private:
-  void read_back() {
-    std::ifstream in(file_);
-    if (!in) return;
-    const auto header = [&](const std::vector<std::string_view>& names) {
-      if (std::ranges::equal(names, kOutcomeColumns)) return;
-      throw_bad_input("this is no list of runs of this study", file_.string(),
-                      "give --out a folder of its own");
-    };
-    read_csv(in, header, [&](const std::vector<std::string_view>& fields) {
-      const LoopOutcome one = read_outcome(fields);
-      done_[one.key] = one;
-    });
-  }
-
-  // So that a torn last line is gone.
-  void write_afresh() {
-    stream_.open(file_, std::ios::trunc);
-    stream_ << header_row();
-    for (const auto& [key, outcome] : done_) stream_ << outcome_row(outcome);
-    stream_ << std::flush;
-    if (!stream_) throw Error(ErrorKind::failed, "cannot write", file_.string());
-  }
-
-  std::filesystem::path file_;
-  std::ofstream stream_;
-  std::map<std::string, LoopOutcome> done_;
-  std::mutex mutex_;
-};
 
 }  // namespace
 
@@ -107,7 +51,8 @@ LoopStudy run_loop_study(const LoopStudyOptions& options, const LoopMethod& meth
     throw_bad_input(fmt::format("no case begins with '{}'", options.only), "--only",
                     "as in runs.csv: single/stribeck, null, pair");
   }
-  RunsFile runs(options.out);
+  const std::filesystem::path file = options.out.empty() ? options.out : options.out / "runs.csv";
+  RunsFile<LoopOutcome> runs(file, outcome_format());
   LoopStudy study;
   study.outcomes.resize(cases.size());
   std::vector<std::size_t> left;

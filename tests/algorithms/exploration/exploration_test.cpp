@@ -33,9 +33,16 @@ Drawn draw(int rows, double size, std::uint64_t seed) {
   return out;
 }
 
+EvidenceTable table_of(const Drawn& data) {
+  EvidenceSums sums;
+  sums.add(data.base, data.columns, data.target);
+  return EvidenceTable(sums);
+}
+
 double log_factor(const Drawn& data, const ColumnBlock& block) {
-  const std::array<const ColumnBlock*, 1> blocks = {&block};
-  return EvidenceTable(data.base, data.columns, data.target).log_factor(blocks);
+  const EffectBlock one{block};
+  const std::array<const EffectBlock*, 1> blocks = {&one};
+  return table_of(data).log_factor(blocks);
 }
 
 TEST(Evidence, GrowsWithWhatIsThereAndFallsWithWhatIsNot) {
@@ -73,10 +80,9 @@ TEST(Evidence, IsRarelyLargeWhereNothingIsMissingHoweverOftenOneLooks) {
 
 TEST(Evidence, PosteriorIsWhatWasPlanted) {
   const Drawn data = draw(2000, 2, 3);
-  const ColumnBlock block = {0};
-  const std::array<const ColumnBlock*, 1> blocks = {&block};
-  const EvidenceTable::Posterior found =
-      EvidenceTable(data.base, data.columns, data.target).posterior(blocks);
+  const EffectBlock block{{0}};
+  const std::array<const EffectBlock*, 1> blocks = {&block};
+  const EvidenceTable::Posterior found = table_of(data).posterior(blocks);
   EXPECT_NEAR(found.mean[0], 0.4, 0.02);
   EXPECT_NEAR(std::sqrt(found.variance), 0.2, 0.01);
 }

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -225,8 +227,32 @@ TEST(StudyCommand, ExploreCountsSecondsAndErrors) {
   const json figures = json::parse(done.output);
   EXPECT_EQ(figures[0]["group"], "all");
   EXPECT_EQ(figures[0]["worlds"], 2);
-  EXPECT_THAT(read_text(folder / "explorations.csv"), HasSubstr("seed,kind,causes,plan"));
+  EXPECT_THAT(read_text(folder / "explorations.csv"), HasSubstr("medium,1,30,0.01,"));
   EXPECT_EQ(run_tribench({"study", "explore", "--plans", "swep"}).status, 2);
+}
+
+TEST(StudyCommand, ExploreGoesOnWithWhatItsFolderHas) {
+  const TemporaryFolder folder;
+  const auto run = [&] {
+    return run_tribench({"study", "explore", "--worlds", "2", "--plans", "sweep,sines", "--budget",
+                         "15", "--out", folder.path().string()});
+  };
+  ASSERT_EQ(run().status, 0);
+  std::istringstream whole(read_text(folder / "explorations.csv"));
+  std::string header;
+  std::string first;
+  std::getline(whole, header);
+  std::getline(whole, first);
+  // Of the others nothing is left but a torn line; the first is known by a figure of its own.
+  const std::size_t before_aliases = first.rfind(',', first.rfind(',') - 1);
+  const std::string marked = first.substr(0, first.rfind(',', before_aliases - 1)) + ",77.25,0,0";
+  write_text(folder / "explorations.csv", header + "\n" + marked + "\nmedium,2,15,0.0");
+  ASSERT_EQ(run().status, 0);
+  const std::string again = read_text(folder / "explorations.csv");
+  EXPECT_EQ(std::ranges::count(again, '\n'), 5);
+  EXPECT_THAT(again, HasSubstr(marked + "\n"));
+  write_text(folder / "explorations.csv", "a,b\n1,2\n");
+  EXPECT_EQ(run().status, 2);
 }
 
 }  // namespace
