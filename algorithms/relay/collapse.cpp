@@ -242,6 +242,10 @@ std::vector<Collapse> find_collapses(const LogRows& rows, const OperatorSet& ope
   if (rows.inputs().size() < 2 || !rows.target().has_logs()) return found;
   Factors factors = known_factors(rows, operators, {FactorKind::wave, FactorKind::difference});
   std::erase_if(factors, [](const KnownFactor& known) { return !known.factor.has_logs(); });
+  // Differences before waves: where there is not time for all, they are the likelier.
+  std::ranges::stable_sort(factors, {}, [](const KnownFactor& known) {
+    return known.kind == FactorKind::input ? 0 : known.kind == FactorKind::difference ? 1 : 2;
+  });
   // What neighbours in no particular order differ by.
   const Differences null(factors, rows.rows(), std::vector<double>(factors.size(), 0.0));
   const double null_rms = fit_outer(rows, factors, null, factors.size(), budget).rms;

@@ -40,7 +40,7 @@ class List {
     const Expression a = input(i);
     const Expression b = input(j);
     add(FactorKind::difference, a - b, {i, j});
-    add(FactorKind::difference, a + b, {i, j});
+    add(FactorKind::sum, a + b, {i, j});
     add(FactorKind::other, power(a, 2) + power(b, 2), {i, j});
     add(FactorKind::other, function(Op::log, a / b), {i, j});
     if (!rows_.is_of_order_one(i) || !rows_.is_of_order_one(j)) return;

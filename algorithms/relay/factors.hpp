@@ -13,8 +13,9 @@ namespace tribench::relay {
 enum class FactorKind {
   input,
   wave,        // sine, cosine of an input or of a difference
-  difference,  // sum or difference of two inputs
-  other,       // 1 + x, tanh x, ...
+  difference,  // of two inputs
+  sum,
+  other,  // 1 + x, tanh x, ...
 };
 
 struct KnownFactor {

@@ -31,10 +31,10 @@ struct Column {
 
 std::vector<Column> columns_of(const LogRows& rows, const OperatorSet& operators, int stage) {
   std::vector<Column> columns;
-  const auto factors =
-      stage == 0 ? known_factors(rows, operators, {})
-                 : known_factors(rows, operators,
-                                 {FactorKind::wave, FactorKind::difference, FactorKind::other});
+  const auto factors = stage == 0 ? known_factors(rows, operators, {})
+                                  : known_factors(rows, operators,
+                                                  {FactorKind::wave, FactorKind::difference,
+                                                   FactorKind::sum, FactorKind::other});
   for (const KnownFactor& known : factors) {
     if (!known.factor.has_logs() || (stage == 1 && known.inputs.size() > 1)) continue;
     columns.push_back({known.factor.formula, known.factor.logs, false});

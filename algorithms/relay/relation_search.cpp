@@ -22,10 +22,11 @@ namespace {
 
 using namespace build;
 
-constexpr double kExact = 1e-7;      // of a row's target, root mean square
+constexpr double kExact = 1e-8;      // of a row's target, root mean square
 constexpr double kPromising = 1e-5;  // in the Gram matrix, whose rounding is larger
 constexpr std::size_t kBeam = 300;
 constexpr std::size_t kMostTerms = 6;
+constexpr std::size_t kMostTriples = 20'000'000;  // of a ratio; 0.1 s
 constexpr int kMostDegree = 4;
 
 // A column: a known factor that is no input, to the power 0, 1 or 2, and powers of the inputs.
@@ -134,9 +135,12 @@ class SubsetFits {
     for (std::size_t k = 0; k < columns_; ++k) {
       if (once_[k] == 0) others.push_back(k);
     }
+    const std::size_t pairs = others.size() * others.size() / 2 + 1;
+    std::size_t tried = 0;
     std::vector<double> gram;
-    for (std::size_t k = 0; k < columns_; ++k) {
+    for (std::size_t k = 0; k < columns_ && tried < kMostTriples / pairs; ++k) {
       if (once_[k] == 0) continue;
+      ++tried;
       gram = gram_;
       const double with_it = with_target(k);
       // What is left of all columns without their part along column k, scaled to unit length.
@@ -301,16 +305,14 @@ void Search::list_products(std::size_t most) {
         }
       }
     }
-    if (degree < 1 || degree > 3) continue;
-    const std::size_t so_far = products_.size();
-    for (std::size_t k = 0; k < so_far; ++k) {
-      if (products_[k].is_beside || products_[k].log_of || products_[k].degree() != degree)
-        continue;
-      products_.push_back(products_[k]);
-      products_.back().is_beside = true;
-    }
   }
   if (products_.size() > most) products_.resize(most);
+  // Multiples of the target come in hundreds only: each is tried with all pairs of the others.
+  for (std::size_t k = 0; k < products_.size() && products_.size() < most + most / 4; ++k) {
+    if (products_[k].log_of || products_[k].degree() < 1 || products_[k].degree() > 3) continue;
+    products_.push_back(products_[k]);
+    products_.back().is_beside = true;
+  }
 }
 
 std::vector<double> Search::values_of(const Product& product) const {
@@ -359,7 +361,8 @@ std::optional<Expression> Search::run(TargetForm form, bool is_ratio, Budget& bu
     once.push_back(products_[k].is_beside ? 1 : 0);
   }
   const std::size_t count = columns.size();
-  if (count < 2 || !budget.spend(count * count / 2 * n)) return std::nullopt;
+  // A product in the Gram matrix costs an eighth of what a node of a formula does.
+  if (count < 2 || !budget.spend(count * count / 16 * n)) return std::nullopt;
   columns::mul(target.data(), scale.data(), target.data(), n);
   if (!std::ranges::all_of(target, [](double x) { return std::isfinite(x); })) return std::nullopt;
   std::vector<const double*> pointers;
@@ -383,7 +386,7 @@ std::optional<Expression> Search::run(TargetForm form, bool is_ratio, Budget& bu
     }
     if (terms == kMostTerms || !budget.spend(kBeam * count * terms * terms)) break;
     sums = fits.grown(sums);
-    if (is_marked_tried || !budget.spend(count * count * count / 8)) continue;
+    if (is_marked_tried || !budget.spend(kMostTriples / 4)) continue;
     is_marked_tried = true;
     std::ranges::copy(fits.best_with_one_marked(), std::back_inserter(sums));
     std::ranges::stable_sort(sums, {}, &Sum::left);
@@ -426,6 +429,7 @@ Expression Search::assembled(TargetForm form, const Sum& sum,
   Expression beside;
   std::vector<Expression> powers;
   std::vector<double> exponents;
+  double log_constant = 0;
   for (std::size_t k = 0; k < sum.terms.size(); ++k) {
     const Product& product = products_[sum.terms[k]];
     if (product.log_of) {
@@ -435,18 +439,24 @@ Expression Search::assembled(TargetForm form, const Sum& sum,
       exponents.push_back(is_half ? nearest_half(power) : power);
       continue;
     }
+    if (form == TargetForm::logarithm && product.degree() == 0) {
+      log_constant = coefficients[k];
+      continue;
+    }
     Expression& side = product.is_beside ? beside : right;
     const double c = product.is_beside ? -coefficients[k] : coefficients[k];
     side = sum_of(side, formula_of(product, c, form));
   }
-  if (right.empty()) right = constant(0);
+  if (right.empty() && form != TargetForm::logarithm) right = constant(0);
   if (!beside.empty()) right = right / (constant(1) + beside);
   if (keeps_sign(form)) return solved_for_target(form, right, 1);
   double sign = rows_.target().values[0] < 0 ? -1.0 : 1.0;
   if (form == TargetForm::logarithm) {
-    powers.push_back(function(Op::exp, right));
-    exponents.push_back(1);
-    return product_of(sign, powers, exponents);
+    if (!right.empty()) {
+      powers.push_back(function(Op::exp, right));
+      exponents.push_back(1);
+    }
+    return product_of(sign * elementary::exp(log_constant), powers, exponents);
   }
   for (const std::size_t j : *signs_) {
     if (rows_.inputs()[j].values[0] < 0) sign = -sign;

@@ -34,7 +34,8 @@ constexpr std::array kMembers = {"pysr", "udsr", "parfam"};
 // Rows that the searches for structure look at.
 constexpr std::size_t kSearchedRows = 512;
 constexpr std::size_t kMostCollapses = 3;
-constexpr std::size_t kColumns = 600;  // of the search for relations, a round
+constexpr std::size_t kColumns = 500;  // of the search for relations, a round
+constexpr std::size_t kLongSum = 16;   // nodes
 constexpr std::size_t kOrders = 1500;  // of the search for fewer variables, a round
 
 constexpr std::string_view kByProduct = "a product of powers";
@@ -81,6 +82,17 @@ class Run {
     if (smooth && !is_done()) search_collapsed(*smooth, solver);
   }
 
+  // Sums of products with waves and differences: many, and seldom what a law is.
+  void search_wide_sums(int round) {
+    const LogRows rows(rows_, kSearchedRows);
+    if (rows.rows() == 0 || round > 3) return;
+    Budget part = context_.budget.share(context_.budget.remaining() / 4);
+    offer(relay::find_relation(rows, context_.operators, Columns::with_factors,
+                               2 * kColumns << round, part),
+          kBySum);
+    context_.budget.settle(part);
+  }
+
   void run_member(const std::string& name, const Regressor& method, std::uint64_t evaluations) {
     Budget part = context_.budget.share(evaluations);
     FitContext turn{context_.data,    context_.operators, part, context_.random.split(name),
@@ -88,6 +100,7 @@ class Run {
     const FitResult result = method.fit(turn);
     context_.budget.settle(part);
     if (result.front.empty()) {
+      if (result.note.empty()) return;
       note_ += fmt::format("{}{}: {}", note_.empty() ? "" : "; ", name, result.note);
       return;
     }
@@ -168,7 +181,12 @@ std::optional<relay::Collapse> Run::find_structure(const LogRows& rows, int roun
   if (round == 0) {
     offer(relay::find_product(rows, operators, budget), kByProduct);
     if (is_done()) return std::nullopt;
-    offer(relay::find_relation(rows, operators, Columns::powers_alone, kColumns, budget), kBySum);
+    const auto sum = relay::find_relation(rows, operators, Columns::powers_alone, kColumns, budget);
+    offer(sum, kBySum);
+    // A long sum of powers may be a short one of differences.
+    if (sum && sum->size() > kLongSum) {
+      offer(relay::find_relation(rows, operators, Columns::with_factors, kColumns, budget), kBySum);
+    }
     if (is_done()) return std::nullopt;
   }
   const auto collapses =
@@ -177,8 +195,6 @@ std::optional<relay::Collapse> Run::find_structure(const LogRows& rows, int roun
     solve_collapsed(collapse, budget);
     if (is_done()) return std::nullopt;
   }
-  offer(relay::find_relation(rows, operators, Columns::with_factors, 2 * kColumns * width, budget),
-        kBySum);
   if (collapses.empty() || !collapses[0].is_smooth) return std::nullopt;
   return collapses[0];
 }
@@ -193,8 +209,9 @@ void Run::solve_collapsed(const relay::Collapse& collapse, Budget& budget) {
   const auto try_g = [&](const std::optional<Expression>& g) {
     if (g) offer(composed(collapse, *g), kByCollapse);
   };
+  // Both: tanh x is close to x - x^3/3 where x is small, and the front's choice tells them apart.
   try_g(relay::find_relation(rows, context_.operators, Columns::powers_alone, kColumns, budget));
-  if (!is_done()) try_g(relay::find_function(rows, context_.operators, budget));
+  try_g(relay::find_function(rows, context_.operators, budget));
 }
 
 // g by another method.
@@ -226,6 +243,7 @@ class Relay : public Regressor {
       if (run.is_done() && run.has_formula()) break;
       run.run_member(members_[k].name, *members_[k].method,
                      run.remaining() / (members_.size() - k));
+      if (k == 0 && !run.is_done()) run.search_wide_sums(round_);
     }
     return std::move(run).result();
   }
