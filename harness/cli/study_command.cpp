@@ -13,6 +13,7 @@
 #include "harness/cli/study_logs.hpp"
 #include "harness/cli/study_loop.hpp"
 #include "harness/cli/study_retellings.hpp"
+#include "harness/cli/study_smoothers.hpp"
 #include "harness/study/external_torque_study.hpp"
 #include "harness/study/generator_study.hpp"
 #include "harness/study/reference_study.hpp"
@@ -163,6 +164,7 @@ void add_study_command(CLI::App& app, ExitStatus& status, const Registry& regist
   add_night_study(*study, status, registry);
   add_recovery_study(*study);
   add_retelling_study(*study, status);
+  add_smoother_study(*study);
 }
 
 }  // namespace tribench

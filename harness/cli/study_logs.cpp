@@ -51,11 +51,12 @@ void print_outcomes(const LogStudy& study, const std::string& folder) {
 
 void print_figures(const std::vector<LogFigure>& figures) {
   fmt::print(
-      "\n| told | logs | read | right | as the clean table | misread | confidently wrong | "
-      "false alarms |\n|---|--:|--:|--:|--:|--:|--:|--:|\n");
+      "\n| told | logs | read | right | found first | as the clean table | misread | confidently "
+      "wrong | false alarms |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   for (const LogFigure& f : figures) {
-    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} of {} |\n", log_told_name(f.told), f.logs,
-               f.read, f.right, f.same, f.misread, f.wrong, f.false_alarms, f.nulls);
+    fmt::print("| {} | {} | {} | {} | {} of {} | {} | {} | {} | {} of {} |\n",
+               log_told_name(f.told), f.logs, f.read, f.right, f.first, f.logs - f.nulls, f.same,
+               f.misread, f.wrong, f.false_alarms, f.nulls);
   }
 }
 
@@ -67,6 +68,7 @@ void print_json(const LogStudy& study) {
                        {"logs", f.logs},
                        {"read", f.read},
                        {"right", f.right},
+                       {"found_first", f.first},
                        {"same", f.same},
                        {"misread", f.misread},
                        {"confidently_wrong", f.wrong},
@@ -120,6 +122,10 @@ void add_log_study(CLI::App& study, ExitStatus& status) {
   command->add_option("--seconds", arguments->study.seconds, "of a log")
       ->transform(real_number(10, 10'000))
       ->capture_default_str();
+  command
+      ->add_option("--encoder", arguments->study.encoder_bits,
+                   "raw logs hold the position alone, from 2^N counts a turn")
+      ->transform(whole_number(8, 30));
   command->add_option("--jobs", arguments->study.threads, "threads; the figures are the same")
       ->transform(whole_number(0, 1024));
   command->add_flag("--clean-only{false}", arguments->study.raw,

@@ -77,17 +77,29 @@ std::string clean_text(const simulation::ControlledRun& run) {
   return text.str();
 }
 
+// Whether the cause that was found first is a planted one.
+bool is_first(const LoopAnswer& answer, const std::vector<PlantedEffect>& planted) {
+  if (answer.effects.empty()) return false;
+  LoopAnswer first;
+  first.effects = {answer.effects.front()};
+  first.effects.front().aliases.clear();
+  const Says says = judge_story(first, planted);
+  return says == Says::exact || says == Says::another_shape || says == Says::partly;
+}
+
 LogOutcome judge(const simulation::ControlledRun& run, const LogCase& one, LogTold told,
                  LogStory story) {
   LogOutcome out;
   out.name = one.name;
   out.told = told;
   out.says = judge_story(story.answer, run.effects);
+  out.first = is_first(story.answer, run.effects);
   out.story = std::move(story);
   return out;
 }
 
-std::vector<LogOutcome> tell_case(const std::string& program, const LogCase& one, bool raw) {
+std::vector<LogOutcome> tell_case(const std::string& program, const LogCase& one,
+                                  const LogStudyOptions& options) {
   const simulation::ControlledRun run = simulation::run_under_control(one.plan, one.seed);
   std::vector<LogOutcome> outcomes;
   std::vector<std::string> gear;
@@ -97,10 +109,11 @@ std::vector<LogOutcome> tell_case(const std::string& program, const LogCase& one
   outcomes.back().text = std::move(clean);
   outcomes.back().options = gear;
   for (const LogTold told : {LogTold::told, LogTold::bare}) {
-    if (!raw) break;
+    if (!options.raw) break;
     ToldLog log =
         tell_log(run, told == LogTold::told ? LogKnowledge::told : LogKnowledge::bare,
-                 RandomStream(key_of("log_study")).split(one.seed).split(log_told_name(told)));
+                 RandomStream(key_of("log_study")).split(one.seed).split(log_told_name(told)),
+                 options.encoder_bits);
     LogOutcome out = judge(run, one, told, ask(program, one, log.text, log.options));
     out.summary = log.summary;
     out.same = out.story.same_as(outcomes[0].story);
@@ -127,6 +140,7 @@ LogFigure figure_of(LogTold told, const std::vector<LogOutcome>& outcomes) {
     ++figure.logs;
     figure.read += out.story.refused ? 0 : 1;
     figure.right += out.is_right() ? 1 : 0;
+    figure.first += out.first && !null ? 1 : 0;
     figure.same += out.same ? 1 : 0;
     figure.misread += out.misread.empty() ? 0 : 1;
     figure.wrong += out.is_confidently_wrong() ? 1 : 0;
@@ -215,7 +229,7 @@ LogStudy run_log_study(const std::string& program, const LogStudyOptions& option
   }
   std::vector<std::vector<LogOutcome>> by_case(cases.size());
   for_each_case(cases.size(), options.threads, options.quiet,
-                [&](std::size_t i) { by_case[i] = tell_case(program, cases[i], options.raw); });
+                [&](std::size_t i) { by_case[i] = tell_case(program, cases[i], options); });
   LogStudy study;
   for (std::vector<LogOutcome>& outcomes : by_case) {
     std::ranges::move(outcomes, std::back_inserter(study.outcomes));

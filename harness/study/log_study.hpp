@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,8 @@ struct LogOutcome {
   std::string text;     // the file, where something is wrong with the story
   std::vector<std::string> options;
 
+  bool first = false;  // what was found first is planted, or nothing is and nothing was found
+
   bool is_right() const {
     return !story.refused && (says == Says::exact || says == Says::another_shape);
   }
@@ -54,8 +57,11 @@ struct LogOutcome {
 struct LogStudyOptions {
   int logs = 100;
   std::uint64_t first_seed = 1;
-  std::string only;     // names that begin so
-  bool raw = true;      // tell the logs raw too, not the clean tables alone
+  std::string only;  // names that begin so
+  bool raw = true;   // tell the logs raw too, not the clean tables alone
+  // Raw logs hold the position alone, of an encoder of 2^bits counts a turn; else each draws its
+  // own.
+  std::optional<int> encoder_bits = {};
   double scale = 2;     // of what is planted, in standard deviations of the noise
   double seconds = 90;  // of a log
   int threads = 0;      // 0: all; the figures are the same for any number
@@ -67,6 +73,7 @@ struct LogFigure {
   std::size_t logs = 0;
   std::size_t read = 0;
   std::size_t right = 0;
+  std::size_t first = 0;  // found first what is planted; of those that were not null
   std::size_t same = 0;
   std::size_t misread = 0;
   std::size_t wrong = 0;  // confidently

@@ -153,10 +153,12 @@ std::vector<BusRow> rows_on_the_bus(std::size_t samples, RandomStream& random) {
 
 class Teller {
  public:
-  Teller(const simulation::ControlledRun& run, LogKnowledge knowledge, RandomStream random)
+  Teller(const simulation::ControlledRun& run, LogKnowledge knowledge, RandomStream random,
+         std::optional<int> encoder_bits)
       : run_(run),
         knowledge_(knowledge),
         random_(random),
+        encoder_bits_(encoder_bits),
         linear_(run.data.find(Role::position)->unit == "m") {}
 
   ToldLog tell() {
@@ -203,10 +205,10 @@ class Teller {
 
   void add_position() {
     constexpr std::array<std::string_view, 4> kNames = {"q", "pos", "position", "joint_position"};
-    const int bits = 12 + 2 * static_cast<int>(random_.below(5));
+    const int bits = encoder_bits_.value_or(12 + 2 * static_cast<int>(random_.below(5)));
     const double turn = linear_ ? kScaleStep_m * 4096 : kTurn;
     // On the motor's side a turn of the joint has a hundred times the counts.
-    const bool on_motor = !linear_ && told() && random_.chance(0.25);
+    const bool on_motor = !linear_ && told() && !encoder_bits_ && random_.chance(0.25);
     const double count = turn / counts_of(bits) / (on_motor ? simulation::kGearRatio : 1);
     words_.push_back(fmt::format("2^{} counts{}", bits, on_motor ? " on the motor" : ""));
     const std::vector<double> position = encoded(run_.data.find(Role::position)->values, count);
@@ -224,7 +226,7 @@ class Teller {
         {}};
     for (const double q : position) column.values.push_back(q * factor);
     add(std::move(column));
-    if (random_.chance(0.5)) add_velocity(position);
+    if (!encoder_bits_ && random_.chance(0.5)) add_velocity(position);
   }
 
   void add_velocity(const std::vector<double>& position) {
@@ -339,6 +341,7 @@ class Teller {
   const simulation::ControlledRun& run_;
   LogKnowledge knowledge_;
   RandomStream random_;
+  std::optional<int> encoder_bits_;
   bool linear_;
   bool current_ = false;
   std::vector<LogColumn> columns_;
@@ -348,9 +351,9 @@ class Teller {
 
 }  // namespace
 
-ToldLog tell_log(const simulation::ControlledRun& run, LogKnowledge knowledge,
-                 RandomStream random) {
-  return Teller(run, knowledge, random).tell();
+ToldLog tell_log(const simulation::ControlledRun& run, LogKnowledge knowledge, RandomStream random,
+                 std::optional<int> encoder_bits) {
+  return Teller(run, knowledge, random, encoder_bits).tell();
 }
 
 }  // namespace tribench

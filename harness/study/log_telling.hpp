@@ -31,6 +31,9 @@ struct ToldLog {
   std::string summary;      // "2^14 counts, velocity [deg/s], current [mA], ROS stamps"
 };
 
-ToldLog tell_log(const simulation::ControlledRun& run, LogKnowledge knowledge, RandomStream random);
+// encoder_bits: the position alone, from an encoder of so many counts at the joint; else drawn,
+// with or without a velocity.
+ToldLog tell_log(const simulation::ControlledRun& run, LogKnowledge knowledge, RandomStream random,
+                 std::optional<int> encoder_bits = {});
 
 }  // namespace tribench

@@ -245,7 +245,8 @@ void check_motion_roles(const Dataset& data) {
   }
 }
 
-// What the motion is judged on: rows of test movements with every column.
+// What the motion is judged on: rows of test movements with every column. Where each row is a group
+// of its own, what tests is one recording.
 void set_motion(const UserProblem& own, const Dataset& data, const std::vector<char>& test,
                 const suite::LawReader& laws, Problem& problem) {
   if (!own.motion) return;
@@ -262,8 +263,18 @@ void set_motion(const UserProblem& own, const Dataset& data, const std::vector<c
   for (std::size_t r = 0; r < data.rows(); ++r) {
     if (test.empty() || test[static_cast<std::size_t>(data.movement[r])] != 0) kept.push_back(r);
   }
-  const auto rows =
-      std::make_shared<const MotionCase>(select_rows({data, {}}, kept).data, *own.motion);
+  Dataset tested = select_rows({data, {}}, kept).data;
+  if (data.movement_names.size() == data.rows()) {
+    if (own.held_out.kind == HeldOut::Kind::share) {
+      throw_bad_input(
+          "rows are held out one by one, and motion goes on from row to row",
+          fmt::format("the split of problem '{}'", own.name),
+          "give 'group', a column with the role movement, or a split by a column or file");
+    }
+    tested.movement.assign(tested.rows(), 0);
+    tested.movement_names = {own.name};
+  }
+  const auto rows = std::make_shared<const MotionCase>(std::move(tested), *own.motion);
   problem.motion = [rows] { return *rows; };
 }
 

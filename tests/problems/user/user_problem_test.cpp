@@ -172,7 +172,7 @@ TEST_F(UserProblems, TheHashIsTheFilesAndAChangedFileIsRefused) {
 // Two recordings of three rows each, cut by a column that names them.
 constexpr const char* kRecordings =
     "t,q,v,u,run\n0,0,1,2,up\n0.1,0.1,1,2,up\n0.2,0.2,1,2,up\n"
-    "0,0.2,-1,-2,down\n0.1,0.1,-1,-2,down\n0.2,0,-1,-2,down\n";
+    "1,0.2,-1,-2,down\n1.1,0.1,-1,-2,down\n1.2,0,-1,-2,down\n";
 
 TEST_F(UserProblems, TheColumnThatIsTheMovementSplitsAndGroups) {
   write("logs/two.csv", kRecordings);
@@ -206,8 +206,27 @@ TEST_F(UserProblems, MotionIsJudgedOnTheRowsThatTestAndWantsItsColumns) {
   const MotionCase judged = problem.motion();
   EXPECT_EQ(judged.terms.inertia, 3);
   EXPECT_THAT(judged.test.at("u").values, ElementsAre(-2, -2, -2));
-  EXPECT_NEAR(judged.test.find(Role::time)->values[1], 1e-4, 1e-18);
+  EXPECT_NEAR(judged.test.find(Role::time)->values[1], 1.1e-3, 1e-18);
   EXPECT_NEAR(judged.test.find(Role::position)->values[1], 0.1 * M_PI / 180, 1e-18);
+  // Without movements: a column that is the same all through a recording, or another file.
+  write("logs/third.csv", kRecordings);
+  for (const char* split : {"column = \"run\", values = [\"down\"]", "file = \"logs/third.csv\""}) {
+    const Problem other = make_user_problem(
+        parse(std::string("[[problem]]\nname = \"m\"\nfile = \"logs/two.csv\"\ntarget = \"u\"\n"
+                          "inputs = [\"v\"]\nmotion = {}\nroles = \"t=time,q=position,"
+                          "u=motor_torque\"\nsplit = { ") +
+              split + " }\n")
+            .front(),
+        {}, 1);
+    ASSERT_TRUE(other.motion);
+    EXPECT_EQ(other.motion().test.movement_names.size(), 1U) << split;
+  }
+  try {
+    make(std::string("motion = {}\nroles = \"v=time,load=position,tau=motor_torque\"\n"));
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("held out one by one"));
+  }
   try {
     make_user_problem(parse(head + "roles = \"run=movement,t=time,u=motor_torque\"\n").front(), {},
                       1);
