@@ -9,6 +9,7 @@
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/exact_choice.hpp"
 #include "algorithms/fitting/finish.hpp"
+#include "algorithms/fitting/held_out_choice.hpp"
 
 namespace tribench {
 
@@ -28,7 +29,9 @@ void finish_front(const TrainingData& data, const OperatorSet& operators, FitRes
     if (same == finished.end()) finished.push_back(std::move(formula));
   }
   fit.front = std::move(finished);
-  fit.chosen = simplest_exact(fit.front, rows.table(), rows.target).value_or(chosen);
+  const auto exact = simplest_exact(fit.front, rows.table(), rows.target);
+  fit.chosen =
+      exact ? *exact : held_out_choice(fit.front, chosen, rows.table(), rows.target, rows.movement);
 }
 
 }  // namespace tribench

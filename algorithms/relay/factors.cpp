@@ -70,7 +70,8 @@ std::vector<KnownFactor> known_factors(const LogRows& rows, const OperatorSet& o
   for (std::size_t j = 0; j < n; ++j) {
     if (rows.is_of_order_one(j)) list.add_functions_of(j);
   }
-  for (std::size_t i = 0; i < n; ++i) {
+
+  for (std::size_t i = 0; i < n && n <= kMostPaired; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       if (rows.are_alike(i, j)) list.add_pair(i, j);
     }

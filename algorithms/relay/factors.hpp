@@ -10,6 +10,9 @@
 
 namespace tribench::relay {
 
+// Of more inputs pairs are no factors: hundreds of them would leave time for nothing else.
+inline constexpr std::size_t kMostPaired = 12;
+
 enum class FactorKind {
   input,
   wave,        // sine, cosine of an input or of a difference

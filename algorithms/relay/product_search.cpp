@@ -19,6 +19,7 @@ using namespace build;
 
 // Root mean square of what is left of log |y|: rounding, not noise.
 constexpr double kExact = 1e-8;
+
 constexpr double kNoPart = 1e-6;  // of log |y| that a column explains
 constexpr double kOffRational = 1e-5;
 
@@ -50,7 +51,7 @@ std::vector<Column> columns_of(const LogRows& rows, const OperatorSet& operators
   for (std::size_t i = 0; i < n && stage > 0; ++i) {
     add_exponent(input(i));
     add_exponent(power(input(i), 2));
-    for (std::size_t j = i + 1; j < n && stage > 1; ++j) {
+    for (std::size_t j = i + 1; j < n && stage > 1 && n <= kMostPaired; ++j) {
       add_exponent(input(i) * input(j));
       add_exponent(input(i) / input(j));
       add_exponent(input(j) / input(i));

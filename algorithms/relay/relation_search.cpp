@@ -293,13 +293,14 @@ void Search::list_products(std::size_t most) {
     if (!rows_.inputs()[j].has_logs()) continue;
     products_.push_back({std::nullopt, 1, std::vector<int>(n, 0), false, j});
   }
-  for (int degree = 0; degree <= kMostDegree; ++degree) {
+  for (int degree = 0; degree <= kMostDegree && products_.size() < most; ++degree) {
     for (const auto& powers : by_degree[static_cast<std::size_t>(degree)]) {
       products_.push_back({std::nullopt, 1, powers, false});
     }
     // A factor to the power of one or two counts as one degree more.
     for (int rest = 2; rest <= 3 && rest <= degree; ++rest) {
       for (const auto& powers : by_degree[static_cast<std::size_t>(degree - rest)]) {
+        if (products_.size() >= most) break;
         for (std::size_t f = 0; f < factors_.size(); ++f) {
           products_.push_back({f, rest - 1, powers, false});
         }

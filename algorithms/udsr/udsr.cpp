@@ -40,6 +40,8 @@ constexpr std::size_t kFewestConstants = 2;
 // of them. (PySR goes over to batches from 10 000 rows on.)
 constexpr std::size_t kMostSearchedRows = 10000;
 constexpr std::size_t kSampledRows = 4000;
+// A hundredth of the error is not worth hundreds of terms.
+constexpr double kAsGood = 1.01;
 
 struct Settings {
   udsr::TokenOptions tokens;
@@ -331,11 +333,31 @@ class Udsr : public Regressor {
     Budget searching = context.budget.share(context.budget.remaining() / 5 * 4);
     Search search(settings_, sample, context.operators, searching, context.progress,
                   context.threads);
-    for (Expression& formula : solve(search, context, sample, context.random, 0)) {
-      all.take(std::move(formula));
-    }
+    std::vector<Expression> front = solve(search, context, sample, context.random, 0);
+    // All rows, most of which the search has not seen, say how long a formula may be: on all rows
+    // whatever the form lacks is significant as hundreds of small terms.
+    if (!front.empty()) front.resize(1 + shortest_as_good(front, problem));
+    for (Expression& formula : front) all.take(std::move(formula));
     context.budget.settle(searching);
     return all.front();
+  }
+
+  // The first formula, of formulas by increasing complexity, whose error on all rows is within a
+  // hundredth of the least.
+  static std::size_t shortest_as_good(std::span<const Expression> front,
+                                      const ScoringProblem& problem) {
+    std::vector<double> errors;
+    Evaluator evaluator;
+    for (const Expression& formula : front) {
+      const ErrorSum sum =
+          evaluator.sum_squared_errors(formula, problem.inputs(), problem.target());
+      errors.push_back(sum.status == ErrorSumStatus::complete
+                           ? sum.sum
+                           : std::numeric_limits<double>::infinity());
+    }
+    const double enough = kAsGood * std::ranges::min(errors);
+    const auto first = std::ranges::find_if(errors, [=](double e) { return e <= enough; });
+    return first == errors.end() ? 0 : static_cast<std::size_t>(first - errors.begin());
   }
 
   template <typename T>

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+//
+// A last look at a choice on few rows: evidence and posterior trust a formula's constants to the
+// fits that found them, and with some dozen rows a form that a long search has found for them can
+// be worse than their mean on others. Where cross-validation (cross_validation.hpp) says so
+// plainly, its own choice takes the place.
+//
+// Not for choosing in general: a factor of two is far beyond what folds differ by, so that
+// elsewhere the methods' own choice stands. Not for exact formulas (exact_choice.hpp).
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/expression.hpp"
+
+namespace tribench {
+
+// More rows than this: the choice stands, and nothing is computed.
+inline constexpr std::size_t kFewRows = 400;
+
+// `chosen`, or the place of cross-validation's choice where the chosen formula's held-out error is
+// more than twice the smallest, or above the target's variance. `front` by increasing complexity;
+// movement[r] names the movement of row r, or is empty: each row is its own. Cost: a fit a formula
+// and fold, some 20 ms for 20 formulas and 100 rows.
+std::size_t held_out_choice(std::span<const Expression> front, std::size_t chosen,
+                            const Inputs& inputs, std::span<const double> target,
+                            std::span<const int> movement);
+
+}  // namespace tribench
