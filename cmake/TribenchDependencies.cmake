@@ -15,6 +15,8 @@ find_package(OpenSSL 3 REQUIRED COMPONENTS Crypto)
 find_package(ZLIB 1.2 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(IPOPT REQUIRED IMPORTED_TARGET ipopt)
+pkg_check_modules(URDFDOM QUIET IMPORTED_TARGET urdfdom)        # optional: --urdf
+pkg_check_modules(OROCOS_KDL QUIET IMPORTED_TARGET orocos-kdl)  # with it
 if(TRIBENCH_BUILD_TESTS)
   find_package(GTest 1.12 REQUIRED)
 endif()

@@ -340,6 +340,10 @@ void add_loop_command(CLI::App& app, ExitStatus& status, const Registry& registr
           "none, or auto: where that explains much")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Gravity>{
           {"auto", Gravity::automatic}, {"fit", Gravity::fit}, {"none", Gravity::none}}));
+  command
+      ->add_option("--urdf", arguments->reading->urdf,
+                   "URDF of the arm, beside --joint N and columns of all joints: gravity from it")
+      ->check(CLI::ExistingFile);
   command->add_flag("--explain", arguments->explain,
                     "say what each column was taken for and what would be done, and stop");
   command

@@ -8,6 +8,7 @@
 
 #include "foundation/error.hpp"
 #include "problems/data_problem.hpp"
+#include "problems/preparation/chain_gravity.hpp"
 #include "problems/reading/csv_cells.hpp"
 #include "problems/reading/explanation.hpp"
 #include "problems/table.hpp"
@@ -85,11 +86,12 @@ DataFile read_data(std::span<const std::filesystem::path> files, const DataOptio
   std::optional<Condition> condition;
   if (!options.where.empty()) condition = parse_condition(options.where);
   if (condition && used) used->push_back(condition->column);
-  CsvOptions csv{options.roles,   options.drop_missing, options.names_tell,
-                 std::move(used), options.joint,        options.drive};
+  CsvOptions csv{options.roles, options.drop_missing, options.names_tell,   std::move(used),
+                 options.joint, options.drive,        !options.urdf.empty()};
   DataFile file = read_csv_files(files, csv);
   if (condition) keep_rows_where(file, *condition);
   if (options.flip_sign) flip_torques(file.data);
+  if (!options.urdf.empty()) add_chain_gravity(file, options.urdf);
   return file;
 }
 

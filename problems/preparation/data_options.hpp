@@ -34,6 +34,7 @@ struct DataOptions {
   bool flip_sign = false;
   std::string where;  // COLUMN=NUMBER: only these rows
   std::optional<int> joint;
+  std::filesystem::path urdf = {};  // of the arm, for the gravity torque of `joint`
   Drive drive;
   std::optional<TorqueConstant> torque_constant;
 };

@@ -125,10 +125,10 @@ void fit_gravity(PreparedRecording& out, Gravity gravity) {
     load.values.push_back(body->sine * sine.values.back() + body->cosine * cosine.values.back());
   }
   out.notes.push_back(fmt::format(
-      "gravity that no column declares is fitted with the base ({:.4g} {} at most; it explains "
-      "{:.0f} % of what friction and inertia leave){}",
-      std::sqrt(body->sine * body->sine + body->cosine * body->cosine), torque->unit,
-      100 * body->explained,
+      "gravity that no column declares is fitted with the base, g = {:.6g}*sin_q + {:.6g}*cos_q "
+      "({:.4g} {} at most; it explains {:.0f} % of what friction and inertia leave){}",
+      body->sine, body->cosine, std::sqrt(body->sine * body->sine + body->cosine * body->cosine),
+      torque->unit, 100 * body->explained,
       gravity == Gravity::fit ? "" : ", as --gravity fit does; --gravity none leaves it out"));
   add_rigid(out, sine);
   add_rigid(out, cosine);

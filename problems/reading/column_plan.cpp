@@ -134,6 +134,18 @@ void lose_role(ColumnPlan& plan, std::string remark) {
   plan.reading.remark = std::move(remark);
 }
 
+// The positions of all joints, for who needs the whole arm's posture.
+void keep_positions(const std::map<int, std::vector<std::size_t>>& joints,
+                    std::vector<ColumnPlan>& plans, DataFile& out) {
+  for (const auto& [joint, columns] : joints) {
+    for (const std::size_t j : columns) {
+      if (plans[j].reading.role != Role::position || out.joint_positions.contains(joint)) continue;
+      plans[j].in_chain = true;
+      out.joint_positions[joint] = plans[j].reading.column;
+    }
+  }
+}
+
 // Of columns with numbers in their names those of one joint count. The velocity of the joint
 // beside it is the other velocity.
 void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, DataFile& out) {
@@ -159,6 +171,7 @@ void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, Dat
                     known.empty() ? "leave it out: no name holds a joint's number"
                                   : fmt::format("joints: {}", fmt::join(known, ", ")));
   }
+  out.joint = options.joint;
   if (joints.size() < 2) return;
   if (!options.joint) {
     // Where the motion is told without a number, or by hand, the numbers are of others.
@@ -173,6 +186,7 @@ void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, Dat
     }
     return;
   }
+  if (options.all_positions) keep_positions(joints, plans, out);
   int neighbour = *options.joint - 1;
   if (!joints.contains(neighbour)) neighbour = *options.joint + 1;
   for (const auto& [joint, columns] : joints) {
@@ -255,12 +269,13 @@ std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& 
   settle_roles(plans, out);
   for (ColumnPlan& plan : plans) {
     const Role role = plan.reading.role;
-    plan.used = !options.used || role != Role::none || used.contains(plan.reading.column);
-    plan.kind = role == Role::movement ? ColumnKind::text
-                : role == Role::time   ? ColumnKind::time
-                : role != Role::none   ? ColumnKind::number
-                : plan.used            ? ColumnKind::found
-                                       : ColumnKind::unused;
+    plan.used =
+        !options.used || role != Role::none || plan.in_chain || used.contains(plan.reading.column);
+    plan.kind = role == Role::movement                ? ColumnKind::text
+                : role == Role::time                  ? ColumnKind::time
+                : role != Role::none || plan.in_chain ? ColumnKind::number
+                : plan.used                           ? ColumnKind::found
+                                                      : ColumnKind::unused;
   }
   return plans;
 }
@@ -336,7 +351,7 @@ void convert(ColumnPlan& plan, std::vector<double>& values, const Drive& drive,
   ColumnReading& reading = plan.reading;
   const std::string place = fmt::format("{}, column '{}'", file, reading.column);
   if (reading.role == Role::time && !values.empty()) settle_time(plan, values, place);
-  if (plan.unit.unit == nullptr || reading.role == Role::none) {
+  if (plan.unit.unit == nullptr || (reading.role == Role::none && !plan.in_chain)) {
     reading.si = reading.unit.empty() ? "-" : reading.unit;
     return;
   }

@@ -20,6 +20,7 @@ struct ColumnPlan {
   bool role_given = false;
   int doubt = 0;
   bool adds_to_time = false;  // nanoseconds beside a column of seconds
+  bool in_chain = false;      // the position of another joint that is asked for
 };
 
 // Fills the file's warnings and joints too. Throws Error (bad_input) for a role or a use of a

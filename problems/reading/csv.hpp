@@ -21,6 +21,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <iosfwd>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,6 +43,7 @@ struct CsvOptions {
   std::optional<std::vector<std::string>> used = {};
   std::optional<int> joint = {};  // of several in the names: q1 ... q7
   Drive drive = {};
+  bool all_positions = false;  // the other joints' positions are channels too
 };
 
 struct TextColumn {
@@ -68,7 +70,10 @@ struct DataFile {
   Dataset data;
   std::vector<TextColumn> texts;
   std::vector<ColumnReading> readings;  // every column of the file, in its order
-  std::vector<int> joints;     // numbers in the names of which one has to be chosen; else empty
+  std::vector<int> joints;   // numbers in the names of which one has to be chosen; else empty
+  std::optional<int> joint;  // that was chosen
+  // Number and channel of each joint whose position was asked for, in the order of the numbers.
+  std::map<int, std::string> joint_positions;
   bool has_movements = false;  // a column tells them
   std::size_t dropped_rows = 0;
   std::vector<std::string> warnings;  // one sentence each

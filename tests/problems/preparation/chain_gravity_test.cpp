@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "problems/preparation/chain_gravity.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "foundation/error.hpp"
+#include "problems/preparation/data_options.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Two links in a plane that stands upright, and a tool that is fixed to the second.
+constexpr const char* kArm = R"(<?xml version="1.0"?>
+<robot name="planar">
+  <link name="base"/>
+  <link name="upper"><inertial><origin xyz="0.5 0 0"/><mass value="2"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="lower"><inertial><origin xyz="0.25 0 0"/><mass value="3"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="tool"><inertial><mass value="1"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/>
+    <axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="9" velocity="9"/></joint>
+  <joint name="elbow" type="continuous"><parent link="upper"/><child link="lower"/>
+    <origin xyz="1 0 0"/><axis xyz="0 1 0"/></joint>
+  <joint name="flange" type="fixed"><parent link="lower"/><child link="tool"/>
+    <origin xyz="0.5 0 0"/></joint>
+</robot>
+)";
+
+constexpr const char* kLog =
+    "t [s],q1 [deg],q2 [deg],tau1 [Nm],tau2 [Nm]\n0,0,0,1,1\n0.01,30,20,2,1\n0.02,-90,45,3,1\n";
+
+class ChainGravity : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("tribench-urdf-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+    write("arm.urdf", kArm);
+    write("log.csv", kLog);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  DataFile read(std::optional<int> joint) const {
+    DataOptions options;
+    options.joint = joint;
+    options.urdf = folder_ / "arm.urdf";
+    const std::vector<std::filesystem::path> files = {folder_ / "log.csv"};
+    return read_data(files, options, std::vector<std::string>{});
+  }
+  std::string refusal(std::optional<int> joint) const {
+    try {
+      read(joint);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(ChainGravity, is_what_holds_the_arm) {
+  if (!has_chain_gravity()) GTEST_SKIP() << "built without urdfdom and KDL";
+  for (const int joint : {1, 2}) {
+    const DataFile file = read(joint);
+    const Channel* gravity = file.data.find(Role::gravity_torque);
+    ASSERT_NE(gravity, nullptr);
+    EXPECT_EQ(gravity->unit, "N m");
+    const double degrees[3][2] = {{0, 0}, {30, 20}, {-90, 45}};
+    for (std::size_t r = 0; r < 3; ++r) {
+      const double upper = std::cos(degrees[r][0] * M_PI / 180);
+      const double lower = std::cos((degrees[r][0] + degrees[r][1]) * M_PI / 180);
+      const double beyond = (3 * 0.25 + 1 * 0.5) * lower;
+      // An angle about +y turns the links down: gravity pulls with it.
+      const double held = joint == 2 ? beyond : (2 * 0.5 + 3 + 1) * upper + beyond;
+      EXPECT_NEAR(gravity->values[r], -9.81 * held, 1e-9) << joint << ", row " << r;
+    }
+  }
+}
+
+TEST_F(ChainGravity, says_what_is_wrong_with_the_file_or_the_data) {
+  if (!has_chain_gravity()) GTEST_SKIP() << "built without urdfdom and KDL";
+  EXPECT_THAT(refusal({}), HasSubstr("--joint N"));
+  write("log.csv", "t [s],q1 [deg],q2 [deg],q3 [deg],tau1 [Nm]\n0,0,0,0,1\n1,0,0,0,1\n");
+  EXPECT_THAT(refusal(1), HasSubstr("2 joints move there (shoulder, elbow), and the data have"));
+  write("arm.urdf", "<robot>");
+  EXPECT_THAT(refusal(1), HasSubstr("no URDF"));
+}
+
+TEST_F(ChainGravity, without_the_libraries_says_how_to_get_them) {
+  if (has_chain_gravity()) GTEST_SKIP() << "built with urdfdom and KDL";
+  EXPECT_THAT(refusal(1), HasSubstr("liborocos-kdl-dev"));
+}
+
+}  // namespace
+}  // namespace tribench
