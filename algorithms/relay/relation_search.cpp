@@ -5,15 +5,14 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <set>
 #include <utility>
 #include <vector>
 
 #include "algorithms/expression/build.hpp"
 #include "algorithms/expression/column_kernels.hpp"
-#include "algorithms/fitting/cholesky.hpp"
 #include "algorithms/fitting/linear_least_squares.hpp"
 #include "algorithms/relay/factors.hpp"
+#include "algorithms/relay/subset_fits.hpp"
 #include "algorithms/relay/target_forms.hpp"
 #include "foundation/elementary.hpp"
 
@@ -24,8 +23,8 @@ using namespace build;
 
 constexpr double kExact = 1e-8;      // of a row's target, root mean square
 constexpr double kPromising = 1e-5;  // in the Gram matrix, whose rounding is larger
-constexpr std::size_t kBeam = 300;
 constexpr std::size_t kMostTerms = 6;
+constexpr std::size_t kSums = 300;                // that are grown (subset_fits.hpp)
 constexpr std::size_t kMostTriples = 20'000'000;  // of a ratio; 0.1 s
 constexpr int kMostDegree = 4;
 
@@ -72,170 +71,6 @@ std::optional<std::vector<std::size_t>> signs_of_target(const LogRows& rows) {
   return std::nullopt;
 }
 
-struct Sum {
-  std::vector<std::size_t> terms;  // columns, in increasing order
-  double left = HUGE_VAL;          // of the target's square, 1 without terms
-};
-
-// The kBeam sums that leave least, each once.
-struct Best {
-  std::vector<Sum> sums;
-  double bound = HUGE_VAL;
-
-  void add(Sum sum) {
-    sums.push_back(std::move(sum));
-    if (sums.size() >= 4 * kBeam) cut();
-  }
-  void cut() {
-    std::ranges::stable_sort(sums, {}, &Sum::left);
-    std::set<std::vector<std::size_t>> seen;
-    std::erase_if(sums, [&](const Sum& sum) { return !seen.insert(sum.terms).second; });
-    if (sums.size() > kBeam) sums.resize(kBeam);
-    if (sums.size() == kBeam) bound = sums.back().left;
-  }
-  std::vector<Sum> taken() {
-    cut();
-    return std::move(sums);
-  }
-};
-
-// Least squares of subsets of columns scaled to unit length, from one Gram matrix; the target is
-// the last column.
-class SubsetFits {
- public:
-  // Of the columns marked `once` a sum has at most one: two multiples of the target, x and 1/x,
-  // come near to the target whatever it is.
-  SubsetFits(std::vector<double> gram, std::vector<char> once)
-      : gram_(std::move(gram)),
-        once_(std::move(once)),
-        columns_(once_.size()),
-        stride_(columns_ + 1) {
-    std::vector<double> scale(stride_);
-    for (std::size_t i = 0; i < stride_; ++i) {
-      const double square = gram_[i * stride_ + i];
-      scale[i] = square > 0 && std::isfinite(square) ? 1 / std::sqrt(square) : 0;
-    }
-    for (std::size_t i = 0; i < stride_; ++i) {
-      for (std::size_t j = 0; j < stride_; ++j) gram_[i * stride_ + j] *= scale[i] * scale[j];
-    }
-  }
-
-  std::vector<Sum> best_pairs() const {
-    Best best;
-    std::vector<std::size_t> all(columns_);
-    std::iota(all.begin(), all.end(), 0);
-    add_pairs(all, gram_, {}, 1, best);
-    return best.taken();
-  }
-
-  // All sums of one column marked `once` and two others.
-  std::vector<Sum> best_with_one_marked() const {
-    Best best;
-    std::vector<std::size_t> others;
-    for (std::size_t k = 0; k < columns_; ++k) {
-      if (once_[k] == 0) others.push_back(k);
-    }
-    const std::size_t pairs = others.size() * others.size() / 2 + 1;
-    std::size_t tried = 0;
-    std::vector<double> gram;
-    for (std::size_t k = 0; k < columns_ && tried < kMostTriples / pairs; ++k) {
-      if (once_[k] == 0) continue;
-      ++tried;
-      gram = gram_;
-      const double with_it = with_target(k);
-      // What is left of all columns without their part along column k, scaled to unit length.
-      std::vector<double> scale(stride_, 1.0);
-      for (std::size_t i = 0; i < stride_; ++i) {
-        const double along = gram_[i * stride_ + k];
-        const double square = gram_[i * stride_ + i] - along * along;
-        scale[i] = square > 1e-10 ? 1 / std::sqrt(square) : 0;
-      }
-      scale[columns_] = 1;
-      for (std::size_t i = 0; i < stride_; ++i) {
-        const double along = gram_[i * stride_ + k];
-        for (std::size_t j = 0; j < stride_; ++j) {
-          gram[i * stride_ + j] =
-              (gram[i * stride_ + j] - along * gram_[k * stride_ + j]) * scale[i] * scale[j];
-        }
-      }
-      add_pairs(others, gram, {k}, 1 - with_it * with_it, best);
-    }
-    return best.taken();
-  }
-
-  // Every sum with every further column.
-  std::vector<Sum> grown(const std::vector<Sum>& sums) const {
-    Best best;
-    std::vector<double> solved;
-    for (const Sum& sum : sums) {
-      const std::size_t p = sum.terms.size();
-      std::vector<double> factor(p * p);
-      std::vector<double> target(p);
-      for (std::size_t i = 0; i < p; ++i) {
-        target[i] = with_target(sum.terms[i]);
-        for (std::size_t j = 0; j < p; ++j) {
-          factor[i * p + j] = gram_[sum.terms[i] * stride_ + sum.terms[j]];
-        }
-      }
-      if (!cholesky_factor(factor, p)) continue;
-      cholesky_solve_lower(factor, p, target);
-      const bool has_once =
-          std::ranges::any_of(sum.terms, [&](std::size_t k) { return once_[k] != 0; });
-      for (std::size_t k = 0; k < columns_; ++k) {
-        if (has_once && once_[k] != 0) continue;
-        solved.resize(p);
-        for (std::size_t i = 0; i < p; ++i) solved[i] = gram_[sum.terms[i] * stride_ + k];
-        cholesky_solve_lower(factor, p, solved);
-        double square = gram_[k * stride_ + k];
-        double product = with_target(k);
-        for (std::size_t i = 0; i < p; ++i) {
-          square -= solved[i] * solved[i];
-          product -= solved[i] * target[i];
-        }
-        if (!(square > 1e-10)) continue;
-        const double left = sum.left - product * product / square;
-        if (!(left < best.bound)) continue;
-        Sum longer{sum.terms, left};
-        longer.terms.insert(std::ranges::lower_bound(longer.terms, k), k);
-        best.add(std::move(longer));
-      }
-    }
-    return best.taken();
-  }
-
- private:
-  // All pairs of `among` beside `terms`, which leave `left`; the Gram matrix has unit diagonal, or
-  // 0 where nothing is left of a column.
-  void add_pairs(std::span<const std::size_t> among, const std::vector<double>& gram,
-                 const std::vector<std::size_t>& terms, double left, Best& best) const {
-    for (std::size_t p = 0; p < among.size(); ++p) {
-      const std::size_t i = among[p];
-      const double a = gram[i * stride_ + columns_];
-      for (std::size_t q = p + 1; q < among.size(); ++q) {
-        const std::size_t j = among[q];
-        if (once_[i] != 0 && once_[j] != 0) continue;
-        const double b = gram[j * stride_ + columns_];
-        const double c = gram[i * stride_ + j];
-        const double determinant = 1 - c * c;
-        if (!(determinant > 1e-12)) continue;
-        const double rest = left - (a * a + b * b - 2 * a * b * c) / determinant;
-        if (!(rest < best.bound)) continue;
-        Sum sum{terms, rest};
-        sum.terms.push_back(i);
-        sum.terms.push_back(j);
-        std::ranges::sort(sum.terms);
-        best.add(std::move(sum));
-      }
-    }
-  }
-  double with_target(std::size_t i) const { return gram_[i * stride_ + columns_]; }
-
-  std::vector<double> gram_;
-  std::vector<char> once_;
-  std::size_t columns_;
-  std::size_t stride_;
-};
-
 class Search {
  public:
   Search(const LogRows& rows, const OperatorSet& operators, Columns columns, std::size_t most)
@@ -249,16 +84,18 @@ class Search {
   }
 
   // `is_ratio`: with one multiple of the target on the right, for the plain form.
-  std::optional<Expression> run(TargetForm form, bool is_ratio, Budget& budget);
+  std::optional<Expression> run(TargetForm form, bool is_ratio, Budget& budget) const;
 
  private:
+  struct Regression;
+
+  Regression regression(TargetForm form, bool is_ratio) const;
   void list_products(std::size_t most);
   std::vector<double> values_of(const Product& product) const;
   Expression formula_of(const Product& product, double coefficient, TargetForm form) const;
-  std::optional<Expression> exact(TargetForm form, const Sum& sum,
-                                  const std::vector<std::vector<double>>& columns,
-                                  const std::vector<double>& target) const;
-  Expression assembled(TargetForm form, const Sum& sum, std::span<const double> coefficients) const;
+  std::optional<Expression> exact(TargetForm form, SparseSum sum, const Regression& all) const;
+  Expression assembled(TargetForm form, const SparseSum& sum,
+                       std::span<const double> coefficients) const;
 
   const LogRows& rows_;
   const OperatorSet& operators_;
@@ -334,74 +171,79 @@ std::vector<double> Search::values_of(const Product& product) const {
   return values;
 }
 
-std::optional<Expression> Search::run(TargetForm form, bool is_ratio, Budget& budget) {
-  if (!keeps_sign(form) && !signs_) return std::nullopt;
-  const std::size_t n = rows_.rows();
-  std::vector<double> target = formed_target(rows_, form);
-  const bool is_log = form == TargetForm::logarithm;
-  const std::vector<double> scale = relative_scale(target, form);
+// The columns of one regression, and what they stand for.
+struct Search::Regression {
+  std::vector<double> scale;  // a row's weight
+  std::vector<double> target;
   std::vector<std::vector<double>> columns;
   std::vector<std::size_t> places;  // of the columns, among the products
-  std::vector<char> once;
-  const auto add = [&](std::vector<double> values) {
-    columns::mul(values.data(), scale.data(), values.data(), n);
-    const double square = columns::dot(values.data(), values.data(), n);
-    if (!std::isfinite(square) || square == 0) return false;
-    columns.push_back(std::move(values));
-    return true;
-  };
+  std::vector<char> once;           // multiples of the target
+};
+
+Search::Regression Search::regression(TargetForm form, bool is_ratio) const {
+  Regression all;
+  const std::size_t n = rows_.rows();
+  all.target = formed_target(rows_, form);
+  all.scale = relative_scale(all.target, form);
   for (std::size_t k = 0; k < products_.size(); ++k) {
-    if (products_[k].is_beside && !is_ratio) continue;
-    if (products_[k].log_of && !is_log) continue;
-    std::vector<double> values = values_of(products_[k]);
-    if (products_[k].is_beside) {
+    const Product& product = products_[k];
+    if (product.is_beside && !is_ratio) continue;
+    if (product.log_of && form != TargetForm::logarithm) continue;
+    std::vector<double> values = values_of(product);
+    if (product.is_beside) {
       columns::mul(values.data(), rows_.target().values.data(), values.data(), n);
     }
-    if (!add(std::move(values))) continue;
-    places.push_back(k);
-    once.push_back(products_[k].is_beside ? 1 : 0);
+    columns::mul(values.data(), all.scale.data(), values.data(), n);
+    const double square = columns::dot(values.data(), values.data(), n);
+    if (!std::isfinite(square) || square == 0) continue;
+    all.columns.push_back(std::move(values));
+    all.places.push_back(k);
+    all.once.push_back(product.is_beside ? 1 : 0);
   }
-  const std::size_t count = columns.size();
+  columns::mul(all.target.data(), all.scale.data(), all.target.data(), n);
+  return all;
+}
+
+std::optional<Expression> Search::run(TargetForm form, bool is_ratio, Budget& budget) const {
+  if (!keeps_sign(form) && !signs_) return std::nullopt;
+  const Regression all = regression(form, is_ratio);
+  const std::size_t count = all.columns.size();
+  const std::size_t n = rows_.rows();
   // A product in the Gram matrix costs an eighth of what a node of a formula does.
   if (count < 2 || !budget.spend(count * count / 16 * n)) return std::nullopt;
-  columns::mul(target.data(), scale.data(), target.data(), n);
-  if (!std::ranges::all_of(target, [](double x) { return std::isfinite(x); })) return std::nullopt;
+  if (!std::ranges::all_of(all.target, [](double x) { return std::isfinite(x); })) {
+    return std::nullopt;
+  }
   std::vector<const double*> pointers;
-  for (const auto& column : columns) pointers.push_back(column.data());
-  pointers.push_back(target.data());
+  for (const auto& column : all.columns) pointers.push_back(column.data());
+  pointers.push_back(all.target.data());
   std::vector<double> gram((count + 1) * (count + 1));
   columns::gram(pointers.data(), count + 1, n, gram.data());
-  const SubsetFits fits(std::move(gram), std::move(once));
-  std::vector<Sum> sums = fits.best_pairs();
-  bool is_marked_tried = !is_ratio;
+  const SubsetFits fits(std::move(gram), all.once);
+  std::vector<SparseSum> sums = fits.best_pairs();
   for (std::size_t terms = 2; !sums.empty(); ++terms) {
-    for (const Sum& sum : sums) {
+    for (const SparseSum& sum : sums) {
       if (sum.left > kPromising * kPromising) break;
-      Sum named = sum;
-      std::vector<std::vector<double>> chosen;
-      for (std::size_t& term : named.terms) {
-        chosen.push_back(columns[term]);
-        term = places[term];
-      }
-      if (auto found = exact(form, named, chosen, target)) return found;
+      if (auto found = exact(form, sum, all)) return found;
     }
-    if (terms == kMostTerms || !budget.spend(kBeam * count * terms * terms)) break;
+    if (terms == kMostTerms || !budget.spend(kSums * count * terms * terms)) break;
     sums = fits.grown(sums);
-    if (is_marked_tried || !budget.spend(kMostTriples / 4)) continue;
-    is_marked_tried = true;
-    std::ranges::copy(fits.best_with_one_marked(), std::back_inserter(sums));
-    std::ranges::stable_sort(sums, {}, &Sum::left);
+    if (terms > 2 || !is_ratio || !budget.spend(kMostTriples / 4)) continue;
+    std::ranges::copy(fits.best_with_one_marked(kMostTriples), std::back_inserter(sums));
+    std::ranges::stable_sort(sums, {}, &SparseSum::left);
   }
   return std::nullopt;
 }
 
-std::optional<Expression> Search::exact(TargetForm form, const Sum& sum,
-                                        const std::vector<std::vector<double>>& columns,
-                                        const std::vector<double>& target) const {
+std::optional<Expression> Search::exact(TargetForm form, SparseSum sum,
+                                        const Regression& all) const {
   std::vector<const double*> pointers;
-  for (const auto& column : columns) pointers.push_back(column.data());
-  const LinearFit fit = solve_least_squares(pointers, target);
-  if (!(std::sqrt(fit.sum_squares / static_cast<double>(target.size())) <= kExact)) {
+  for (std::size_t& term : sum.terms) {
+    pointers.push_back(all.columns[term].data());
+    term = all.places[term];
+  }
+  const LinearFit fit = solve_least_squares(pointers, all.target);
+  if (!(std::sqrt(fit.sum_squares / static_cast<double>(rows_.rows())) <= kExact)) {
     return std::nullopt;
   }
   Expression formula = assembled(form, sum, fit.coefficients);
@@ -424,7 +266,7 @@ Expression Search::formula_of(const Product& product, double coefficient, Target
   return product_of(coefficient, factors, exponents);
 }
 
-Expression Search::assembled(TargetForm form, const Sum& sum,
+Expression Search::assembled(TargetForm form, const SparseSum& sum,
                              std::span<const double> coefficients) const {
   Expression right;
   Expression beside;

@@ -40,5 +40,16 @@ TEST(Relay, StaysWithItsMembersWhereNoStructureIsExact) {
   EXPECT_EQ(result.note, "");
 }
 
+// Hundreds of pairs are left alone: what is looked for is still found, within memory and time.
+TEST(Relay, TakesDozensOfInputs) {
+  std::vector<testing::DrawnInput> inputs;
+  for (int j = 0; j < 40; ++j) inputs.push_back({"x" + std::to_string(j), 1, 3});
+  const DrawnLaw product("2.5*x3^2/x31", inputs, 120);
+  const FitResult found = run_fit(product.data(), "relay", with_evaluations(100'000'000));
+  EXPECT_LT(product.error_of(found.front[found.chosen]), 1e-9);
+  const DrawnLaw sum("2.5*x3^2/x31 + exp(x7)", inputs, 120, 0.1);
+  EXPECT_FALSE(run_fit(sum.data(), "relay", with_evaluations(100'000'000)).front.empty());
+}
+
 }  // namespace
 }  // namespace tribench
