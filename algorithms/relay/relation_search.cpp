@@ -22,6 +22,7 @@ namespace {
 using namespace build;
 
 constexpr double kExact = 1e-8;      // of a row's target, root mean square
+constexpr double kNoPart = 1e-10;    // of a row's target, that a term explains
 constexpr double kPromising = 1e-5;  // in the Gram matrix, whose rounding is larger
 constexpr std::size_t kMostTerms = 6;
 constexpr std::size_t kSums = 300;                // that are grown (subset_fits.hpp)
@@ -235,18 +236,27 @@ std::optional<Expression> Search::run(TargetForm form, bool is_ratio, Budget& bu
   return std::nullopt;
 }
 
+// Without the terms that explain less than what may be left over.
 std::optional<Expression> Search::exact(TargetForm form, SparseSum sum,
                                         const Regression& all) const {
-  std::vector<const double*> pointers;
-  for (std::size_t& term : sum.terms) {
-    pointers.push_back(all.columns[term].data());
-    term = all.places[term];
+  const double n = static_cast<double>(rows_.rows());
+  std::vector<double> coefficients;
+  for (bool is_shorter = true; is_shorter && !sum.terms.empty();) {
+    std::vector<const double*> pointers;
+    for (const std::size_t term : sum.terms) pointers.push_back(all.columns[term].data());
+    LinearFit fit = solve_least_squares(pointers, all.target);
+    if (!(std::sqrt(fit.sum_squares / n) <= kExact)) return std::nullopt;
+    coefficients = std::move(fit.coefficients);
+    std::vector<std::size_t> kept;
+    for (std::size_t k = 0; k < sum.terms.size(); ++k) {
+      const double square = columns::dot(pointers[k], pointers[k], rows_.rows());
+      if (std::abs(coefficients[k]) * std::sqrt(square / n) > kNoPart) kept.push_back(sum.terms[k]);
+    }
+    is_shorter = kept.size() < sum.terms.size();
+    sum.terms = std::move(kept);
   }
-  const LinearFit fit = solve_least_squares(pointers, all.target);
-  if (!(std::sqrt(fit.sum_squares / static_cast<double>(rows_.rows())) <= kExact)) {
-    return std::nullopt;
-  }
-  Expression formula = assembled(form, sum, fit.coefficients);
+  for (std::size_t& term : sum.terms) term = all.places[term];
+  Expression formula = assembled(form, sum, coefficients);
   if (!operators_.admits(formula) || !explains(formula, rows_)) return std::nullopt;
   return formula;
 }

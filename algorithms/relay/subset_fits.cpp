@@ -83,7 +83,7 @@ std::vector<SparseSum> SubsetFits::best_with_one_marked(std::size_t most) const 
 }
 
 std::vector<double> SubsetFits::gram_without(std::size_t k) const {
-  std::vector<double> gram(gram_.size());
+  std::vector<double> gram = gram_;
   std::vector<double> scale(stride_, 1.0);
   for (std::size_t i = 0; i < stride_; ++i) {
     const double along = gram_[i * stride_ + k];

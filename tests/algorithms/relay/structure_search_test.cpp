@@ -72,6 +72,20 @@ TEST(RelationSearch, FindsSumsRootsReciprocalsRatiosAndExponentials) {
   }
 }
 
+TEST(RelationSearch, LeavesOutTermsThatExplainNothing) {
+  const std::vector<DrawnInput> masses = {{"m", 0.1, 10, true},
+                                          {"x", 0.1, 10, true, true},
+                                          {"n", 0.1, 10, true},
+                                          {"z", 0.1, 10, true, true}};
+  const DrawnLaw law("(m*x + n*z)/(m + n)", masses, 400);
+  Budget budget({});
+  const auto found =
+      relay::find_relation(*Rows(law), full(), relay::Columns::powers_alone, 500, budget);
+  ASSERT_TRUE(found);
+  EXPECT_LT(law.error_of(*found), 1e-9);
+  EXPECT_LE(found->constant_positions().size(), 4U) << print(*found, law.names);
+}
+
 TEST(RelationSearch, FindsSumsWithCosinesOnlyWhereTheyAreAskedFor) {
   const DrawnLaw law("c^2 + e^2 - 2*c*e*cos(d)", {{"c", 1, 9}, {"d", 0, 6.2}, {"e", 1, 9}}, 300);
   Budget budget({});
