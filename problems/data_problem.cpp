@@ -8,41 +8,13 @@
 
 #include "foundation/error.hpp"
 #include "foundation/formula_name.hpp"
+#include "problems/friction_sign.hpp"
 #include "problems/reading/channel_names.hpp"
 #include "problems/reading/csv_cells.hpp"
 #include "problems/table.hpp"
 
 namespace tribench {
 namespace {
-
-// A direction counts where it reaches a tenth of the other's speed: noise at standstill is none.
-bool has_both_directions(std::span<const double> velocity) {
-  const auto [low, high] = std::minmax_element(velocity.begin(), velocity.end());
-  if (low == velocity.end()) return false;
-  return std::min(-*low, *high) > 0.1 * std::max(-*low, *high);
-}
-
-// Correlation; about 0 instead of the means where the velocity has one direction, since friction
-// may well fall with speed.
-double agreement(std::span<const double> friction, std::span<const double> velocity) {
-  const auto n = static_cast<double>(friction.size());
-  const bool centred = has_both_directions(velocity);
-  double mean_f = 0;
-  double mean_v = 0;
-  for (std::size_t r = 0; centred && r < friction.size(); ++r) {
-    mean_f += friction[r] / n;
-    mean_v += velocity[r] / n;
-  }
-  double fv = 0;
-  double ff = 0;
-  double vv = 0;
-  for (std::size_t r = 0; r < friction.size(); ++r) {
-    fv += (friction[r] - mean_f) * (velocity[r] - mean_v);
-    ff += (friction[r] - mean_f) * (friction[r] - mean_f);
-    vv += (velocity[r] - mean_v) * (velocity[r] - mean_v);
-  }
-  return ff > 0 && vv > 0 ? fv / std::sqrt(ff * vv) : 0;
-}
 
 // Fits square what they are given: numbers that are all as small vanish then.
 void require_squares(const Channel& target, const std::string& place) {
@@ -103,12 +75,8 @@ void refuse_opposing_friction(const Dataset& data, std::string_view target) {
   const Channel& friction = data.at(target);
   const Channel* velocity = data.find(Role::velocity);
   if (friction.role != Role::friction_torque || velocity == nullptr) return;
-  const double measured = agreement(friction.values, velocity->values);
-  if (measured >= 0) return;
-  throw_bad_input(
-      fmt::format("'{}' opposes '{}' (correlation {:.2f}); friction is positive with velocity here",
-                  friction.name, velocity->name, measured),
-      data.name, "give --flip-sign to change the sign of the torques");
+  refuse_opposing_friction(friction.values, friction.name, velocity->values, velocity->name,
+                           data.name);
 }
 
 void flip_torques(Dataset& data) {

@@ -22,9 +22,9 @@ namespace tribench {
 Problem make_data_problem(const Dataset& train, const Dataset* test, const std::string& target,
                           std::span<const std::string> inputs);
 
-// Throws Error (bad_input) where the column `target` has the role friction_torque and its
-// correlation with the velocity is negative (about 0 where all velocities have one sign); silent
-// where there is no velocity or either is constant.
+// Throws Error (bad_input) where the column `target` has the role friction_torque and opposes the
+// velocity (friction_sign.hpp); silent where there is no velocity or either is
+// constant.
 void refuse_opposing_friction(const Dataset& data, std::string_view target);
 
 // Changes the sign of every torque-like channel, gravity included: the mend for the above.

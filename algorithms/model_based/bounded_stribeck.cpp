@@ -275,17 +275,7 @@ void polish(const StribeckRows& rows, StribeckModel& model, Budget& budget, Stri
   bounds.high.resize(model.parameter_count(), infinity);
   bool stop = false;
   StribeckModel trial = model;
-  const double scale = 1 / static_cast<double>(rows.size());
-  const Objective objective = [&](std::span<const double> x, std::span<double> gradient) {
-    if (!budget.spend(2 * kPassNodes * rows.size())) {
-      stop = true;
-      return std::numeric_limits<double>::quiet_NaN();
-    }
-    trial.set_parameters(x);
-    const double value = trial.sum_squares(rows, gradient);
-    for (double& g : gradient) g *= scale;
-    return value * scale;
-  };
+  const Objective objective = mean_squares(trial, rows, budget, 2 * kPassNodes, stop);
   MinimizeOptions options;
   options.max_evaluations = 300;
   options.stop = &stop;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/model_based/printed_stribeck.hpp"
 
-#include <limits>
-
 #include "algorithms/fitting/basin_hopping.hpp"
 #include "algorithms/fitting/nlopt_minimizer.hpp"
 
@@ -19,17 +17,7 @@ StribeckFit fit_printed_stribeck(const StribeckRows& rows, StribeckModel& model,
                                  const RandomStream& random) {
   bool stop = false;
   StribeckModel trial = model;
-  const double scale = 1 / static_cast<double>(rows.size());
-  const Objective objective = [&](std::span<const double> x, std::span<double> gradient) {
-    if (!budget.spend(kPassNodes * rows.size())) {
-      stop = true;
-      return std::numeric_limits<double>::quiet_NaN();
-    }
-    trial.set_parameters(x);
-    const double value = trial.sum_squares(rows, gradient);
-    for (double& g : gradient) g *= scale;
-    return value * scale;
-  };
+  const Objective objective = mean_squares(trial, rows, budget, kPassNodes, stop);
   MinimizeOptions local;
   local.max_evaluations = kIterationsPerParameter * model.parameter_count();
   local.stop = &stop;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "algorithms/expression/build.hpp"
 #include "foundation/elementary.hpp"
@@ -107,6 +108,22 @@ Expression StribeckModel::formula(const FrictionInputs& inputs) const {
   if (has_inertia) result = result + constant(inertia) * input(*inputs.acceleration);
   if (has_offset) result = result + constant(offset);
   return result;
+}
+
+Objective mean_squares(StribeckModel& trial, const StribeckRows& rows, Budget& budget,
+                       std::uint64_t nodes_per_row, bool& stop) {
+  const double scale = 1 / static_cast<double>(rows.size());
+  return [&trial, &rows, &budget, &stop, nodes_per_row, scale](std::span<const double> x,
+                                                               std::span<double> gradient) {
+    if (!budget.spend(nodes_per_row * rows.size())) {
+      stop = true;
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    trial.set_parameters(x);
+    const double value = trial.sum_squares(rows, gradient);
+    for (double& g : gradient) g *= scale;
+    return value * scale;
+  };
 }
 
 }  // namespace tribench

@@ -4,10 +4,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "algorithms/budget.hpp"
 #include "algorithms/expression/expression.hpp"
+#include "algorithms/fitting/objective.hpp"
 #include "algorithms/model_based/friction_inputs.hpp"
 
 namespace tribench {
@@ -53,6 +56,12 @@ struct StribeckModel {
   // As a formula over the problem's inputs; terms that are exactly 0 are left out.
   Expression formula(const FrictionInputs& inputs) const;
 };
+
+// The mean squared error of `trial` over the rows with its gradient, for a minimiser. Every call
+// spends `nodes_per_row`; where the budget has no more, `stop` is set and the answer is NaN. What
+// is referred to must outlive it.
+Objective mean_squares(StribeckModel& trial, const StribeckRows& rows, Budget& budget,
+                       std::uint64_t nodes_per_row, bool& stop);
 
 // exp(-|v / vs|^delta).
 double stribeck_decay(double velocity, double stribeck_velocity, double exponent);

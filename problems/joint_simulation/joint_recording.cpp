@@ -3,9 +3,9 @@
 
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "foundation/elementary.hpp"
+#include "problems/campaign_channels.hpp"
 
 namespace tribench::simulation {
 namespace {
@@ -43,32 +43,17 @@ Instant instant_of(const Movement& movement, double t_s) {
   return now;
 }
 
-Dataset blank_recording(std::string name) {
-  Dataset data;
-  data.name = std::move(name);
-  data.channels = {{"time_s", "s", Role::time, {}},
-                   {"position_rad", "rad", Role::position, {}},
-                   {"velocity_rad_s", "rad/s", Role::velocity, {}},
-                   {"acceleration_rad_s2", "rad/s^2", Role::acceleration, {}},
-                   {"gravity_torque_Nm", "N m", Role::gravity_torque, {}},
-                   {"temperature_degC", "degC", Role::temperature, {}},
-                   {"other_velocity_rad_s", "rad/s", Role::other_velocity, {}},
-                   {"other_acceleration_rad_s2", "rad/s^2", Role::other_acceleration, {}}};
-  return data;
-}
-
 void append_row(Dataset& data, int movement, double time_s, const Instant& now,
                 double sensor_degc) {
-  const std::array row = {time_s,
-                          now.joint.position_rad,
-                          now.joint.velocity_rad_s,
-                          now.joint.acceleration_rad_s2,
-                          now.gravity_nm,
-                          sensor_degc,
-                          now.other.velocity_rad_s,
-                          now.other.acceleration_rad_s2};
-  for (std::size_t c = 0; c < row.size(); ++c) data.channels[c].values.push_back(row[c]);
-  data.movement.push_back(movement);
+  append_campaign_row(data, movement,
+                      {.time_s = time_s,
+                       .position_rad = now.joint.position_rad,
+                       .velocity_rad_s = now.joint.velocity_rad_s,
+                       .acceleration_rad_s2 = now.joint.acceleration_rad_s2,
+                       .gravity_nm = now.gravity_nm,
+                       .temperature_degc = sensor_degc,
+                       .other_velocity_rad_s = now.other.velocity_rad_s,
+                       .other_acceleration_rad_s2 = now.other.acceleration_rad_s2});
 }
 
 std::vector<double> base_friction(std::span<const double> velocity, RandomStream random) {

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "foundation/random.hpp"
@@ -39,8 +38,7 @@ Thermal draw_thermal(double campaign_s, RandomStream random);
 // The state t_s after the movement's start; `part` and the oil's temperature are the caller's.
 Instant instant_of(const Movement& movement, double t_s);
 
-// Channels as of problems/kuka/loop_campaign.hpp, without the torque.
-Dataset blank_recording(std::string name);
+// To a campaign as blank_campaign (problems/campaign_channels.hpp) begins it.
 void append_row(Dataset& data, int movement, double time_s, const Instant& now, double sensor_degc);
 
 // Coulomb and viscous friction by direction, drawn from the stream: the same stream, the same

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "problems/campaign_channels.hpp"
 #include "problems/joint_simulation/joint_recording.hpp"
 
 namespace tribench::simulation {
@@ -24,7 +25,7 @@ double pause_after(std::size_t movement, std::size_t movements, double pause_s, 
 // Records the campaign and, row by row, the response.
 Dataset run_campaign(const SimulatedCase& wanted, const std::vector<Movement>& movements,
                      const Response& response, RandomStream random, std::vector<double>& values) {
-  Dataset data = blank_recording(fmt::format("simulated {}", design_name(wanted.design)));
+  Dataset data = blank_campaign(fmt::format("simulated {}", design_name(wanted.design)));
   double moving_s = 0;
   for (const Movement& movement : movements) moving_s += movement.duration_s();
   double campaign_s = 0;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "foundation/error.hpp"
+#include "problems/campaign_channels.hpp"
 #include "problems/friction/planted_effects.hpp"
 #include "problems/joint_simulation/world_motion.hpp"
 
@@ -110,7 +111,7 @@ std::vector<PlantedEffect> draw_effects(const WorldPlan& plan, WorldKind kind,
   const std::size_t wanted = kind == WorldKind::pair ? 2 : 1;
   while (effects.size() < wanted) {
     const Hidden& one = pool[random.below(pool.size())];
-    // Two causes of one name would be one effect to whoever looks for names.
+    // Two causes of one name could not be told apart by their names.
     const bool known = std::ranges::any_of(effects, [&](const PlantedEffect& other) {
       return std::ranges::any_of(one.names, [&](const std::string& name) {
         return std::ranges::count(other.names, name) + std::ranges::count(other.beside, name) > 0;
@@ -165,7 +166,7 @@ std::vector<Response> World::fresh_responses() const {
 void World::calibrate() {
   if (truth_.effects.empty()) return;
   State state = state_;
-  Dataset data = blank_recording("usual movements");
+  Dataset data = blank_campaign("usual movements");
   std::vector<std::vector<double>> values(truth_.effects.size());
   std::vector<Movement> usual = make_movements(Design::mixed, random_.split("usual movements"));
   usual.resize(kUsualMovements, usual.front());
@@ -215,6 +216,32 @@ std::vector<double> World::noise_of(std::size_t movement, const Dataset& data) c
   return noise;
 }
 
+std::vector<double> World::friction_of(std::size_t movement, const Dataset& data,
+                                       const std::vector<std::vector<double>>& effects,
+                                       std::string_view place) const {
+  std::vector<double> friction =
+      base_friction(data.find(Role::velocity)->values, random_.split("base"));
+  const std::vector<double> noise = noise_of(movement, data);
+  const double step = quantisation_step(truth_.noise) * truth_.noise_sd_nm;
+  const std::vector<double>& gravity = data.find(Role::gravity_torque)->values;
+  for (std::size_t i = 0; i < friction.size(); ++i) {
+    double& torque = friction[i];
+    for (std::size_t k = 0; k < effects.size(); ++k) {
+      torque += truth_.effects[k].coefficient * effects[k][i];
+    }
+    torque += noise[i];
+    if (step > 0) torque = step * std::round(torque / step);
+    if (const double motor = std::abs(torque + gravity[i]); motor > limits_.torque_nm) {
+      throw_bad_input(
+          fmt::format("the motor would need {:.1f} N m at {:.2f} rad", motor,
+                      data.find(Role::position)->values[i]),
+          place,
+          fmt::format("{:g} N m at most: less load, slower, or another place", limits_.torque_nm));
+    }
+  }
+  return friction;
+}
+
 Dataset World::execute(const PlannedMovement& wanted, std::string_view place) {
   if (const BrokenLimit limit = broken_limit(wanted, limits_); limit.broken()) {
     throw_bad_input(limit.what, place, limit.mend);
@@ -235,7 +262,7 @@ Dataset World::execute(const PlannedMovement& wanted, std::string_view place) {
     run(state, approach, nullptr, nullptr);
   }
   const Movement movement = motion_for(wanted, limits_);
-  Dataset data = blank_recording("world");
+  Dataset data = blank_campaign("world");
   std::vector<std::vector<double>> values(truth_.effects.size());
   run(state, movement, &data, &values);
   data.movement_names = {fmt::format("move {}", state.movements + 1)};
@@ -243,27 +270,9 @@ Dataset World::execute(const PlannedMovement& wanted, std::string_view place) {
   if (data.rows() == 0) {
     throw_bad_input("it is over before one row is recorded", place, "make it longer");
   }
-  Channel friction{"friction_torque_Nm", "N m", Role::friction_torque,
-                   base_friction(data.find(Role::velocity)->values, random_.split("base"))};
-  const std::vector<double> noise = noise_of(state.movements, data);
-  const double step = quantisation_step(truth_.noise) * truth_.noise_sd_nm;
-  const std::vector<double>& gravity = data.find(Role::gravity_torque)->values;
-  for (std::size_t i = 0; i < friction.values.size(); ++i) {
-    double& torque = friction.values[i];
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      torque += truth_.effects[k].coefficient * values[k][i];
-    }
-    torque += noise[i];
-    if (step > 0) torque = step * std::round(torque / step);
-    if (const double motor = std::abs(torque + gravity[i]); motor > limits_.torque_nm) {
-      throw_bad_input(
-          fmt::format("the motor would need {:.1f} N m at {:.2f} rad", motor,
-                      data.find(Role::position)->values[i]),
-          place,
-          fmt::format("{:g} N m at most: less load, slower, or another place", limits_.torque_nm));
-    }
-  }
-  data.channels.push_back(std::move(friction));
+  std::vector<double> friction = friction_of(state.movements, data, values, place);
+  data.channels.push_back(
+      {"friction_torque_Nm", "N m", Role::friction_torque, std::move(friction)});
   const std::vector<double>& sensor = data.find(Role::temperature)->values;
   const double rise = *std::ranges::max_element(sensor) - kCoolest_degc;
   if (rise > limits_.temperature_rise_k) {

@@ -87,6 +87,11 @@ class World {
   void run(State& state, const Movement& movement, Dataset* data,
            std::vector<std::vector<double>>* values) const;
   std::vector<double> noise_of(std::size_t movement, const Dataset& data) const;
+  // What is recorded as friction: base, effects, noise. Throws Error (bad_input) at `place` where
+  // the motor would need more torque than it has.
+  std::vector<double> friction_of(std::size_t movement, const Dataset& data,
+                                  const std::vector<std::vector<double>>& effects,
+                                  std::string_view place) const;
 
   RandomStream random_;
   MotionLimits limits_;

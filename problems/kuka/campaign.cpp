@@ -135,14 +135,23 @@ std::vector<Setting> campaign_order(const Joint& joint, std::uint64_t seed) {
   return settings;
 }
 
-KnownDataset make_a_raw(const Joint& joint, std::uint64_t seed, std::size_t samples_per_movement) {
-  Recorder recorder("A");
+namespace {
+
+// What both campaigns record of the joint itself, in the order of their rows.
+void declare_motion(Recorder& recorder) {
   recorder.declare("time_s", "s", Role::time);
   recorder.declare("q", "rad", Role::position);
   recorder.declare("qd", "rad/s", Role::velocity);
   recorder.declare("sgn_qd", "-", Role::velocity_sign);
   recorder.declare("g", "N m", Role::gravity_torque);
   recorder.declare("sgn_g", "-", Role::gravity_sign);
+}
+
+}  // namespace
+
+KnownDataset make_a_raw(const Joint& joint, std::uint64_t seed, std::size_t samples_per_movement) {
+  Recorder recorder("A");
+  declare_motion(recorder);
   recorder.declare("tau_f", "N m", Role::friction_torque);
   const std::vector<Setting> settings = campaign_order(joint, seed);
   const RandomStream campaign = stream_of(joint, seed).split("A");
@@ -204,12 +213,7 @@ KnownDataset make_a_averaged(const Joint& joint, std::uint64_t seed) {
 KnownDataset make_b(const Joint& joint, std::uint64_t seed, double payload_kg, int movements,
                     std::size_t samples_per_movement) {
   Recorder recorder("B");
-  recorder.declare("time_s", "s", Role::time);
-  recorder.declare("q", "rad", Role::position);
-  recorder.declare("qd", "rad/s", Role::velocity);
-  recorder.declare("sgn_qd", "-", Role::velocity_sign);
-  recorder.declare("g", "N m", Role::gravity_torque);
-  recorder.declare("sgn_g", "-", Role::gravity_sign);
+  declare_motion(recorder);
   recorder.declare("g_arm", "N m", Role::none);
   recorder.declare("tau_ext", "N m", Role::external_torque);
   recorder.declare("tau_m", "N m", Role::motor_torque);

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "foundation/elementary.hpp"
+#include "problems/campaign_channels.hpp"
 #include "problems/kuka/joint.hpp"
 
 namespace tribench::kuka {
@@ -173,20 +174,6 @@ struct Thermal {
   }
 };
 
-Dataset blank_dataset() {
-  Dataset data;
-  data.name = "A+D";
-  data.channels = {{"time_s", "s", Role::time, {}},
-                   {"position_rad", "rad", Role::position, {}},
-                   {"velocity_rad_s", "rad/s", Role::velocity, {}},
-                   {"acceleration_rad_s2", "rad/s^2", Role::acceleration, {}},
-                   {"gravity_torque_Nm", "N m", Role::gravity_torque, {}},
-                   {"temperature_degC", "degC", Role::temperature, {}},
-                   {"other_velocity_rad_s", "rad/s", Role::other_velocity, {}},
-                   {"other_acceleration_rad_s2", "rad/s^2", Role::other_acceleration, {}}};
-  return data;
-}
-
 // The rows of one movement that starts after `start_s` seconds of motion.
 void record(const Motion& motion, double start_s, const Thermal& thermal, RandomStream draw,
             LoopCampaign& campaign) {
@@ -197,19 +184,16 @@ void record(const Motion& motion, double start_s, const Thermal& thermal, Random
     const State state = at(motion, instants[i]);
     const State other = at(motion.other, instants[i]);
     const double time_s = thermal.campaign_s(start_s + instants[i]);
-    const std::array row = {
-        time_s,
-        state.position,
-        state.velocity,
-        state.acceleration,
-        motion.posture.gravity_nm * elementary::sin(state.position + motion.posture.phase_rad),
-        thermal.temperature_after(start_s + instants[i]),
-        other.velocity,
-        other.acceleration};
-    for (std::size_t j = 0; j < row.size(); ++j) {
-      campaign.data.channels[j].values.push_back(row[j]);
-    }
-    campaign.data.movement.push_back(movement);
+    append_campaign_row(campaign.data, movement,
+                        {.time_s = time_s,
+                         .position_rad = state.position,
+                         .velocity_rad_s = state.velocity,
+                         .acceleration_rad_s2 = state.acceleration,
+                         .gravity_nm = motion.posture.gravity_nm *
+                                       elementary::sin(state.position + motion.posture.phase_rad),
+                         .temperature_degc = thermal.temperature_after(start_s + instants[i]),
+                         .other_velocity_rad_s = other.velocity,
+                         .other_acceleration_rad_s2 = other.acceleration});
     campaign.distance_rad.push_back(distances[i]);
     campaign.campaign_part.push_back(time_s / thermal.whole_s());
   }
@@ -226,7 +210,7 @@ LoopCampaign make_loop_campaign(int constant_velocity, int trajectories,
     thermal.total_s += motion.duration_s + kPauseBetweenMovements_s;
   }
 
-  LoopCampaign campaign{blank_dataset(), {}, {}};
+  LoopCampaign campaign{blank_campaign("A+D"), {}, {}};
   double start_s = 0;
   for (std::size_t m = 0; m < motions.size(); ++m) {
     campaign.data.movement_names.push_back(

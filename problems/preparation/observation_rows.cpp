@@ -7,21 +7,10 @@
 #include <cmath>
 
 #include "foundation/error.hpp"
+#include "problems/friction_sign.hpp"
 
 namespace tribench::loop {
 namespace {
-
-double cosine(const std::vector<double>& x, const std::vector<double>& y) {
-  double xx = 0;
-  double yy = 0;
-  double xy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += x[i] * x[i];
-    yy += y[i] * y[i];
-    xy += x[i] * y[i];
-  }
-  return xx > 0 && yy > 0 ? xy / std::sqrt(xx * yy) : 0;
-}
 
 // 99 % quantile of the magnitudes.
 double top_speed(std::vector<double> v) {
@@ -240,16 +229,8 @@ void check_moving(const Observations& data) {
 
 void check_sign(const Observations& data) {
   if (!data.rigid.empty()) return;  // inertia and gravity may dominate: no sign to be expected
-  // Of rows in one direction the mean tells the sign, not how friction varies with the speed.
-  const std::vector<double>& v = data.find("v")->values;
-  const auto [low, high] = std::ranges::minmax(v);
-  const double r = low < 0 && high > 0 ? correlation(data.target, v) : cosine(data.target, v);
-  if (r < -0.1) {
-    throw_bad_input(fmt::format("friction opposes the velocity here (correlation {:.2f}); it is "
-                                "expected positive with velocity",
-                                r),
-                    data.target_name, "turn the target's sign with --flip-sign");
-  }
+  const Signal& v = *data.find("v");
+  refuse_opposing_friction(data.target, data.target_name, v.values, v.channel, data.target_name);
 }
 
 }  // namespace tribench::loop

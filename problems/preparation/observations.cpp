@@ -63,8 +63,8 @@ void add_campaign_time(Observations& data) {
   if (restarts) found->recipe = "time of the movements laid end to end";
 }
 
-// Some movement turns or starts from standstill: else nobody knows how far back the last reversal
-// lies, and "distance" would be a name for the place within a recording.
+// Some movement turns or starts from standstill: else it is not known how far back the last
+// reversal lies, and "distance" would be a name for the place within a recording.
 bool knows_a_reversal(const Observations& data, const std::vector<double>& v) {
   constexpr double kStandstill = 0.05;  // of the movement's top speed
   std::size_t begin = 0;
@@ -171,25 +171,6 @@ void complete_signals(Observations& data) {
   }
   add_sign(data, "v", Role::velocity_sign);
   add_sign(data, "g", Role::gravity_sign);
-}
-
-double correlation(std::span<const double> x, std::span<const double> y) {
-  const auto n = static_cast<double>(x.size());
-  double mean_x = 0;
-  double mean_y = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    mean_x += x[i] / n;
-    mean_y += y[i] / n;
-  }
-  double xx = 0;
-  double yy = 0;
-  double xy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += (x[i] - mean_x) * (x[i] - mean_x);
-    yy += (y[i] - mean_y) * (y[i] - mean_y);
-    xy += (x[i] - mean_x) * (y[i] - mean_y);
-  }
-  return xx > 0 && yy > 0 ? xy / std::sqrt(xx * yy) : 0;
 }
 
 const Signal* Observations::find(std::string_view name) const {

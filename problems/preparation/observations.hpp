@@ -97,7 +97,7 @@ inline constexpr double kBlockSpeed = 0.02;   // of the top speed
 
 struct ObservationOptions {
   // Channels, beside those found, whose coefficients are fitted with the base and are no effects:
-  // the rigid-body part that nobody has subtracted.
+  // the rigid-body part that has not been subtracted.
   std::vector<std::string> rigid = {};
   // Rows slower than this (in the velocity's unit) are left out: the direction of friction at
   // standstill is not known, and a filtered velocity says little there. Without it the speed is
@@ -126,8 +126,5 @@ std::string signal_name(Role role, std::string_view channel);
 // What every observation has, from whatever it was made: rows that are not finite are dropped and
 // the signs of velocity and load are added. Throws Error (bad_input) where no row is left.
 void complete_signals(Observations& data);
-
-// Pearson's correlation of two columns; 0 where one of them is constant.
-double correlation(std::span<const double> x, std::span<const double> y);
 
 }  // namespace tribench::loop

@@ -32,9 +32,8 @@ class ExternalTest : public ::testing::Test {
                                           "\"]\n[budget]\nevaluations = "
                                           "20_000_000\nwall_seconds = 60\nmemory_mib = 1500\n" +
                                           more);
-    const ProgramRun ended =
-        run_to_end({program().string(), "run", (folder_ / "grid.toml").string(), "--out",
-                    (folder_ / "run").string(), "--jobs", "2"});
+    const ProgramRun ended = run_tribench({"run", (folder_ / "grid.toml").string(), "--out",
+                                           (folder_ / "run").string(), "--jobs", "2"});
     EXPECT_EQ(ended.status, 0) << ended.errors;
     return ended.errors;
   }
@@ -162,8 +161,8 @@ TEST_F(ExternalTest, AFaultOfTheMachineStopsTheRunAndIsRepeatedByResume) {
 TEST_F(ExternalTest, ARunOfWhichEveryCellFailedHasFailed) {
   write_text(folder_ / "grid.toml", "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"no\"]\n" +
                                         shell_method("no", "exit 9"));
-  const ProgramRun ended = run_to_end({program().string(), "run", (folder_ / "grid.toml").string(),
-                                       "--out", (folder_ / "run").string()});
+  const ProgramRun ended =
+      run_tribench({"run", (folder_ / "grid.toml").string(), "--out", (folder_ / "run").string()});
   EXPECT_EQ(ended.status, 3);
   EXPECT_THAT(ended.errors, HasSubstr("every cell failed, the first one by: error (the program"));
 }

@@ -35,10 +35,8 @@ class FitTest : public ::testing::Test {
     write_text(folder_ / "test.csv", line_data(0.02));
   }
   ProgramRun fit(std::vector<std::string> more) {
-    std::vector<std::string> command = {program().string(), "fit",
-                                        (folder_ / "train.csv").string()};
-    command.insert(command.end(), more.begin(), more.end());
-    return run_to_end(command);
+    more.insert(more.begin(), {"fit", (folder_ / "train.csv").string()});
+    return run_tribench(more);
   }
   TemporaryFolder folder_;
 };
@@ -68,8 +66,8 @@ TEST_F(FitTest, FindsALawOfNumbersFarFromOne) {
   }
   write_text(folder_ / "far.csv", text);
   const ProgramRun run =
-      run_to_end({program().string(), "fit", (folder_ / "far.csv").string(), "--target", "E",
-                  "--inputs", "m,c", "--method", "pysr", "--operators", "full", "--json"});
+      run_tribench({"fit", (folder_ / "far.csv").string(), "--target", "E", "--inputs", "m,c",
+                    "--method", "pysr", "--operators", "full", "--json"});
   ASSERT_EQ(run.status, 0) << run.errors;
   const json answer = json::parse(run.output);
   EXPECT_LT(answer.at("mae_train").get<double>(), 1e-6 * 1e129) << answer.at("formula");
@@ -192,13 +190,13 @@ TEST_F(UnequalRowsTest, AProgramIsAMethod) {
 TEST_F(UnequalRowsTest, ASavedModelPredictsWithIntervals) {
   const std::string model = (folder_ / "model.json").string();
   answer({"--method", "linear", "--save", model});
-  const ProgramRun run = run_to_end(
-      {program().string(), "predict", model, (folder_ / "train.csv").string(), "--intervals"});
+  const ProgramRun run =
+      run_tribench({"predict", model, (folder_ / "train.csv").string(), "--intervals"});
   ASSERT_EQ(run.status, 0) << run.errors;
   EXPECT_THAT(run.output, ::testing::StartsWith("prediction,low,high\n"));
   EXPECT_EQ(std::ranges::count(run.output, '\n'), 81);
-  const ProgramRun none = run_to_end(
-      {program().string(), "predict", "2*v", (folder_ / "train.csv").string(), "--intervals"});
+  const ProgramRun none =
+      run_tribench({"predict", "2*v", (folder_ / "train.csv").string(), "--intervals"});
   EXPECT_EQ(none.status, 2);
   EXPECT_THAT(none.errors, HasSubstr("--save"));
 }

@@ -65,9 +65,9 @@ class NightlyTest : public ::testing::Test {
     return run_to_end(words);
   }
   ProgramRun history(const std::string& what, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words = {program().string(), "history", what, store().string()};
+    std::vector<std::string> words = {"history", what, store().string()};
     words.insert(words.end(), more.begin(), more.end());
-    return run_to_end(words);
+    return run_tribench(words);
   }
   std::filesystem::path store() const { return folder_ / "store"; }
   static void next_second() { std::this_thread::sleep_for(std::chrono::milliseconds(1100)); }
@@ -135,9 +135,8 @@ TEST_F(NightlyTest, AMissingOrDamagedBaseIsRefusedAndNeverReplaced) {
 
 TEST_F(NightlyTest, ASecondOneAtATimeAndAFullDiskAreRefused) {
   write_grid("2_000_000");
-  const ProgramRun full =
-      run_to_end({program().string(), "nightly", "--store", store().string(), "--grid",
-                  (folder_ / "g.toml").string(), "--least-free", "1e9"});
+  const ProgramRun full = run_tribench({"nightly", "--store", store().string(), "--grid",
+                                        (folder_ / "g.toml").string(), "--least-free", "1e9"});
   EXPECT_EQ(full.status, 3);
   EXPECT_THAT(full.errors, HasSubstr("MiB are free"));
   // A method that takes its time holds the store.

@@ -10,6 +10,7 @@
 
 #include "foundation/child_process.hpp"
 #include "reports/csv.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench::testing {
 namespace {
@@ -33,6 +34,16 @@ ProgramRun run_to_end(const std::vector<std::string>& command,
                       const std::vector<std::string>& environment) {
   const ChildRun run = run_child({.command = command, .environment = environment});
   return {run.exit.status, run.exit.signal, run.output, run.errors};
+}
+
+ProgramRun run_tribench(const std::vector<std::string>& arguments) {
+  std::vector<std::string> command = {program().string()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return run_to_end(command);
+}
+
+ProgramRun run_tribench_in_shell(const std::string& arguments) {
+  return run_to_end({"sh", "-c", "\"$0\" " + arguments + " 2>&1", program().string()});
 }
 
 std::string output_of(const std::string& line) { return run_to_end({"bash", "-c", line}).output; }

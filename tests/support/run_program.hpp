@@ -21,6 +21,11 @@ struct ProgramRun {
 ProgramRun run_to_end(const std::vector<std::string>& command,
                       const std::vector<std::string>& environment = {});
 
+// The built tribench with these arguments.
+ProgramRun run_tribench(const std::vector<std::string>& arguments);
+// The same with arguments as a shell takes them; errors stand among the output.
+ProgramRun run_tribench_in_shell(const std::string& arguments);
+
 // What a line of shell prints; empty where it cannot be run.
 std::string output_of(const std::string& line);
 

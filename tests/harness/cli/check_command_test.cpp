@@ -7,44 +7,36 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench {
 namespace {
 
-struct Answer {
-  int exit = -1;
-  std::string output;
-};
-
-// The arguments as a shell takes them; errors stand among the output.
-Answer run_check(const std::string& arguments) {
-  const testing::ProgramRun run = testing::run_to_end(
-      {"sh", "-c", "\"$0\" check " + arguments + " 2>&1", testing::program().string()});
-  return {run.status, run.output};
+using testing::ProgramRun;
+ProgramRun run_check(const std::string& arguments) {
+  return testing::run_tribench_in_shell("check " + arguments);
 }
 
 TEST(CheckCommand, exits_0_for_a_proof_1_for_a_refutation_and_2_for_bad_input) {
-  EXPECT_EQ(run_check("'1/(v^2 - 2*v + 2)' --box 'v=-2:2'").exit, 0);
-  EXPECT_EQ(run_check("'1/(v - 0.3)' --box 'v=-2:2'").exit, 1);
-  EXPECT_EQ(run_check("--box v=-2:2 -- '-1/v'").exit, 1);
-  EXPECT_EQ(run_check("'1/(v - ' --box 'v=-2:2'").exit, 2);
-  EXPECT_EQ(run_check("'1/x' --box 'v=-2:2'").exit, 2);
-  EXPECT_EQ(run_check("'v' --box 'v=2:-2'").exit, 2);
-  EXPECT_EQ(run_check("'v' --box 'v=0:inf'").exit, 2);
-  EXPECT_EQ(run_check("'v' --box 'v=0:1,v=0:2'").exit, 2);
+  EXPECT_EQ(run_check("'1/(v^2 - 2*v + 2)' --box 'v=-2:2'").status, 0);
+  EXPECT_EQ(run_check("'1/(v - 0.3)' --box 'v=-2:2'").status, 1);
+  EXPECT_EQ(run_check("--box v=-2:2 -- '-1/v'").status, 1);
+  EXPECT_EQ(run_check("'1/(v - ' --box 'v=-2:2'").status, 2);
+  EXPECT_EQ(run_check("'1/x' --box 'v=-2:2'").status, 2);
+  EXPECT_EQ(run_check("'v' --box 'v=2:-2'").status, 2);
+  EXPECT_EQ(run_check("'v' --box 'v=0:inf'").status, 2);
+  EXPECT_EQ(run_check("'v' --box 'v=0:1,v=0:2'").status, 2);
 }
 
 TEST(CheckCommand, names_the_input_that_has_no_range_and_the_mend) {
-  const Answer answer = run_check("'v + load' --box 'v=-2:2'");
+  const ProgramRun answer = run_check("'v + load' --box 'v=-2:2'");
   EXPECT_NE(answer.output.find("'load' has no range; add load=LOW:HIGH"), std::string::npos)
       << answer.output;
 }
 
 TEST(CheckCommand, answers_in_json_with_a_witness) {
-  const Answer answer = run_check("'g/(v - 0.25)' --box 'v=-2:2,g=-60:60' --json");
-  EXPECT_EQ(answer.exit, 1);
+  const ProgramRun answer = run_check("'g/(v - 0.25)' --box 'v=-2:2,g=-60:60' --json");
+  EXPECT_EQ(answer.status, 1);
   const auto json = nlohmann::json::parse(answer.output);
   EXPECT_EQ(json["verdict"], "refuted");
   EXPECT_EQ(json["witness"]["v"], 0.25);
@@ -61,21 +53,21 @@ TEST(CheckCommand, gives_two_neighbours_for_a_pole_that_no_double_hits) {
 }
 
 TEST(CheckCommand, understands_the_sign_beside_its_input) {
-  EXPECT_EQ(run_check("'sqrt(v*sgn_v)' --box 'v=-2:2'").exit, 0);
-  EXPECT_EQ(run_check("'1/(sgn_v + 0.5)' --box 'v=-2:2'").exit, 0);
-  EXPECT_EQ(run_check("'1/sgn_v' --box 'v=-2:2'").exit, 1);
+  EXPECT_EQ(run_check("'sqrt(v*sgn_v)' --box 'v=-2:2'").status, 0);
+  EXPECT_EQ(run_check("'1/(sgn_v + 0.5)' --box 'v=-2:2'").status, 0);
+  EXPECT_EQ(run_check("'1/sgn_v' --box 'v=-2:2'").status, 1);
 }
 
 TEST(CheckCommand, decides_properties_of_friction_laws) {
-  EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property dissipative").exit, 0);
-  EXPECT_EQ(run_check("'3*sgn_v - 2*v' --box v=-2:2 --property dissipative").exit, 1);
-  EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property odd").exit, 0);
-  EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property bounded --limit 6.9").exit, 1);
+  EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property dissipative").status, 0);
+  EXPECT_EQ(run_check("'3*sgn_v - 2*v' --box v=-2:2 --property dissipative").status, 1);
+  EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property odd").status, 0);
+  EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property bounded --limit 6.9").status, 1);
   EXPECT_EQ(run_check("'sgn_w*exp(-w*sgn_w) + w' --box w=-2:2 --velocity w --from 0.1"
                       " --property monotone")
-                .exit,
+                .status,
             0);
-  EXPECT_EQ(run_check("'v' --box v=-2:2 --property smooth").exit, 2);
+  EXPECT_EQ(run_check("'v' --box v=-2:2 --property smooth").status, 2);
   const auto json =
       nlohmann::json::parse(run_check("'v' --box v=-2:2 --property odd --json").output);
   EXPECT_EQ(json["verdict"], "proved");
@@ -84,34 +76,34 @@ TEST(CheckCommand, decides_properties_of_friction_laws) {
 TEST(CheckCommand, writes_a_certificate_that_it_verifies_and_rejects_once_tampered_with) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("tribench_certificate_" + std::to_string(getpid()) + ".json");
-  EXPECT_EQ(run_check("'v/(v^2 - 2*v + 2)' --box v=-2:2 --certificate " + path.string()).exit, 0);
-  const Answer accepted = run_check("--json --verify " + path.string());
-  EXPECT_EQ(accepted.exit, 0);
+  EXPECT_EQ(run_check("'v/(v^2 - 2*v + 2)' --box v=-2:2 --certificate " + path.string()).status, 0);
+  const ProgramRun accepted = run_check("--json --verify " + path.string());
+  EXPECT_EQ(accepted.status, 0);
   EXPECT_EQ(nlohmann::json::parse(accepted.output)["accepted"], true);
   std::ifstream in(path);
   std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   text.replace(text.find("- 2*v"), 5, "- 3*v");
   std::ofstream(path) << text;
-  EXPECT_EQ(run_check("--verify " + path.string()).exit, 1);
+  EXPECT_EQ(run_check("--verify " + path.string()).status, 1);
   std::filesystem::remove(path);
-  EXPECT_EQ(run_check("--verify " + path.string()).exit, 2);
+  EXPECT_EQ(run_check("--verify " + path.string()).status, 2);
 }
 
 TEST(CheckCommand, certifies_the_property_asked_for_or_says_that_it_cannot) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("tribench_claim_" + std::to_string(getpid()) + ".json");
   const std::string asked = "'3*sgn_v + 2*v' --box v=-2:2 --certificate " + path.string();
-  EXPECT_EQ(run_check(asked + " --property dissipative").exit, 0);
+  EXPECT_EQ(run_check(asked + " --property dissipative").status, 0);
   const auto dissipative =
       nlohmann::json::parse(run_check("--json --verify " + path.string()).output);
   EXPECT_EQ(dissipative["accepted"], true);
   EXPECT_EQ(dissipative["claim"], "finite and of no other sign than v");
-  EXPECT_EQ(run_check(asked + " --property bounded --limit 7").exit, 0);
+  EXPECT_EQ(run_check(asked + " --property bounded --limit 7").status, 0);
   const auto bounded = nlohmann::json::parse(run_check("--json --verify " + path.string()).output);
   EXPECT_EQ(bounded["accepted"], true);
   std::filesystem::remove(path);
-  EXPECT_EQ(run_check(asked + " --property bounded").exit, 2);  // no limit
-  EXPECT_EQ(run_check(asked + " --property odd").exit, 2);
+  EXPECT_EQ(run_check(asked + " --property bounded").status, 2);  // no limit
+  EXPECT_EQ(run_check(asked + " --property odd").status, 2);
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
@@ -120,16 +112,16 @@ TEST(CheckCommand, decides_a_formula_with_memory_by_its_stored_energy) {
       "z = lugre(v, sliding=1e-3, breakaway=1.5e-3, stribeck_velocity=0.01); ";
   const std::string force = "1e4*z + 2000*(v - abs(v)*z/(1e-3 + 5e-4*exp(-(v/0.01)^2))) + ";
   const std::string rest = "*v' --box 'v=-2:2' --property dissipative";
-  EXPECT_EQ(run_check("'" + state + force + "1001" + rest).exit, 0);
-  const Answer refuted = run_check("'" + state + force + "100" + rest + " --json");
-  EXPECT_EQ(refuted.exit, 1);
+  EXPECT_EQ(run_check("'" + state + force + "1001" + rest).status, 0);
+  const ProgramRun refuted = run_check("'" + state + force + "100" + rest + " --json");
+  EXPECT_EQ(refuted.status, 1);
   const nlohmann::json json = nlohmann::json::parse(refuted.output);
   EXPECT_EQ(json["verdict"], "refuted");
   EXPECT_LT(json["witness"]["work"], 0);
   EXPECT_EQ(json["witness"]["cycle"].size(), 2U);
-  EXPECT_EQ(run_check("'" + state + "1/(0.0016 - z)' --box 'v=-2:2'").exit, 0);
-  EXPECT_EQ(run_check("'" + state + "1/(0.0014 - z)' --box 'v=-2:2'").exit, 1);
-  EXPECT_EQ(run_check("'z = lugre(v); z' --box 'v=-2:2'").exit, 2);
+  EXPECT_EQ(run_check("'" + state + "1/(0.0016 - z)' --box 'v=-2:2'").status, 0);
+  EXPECT_EQ(run_check("'" + state + "1/(0.0014 - z)' --box 'v=-2:2'").status, 1);
+  EXPECT_EQ(run_check("'z = lugre(v); z' --box 'v=-2:2'").status, 2);
 }
 
 }  // namespace

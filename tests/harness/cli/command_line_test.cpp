@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench::testing {
@@ -21,11 +20,6 @@ using ::testing::HasSubstr;
 
 using Words = std::vector<std::string>;
 
-ProgramRun tribench(Words words) {
-  words.insert(words.begin(), program().string());
-  return run_to_end(words);
-}
-
 Words with(Words words, const std::string& more) {
   words.push_back(more);
   return words;
@@ -34,7 +28,7 @@ Words with(Words words, const std::string& more) {
 // Subcommands below `command`, and theirs.
 std::vector<Words> commands_below(const Words& command) {
   std::vector<Words> all;
-  std::istringstream help(tribench(with(command, "--help")).output);
+  std::istringstream help(run_tribench(with(command, "--help")).output);
   const std::regex line_of_command("^  ([a-z][a-z-]*) .*");
   bool below = false;
   for (std::string line; std::getline(help, line);) {
@@ -50,7 +44,7 @@ std::vector<Words> commands_below(const Words& command) {
 
 Words numeric_options(const Words& command) {
   Words options;
-  std::istringstream help(tribench(with(command, "--help")).output);
+  std::istringstream help(run_tribench(with(command, "--help")).output);
   const std::regex line_of_option("^  (?:-., *)?(--[a-z-]+) (?:INT|UINT|FLOAT).*");
   for (std::string line; std::getline(help, line);) {
     std::smatch match;
@@ -64,7 +58,7 @@ TEST(CommandLine, EveryNumberIsReadStrictly) {
   for (const Words& command : commands_below({})) {
     for (const std::string& option : numeric_options(command)) {
       for (const char* text : {"nan", "inf", "1xyz", "0x10", "1'000", "1e999", "-1", "text"}) {
-        const ProgramRun run = tribench(with(with(command, option), text));
+        const ProgramRun run = run_tribench(with(with(command, option), text));
         EXPECT_EQ(run.status, 2) << command.back() << " " << option << " " << text;
         EXPECT_EQ(run.signal, 0) << command.back() << " " << option << " " << text;
         EXPECT_THAT(run.errors, HasSubstr("cannot be used; use a"))
@@ -77,15 +71,15 @@ TEST(CommandLine, EveryNumberIsReadStrictly) {
 }
 
 TEST(CommandLine, BudgetsMayBeWrittenWithAnExponent) {
-  const ProgramRun run = tribench({"fit", "no-such-file.csv", "--target", "t", "--inputs", "v",
-                                   "--method", "linear", "--evaluations", "1e11"});
+  const ProgramRun run = run_tribench({"fit", "no-such-file.csv", "--target", "t", "--inputs", "v",
+                                       "--method", "linear", "--evaluations", "1e11"});
   EXPECT_EQ(run.status, 2);
   EXPECT_THAT(run.errors, HasSubstr("no-such-file.csv"));
 }
 
 TEST(CommandLine, UnknownWordsAreAnsweredWithTheNearest) {
   const auto expect = [](const Words& words, const char* said) {
-    const ProgramRun run = tribench(words);
+    const ProgramRun run = run_tribench(words);
     EXPECT_EQ(run.status, 2) << words.back();
     EXPECT_THAT(run.errors, HasSubstr(said));
   };

@@ -10,18 +10,12 @@
 #include <vector>
 
 #include "problems/reading/csv.hpp"
-#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench::testing {
 namespace {
 
 using ::testing::HasSubstr;
-
-ProgramRun run_tribench(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), program().string());
-  return run_to_end(arguments);
-}
 
 TEST(GenerateCommand, WritesWhatReadsBackAndTheSameForTheSameSeed) {
   const TemporaryFolder folder;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench::testing {
@@ -14,8 +13,8 @@ namespace {
 using ::testing::HasSubstr;
 
 ProgramRun list(std::vector<std::string> words) {
-  words.insert(words.begin(), {program().string(), "list"});
-  return run_to_end(words);
+  words.insert(words.begin(), "list");
+  return run_tribench(words);
 }
 
 TEST(ListCommand, GivesTheMethodsWithTheirParameters) {

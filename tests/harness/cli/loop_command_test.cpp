@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "foundation/random.hpp"
-#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench {
@@ -20,17 +19,13 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using testing::run_tribench;
 using Json = nlohmann::json;
-
-testing::ProgramRun tribench(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), testing::program().string());
-  return testing::run_to_end(arguments);
-}
 
 std::string generated(const testing::TemporaryFolder& folder, const std::string& problem,
                       const std::string& seed) {
   const std::string file = (folder / ("data" + seed + ".csv")).string();
-  EXPECT_EQ(tribench({"generate", problem, "--seed", seed, "--out", file}).status, 0);
+  EXPECT_EQ(run_tribench({"generate", problem, "--seed", seed, "--out", file}).status, 0);
   return file;
 }
 
@@ -66,71 +61,70 @@ std::string csv(std::initializer_list<double> values) {
   return text;
 }
 
-TEST(LoopCommand, bad_input_ends_with_status_2_and_says_how_to_mend_it) {
+constexpr const char* kPlainHeader = "movement,velocity_rad_s,friction_torque_Nm";
+
+std::string plain_line(int m, int i) {
+  return csv({1.0 * m, speed_of(m), friction_of(speed_of(m), m, i)});
+}
+
+// What it says of such a file and these options, having ended with status 2.
+template <typename Line>
+std::string complaint(const std::string& header, Line line,
+                      const std::vector<std::string>& more = {}) {
   const testing::TemporaryFolder folder;
-  const auto complaint = [&](const std::string& header, auto line,
-                             const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"loop", file_of(folder, header, 12, 20, line)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const testing::ProgramRun run = tribench(arguments);
-    EXPECT_EQ(run.status, 2) << header;
-    return run.errors;
-  };
-  const auto good = [](int m, int i) {
-    return csv({1.0 * m, speed_of(m), friction_of(speed_of(m), m, i)});
-  };
-  EXPECT_THAT(complaint("movement,speed,friction_torque_Nm", good), HasSubstr("--roles"));
-  EXPECT_THAT(complaint("movement,velocity_rad_s,load_cell", good), HasSubstr("--roles"));
-  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm",
+  std::vector<std::string> arguments = {"loop", file_of(folder, header, 12, 20, line)};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const testing::ProgramRun run = run_tribench(arguments);
+  EXPECT_EQ(run.status, 2) << header;
+  return run.errors;
+}
+
+TEST(LoopCommand, bad_data_end_with_status_2_and_it_says_how_to_mend_them) {
+  EXPECT_THAT(complaint("movement,speed,friction_torque_Nm", plain_line), HasSubstr("--roles"));
+  EXPECT_THAT(complaint("movement,velocity_rad_s,load_cell", plain_line), HasSubstr("--roles"));
+  EXPECT_THAT(complaint(kPlainHeader,
                         [](int m, int i) {
                           return csv({1.0 * m, speed_of(m), -friction_of(speed_of(m), m, i)});
                         }),
               HasSubstr("--flip-sign"));
-  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm",
+  EXPECT_THAT(complaint(kPlainHeader,
                         [](int m, int i) {
                           return std::to_string(m) + "," + std::to_string(speed_of(m)) + "," +
                                  (i == 3 ? "nan" : std::to_string(friction_of(speed_of(m), m, i)));
                         }),
               HasSubstr("--drop-missing"));
-  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm",
+  EXPECT_THAT(complaint(kPlainHeader,
                         [](int m, int) {
                           return std::to_string(m) + "," + std::to_string(speed_of(m)) + ",inf";
                         }),
               HasSubstr("friction_torque_Nm"));
   for (const double dead : {0.0, 5.0}) {
     EXPECT_THAT(
-        complaint("movement,velocity_rad_s,friction_torque_Nm",
+        complaint(kPlainHeader,
                   [&](int m, int) {
                     return csv({1.0 * m, speed_of(m), dead});
                   }),
         AllOf(HasSubstr("friction_torque_Nm"), HasSubstr("in every row"), HasSubstr("--roles")));
   }
-  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--min-speed", "99"}),
-              HasSubstr("--min-speed"));
-  EXPECT_THAT(
-      complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--effects", "stribek"}),
-      HasSubstr("stribeck"));
-  EXPECT_THAT(
-      complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--model", "symetric"}),
-      HasSubstr("symmetric"));
-  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--model", "5*w +"}),
-              HasSubstr("w"));
-  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--where", "nope=1"}),
-              HasSubstr("nope"));
-  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good,
-                        {"--where", "velocity_rad_s=1xyz"}),
-              HasSubstr("1xyz"));
-  EXPECT_THAT(
-      complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--leave-out", "velocity"}),
-      HasSubstr("velocity_rad_s"));
-  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good,
-                        {"--leave-out", "friction_torque_Nm"}),
+}
+
+TEST(LoopCommand, bad_options_end_with_status_2_and_it_says_how_to_mend_them) {
+  const testing::TemporaryFolder folder;
+  const auto option_complaint = [](const std::vector<std::string>& more) {
+    return complaint(kPlainHeader, plain_line, more);
+  };
+  EXPECT_THAT(option_complaint({"--min-speed", "99"}), HasSubstr("--min-speed"));
+  EXPECT_THAT(option_complaint({"--effects", "stribek"}), HasSubstr("stribeck"));
+  EXPECT_THAT(option_complaint({"--model", "symetric"}), HasSubstr("symmetric"));
+  EXPECT_THAT(option_complaint({"--model", "5*w +"}), HasSubstr("w"));
+  EXPECT_THAT(option_complaint({"--where", "nope=1"}), HasSubstr("nope"));
+  EXPECT_THAT(option_complaint({"--where", "velocity_rad_s=1xyz"}), HasSubstr("1xyz"));
+  EXPECT_THAT(option_complaint({"--leave-out", "velocity"}), HasSubstr("velocity_rad_s"));
+  EXPECT_THAT(option_complaint({"--leave-out", "friction_torque_Nm"}),
               HasSubstr("changes within a movement"));
-  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good,
-                        {"--save-effect", (folder / "effect.toml").string()}),
+  EXPECT_THAT(option_complaint({"--save-effect", (folder / "effect.toml").string()}),
               HasSubstr("--learn"));
-  EXPECT_THAT(complaint("movement,velocity_rad_s,friction_torque_Nm", good, {"--learn", "pysir"}),
-              HasSubstr("pysr"));
+  EXPECT_THAT(option_complaint({"--learn", "pysir"}), HasSubstr("pysr"));
 }
 
 TEST(LoopCommand, a_folder_that_cannot_be_made_is_said_before_the_work) {
@@ -141,7 +135,7 @@ TEST(LoopCommand, a_folder_that_cannot_be_made_is_said_before_the_work) {
         return csv({1.0 * m, speed_of(m), friction_of(speed_of(m), m, i)});
       });
   const testing::ProgramRun run =
-      tribench({"loop", file, "--out", (folder / "taken" / "below").string()});
+      run_tribench({"loop", file, "--out", (folder / "taken" / "below").string()});
   EXPECT_NE(run.status, 0);
   EXPECT_THAT(run.errors, HasSubstr("taken"));
   EXPECT_EQ(run.output, "");  // no verdict that would then be lost
@@ -151,7 +145,7 @@ TEST(LoopCommand, poor_input_is_warned_of_and_nothing_is_claimed) {
   const testing::TemporaryFolder folder;
   const auto answer = [&](const std::string& header, int movements, int rows, auto line) {
     const testing::ProgramRun run =
-        tribench({"loop", file_of(folder, header, movements, rows, line), "--json"});
+        run_tribench({"loop", file_of(folder, header, movements, rows, line), "--json"});
     // Fewer stretches than any test needs.
     EXPECT_EQ(run.status, 4) << run.errors;
     const Json loop = Json::parse(run.output);
@@ -205,10 +199,10 @@ TEST(LoopCommand, says_what_the_models_are_worth_in_motion_where_the_inertia_is_
   const std::string file =
       file_of(folder, "movement,time_s,pos_deg,vel_rad_s,acc_rad_s2,tau_Nm", 12, 200, line);
   const testing::ProgramRun run =
-      tribench({"loop", file, "--gravity", "none", "--roles",
-                "pos_deg=position[deg],vel_rad_s=velocity,acc_rad_s2=acceleration,"
-                "tau_Nm=motor_torque[N m]",
-                "--json"});
+      run_tribench({"loop", file, "--gravity", "none", "--roles",
+                    "pos_deg=position[deg],vel_rad_s=velocity,acc_rad_s2=acceleration,"
+                    "tau_Nm=motor_torque[N m]",
+                    "--json"});
   ASSERT_EQ(run.status, 0) << run.errors;
   const Json loop = Json::parse(run.output);
   ASSERT_TRUE(loop.contains("motion")) << run.output.substr(0, 2000);
@@ -232,7 +226,7 @@ TEST(LoopCommand, files_without_movements_are_one_movement_each) {
     command.push_back((folder / name).string());
   }
   command.push_back("--json");
-  const testing::ProgramRun run = tribench(command);
+  const testing::ProgramRun run = run_tribench(command);
   ASSERT_EQ(run.status, 4) << run.errors;  // twelve stretches are too few to tell
   const Json loop = Json::parse(run.output);
   EXPECT_EQ(loop["verdict"], "CANNOT_TELL");
@@ -246,7 +240,7 @@ TEST(LoopCommand, degenerate_data_neither_crash_nor_claim_anything) {
   const auto expect_nothing = [&](const std::string& header, const char* verdict, int status,
                                   auto line) {
     const testing::ProgramRun run =
-        tribench({"loop", file_of(folder, header, 12, 20, line), "--json"});
+        run_tribench({"loop", file_of(folder, header, 12, 20, line), "--json"});
     ASSERT_EQ(run.status, status) << run.errors;
     const Json loop = Json::parse(run.output);
     EXPECT_EQ(loop["verdict"], verdict) << header;
@@ -280,7 +274,7 @@ TEST(LoopCommand, movements_of_one_kind_are_left_out_together) {
   };
   const std::string file =
       file_of(folder, "movement,velocity_rad_s,friction_torque_Nm,kind", 12, 20, line);
-  const testing::ProgramRun run = tribench({"loop", file, "--leave-out", "kind", "--json"});
+  const testing::ProgramRun run = run_tribench({"loop", file, "--leave-out", "kind", "--json"});
   ASSERT_EQ(run.status, 4) << run.errors;  // too few stretches to tell; the errors are judged
   const Json loop = Json::parse(run.output);
   EXPECT_EQ(loop["error"]["how"], "movements of one 'kind' left out in turn");
@@ -289,7 +283,7 @@ TEST(LoopCommand, movements_of_one_kind_are_left_out_together) {
 
 TEST(LoopCommand, one_row_a_movement_is_refused_with_the_reason) {
   const testing::TemporaryFolder folder;
-  const testing::ProgramRun run = tribench({"loop", generated(folder, "A/j2/no_load", "1")});
+  const testing::ProgramRun run = run_tribench({"loop", generated(folder, "A/j2/no_load", "1")});
   EXPECT_EQ(run.status, 2);
   EXPECT_THAT(run.errors, HasSubstr("no movement has the 5 rows"));
 }
@@ -299,7 +293,7 @@ TEST(LoopCommand, writes_its_three_files_and_the_next_movements) {
   const std::string data = generated(folder, "undeclared/power_quadrant_gain/0.5", "1");
   const std::string out = (folder / "out").string();
   const testing::ProgramRun run =
-      tribench({"loop", data, "--any-sign", "--suggest", "2", "--out", out, "--json"});
+      run_tribench({"loop", data, "--any-sign", "--suggest", "2", "--out", out, "--json"});
   ASSERT_EQ(run.status, 0) << run.errors;
   const Json loop = Json::parse(run.output);
   EXPECT_EQ(families(loop), std::vector<std::string>{"power_quadrant_gain"});
@@ -313,7 +307,7 @@ TEST(LoopCommand, writes_its_three_files_and_the_next_movements) {
               HasSubstr("order,kind,velocity_rad_s,from_rad,to_rad,load_factor,duration_s"));
   EXPECT_THAT(testing::read_text(folder / "out/loop.md"), HasSubstr("## Next movements"));
   // Not asked for again: what an earlier run proposed is no answer to this one.
-  EXPECT_EQ(tribench({"loop", data, "--out", out}).status, 0);
+  EXPECT_EQ(run_tribench({"loop", data, "--out", out}).status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder / "out/next_movements.csv"));
 }
 
@@ -322,24 +316,25 @@ TEST(LoopCommand, what_it_found_is_exported_as_c_with_the_history_it_needs) {
   const testing::TemporaryFolder folder;
   const std::string data = generated(folder, "undeclared/hysteresis/2", "1");
   const std::string out = (folder / "out").string();
-  const testing::ProgramRun run = tribench({"loop", data, "--any-sign", "--out", out, "--json"});
+  const testing::ProgramRun run =
+      run_tribench({"loop", data, "--any-sign", "--out", out, "--json"});
   ASSERT_EQ(run.status, 0) << run.errors;
   EXPECT_EQ(families(Json::parse(run.output)), std::vector<std::string>{"hysteresis"});
-  const testing::ProgramRun code = tribench({"export", out + "/loop.json", "--as", "c"});
+  const testing::ProgramRun code = run_tribench({"export", out + "/loop.json", "--as", "c"});
   ASSERT_EQ(code.status, 0) << code.errors;
   EXPECT_THAT(code.output, HasSubstr("double friction(double v, double d)"));
   EXPECT_THAT(
       code.output,
       HasSubstr("double friction_step(friction_history *h, double v, double q, double dt)"));
-  EXPECT_EQ(tribench({"export", out + "/loop.md", "--as", "c"}).status, 2);
+  EXPECT_EQ(run_tribench({"export", out + "/loop.md", "--as", "c"}).status, 2);
   testing::write_text(folder / "other.json", "{}");
   const testing::ProgramRun other =
-      tribench({"export", (folder / "other.json").string(), "--as", "c"});
+      run_tribench({"export", (folder / "other.json").string(), "--as", "c"});
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.errors, HasSubstr("no loop.json"));
-  EXPECT_THAT(tribench({"export", "2*v", "--as", "c", "--derive", "d=q"}).errors,
+  EXPECT_THAT(run_tribench({"export", "2*v", "--as", "c", "--derive", "d=q"}).errors,
               HasSubstr("no input d"));
-  EXPECT_THAT(tribench({"export", "d*v", "--as", "c", "--derive", "d=x"}).errors,
+  EXPECT_THAT(run_tribench({"export", "d*v", "--as", "c", "--derive", "d=x"}).errors,
               HasSubstr("write d=q"));
 }
 
@@ -348,8 +343,8 @@ TEST(LoopCommand, grows_an_effect_from_what_is_left_over_saves_it_and_reads_it_b
   const std::string first = generated(folder, "undeclared/position_bump/2", "1");
   const std::string effect = (folder / "effect.toml").string();
   const testing::ProgramRun learning =
-      tribench({"loop", first, "--any-sign", "--gear-ratio", "160", "--learn", "pysr",
-                "--learn-evaluations", "20000000", "--save-effect", effect, "--json"});
+      run_tribench({"loop", first, "--any-sign", "--gear-ratio", "160", "--learn", "pysr",
+                    "--learn-evaluations", "20000000", "--save-effect", effect, "--json"});
   ASSERT_EQ(learning.status, 0) << learning.errors;
   const Json grown = Json::parse(learning.output);
   ASSERT_EQ(grown["learned"].size(), 1U);
@@ -361,7 +356,7 @@ TEST(LoopCommand, grows_an_effect_from_what_is_left_over_saves_it_and_reads_it_b
 
   // On another campaign, from the file.
   const std::string second = generated(folder, "undeclared/position_bump/2", "2");
-  const testing::ProgramRun reading = tribench(
+  const testing::ProgramRun reading = run_tribench(
       {"loop", second, "--any-sign", "--gear-ratio", "160", "--learned", effect, "--json"});
   ASSERT_EQ(reading.status, 0) << reading.errors;
   const Json known = Json::parse(reading.output);
@@ -370,7 +365,7 @@ TEST(LoopCommand, grows_an_effect_from_what_is_left_over_saves_it_and_reads_it_b
 
   testing::write_text(folder / "broken.toml", "[[effect]]\nname = \"x\"\n");
   const testing::ProgramRun broken =
-      tribench({"loop", second, "--learned", (folder / "broken.toml").string()});
+      run_tribench({"loop", second, "--learned", (folder / "broken.toml").string()});
   EXPECT_EQ(broken.status, 2);
   EXPECT_THAT(broken.errors, HasSubstr("phrase"));
 }
@@ -436,7 +431,7 @@ TEST(LoopCommand, closes_the_loop_on_the_papers_joint_2_down_to_its_noise) {
   for (const char* seed : {"1", "3"}) {
     const std::string file = generated(folder, "A/j2/load", seed);
     const testing::ProgramRun run =
-        tribench({"loop", file, "--model", "symmetric", "--gear-ratio", "160", "--json"});
+        run_tribench({"loop", file, "--model", "symmetric", "--gear-ratio", "160", "--json"});
     ASSERT_EQ(run.status, 0) << run.errors;
     const Json loop = Json::parse(run.output);
     EXPECT_EQ(loop["verdict"], "EFFECTS") << seed;

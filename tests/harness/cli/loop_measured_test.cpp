@@ -27,10 +27,10 @@ class MeasuredLoop : public ::testing::Test {
   }
 
   static Json loop(const std::string& file, std::vector<std::string> more) {
-    std::vector<std::string> command = {testing::program().string(), "loop",
-                                        (*testing::shared_data() / file).string(), "--json"};
+    std::vector<std::string> command = {"loop", (*testing::shared_data() / file).string(),
+                                        "--json"};
     command.insert(command.end(), more.begin(), more.end());
-    const testing::ProgramRun run = testing::run_to_end(command);
+    const testing::ProgramRun run = testing::run_tribench(command);
     const Json loop = Json::parse(run.output);
     EXPECT_EQ(run.status, loop["verdict"] == "CANNOT_TELL" ? 4 : 0) << run.errors;
     return loop;

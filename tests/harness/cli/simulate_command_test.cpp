@@ -15,21 +15,15 @@ namespace tribench {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::ProgramRun;
 
-struct Answer {
-  int exit = -1;
-  std::string output;
-};
-
-Answer run_simulate(const std::string& arguments) {
-  const testing::ProgramRun run = testing::run_to_end(
-      {"sh", "-c", "\"$0\" simulate " + arguments + " 2>&1", testing::program().string()});
-  return {run.status, run.output};
+ProgramRun run_simulate(const std::string& arguments) {
+  return testing::run_tribench_in_shell("simulate " + arguments);
 }
 
 nlohmann::json simulate_json(const std::string& arguments) {
-  const Answer answer = run_simulate(arguments + " --json");
-  EXPECT_EQ(answer.exit, 0) << answer.output;
+  const ProgramRun answer = run_simulate(arguments + " --json");
+  EXPECT_EQ(answer.status, 0) << answer.output;
   return nlohmann::json::parse(answer.output, nullptr, false);
 }
 
@@ -119,7 +113,7 @@ TEST_F(SimulateCommand, FollowsAReferenceUnderAController) {
 
 TEST_F(SimulateCommand, WritesAPageWithAPictureAMovement) {
   const auto out = folder_ / "out";
-  EXPECT_EQ(run_simulate("'3*sgn_v' " + data_ + " --inertia 2 --out " + out.string()).exit, 0);
+  EXPECT_EQ(run_simulate("'3*sgn_v' " + data_ + " --inertia 2 --out " + out.string()).status, 0);
   const std::string page = testing::read_text(out / "motion.html");
   std::size_t pictures = 0;
   for (std::size_t at = 0; (at = page.find("<svg", at)) != std::string::npos; ++at) ++pictures;
@@ -131,8 +125,8 @@ TEST_F(SimulateCommand, WritesAPageWithAPictureAMovement) {
 
 TEST_F(SimulateCommand, ErrorsNameThePlaceAndTheMend) {
   const auto says = [](const std::string& arguments, const std::string& words) {
-    const Answer answer = run_simulate(arguments);
-    EXPECT_EQ(answer.exit, 2) << arguments;
+    const ProgramRun answer = run_simulate(arguments);
+    EXPECT_EQ(answer.status, 2) << arguments;
     EXPECT_THAT(answer.output, HasSubstr(words)) << arguments;
   };
   says("'3*sgn_w' " + data_ + " --inertia 2", "did you mean");

@@ -7,23 +7,16 @@
 #include <numbers>
 #include <string>
 
-#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::ProgramRun;
 
-struct Answer {
-  int exit = -1;
-  std::string output;
-};
-
-Answer run_export(const std::string& arguments) {
-  const testing::ProgramRun run = testing::run_to_end(
-      {"sh", "-c", "\"$0\" export " + arguments + " 2>&1", testing::program().string()});
-  return {run.status, run.output};
+ProgramRun run_export(const std::string& arguments) {
+  return testing::run_tribench_in_shell("export " + arguments);
 }
 
 // An attribute's number in a well-formed file, as an XML parser of others reads it; "broken" else.
@@ -43,18 +36,18 @@ double after(const std::string& text, const std::string& words) {
 
 TEST(SimulatorExport, AStraightFrictionIsTakenAsItIsAndTheFilesAreWellFormed) {
   const std::string straight = "'8*sgn_v + 14*v' --box 'v=-2:2' --inertia 1 --joint elbow --as ";
-  const Answer mujoco = run_export(straight + "mujoco");
-  EXPECT_EQ(mujoco.exit, 0) << mujoco.output;
+  const ProgramRun mujoco = run_export(straight + "mujoco");
+  EXPECT_EQ(mujoco.status, 0) << mujoco.output;
   const std::string joint = "default/default[@class=\\\"elbow\\\"]/joint";
   EXPECT_NEAR(std::stod(attribute(mujoco.output, joint, "frictionloss")), 8, 1e-6);
   EXPECT_NEAR(std::stod(attribute(mujoco.output, joint, "damping")), 14, 1e-6);
   EXPECT_LT(after(mujoco.output, "off by "), 1e-6);
   EXPECT_LT(after(mujoco.output, "2 s: "), 1e-4);
-  const Answer urdf = run_export(straight + "urdf");
+  const ProgramRun urdf = run_export(straight + "urdf");
   EXPECT_NEAR(std::stod(attribute(urdf.output, "joint[@name=\\\"elbow\\\"]/dynamics", "friction")),
               8, 1e-6);
   EXPECT_NEAR(std::stod(attribute(urdf.output, "joint/dynamics", "damping")), 14, 1e-6);
-  const Answer isaac = run_export(straight + "isaac");
+  const ProgramRun isaac = run_export(straight + "isaac");
   EXPECT_NEAR(after(isaac.output, "staticFrictionEffort = "), 8, 1e-4);
   EXPECT_NEAR(after(isaac.output, "viscousFrictionCoefficient = "), 14 * std::numbers::pi / 180,
               1e-6);
@@ -62,26 +55,28 @@ TEST(SimulatorExport, AStraightFrictionIsTakenAsItIsAndTheFilesAreWellFormed) {
 
 TEST(SimulatorExport, SaysWhatIsLostInTorque) {
   // An offset, a load and a break-away level: none of it fits into two numbers.
-  const Answer offset = run_export("'8*sgn_v + 14*v + 0.5' --as mujoco --box 'v=-2:2'");
+  const ProgramRun offset = run_export("'8*sgn_v + 14*v + 0.5' --as mujoco --box 'v=-2:2'");
   EXPECT_NEAR(after(offset.output, "off by "), 0.5, 1e-3);
   EXPECT_NEAR(after(offset.output, "and any offset: "), 0.5, 1e-3);
-  const Answer load =
+  const ProgramRun load =
       run_export("'8*sgn_v + 0.1*abs(g)*sgn_v + 14*v' --as mujoco --box 'v=-2:2,g=-60:60'");
   EXPECT_NEAR(after(load.output, "the dependence on g: "), 6 / std::sqrt(3.0), 0.15);
   EXPECT_NEAR(std::stod(attribute(load.output, "default/default/joint", "frictionloss")), 11, 0.1);
-  const Answer level = run_export("'sgn_v*(8 + 2*exp(-(v/0.05)^2)) + 14*v' --as urdf --box v=-2:2");
+  const ProgramRun level =
+      run_export("'sgn_v*(8 + 2*exp(-(v/0.05)^2)) + 14*v' --as urdf --box v=-2:2");
   EXPECT_NEAR(after(level.output, "in place of "), 10, 1e-3);
-  const Answer isaac =
+  const ProgramRun isaac =
       run_export("'sgn_v*(8 + 2*exp(-(v/0.05)^2)) + 14*v' --as isaac --box v=-2:2");
   EXPECT_NEAR(after(isaac.output, "staticFrictionEffort = "), 10, 1e-3);
   EXPECT_LT(after(isaac.output, "dynamicFrictionEffort = "), 8.4);
 }
 
 TEST(SimulatorExport, MakesAnArmatureOfTheAccelerationAndSettlesStates) {
-  const Answer armature = run_export("'8*sgn_v + 14*v + 1.1*a' --as mujoco --box 'v=-2:2,a=-5:5'");
+  const ProgramRun armature =
+      run_export("'8*sgn_v + 14*v + 1.1*a' --as mujoco --box 'v=-2:2,a=-5:5'");
   EXPECT_NEAR(std::stod(attribute(armature.output, "default/default/joint", "armature")), 1.1,
               1e-6);
-  const Answer bristle =
+  const ProgramRun bristle =
       run_export("'z = dahl(v, sliding=1e-4); 3e4*z + 5*v' --as urdf --linear --box 'v=-1:1'");
   EXPECT_NEAR(std::stod(attribute(bristle.output, "joint/dynamics", "friction")), 3, 1e-6);
   EXPECT_THAT(bristle.output, HasSubstr("what its states remember"));
@@ -90,8 +85,8 @@ TEST(SimulatorExport, MakesAnArmatureOfTheAccelerationAndSettlesStates) {
 
 TEST(SimulatorExport, ErrorsNameThePlaceAndTheMend) {
   const auto says = [](const std::string& arguments, const std::string& words) {
-    const Answer answer = run_export(arguments);
-    EXPECT_EQ(answer.exit, 2) << arguments;
+    const ProgramRun answer = run_export(arguments);
+    EXPECT_EQ(answer.status, 2) << arguments;
     EXPECT_THAT(answer.output, HasSubstr(words)) << arguments;
   };
   says("'8*sgn_v' --as mujocoo --box v=-1:1", "did you mean mujoco");

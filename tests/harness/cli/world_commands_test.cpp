@@ -24,11 +24,6 @@ constexpr const char* kHeader = "kind,velocity_rad_s,from_rad,to_rad\n";
 constexpr const char* kThere = "constant,0.3,-1,1\n";
 constexpr const char* kBack = "constant,-0.4,1,-1\n";
 
-ProgramRun run_tribench(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), program().string());
-  return run_to_end(arguments);
-}
-
 // The lines of a recording without their movement's name.
 std::vector<std::string> rows_of(const std::string& text) {
   std::vector<std::string> rows;
