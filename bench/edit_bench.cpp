@@ -58,7 +58,7 @@ void grow(benchmark::State& state) {
 }
 BENCHMARK(grow)->Arg(15)->Arg(31)->Arg(63);
 
-// A turn: both children of a crossover, an insertion and, where they fit, operands swapped and a
+// A turn: a subtree replaced by another formula's and, where they fit, operands swapped and a
 // rotation, at random places.
 void edit(benchmark::State& state) {
   const std::vector<Expression> formulas = some_formulas(static_cast<std::size_t>(state.range(0)));
@@ -66,14 +66,12 @@ void edit(benchmark::State& state) {
   Expression first;
   Expression second;
   std::size_t turns = 0;
-  const Node leaf = Node::input(1);
   for (auto _ : state) {
     const Expression& a = formulas[turns % formulas.size()];
     const Expression& b = formulas[(turns + 7) % formulas.size()];
     const std::size_t i = random.below(a.size());
     const std::size_t j = random.below(b.size());
-    swap_subtrees(a, i, b, j, first, second);
-    insert_binary(a, i, Op::mul, {&leaf, 1}, Side::right, second);
+    splice(a, i, subtree_nodes(b, j), second);
     if (arity(a.node(i).op) == 2) swap_operands(a, i, first);
     if (arity(a.node(i).op) == 2 && arity(a.node(i - 1).op) > 0) rotate(a, i, 1, 0, first);
     ++turns;

@@ -49,7 +49,6 @@ class ExplanationSpace {
   // The scaled columns on rows with the reference's signals: rows x columns.
   Eigen::MatrixXd columns(const Observations& rows) const;
   Eigen::MatrixXd base_columns(const Observations& rows) const;
-  Eigen::Index column_count() const { return scale_.size(); }
 
  private:
   // Where something else may live; one axis or two.

@@ -362,8 +362,4 @@ bool Canonicalizer::is_non_zero(std::uint32_t item) const {
   return guard_.is_non_zero && guard_.is_non_zero(emit(item));
 }
 
-Expression canonical_form(const Expression& formula) { return Canonicalizer().canonical(formula); }
-
-CanonicalHash canonical_hash(const Expression& formula) { return Canonicalizer().hash(formula); }
-
 }  // namespace tribench

@@ -112,8 +112,4 @@ class Canonicalizer {
   std::vector<std::uint32_t> stack_;
 };
 
-// For a single use; keep a Canonicalizer in a loop.
-Expression canonical_form(const Expression& formula);
-CanonicalHash canonical_hash(const Expression& formula);
-
 }  // namespace tribench

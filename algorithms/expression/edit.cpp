@@ -58,32 +58,6 @@ void splice(const Expression& base, std::size_t i, std::span<const Node> piece, 
   rewrite<1, 0>(base, i, {piece}, {}, out);
 }
 
-void swap_subtrees(const Expression& a, std::size_t i, const Expression& b, std::size_t j,
-                   Expression& out_a, Expression& out_b) {
-  splice(a, i, subtree_nodes(b, j), out_a);
-  splice(b, j, subtree_nodes(a, i), out_b);
-}
-
-void insert_unary(const Expression& base, std::size_t i, Op op, Expression& out) {
-  const Piece below = subtree_nodes(base, i);
-  rewrite<1, 1>(base, i, {below}, {operation(op, below.size() + 1)}, out);
-}
-
-void insert_binary(const Expression& base, std::size_t i, Op op, std::span<const Node> piece,
-                   Side side, Expression& out) {
-  const Piece below = subtree_nodes(base, i);
-  const Node node = operation(op, below.size() + piece.size() + 1);
-  if (side == Side::right) {
-    rewrite<2, 1>(base, i, {below, piece}, {node}, out);
-  } else {
-    rewrite<2, 1>(base, i, {piece, below}, {node}, out);
-  }
-}
-
-void hoist_child(const Expression& base, std::size_t i, int c, Expression& out) {
-  splice(base, i, subtree_nodes(base, child_of(base, i, c)), out);
-}
-
 void swap_operands(const Expression& base, std::size_t i, Expression& out) {
   rewrite<2, 1>(base, i,
                 {subtree_nodes(base, base.right_child(i)), subtree_nodes(base, base.left_child(i))},

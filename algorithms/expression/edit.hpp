@@ -7,7 +7,7 @@
 // Positions are those of the tape: a subtree is named by its last node, [begin(i), i].
 //
 //   splice(f, i, g.nodes(), child);          // f with its subtree i replaced by g
-//   insert_binary(f, i, Op::mul, leaf, Side::right, child);    // ... a ...  ->  ... a * leaf ...
+//   swap_operands(f, i, child);              // ... a - b ...  ->  ... b - a ...
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,6 @@
 #include "algorithms/expression/expression.hpp"
 
 namespace tribench {
-
-enum class Side { left, right };
 
 // The nodes of the subtree that ends at i.
 inline std::span<const Node> subtree_nodes(const Expression& formula, std::size_t i) {
@@ -49,20 +47,6 @@ inline bool is_exponent(const Expression& formula, std::size_t i) {
 // `base` with the subtree that ends at i replaced by `piece`, a whole formula in postfix order
 // with its lengths set (the nodes of a formula or of a subtree).
 void splice(const Expression& base, std::size_t i, std::span<const Node> piece, Expression& out);
-
-// Both children of a crossover: subtree i of a and subtree j of b change places.
-void swap_subtrees(const Expression& a, std::size_t i, const Expression& b, std::size_t j,
-                   Expression& out_a, Expression& out_b);
-
-// A function above subtree i: s -> op(s).
-void insert_unary(const Expression& base, std::size_t i, Op op, Expression& out);
-
-// A binary operation above subtree i: s -> s op piece, or piece op s where piece is on the left.
-void insert_binary(const Expression& base, std::size_t i, Op op, std::span<const Node> piece,
-                   Side side, Expression& out);
-
-// Node i gives way to its child c: op(s, t) -> s or t.
-void hoist_child(const Expression& base, std::size_t i, int c, Expression& out);
 
 // The operands of the binary node i change places.
 void swap_operands(const Expression& base, std::size_t i, Expression& out);

@@ -48,10 +48,6 @@ LoopAnswer diagnose(const LoopCase& one, const PlantedData& planted,
 
 }  // namespace
 
-LoopAnswer diagnose_case(const LoopCase& one, const PlantedData& planted) {
-  return diagnose(one, planted, {});
-}
-
 LoopMethod diagnosis_without(std::vector<std::string> rules) {
   for (const std::string& rule : rules) loop::find_rule(rule);
   return [rules = std::move(rules)](const LoopCase& one, const PlantedData& planted) {

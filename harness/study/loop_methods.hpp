@@ -14,10 +14,9 @@ namespace tribench {
 // Answers one planted case. Called from several threads at once.
 using LoopMethod = std::function<LoopAnswer(const LoopCase&, const PlantedData&)>;
 
-// The closed loop itself, from Coulomb and viscous friction by direction.
-LoopAnswer diagnose_case(const LoopCase& one, const PlantedData& planted);
-// The same with rules left out, to see what they are worth (algorithms/diagnosis/rules.hpp). Throws
-// Error (bad_input) where there is no such rule.
+// The closed loop itself, from Coulomb and viscous friction by direction, with rules left out to
+// see what they are worth (algorithms/diagnosis/rules.hpp); none: as it is. Throws Error
+// (bad_input) where there is no such rule.
 LoopMethod diagnosis_without(std::vector<std::string> rules);
 
 }  // namespace tribench

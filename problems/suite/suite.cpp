@@ -139,10 +139,6 @@ const std::vector<std::string>& suite_keys() {
   return kKeys;
 }
 
-bool is_suite(std::string_view toml, const std::string& file_name) {
-  return parse_toml(toml, file_name).contains("suite");
-}
-
 Suite read_suite(std::string_view toml, const std::string& file_name) {
   const toml::table root = parse_toml(toml, file_name);
   const TomlTable file(root, file_name, "",

@@ -83,8 +83,6 @@ struct Suite {
 Suite read_suite(std::string_view toml, const std::string& file_name);
 // The keys of [suite].
 const std::vector<std::string>& suite_keys();
-// Whether a TOML text is a suite's: it has the table [suite].
-bool is_suite(std::string_view toml, const std::string& file_name);
 
 struct ShippedSuite {
   std::string_view name;

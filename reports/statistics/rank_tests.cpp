@@ -151,12 +151,4 @@ double kendall_tau(std::span<const double> a, std::span<const double> b) {
          std::sqrt(static_cast<double>(told_by_a) * static_cast<double>(told_by_b));
 }
 
-double probability_of_superiority(std::span<const double> a, std::span<const double> b) {
-  double wins = 0;
-  for (const double x : a) {
-    for (const double y : b) wins += x > y ? 1.0 : (x == y ? 0.5 : 0.0);
-  }
-  return wins / (static_cast<double>(a.size()) * static_cast<double>(b.size()));
-}
-
 }  // namespace tribench

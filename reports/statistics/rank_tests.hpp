@@ -51,7 +51,4 @@ FriedmanTest friedman(std::span<const double> values, std::size_t treatments, do
 // neither tells two values apart, 0 where only one does. O(n^2).
 double kendall_tau(std::span<const double> a, std::span<const double> b);
 
-// Chance that a value of `a` is larger than one of `b`, ties half: Vargha, Delaney 2000.
-double probability_of_superiority(std::span<const double> a, std::span<const double> b);
-
 }  // namespace tribench

@@ -218,9 +218,9 @@ TEST(LoopStudy, TheLoopItselfIsTheSameForAnyNumberOfThreads) {
   LoopStudyOptions options{.null_runs = 5, .runs_per_cell = 1, .first_seed = 910};
   options.only = "single/load_coulomb";
   options.threads = 1;
-  const LoopStudy one = run_loop_study(options, diagnose_case);
+  const LoopStudy one = run_loop_study(options, diagnosis_without({}));
   options.threads = 3;
-  const LoopStudy three = run_loop_study(options, diagnose_case);
+  const LoopStudy three = run_loop_study(options, diagnosis_without({}));
   for (std::size_t i = 0; i < one.outcomes.size(); ++i) {
     EXPECT_EQ(one.outcomes[i].mae_after, three.outcomes[i].mae_after);
     EXPECT_EQ(one.outcomes[i].claimed, three.outcomes[i].claimed);
