@@ -226,6 +226,48 @@ void keep_usable_formulas(FitResult& fit, std::span<const Input> inputs) {
   }
 }
 
+// The fits of one stage: the first and, where seconds are to be spent, further ones in one front.
+class StageFits {
+ public:
+  StageFits(const TrainingData& data, const CellTask& task, Budget& budget)
+      : data_(data), scaled_(data), task_(task), budget_(budget) {}
+
+  FitResult fit(const Regressor& method, const RandomStream& random, std::size_t stage,
+                const WidenedMethod& widened, Trace& trace) {
+    FitResult first = once(method, random.split(stage), &trace);
+    if (!task_.limits.spend) return first;
+    // The trace is the first round's: a later one starts from nothing.
+    const auto again = [&](RandomStream stream, int round) {
+      return widened ? once(*widened(round), stream, nullptr) : once(method, stream, nullptr);
+    };
+    return fit_until_spent(std::move(first), again, widened != nullptr, data_, budget_,
+                           random.split("again").split(stage));
+  }
+
+ private:
+  FitResult once(const Regressor& method, RandomStream stream, Progress* progress) {
+    const TrainingData seen = scaled_.data();
+    FitContext context{seen, task_.operators, budget_, stream, task_.threads, progress};
+    FitResult result = fit_or_refuse(method, context);
+    for (Expression& formula : result.front) formula = scaled_.unscaled(formula);
+    keep_usable_formulas(result, data_.inputs);
+    finish_front(data_, task_.operators, result);
+    return result;
+  }
+
+  const TrainingData& data_;
+  ScaledData scaled_;
+  const CellTask& task_;
+  Budget& budget_;
+};
+
+void add_note(StagesResult& result, const FitResult& fit, const Stage& stage) {
+  if (fit.note.empty()) return;
+  if (!result.note.empty()) result.note += "; ";
+  if (fit.reason == StopReason::unsupported) result.note += fmt::format("no {}: ", stage.name);
+  result.note += fit.note;
+}
+
 StagesResult fit_stages(const Problem& given, const Regressor& method, const CellTask& task,
                         const WidenedMethod& widened, Budget& budget, Trace& trace) {
   StagesResult result;
@@ -236,36 +278,12 @@ StagesResult fit_stages(const Problem& given, const Regressor& method, const Cel
     const Stage& stage = problem.stages[s];
     const StageView view(problem, stage, so_far);
     const TrainingData data = view.data();
-    const ScaledData scaled(data);
     // What is left is shared equally among the stages to come.
     Budget part = budget.share(budget.remaining() / (problem.stages.size() - s));
     trace.start_stage(budget.spent());
-    const auto fit_once = [&](const Regressor& once_method, RandomStream stream,
-                              Progress* progress) {
-      const TrainingData seen = scaled.data();
-      FitContext context{seen, task.operators, part, stream, task.threads, progress};
-      FitResult once = fit_or_refuse(once_method, context);
-      for (Expression& formula : once.front) formula = scaled.unscaled(formula);
-      keep_usable_formulas(once, data.inputs);
-      finish_front(data, task.operators, once);
-      return once;
-    };
-    FitResult fit = fit_once(method, random.split(s), &trace);
-    if (task.limits.spend) {
-      // The trace is the first round's: a later one starts from nothing.
-      const auto again = [&](RandomStream stream, int round) {
-        return widened ? fit_once(*widened(round), stream, nullptr)
-                       : fit_once(method, stream, nullptr);
-      };
-      fit = fit_until_spent(std::move(fit), again, widened != nullptr, data, part,
-                            random.split("again").split(s));
-    }
+    const FitResult fit = StageFits(data, task, part).fit(method, random, s, widened, trace);
     budget.settle(part);
-    if (!fit.note.empty()) {
-      if (!result.note.empty()) result.note += "; ";
-      if (fit.reason == StopReason::unsupported) result.note += fmt::format("no {}: ", stage.name);
-      result.note += fit.note;
-    }
+    add_note(result, fit, stage);
     if (fit.front.empty()) {
       // A baseline that cannot fit what is left stands as it was, as in the paper's tables.
       if (s > 0 && fit.reason == StopReason::unsupported) continue;

@@ -105,6 +105,52 @@ double student_point(double freedom) {
   return z + (g1 + (g2 + (g3 + g4 / freedom) / freedom) / freedom) / freedom;
 }
 
+namespace {
+
+// The weighted rows of the formula linearised in its constants, a column a constant, of like
+// lengths: `scale` brings back the constants' own. A column that is 0 everywhere stays, and is not
+// determined.
+struct LinearisedRows {
+  Eigen::MatrixXd jacobian;
+  Eigen::VectorXd residual;
+  Eigen::VectorXd scale;
+};
+
+LinearisedRows linearise(const Expression& formula, const std::vector<std::size_t>& places,
+                         const Inputs& inputs, std::span<const double> target,
+                         std::span<const double> weights) {
+  LinearisedRows rows;
+  std::vector<double> values(inputs.rows);
+  rows.jacobian = jacobian_of(formula, places, inputs, values);
+  rows.residual.resize(static_cast<Eigen::Index>(inputs.rows));
+  for (Eigen::Index r = 0; r < rows.residual.size(); ++r) {
+    const auto row = static_cast<std::size_t>(r);
+    const double root = weights.empty() ? 1 : std::sqrt(weights[row]);
+    rows.residual[r] = root * (target[row] - values[row]);
+    rows.jacobian.row(r) *= root;
+  }
+  if (!rows.jacobian.allFinite() || !rows.residual.allFinite()) {
+    throw_bad_input("the formula has no finite derivative in some row", {},
+                    "its constants have no intervals");
+  }
+  rows.scale = rows.jacobian.colwise().norm();
+  for (double& length : rows.scale) length = length > 0 ? length : 1;
+  rows.jacobian = rows.jacobian * rows.scale.cwiseInverse().asDiagonal();
+  return rows;
+}
+
+using RowsOfMovements = std::map<int, std::vector<Eigen::Index>>;
+
+RowsOfMovements rows_of_movements(std::span<const int> movement) {
+  RowsOfMovements rows;
+  for (std::size_t r = 0; r < movement.size(); ++r) {
+    rows[movement[r]].push_back(static_cast<Eigen::Index>(r));
+  }
+  return rows;
+}
+
+}  // namespace
+
 FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
                            std::span<const double> target, std::span<const int> movement,
                            std::span<const double> weights, bool known_variance) {
@@ -115,48 +161,30 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
   result.unit = "row";
   result.units = inputs.rows;
   if (p == 0) return result;
-  std::vector<double> values(inputs.rows);
-  Eigen::MatrixXd jacobian = jacobian_of(formula, result.places, inputs, values);
-  Eigen::VectorXd residual(n);
-  for (Eigen::Index r = 0; r < n; ++r) {
-    const auto row = static_cast<std::size_t>(r);
-    const double root = weights.empty() ? 1 : std::sqrt(weights[row]);
-    residual[r] = root * (target[row] - values[row]);
-    jacobian.row(r) *= root;
-  }
-  if (!jacobian.allFinite() || !residual.allFinite()) {
-    throw_bad_input("the formula has no finite derivative in some row", {},
-                    "its constants have no intervals");
-  }
-  // Columns of like lengths; one that is 0 everywhere stays, and is not determined.
-  Eigen::VectorXd scale = jacobian.colwise().norm();
-  for (Eigen::Index k = 0; k < p; ++k) scale[k] = scale[k] > 0 ? scale[k] : 1;
-  jacobian = jacobian * scale.cwiseInverse().asDiagonal();
-  const PseudoInverse base = pseudo_inverse(jacobian.transpose() * jacobian);
+  const LinearisedRows rows = linearise(formula, result.places, inputs, target, weights);
+  const PseudoInverse base = pseudo_inverse(rows.jacobian.transpose() * rows.jacobian);
   const Eigen::Index rank = base.rank();
   if (n <= rank) {
     throw_bad_input(fmt::format("{} rows for {} constants", n, p), {},
                     "intervals need more rows than constants");
   }
   const double variance =
-      known_variance ? 1 : residual.squaredNorm() / static_cast<double>(n - rank);
+      known_variance ? 1 : rows.residual.squaredNorm() / static_cast<double>(n - rank);
   Eigen::MatrixXd covariance = variance * base.inverse;
   result.quantile = student_point(known_variance ? 1e9 : static_cast<double>(n - rank));
-  std::map<int, std::vector<Eigen::Index>> movements;
-  for (std::size_t r = 0; r < movement.size(); ++r) {
-    movements[movement[r]].push_back(static_cast<Eigen::Index>(r));
-  }
+  const RowsOfMovements movements = rows_of_movements(movement);
   const bool grouped = movements.size() < inputs.rows && !known_variance &&
                        movements.size() >= std::max(kLeastMovements, result.places.size() + 3);
   if (grouped) {
-    if (const auto robust = jackknife(jacobian, residual, movements, rank)) {
+    if (const auto robust = jackknife(rows.jacobian, rows.residual, movements, rank)) {
       covariance = *robust;
       result.unit = "movement";
       result.units = movements.size();
       result.quantile = student_point(static_cast<double>(movements.size() - 1));
     }
   }
-  covariance = scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
+  covariance =
+      rows.scale.cwiseInverse().asDiagonal() * covariance * rows.scale.cwiseInverse().asDiagonal();
   for (Eigen::Index k = 0; k < p; ++k) {
     const double value = formula.node(result.places[static_cast<std::size_t>(k)]).value;
     constexpr double kLost = 1e-6;

@@ -133,8 +133,8 @@ Setting depth() {
   return setting;
 }
 
-// In the order in which they are applied: a profile first, the depth after the size.
-std::vector<Setting> make_settings() {
+// Of the whole search: defaults, epochs, islands, sizes.
+std::vector<Setting> size_settings() {
   using O = Options;
   return {
       choice<Profile>("profile", &O::profile, "defaults: native (ours), v1 or v2 (the original's)",
@@ -150,6 +150,13 @@ std::vector<Setting> make_settings() {
       share("warm_up", &O::warm_up, "share of the epochs over which max_size grows from 3"),
       whole("initial_operators", &O::initial_operators, "operators of a random first member", 0,
             100),
+  };
+}
+
+// Who becomes a parent, and what a child is made of.
+std::vector<Setting> tournament_settings() {
+  using O = Options;
+  return {
       whole("tournament_size", &O::tournament_size, "members in a tournament", 1, 10'000),
       share("tournament_probability", &O::tournament_probability,
             "chance that a tournament's best wins"),
@@ -175,6 +182,13 @@ std::vector<Setting> make_settings() {
             "chance that a mutated constant changes its sign"),
       flag("compat", &O::compat,
            "flip the sign of a mutated constant as often as the original does"),
+  };
+}
+
+// What islands hand on to each other.
+std::vector<Setting> migration_settings() {
+  using O = Options;
+  return {
       share("replaced_by_peers", &O::replaced_by_peers,
             "share of members replaced from other islands in an epoch"),
       share("replaced_by_front", &O::replaced_by_front,
@@ -182,6 +196,13 @@ std::vector<Setting> make_settings() {
       share("replaced_by_guesses", &O::replaced_by_guesses,
             "share of members replaced from the guesses in an epoch"),
       whole("top_n", &O::top_n, "best members of an island that others may take over", 0, 10'000),
+  };
+}
+
+// How constants are fitted, and which rows and inputs the search sees.
+std::vector<Setting> row_settings() {
+  using O = Options;
+  return {
       share("optimize_probability", &O::optimize_probability,
             "chance that a member's constants are fitted after an epoch"),
       whole("optimize_iterations", &O::optimize_iterations, "steps of such a fit", 0, 10'000),
@@ -198,6 +219,13 @@ std::vector<Setting> make_settings() {
       flag("denoise", &O::denoise,
            "let the search see the target smoothed by a Gaussian process; polish, choice and "
            "errors are of the measured rows"),
+  };
+}
+
+// What a formula may look like.
+std::vector<Setting> form_settings() {
+  using O = Options;
+  return {
       text("template", &O::form,
            "outer form of every formula, as in 'sgn_v*f(abs(v)) + g(load)': f and g are searched "
            "for, p() is a number to be fitted"),
@@ -216,6 +244,13 @@ std::vector<Setting> make_settings() {
                     {{"off", Units::off}, {"soft", Units::soft}, {"hard", Units::hard}}),
       text("target_unit", &O::target_unit, "unit of the target, as in 'N m'; empty: any"),
       number("unit_penalty", &O::unit_penalty, "added to the loss of inconsistent units", 1e12),
+  };
+}
+
+// Where it starts from, what it does beyond the original, and how it chooses.
+std::vector<Setting> finish_settings() {
+  using O = Options;
+  return {
       text("guesses", &O::guesses, "formulas to start from, separated by ';'"),
       choice<Selection>("selection", &O::selection,
                         "choice from the front; profile: posterior for native, best for v1 and v2",
@@ -237,6 +272,16 @@ std::vector<Setting> make_settings() {
            "only formulas proved free of singularities on the input box enter the front"),
       on_off("refine", &O::refine, "grow and prune the front by description length at the end"),
   };
+}
+
+// In the order in which they are applied: a profile first, the depth after the size.
+std::vector<Setting> make_settings() {
+  std::vector<Setting> all;
+  for (const auto group : {size_settings, tournament_settings, migration_settings, row_settings,
+                           form_settings, finish_settings}) {
+    for (Setting& setting : group()) all.push_back(std::move(setting));
+  }
+  return all;
 }
 
 const std::vector<Setting>& settings() {

@@ -127,7 +127,7 @@ std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
-// Of a program nobody knows the kinds: as a grid's TOML would have them.
+// A program does not declare the kinds of its parameters: as a grid's TOML would have them.
 ParameterValue plain_value(const std::string& text) {
   if (text == "true" || text == "false") return text == "true";
   if (const auto whole = read_number<std::int64_t>(text)) return *whole;
@@ -304,6 +304,72 @@ std::vector<std::string> own_words() {
   return words;
 }
 
+// What is explained by what, and by which method.
+void add_method_options(CLI::App& command, FitArguments& arguments) {
+  command.add_option("DATA", arguments.data, "the data file (CSV)")->required();
+  command.add_option("--target", arguments.target, "the column to explain")->required();
+  command
+      .add_option("--inputs", arguments.inputs, "the columns to explain it by; sgn_X is derived")
+      ->required()
+      ->delimiter(',');
+  CLI::Option* method = command.add_option("--method", arguments.method,
+                                           "a name of `tribench list methods`; default: relay");
+  command
+      .add_option("--external", arguments.external,
+                  "'PROGRAM WORDS': a program as the method (docs/external_methods.md)")
+      ->excludes(method);
+  command.add_option("--operators", arguments.operators, "a name of `tribench list operators`")
+      ->capture_default_str();
+  command.add_option("--parameter", arguments.parameters, "name=value of the method; repeatable");
+}
+
+struct BudgetOptions {
+  const CLI::Option* evaluations = nullptr;
+  const CLI::Option* seconds = nullptr;
+};
+
+// What it may spend.
+BudgetOptions add_budget_options(CLI::App& command, FitArguments& arguments) {
+  command.add_option("--seed", arguments.seed, "same seed, same result")
+      ->transform(whole_number(0))
+      ->capture_default_str();
+  BudgetOptions budget;
+  budget.evaluations =
+      command.add_option("--evaluations", arguments.evaluations, "budget in node-rows")
+          ->transform(whole_number(0))
+          ->capture_default_str();
+  budget.seconds =
+      command
+          .add_option(
+              "--seconds", arguments.seconds,
+              "CPU seconds to spend: fits again from other starts until they are, or the data "
+              "are explained to rounding; without it one fit of at most 60")
+          ->transform(real_number(0.0, 1e9));
+  return budget;
+}
+
+// By what it is judged, and how much each row counts.
+void add_judging_options(CLI::App& command, FitArguments& arguments) {
+  CLI::Option* test = command.add_option("--test", arguments.test, "other data to judge by");
+  command
+      .add_option_function<std::string>(
+          "--split",
+          [arguments = &arguments](const std::string& text) {
+            arguments->held_out = user::parse_held_out(text, "--split");
+          },
+          "hold out a share of the rows (0.25), drawn with the seed, or COLUMN=VALUE")
+      ->excludes(test);
+  command.add_option("--group", arguments.group,
+                     "the column whose equal values are one movement: kept whole by --split, the "
+                     "unit of the intervals");
+  CLI::Option* weights = command.add_option("--weights", arguments.weights,
+                                            "a column: how much each row's squared error counts");
+  command
+      .add_option("--sigma", arguments.sigma,
+                  "a column: the standard deviation of each row's target")
+      ->excludes(weights);
+}
+
 }  // namespace
 
 void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& registry) {
@@ -313,65 +379,22 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
       "later.csv\n"
       "Without --test the errors on test rows stay empty: nothing is held out.");
   auto arguments = std::make_shared<FitArguments>();
-  command->add_option("DATA", arguments->data, "the data file (CSV)")->required();
-  command->add_option("--target", arguments->target, "the column to explain")->required();
-  command
-      ->add_option("--inputs", arguments->inputs, "the columns to explain it by; sgn_X is derived")
-      ->required()
-      ->delimiter(',');
-  CLI::Option* method = command->add_option("--method", arguments->method,
-                                            "a name of `tribench list methods`; default: relay");
-  command
-      ->add_option("--external", arguments->external,
-                   "'PROGRAM WORDS': a program as the method (docs/external_methods.md)")
-      ->excludes(method);
-  command->add_option("--operators", arguments->operators, "a name of `tribench list operators`")
-      ->capture_default_str();
-  command->add_option("--parameter", arguments->parameters, "name=value of the method; repeatable");
+  add_method_options(*command, *arguments);
   add_data_options(*command, arguments->reading);
   command->add_option("--state", arguments->states,
                       "a state as an input, as in 'z = dahl(v, sliding=1e-4)': its parameters are "
                       "fitted with what is found; needs a column with role time; repeatable");
-  command->add_option("--seed", arguments->seed, "same seed, same result")
-      ->transform(whole_number(0))
-      ->capture_default_str();
-  CLI::Option* evaluations =
-      command->add_option("--evaluations", arguments->evaluations, "budget in node-rows")
-          ->transform(whole_number(0))
-          ->capture_default_str();
-  CLI::Option* seconds =
-      command
-          ->add_option(
-              "--seconds", arguments->seconds,
-              "CPU seconds to spend: fits again from other starts until they are, or the data "
-              "are explained to rounding; without it one fit of at most 60")
-          ->transform(real_number(0.0, 1e9));
-  CLI::Option* test = command->add_option("--test", arguments->test, "other data to judge by");
-  command
-      ->add_option_function<std::string>(
-          "--split",
-          [arguments = arguments.get()](const std::string& text) {
-            arguments->held_out = user::parse_held_out(text, "--split");
-          },
-          "hold out a share of the rows (0.25), drawn with the seed, or COLUMN=VALUE")
-      ->excludes(test);
-  command->add_option("--group", arguments->group,
-                      "the column whose equal values are one movement: kept whole by --split, the "
-                      "unit of the intervals");
-  CLI::Option* weights = command->add_option("--weights", arguments->weights,
-                                             "a column: how much each row's squared error counts");
-  command
-      ->add_option("--sigma", arguments->sigma,
-                   "a column: the standard deviation of each row's target")
-      ->excludes(weights);
+  const BudgetOptions budget = add_budget_options(*command, *arguments);
+  add_judging_options(*command, *arguments);
   command->add_option("--save", arguments->save, "a file for `tribench predict`, with intervals");
   command->add_flag("--json", arguments->json, "print JSON");
-  command->callback([arguments, &registry, seconds, evaluations] {
+  command->callback([arguments, &registry, budget] {
     if (arguments->external.empty() && arguments->method.empty()) arguments->method = "relay";
     arguments->words = own_words();
     constexpr std::uint64_t kNoLimit = 1'000'000'000'000'000'000;
-    arguments->spends_all = seconds->count() > 0;
-    if (arguments->spends_all && evaluations->count() == 0) arguments->evaluations = kNoLimit;
+    arguments->spends_all = budget.seconds->count() > 0;
+    if (arguments->spends_all && budget.evaluations->count() == 0)
+      arguments->evaluations = kNoLimit;
     fit(*arguments, registry);
   });
 }

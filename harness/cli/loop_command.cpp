@@ -265,7 +265,7 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
     explain(arguments);
     return ExitStatus::done;
   }
-  // Before any work: a folder that cannot be written to, a name that is known to nobody, and a file
+  // Before any work: a folder that cannot be written to, an unknown name, and a file
   // that nothing would be written to.
   if (!arguments.out.empty()) make_output_folder(arguments.out);
   if (!arguments.pictures.empty()) make_output_folder(arguments.pictures);
@@ -312,6 +312,110 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
   return diagnosis.verdict == loop::Verdict::cannot_tell ? ExitStatus::undecided : ExitStatus::done;
 }
 
+// What the joint is and what is known of it.
+void add_base_options(CLI::App& command, LoopArguments& arguments) {
+  command
+      .add_option("--model", arguments.model,
+                  "the base: coulomb_viscous, symmetric, asymmetric, any method, a 'FORMULA'")
+      ->capture_default_str();
+  command
+      .add_option("--rigid", arguments.rigid,
+                  "columns of the rigid body, fitted with the base and no effects")
+      ->delimiter(',');
+  command.add_option("--effects", arguments.effects, "test these families only")->delimiter(',');
+  CLI::Option* gear_ratio = add_data_options(command, arguments.reading);
+  gear_ratio->description(
+      "motor turns per turn of the joint; without it the usual ones are scanned for ripples");
+  command
+      .add_option("--gravity", arguments.gravity,
+                  "gravity that no column declares: fit sin and cos of the position with the base, "
+                  "none, or auto: where that explains much")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Gravity>{
+          {"auto", Gravity::automatic}, {"fit", Gravity::fit}, {"none", Gravity::none}}));
+  command
+      .add_option("--urdf", arguments.reading->urdf,
+                  "URDF of the arm, beside --joint N and columns of all joints: gravity from it")
+      ->check(CLI::ExistingFile);
+  command.add_flag("--explain", arguments.explain,
+                   "say what each column was taken for and what would be done, and stop");
+  command
+      .add_option(
+          "--screw-lead", arguments.screw_lead,
+          "of a linear axis, m per turn of the screw; without it the usual ones are scanned")
+      ->transform(real_number(0, 1e6, LowEnd::above))
+      ->excludes(gear_ratio);
+}
+
+// How sure an effect has to be.
+void add_test_options(CLI::App& command, LoopArguments& arguments) {
+  command.add_option("--alpha", arguments.alpha_library, "false alarms of the library")
+      ->transform(real_number(1e-6, 0.5))
+      ->capture_default_str();
+  command.add_option("--alpha-leftover", arguments.alpha_leftover, "false alarms of UNKNOWN")
+      ->transform(real_number(1e-6, 0.5))
+      ->capture_default_str();
+  command.add_option("--flips", arguments.flips, "sign flips of the null distribution")
+      ->transform(whole_number(99, 99999))
+      ->capture_default_str();
+}
+
+// Which rows count, and how.
+void add_row_options(CLI::App& command, LoopArguments& arguments) {
+  command
+      .add_option("--min-speed", arguments.min_speed,
+                  "leave out slower rows: the direction of friction is not known there; without it "
+                  "the speed is found from rows at rest")
+      ->transform(real_number(0, 1e6));
+  command.add_option("--leave-out", arguments.leave_out,
+                     "COLUMN: judge by leaving out, in turn, all movements that share its value");
+  command.add_flag("--unordered", arguments.unordered,
+                   "the order of the movements says nothing: no drift");
+  command.add_flag(
+      "--steady", arguments.steady,
+      "each movement holds one speed: average it, its velocity's noise is not friction");
+  command
+      .add_option("--rows", arguments.rows,
+                  "average neighbours of a longer recording, to about so many")
+      ->transform(whole_number(100, 10'000'000))
+      ->capture_default_str();
+}
+
+// What is searched for beyond the library, and what it may spend.
+void add_search_options(CLI::App& command, LoopArguments& arguments) {
+  command.add_option("--seed", arguments.seed, "same seed, same answer")
+      ->transform(whole_number(0))
+      ->capture_default_str();
+  command.add_option("--evaluations", arguments.evaluations, "what a searched base may spend")
+      ->transform(whole_number(0))
+      ->capture_default_str();
+  command.add_flag("--any-sign", arguments.any_sign,
+                   "accept effects whose parameters are not physical");
+  command
+      .add_option("--suggest", arguments.suggest,
+                  "propose so many next movements that tell the rivals left apart")
+      ->transform(whole_number(0, 1000));
+  command
+      .add_option("--learn", arguments.learn,
+                  "method that learns a new effect from what is left over, or none")
+      ->capture_default_str();
+  command.add_option("--learn-evaluations", arguments.learn_evaluations, "what it may spend")
+      ->transform(whole_number(0))
+      ->capture_default_str();
+  command.add_option("--save-effect", arguments.save_effect, "write a learned effect to a file");
+  command
+      .add_option("--learned", arguments.learned,
+                  "test the effects of such a file (or of one made by hand) too")
+      ->check(CLI::ExistingFile);
+}
+
+// Where the answer goes.
+void add_answer_options(CLI::App& command, LoopArguments& arguments) {
+  command.add_flag("--json", arguments.json, "print loop.json");
+  command.add_option("--out", arguments.out, "folder for loop.json, loop.md, loop.html");
+  command.add_option("--pictures", arguments.pictures,
+                     "folder for every picture of the page, as SVG and PNG");
+}
+
 }  // namespace
 
 void add_loop_command(CLI::App& app, ExitStatus& status, const Registry& registry) {
@@ -321,92 +425,11 @@ void add_loop_command(CLI::App& app, ExitStatus& status, const Registry& registr
       "Example: tribench loop joint2.csv --model symmetric --gear-ratio 160 --out joint2");
   auto arguments = std::make_shared<LoopArguments>();
   command->add_option("DATA", arguments->files, "CSV files: one campaign, in order")->required();
-  command
-      ->add_option("--model", arguments->model,
-                   "the base: coulomb_viscous, symmetric, asymmetric, any method, a 'FORMULA'")
-      ->capture_default_str();
-  command
-      ->add_option("--rigid", arguments->rigid,
-                   "columns of the rigid body, fitted with the base and no effects")
-      ->delimiter(',');
-  command->add_option("--effects", arguments->effects, "test these families only")->delimiter(',');
-  CLI::Option* gear_ratio = add_data_options(*command, arguments->reading);
-  gear_ratio->description(
-      "motor turns per turn of the joint; without it the usual ones are scanned for ripples");
-  command
-      ->add_option(
-          "--gravity", arguments->gravity,
-          "gravity that no column declares: fit sin and cos of the position with the base, "
-          "none, or auto: where that explains much")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Gravity>{
-          {"auto", Gravity::automatic}, {"fit", Gravity::fit}, {"none", Gravity::none}}));
-  command
-      ->add_option("--urdf", arguments->reading->urdf,
-                   "URDF of the arm, beside --joint N and columns of all joints: gravity from it")
-      ->check(CLI::ExistingFile);
-  command->add_flag("--explain", arguments->explain,
-                    "say what each column was taken for and what would be done, and stop");
-  command
-      ->add_option(
-          "--screw-lead", arguments->screw_lead,
-          "of a linear axis, m per turn of the screw; without it the usual ones are scanned")
-      ->transform(real_number(0, 1e6, LowEnd::above))
-      ->excludes(gear_ratio);
-  command->add_option("--alpha", arguments->alpha_library, "false alarms of the library")
-      ->transform(real_number(1e-6, 0.5))
-      ->capture_default_str();
-  command->add_option("--alpha-leftover", arguments->alpha_leftover, "false alarms of UNKNOWN")
-      ->transform(real_number(1e-6, 0.5))
-      ->capture_default_str();
-  command->add_option("--flips", arguments->flips, "sign flips of the null distribution")
-      ->transform(whole_number(99, 99999))
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--min-speed", arguments->min_speed,
-          "leave out slower rows: the direction of friction is not known there; without it "
-          "the speed is found from rows at rest")
-      ->transform(real_number(0, 1e6));
-  command->add_option("--leave-out", arguments->leave_out,
-                      "COLUMN: judge by leaving out, in turn, all movements that share its value");
-  command->add_flag("--unordered", arguments->unordered,
-                    "the order of the movements says nothing: no drift");
-  command->add_flag(
-      "--steady", arguments->steady,
-      "each movement holds one speed: average it, its velocity's noise is not friction");
-  command
-      ->add_option("--rows", arguments->rows,
-                   "average neighbours of a longer recording, to about so many")
-      ->transform(whole_number(100, 10'000'000))
-      ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "same seed, same answer")
-      ->transform(whole_number(0))
-      ->capture_default_str();
-  command->add_option("--evaluations", arguments->evaluations, "what a searched base may spend")
-      ->transform(whole_number(0))
-      ->capture_default_str();
-  command->add_flag("--any-sign", arguments->any_sign,
-                    "accept effects whose parameters are not physical");
-  command
-      ->add_option("--suggest", arguments->suggest,
-                   "propose so many next movements that tell the rivals left apart")
-      ->transform(whole_number(0, 1000));
-  command
-      ->add_option("--learn", arguments->learn,
-                   "method that learns a new effect from what is left over, or none")
-      ->capture_default_str();
-  command->add_option("--learn-evaluations", arguments->learn_evaluations, "what it may spend")
-      ->transform(whole_number(0))
-      ->capture_default_str();
-  command->add_option("--save-effect", arguments->save_effect, "write a learned effect to a file");
-  command
-      ->add_option("--learned", arguments->learned,
-                   "test the effects of such a file (or of one made by hand) too")
-      ->check(CLI::ExistingFile);
-  command->add_flag("--json", arguments->json, "print loop.json");
-  command->add_option("--out", arguments->out, "folder for loop.json, loop.md, loop.html");
-  command->add_option("--pictures", arguments->pictures,
-                      "folder for every picture of the page, as SVG and PNG");
+  add_base_options(*command, *arguments);
+  add_test_options(*command, *arguments);
+  add_row_options(*command, *arguments);
+  add_search_options(*command, *arguments);
+  add_answer_options(*command, *arguments);
   command->callback([arguments, &status, &registry] { status = close_loop(*arguments, registry); });
 }
 

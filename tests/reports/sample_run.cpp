@@ -206,20 +206,7 @@ LoopPictures sample_pictures() {
   return pictures;
 }
 
-}  // namespace
-
-LoopRecord sample_loop() {
-  LoopRecord loop;
-  loop.title = "joint 2";
-  loop.verdict = LoopVerdict::unknown;
-  loop.target = "friction_torque_Nm";
-  loop.unit = "N m";
-  loop.alpha_library = 0.003;
-  loop.alpha_leftover = 0.002;
-  loop.flips = 1999;
-  loop.seed = 1;
-  loop.noise = {0.2, 0.05, 0.1, 5760, 108, 90, 4000};
-  loop.friction_rms = 10;
+std::vector<LoopEffect> sample_effects() {
   LoopEffect stribeck;
   stribeck.family = "stribeck";
   stribeck.atom = "sgn_v*exp(-(abs(v)/vs)^delta)";
@@ -243,23 +230,46 @@ LoopRecord sample_loop() {
   gain.parameters = {{"gain", 0.08, 0.07, 0.09}};
   gain.aliases = {{"payload", 0.95, 1, 2, false, ""}};
   gain.separate_by = {"R3"};
-  loop.effects = {stribeck, gain};
+  return {stribeck, gain};
+}
+
+LoopError sample_error() {
+  LoopError error;
+  error.test_movements = 22;
+  error.how = "held out";
+  error.mae_before = 0.81;
+  error.mae_after = 0.24;
+  error.difference_low = 0.49;
+  error.difference_high = 0.63;
+  error.ceiling = 0.19;
+  error.attainable = 0.2;
+  error.closed_fraction = 0.91;
+  error.closed_low = 0.85;
+  error.closed_high = 0.95;
+  error.closed_fraction_high = 0.93;
+  return error;
+}
+
+}  // namespace
+
+LoopRecord sample_loop() {
+  LoopRecord loop;
+  loop.title = "joint 2";
+  loop.verdict = LoopVerdict::unknown;
+  loop.target = "friction_torque_Nm";
+  loop.unit = "N m";
+  loop.alpha_library = 0.003;
+  loop.alpha_leftover = 0.002;
+  loop.flips = 1999;
+  loop.seed = 1;
+  loop.noise = {0.2, 0.05, 0.1, 5760, 108, 90, 4000};
+  loop.friction_rms = 10;
+  loop.effects = sample_effects();
   loop.leftover.p = 0.001;
   loop.leftover.inputs = {"position"};
   loop.untestable = {{"inertia", "no acceleration in the data", 0, 0, "R4"}};
   loop.bursts = {{17, "up slow", 1.2, 1.3, 4.1}};
-  loop.error.test_movements = 22;
-  loop.error.how = "held out";
-  loop.error.mae_before = 0.81;
-  loop.error.mae_after = 0.24;
-  loop.error.difference_low = 0.49;
-  loop.error.difference_high = 0.63;
-  loop.error.ceiling = 0.19;
-  loop.error.attainable = 0.2;
-  loop.error.closed_fraction = 0.91;
-  loop.error.closed_low = 0.85;
-  loop.error.closed_high = 0.95;
-  loop.error.closed_fraction_high = 0.93;
+  loop.error = sample_error();
   loop.candidates = {{"stribeck", "sgn_v*exp(-(abs(v)/vs)^delta)", 0.0005, 14.2, 212.4, 0.05},
                      {"temperature", "v*(T - T0)", 0.31, 2.2, kNoFigure, 0.1}};
   loop.base = "coulomb_viscous";
