@@ -9,7 +9,6 @@
 namespace tribench::loop {
 namespace {
 
-constexpr std::size_t kLongMovement = 45;
 constexpr double kStretchRows = 30;
 constexpr double kStretchTimes = 10;
 constexpr int kFolds = 10;
@@ -27,13 +26,20 @@ std::vector<RowRange> movement_ranges(std::span<const int> movement) {
   return ranges;
 }
 
+auto rows_of(const Eigen::VectorXd& column, const RowRange& range) {
+  return column.segment(static_cast<Eigen::Index>(range.begin),
+                        static_cast<Eigen::Index>(range.size()));
+}
+
+auto rows_of(Eigen::VectorXd& column, const RowRange& range) {
+  return column.segment(static_cast<Eigen::Index>(range.begin),
+                        static_cast<Eigen::Index>(range.size()));
+}
+
 void cut(Clusters& clusters, std::size_t m, double rows_per_stretch) {
   const RowRange range = clusters.movements[m];
-  std::size_t pieces = 1;
-  if (range.size() > kLongMovement) {
-    pieces = std::max<std::size_t>(
-        1, static_cast<std::size_t>(static_cast<double>(range.size()) / rows_per_stretch));
-  }
+  const auto pieces = std::max<std::size_t>(
+      1, static_cast<std::size_t>(static_cast<double>(range.size()) / rows_per_stretch));
   for (std::size_t k = 0; k < pieces; ++k) {
     clusters.stretches.push_back(
         {range.begin + range.size() * k / pieces, range.begin + range.size() * (k + 1) / pieces});
@@ -71,11 +77,56 @@ double autocovariance(const Eigen::VectorXd& deviation, std::span<const RowRange
 Eigen::VectorXd deviations(const Eigen::VectorXd& residual, std::span<const RowRange> movements) {
   Eigen::VectorXd out = residual;
   for (const RowRange& m : movements) {
-    auto part =
-        out.segment(static_cast<Eigen::Index>(m.begin), static_cast<Eigen::Index>(m.size()));
+    auto part = rows_of(out, m);
     part.array() -= part.mean();
   }
   return out;
+}
+
+// Adds to the noise what differs between movements beyond the noise within them.
+void estimate_offsets(const Eigen::VectorXd& residual, const Clusters& clusters, Noise& noise) {
+  const double variance = noise.within_sd * noise.within_sd;
+  double means = 0;
+  double expected = 0;
+  for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
+    const double mean = rows_of(residual, clusters.movements[m]).mean();
+    const auto rows = static_cast<double>(clusters.movements[m].size());
+    const double own = variance / (clusters.weight_of(m) * clusters.weight_of(m));
+    means += mean * mean;
+    expected += own * std::min(noise.inflation, rows) / rows;
+    noise.effective_rows += rows / std::min(noise.inflation, rows);
+  }
+  if (clusters.movements.size() <= 2) return;
+  const auto movements = static_cast<double>(clusters.movements.size());
+  noise.between_sd = std::sqrt(std::max(0.0, (means - expected) / movements));
+}
+
+// Of the movements' variances, over that of all; `sampling` is the variance that such logarithms
+// have of themselves.
+struct LogVariances {
+  std::vector<double> values;
+  double mean = 0;
+  double sampling = 0;
+};
+
+LogVariances log_variances(const Eigen::VectorXd& residual, const Clusters& clusters,
+                           const Noise& noise) {
+  const auto count = static_cast<double>(clusters.movements.size());
+  const Eigen::VectorXd deviation = deviations(residual, clusters.movements);
+  const double variance = noise.within_sd * noise.within_sd;
+  // Of squares of an AR(1): they are correlated by rho^2.
+  const double square = noise.rho * noise.rho;
+  const double kurtosis = deviation.array().square().square().mean() / (variance * variance);
+  LogVariances logs;
+  for (const RowRange& range : clusters.movements) {
+    const auto n = static_cast<double>(range.size());
+    const double squares = rows_of(deviation, range).squaredNorm();
+    logs.values.push_back(
+        elementary::log(std::max(squares / std::max(1.0, n - 1) / variance, 1e-6)));
+    logs.mean += logs.values.back() / count;
+    logs.sampling += (kurtosis - 1) * (1 + square) / (1 - square) / n / count;
+  }
+  return logs;
 }
 
 }  // namespace
@@ -97,9 +148,7 @@ Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters, 
   const auto n = static_cast<double>(residual.size());
   Eigen::VectorXd deviation = deviations(residual, clusters.movements);
   for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
-    deviation.segment(static_cast<Eigen::Index>(clusters.movements[m].begin),
-                      static_cast<Eigen::Index>(clusters.movements[m].size())) *=
-        clusters.weight_of(m);
+    rows_of(deviation, clusters.movements[m]) *= clusters.weight_of(m);
   }
   const double within = deviation.squaredNorm();
   const double dof = std::max(1.0, n - movements - static_cast<double>(fitted));
@@ -109,24 +158,7 @@ Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters, 
         std::clamp(autocovariance(deviation, clusters.movements, 1) / within, 0.0, kLargestRho);
   }
   noise.inflation = (1 + noise.rho) / (1 - noise.rho);
-  const double variance = noise.within_sd * noise.within_sd;
-  double means = 0;
-  double expected = 0;
-  for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
-    const RowRange& range = clusters.movements[m];
-    const double mean = residual
-                            .segment(static_cast<Eigen::Index>(range.begin),
-                                     static_cast<Eigen::Index>(range.size()))
-                            .mean();
-    const auto rows = static_cast<double>(range.size());
-    const double own = variance / (clusters.weight_of(m) * clusters.weight_of(m));
-    means += mean * mean;
-    expected += own * std::min(noise.inflation, rows) / rows;
-    noise.effective_rows += rows / std::min(noise.inflation, rows);
-  }
-  if (clusters.movements.size() > 2) {
-    noise.between_sd = std::sqrt(std::max(0.0, (means - expected) / movements));
-  }
+  estimate_offsets(residual, clusters, noise);
   return noise;
 }
 
@@ -184,32 +216,16 @@ std::vector<double> movement_weights(const Eigen::VectorXd& residual, const Clus
   std::vector<double> weights(count, 1.0);
   if (count < kFewestForWeights) return weights;
   const Noise noise = estimate_noise(residual, clusters, 0, 0);
-  const Eigen::VectorXd deviation = deviations(residual, clusters.movements);
-  const double variance = noise.within_sd * noise.within_sd;
-  if (!(variance > 0)) return weights;
-  // Of squares of an AR(1): they are correlated by rho^2.
-  const double square = noise.rho * noise.rho;
-  const double kurtosis = deviation.array().square().square().mean() / (variance * variance);
-  std::vector<double> logs(count, 0.0);
-  double mean = 0;
-  double sampling = 0;
-  for (std::size_t m = 0; m < count; ++m) {
-    const RowRange& range = clusters.movements[m];
-    const auto n = static_cast<double>(range.size());
-    const double squares = deviation
-                               .segment(static_cast<Eigen::Index>(range.begin),
-                                        static_cast<Eigen::Index>(range.size()))
-                               .squaredNorm();
-    logs[m] = elementary::log(std::max(squares / std::max(1.0, n - 1) / variance, 1e-6));
-    mean += logs[m] / static_cast<double>(count);
-    sampling += (kurtosis - 1) * (1 + square) / (1 - square) / n / static_cast<double>(count);
-  }
+  if (!(noise.within_sd * noise.within_sd > 0)) return weights;
+  const LogVariances logs = log_variances(residual, clusters, noise);
   double spread = 0;
-  for (const double x : logs) spread += (x - mean) * (x - mean) / static_cast<double>(count - 1);
-  const double kept = spread > 0 ? std::clamp(1 - sampling / spread, 0.0, 1.0) : 0.0;
+  for (const double x : logs.values) {
+    spread += (x - logs.mean) * (x - logs.mean) / static_cast<double>(count - 1);
+  }
+  const double kept = spread > 0 ? std::clamp(1 - logs.sampling / spread, 0.0, 1.0) : 0.0;
   double squares = 0;
   for (std::size_t m = 0; m < count; ++m) {
-    weights[m] = elementary::exp(-0.5 * kept * (logs[m] - mean));
+    weights[m] = elementary::exp(-0.5 * kept * (logs.values[m] - logs.mean));
     squares += weights[m] * weights[m] / static_cast<double>(count);
   }
   for (double& w : weights) w /= std::sqrt(squares);

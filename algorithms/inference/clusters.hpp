@@ -39,8 +39,8 @@ struct Clusters {
   double weight_of(std::size_t movement) const { return weight.empty() ? 1 : weight[movement]; }
 };
 
-// Stretches hold at least 30 rows and 10 correlation times (in rows); a movement of up to 45 rows
-// is one stretch. Ten folds of movements in turn, fewer where there are fewer movements; five folds
+// Stretches hold at least 30 rows and 10 correlation times (in rows); a shorter movement is one
+// stretch. Ten folds of movements in turn, fewer where there are fewer movements; five folds
 // of neighbouring stretches where there is one movement.
 Clusters make_clusters(std::span<const int> movement, double correlation_time);
 

@@ -24,6 +24,22 @@ Eigen::MatrixXd factor_of(const Eigen::MatrixXd& gram, double ridge) {
   return loaded.llt().matrixL();
 }
 
+// The columns of which the projection has left more than rounding, over their length before it.
+Eigen::MatrixXd columns_left(const Eigen::Ref<const Eigen::MatrixXd>& projected,
+                             const Eigen::Ref<const Eigen::VectorXd>& before,
+                             const Eigen::VectorXd& after) {
+  Eigen::MatrixXd left = projected;
+  Eigen::Index kept = 0;
+  for (Eigen::Index j = 0; j < left.cols(); ++j) {
+    if (!(after[j] > kSmallestShare * before[j])) continue;
+    if (kept != j) left.col(kept) = left.col(j);
+    left.col(kept) /= std::sqrt(before[j]);
+    ++kept;
+  }
+  left.conservativeResize(Eigen::NoChange, kept);
+  return left;
+}
+
 void count_clusters(BlockTest& test, const Eigen::VectorXd& h) {
   const double sum = h.sum();
   const double squares = h.squaredNorm();
@@ -67,6 +83,20 @@ FloatRows side_by_side(std::span<const BlockScores> blocks) {
   return all;
 }
 
+// Over the blocks, of one flip; `sums` are its sums, block after block.
+double largest_score(std::span<const BlockScores> blocks, const float* sums) {
+  double largest = 0;
+  for (const BlockScores& block : blocks) {
+    if (!block.test.testable) continue;
+    float statistic = 0;
+    for (const float* end = sums + block.whitened_sums.cols(); sums < end; ++sums) {
+      statistic += *sums * *sums;
+    }
+    largest = std::max(largest, block.gamma.fast_score(static_cast<double>(statistic)));
+  }
+  return largest;
+}
+
 }  // namespace
 
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& x) {
@@ -88,22 +118,14 @@ BlockScores score_block(const Eigen::Ref<const Eigen::MatrixXd>& projected,
                         const Eigen::Ref<const Eigen::VectorXd>& before,
                         const Eigen::VectorXd& residual, const Clusters& clusters, double ridge) {
   BlockScores out;
-  Eigen::MatrixXd zt = projected;
-  const Eigen::VectorXd after = zt.colwise().squaredNorm();
+  const Eigen::VectorXd after = projected.colwise().squaredNorm();
   out.test.share = before.sum() > 0 ? std::sqrt(after.sum() / before.sum()) : 0;
-  Eigen::Index kept = 0;
-  for (Eigen::Index j = 0; j < zt.cols(); ++j) {
-    if (!(after[j] > kSmallestShare * before[j])) continue;
-    if (kept != j) zt.col(kept) = zt.col(j);
-    zt.col(kept) /= std::sqrt(before[j]);
-    ++kept;
-  }
-  if (kept == 0) return out;
-  zt.conservativeResize(Eigen::NoChange, kept);
+  const Eigen::MatrixXd zt = columns_left(projected, before, after);
+  if (zt.cols() == 0) return out;
   out.test.testable = true;
   out.test.information = after.sum() / static_cast<double>(after.size());
   const auto count = static_cast<Eigen::Index>(clusters.stretches.size());
-  Eigen::MatrixXd sums(count, kept);
+  Eigen::MatrixXd sums(count, zt.cols());
   Eigen::VectorXd h(count);
   for (Eigen::Index c = 0; c < count; ++c) {
     const RowRange& range = clusters.stretches[static_cast<std::size_t>(c)];
@@ -139,16 +161,7 @@ std::vector<double> flip_maxima(std::span<BlockScores> blocks, const Flips& flip
   for (std::size_t first = 0; first < flips.count(); first += kFlipsAtOnce) {
     const FloatRows sums = flips.sums(all, first, std::min(kFlipsAtOnce, flips.count() - first));
     for (Eigen::Index b = 0; b < sums.rows(); ++b) {
-      double largest = 0;
-      const float* next = sums.data() + b * sums.cols();
-      for (const BlockScores& block : blocks) {
-        if (!block.test.testable) continue;
-        float statistic = 0;
-        for (const float* end = next + block.whitened_sums.cols(); next < end; ++next) {
-          statistic += *next * *next;
-        }
-        largest = std::max(largest, block.gamma.fast_score(static_cast<double>(statistic)));
-      }
+      const double largest = largest_score(blocks, sums.data() + b * sums.cols());
       maxima.push_back(largest);
       if (stop_count > 0 && largest >= stop_above) ++exceeding;
     }

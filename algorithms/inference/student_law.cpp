@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "foundation/elementary.hpp"
 
@@ -30,7 +31,7 @@ StudentLaw fit_student(std::span<const double> z) {
   constexpr int kIterations = 8;  // for each law, from where the one before ended
   const auto n = static_cast<double>(z.size());
   StudentLaw best;
-  double most = -1e300;
+  double most = -std::numeric_limits<double>::infinity();
   double variance = 1;
   for (const double freedom : kDegreesOfFreedom) {
     for (int pass = 0; pass < kIterations; ++pass) {

@@ -79,5 +79,144 @@ TEST(MovementWeights, AreOneWhereAllAreAlikeAndFollowTheNoiseWhereTheyDiffer) {
   EXPECT_NEAR(quiet / loud, 3, 0.6);
 }
 
+std::vector<int> movements_of(std::initializer_list<int> rows) {
+  std::vector<int> movement;
+  int m = 0;
+  for (const int count : rows) {
+    movement.insert(movement.end(), static_cast<std::size_t>(count), m++);
+  }
+  return movement;
+}
+
+std::vector<std::size_t> stretch_sizes(const Clusters& clusters) {
+  std::vector<std::size_t> sizes;
+  for (const RowRange& stretch : clusters.stretches) sizes.push_back(stretch.size());
+  return sizes;
+}
+
+TEST(MakeClusters, CutsMovementsIntoStretchesThatAreLongEnough) {
+  using Sizes = std::vector<std::size_t>;
+  EXPECT_EQ(stretch_sizes(make_clusters(movements_of({45, 46, 60, 100}), 1)),
+            (Sizes{45, 46, 30, 30, 33, 33, 34}));
+  // Ten correlation times where that is more than 30 rows.
+  EXPECT_EQ(stretch_sizes(make_clusters(movements_of({100}), 3)), (Sizes{33, 33, 34}));
+  EXPECT_EQ(stretch_sizes(make_clusters(movements_of({100}), 5)), (Sizes{50, 50}));
+  EXPECT_EQ(stretch_sizes(make_clusters(movements_of({100}), 80)), (Sizes{100}));
+}
+
+TEST(MakeClusters, FoldsNeverCutAMovementUnlessThereIsOneAlone) {
+  const Clusters many = make_clusters(movements_of({5, 5, 60, 5, 5, 5, 5, 5, 5, 5, 5, 5}), 1);
+  EXPECT_EQ(many.folds, 10);
+  EXPECT_EQ(many.fold_of, (std::vector<int>{0, 1, 2, 2, 3, 4, 5, 6, 7, 8, 9, 0, 1}));
+  EXPECT_EQ(make_clusters(movements_of({5, 5, 5}), 1).folds, 3);
+  const Clusters one = make_clusters(movements_of({300}), 1);
+  EXPECT_EQ(one.folds, 5);
+  EXPECT_EQ(one.fold_of, (std::vector<int>{0, 0, 1, 1, 2, 2, 3, 3, 4, 4}));
+}
+
+TEST(EstimateNoise, FindsWhatTheRowsWereMadeWith) {
+  const Clusters clusters = make_clusters(movements_of({4000, 4000, 4000, 4000, 4000, 4000}), 1);
+  RandomStream random(5);
+  Eigen::VectorXd residual(24000);
+  const double offsets[] = {1, -1, 2, -2, 1, -1};  // rms sqrt(2)
+  double x = random.normal();
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    x = kRho * x + std::sqrt(1 - kRho * kRho) * random.normal();
+    residual[i] = offsets[i / 4000] + 0.5 * x;
+  }
+  const Noise noise = estimate_noise(residual, clusters, 0, 0);
+  EXPECT_NEAR(noise.within_sd, 0.5, 0.01);
+  EXPECT_NEAR(noise.rho, kRho, 0.02);
+  EXPECT_NEAR(noise.between_sd, std::sqrt(2.0), 0.03);
+  EXPECT_DOUBLE_EQ(noise.inflation, (1 + noise.rho) / (1 - noise.rho));
+  EXPECT_NEAR(noise.effective_rows, 24000 / noise.inflation, 1e-6);
+  // Each fitted parameter costs a degree of freedom, each movement's mean one already.
+  EXPECT_NEAR(estimate_noise(residual, clusters, 12000, 0).within_sd / noise.within_sd,
+              std::sqrt((24000.0 - 6) / (24000 - 6 - 12000)), 1e-12);
+}
+
+// The noise within movements moves their means too: that is no offset.
+TEST(EstimateNoise, OffsetsAreWhatMeansDifferByBeyondTheNoise) {
+  const Clusters clusters = many_movements();
+  constexpr int kRuns = 40;
+  double variance = 0;
+  for (std::uint64_t run = 0; run < kRuns; ++run) {
+    const Noise noise = estimate_noise(noise_of(RandomStream(9).split(run), 1), clusters, 0, 0);
+    variance += noise.between_sd * noise.between_sd / kRuns;
+  }
+  EXPECT_NEAR(variance, kBetween * kBetween, 0.025);  // the means' own is 0.08
+}
+
+TEST(EstimateNoise, OfAPerfectFitIsTheFloor) {
+  const Clusters clusters = make_clusters(movements_of({10, 10, 10}), 1);
+  const Noise noise = estimate_noise(Eigen::VectorXd::Zero(30), clusters, 2, 0.25);
+  EXPECT_EQ(noise.within_sd, 0.25);
+  EXPECT_EQ(noise.rho, 0);
+  EXPECT_EQ(noise.between_sd, 0);
+  EXPECT_EQ(noise.effective_rows, 30);
+}
+
+TEST(EstimateNoise, TwoMovementsSayNothingOfOffsets) {
+  Eigen::VectorXd residual(40);
+  for (Eigen::Index i = 0; i < 40; ++i) residual[i] = (i < 20 ? 5 : -5) + (i % 2 == 0 ? 1 : -1);
+  EXPECT_EQ(estimate_noise(residual, make_clusters(movements_of({20, 20}), 1), 0, 0).between_sd, 0);
+}
+
+TEST(CorrelationTime, FollowsTheCorrelationOfNeighbours) {
+  const std::vector<RowRange> one = {{0, 60000}};
+  for (const double rho : {0.0, 0.6, 0.9}) {
+    RandomStream random(6);
+    Eigen::VectorXd rows(60000);
+    double x = random.normal();
+    for (double& row : rows) row = x = rho * x + random.normal();
+    // The sum of rho^k down to 0.05 is below the decay's -1 / log(rho).
+    const double expected = rho == 0 ? 1 : -1 / std::log(rho);
+    EXPECT_NEAR(correlation_time(rows, one), expected, 0.06 * expected) << rho;
+  }
+  EXPECT_EQ(correlation_time(Eigen::VectorXd::Ones(100), std::vector<RowRange>{{0, 100}}), 1);
+}
+
+// Correlation that lasts longer than neighbours show is in the sum: a slow wave under white noise.
+TEST(CorrelationTime, SeesAWaveUnderNoise) {
+  RandomStream random(7);
+  Eigen::VectorXd rows(20000);
+  for (Eigen::Index i = 0; i < rows.size(); ++i) {
+    rows[i] = std::sin(0.02 * static_cast<double>(i)) + random.normal();
+  }
+  // 1/3 cos(0.02 k) falls below 0.05 at k = 71; the sum up to there is 16.
+  EXPECT_NEAR(correlation_time(rows, std::vector<RowRange>{{0, 20000}}), 16, 2);
+}
+
+// Of n independent rows with a common offset the covariance's determinant grows by 1 + n b^2/s^2.
+TEST(OffsetNats, AreHalfTheLogOfWhatOffsetsAddToTheDeterminant) {
+  const Clusters clusters = make_clusters(movements_of({20, 100}), 1);
+  Noise noise;
+  noise.within_sd = 2;
+  noise.between_sd = 1.5;
+  const Eigen::VectorXd nats = offset_nats(clusters, noise);
+  ASSERT_EQ(nats.size(), 4);
+  EXPECT_NEAR(nats[0], 0.5 * std::log(1 + 20 * 2.25 / 4), 1e-12);
+  EXPECT_NEAR(nats.tail(3).sum(), 0.5 * std::log(1 + 100 * 2.25 / 4), 1e-12);
+  EXPECT_DOUBLE_EQ(nats[1], nats[3]);
+}
+
+TEST(Whitening, CountsAMovementAsItsWeightSays) {
+  Clusters clusters = make_clusters(movements_of({3, 3}), 1);
+  clusters.weight = {1, 0.5};
+  Noise noise;
+  noise.within_sd = 1;
+  const Eigen::MatrixXd rows = whitened(Eigen::MatrixXd::Ones(6, 1), clusters, noise);
+  EXPECT_NEAR(rows(0, 0), 1, 1e-12);
+  EXPECT_NEAR(rows(5, 0), 0.5, 1e-12);
+}
+
+TEST(MovementWeights, AreNotTriedWithFewMovements) {
+  RandomStream random(8);
+  Eigen::VectorXd residual(270);
+  for (Eigen::Index i = 0; i < 270; ++i) residual[i] = (i < 30 ? 20 : 1) * random.normal();
+  const Clusters nine = make_clusters(movements_of({30, 30, 30, 30, 30, 30, 30, 30, 30}), 1);
+  for (const double weight : movement_weights(residual, nine)) EXPECT_EQ(weight, 1);
+}
+
 }  // namespace
 }  // namespace tribench::loop

@@ -40,6 +40,12 @@ TEST(CrossValidation, WhatOneFoldAloneExcitesPredictsNothingThere) {
   EXPECT_TRUE(std::isnan(subsets.losses(both)[0]));
 }
 
+TEST(CrossValidation, WhatTheOthersHaveOfAColumnMustBeMoreThanRounding) {
+  Case c = make_case();
+  c.x.col(1).tail(180).setConstant(1e-8);
+  EXPECT_TRUE(std::isnan(held_out_losses(c.x, c.y, c.clusters, c.noise)[0]));
+}
+
 TEST(CrossValidation, APenalisedColumnHasNoWeightThere) {
   const Case c = make_case();
   const Eigen::VectorXd with = held_out_losses(c.x, c.y, c.clusters, c.noise, 1, 0.02);
@@ -64,6 +70,22 @@ TEST(CrossValidation, AChoiceOfColumnsHasTheLossesOfItsOwnModel) {
   const std::array<Eigen::Index, 1> second = {1};
   const Eigen::VectorXd direct = held_out_losses(c.x.rightCols(1), c.y, c.clusters, c.noise);
   EXPECT_LT((subsets.losses(second) - direct).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+// Each movement's mean is predicted from the others': with ten the loss is 100/81 of the variance.
+TEST(CrossValidation, LossesAreThoseOfTheFitToTheOtherFolds) {
+  Case c = make_case();
+  for (Eigen::Index i = 0; i < 200; ++i) c.y[i] = i < 20 ? 9 : 0;
+  c.noise.within_sd = 3;
+  const Eigen::VectorXd losses = held_out_losses(c.x.leftCols(1), c.y, c.clusters, c.noise);
+  EXPECT_NEAR(losses[0], 20 * 81 / (2 * 9.0), 1e-6);  // the others' mean is 0
+  EXPECT_NEAR(losses[1], 20 / (2 * 9.0), 1e-6);       // theirs is 1
+}
+
+TEST(PairedGain, IsASumWithItsStandardError) {
+  const Gain gain = paired_gain(Eigen::Vector2d(5, 8), Eigen::Vector2d(4, 5));
+  EXPECT_DOUBLE_EQ(gain.nats, 4);
+  EXPECT_DOUBLE_EQ(gain.error, 2);
 }
 
 }  // namespace

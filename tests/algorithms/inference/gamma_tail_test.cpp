@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 namespace tribench::loop {
 namespace {
 
@@ -17,6 +19,15 @@ TEST(MatchedGamma, TheTableAgreesWithTheExactScore) {
 TEST(MatchedGamma, SaysNothingWhereTheStatisticCannotVary) {
   EXPECT_EQ(MatchedGamma(0, 0).score(5), 0);
   EXPECT_EQ(MatchedGamma(1, 0).score(5), 0);
+}
+
+// Mean 2 and variance 4 are an exponential law: P(Q >= q) = exp(-q / 2).
+TEST(MatchedGamma, HasTheTailOfTheLawItMatches) {
+  const MatchedGamma exponential(2, 4);
+  for (const double q : {0.1, 1.0, 10.0, 100.0}) {
+    EXPECT_NEAR(exponential.score(q), q / 2 / std::numbers::ln10, 1e-9 * (1 + q)) << q;
+    EXPECT_NEAR(exponential.statistic_of(exponential.score(q)), q, 1e-9 * q);
+  }
 }
 
 }  // namespace

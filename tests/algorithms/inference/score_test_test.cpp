@@ -107,7 +107,7 @@ TEST(FlipMaxima, StopsOnceTheAnswerCannotBeSignificantAnyMore) {
   std::vector<BlockScores> blocks = {score_block(project_off(e.candidates, basis), before,
                                                  project_off(e.y, basis), e.clusters, 0)};
   const Flips flips(1999, kMovements, RandomStream(2));
-  EXPECT_LT(flip_maxima(blocks, flips, 0.0, 4).size(), 1999U);
+  EXPECT_LT(flip_maxima(blocks, flips, 0.0, 4).size(), 500U);
   EXPECT_EQ(flip_maxima(blocks, flips).size(), 1999U);
 }
 
@@ -135,6 +135,53 @@ TEST(HeldOutLosses, OfSubsetsAreThoseOfTheirColumns) {
   const std::vector<Eigen::Index> chosen = {0, 1, 4, 6};
   const Eigen::VectorXd direct = held_out_losses(all(Eigen::all, chosen), e.y, e.clusters, noise);
   EXPECT_LT((subsets.losses(chosen) - direct).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST(AdjustedP, CountsTheObservedAmongTheFlips) {
+  const std::vector<double> maxima = {1, 2, 3};
+  EXPECT_EQ(adjusted_p(2, maxima), 0.75);
+  EXPECT_EQ(adjusted_p(4, maxima), 0.25);
+}
+
+TEST(CriticalScore, IsTheOneThatSoManyFlipsReach) {
+  std::vector<double> maxima(99);
+  for (std::size_t i = 0; i < maxima.size(); ++i) maxima[i] = static_cast<double>(i * 37 % 99);
+  EXPECT_EQ(critical_score(maxima, 0.05), 94);
+  EXPECT_DOUBLE_EQ(adjusted_p(94.5, maxima), 0.05);  // of whatever is above it
+  EXPECT_EQ(critical_score(maxima, 0.001), 98);
+}
+
+TEST(ScoreSums, OfOneColumnIsItsSquareOverItsOwn) {
+  const double gram = 4;
+  const Eigen::MatrixXd sums = Eigen::Vector3d(1, 3, -2);
+  constexpr double kRidge = 0.25;
+  const BlockScores block = score_sums(Eigen::MatrixXd::Constant(1, 1, gram), sums, kRidge);
+  EXPECT_NEAR(block.test.statistic, 4 / (gram * (1 + kRidge)), 1e-6);
+  // Over all signs: the mean is the sum of squares, the variance 4 sum over pairs of their
+  // products.
+  const double scale = gram * (1 + kRidge);
+  const MatchedGamma gamma(14 / scale, 4 * (1 * 9 + 1 * 4 + 9 * 4) / (scale * scale));
+  EXPECT_NEAR(block.test.score, gamma.score(4 / scale), 1e-6);
+}
+
+TEST(ScoreBlock, SaysHowManyClustersCarryIt) {
+  std::vector<int> movement;
+  for (int m = 0; m < 8; ++m) movement.insert(movement.end(), 10, m);
+  const Clusters clusters = make_clusters(movement, 1);
+  Eigen::MatrixXd column = Eigen::MatrixXd::Zero(80, 1);
+  column.topRows(40).setOnes();
+  const Eigen::VectorXd before = column.colwise().squaredNorm();
+  const Eigen::VectorXd residual = Eigen::VectorXd::Ones(80);
+  const BlockScores half = score_block(column, before, residual, clusters, 0);
+  EXPECT_DOUBLE_EQ(half.test.effective_clusters, 4);
+  EXPECT_EQ(half.test.carrying, 4U);
+  EXPECT_DOUBLE_EQ(half.test.share, 1);
+  EXPECT_DOUBLE_EQ(half.test.information, 40);
+  // Half of a column that was twice as long can be tested; a fortieth is as good as nothing.
+  const BlockScores less = score_block(column, 4 * before, residual, clusters, 0);
+  EXPECT_DOUBLE_EQ(less.test.share, 0.5);
+  EXPECT_TRUE(less.test.testable);
+  EXPECT_FALSE(score_block(column, 1600 * before, residual, clusters, 0).test.testable);
 }
 
 }  // namespace
