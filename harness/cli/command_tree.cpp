@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "harness/cli/command_tree.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <sstream>
 #include <utility>
@@ -76,6 +78,11 @@ void collect(const Command& command, std::vector<const Command*>& all) {
 }
 
 }  // namespace
+
+std::string value_of(const CommandOption& option) {
+  if (option.choices.empty()) return option.placeholder;
+  return fmt::format("{}", fmt::join(option.choices, "|"));
+}
 
 Command command_tree(const CLI::App& app) { return described(app, ""); }
 

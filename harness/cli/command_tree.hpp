@@ -32,6 +32,9 @@ struct Command {
 
 Command command_tree(const CLI::App& app);
 
+// What stands for an option's value: its choices ("c|python"), or the placeholder.
+std::string value_of(const CommandOption& option);
+
 // A command and all below it, from the top down.
 std::vector<const Command*> all_commands(const Command& root);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// tribench describe: the command line in other forms, for the install (hidden from --help).
+// tribench describe: the command line in other forms, for the install and the docs (hidden from
+// --help).
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +14,7 @@
 #include "harness/cli/commands.hpp"
 #include "harness/cli/completion.hpp"
 #include "harness/cli/man_page.hpp"
+#include "harness/cli/reference_page.hpp"
 
 namespace tribench {
 namespace {
@@ -25,6 +27,7 @@ const std::map<std::string, Form>& forms() {
       {"bash", bash_completion},
       {"zsh", zsh_completion},
       {"fish", fish_completion},
+      {"markdown", reference_page},
   };
   return kForms;
 }
@@ -32,11 +35,11 @@ const std::map<std::string, Form>& forms() {
 }  // namespace
 
 void add_describe_command(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("describe", "The command line as a man page or completion");
+  CLI::App* command = app.add_subcommand(
+      "describe", "The command line as a man page, a page of the docs or completion");
   command->group("");
   auto form = std::make_shared<std::string>();
-  command->add_option("form", *form, "man, or the shell to complete in")
+  command->add_option("form", *form, "man, markdown, or the shell to complete in")
       ->required()
       ->check(CLI::IsMember(forms()));
   command->callback([&app, form] { fmt::print("{}", forms().at(*form)(command_tree(app))); });

@@ -37,11 +37,6 @@ std::string roff(std::string_view text) {
   return result;
 }
 
-std::string value_of(const CommandOption& option) {
-  if (option.choices.empty()) return option.placeholder;
-  return fmt::format("{}", fmt::join(option.choices, "|"));
-}
-
 // "-h, --help", "--jobs INT", "DATA"
 std::string term(const CommandOption& option) {
   std::string result;

@@ -72,7 +72,7 @@ void run_nightly(NightlyArguments arguments, const Registry& registry, ExitStatu
     summary = night.summary;
     status = status_of(night.end);
   } catch (const Error& error) {
-    // Whoever waits for the summary hears of a night that did not come to one, too.
+    // A night that fails before its summary is notified too.
     if (!arguments.notify.empty()) {
       notify(arguments.notify, fmt::format("tribench {}: FAILED\n{}\n", grid.name, error.what()));
     }

@@ -22,9 +22,9 @@ using Rooms = std::set<std::string>;
 // What a room may include besides itself. A method's room is "method:<folder>".
 const std::map<std::string, Rooms>& allowed() {
   static const Rooms kBelowTheHarness = {
-      "foundation", "problems",         "expression", "interface", "fitting",
-      "inference",  "states",           "effects",    "method",    "registry",
-      "reports",    "forward_dynamics", "exploration"};
+      "foundation", "problems", "expression",       "interface",  "fitting",
+      "inference",  "states",   "effects",          "method",     "diagnosis",
+      "registry",   "reports",  "forward_dynamics", "exploration"};
   const auto with = [](Rooms rooms, const Rooms& more) {
     rooms.insert(more.begin(), more.end());
     return rooms;
@@ -39,14 +39,15 @@ const std::map<std::string, Rooms>& allowed() {
       {"inference", {"foundation", "expression", "fitting"}},
       {"effects", {"foundation", "problems", "expression"}},
       {"forward_dynamics", {"foundation", "problems", "expression", "fitting", "states"}},
-      {"method",
-       {"foundation", "problems", "expression", "interface", "fitting", "states", "inference",
-        "effects"}},
+      {"method", {"foundation", "problems", "expression", "interface", "fitting", "states"}},
+      {"diagnosis",
+       {"foundation", "problems", "expression", "interface", "fitting", "inference", "effects"}},
       {"exploration",  // above the diagnosis, which it asks
        {"foundation", "problems", "expression", "interface", "fitting", "inference", "effects",
-        "method"}},
+        "diagnosis"}},
       {"registry",
-       {"foundation", "problems", "expression", "interface", "fitting", "states", "method"}},
+       {"foundation", "problems", "expression", "interface", "fitting", "states", "method",
+        "diagnosis"}},
       {"reports", {"foundation"}},
       {"harness", kBelowTheHarness},
       {"study", with(kBelowTheHarness, {"harness"})},
@@ -66,7 +67,7 @@ std::string room_of(const std::string& path) {
   if (slash == std::string::npos) return rest.starts_with("registry") ? "registry" : "interface";
   const std::string folder = rest.substr(0, slash);
   for (const char* floor : {"expression", "fitting", "inference", "states", "effects",
-                            "forward_dynamics", "exploration"}) {
+                            "forward_dynamics", "diagnosis", "exploration"}) {
     if (folder == floor) return folder;
   }
   return "method:" + folder;
@@ -124,6 +125,9 @@ TEST(IncludeDirection, TheRuleItselfCatchesAnArrowThatRunsBack) {
   EXPECT_NE(objection("algorithms/regressor.hpp", "algorithms/fitting/evidence.hpp"), "");
   EXPECT_NE(objection("algorithms/fitting/evidence.hpp", "algorithms/regressor.hpp"), "");
   EXPECT_NE(objection("algorithms/diagnosis/closed_loop.cpp", "algorithms/registry.hpp"), "");
+  EXPECT_NE(objection("algorithms/diagnosis/closed_loop.cpp", "algorithms/pysr/pysr.hpp"), "");
+  EXPECT_NE(objection("algorithms/pysr/pysr.cpp", "algorithms/diagnosis/diagnosis.hpp"), "");
+  EXPECT_NE(objection("algorithms/pysr/pysr.cpp", "algorithms/effects/effect_file.hpp"), "");
   EXPECT_NE(objection("harness/judge.cpp", "harness/study/loop_study.hpp"), "");
   EXPECT_NE(objection("harness/study/loop_study.cpp", "harness/cli/commands.hpp"), "");
   EXPECT_NE(objection("reports/csv.cpp", "problems/problem.hpp"), "");
