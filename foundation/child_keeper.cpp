@@ -93,7 +93,7 @@ void end_all(pid_t program, int& status) {
   }
 }
 
-// The last of it: a folder of files that nobody keeps goes when nobody can write there any more.
+// Last: a scratch folder is removed once no process can write there any more.
 void remove_folder(const char* folder) {
   const pid_t pid = ::_Fork();
   if (pid == 0) {

@@ -5,7 +5,7 @@
 // file, boxes, arguments) asks here, so that a formula reads back as what it was and no text from
 // outside enters code.
 //
-// Not for names that never stand in a formula (columns that nobody uses, problems, methods).
+// Not for names that never stand in a formula (columns that are not used, problems, methods).
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// A folder for files that nobody keeps: requests to other programs, runs made to be compared. Its
+// A folder for files that are not kept: requests to other programs, runs made to be compared. Its
 // name cannot be foretold and only its owner may enter it, so that no other user of the machine can
 // put files there or swap them.
 #pragma once

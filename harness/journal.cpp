@@ -79,7 +79,7 @@ RunIdentity parse_identity(std::string_view body, const std::filesystem::path& f
   try {
     const json object = read_json<json>(body).at("identity");
     return {object.at("grid"), object.at("code"), object.at("data")};
-  } catch (const json::exception&) {  // an empty body, or one that nobody of ours wrote
+  } catch (const json::exception&) {  // an empty body, or one that this program did not write
     throw_bad_input("this is not a run's journal", file.string());
   }
 }

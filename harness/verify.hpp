@@ -19,7 +19,7 @@ namespace tribench {
 struct VerifyResult {
   std::size_t compared = 0;
   std::vector<std::string> different;  // "cell: what differs", one a cell
-  // Cells whose result the clock or a limit decided: nobody promises them.
+  // Cells whose result the clock or a limit decided: they need not repeat.
   std::size_t not_reproducible = 0;
 };
 

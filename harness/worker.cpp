@@ -36,7 +36,7 @@ void send(int answers, const char* name, const std::string& json) {
     if (count > 0) {
       rest.remove_prefix(static_cast<std::size_t>(count));
     } else if (errno != EINTR) {
-      ::_exit(1);  // nobody reads any more
+      ::_exit(1);  // the reader is gone
     }
   }
 }

@@ -105,7 +105,7 @@ bool is_published_form(const PublishedProblem& problem, const PublishedRow& row)
 }
 
 // How near an error comes to the ceiling, and how sure that is.
-std::string nearness(const Against& ceiling) {
+std::string nearness(const YardstickRatio& ceiling) {
   if (ceiling.middle <= kNearCeiling) return "within 3 %";
   if (ceiling.interval.contains(kNearCeiling)) return "cannot be told from 3 %";
   return "not within 3 %";
@@ -117,11 +117,11 @@ void remark_on_ceiling(PublishedProblem& problem, const PublishedRow& symbolic) 
                                  symbolic.operators, figure(error_of(symbolic)));
   if (std::isfinite(ours.ceiling.middle)) {
     text += fmt::format("; seed by seed {} against the noise ceiling, {}",
-                        against_text(ours.ceiling), nearness(ours.ceiling));
+                        yardstick_ratio_text(ours.ceiling), nearness(ours.ceiling));
   }
   if (std::isfinite(ours.refitted.middle)) {
     text += fmt::format(", and {} against the true law refitted to the same rows",
-                        against_text(ours.refitted));
+                        yardstick_ratio_text(ours.refitted));
   }
   problem.remarks.push_back(text + ".");
 }

@@ -48,12 +48,12 @@ std::string table_of(const PublishedProblem& problem) {
                                  figure(problem.mae_refitted), "-", "-", "-", "-", "-"});
     } else {
       const MethodRow& ours = *row.ours;
-      cells.insert(
-          cells.end(),
-          {ours.method, row.operators, figure(ours.mae_test.middle), spread_text(ours.mae_test),
-           figure(problem.mae_ceiling), figure(problem.mae_refitted), against_text(ours.ceiling),
-           against_text(ours.refitted), count_figure(published_complexity_of(ours)),
-           fmt::format("{}", ours.refuted), fmt::format("{}", ours.failed)});
+      cells.insert(cells.end(), {ours.method, row.operators, figure(ours.mae_test.middle),
+                                 spread_text(ours.mae_test), figure(problem.mae_ceiling),
+                                 figure(problem.mae_refitted), yardstick_ratio_text(ours.ceiling),
+                                 yardstick_ratio_text(ours.refitted),
+                                 count_figure(published_complexity_of(ours)),
+                                 fmt::format("{}", ours.refuted), fmt::format("{}", ours.failed)});
     }
     table.add(std::move(cells));
   }
@@ -97,8 +97,8 @@ ordered_json published_json(const std::vector<PublishedProblem>& problems) {
            {"high", of_ours([](const MethodRow& r) { return r.mae_test.high; })},
            {"ceiling", number(problem.mae_ceiling)},
            {"refitted", number(problem.mae_refitted)},
-           {"against_ceiling", ours != nullptr ? against_text(ours->ceiling) : "-"},
-           {"against_refitted", ours != nullptr ? against_text(ours->refitted) : "-"},
+           {"against_ceiling", ours != nullptr ? yardstick_ratio_text(ours->ceiling) : "-"},
+           {"against_refitted", ours != nullptr ? yardstick_ratio_text(ours->refitted) : "-"},
            {"complexity", of_ours([](const MethodRow& r) { return published_complexity_of(r); })},
            {"singular", ours != nullptr ? ours->refuted : 0}});
     }

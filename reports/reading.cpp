@@ -167,15 +167,15 @@ std::string standing_text(const MethodRow& row) {
   }
 }
 
-std::string against_text(const Against& against) {
-  if (!std::isfinite(against.middle)) return "-";
-  const bool percent = against.middle < 2;
-  const auto text = [percent](double ratio) {
-    return percent ? fmt::format("{:+.1f}", 100 * (ratio - 1)) : ratio_figure(ratio);
+std::string yardstick_ratio_text(const YardstickRatio& ratio) {
+  if (!std::isfinite(ratio.middle)) return "-";
+  const bool percent = ratio.middle < 2;
+  const auto text = [percent](double value) {
+    return percent ? fmt::format("{:+.1f}", 100 * (value - 1)) : ratio_figure(value);
   };
-  std::string all = percent ? text(against.middle) + " %" : "x" + text(against.middle);
-  if (!std::isnan(against.interval.low)) {
-    all += fmt::format(" ({} .. {})", text(against.interval.low), text(against.interval.high));
+  std::string all = percent ? text(ratio.middle) + " %" : "x" + text(ratio.middle);
+  if (!std::isnan(ratio.interval.low)) {
+    all += fmt::format(" ({} .. {})", text(ratio.interval.low), text(ratio.interval.high));
   }
   return all;
 }

@@ -64,7 +64,7 @@ class Variations {
         {"error to the truth", &Record::mae_truth}};
     for (const auto& [name, member] : metrics) {
       RankingVariation variation{name, 0, {}, kMissing};
-      // Missing for everybody where the truth is not known; a failed cell is placed last.
+      // Missing for every method where the truth is not known; a failed cell is placed last.
       add(
           variation,
           [member = member](const Record& r) { return is_ok(r) ? r.*member : kInfinity; }, all());

@@ -59,7 +59,7 @@ const Record* representative_of(const Cells& cells, double middle) {
   return chosen;
 }
 
-Against ratio_to(const Cells& cells, double Record::*yardstick) {
+YardstickRatio ratio_to(const Cells& cells, double Record::*yardstick) {
   std::vector<double> ratios;
   for (const Record* record : cells) {
     if (record->*yardstick > 0) ratios.push_back(placing_error(*record) / (record->*yardstick));

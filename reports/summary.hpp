@@ -36,7 +36,7 @@ enum class Standing {
 };
 
 // A method's errors over a yardstick's, seed by seed; a failed cell counts as infinite.
-struct Against {
+struct YardstickRatio {
   double middle = kMissing;                            // median over the seeds
   ConfidenceInterval interval = {kMissing, kMissing};  // of it, 95 %; missing below six seeds
 };
@@ -56,8 +56,8 @@ struct MethodRow {
   double complexity_adaptation = 0;
   double fit_cpu_s = kMissing;
   double evaluations = kMissing;
-  Against ceiling;   // the noise ceiling
-  Against refitted;  // the true law with its constants fitted to the same rows
+  YardstickRatio ceiling;   // the noise ceiling
+  YardstickRatio refitted;  // the true law with its constants fitted to the same rows
   std::size_t proved_free = 0;
   std::size_t refuted = 0;
   std::size_t undecided = 0;
@@ -122,7 +122,7 @@ std::string reading_of(const Ranking& ranking);
 // "best", "within 1 %", "not distinguishable", "x1.84 (p 0.012)", ...
 std::string standing_text(const MethodRow& row);
 // "+7.2 % (-1.8 .. +10.1)", "x19 (18 .. 20)" from twice the yardstick on, "-" where not known.
-std::string against_text(const Against& against);
+std::string yardstick_ratio_text(const YardstickRatio& ratio);
 // "Noise ceiling 0.04; the true law's error 0.04, 0.042 refitted."; empty where not known.
 std::string yardsticks_text(const ProblemTable& table);
 

@@ -26,7 +26,7 @@ constexpr std::size_t kVerdictsTold = 5;
 constexpr int kSureLooks = 3;      // running
 constexpr double kAskAgain = 1.5;  // seconds since the diagnosis said otherwise
 
-// Both ways at two speeds, and reversals: without one nobody knows how far back the last one lies.
+// Both ways at two speeds, and reversals: without one the distance since the last is not known.
 std::vector<PlannedMovement> opening_movements(const MotionLimits& limits) {
   const double centre = 0.5 * (limits.lowest_rad + limits.highest_rad);
   const double narrow = 0.0625 * (limits.highest_rad - limits.lowest_rad);
@@ -183,7 +183,7 @@ class Explorer {
     return true;
   }
 
-  // Once could be luck of a few rows, whose noise nobody knows yet.
+  // Once could be chance: few rows do not tell their noise yet.
   bool sure() {
     const std::vector<WeighedVerdict> verdicts = verdicts_of(*last(), false);
     const bool again = verdicts.front().verdict == sure_of_;

@@ -10,7 +10,6 @@
 namespace tribench {
 namespace {
 
-constexpr double kHeard = 15;  // nats from the best
 constexpr std::size_t kMostRows = 1000;
 // Functions closer to each other than this share of the noise's square are the same.
 constexpr double kSame = 1e-4;
@@ -68,7 +67,7 @@ Posterior posterior_of(std::vector<WeighedFormula> pool, Sampler& sampler) {
   Posterior result;
   double total = 0;
   for (const WeighedFormula& member : pool) {
-    if (!(member.against - pool.front().against <= kHeard)) break;
+    if (!(member.against - pool.front().against <= kNegligibleNats)) break;
     std::vector<double> values = sampler.values_of(*member.formula);
     const double same = kSame * pool.front().mean_square;
     if (!all_finite(values) || std::ranges::any_of(functions, [&](const auto& other) {

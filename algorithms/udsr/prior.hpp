@@ -68,7 +68,7 @@ struct RelationalConstraint {
 
 struct PriorOptions {
   int min_length = 4;
-  int max_length = 30;  // the published 64 writes formulas that nobody reads
+  int max_length = 30;  // the published 64 gives formulas too long to read
   int max_constants = 3;
   bool uniform_arity = true;
   bool soft_length = true;

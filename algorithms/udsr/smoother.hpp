@@ -5,7 +5,7 @@
 // asks it for values where there are no data.
 //
 // Length and noise are those of the least held-out error on a grid (fitting/gaussian_process.hpp
-// has it in closed form). AI-Feynman trains a network here, whose held-out error nobody knows.
+// has it in closed form). AI-Feynman trains a network here, whose held-out error is not known.
 #pragma once
 
 #include <Eigen/Core>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "algorithms/fitting/posterior_choice.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/udsr/linear_token.hpp"
 #include "foundation/elementary.hpp"
@@ -15,8 +16,6 @@ namespace {
 constexpr std::size_t kBeam = 100;
 constexpr std::size_t kMostTerms = 12;
 constexpr std::size_t kRowsForATerm = 5;
-// What the choice by the posterior would still listen to (fitting/posterior_choice.hpp).
-constexpr double kHeard = 15;
 // Residuals below this share of the target are rounding.
 constexpr double kRounding = 1e-14;
 
@@ -138,7 +137,7 @@ std::vector<Expression> select_terms(std::span<const Monomial> terms, const Scor
   std::ranges::stable_sort(all, {}, &std::pair<double, Rated>::first);
   std::vector<Expression> result;
   for (const auto& [against, rated] : all) {
-    if (result.size() == kBeam || against > all.front().first + kHeard) break;
+    if (result.size() == kBeam || against > all.front().first + kNegligibleNats) break;
     std::vector<Monomial> chosen;
     for (const Eigen::Index term : rated.terms) {
       chosen.push_back(terms[static_cast<std::size_t>(term)]);

@@ -22,8 +22,8 @@ struct RecoveryFigure {
   double median_cpu_s = 0;
 };
 
-// Recovered means a normalised mean squared error below 1e-12 on noise-free rows that nobody fitted
-// (the success criterion of the public deep-symbolic-optimization code).
+// Recovered means a normalised mean squared error below 1e-12 on noise-free rows that were not
+// fitted (the success criterion of the public deep-symbolic-optimization code).
 bool is_recovered(const Record& record);
 
 // From the run's results.csv: the problems of the Nguyen set, by method, operator set and number.

@@ -160,7 +160,7 @@ Response gear_drifting(RandomStream random) {
   return ripple(kGearRatio, random.uniform(0.6, 1.8), false, random.split("wave"));
 }
 
-// Viscosity falls with the lubricant's temperature, which nobody measures.
+// Viscosity falls with the lubricant's temperature, which is not measured.
 Response warm_oil(RandomStream random) {
   return [scale = random.uniform(8, 20)](const Instant& now, double) {
     return velocity(now) * elementary::exp(-(now.oil_degc - kCoolest_degc) / scale);

@@ -2,7 +2,7 @@
 //
 // From a file as it was read to a recording that a diagnosis can look at: torque from current,
 // velocity and acceleration from position, strokes for movements, rows that say nothing left out,
-// gravity that nobody declared. What was done is said, with the figures; what cannot be true is
+// undeclared gravity. What was done is said, with the figures; what cannot be true is
 // refused with the mend.
 //
 // A file that has its movements, its velocity and its acceleration comes out as it went in, but for

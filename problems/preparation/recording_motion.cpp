@@ -124,7 +124,7 @@ void settle_acceleration(PreparedRecording& out, const DerivedMotion& derived) {
       fmt::format("acceleration is derived from '{}' ({:.2g} Hz), noise {:.2g} {}/s^2",
                   find_channel(out.data, Role::position)->name, derived.motion.bandwidth,
                   derived.motion.acceleration_noise, unit));
-  // Nobody said anything of the inertia: it is no effect that friction lacks.
+  // The inertia was not declared: it is no effect that friction lacks.
   if (out.data.find(Role::friction_torque) == nullptr)
     out.rigid.emplace_back("derived_acceleration");
 }

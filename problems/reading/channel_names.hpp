@@ -22,7 +22,7 @@ struct NameReading {
   // The unit that is written in the name, else the one that its source always uses; or neither.
   WrittenUnit known = {};
   bool unit_written = false;  // in the name itself
-  std::string unknown_unit;   // in brackets, and nobody's
+  std::string unknown_unit;   // in brackets, and unknown
   std::string_view source;    // who names a channel so
   bool at_motor = false;      // the name or its unit says the motor's side of the gear
   std::optional<int> joint;   // the number in the name

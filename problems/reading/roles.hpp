@@ -23,7 +23,7 @@ struct GivenRole {
 using GivenRoles = std::map<std::string, GivenRole, std::less<>>;
 
 // "position[deg]", "velocity[rpm@motor]", "none". Throws Error (bad_input) with `place` for a role
-// or a unit that nobody knows, or that do not go together.
+// or an unknown unit, or that do not go together.
 GivenRole parse_role(std::string_view text, std::string_view place);
 
 // "column=role,column=role". Commas in brackets or quotes part nothing: '"a,b"=position'.

@@ -300,7 +300,7 @@ std::vector<std::filesystem::path> suite_files(const std::optional<std::filesyst
 Problem make_suite_problem(const Suite& suite, const SuiteProblem& wanted, const LawReader& laws,
                            const std::optional<std::filesystem::path>& data, std::uint64_t seed) {
   if (!wanted.file.empty()) return make_table_problem(suite, wanted, data, seed);
-  if (!laws) throw Error(ErrorKind::failed, "nobody here reads laws", suite.name);
+  if (!laws) throw Error(ErrorKind::failed, "no reader of laws was handed in", suite.name);
   const std::string name = fmt::format("{}/{}", suite.name, wanted.name);
   return make_law_problem(suite, wanted, laws, RandomStream(key_of(name)).split(seed));
 }

@@ -141,7 +141,7 @@ std::vector<std::string> inputs_of(const UserProblem& own, const Dataset& data) 
 std::vector<double> truth_of(const UserProblem& own, const suite::LawReader& laws,
                              const std::vector<std::string>& inputs, const Dataset& data) {
   if (own.law.empty()) return {};
-  if (!laws) throw Error(ErrorKind::failed, "nobody here reads laws", own.name);
+  if (!laws) throw Error(ErrorKind::failed, "no reader of laws was handed in", own.name);
   const suite::Law law = [&] {
     try {
       return laws(own.law, inputs);
