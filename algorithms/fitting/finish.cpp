@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -109,23 +110,24 @@ bool FormulaFinisher::try_value(Expression& formula, std::size_t place, double v
   // What the others would have to make good must be small, or every constant is fitted to no end.
   const double moved = errors_of(candidate).square;
   if (!(moved <= kNearValue * kNearValue * target_square_)) return false;
+  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   std::vector<double> low;
   std::vector<double> high;
+  bool any_free = false;
   for (const std::size_t p : candidate.constant_positions()) {
     if (is_exponent(candidate, p)) continue;
     const double c = candidate.node(p).value;
     const bool is_held = p == place || has_a_name(c);
-    low.push_back(is_held ? c : -1e300);
-    high.push_back(is_held ? c : 1e300);
+    low.push_back(is_held ? c : -kUnbounded);
+    high.push_back(is_held ? c : kUnbounded);
+    any_free = any_free || !is_held;
   }
   ConstantFitOptions options;
   options.max_iterations = 10;
   options.function_tolerance = 1e-14;
   options.low = low;
   options.high = high;
-  if (std::ranges::any_of(low, [](double x) { return x == -1e300; })) {
-    fitter_.fit(candidate, inputs_, target_, {}, options);
-  }
+  if (any_free) fitter_.fit(candidate, inputs_, target_, {}, options);
   if (!is_no_worse(errors_of(candidate), before)) return false;
   formula = std::move(candidate);
   return true;

@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string_view>
 
 #include "algorithms/forward_dynamics/joint_model.hpp"
@@ -26,7 +27,7 @@ namespace tribench::forward {
 struct Tolerances {
   double position = 1e-8;  // of one step, in the position's unit
   double velocity = 1e-7;
-  double longest_step_s = 1e300;
+  double longest_step_s = std::numeric_limits<double>::infinity();
 };
 
 enum class MotionStatus {

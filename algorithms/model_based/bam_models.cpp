@@ -125,15 +125,15 @@ class BamProblem : public LeastSquaresProblem {
       low_.push_back(low);
       high_.push_back(high);
     };
-    constexpr double kAny = 1e300;
+    constexpr double kUnbounded = std::numeric_limits<double>::infinity();
     for (const double v : data.columns[shape.velocity]) top_ = std::max(top_, std::abs(v));
-    if (shape.acceleration) move(kInertia, -kAny, kAny);
-    if (shape.gravity) move(kGravity, -kAny, kAny);
-    if (shape.offset) move(kOffset, -kAny, kAny);
-    move(kViscous, -kAny, kAny);
-    move(kCoulomb, 0, kAny);
+    if (shape.acceleration) move(kInertia, -kUnbounded, kUnbounded);
+    if (shape.gravity) move(kGravity, -kUnbounded, kUnbounded);
+    if (shape.offset) move(kOffset, -kUnbounded, kUnbounded);
+    move(kViscous, -kUnbounded, kUnbounded);
+    move(kCoulomb, 0, kUnbounded);
     if (shape.has_stribeck()) {
-      move(kStribeck, 0, kAny);
+      move(kStribeck, 0, kUnbounded);
       move(kVelocity, 1e-3 * top_, top_);
       move(kExponent, 1, 10);
     }
@@ -142,8 +142,8 @@ class BamProblem : public LeastSquaresProblem {
     if (shape.has_load() && shape.has_stribeck()) move(kMotorStribeck, 0, kLargestShare);
     if (shape.model >= 5) move(kExternalStribeck, 0, 1);
     if (shape.model == 6) {
-      move(kMotorQuadratic, 0, kAny);
-      move(kExternalQuadratic, 0, kAny);
+      move(kMotorQuadratic, 0, kUnbounded);
+      move(kExternalQuadratic, 0, kUnbounded);
     }
   }
 

@@ -14,7 +14,7 @@ namespace tribench {
 namespace {
 
 constexpr double kLogReach = 4.605170185988091;  // a factor of 100
-constexpr double kAny = 1e300;
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 std::vector<std::size_t> free_constants(const Expression& formula) {
   std::vector<std::size_t> places;
@@ -41,10 +41,10 @@ class JointProblem : public LeastSquaresProblem {
 
   std::vector<double> start() {
     std::vector<double> x;
-    for (const std::size_t place : places_) add(x, formula_.formula.node(place).value, kAny);
+    for (const std::size_t place : places_) add(x, formula_.formula.node(place).value, kUnbounded);
     each_parameter([&](double& value, bool is_any) {
       if (is_any) {
-        add(x, value, kAny);
+        add(x, value, kUnbounded);
       } else {
         add(x, elementary::log(value), kLogReach);
       }
@@ -111,8 +111,8 @@ class JointProblem : public LeastSquaresProblem {
 
   void add(std::vector<double>& x, double value, double reach) {
     x.push_back(value);
-    low_.push_back(reach == kAny ? -kAny : value - reach);
-    high_.push_back(reach == kAny ? kAny : value + reach);
+    low_.push_back(value - reach);
+    high_.push_back(value + reach);
   }
 
   template <typename Visit>

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
@@ -59,9 +61,12 @@ void check_gravity_factor(const PreparedRecording& out, const DataOptions& optio
                     "one of the two has its sign turned: gravity is the torque that the motor has "
                     "to hold; turn it in the file, or let it be fitted: --gravity fit");
   }
-  for (const double known : {1e3, 1e-3, options.drive.gear_ratio.value_or(0),
-                             1 / options.drive.gear_ratio.value_or(1e300)}) {
-    if (known <= 0 || !is(known) || is(1)) continue;
+  std::vector<double> known_factors = {1e3, 1e-3};
+  if (const std::optional<double> ratio = options.drive.gear_ratio) {
+    known_factors.insert(known_factors.end(), {*ratio, 1 / *ratio});
+  }
+  for (const double known : known_factors) {
+    if (!is(known) || is(1)) continue;
     throw_bad_input(what, out.data.name,
                     "check their units (--roles COLUMN=ROLE[UNIT]), --torque-constant and the side "
                     "of the gear (@motor)");
