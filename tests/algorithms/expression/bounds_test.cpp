@@ -26,9 +26,7 @@ using Box = testing::Box;
 
 const std::vector<std::string> kNames = {"v", "g", "t"};
 
-TEST(Bounds, contain_every_sampled_value_of_every_node) {
-  testing::expect_containment("bounds", 8000);
-}
+TEST(Bounds, ContainEverySampledValueOfEveryNode) { testing::expect_containment("bounds", 8000); }
 
 // MPFR at 300 bits, node by node: the real value of the formula.
 class Exact {
@@ -115,7 +113,7 @@ class Exact {
   std::vector<Number> values_;
 };
 
-TEST(Bounds, contain_the_exact_value_of_every_node) {
+TEST(Bounds, ContainTheExactValueOfEveryNode) {
   RandomStream random(key_of("bounds exact"));
   for (int trial = 0; trial < 8000; ++trial) {
     const Expression formula = testing::random_formula(random, {.inputs = 2});
@@ -135,7 +133,7 @@ TEST(Bounds, contain_the_exact_value_of_every_node) {
   }
 }
 
-TEST(Bounds, contain_difference_quotients) {
+TEST(Bounds, ContainDifferenceQuotients) {
   RandomStream random(key_of("bounds slopes"));
   Evaluator evaluator;
   int compared = 0;
@@ -186,7 +184,7 @@ Interval mean_value_without_errors(const Box& box) {
   return {at_centre - reach, at_centre + reach};
 }
 
-TEST(BoundsTest, notices_a_bound_that_is_not_rounded_outward) {
+TEST(BoundsTest, NoticesABoundThatIsNotRoundedOutward) {
   RandomStream random(key_of("broken bounds"));
   const Expression formula = parse("v + 0.1 + g - 0.3", kNames);
   Exact exact(formula.size());
@@ -223,7 +221,7 @@ Expression expanded_polynomial(RandomStream& random, double root) {
   return sum;
 }
 
-TEST(Bounds, contain_what_is_computed_where_all_is_cancellation) {
+TEST(Bounds, ContainWhatIsComputedWhereAllIsCancellation) {
   RandomStream random(key_of("cancellation"));
   for (int trial = 0; trial < 4000; ++trial) {
     const double root = 3 * random.normal();
@@ -238,7 +236,7 @@ TEST(Bounds, contain_what_is_computed_where_all_is_cancellation) {
   }
 }
 
-TEST(BoundsTest, notices_a_mean_value_form_that_forgets_rounding_errors) {
+TEST(BoundsTest, NoticesAMeanValueFormThatForgetsRoundingErrors) {
   RandomStream random(key_of("broken mean value"));
   const Expression formula = parse("v*v - 2*v + 1", kNames);
   int escapes = 0;

@@ -30,7 +30,7 @@ std::string canonical_text(const std::string& text) {
   return print(Canonicalizer().canonical(formula_of(text)), kNames);
 }
 
-TEST(Canonical, gives_equal_formulas_one_hash) {
+TEST(Canonical, GivesEqualFormulasOneHash) {
   const std::vector<std::pair<std::string, std::string>> equal = {
       {"v + g", "g + v"},
       {"v*g*t", "t*(g*v)"},
@@ -67,7 +67,7 @@ TEST(Canonical, gives_equal_formulas_one_hash) {
   }
 }
 
-TEST(Canonical, keeps_what_may_be_singular) {
+TEST(Canonical, KeepsWhatMayBeSingular) {
   const std::vector<std::pair<std::string, std::string>> different = {
       {"v/v", "1"},       {"1/v - 1/v", "0"},       {"0/v", "0"},
       {"0*log(v)", "0"},  {"log(v) - log(v)", "0"}, {"log(v)^0", "1"},
@@ -82,7 +82,7 @@ TEST(Canonical, keeps_what_may_be_singular) {
   }
 }
 
-TEST(Canonical, has_a_shape_that_forgets_constants) {
+TEST(Canonical, HasAShapeThatForgetsConstants) {
   const auto shape = [](const std::string& text) {
     return Canonicalizer().hash(formula_of(text)).shape;
   };
@@ -94,7 +94,7 @@ TEST(Canonical, has_a_shape_that_forgets_constants) {
   EXPECT_NE(shape("2*v"), shape("2*v + 1"));
 }
 
-TEST(Canonical, prints_what_one_would_write) {
+TEST(Canonical, PrintsWhatOneWouldWrite) {
   EXPECT_EQ(canonical_text("v + 2*v - g*3 + 1 - 4"), "3*v - 3*g - 3");
   EXPECT_EQ(canonical_text("v*v*v/g/g"), "v^3/g^2");
   EXPECT_EQ(canonical_text("-(v*g)"), "-(v*g)");
@@ -103,7 +103,7 @@ TEST(Canonical, prints_what_one_would_write) {
 }
 
 // Small whole numbers, so that sums are exact and 0/0 is met where it can be.
-TEST(Canonical, neither_hides_nor_makes_a_singularity_on_a_grid_of_whole_numbers) {
+TEST(Canonical, NeitherHidesNorMakesASingularityOnAGridOfWholeNumbers) {
   RandomStream random(key_of("canonical grid"));
   Evaluator evaluator;
   Canonicalizer canonicalizer;
@@ -130,7 +130,7 @@ TEST(Canonical, neither_hides_nor_makes_a_singularity_on_a_grid_of_whole_numbers
   EXPECT_GT(singular, 1000);
 }
 
-TEST(Canonical, changes_values_by_rounding_only) {
+TEST(Canonical, ChangesValuesByRoundingOnly) {
   RandomStream random(key_of("canonical values"));
   Evaluator evaluator;
   Canonicalizer canonicalizer;
@@ -158,7 +158,7 @@ TEST(Canonical, changes_values_by_rounding_only) {
   EXPECT_GT(compared, 8000);
 }
 
-TEST(Canonical, is_its_own_canonical_form) {
+TEST(Canonical, IsItsOwnCanonicalForm) {
   RandomStream random(key_of("canonical twice"));
   Canonicalizer canonicalizer;
   for (int trial = 0; trial < 20000; ++trial) {
@@ -176,7 +176,7 @@ TEST(Canonical, is_its_own_canonical_form) {
   }
 }
 
-TEST(Canonical, tells_different_random_formulas_apart) {
+TEST(Canonical, TellsDifferentRandomFormulasApart) {
   RandomStream random(key_of("canonical apart"));
   Canonicalizer canonicalizer;
   std::map<std::uint64_t, std::string> hashes;
@@ -190,7 +190,7 @@ TEST(Canonical, tells_different_random_formulas_apart) {
   EXPECT_EQ(hashes.size(), texts.size());
 }
 
-TEST(Simplify, removes_what_the_box_proves_removable) {
+TEST(Simplify, RemovesWhatTheBoxProvesRemovable) {
   const InputBox away = {{1, 2}, {-60, 60}, {0, 1}};
   const InputBox across = {{-1, 2}, {-60, 60}, {0, 1}};
   const auto text = [](const std::string& formula, const InputBox& box) {
@@ -206,7 +206,7 @@ TEST(Simplify, removes_what_the_box_proves_removable) {
 }
 
 // Found on fronts of the three methods, as they were printed.
-TEST(Simplify, finds_the_short_form) {
+TEST(Simplify, FindsTheShortForm) {
   const InputBox box = {{0.5, 5}, {0.5, 5}, {0.5, 5}};  // v, g, t
   const std::pair<const char*, const char*> forms[] = {
       {"1*(v*g)", "v*g"},
@@ -246,7 +246,7 @@ TEST(Simplify, finds_the_short_form) {
   }
 }
 
-TEST(Simplify, uses_the_sign_of_an_input) {
+TEST(Simplify, UsesTheSignOfAnInput) {
   const InputBox box = {{-2, 2}, {-60, 60}, {0, 0, 0}};  // t is the sign of v
   const auto text = [&](const char* formula) {
     return print(simplify(formula_of(formula), box), kNames);
@@ -256,7 +256,7 @@ TEST(Simplify, uses_the_sign_of_an_input) {
   EXPECT_EQ(text("t*t*g"), "g*t^2");  // 0 at 0, so no 1
 }
 
-TEST(Simplify, keeps_values_and_gives_itself_on_random_formulas) {
+TEST(Simplify, KeepsValuesAndGivesItselfOnRandomFormulas) {
   RandomStream random(key_of("simplify values"));
   const InputBox box = {{-2, 2}, {-1, 3}, {0.5, 1}};
   Evaluator evaluator;
@@ -281,14 +281,14 @@ TEST(Simplify, keeps_values_and_gives_itself_on_random_formulas) {
   }
 }
 
-TEST(Simplify, asks_before_it_uses_an_operation) {
+TEST(Simplify, AsksBeforeItUsesAnOperation) {
   const InputBox box = {{-2, 2}, {-60, 60}, {0, 0, 0}};
   const OperatorSet& paper = find_operator_set("paper");
   const Expression formula = formula_of("v*t*g");
   EXPECT_EQ(simplify(formula, box, [&](const Expression& f) { return paper.admits(f); }), formula);
 }
 
-TEST(Simplify, never_grows_and_keeps_the_verdict) {
+TEST(Simplify, NeverGrowsAndKeepsTheVerdict) {
   RandomStream random(key_of("simplify"));
   const InputBox box = {{-2, 2}, {-1, 3}, {0.5, 1}};
   int smaller = 0;

@@ -40,7 +40,7 @@ std::string forge(Json json) {
 const std::string kFormula = "v/(v^2 - 2*v + 2) + sqrt(v*sgn_v)*g";
 const std::string kBox = "v=-2:2,g=-60:60";
 
-TEST(Certificate, is_accepted_by_the_checker) {
+TEST(Certificate, IsAcceptedByTheChecker) {
   const std::string text = certify(kFormula, kBox);
   const CertificateCheck check = check_certificate(text);
   EXPECT_TRUE(check.accepted) << check.reason;
@@ -48,7 +48,7 @@ TEST(Certificate, is_accepted_by_the_checker) {
   EXPECT_GE(check.pieces, 3U);
 }
 
-TEST(Certificate, exists_for_formulas_that_only_sharper_bounds_prove_at_once) {
+TEST(Certificate, ExistsForFormulasThatOnlySharperBoundsProveAtOnce) {
   for (const char* formula :
        {"1/(v^2 - 0.6*v + 0.09001)", "1/(v*v - 2*v + 2)", "1/(2 + sin(v*g))", "abs(v)^1.5",
         "1/(cos(v) + 0.4262)", "1/(v^4 - v^2 + 0.26)", "log(1 + exp(v))", "1/(1 + exp(-40*v))",
@@ -59,13 +59,13 @@ TEST(Certificate, exists_for_formulas_that_only_sharper_bounds_prove_at_once) {
   }
 }
 
-TEST(Certificate, cannot_be_written_for_a_singular_formula) {
+TEST(Certificate, CannotBeWrittenForASingularFormula) {
   for (const char* formula : {"1/v", "1/(v^2 - 2)", "sqrt(v)", "exp(g^2)", "log(abs(v))"}) {
     EXPECT_EQ(certify(formula, kBox), "") << formula;
   }
 }
 
-TEST(Certificate, is_rejected_whatever_field_is_tampered_with) {
+TEST(Certificate, IsRejectedWhateverFieldIsTamperedWith) {
   const Json good = Json::parse(certify(kFormula, kBox));
   std::vector<std::pair<std::string, Json>> tampered;
   const auto tamper = [&](const std::string& what, auto change) {
@@ -114,7 +114,7 @@ TEST(Certificate, is_rejected_whatever_field_is_tampered_with) {
   EXPECT_TRUE(check_certificate(forge(good)).accepted);
 }
 
-TEST(Certificate, covers_limits_and_dissipation) {
+TEST(Certificate, CoversLimitsAndDissipation) {
   const std::string stribeck = "(3 + 2*exp(-(v/0.1)^2))*sgn_v + 4*v + 0.05*g*sgn_v*sgn_g";
   for (const auto& [formula, claim] : {std::pair{stribeck, kDissipative},
                                        {stribeck, bounded_by(20)},
@@ -127,7 +127,7 @@ TEST(Certificate, covers_limits_and_dissipation) {
   }
 }
 
-TEST(Certificate, cannot_be_written_for_a_property_that_fails) {
+TEST(Certificate, CannotBeWrittenForAPropertyThatFails) {
   for (const auto& [formula, claim] : {std::pair{std::string("3*sgn_v - 2*v"), kDissipative},
                                        {"v + 0.001*g", kDissipative},
                                        {"1 + v", kDissipative},
@@ -137,7 +137,7 @@ TEST(Certificate, cannot_be_written_for_a_property_that_fails) {
   }
 }
 
-TEST(Certificate, checker_accepts_no_false_claim_however_the_box_is_cut) {
+TEST(Certificate, CheckerAcceptsNoFalseClaimHoweverTheBoxIsCut) {
   // A certificate for another formula, relabelled.
   Json json = Json::parse(certify("1/(v^2 + 1)", "v=-2:2"));
   json["formula"] = "1/(v^2 - 1)";
@@ -146,7 +146,7 @@ TEST(Certificate, checker_accepts_no_false_claim_however_the_box_is_cut) {
 
 // 1/x10000 is not finite on x10000=-1:1; a variable of 16 bits that folded input 65536 onto input 0
 // proved it.
-TEST(Certificate, names_every_input_it_claims_or_is_refused) {
+TEST(Certificate, NamesEveryInputItClaimsOrIsRefused) {
   std::string box;
   for (int i = 0; i <= 65'536; ++i) box += "y" + std::to_string(i) + "=1:2,";
   box += "x=-1:1";
@@ -166,7 +166,7 @@ TEST(Certificate, names_every_input_it_claims_or_is_refused) {
   EXPECT_THROW(Node::input(kMaxInputs), Error);
 }
 
-TEST(Certificate, is_read_by_the_checker_as_the_prover_wrote_it) {
+TEST(Certificate, IsReadByTheCheckerAsTheProverWroteIt) {
   RandomStream random(key_of("two parsers"));
   const std::vector<std::string> names = {"v", "g", "t"};
   for (int trial = 0; trial < 5000; ++trial) {
@@ -184,7 +184,7 @@ TEST(Certificate, is_read_by_the_checker_as_the_prover_wrote_it) {
   }
 }
 
-TEST(Certificate, is_rejected_where_its_formula_or_box_is_none) {
+TEST(Certificate, IsRejectedWhereItsFormulaOrBoxIsNone) {
   for (const char* formula : {"", "v +", "(v", "v)", "v v", "exp v", "exp", "w", "sgn_w", "2v",
                               "v ** 2", "inf", "nan", "v#"}) {
     ClaimedBox box = read_claimed_box("v=-1:1");
@@ -198,7 +198,7 @@ TEST(Certificate, is_rejected_where_its_formula_or_box_is_none) {
   }
 }
 
-TEST(Certificate, of_garbage_is_rejected_and_the_reason_can_be_printed) {
+TEST(Certificate, OfGarbageIsRejectedAndTheReasonCanBePrinted) {
   const std::string good = certify(kFormula, kBox);
   RandomStream random(key_of("garbage"));
   std::vector<std::string> all = {std::string(100'000, '['), "\xff", ""};
@@ -218,7 +218,7 @@ TEST(Certificate, of_garbage_is_rejected_and_the_reason_can_be_printed) {
 }
 
 // The checker's bounds are its own code: they get the prover's property test.
-TEST(Certificate, checker_bounds_contain_every_sampled_value) {
+TEST(Certificate, CheckerBoundsContainEverySampledValue) {
   RandomStream random(key_of("checker bounds"));
   int bounded = 0;
   for (int trial = 0; trial < 6000; ++trial) {
@@ -240,7 +240,7 @@ TEST(Certificate, checker_bounds_contain_every_sampled_value) {
   EXPECT_GT(bounded, 20000);
 }
 
-TEST(Certificate, most_proved_formulas_have_one) {
+TEST(Certificate, MostProvedFormulasHaveOne) {
   RandomStream random(key_of("certificates"));
   int proved = 0;
   int certified = 0;

@@ -19,7 +19,7 @@ bool is_seen(const std::string& formula) {
   return !is_finite_on_grid(parse(formula, kNames), kBox);
 }
 
-TEST(GridCheck, sees_what_lies_on_its_points_and_misses_what_lies_between) {
+TEST(GridCheck, SeesWhatLiesOnItsPointsAndMissesWhatLiesBetween) {
   EXPECT_TRUE(is_seen("1/v"));
   EXPECT_TRUE(is_seen("sqrt(v)"));
   EXPECT_TRUE(is_seen("1/(sgn_v + 1)"));
@@ -30,7 +30,7 @@ TEST(GridCheck, sees_what_lies_on_its_points_and_misses_what_lies_between) {
   EXPECT_FALSE(is_seen("3"));
 }
 
-TEST(GridCheck, never_sees_what_is_proved_free) {
+TEST(GridCheck, NeverSeesWhatIsProvedFree) {
   for (const char* text : {"1/(v^2 + 1)", "sqrt(v*sgn_v)", "g/(2 + sgn_v)", "exp(11*g)"}) {
     ASSERT_EQ(prove_free(parse(text, kNames), kBox).verdict, Verdict::proved_free);
     EXPECT_FALSE(is_seen(text));

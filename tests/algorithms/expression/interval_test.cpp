@@ -129,7 +129,7 @@ void expect_encloses(const Interval& bounds, Mpfi& exact, double slack_ulps, dou
   }
 }
 
-TEST(Interval, arithmetic_encloses_the_exact_range_within_an_ulp) {
+TEST(Interval, ArithmeticEnclosesTheExactRangeWithinAnUlp) {
   RandomStream random(key_of("interval binary"));
   for (int trial = 0; trial < 60000; ++trial) {
     const Op op = kBinary[random.below(kBinary.size())];
@@ -155,7 +155,7 @@ bool is_defined(Op op, const Interval& a) {
   return op != Op::sqrt || a.low >= 0;
 }
 
-TEST(Interval, functions_enclose_the_exact_range_and_decorate_their_domain) {
+TEST(Interval, FunctionsEncloseTheExactRangeAndDecorateTheirDomain) {
   RandomStream random(key_of("interval unary"));
   for (int trial = 0; trial < 60000; ++trial) {
     const Op op = kUnary[random.below(kUnary.size())];
@@ -182,7 +182,7 @@ TEST(Interval, functions_enclose_the_exact_range_and_decorate_their_domain) {
   }
 }
 
-TEST(Interval, powers_enclose_the_exact_value_at_random_points) {
+TEST(Interval, PowersEncloseTheExactValueAtRandomPoints) {
   RandomStream random(key_of("interval power"));
   mpfr_t x;
   mpfr_t y;
@@ -215,7 +215,7 @@ TEST(Interval, powers_enclose_the_exact_value_at_random_points) {
   EXPECT_GT(defined, 20000);
 }
 
-TEST(Interval, knows_the_thin_cases) {
+TEST(Interval, KnowsTheThinCases) {
   const auto root = [](double low, double high) { return apply(Op::sqrt, {{low, high}}); };
   EXPECT_EQ(root(0, 4).range, (Interval{0, 2}));
   EXPECT_EQ(root(-5e-324, 4).decoration, Decoration::trivial);
@@ -230,7 +230,7 @@ TEST(Interval, knows_the_thin_cases) {
 }
 
 // What the bounds assume of the evaluator's kernels, over each function's whole range.
-TEST(Interval, holds_what_the_evaluator_computes_at_every_point) {
+TEST(Interval, HoldsWhatTheEvaluatorComputesAtEveryPoint) {
   RandomStream random(key_of("interval kernels"));
   std::vector<double> points;
   for (int i = 0; i < 200000; ++i) points.push_back(random_number(random));
@@ -256,7 +256,7 @@ TEST(Interval, holds_what_the_evaluator_computes_at_every_point) {
   }
 }
 
-TEST(Interval, holds_what_the_evaluator_computes_from_two_operands) {
+TEST(Interval, HoldsWhatTheEvaluatorComputesFromTwoOperands) {
   RandomStream random(key_of("interval kernels of two"));
   constexpr std::size_t kPoints = 200000;
   std::vector<double> a(kPoints);

@@ -42,7 +42,7 @@ void expect_all(const std::vector<Known>& table, const PropertyQuestion& questio
   }
 }
 
-TEST(Dissipative, is_decided_for_friction_laws) {
+TEST(Dissipative, IsDecidedForFrictionLaws) {
   const std::vector<Known> table = {
       {"3*sgn_v + 2*v", kProved},
       {"2*v", kProved},
@@ -65,13 +65,13 @@ TEST(Dissipative, is_decided_for_friction_laws) {
   expect_all(table, {.property = Property::dissipative});
 }
 
-TEST(Dissipative, is_refuted_by_a_point_where_friction_drives) {
+TEST(Dissipative, IsRefutedByAPointWhereFrictionDrives) {
   const PropertyResult result = ask("3*sgn_v - 2*v", {.property = Property::dissipative});
   ASSERT_TRUE(result.witness);
   EXPECT_LT(f("3*sgn_v - 2*v", result.witness->point) * result.witness->point[0], 0);
 }
 
-TEST(Bounded, is_decided_against_a_limit) {
+TEST(Bounded, IsDecidedAgainstALimit) {
   expect_all({{"3*sgn_v + 2*v", kProved}, {"3*sgn_v + 2*v + 0.001*g", kRefuted}},
              {.property = Property::bounded, .limit = 7});
   expect_all({{"g*v", kProved}, {"g/v", kRefuted}}, {.property = Property::bounded});
@@ -79,7 +79,7 @@ TEST(Bounded, is_decided_against_a_limit) {
   expect_all({{"v*exp(-v^2)", kRefuted}}, {.property = Property::bounded, .limit = 0.42887});
 }
 
-TEST(Monotone, looks_beyond_the_stribeck_range_only) {
+TEST(Monotone, LooksBeyondTheStribeckRangeOnly) {
   const std::string stribeck = "sgn_v*(5 + 3*exp(-(v/0.1)^2)) + 2*v";
   expect_all({{stribeck, kRefuted},
               {"2*v + 3*sgn_v", kProved},
@@ -95,7 +95,7 @@ TEST(Monotone, looks_beyond_the_stribeck_range_only) {
   expect_all({{stribeck, kRefuted}}, {.property = Property::monotone, .from = 0.15});
 }
 
-TEST(Monotone, is_refuted_by_two_points_between_which_friction_falls) {
+TEST(Monotone, IsRefutedByTwoPointsBetweenWhichFrictionFalls) {
   const std::string formula = "sgn_v*(5 + 3*exp(-(v/0.1)^2)) + 2*v";
   const PropertyResult result = ask(formula, {.property = Property::monotone});
   ASSERT_TRUE(result.witness);
@@ -106,7 +106,7 @@ TEST(Monotone, is_refuted_by_two_points_between_which_friction_falls) {
   EXPECT_TRUE(witness_json(*result.witness, kNames).starts_with("{\"points\": [{\"v\": "));
 }
 
-TEST(Odd, is_decided_by_form_or_by_a_point) {
+TEST(Odd, IsDecidedByFormOrByAPoint) {
   expect_all({{"3*sgn_v + 2*v", kProved},
               {"v^3 - 2*v", kProved},
               {"v*exp(-v^2)", kProved},
@@ -123,7 +123,7 @@ TEST(Odd, is_decided_by_form_or_by_a_point) {
              {.property = Property::odd});
 }
 
-TEST(Properties, refuse_a_question_that_makes_no_sense) {
+TEST(Properties, RefuseAQuestionThatMakesNoSense) {
   EXPECT_THROW(ask("v", {.property = Property::dissipative, .velocity = 1}), Error);
   EXPECT_THROW(ask("v", {.property = Property::monotone, .from = -1}), Error);
   // Of no point of the box: anything would be proved.

@@ -181,9 +181,9 @@ const std::vector<Known> kTable = {
     {"g^173", kFree},
 };
 
-TEST(SingularityTable, has_at_least_sixty_formulas) { EXPECT_GE(kTable.size(), 60U); }
+TEST(SingularityTable, HasAtLeastSixtyFormulas) { EXPECT_GE(kTable.size(), 60U); }
 
-TEST(SingularityTable, decides_every_formula_rightly) {
+TEST(SingularityTable, DecidesEveryFormulaRightly) {
   for (const Known& known : kTable) {
     SCOPED_TRACE(known.formula);
     const Expression formula = parse(known.formula, kNames);
@@ -196,7 +196,7 @@ TEST(SingularityTable, decides_every_formula_rightly) {
   }
 }
 
-TEST(Singularity, says_where_a_pole_lies_between_two_doubles) {
+TEST(Singularity, SaysWhereAPoleLiesBetweenTwoDoubles) {
   const InputBox box = {{0, 2}};
   const std::vector<std::string> names = {"v"};
   const SingularityResult result = prove_free(parse("1/(v^2 - 2)", names), box);
@@ -205,7 +205,7 @@ TEST(Singularity, says_where_a_pole_lies_between_two_doubles) {
             "{\"between\": [{\"v\": 1.414213562373095}, {\"v\": 1.4142135623730951}]}");
 }
 
-TEST(Singularity, gives_the_same_answer_twice) {
+TEST(Singularity, GivesTheSameAnswerTwice) {
   for (const Known& known : kTable) {
     const Expression formula = parse(known.formula, kNames);
     const SingularityResult a = prove_free(formula, known.box);
@@ -218,7 +218,7 @@ TEST(Singularity, gives_the_same_answer_twice) {
   }
 }
 
-TEST(Singularity, says_undecided_with_the_smallest_box_when_the_budget_is_spent) {
+TEST(Singularity, SaysUndecidedWithTheSmallestBoxWhenTheBudgetIsSpent) {
   const Expression formula = parse("1/(exp(v - 0.3) - v - 0.6999999)", kNames);
   const SingularityResult result = prove_free(formula, joint_box(2, 60), {.node_boxes = 200});
   EXPECT_EQ(result.verdict, Verdict::undecided);
@@ -226,7 +226,7 @@ TEST(Singularity, says_undecided_with_the_smallest_box_when_the_budget_is_spent)
   EXPECT_LT(result.undecided_box[0].high - result.undecided_box[0].low, 4);
 }
 
-TEST(Singularity, refuses_a_box_that_is_none) {
+TEST(Singularity, RefusesABoxThatIsNone) {
   const Expression formula = parse("v + g", kNames);
   EXPECT_THROW(prove_free(formula, {{0, 1}}), Error);
   EXPECT_THROW(prove_free(formula, {{1, 0}, {0, 0, 0}, {0, 1}}), Error);
@@ -234,7 +234,7 @@ TEST(Singularity, refuses_a_box_that_is_none) {
   EXPECT_THROW(prove_free(formula, {{0, std::nan("")}, {0, 0, 0}, {0, 1}}), Error);
 }
 
-TEST(Singularity, counts_a_constant_that_is_not_finite) {
+TEST(Singularity, CountsAConstantThatIsNotFinite) {
   const Expression formula = Expression::constant(INFINITY);
   EXPECT_EQ(prove_free(formula, {}).verdict, Verdict::refuted);
 }

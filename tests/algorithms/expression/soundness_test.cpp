@@ -6,7 +6,7 @@
 namespace tribench {
 namespace {
 
-TEST(Soundness, no_formula_proved_free_is_ever_caught) {
+TEST(Soundness, NoFormulaProvedFreeIsEverCaught) {
   testing::expect_soundness("soundness",
                             {.formulas = 6000, .random_points = 100, .adversarial_points = 200});
 }

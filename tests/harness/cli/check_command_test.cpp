@@ -17,7 +17,7 @@ ProgramRun run_check(const std::string& arguments) {
   return testing::run_tribench_in_shell("check " + arguments);
 }
 
-TEST(CheckCommand, exits_0_for_a_proof_1_for_a_refutation_and_2_for_bad_input) {
+TEST(CheckCommand, Exits0ForAProof1ForARefutationAnd2ForBadInput) {
   EXPECT_EQ(run_check("'1/(v^2 - 2*v + 2)' --box 'v=-2:2'").status, 0);
   EXPECT_EQ(run_check("'1/(v - 0.3)' --box 'v=-2:2'").status, 1);
   EXPECT_EQ(run_check("--box v=-2:2 -- '-1/v'").status, 1);
@@ -28,13 +28,13 @@ TEST(CheckCommand, exits_0_for_a_proof_1_for_a_refutation_and_2_for_bad_input) {
   EXPECT_EQ(run_check("'v' --box 'v=0:1,v=0:2'").status, 2);
 }
 
-TEST(CheckCommand, names_the_input_that_has_no_range_and_the_mend) {
+TEST(CheckCommand, NamesTheInputThatHasNoRangeAndTheMend) {
   const ProgramRun answer = run_check("'v + load' --box 'v=-2:2'");
   EXPECT_NE(answer.output.find("'load' has no range; add load=LOW:HIGH"), std::string::npos)
       << answer.output;
 }
 
-TEST(CheckCommand, answers_in_json_with_a_witness) {
+TEST(CheckCommand, AnswersInJsonWithAWitness) {
   const ProgramRun answer = run_check("'g/(v - 0.25)' --box 'v=-2:2,g=-60:60' --json");
   EXPECT_EQ(answer.status, 1);
   const auto json = nlohmann::json::parse(answer.output);
@@ -46,19 +46,19 @@ TEST(CheckCommand, answers_in_json_with_a_witness) {
   EXPECT_GE(json["seconds"].get<double>(), 0);
 }
 
-TEST(CheckCommand, gives_two_neighbours_for_a_pole_that_no_double_hits) {
+TEST(CheckCommand, GivesTwoNeighboursForAPoleThatNoDoubleHits) {
   const auto json = nlohmann::json::parse(run_check("'1/(v^2 - 2)' --box 'v=0:2' --json").output);
   EXPECT_EQ(json["witness"]["between"][0]["v"], 1.414213562373095);
   EXPECT_EQ(json["witness"]["between"][1]["v"], 1.4142135623730951);
 }
 
-TEST(CheckCommand, understands_the_sign_beside_its_input) {
+TEST(CheckCommand, UnderstandsTheSignBesideItsInput) {
   EXPECT_EQ(run_check("'sqrt(v*sgn_v)' --box 'v=-2:2'").status, 0);
   EXPECT_EQ(run_check("'1/(sgn_v + 0.5)' --box 'v=-2:2'").status, 0);
   EXPECT_EQ(run_check("'1/sgn_v' --box 'v=-2:2'").status, 1);
 }
 
-TEST(CheckCommand, decides_properties_of_friction_laws) {
+TEST(CheckCommand, DecidesPropertiesOfFrictionLaws) {
   EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property dissipative").status, 0);
   EXPECT_EQ(run_check("'3*sgn_v - 2*v' --box v=-2:2 --property dissipative").status, 1);
   EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property odd").status, 0);
@@ -73,7 +73,7 @@ TEST(CheckCommand, decides_properties_of_friction_laws) {
   EXPECT_EQ(json["verdict"], "proved");
 }
 
-TEST(CheckCommand, writes_a_certificate_that_it_verifies_and_rejects_once_tampered_with) {
+TEST(CheckCommand, WritesACertificateThatItVerifiesAndRejectsOnceTamperedWith) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("tribench_certificate_" + std::to_string(getpid()) + ".json");
   EXPECT_EQ(run_check("'v/(v^2 - 2*v + 2)' --box v=-2:2 --certificate " + path.string()).status, 0);
@@ -89,7 +89,7 @@ TEST(CheckCommand, writes_a_certificate_that_it_verifies_and_rejects_once_tamper
   EXPECT_EQ(run_check("--verify " + path.string()).status, 2);
 }
 
-TEST(CheckCommand, certifies_the_property_asked_for_or_says_that_it_cannot) {
+TEST(CheckCommand, CertifiesThePropertyAskedForOrSaysThatItCannot) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("tribench_claim_" + std::to_string(getpid()) + ".json");
   const std::string asked = "'3*sgn_v + 2*v' --box v=-2:2 --certificate " + path.string();
@@ -107,7 +107,7 @@ TEST(CheckCommand, certifies_the_property_asked_for_or_says_that_it_cannot) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST(CheckCommand, decides_a_formula_with_memory_by_its_stored_energy) {
+TEST(CheckCommand, DecidesAFormulaWithMemoryByItsStoredEnergy) {
   const std::string state =
       "z = lugre(v, sliding=1e-3, breakaway=1.5e-3, stribeck_velocity=0.01); ";
   const std::string force = "1e4*z + 2000*(v - abs(v)*z/(1e-3 + 5e-4*exp(-(v/0.01)^2))) + ";

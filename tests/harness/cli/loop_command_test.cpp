@@ -79,7 +79,7 @@ std::string complaint(const std::string& header, Line line,
   return run.errors;
 }
 
-TEST(LoopCommand, bad_data_end_with_status_2_and_it_says_how_to_mend_them) {
+TEST(LoopCommand, BadDataEndWithStatus2AndItSaysHowToMendThem) {
   EXPECT_THAT(complaint("movement,speed,friction_torque_Nm", plain_line), HasSubstr("--roles"));
   EXPECT_THAT(complaint("movement,velocity_rad_s,load_cell", plain_line), HasSubstr("--roles"));
   EXPECT_THAT(complaint(kPlainHeader,
@@ -108,7 +108,7 @@ TEST(LoopCommand, bad_data_end_with_status_2_and_it_says_how_to_mend_them) {
   }
 }
 
-TEST(LoopCommand, bad_options_end_with_status_2_and_it_says_how_to_mend_them) {
+TEST(LoopCommand, BadOptionsEndWithStatus2AndItSaysHowToMendThem) {
   const testing::TemporaryFolder folder;
   const auto option_complaint = [](const std::vector<std::string>& more) {
     return complaint(kPlainHeader, plain_line, more);
@@ -127,7 +127,7 @@ TEST(LoopCommand, bad_options_end_with_status_2_and_it_says_how_to_mend_them) {
   EXPECT_THAT(option_complaint({"--learn", "pysir"}), HasSubstr("pysr"));
 }
 
-TEST(LoopCommand, a_folder_that_cannot_be_made_is_said_before_the_work) {
+TEST(LoopCommand, AFolderThatCannotBeMadeIsSaidBeforeTheWork) {
   const testing::TemporaryFolder folder;
   testing::write_text(folder / "taken", "a file");
   const std::string file =
@@ -141,7 +141,7 @@ TEST(LoopCommand, a_folder_that_cannot_be_made_is_said_before_the_work) {
   EXPECT_EQ(run.output, "");  // no verdict that would then be lost
 }
 
-TEST(LoopCommand, poor_input_is_warned_of_and_nothing_is_claimed) {
+TEST(LoopCommand, PoorInputIsWarnedOfAndNothingIsClaimed) {
   const testing::TemporaryFolder folder;
   const auto answer = [&](const std::string& header, int movements, int rows, auto line) {
     const testing::ProgramRun run =
@@ -184,7 +184,7 @@ TEST(LoopCommand, poor_input_is_warned_of_and_nothing_is_claimed) {
 
 // Sines of a joint with inertia 1.5, Coulomb friction and an offset by direction, positions in
 // degrees: half a second ahead either model keeps to the motion, and says so in degrees.
-TEST(LoopCommand, says_what_the_models_are_worth_in_motion_where_the_inertia_is_known) {
+TEST(LoopCommand, SaysWhatTheModelsAreWorthInMotionWhereTheInertiaIsKnown) {
   const testing::TemporaryFolder folder;
   const auto line = [](int m, int i) {
     const double t = 0.005 * i;
@@ -213,7 +213,7 @@ TEST(LoopCommand, says_what_the_models_are_worth_in_motion_where_the_inertia_is_
   EXPECT_LT(loop["motion"]["before"].get<double>(), 0.3);
 }
 
-TEST(LoopCommand, files_without_movements_are_one_movement_each) {
+TEST(LoopCommand, FilesWithoutMovementsAreOneMovementEach) {
   const testing::TemporaryFolder folder;
   std::vector<std::string> command = {"loop"};
   for (int m = 0; m < 12; ++m) {
@@ -235,7 +235,7 @@ TEST(LoopCommand, files_without_movements_are_one_movement_each) {
 }
 
 // Data that leave nothing to be found, or nothing to find it with.
-TEST(LoopCommand, degenerate_data_neither_crash_nor_claim_anything) {
+TEST(LoopCommand, DegenerateDataNeitherCrashNorClaimAnything) {
   const testing::TemporaryFolder folder;
   const auto expect_nothing = [&](const std::string& header, const char* verdict, int status,
                                   auto line) {
@@ -264,7 +264,7 @@ TEST(LoopCommand, degenerate_data_neither_crash_nor_claim_anything) {
                  });
 }
 
-TEST(LoopCommand, movements_of_one_kind_are_left_out_together) {
+TEST(LoopCommand, MovementsOfOneKindAreLeftOutTogether) {
   const testing::TemporaryFolder folder;
   const auto line = [](int m, int i) {
     return csv({1.0 * m, speed_of(m), friction_of(speed_of(m), m, i)}) + "," +
@@ -281,14 +281,14 @@ TEST(LoopCommand, movements_of_one_kind_are_left_out_together) {
   EXPECT_EQ(loop["error"]["test_movements"], 12);
 }
 
-TEST(LoopCommand, one_row_a_movement_is_refused_with_the_reason) {
+TEST(LoopCommand, OneRowAMovementIsRefusedWithTheReason) {
   const testing::TemporaryFolder folder;
   const testing::ProgramRun run = run_tribench({"loop", generated(folder, "A/j2/no_load", "1")});
   EXPECT_EQ(run.status, 2);
   EXPECT_THAT(run.errors, HasSubstr("no movement has the 5 rows"));
 }
 
-TEST(LoopCommand, writes_its_three_files_and_the_next_movements) {
+TEST(LoopCommand, WritesItsThreeFilesAndTheNextMovements) {
   const testing::TemporaryFolder folder;
   const std::string data = generated(folder, "undeclared/power_quadrant_gain/0.5", "1");
   const std::string out = (folder / "out").string();
@@ -312,7 +312,7 @@ TEST(LoopCommand, writes_its_three_files_and_the_next_movements) {
 }
 
 // derived_channels_test.cpp compiles such code and holds it to the loop's own values.
-TEST(LoopCommand, what_it_found_is_exported_as_c_with_the_history_it_needs) {
+TEST(LoopCommand, WhatItFoundIsExportedAsCWithTheHistoryItNeeds) {
   const testing::TemporaryFolder folder;
   const std::string data = generated(folder, "undeclared/hysteresis/2", "1");
   const std::string out = (folder / "out").string();
@@ -338,7 +338,7 @@ TEST(LoopCommand, what_it_found_is_exported_as_c_with_the_history_it_needs) {
               HasSubstr("write d=q"));
 }
 
-TEST(LoopCommand, grows_an_effect_from_what_is_left_over_saves_it_and_reads_it_back) {
+TEST(LoopCommand, GrowsAnEffectFromWhatIsLeftOverSavesItAndReadsItBack) {
   const testing::TemporaryFolder folder;
   const std::string first = generated(folder, "undeclared/position_bump/2", "1");
   const std::string effect = (folder / "effect.toml").string();
@@ -426,7 +426,7 @@ double error_of_the_true_law(const std::vector<PapersRow>& rows, const Json& loo
 // there. 720 held-out rows have a noise of 2.8 % more or less than its law says: what the loop
 // leaves is held against what the true law leaves in the very same rows (1.002 and 1.005 times
 // seen).
-TEST(LoopCommand, closes_the_loop_on_the_papers_joint_2_down_to_its_noise) {
+TEST(LoopCommand, ClosesTheLoopOnThePapersJoint2DownToItsNoise) {
   const testing::TemporaryFolder folder;
   for (const char* seed : {"1", "3"}) {
     const std::string file = generated(folder, "A/j2/load", seed);

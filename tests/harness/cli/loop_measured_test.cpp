@@ -47,7 +47,7 @@ class MeasuredLoop : public ::testing::Test {
 
 // The model of the published figures: symmetric with an offset. Plain least squares with the effect
 // named here gives 2.39 -> 1.92 N on all rows and 2.18 -> 1.68 N without the slowest 2 %.
-TEST_F(MeasuredLoop, emps_has_viscous_friction_that_differs_by_direction) {
+TEST_F(MeasuredLoop, EmpsHasViscousFrictionThatDiffersByDirection) {
   const std::vector<std::string> base = {"--model", "20*sgn_v + 200*v - 3"};
   const Json all = loop("emps/emps_estimation.csv", base);
   ASSERT_FALSE(all["effects"].empty());
@@ -65,7 +65,7 @@ TEST_F(MeasuredLoop, emps_has_viscous_friction_that_differs_by_direction) {
 
 // 0.9 N every 2.5 mm, found without being told a lead. The second recording of the same axis has it
 // too, other leads do not.
-TEST_F(MeasuredLoop, emps_has_a_ripple_every_two_and_a_half_millimetres_of_its_screw) {
+TEST_F(MeasuredLoop, EmpsHasARippleEveryTwoAndAHalfMillimetresOfItsScrew) {
   for (const char* file : {"emps/emps_estimation.csv", "emps/emps_validation_pulses.csv"}) {
     const auto found = [&](std::vector<std::string> more) {
       std::vector<std::string> options = {"--model", "20*sgn_v + 200*v - 3"};
@@ -88,7 +88,7 @@ TEST_F(MeasuredLoop, emps_has_a_ripple_every_two_and_a_half_millimetres_of_its_s
   }
 }
 
-TEST_F(MeasuredLoop, ur10e_joint_2_has_friction_that_grows_with_the_load) {
+TEST_F(MeasuredLoop, Ur10eJoint2HasFrictionThatGrowsWithTheLoad) {
   const Json json = loop("ur10e-dynamic/joint2_dynamic.csv",
                          {"--roles", "recording=movement,rigid_current_A=gravity_torque",
                           "--min-speed", "0.05", "--unordered", "--gear-ratio", "100"});
@@ -99,7 +99,7 @@ TEST_F(MeasuredLoop, ur10e_joint_2_has_friction_that_grows_with_the_load) {
   EXPECT_LT(error(json, "rmse_after"), 0.173);
 }
 
-TEST_F(MeasuredLoop, ur10e_joint_1_has_viscous_friction_that_saturates) {
+TEST_F(MeasuredLoop, Ur10eJoint1HasViscousFrictionThatSaturates) {
   const Json json = loop("ur10e-dynamic/joint1_dynamic.csv",
                          {"--roles", "recording=movement,rigid_current_A=gravity_torque",
                           "--min-speed", "0.05", "--unordered", "--gear-ratio", "100"});
@@ -108,7 +108,7 @@ TEST_F(MeasuredLoop, ur10e_joint_1_has_viscous_friction_that_saturates) {
 }
 
 // Least squares of the speeds' means, each left out in turn: 0.143 -> 0.040 mN m (Stribeck).
-TEST_F(MeasuredLoop, screw_drive_1_slows_down_the_fall_of_friction_and_drive_2_claims_nothing) {
+TEST_F(MeasuredLoop, ScrewDrive1SlowsDownTheFallOfFrictionAndDrive2ClaimsNothing) {
   const std::vector<std::string> options = {"--roles", "set_speed_rpm=movement", "--unordered",
                                             "--steady"};
   const Json one = loop("screw-drives/drive1_steady.csv", options);
@@ -126,7 +126,7 @@ TEST_F(MeasuredLoop, screw_drive_1_slows_down_the_fall_of_friction_and_drive_2_c
 // Judged by leaving out whole trajectories, all four gains of each. Least squares expects 1.246 ->
 // 0.80 V; on these rows it gives 1.21 -> 0.95 V with the load gravity alone, 0.76 V with inertia in
 // it.
-TEST_F(MeasuredLoop, bam_servo_has_friction_that_grows_with_the_load) {
+TEST_F(MeasuredLoop, BamServoHasFrictionThatGrowsWithTheLoad) {
   const Json json =
       loop("bam-xl330/xl330_pendulum.csv",
            {"--roles", "motor_voltage_V=motor_torque,run=movement", "--where", "torque_enabled=1",
@@ -144,7 +144,7 @@ TEST_F(MeasuredLoop, bam_servo_has_friction_that_grows_with_the_load) {
 
 // Told nothing of a slowest speed, the loop finds from the rows at rest where the direction of
 // friction is not known: kept, they would hide everything (1.12 -> 1.10 V).
-TEST_F(MeasuredLoop, bam_servo_stands_still_in_a_third_of_the_rows_and_the_loop_says_so) {
+TEST_F(MeasuredLoop, BamServoStandsStillInAThirdOfTheRowsAndTheLoopSaysSo) {
   const Json json =
       loop("bam-xl330/xl330_pendulum.csv", {"--roles", "motor_voltage_V=motor_torque,run=movement",
                                             "--where", "torque_enabled=1", "--unordered"});
@@ -180,7 +180,7 @@ class Ripple : public MeasuredLoop {
   }
 };
 
-TEST_F(Ripple, is_there_at_the_gears_ratio_and_at_no_other) {
+TEST_F(Ripple, IsThereAtTheGearsRatioAndAtNoOther) {
   for (const int joint : {5, 6}) {
     EXPECT_THAT(families(sine(joint, "100")), ::testing::Contains("gear_ripple"));
     for (const char* ratio : {"93", "107"}) {
@@ -191,7 +191,7 @@ TEST_F(Ripple, is_there_at_the_gears_ratio_and_at_no_other) {
 
 // Other trajectories on other days, all joints moving: the same ripple at the same place of the
 // gear. Three phases within 20 degrees by chance: once in 700 times.
-TEST_F(Ripple, is_the_same_in_recordings_that_it_was_not_found_on) {
+TEST_F(Ripple, IsTheSameInRecordingsThatItWasNotFoundOn) {
   for (const int joint : {4, 5, 6}) {
     const Json dynamic = loop(
         "ur10e-dynamic/joint" + std::to_string(joint) + "_dynamic.csv",
@@ -207,7 +207,7 @@ TEST_F(Ripple, is_the_same_in_recordings_that_it_was_not_found_on) {
 
 // One pass in one direction: claims about speed come from its start and stop, so they stand under
 // UNKNOWN in velocity; what needs both directions or another movement is declined.
-TEST_F(MeasuredLoop, kinova_passes_claim_no_effect_of_speed_load_or_time_for_certain) {
+TEST_F(MeasuredLoop, KinovaPassesClaimNoEffectOfSpeedLoadOrTimeForCertain) {
   for (int joint = 1; joint <= 7; ++joint) {
     const Json json = loop("kinova-gen3/joint" + std::to_string(joint) + ".csv",
                            {"--roles", "model_torque_Nm=gravity_torque", "--gear-ratio", "100"});
