@@ -10,10 +10,7 @@ constexpr const char* kHead =
     "<!-- Written by `tribench describe markdown`; do not edit. -->\n\n"
     "# The command line\n\n"
     "Every subcommand with its options; the same as `--help`, `man tribench` and the shells' "
-    "completion.\n\n"
-    "Exit status: 0 done, 1 found what it was asked to look for (a regression, a singularity), "
-    "2 bad input,\n"
-    "3 failed, 4 undecided.\n";
+    "completion.\n";
 
 // Text in a table's cell: no bar ends it, nothing in it is markup.
 std::string markdown_cell(std::string_view text) {
@@ -57,7 +54,8 @@ void add_option_table(std::string& page, const Command& command) {
 std::string reference_page(const Command& program) {
   std::string page = kHead;
   for (const Command* command : all_commands(program)) {
-    page += fmt::format("\n## {}\n\n{}.\n", command->path, command->description);
+    page += fmt::format("\n## {}\n\n{}{}\n", command->path, command->description,
+                        command->description.ends_with('.') ? "" : ".");
     add_option_table(page, *command);
     for (std::size_t i = 0; i < command->notes.size(); ++i) {
       if (i == 0) page += '\n';

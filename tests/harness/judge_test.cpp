@@ -147,6 +147,45 @@ TEST(JudgeFormula, FailsAFormulaWithoutAValueAtATestRow) {
   EXPECT_EQ(record.formula, "log(v)");
 }
 
+Record judged(const std::string& formula) {
+  const Problem problem = two_stage_problem();
+  Record record;
+  judge_formula(problem, {parse(formula, problem.input_names()), {}}, record);
+  return record;
+}
+
+TEST(JudgeFormula, SaysWhetherAGridWouldHaveSeenTheSingularity) {
+  EXPECT_EQ(judged("1 / v").grid_check, GridCheck::seen);  // 0 is on the grid
+  EXPECT_EQ(judged("1 / (v - 0.3141592653589793)").grid_check, GridCheck::missed);
+  EXPECT_EQ(judged("v").grid_check, std::nullopt);
+}
+
+TEST(JudgeFormula, AsksPhysicsOfFormulasThatAreProvedFree) {
+  const Record line = judged("2 * v");
+  EXPECT_EQ(line.dissipative, PhysicsProof::proved);
+  EXPECT_EQ(line.monotone, PhysicsProof::proved);
+  EXPECT_EQ(line.odd, PhysicsProof::proved);
+  EXPECT_EQ(judged("2 * v + 1").dissipative, PhysicsProof::refuted);
+  EXPECT_EQ(judged("2 * v + 1").odd, PhysicsProof::refuted);
+  EXPECT_EQ(judged("1 / v").dissipative, std::nullopt);
+  EXPECT_EQ(judged("1 / v").odd, std::nullopt);
+}
+
+// A Stribeck curve falls near standstill, and that is no fault: 0.5 is a quarter of the top speed.
+TEST(JudgeFormula, AsksForAGrowingFrictionBeyondTheStribeckRange) {
+  EXPECT_EQ(judged("v^3 - 0.5 * v").monotone, PhysicsProof::proved);  // falls up to 0.41
+  EXPECT_EQ(judged("v^3 - 3 * v").monotone, PhysicsProof::refuted);   // falls up to 1
+}
+
+TEST(JudgeFront, KeepsNoFormulaWithoutAnErrorBesideOneThatHasIt) {
+  const Problem problem = two_stage_problem();
+  const std::vector<std::string> names = problem.input_names();
+  const std::vector<Expression> front = {parse("log(v)", names), parse("2 * v + 1", names)};
+  const std::vector<FrontRecord> kept = judge_front(problem, front, 1, {});
+  ASSERT_EQ(kept.size(), 1U);
+  EXPECT_EQ(kept[0].formula, "2*v + 1");
+}
+
 TEST(JudgeFront, KeepsWhatNoOtherBeatsAndTheChosenOne) {
   const Problem problem = two_stage_problem();
   const std::vector<std::string> names = problem.input_names();

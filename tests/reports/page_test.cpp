@@ -60,7 +60,7 @@ fs::path whole_run(const std::string& name) {
 TEST(Page, AsksForNothingFromOutsideAndRunsNoTextOfTheData) {
   nlohmann::ordered_json data = {{"name", "</script><script>alert(1)</script>"}};
   const std::string page = html_page("a <b> & c", PageKind::run, data);
-  EXPECT_THAT(page, HasSubstr("<title>a &lt;b> &amp; c</title>"));
+  EXPECT_THAT(page, HasSubstr("<title>a &lt;b&gt; &amp; c</title>"));
   EXPECT_THAT(page, HasSubstr("default-src 'none'"));
   EXPECT_THAT(page, Not(HasSubstr("</script><script>alert(1)")));
   for (const char* outside : {"src=\"http", "href=\"http", "url(http", "@import"}) {

@@ -46,6 +46,20 @@ TEST(ResultsCsv, DropsARowWithAWordWhereANumberBelongsAndSaysSo) {
   EXPECT_EQ(reading.complaints[0], "row 2: many is not a value of mae_test; dropped");
 }
 
+TEST(ResultsCsv, CountsTheRowsThatItHandsOn) {
+  const auto folder = fresh_folder("counted");
+  write_file(folder / "results.csv", "cell,seed,singularity\na,1x,\nb,2,perhaps\nc,3,refuted\n");
+  std::vector<Record> back;
+  const CsvReading reading =
+      read_results(folder / "results.csv", [&](Record&& record) { back.push_back(record); });
+  ASSERT_EQ(back.size(), 1U);
+  EXPECT_EQ(back[0].singularity, Singularity::refuted);
+  EXPECT_EQ(reading.rows, 1U);
+  EXPECT_EQ(reading.complaints,
+            (std::vector<std::string>{"row 1: 1x is not a value of seed; dropped",
+                                      "row 2: perhaps is not a value of singularity; dropped"}));
+}
+
 TEST(ResultsCsv, RefusesAFileThatIsNone) {
   const auto folder = fresh_folder("no_cell");
   write_file(folder / "results.csv", "a,b\n1,2\n");

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "reports/record/loop_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/reports/sample_run.hpp"
+
+namespace tribench {
+namespace {
+
+TEST(LoopJson, HasNullForWhatIsNotKnown) {
+  LoopRecord record = sample_loop();
+  EXPECT_EQ(loop_json(record)["error"]["attainable"], 0.2);
+  record.error.attainable = kNoFigure;
+  EXPECT_TRUE(loop_json(record)["error"]["attainable"].is_null());
+  EXPECT_EQ(loop_json(record)["verdict"], "UNKNOWN");
+}
+
+TEST(LoopJson, SpeaksOfMotionOnlyWhereItWasSimulated) {
+  LoopRecord record = sample_loop();
+  EXPECT_FALSE(loop_json(record).contains("motion"));
+  record.motion.before = 0.2;
+  record.motion.after = 0.1;
+  EXPECT_EQ(loop_json(record)["motion"]["after"], 0.1);
+}
+
+// Five digits of the largest: more than a picture shows.
+TEST(LoopJson, RoundsTheSeriesOfPictures) {
+  LoopRecord record = sample_loop();
+  record.pictures.friction.series.resize(1);
+  record.pictures.friction.series[0].x = {1, 0.123456789, kNoFigure};
+  const auto x = loop_pictures_json(record)["friction"]["series"][0]["x"];
+  EXPECT_EQ(x[0], 1);
+  EXPECT_EQ(x[1], 0.12346);
+  EXPECT_TRUE(x[2].is_null());
+}
+
+}  // namespace
+}  // namespace tribench
