@@ -25,8 +25,7 @@ constexpr double kExact = 1e-8;      // of a row's target, root mean square
 constexpr double kNoPart = 1e-10;    // of a row's target, that a term explains
 constexpr double kPromising = 1e-5;  // in the Gram matrix, whose rounding is larger
 constexpr std::size_t kMostTerms = 6;
-constexpr std::size_t kSums = 300;                // that are grown (subset_fits.hpp)
-constexpr std::size_t kMostTriples = 20'000'000;  // of a ratio; 0.1 s
+constexpr std::size_t kSums = 300;  // that are grown (subset_fits.hpp)
 constexpr int kMostDegree = 4;
 
 // A column: a known factor that is no input, to the power 0, 1 or 2, and powers of the inputs.
@@ -75,7 +74,10 @@ std::optional<std::vector<std::size_t>> signs_of_target(const LogRows& rows) {
 class Search {
  public:
   Search(const LogRows& rows, const OperatorSet& operators, Columns columns, std::size_t most)
-      : rows_(rows), operators_(operators), signs_(signs_of_target(rows)) {
+      : rows_(rows),
+        operators_(operators),
+        signs_(signs_of_target(rows)),
+        most_triples_(100 * most * most) {
     if (columns == Columns::with_factors) {
       factors_ = known_factors(rows, operators, {FactorKind::wave, FactorKind::difference});
       std::erase_if(factors_,
@@ -103,6 +105,7 @@ class Search {
   std::vector<KnownFactor> factors_;
   std::optional<std::vector<std::size_t>> signs_;
   std::vector<Product> products_;
+  std::size_t most_triples_;  // that are tried for a ratio: 0.1 s for 500 columns
 };
 
 // By increasing degree.
@@ -229,8 +232,8 @@ std::optional<Expression> Search::run(TargetForm form, bool is_ratio, Budget& bu
     }
     if (terms == kMostTerms || !budget.spend(kSums * count * terms * terms)) break;
     sums = fits.grown(sums);
-    if (terms > 2 || !is_ratio || !budget.spend(kMostTriples / 4)) continue;
-    std::ranges::copy(fits.best_with_one_marked(kMostTriples), std::back_inserter(sums));
+    if (terms > 2 || !is_ratio || !budget.spend(most_triples_ / 4)) continue;
+    std::ranges::copy(fits.best_with_one_marked(most_triples_), std::back_inserter(sums));
     std::ranges::stable_sort(sums, {}, &SparseSum::left);
   }
   return std::nullopt;

@@ -88,7 +88,7 @@ class Run {
     if (rows.rows() == 0 || round > 3) return;
     Budget part = context_.budget.share(context_.budget.remaining() / 4);
     offer(relay::find_relation(rows, context_.operators, Columns::with_factors,
-                               2 * kColumns << round, part),
+                               3 * kColumns << round, part),
           kBySum);
     context_.budget.settle(part);
   }
