@@ -52,6 +52,7 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
   if (!file.has_movements && (raw || out.data.movement_names.size() == 1)) {
     cut_strokes(out, noise, blur);
   }
+  adjust_acceleration(out);
   drop_unresolved(out);
   check_gravity_factor(out, options);
   fit_gravity(out, gravity);

@@ -8,18 +8,17 @@
 #include <limits>
 #include <numbers>
 
-#include "foundation/order_statistics.hpp"
 #include "problems/preparation/motion_check.hpp"
+#include "problems/preparation/rigid_body.hpp"
 #include "problems/preparation/segments.hpp"
 
 namespace tribench {
 namespace {
 
-constexpr std::size_t kEdgeRows = 3;      // of a derived motion, at the ends of a piece
-constexpr double kUnresolved = 0.6;       // standard errors of the acceleration
-constexpr double kLeastDelay = 0.6;       // steps of time
-constexpr double kMuchNoisier = 4;        // than the derived velocity
-constexpr double kNormalMedian = 1.4826;  // standard deviations in a median magnitude
+constexpr std::size_t kEdgeRows = 3;  // of a derived motion, at the ends of a piece
+constexpr double kUnresolved = 0.6;   // standard errors of the acceleration
+constexpr double kLeastDelay = 0.6;   // steps of time
+constexpr double kMuchCoarser = 4;    // than the derived velocity's noise
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -61,18 +60,6 @@ void replace_velocity(PreparedRecording& out, const DerivedMotion& derived) {
       q->name, motion.bandwidth, motion.velocity_noise, q->unit));
 }
 
-// What a velocity has beside the derived one, as a standard deviation; where the smoother does not
-// follow the two differ much, which the median does not see.
-double noise_beside(const DerivedMotion& derived, const std::vector<double>& velocity) {
-  std::vector<double> differences;
-  for (const RowRange& piece : derived.pieces) {
-    for (std::size_t i = piece.begin; i < piece.end; ++i) {
-      differences.push_back(std::abs(velocity[i] - derived.motion.velocity[i]));
-    }
-  }
-  return kNormalMedian * upper_median(std::move(differences));
-}
-
 }  // namespace
 
 void settle_velocity(PreparedRecording& out, const DerivedMotion& derived) {
@@ -93,10 +80,12 @@ void settle_velocity(PreparedRecording& out, const DerivedMotion& derived) {
     replace_velocity(out, derived);
     return;
   }
-  const double noise = noise_beside(derived, v->values);
-  if (noise < kMuchNoisier * derived.motion.velocity_noise) return;
-  out.notes.push_back(fmt::format("'{}' has more noise than its position gives ({:.2g} {})",
-                                  v->name, noise, v->unit));
+  const double count = resolution_of(v->values);
+  if (count < kMuchCoarser * derived.motion.velocity_noise) return;
+  out.notes.push_back(
+      fmt::format("'{}' is told in steps of {:.2g} {}, more than its position leaves "
+                  "open",
+                  v->name, count, v->unit));
   replace_velocity(out, derived);
 }
 
@@ -132,6 +121,18 @@ void settle_acceleration(PreparedRecording& out, const DerivedMotion& derived) {
 namespace {
 
 constexpr std::string_view kUnresolvedChannel = "acceleration not resolved";
+constexpr std::string_view kChangeChannel = "acceleration less that of half the bandwidth";
+constexpr double kMostBlunted = 2;  // shares of the change
+constexpr double kSurely = 3;       // standard errors
+
+bool has_inertia_of_derived(const Dataset& data) {
+  return data.find("derived_acceleration") != nullptr &&
+         data.find(Role::friction_torque) == nullptr;
+}
+
+void erase_channel(Dataset& data, std::string_view name) {
+  std::erase_if(data.channels, [&](const Channel& channel) { return channel.name == name; });
+}
 
 }  // namespace
 
@@ -139,16 +140,17 @@ constexpr std::string_view kUnresolvedChannel = "acceleration not resolved";
 // friction: there the whole and half of the bandwidth, with hardly a noise, differ. Marked here,
 // dropped when the movements are cut.
 void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived) {
-  if (out.data.find("derived_acceleration") == nullptr || out.data.find(Role::friction_torque)) {
-    return;
+  if (!has_inertia_of_derived(out.data)) return;
+  Channel change{std::string(kChangeChannel), "-", Role::none, derived.motion.acceleration};
+  for (std::size_t i = 0; i < change.values.size(); ++i) {
+    change.values[i] -= derived.slower.acceleration[i];
   }
   const std::vector<double>& t = find_channel(out.data, Role::time)->values;
   Channel mark{std::string(kUnresolvedChannel), "-", Role::none, std::vector<double>(t.size(), 0)};
   const double blur = kBlur / (kRadPerTurn * derived.motion.bandwidth);
   double last = -kForever;  // when the acceleration was last seen to change
   const auto changes = [&](std::size_t i) {
-    const double change = derived.slower.acceleration[i] - derived.motion.acceleration[i];
-    return std::abs(change) > kUnresolved * derived.motion.acceleration_noise;
+    return std::abs(change.values[i]) > kUnresolved * derived.motion.acceleration_noise;
   };
   for (std::size_t i = 0; i < t.size(); ++i) {
     if (changes(i)) last = t[i];
@@ -160,16 +162,32 @@ void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived) {
     if (std::abs(t[i] - last) <= blur) mark.values[i] = 1;
   }
   out.data.channels.push_back(std::move(mark));
+  out.data.channels.push_back(std::move(change));
 }
 
 void drop_unresolved(PreparedRecording& out) {
   const Channel* mark = out.data.find(kUnresolvedChannel);
   if (mark == nullptr) return;
   const std::vector<char> rows(mark->values.begin(), mark->values.end());
-  std::erase_if(out.data.channels,
-                [](const Channel& channel) { return channel.name == kUnresolvedChannel; });
+  erase_channel(out.data, kUnresolvedChannel);
   if (2 * static_cast<std::size_t>(std::ranges::count(rows, 1)) > rows.size()) return;
   leave_out(out, rows, "change their acceleration faster than the position's noise lets be seen");
+}
+
+void adjust_acceleration(PreparedRecording& out) {
+  const Channel* change = out.data.find(kChangeChannel);
+  if (change == nullptr) return;
+  const std::optional<Blunting> blunting = acceleration_blunting(out.data, change->values);
+  if (blunting && std::abs(blunting->share) > kSurely * blunting->error) {
+    const double share = std::clamp(blunting->share, -1.0, kMostBlunted);
+    Channel& a = *find_channel(out.data, Role::acceleration);
+    for (std::size_t i = 0; i < a.values.size(); ++i) a.values[i] += share * change->values[i];
+    out.notes.push_back(
+        fmt::format("the torque tells the acceleration too: it is moved by {:.0f} % of its way {} "
+                    "that of half the bandwidth",
+                    100 * std::abs(share), share < 0 ? "towards" : "away from"));
+  }
+  erase_channel(out.data, kChangeChannel);
 }
 
 // Rows of no piece have no derived motion, and the ends of a piece a poor one.

@@ -52,6 +52,10 @@ void settle_acceleration(PreparedRecording& out, const DerivedMotion& derived);
 // friction. Marked before rows are left out, dropped when the movements are cut.
 void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived);
 void drop_unresolved(PreparedRecording& out);
+// A smoother takes something off a derived acceleration that changes fast and leaves noise in one
+// that does not: where between half the bandwidth and beyond the whole it is right the torque
+// tells.
+void adjust_acceleration(PreparedRecording& out);
 // Rows of no piece have no derived motion, and the ends of a piece a poor one.
 void drop_edges(PreparedRecording& out, const DerivedMotion& derived);
 

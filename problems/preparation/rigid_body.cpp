@@ -124,6 +124,30 @@ std::optional<RigidBody> fit_rigid_body(const Dataset& data) {
   return body;
 }
 
+std::optional<Blunting> acceleration_blunting(const Dataset& data, std::span<const double> change) {
+  constexpr Eigen::Index kAcceleration = 4;
+  const Channel* torque = torque_of(data);
+  if (torque == nullptr || !data.find(Role::velocity) || !data.find(Role::acceleration)) return {};
+  const Channel* q = data.find(Role::position);
+  const Channel* gravity = data.find(Role::gravity_torque);
+  const bool turns = q != nullptr && q->unit == "rad";
+  Rows rows = rows_of(data, *torque, 1 + (gravity != nullptr ? 1 : 0) + (turns ? 2 : 0));
+  if (rows.places.size() < kFewest) return {};
+  for (Eigen::Index r = 0; r < rows.x.rows(); ++r) {
+    const std::size_t i = rows.places[static_cast<std::size_t>(r)];
+    Eigen::Index column = rows.base;
+    rows.x(r, column++) = change[i];
+    if (gravity != nullptr) rows.x(r, column++) = gravity->values[i];
+    if (!turns) continue;
+    rows.x(r, column++) = elementary::sin(q->values[i]);
+    rows.x(r, column) = elementary::cos(q->values[i]);
+  }
+  const Fit fit = least_squares(rows.x, rows.y);
+  const double inertia = fit.coefficients(kAcceleration);
+  if (!(inertia > 0)) return {};
+  return Blunting{fit.coefficients(rows.base) / inertia, fit.errors(rows.base) / inertia};
+}
+
 std::optional<GravityFactor> gravity_factor(const Dataset& data) {
   const Channel* torque = torque_of(data);
   const Channel* gravity = data.find(Role::gravity_torque);

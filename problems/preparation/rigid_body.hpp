@@ -6,6 +6,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,5 +34,16 @@ struct GravityFactor {
   double error = 0;
 };
 std::optional<GravityFactor> gravity_factor(const Dataset& data);
+
+// What a smoother takes off an acceleration that changes fast is, to first order, a share of what
+// it takes off when it has half the bandwidth; the torque tells the share. Below 0 its noise
+// outweighs that: at -1 half the bandwidth is right. `change`: the acceleration less the one of
+// half the bandwidth, per row. With its standard error; nothing where the torque says nothing of
+// it.
+struct Blunting {
+  double share = 0;
+  double error = 0;
+};
+std::optional<Blunting> acceleration_blunting(const Dataset& data, std::span<const double> change);
 
 }  // namespace tribench

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "problems/preparation/recording.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -130,6 +131,27 @@ TEST(PreparedRecording, a_filtered_velocity_is_known_by_its_delay) {
   telling.velocity = true;
   const PreparedRecording plain = prepared(raw_table(simulate(plan), plan, telling), engineer());
   EXPECT_THAT(plain.notes, Not(Contains(HasSubstr("lags behind"))));
+}
+
+// A drive that sends its speed in steps of 0.05 rad/s knows less of it than its encoder.
+TEST(PreparedRecording, a_coarse_velocity_gives_way_to_what_its_position_says) {
+  RawLogPlan plan;
+  plan.seconds = 30;
+  const std::vector<RawSample> truth = simulate(plan);
+  const auto told = [&](double count) {
+    std::string text = "time_s,position_rad,velocity_rad_s,torque_Nm\n";
+    for (const RawSample& one : truth) {
+      text += fmt::format("{:.4f},{:.5f},{:.6f},{:.3f}\n", one.time, one.position,
+                          count * std::round(one.velocity / count), one.torque);
+    }
+    return prepared(text, {});
+  };
+  const PreparedRecording coarse = told(0.05);
+  EXPECT_TRUE(coarse.derived_velocity);
+  EXPECT_THAT(coarse.notes, Contains(HasSubstr("is told in steps of 0.05")));
+  EXPECT_LT(rms_against_truth(coarse, truth, Role::velocity, &RawSample::velocity, plan.step),
+            0.005);
+  EXPECT_FALSE(told(1e-6).derived_velocity);
 }
 
 // Every way of telling one physics gives the same channels.

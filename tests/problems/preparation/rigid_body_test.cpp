@@ -43,5 +43,25 @@ TEST(RigidBody, one_way_alone_gives_no_absurd_gravity) {
   }
 }
 
+// An inertia of 2 under jerks that a smoother took a third off as much as off half its bandwidth.
+TEST(RigidBody, the_torque_tells_what_a_smoother_took_off_the_acceleration) {
+  Dataset data = lifted(true);
+  Channel acceleration{"a", "rad/s^2", Role::acceleration, {}};
+  std::vector<double> change;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    const double t = 0.001 * static_cast<double>(i);
+    const double a = 0.6 * 4 * std::cos(2 * t);
+    change.push_back(0.5 * std::sin(30 * t));
+    acceleration.values.push_back(a);
+    data.channels[2].values[i] += 2 * (a + change.back() / 3);
+  }
+  data.channels.push_back(acceleration);
+  const std::optional<Blunting> blunting = acceleration_blunting(data, change);
+  ASSERT_TRUE(blunting);
+  EXPECT_NEAR(blunting->share, 1.0 / 3, 0.02);
+  EXPECT_LT(blunting->error, 0.05);
+  EXPECT_FALSE(acceleration_blunting(lifted(true), change));  // no acceleration
+}
+
 }  // namespace
 }  // namespace tribench
