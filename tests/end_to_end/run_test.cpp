@@ -76,9 +76,9 @@ evaluations = 2_000_000
 seconds = 60
 )");
   const auto run_every = [&](const std::string& out, const std::vector<std::string>& environment) {
-    return run_tribench({"run", (folder_ / "every.toml").string(), "--out",
-                         (folder_ / out).string(), "--quiet"},
-                        environment)
+    return run_to_end({program().string(), "run", (folder_ / "every.toml").string(), "--out",
+                       (folder_ / out).string(), "--quiet"},
+                      environment)
         .status;
   };
   ASSERT_EQ(run_every("usual", {}), 0);

@@ -184,6 +184,9 @@ TEST(JudgeFront, KeepsNoFormulaWithoutAnErrorBesideOneThatHasIt) {
   const std::vector<FrontRecord> kept = judge_front(problem, front, 1, {});
   ASSERT_EQ(kept.size(), 1U);
   EXPECT_EQ(kept[0].formula, "2*v + 1");
+  // Two without an error beat nothing, not even each other.
+  const std::vector<Expression> none = {parse("log(v)", names), parse("log(2*v)", names)};
+  EXPECT_EQ(judge_front(problem, none, 0, {}).size(), 2U);
 }
 
 TEST(JudgeFront, KeepsWhatNoOtherBeatsAndTheChosenOne) {

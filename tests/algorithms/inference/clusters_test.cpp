@@ -96,8 +96,8 @@ std::vector<std::size_t> stretch_sizes(const Clusters& clusters) {
 
 TEST(MakeClusters, CutsMovementsIntoStretchesThatAreLongEnough) {
   using Sizes = std::vector<std::size_t>;
-  EXPECT_EQ(stretch_sizes(make_clusters(movements_of({45, 46, 60, 100}), 1)),
-            (Sizes{45, 46, 30, 30, 33, 33, 34}));
+  EXPECT_EQ(stretch_sizes(make_clusters(movements_of({45, 59, 60, 100}), 1)),
+            (Sizes{45, 59, 30, 30, 33, 33, 34}));
   // Ten correlation times where that is more than 30 rows.
   EXPECT_EQ(stretch_sizes(make_clusters(movements_of({100}), 3)), (Sizes{33, 33, 34}));
   EXPECT_EQ(stretch_sizes(make_clusters(movements_of({100}), 5)), (Sizes{50, 50}));
