@@ -77,7 +77,7 @@ class Search {
       : rows_(rows),
         operators_(operators),
         signs_(signs_of_target(rows)),
-        most_triples_(100 * most * most) {
+        most_steps_(300 * most * most) {
     if (columns == Columns::with_factors) {
       factors_ = known_factors(rows, operators, {FactorKind::wave, FactorKind::difference});
       std::erase_if(factors_,
@@ -105,7 +105,7 @@ class Search {
   std::vector<KnownFactor> factors_;
   std::optional<std::vector<std::size_t>> signs_;
   std::vector<Product> products_;
-  std::size_t most_triples_;  // that are tried for a ratio: 0.1 s for 500 columns
+  std::size_t most_steps_;  // of the search for a ratio: 0.1 s for 500 columns
 };
 
 // By increasing degree.
@@ -232,8 +232,8 @@ std::optional<Expression> Search::run(TargetForm form, bool is_ratio, Budget& bu
     }
     if (terms == kMostTerms || !budget.spend(kSums * count * terms * terms)) break;
     sums = fits.grown(sums);
-    if (terms > 2 || !is_ratio || !budget.spend(most_triples_ / 4)) continue;
-    std::ranges::copy(fits.best_with_one_marked(most_triples_), std::back_inserter(sums));
+    if (terms > 2 || !is_ratio || !budget.spend(most_steps_ / 4)) continue;
+    std::ranges::copy(fits.best_with_one_marked(most_steps_), std::back_inserter(sums));
     std::ranges::stable_sort(sums, {}, &SparseSum::left);
   }
   return std::nullopt;

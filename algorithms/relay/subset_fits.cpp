@@ -72,33 +72,35 @@ std::vector<SparseSum> SubsetFits::best_with_one_marked(std::size_t most) const 
   for (std::size_t k = 0; k < columns_; ++k) {
     if (once_[k] == 0) others.push_back(k);
   }
-  const std::size_t pairs = others.size() * others.size() / 2 + 1;
-  std::size_t tried = 0;
-  for (std::size_t k = 0; k < columns_ && tried < most / pairs; ++k) {
+  // A pair is looked at once, and its entry of the matrix made before: thrice the work.
+  const std::size_t each = 3 * others.size() * others.size() / 2 + 1;
+  std::vector<double> gram(gram_.size());
+  std::size_t spent = 0;
+  for (std::size_t k = 0; k < columns_ && spent + each <= most; ++k) {
     if (once_[k] == 0) continue;
-    ++tried;
-    add_pairs(others, gram_without(k), {k}, 1 - with_target(k) * with_target(k), best);
+    spent += each;
+    fill_without(k, others, gram);
+    add_pairs(others, gram, {k}, 1 - with_target(k) * with_target(k), best);
   }
   return best.taken();
 }
 
-std::vector<double> SubsetFits::gram_without(std::size_t k) const {
-  std::vector<double> gram = gram_;
+void SubsetFits::fill_without(std::size_t k, std::span<const std::size_t> others,
+                              std::vector<double>& gram) const {
+  std::vector<double> along(stride_);
   std::vector<double> scale(stride_, 1.0);
   for (std::size_t i = 0; i < stride_; ++i) {
-    const double along = gram_[i * stride_ + k];
-    const double square = gram_[i * stride_ + i] - along * along;
-    scale[i] = square > kNew ? 1 / std::sqrt(square) : 0;
+    along[i] = gram_[i * stride_ + k];
+    const double square = gram_[i * stride_ + i] - along[i] * along[i];
+    if (i < columns_) scale[i] = square > kNew ? 1 / std::sqrt(square) : 0;
   }
-  scale[columns_] = 1;
-  for (std::size_t i = 0; i < stride_; ++i) {
-    const double along = gram_[i * stride_ + k];
-    for (std::size_t j = 0; j < stride_; ++j) {
-      gram[i * stride_ + j] =
-          (gram[i * stride_ + j] - along * gram_[k * stride_ + j]) * scale[i] * scale[j];
-    }
+  const auto fill = [&](std::size_t i, std::size_t j) {
+    gram[i * stride_ + j] = (gram_[i * stride_ + j] - along[i] * along[j]) * scale[i] * scale[j];
+  };
+  for (const std::size_t i : others) {
+    fill(i, columns_);
+    for (const std::size_t j : others) fill(i, j);
   }
-  return gram;
 }
 
 std::vector<SparseSum> SubsetFits::grown(const std::vector<SparseSum>& sums) const {

@@ -32,7 +32,7 @@ class SubsetFits {
   // Each returns at most 300, those that leave least, the best first. Cost: a few flops a sum
   // looked at.
   std::vector<SparseSum> best_pairs() const;
-  // Of one marked column and two others; of at most `most` sums, those with the first marked ones.
+  // Of one marked column and two others; with the first marked ones, as many as take `most` steps.
   std::vector<SparseSum> best_with_one_marked(std::size_t most) const;
   // Of each of `sums` and one further column.
   std::vector<SparseSum> grown(const std::vector<SparseSum>& sums) const;
@@ -45,8 +45,10 @@ class SubsetFits {
   void add_pairs(std::span<const std::size_t> among, const std::vector<double>& gram,
                  const std::vector<std::size_t>& terms, double left, Best& best) const;
   void add_grown(const SparseSum& sum, Best& best) const;
-  // The Gram matrix of what is left of all columns without their part along column k.
-  std::vector<double> gram_without(std::size_t k) const;
+  // Into `gram`, of the other columns and the target: products of what is left of them without
+  // their part along column k, the columns scaled to unit length again.
+  void fill_without(std::size_t k, std::span<const std::size_t> others,
+                    std::vector<double>& gram) const;
   double with_target(std::size_t i) const { return gram_[i * stride_ + columns_]; }
 
   std::vector<double> gram_;
