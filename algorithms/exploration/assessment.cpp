@@ -15,6 +15,10 @@
 namespace tribench::loop {
 namespace {
 
+// Of a movement, in the noise's: what lives in time alone takes offsets for its own, and where it
+// has taken them nothing is left that would say so.
+constexpr double kLeastOffset = 0.15;
+
 // Changes of the noise that are worth summing up all rows again.
 constexpr double kOtherCorrelation = 0.04;
 constexpr double kOtherRatio = 1.2;
@@ -123,6 +127,7 @@ Noise Assessor::noise_left_by(const Explanation& one, std::vector<double>& weigh
   Noise noise =
       estimate_noise(rest, clusters, static_cast<std::size_t>(base_count + own_count), floor);
   noise.whitening = noise.rho;
+  noise.between_sd = std::max(noise.between_sd, kLeastOffset * noise.within_sd);
   return noise;
 }
 

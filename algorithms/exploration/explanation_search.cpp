@@ -22,10 +22,11 @@ constexpr double kOne = 0.25;
 constexpr double kUnknown = 0.1;
 constexpr double kTwo = 0.25;
 constexpr double kWithUnknown = 0.1;
-constexpr double kThree = 0.1;
+constexpr double kMore = 0.1;  // three take half of it, four a quarter, ...
 
 constexpr std::size_t kSinglesToExtend = 3;
 constexpr std::size_t kPairsToExtend = 3;
+constexpr std::size_t kMostFamilies = 8;
 constexpr std::size_t kNarrowBlocks = 6;  // of one column, that are looked at in earnest
 
 // Of a column's squares, in the noise's: a coefficient of the expected size shows.
@@ -53,6 +54,13 @@ class ExplanationSearch {
     const std::vector<std::size_t> pairs = likeliest(2, kPairsToExtend);
     add_other_pairs();
     for (const std::size_t i : pairs) extend(i);
+    // A real joint may lack more: as long as what was last laid beside the others is likelier than
+    // all without it.
+    for (std::size_t size = 3; size < kMostFamilies; ++size) {
+      const std::size_t best = likeliest_of_all();
+      if (out.explanations[best].families.size() != size) break;
+      extend(best);
+    }
   }
 
  private:
@@ -83,8 +91,19 @@ class ExplanationSearch {
         return elementary::log(unknown > 0 ? kWithUnknown / (library_ * unknown_)
                                            : kTwo / choose(library_, 2));
       default:
-        return elementary::log(kThree / choose(library_ + unknown_, 3));
+        return log_prior_of_many(families.size());
     }
+  }
+
+  double log_prior_of_many(std::size_t count) const {
+    double log = elementary::log(2 * kMore);
+    const double all = library_ + unknown_;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto number = static_cast<double>(k);
+      log += elementary::log((number + 1) / (all - number));
+      if (k >= 1) log -= elementary::log(2);
+    }
+    return log;
   }
 
   Explanation made(std::vector<std::size_t> families, std::vector<const EffectBlock*> blocks,
@@ -182,17 +201,26 @@ class ExplanationSearch {
     }
   }
 
+  double log_weight(std::size_t i) const {
+    return out.explanations[i].log_evidence + out.explanations[i].log_prior;
+  }
+
+  std::size_t likeliest_of_all() const {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < out.explanations.size(); ++i) {
+      if (log_weight(i) > log_weight(best)) best = i;
+    }
+    return best;
+  }
+
   // Numbers of the likeliest explanations of so many families.
   std::vector<std::size_t> likeliest(std::size_t families, std::size_t most) const {
     std::vector<std::size_t> all;
     for (std::size_t i = 0; i < out.explanations.size(); ++i) {
       if (out.explanations[i].families.size() == families) all.push_back(i);
     }
-    const auto weight = [&](std::size_t i) {
-      return out.explanations[i].log_evidence + out.explanations[i].log_prior;
-    };
-    std::ranges::stable_sort(all,
-                             [&](std::size_t a, std::size_t b) { return weight(a) > weight(b); });
+    std::ranges::stable_sort(
+        all, [&](std::size_t a, std::size_t b) { return log_weight(a) > log_weight(b); });
     all.resize(std::min(all.size(), most));
     return all;
   }

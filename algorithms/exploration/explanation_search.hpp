@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// The explanations of what has been recorded: sets of up to three families (nothing, one, two,
-// something that no library has, with an effect beside it or alone) and their evidence.
+// The explanations of what has been recorded: sets of families (nothing, one, two, more where the
+// rows ask for it; something that no library has, with effects beside it or alone) and their
+// evidence.
 //
 // A family's evidence is the mean of its blocks' Bayes factors (evidence.hpp). Every family is laid
 // beside the likeliest single ones, all of its blocks anew, since what it shows alone is hidden by
-// them; and beside the likeliest pairs. A pair of which neither is among them counts as if the two
-// were independent.
+// them; beside the likeliest pairs; and beside what is likeliest of all as long as that helps. A
+// pair of which neither is among them counts as if the two were independent.
 #pragma once
 
 #include <string>

@@ -24,7 +24,7 @@ constexpr std::array<double, 2> kSizes = {1.5, 0.4};
 constexpr double kExplainedByBase = 1e-4;  // of a column's squares, on the reference
 
 constexpr double kMisfit = 0.4;  // of the noise: what one expects of a family's misfit
-constexpr Eigen::Index kMisfitColumns = 6;
+constexpr Eigen::Index kMisfitColumns = 14;
 constexpr Eigen::Index kMisfitCentres = 3;
 constexpr double kLeastMisfit = 1e-4;  // of the variance of the direction of most
 
@@ -275,7 +275,7 @@ void ExplanationSpace::add_misfits() {
   for (std::size_t f = 0; f < misfits_.size(); ++f) {
     const Eigen::MatrixXd all = shaped(misfits_[f], reference_, formulas);
     EvidenceSums sums;
-    sums.add(base, all, target_vector(reference_));
+    sums.add(base, all, Eigen::VectorXd::Zero(base.rows()));  // no torque is looked at
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(EvidenceTable(sums).gram());
     const double most = parts.eigenvalues().maxCoeff();
     const Eigen::Index kept = std::min<Eigen::Index>(

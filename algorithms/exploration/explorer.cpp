@@ -8,7 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include "algorithms/diagnosis/diagnosis.hpp"
 #include "algorithms/exploration/movement_choice.hpp"
 #include "foundation/error.hpp"
 
@@ -19,12 +18,13 @@ constexpr double kForeseenRate = 0.25;  // foreseen rows for a recorded one
 constexpr double kReferenceRate_hz = 1;
 constexpr double kForeseeAgain = 1.3;  // time since it was foreseen
 constexpr double kWarmer_k = 2;
-constexpr double kLookAgain = 1.05;  // seconds since the last look
-constexpr std::size_t kMostRefused = 40;
+constexpr double kLookAgain = 1.05;       // seconds since the last look
+constexpr std::size_t kMostRefused = 40;  // one after the other
 constexpr std::size_t kFewestMovements = 5;
 constexpr std::size_t kVerdictsTold = 5;
-constexpr int kSureLooks = 3;      // running
-constexpr double kAskAgain = 1.5;  // seconds since the diagnosis said otherwise
+constexpr int kSureLooks = 3;         // running
+constexpr double kRestCounts = 0.25;  // of a second of motion: it is waited for
+constexpr double kAskAgain = 1.5;     // seconds since the diagnosis said otherwise
 
 // Both ways at two speeds, and reversals: without one the distance since the last is not known.
 std::vector<PlannedMovement> opening_movements(const MotionLimits& limits) {
@@ -87,6 +87,9 @@ std::optional<NextMovement> RankedMovements::best(const ExplorationState& state)
   for (const PlannedMovement& candidate : state.candidates) {
     cost_s.push_back(seconds_of(candidate, state.now.position_rad, state.limits));
   }
+  const auto waited_for = [&](std::size_t m) {
+    return cost_s[m] + kRestCounts * state.candidates[m].rest;
+  };
   if (ranked_at_ != state.last->sums.rows()) {
     choices_ = movement_gains(*state.last, state.foreseen, state.options.alpha);
     ranked_at_ = state.last->sums.rows();
@@ -95,12 +98,11 @@ std::optional<NextMovement> RankedMovements::best(const ExplorationState& state)
   double most = 0;
   for (const MovementChoice& choice : choices_) {
     if (state.refused[choice.movement] != 0) continue;
-    const double cost = cost_s[choice.movement];
-    if (state.so_far.seconds + cost > state.options.budget_s || !(choice.gain > most * cost)) {
-      continue;
-    }
+    if (state.so_far.seconds + cost_s[choice.movement] > state.options.budget_s) continue;
+    const double rate = choice.gain / waited_for(choice.movement);
+    if (!(rate > most)) continue;
     best = &choice;
-    most = choice.gain / cost;
+    most = rate;
   }
   if (best == nullptr) return std::nullopt;
   return NextMovement{state.candidates[best->movement], best->between, best->gain, best->movement};
@@ -138,9 +140,11 @@ class Explorer {
         break;
       }
       if (!execute(*next, cost_s)) {
-        if (out_.refused.size() > kMostRefused) break;
-        continue;
+        if (++refused_running_ <= kMostRefused) continue;
+        out_.end = ExplorationEnd::nothing_tells;
+        break;
       }
+      refused_running_ = 0;
       const bool looks = out_.seconds >= kLookAgain * looked_at_s_ && can_look();
       if (looks) look();
       if (options_.told) options_.told(out_.steps.back());
@@ -204,11 +208,29 @@ class Explorer {
     DiagnosisOptions options;
     options.test_share = 0;
     if (limits_.gear_ratio > 0) options.gear_ratios = {limits_.gear_ratio};
-    const Diagnosis found = diagnose(observe(out_.data), coulomb_viscous_base, options, 1);
-    std::vector<std::string> names;
-    for (const EffectFinding& effect : found.effects) names.push_back(effect.family);
-    out_.diagnosis = verdict_text(std::move(names), found.verdict == Verdict::unknown);
-    return out_.diagnosis == last()->best().verdict;
+    const DiagnosedFamilies found = diagnosed_families(observe(out_.data), options);
+    out_.diagnosis = verdict_text(found.names, found.unknown);
+    std::vector<std::string> ours;
+    for (const std::size_t f : last()->best().families) {
+      if (!space_->families()[f].unknown) ours.push_back(space_->families()[f].name);
+    }
+    return found.unknown == last()->best().verdict.ends_with(kUnknownVerdict) &&
+           are_named_by(found.names, ours) && are_named_by(ours, found.names);
+  }
+
+  // Each of the one is among the others; what shows where motion changes alone (lag, presliding,
+  // inertia) is one cause that either may call by several of its names.
+  bool are_named_by(const std::vector<std::string>& names,
+                    const std::vector<std::string>& others) const {
+    const auto is_transient = [&](const std::string& name) {
+      const auto family = std::ranges::find(space_->families(), name, &ExplainingFamily::name);
+      return family != space_->families().end() &&
+             std::ranges::count(family->characteristic, role_name(Role::acceleration)) > 0;
+    };
+    return std::ranges::all_of(names, [&](const std::string& name) {
+      return std::ranges::count(others, name) > 0 ||
+             (is_transient(name) && std::ranges::any_of(others, is_transient));
+    });
   }
 
   bool can_look() const { return out_.steps.size() >= kFewestMovements; }
@@ -231,6 +253,8 @@ class Explorer {
                        std::abs(warm - foreseen_at_.temperature_degc.value_or(0)) > kWarmer_k;
     if (!stale) return;
     foreseen_at_ = now_;
+    // What was refused may be allowed at another warmth.
+    std::ranges::fill(refused_, 0);
     const Dataset plan =
         foreseen_rows(candidates_, out_.data, limits_, now_, kForeseenRate * limits_.rate_hz);
     const Observations rows = with_signals_of(space_->reference(), observe_plan(plan), plan);
@@ -287,6 +311,7 @@ class Explorer {
   Foreseen foreseen_;
   JointNow foreseen_at_;
   std::vector<char> refused_;
+  std::size_t refused_running_ = 0;
   std::unique_ptr<ExplanationSpace> space_;
   std::unique_ptr<Assessor> assessor_;
   std::size_t assessed_ = 0;  // movements
@@ -321,6 +346,14 @@ MovementPlan informative_movements() {
     }
     return ranked.best(state);
   };
+}
+
+DiagnosedFamilies diagnosed_families(const Observations& rows, const DiagnosisOptions& options) {
+  const Diagnosis found = diagnose(rows, coulomb_viscous_base, options, 1);
+  DiagnosedFamilies out;
+  for (const EffectFinding& effect : found.effects) out.names.push_back(effect.family);
+  out.unknown = found.verdict == Verdict::unknown;
+  return out;
 }
 
 void append_movement(Dataset& data, const Dataset& movement) {

@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/diagnosis/diagnosis.hpp"
 #include "algorithms/exploration/assessment.hpp"
 #include "algorithms/exploration/foresight.hpp"
 #include "algorithms/exploration/movement_choice.hpp"
@@ -105,6 +106,13 @@ MovementPlan informative_movements();
 
 Exploration explore(const MotionLimits& limits, const ExecuteMovement& execute,
                     const ExplorerOptions& options, const MovementPlan& plan);
+
+// What the loop's own diagnosis says of rows. Throws what it throws.
+struct DiagnosedFamilies {
+  std::vector<std::string> names;
+  bool unknown = false;
+};
+DiagnosedFamilies diagnosed_families(const Observations& rows, const DiagnosisOptions& options);
 
 // Appends the rows of a movement, under its own number.
 void append_movement(Dataset& data, const Dataset& movement);

@@ -50,6 +50,7 @@ void add_problem_listing(CLI::App& list);
 void add_comparison_study(CLI::App& study, ExitStatus& status);
 void add_night_study(CLI::App& study, ExitStatus& status, const Registry& registry);
 void add_exploration_study(CLI::App& study);
+void add_recordings_study(CLI::App& study);
 void add_recovery_study(CLI::App& study);
 
 }  // namespace tribench

@@ -156,6 +156,7 @@ void add_study_command(CLI::App& app, ExitStatus& status, const Registry& regist
   study->require_subcommand(1);
   add_comparison_study(*study, status);
   add_exploration_study(*study);
+  add_recordings_study(*study);
   add_generator_study(*study, status);
   add_reference_study(*study, status);
   add_external_torque_study(*study);

@@ -2,11 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 
 #include "algorithms/exploration/fixed_plans.hpp"
+#include "algorithms/exploration/recorded_movements.hpp"
 #include "algorithms/inference/evidence.hpp"
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
@@ -151,6 +153,96 @@ TEST(Explorer, AsksForSomethingElseWhereAMovementIsRefused) {
   EXPECT_EQ(done.refused.size(), refused);
   EXPECT_GE(done.steps.size(), 6U);
   for (const ExplorationStep& step : done.steps) EXPECT_LE(step.movement.load_factor, 1);
+}
+
+// As the simulated joint records them, one after the other.
+Dataset recorded(simulation::World& world, std::span<const PlannedMovement> movements) {
+  Dataset all;
+  for (const PlannedMovement& movement : movements) {
+    append_movement(all, world.execute(movement, "the plan"));
+  }
+  return all;
+}
+
+std::vector<PlannedMovement> some_movements(const MotionLimits& limits) {
+  std::vector<PlannedMovement> all;
+  for (const double part : {0.1, 0.3, 0.6, 0.9}) {
+    for (const double direction : {1.0, -1.0}) {
+      all.push_back(constant_movement(direction * part * limits.speed_rad_s, -0.8, 0.8, 1));
+    }
+    all.push_back(two_tone_movement(part * limits.speed_rad_s, -0.2, 0.2, 1));
+  }
+  return all;
+}
+
+TEST(Assessor, MovementsAddedOneByOneSayWhatTheySayTogether) {
+  simulation::World world({3, simulation::WorldLevel::easy, simulation::WorldKind::single});
+  const Dataset data = recorded(world, some_movements(world.limits()));
+  const Observations rows = observe(data);
+  const ExplanationSpace space(rows, {100});
+  Assessor together(space, 0.01);
+  together.add(rows);
+  together.look();
+  Assessor grown(space, 0.01);
+  for (const int m : rows.movements()) {
+    std::vector<char> own;
+    for (const int movement : rows.movement) own.push_back(movement == m ? 1 : 0);
+    grown.add(rows.select(own));
+    if (m >= 8) grown.look();
+  }
+  EXPECT_EQ(grown.movements(), together.movements());
+  EXPECT_EQ(grown.last().sums.rows(), together.last().sums.rows());
+  together.look();  // what is noise is known from the second look on
+  EXPECT_EQ(grown.look().best().verdict, together.last().best().verdict);
+  EXPECT_NEAR(grown.last().best().log_evidence / together.last().best().log_evidence, 1, 0.1);
+}
+
+// What a row's columns are does not hang on the rows beside it: else sums could not grow.
+TEST(ExplanationSpace, ARowHasItsColumnsWhateverIsBesideIt) {
+  simulation::World world({5, simulation::WorldLevel::easy});
+  const Observations rows = observe(recorded(world, some_movements(world.limits())));
+  const ExplanationSpace space(rows, {100});
+  std::vector<char> few(rows.rows(), 0);
+  std::fill(few.begin() + 20, few.begin() + 50, 1);
+  const Eigen::MatrixXd alone = space.columns(rows.select(few));
+  EXPECT_LE((alone - space.columns(rows).middleRows(20, 30)).cwiseAbs().maxCoeff(), 1e-10);
+}
+
+// Its shape is none of the library's: the misfit is its own, and no reason to name another family.
+TEST(Explorer, ALagIsToldWithoutAStribeckEffect) {
+  const simulation::World world({11, simulation::WorldLevel::easy, simulation::WorldKind::single});
+  ASSERT_EQ(world.truth().effects[0].family, "lag_of_friction");
+  const Exploration done = explored(11, simulation::WorldKind::single, "informative", 90);
+  EXPECT_FALSE(done.unknown);
+  EXPECT_THAT(done.families, ::testing::IsSubsetOf({"lag", "hysteresis", "inertia"}));
+}
+
+TEST(RecordedMovements, LongOnesAreCutAndKeepTheirRows) {
+  simulation::World world({5, simulation::WorldLevel::easy});
+  const Observations rows = observe(recorded(world, some_movements(world.limits())));
+  const Observations cut = cut_movements(rows, 6);
+  EXPECT_GT(cut.movements().size(), rows.movements().size());
+  EXPECT_EQ(cut.target, rows.target);
+  EXPECT_TRUE(std::ranges::is_sorted(cut.movement));
+  EXPECT_EQ(cut_movements(rows, 1e6).movement_names.size(), rows.movements().size());
+}
+
+TEST(RecordedMovements, AreAskedForUntilTheyMakeTheVerdictOfAll) {
+  simulation::World world({5, simulation::WorldLevel::easy});
+  const Observations rows = observe(recorded(world, some_movements(world.limits())));
+  const ExplanationSpace space(rows, {100});
+  const auto enough = [](const Observations& asked) {
+    return std::string(asked.movements().size() >= 5 ? "enough" : "more");
+  };
+  const AskedRecordings asked = ask_for_recordings(space, rows, 0.01, enough, "enough");
+  ASSERT_EQ(asked.path.size(), 5U);
+  std::vector<std::size_t> movements;
+  for (const AskedMovement& one : asked.path) movements.push_back(one.movement);
+  std::ranges::sort(movements);
+  EXPECT_EQ(std::ranges::adjacent_find(movements), movements.end());
+  const AskedRecordings drawn = draw_recordings(rows, enough, "never", 7);
+  EXPECT_EQ(drawn.path.size(), rows.movements().size());
+  EXPECT_GT(drawn.seconds(), asked.seconds());
 }
 
 TEST(Plans, AnUnknownNameIsAnsweredWithTheNearest) {

@@ -250,5 +250,19 @@ TEST(StudyCommand, ExploreGoesOnWithWhatItsFolderHas) {
   EXPECT_EQ(run().status, 2);
 }
 
+TEST(StudyCommand, RecordingsHeldBackAreAskedForUntilTheySayWhatAllSay) {
+  const auto data = shared_data();
+  if (!data) GTEST_SKIP() << kNoSharedData;
+  const ProgramRun done =
+      run_tribench({"study", "recordings", (*data / "ur10e-dynamic/joint4_dynamic.csv").string(),
+                    "--roles", "recording=movement,rigid_current_A=gravity_torque", "--min-speed",
+                    "0.05", "--unordered", "--gear-ratio", "100", "--orders", "0", "--json"});
+  ASSERT_EQ(done.status, 0) << done.errors;
+  const json found = json::parse(done.output);
+  EXPECT_THAT(found["verdict"].get<std::string>(), HasSubstr("load_coulomb"));
+  EXPECT_LT(found["asked"]["movements"], found["movements"]);
+  EXPECT_EQ(found["path"].size(), found["asked"]["movements"]);
+}
+
 }  // namespace
 }  // namespace tribench::testing
