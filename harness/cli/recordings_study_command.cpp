@@ -164,7 +164,8 @@ void add_recordings_study(CLI::App& study) {
   command->add_option("FILE", arguments->files, "recordings, as tribench loop reads them")
       ->required();
   add_data_options(*command, arguments->reading);
-  command->add_option("--min-speed", arguments->min_speed, "slower rows are left out");
+  command->add_option("--min-speed", arguments->min_speed, "slower rows are left out")
+      ->transform(real_number(0, 1e6));
   command->add_flag("--unordered", arguments->unordered,
                     "the order of the movements says nothing: no drift");
   command->add_flag("--steady", arguments->steady, "each movement holds one speed");

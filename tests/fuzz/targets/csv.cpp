@@ -29,7 +29,7 @@ void read(std::string_view text, bool drop_missing) {
     fuzz::expect(channel.values.size() == file.data.rows(), "a channel has other rows");
     // What was converted is written in SI under its old name.
     GivenRole role(channel.role);
-    if (channel.role != Role::none) role.unit = find_unit(channel.unit);
+    if (channel.role != Role::none) role.in.unit = find_unit(channel.unit);
     options.roles[channel.name] = role;
   }
   std::ostringstream written;
