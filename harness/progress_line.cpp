@@ -20,10 +20,11 @@ std::string duration_text(double seconds) {
 
 }  // namespace
 
-ProgressLine::ProgressLine(std::size_t cells, double predicted_s, bool quiet)
+ProgressLine::ProgressLine(std::size_t cells, double predicted_s, bool quiet, ProgressUnit unit)
     : cells_(cells),
       predicted_s_(predicted_s),
       quiet_(quiet),
+      unit_(unit),
       is_terminal_(::isatty(STDERR_FILENO) == 1),
       start_(std::chrono::steady_clock::now()) {}
 
@@ -42,11 +43,14 @@ void ProgressLine::show(bool last) {
   const double elapsed_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double interval_s = is_terminal_ ? 0.2 : 30.0;
+  if (elapsed_s < unit_.from_s) return;
   if (!last && elapsed_s - shown_at_s_ < interval_s) return;
   shown_at_s_ = elapsed_s;
-  std::string line = fmt::format("{}/{} cells, {:.1f} cells/s, {} failed, {} elapsed", ended_,
-                                 cells_, static_cast<double>(ended_) / std::max(elapsed_s, 1e-3),
-                                 failed_, duration_text(elapsed_s));
+  std::string line =
+      fmt::format("{}/{} {}, {:.1f} {}/s, ", ended_, cells_, unit_.name,
+                  static_cast<double>(ended_) / std::max(elapsed_s, 1e-3), unit_.name);
+  if (unit_.may_fail) line += fmt::format("{} failed, ", failed_);
+  line += duration_text(elapsed_s) + " elapsed";
   if (!last && worked_off_s_ > 0) {
     line += fmt::format(", {} left",
                         duration_text(elapsed_s * (predicted_s_ - worked_off_s_) / worked_off_s_));

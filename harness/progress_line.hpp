@@ -10,11 +10,18 @@
 
 namespace tribench {
 
+// What is counted. Below `from_s` seconds nothing is shown.
+struct ProgressUnit {
+  const char* name = "cells";
+  bool may_fail = true;
+  double from_s = 0;
+};
+
 class ProgressLine {
  public:
   // predicted_s: what all the cells together are expected to cost; the time left follows from how
   // fast the prediction is worked off.
-  ProgressLine(std::size_t cells, double predicted_s, bool quiet);
+  ProgressLine(std::size_t cells, double predicted_s, bool quiet, ProgressUnit unit = {});
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
@@ -28,6 +35,7 @@ class ProgressLine {
   std::size_t cells_;
   double predicted_s_;
   bool quiet_;
+  ProgressUnit unit_;
   bool is_terminal_;
   std::size_t ended_ = 0;
   std::size_t failed_ = 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 
 #include "algorithms/diagnosis/canonical.hpp"
 #include "algorithms/diagnosis/ceiling.hpp"
@@ -14,6 +15,7 @@
 #include "algorithms/diagnosis/held_out.hpp"
 #include "algorithms/diagnosis/search.hpp"
 #include "foundation/error.hpp"
+#include "foundation/parallel_for.hpp"
 #include "foundation/suggestion.hpp"
 
 namespace tribench::loop {
@@ -323,17 +325,39 @@ class ChosenShares {
   std::map<std::string, double> times_;
 };
 
+// The searches without the movements of each set, in their order.
+std::vector<Diagnosis> search_without(const Observations& data,
+                                      const std::vector<std::vector<int>>& sets,
+                                      const BaseMaker& base, const DiagnosisOptions& options,
+                                      const RandomStream& random) {
+  std::vector<Diagnosis> all(sets.size());
+  std::size_t ended = 1;  // the search with all of them
+  std::mutex mutex;
+  const auto tell = [&] {
+    const std::lock_guard lock(mutex);
+    if (options.progress) options.progress(ended++, sets.size() + 1);
+  };
+  tell();
+  parallel_for(sets.size(), options.threads, [&](std::size_t k) {
+    all[k] = diagnose_training(data, sets[k], base, options, random.split(k));
+    tell();
+  });
+  return all;
+}
+
 // Many movements: the search again without a tenth of the training movements in turn.
 void search_again(const Observations& data, const BaseMaker& base, Diagnosis& whole,
                   RandomStream random) {
   if (whole.effects.empty()) return;
-  ChosenShares shares;
-  std::vector<char> training = rows_of(data, whole.test_movements, false, {});
-  std::uint64_t turn = 0;
-  for (std::vector<int> left : left_out_together(data.select(training))) {
+  const std::vector<char> training = rows_of(data, whole.test_movements, false, {});
+  std::vector<std::vector<int>> sets = left_out_together(data.select(training));
+  for (std::vector<int>& left : sets) {
     left.insert(left.end(), whole.test_movements.begin(), whole.test_movements.end());
     std::ranges::sort(left);
-    shares.count(diagnose_training(data, left, base, whole.options, random.split(turn++)));
+  }
+  ChosenShares shares;
+  for (const Diagnosis& part : search_without(data, sets, base, whole.options, random)) {
+    shares.count(part);
   }
   shares.write(whole);
 }
@@ -348,13 +372,13 @@ ErrorFinding judge_in_turn(const Observations& data, const BaseMaker& base, Diag
   for (Eigen::VectorXd* one : {&all.before, &all.after, &all.corrected}) {
     one->setZero(static_cast<Eigen::Index>(data.rows()));
   }
-  std::uint64_t turn = 0;
-  for (const std::vector<int>& left : left_out_together(data)) {
-    const RandomStream own = random.split(turn++);
-    const Diagnosis without = diagnose_training(data, left, base, whole.options, own);
-    shares.count(without);
-    const LeftOut models = left_out_predictions(data, without, left, own.split("smooth"));
-    const std::vector<char> rows = rows_of(data, left, true, {});
+  const std::vector<std::vector<int>> sets = left_out_together(data);
+  const std::vector<Diagnosis> parts = search_without(data, sets, base, whole.options, random);
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    shares.count(parts[k]);
+    const LeftOut models =
+        left_out_predictions(data, parts[k], sets[k], random.split(k).split("smooth"));
+    const std::vector<char> rows = rows_of(data, sets[k], true, {});
     for (std::size_t i = 0; i < data.rows(); ++i) {
       if (rows[i] == 0) continue;
       const auto at = static_cast<Eigen::Index>(i);

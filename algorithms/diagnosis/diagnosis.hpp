@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -39,6 +40,12 @@ struct DiagnosisOptions {
   std::vector<EffectFamily> learned;  // families beside the built-in ones
   std::vector<std::string> families;  // to be tested; empty: all
   std::vector<std::string> without;   // rules left out, to see what they are worth (rules.hpp)
+  // The searches without some movements run side by side, with the same answer; a base that is a
+  // method takes one thread (its budget is one).
+  int threads = 1;
+  // Told after each search: how many have ended, of how many. Empty: nobody. From any thread, one
+  // at a time.
+  std::function<void(std::size_t, std::size_t)> progress;
   bool has(std::string_view rule) const { return std::ranges::count(without, rule) == 0; }
 };
 

@@ -26,6 +26,7 @@ constexpr double kMostEvents = 0.05;
 constexpr std::array<std::size_t, 4> kLengths = {4, 6, 9, 14};
 constexpr std::array<double, 5> kHeights = {6, 9, 14, 28, 80};
 constexpr std::size_t kLongestPulse = 15;  // rows it touches
+constexpr std::size_t kFewestForTail = 8;
 // A start counts only where four neighbouring innovations, clipped, add up to this: no single row
 // and no slow drift passes for a pulse.
 constexpr double kClip = 4;
@@ -61,19 +62,14 @@ class BurstScan {
         if (burst.log_ratio > 0) starts.push_back(burst);
       }
     }
-    if (starts.empty()) return starts;
-    const double wanted = threshold(random);
-    std::erase_if(starts, [&](const Burst& one) {
-      return one.log_ratio < wanted || peak(one) < kHeights[0] * noise_.robust_sd();
-    });
-    std::ranges::stable_sort(
-        starts, [](const Burst& a, const Burst& b) { return a.log_ratio > b.log_ratio; });
+    const std::vector<Burst> separate = likeliest_of_overlapping(std::move(starts));
+    if (separate.empty()) return {};
+    const double wanted = std::max(threshold(random), stands_out_of(separate));
     std::vector<Burst> found;
-    for (const Burst& one : starts) {
-      const bool known = std::ranges::any_of(found, [&](const Burst& other) {
-        return one.begin < other.end + kMargin && other.begin < one.end + kMargin;
-      });
-      if (!known) found.push_back(one);
+    for (const Burst& one : separate) {
+      if (one.log_ratio >= wanted && peak(one) >= kHeights[0] * noise_.robust_sd()) {
+        found.push_back(one);
+      }
     }
     std::ranges::sort(found, {}, &Burst::begin);
     return found;
@@ -90,6 +86,30 @@ class BurstScan {
   const BurstNoise& noise() const { return noise_; }
 
  private:
+  // Overlapping starts once; the likeliest first.
+  static std::vector<Burst> likeliest_of_overlapping(std::vector<Burst> starts) {
+    std::ranges::stable_sort(
+        starts, [](const Burst& a, const Burst& b) { return a.log_ratio > b.log_ratio; });
+    std::vector<Burst> separate;
+    for (const Burst& one : starts) {
+      const bool known = std::ranges::any_of(separate, [&](const Burst& other) {
+        return one.begin < other.end + kMargin && other.begin < one.end + kMargin;
+      });
+      if (!known) separate.push_back(one);
+    }
+    return separate;
+  }
+
+  // The log ratio at which one stands out of the others of the recording, whatever its noise is: of
+  // an exponential tail with the median of theirs (Pickands 1975, with a shape of 0). A few bursts
+  // do not move it; noise that comes in loud spells has many.
+  static double stands_out_of(const std::vector<Burst>& separate) {
+    if (separate.size() < kFewestForTail) return 0;
+    const double median = separate[separate.size() / 2].log_ratio;
+    return median / std::numbers::ln2 *
+           elementary::log(static_cast<double>(separate.size()) / kFalseBursts);
+  }
+
   // Half sines with a zero after.
   void make_pulses() {
     for (const std::size_t rows : kLengths) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/experiments.hpp"
+#include "algorithms/diagnosis/model_fit.hpp"
 
 #include <fmt/format.h>
 

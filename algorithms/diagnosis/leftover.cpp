@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The parts of the search that doubt its own answer: all small subsets of families, and what is
-// left over that no family explains.
+// What is left over that no family explains, where it lives, and which of the families found only
+// stood in for it.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,108 +16,10 @@ namespace tribench::loop {
 namespace {
 
 constexpr double kSmootherRidge = 0.02;  // of the mean diagonal (specification, 3.8)
-constexpr std::size_t kLargestSubset = 3;
 // Of what an effect adds: what adds less in the same inputs is its shape.
 constexpr double kShapeShare = 0.1;
 
-// Every subset of 1 .. kLargestSubset of n things.
-std::vector<std::vector<std::size_t>> small_subsets(std::size_t n) {
-  std::vector<std::vector<std::size_t>> all;
-  for (std::size_t a = 0; a < n; ++a) {
-    all.push_back({a});
-    for (std::size_t b = a + 1; b < n; ++b) {
-      all.push_back({a, b});
-      for (std::size_t c = b + 1; c < n; ++c) all.push_back({a, b, c});
-    }
-  }
-  return all;
-}
-
 }  // namespace
-
-// One block of columns a family: the refined atoms of those found, the best atom of the others.
-void Search::check_exhaustively() {
-  if (found.size() > kLargestSubset) return;
-  struct FamilyBlock {
-    std::size_t family;
-    std::vector<Atom> atoms;
-    std::vector<Eigen::Index> columns;
-  };
-  const Round& round = base_round_;
-  std::vector<FamilyBlock> blocks;
-  Eigen::MatrixXd all = whitened(tangent(base_fit_.model, data_), clusters_, current_.noise);
-  const Eigen::Index base_columns = all.cols();
-  for (std::size_t f = 0; f < families_.size(); ++f) {
-    FamilyBlock block{f, {}, {}};
-    for (const Atom& atom : current_.model.atoms) {
-      if (atom.family == f) block.atoms.push_back(atom);
-    }
-    if (block.atoms.empty() && round.family_score[f] > 0) {
-      const std::optional<Candidate> best = best_atom(f, round, base_fit_);
-      if (best) block.atoms.push_back(library_[best->atom]);
-    }
-    if (block.atoms.empty()) continue;
-    for (const Atom& atom : block.atoms) {
-      const Eigen::MatrixXd z =
-          whitened(evaluate_columns(atom.columns, data_), clusters_, current_.noise);
-      for (Eigen::Index j = 0; j < z.cols(); ++j) block.columns.push_back(all.cols() + j);
-      all = beside(all, z);
-    }
-    blocks.push_back(std::move(block));
-  }
-  const Eigen::VectorXd y =
-      whitened(target_vector(data_) - predict(base_fit_.model, data_), clusters_, current_.noise);
-  const SubsetLosses subset_losses(all, y, clusters_, current_.noise);
-  const auto losses_of = [&](const std::vector<std::size_t>& subset) {
-    std::vector<Eigen::Index> chosen;
-    for (Eigen::Index j = 0; j < base_columns; ++j) chosen.push_back(j);
-    for (const std::size_t b : subset) {
-      chosen.insert(chosen.end(), blocks[b].columns.begin(), blocks[b].columns.end());
-    }
-    return subset_losses.losses(chosen);
-  };
-  std::vector<std::size_t> greedy;
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    if (std::ranges::count(found, blocks[b].family, &Found::family) > 0) greedy.push_back(b);
-  }
-  const Eigen::VectorXd greedy_losses = losses_of(greedy);
-  std::vector<std::size_t> best = greedy;
-  Gain lead;
-  for (const std::vector<std::size_t>& subset : small_subsets(blocks.size())) {
-    // A larger set always finds a little more; only one of the same size is a rival.
-    if (subset.size() > greedy.size()) continue;
-    const Gain gain = paired_gain(greedy_losses, losses_of(subset));
-    if (gain.nats > lead.nats && gain.nats > gain.error) {
-      lead = gain;
-      best = subset;
-    }
-  }
-  if (best == greedy) return;
-  LoopModel model = base_fit_.model;
-  std::vector<Found> members;
-  for (const std::size_t b : best) {
-    for (const Atom& atom : blocks[b].atoms) model.add(atom);
-    const std::size_t f = blocks[b].family;
-    const auto known = std::ranges::find(found, f, &Found::family);
-    members.push_back(known != found.end() ? *known : Found{f, round.family_p[f], lead, false, {}});
-  }
-  FittedModel other = fit(std::move(model), FitScope::everything);
-  if (stands_for_another_cause(other.model)) return;
-  for (const Found& member : members) {
-    LoopModel without = other.model;
-    remove_family(without, member.family);
-    const FittedModel rest = fit(std::move(without), FitScope::linear);
-    const Round rest_round = test_all(rest);
-    if (family_p_given_rest(member.family, rest, rest_round, other) > options_.alpha_library) {
-      return;
-    }
-  }
-  note(fmt::format(
-      "the search over all subsets predicts better by {:.1f} nats than the stepwise choice: taken",
-      lead.nats));
-  found = std::move(members);
-  current_ = std::move(other);
-}
 
 // An effect that lives in one input of a pair, times the other: what there is where the effect's
 // size varies with that other input. Far sharper than a smoother in the pair.
@@ -146,7 +48,6 @@ std::vector<Search::Modifier> Search::modifiers() const {
       if (other.size() == 0) continue;
       all.push_back({one.family,
                      {std::string(pair[0]), std::string(pair[1])},
-                     name == "T",
                      other.asDiagonal() * evaluate_columns(formulas, data_)});
     }
   }
@@ -155,8 +56,7 @@ std::vector<Search::Modifier> Search::modifiers() const {
 
 BlockScores Search::score_modifier(const Modifier& modifier) const {
   const Eigen::MatrixXd z = whitened(modifier.columns, clusters_, current_.noise);
-  BlockScores block = score_block(project_off(z, current_.basis), z.colwise().squaredNorm(),
-                                  current_.residual, clusters_, 0);
+  BlockScores block = score_block(z, current_.basis, current_.residual, clusters_);
   if (block.test.carrying < kFewestClusters) block.test.testable = false;
   return block;
 }
@@ -301,9 +201,9 @@ void Search::locate_leftover(const std::vector<Smoother>& smoothers,
   }
   if (winner == blocks.size()) return;
   const bool smooth = winner < smoothers.size();
-  if (leftover_is_slight(smooth ? with_direction(smoothers[winner], data_)
-                                : products[winner - smoothers.size()].columns,
-                         smooth ? kSmootherRidge : 0)) {
+  const Eigen::MatrixXd features = smooth ? with_direction(smoothers[winner], data_)
+                                          : products[winner - smoothers.size()].columns;
+  if (worth_beside(features, smooth ? kSmootherRidge : 0) < least_worth()) {
     note("what is left over is next to nothing beside the effects found");
     return;
   }
@@ -316,43 +216,16 @@ void Search::locate_leftover(const std::vector<Smoother>& smoothers,
   }
   if (!whole_) whole_ = WholeModel{current_, best.nats};
   const std::size_t before = found.size();
-  const bool varies = options_.has("varying") && drop_varying(products);
   const auto home = std::ranges::find(smoothers, leftover.signals, &Smoother::signals);
   if (home != smoothers.end() && options_.has("proxies")) drop_proxies(*home);
   if (found.size() == before) return;
-  // Without its proxies the leftover shows better where it lives; what an effect varies with is
-  // known already.
+  // Without its proxies the leftover shows better where it lives.
   const LeftoverFinding known = leftover;
   test_leftover();
-  if (varies || leftover.inputs.empty()) {
+  if (leftover.inputs.empty()) {
     leftover.inputs = known.inputs;
     leftover.signals = known.signals;
   }
-}
-
-// An effect whose size varies with temperature is part of what is left over: c f(q) + d f(q) T is
-// d f(q) (T - T0), and the origin of T is nobody's. (Nelder 1977: no main effect is to be read
-// where an interaction holds it.) Where it varies with speed, load or position,
-// or is ten times what is left over, it is still itself.
-bool Search::drop_varying(const std::vector<Modifier>& products) {
-  LoopModel model = current_.model;
-  for (const Modifier& product : products) {
-    if (product.signals != leftover.signals || !product.with_temperature) continue;
-    std::vector<BlockScores> own = {score_modifier(product)};
-    if (!own[0].test.testable) continue;
-    if (adjusted_p(own[0].test.score, flip_maxima(own, flips_)) > options_.alpha_library) continue;
-    LoopModel without = model;
-    remove_family(without, product.family);
-    if (explains_more_than_is_left(fit(without, FitScope::linear), 1 / kShapeShare)) continue;
-    leftover.proxies_removed.push_back(families_[product.family].name);
-    note(fmt::format("the size of '{}' varies with {}: it is part of what is left over",
-                     families_[product.family].name, fmt::join(leftover.inputs, " or ")));
-    std::erase_if(found, [&](const Found& one) { return one.family == product.family; });
-    remove_family(model, product.family);
-  }
-  if (model.atoms.size() == current_.model.atoms.size()) return false;
-  current_ = fit(std::move(model), FitScope::everything);
-  return true;
 }
 
 // A family that the leftover's smoother makes superfluous is a proxy of what is left over, unless
@@ -389,13 +262,13 @@ void Search::drop_proxies(const Smoother& smoother) {
 }
 
 // What the whole model has and `rest` has not, against what the whole model leaves over.
-bool Search::explains_more_than_is_left(const FittedModel& rest, double times) const {
+bool Search::explains_more_than_is_left(const FittedModel& rest) const {
   const Noise& noise = whole_->fit.noise;
   const Eigen::MatrixXd x = whitened(tangent(rest.model, data_), clusters_, noise);
   const Eigen::VectorXd y =
       whitened(target_vector(data_) - predict(rest.model, data_), clusters_, noise);
   const Gain own = paired_gain(held_out_losses(x, y, clusters_, noise), whole_->fit.losses);
-  return own.nats > times * whole_->leftover_nats && own.nats > own.error;
+  return own.nats > whole_->leftover_nats && own.nats > own.error;
 }
 
 }  // namespace tribench::loop

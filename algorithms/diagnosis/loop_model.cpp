@@ -3,21 +3,51 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "algorithms/expression/text.hpp"
-#include "algorithms/fitting/symmetric_system.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench::loop {
 namespace {
 
-constexpr int kMaxIterations = 30;
-constexpr double kStepTolerance = 1e-6;
-constexpr double kRelativeStep = 1e-5;  // of the central differences
-// Of a column's square: less beside the others is rounding.
-constexpr double kDependent = 1e-11;
+bool has_free_constants(const Expression& formula) { return !free_constants(formula).empty(); }
 
-// The base's constants that a fit may move: an integer exponent is part of the form.
+// The formula over its one free constant, which stands as a factor; none where it does not.
+std::optional<Expression> over_its_factor(const Expression& formula) {
+  const std::size_t root = formula.size() - 1;
+  const Op op = formula.node(root).op;
+  if (formula.node(root).is_constant()) return Expression::constant(1);
+  if (op == Op::neg) return over_its_factor(formula.subtree(root - 1));
+  if (op != Op::mul && op != Op::div) return std::nullopt;
+  const Expression right = formula.subtree(root - 1);
+  const Expression left = formula.subtree(formula.begin(root - 1) - 1);
+  const bool in_left = has_free_constants(left);
+  if (in_left == has_free_constants(right) || (op == Op::div && !in_left)) return std::nullopt;
+  const std::optional<Expression> rest = over_its_factor(in_left ? left : right);
+  if (!rest) return std::nullopt;
+  const Expression& other = in_left ? right : left;
+  const bool one = rest->size() == 1 && rest->node(0).is_constant();
+  if (one && op == Op::mul) return other;
+  return in_left ? Expression::binary(op, *rest, other) : Expression::binary(op, other, *rest);
+}
+
+// Adds what the free constants of a sum multiply; false where the sum is not linear in them.
+bool add_linear_terms(const Expression& sum, std::vector<Expression>& terms) {
+  const std::size_t root = sum.size() - 1;
+  const Op op = sum.node(root).op;
+  if (op == Op::neg) return add_linear_terms(sum.subtree(root - 1), terms);
+  if (op == Op::add || op == Op::sub) {
+    return add_linear_terms(sum.subtree(sum.begin(root - 1) - 1), terms) &&
+           add_linear_terms(sum.subtree(root - 1), terms);
+  }
+  std::optional<Expression> term = over_its_factor(sum);
+  if (term) terms.push_back(std::move(*term));
+  return term.has_value();
+}
+
+}  // namespace
+
 std::vector<std::size_t> free_constants(const Expression& formula) {
   std::vector<std::size_t> free;
   for (const std::size_t at : formula.constant_positions()) {
@@ -26,177 +56,6 @@ std::vector<std::size_t> free_constants(const Expression& formula) {
   }
   return free;
 }
-
-// One non-linear parameter: where it is, its value and its bounds.
-struct Nonlinear {
-  bool of_base;
-  std::size_t atom;   // or unused
-  std::size_t place;  // node of the base's formula, or shape of the atom
-  double low;
-  double high;
-};
-
-std::vector<Nonlinear> nonlinear_parameters(const LoopModel& model) {
-  std::vector<Nonlinear> all;
-  for (const std::size_t at : free_constants(model.base.formula)) {
-    all.push_back({true, 0, at, -1e300, 1e300});
-  }
-  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
-    for (std::size_t s = 0; s < model.atoms[k].shapes.size(); ++s) {
-      const Shape& shape = model.atoms[k].shapes[s];
-      if (shape.refined()) all.push_back({false, k, s, shape.low, shape.high});
-    }
-  }
-  return all;
-}
-
-double value_of(const LoopModel& model, const Nonlinear& p) {
-  return p.of_base ? model.base.formula.node(p.place).value
-                   : model.atoms[p.atom].shapes[p.place].value;
-}
-
-void set_value(LoopModel& model, const Nonlinear& p, double value) {
-  if (p.of_base) {
-    model.base.formula.set_constant(p.place, value);
-  } else {
-    model.atoms[p.atom].set_shape(p.place, std::clamp(value, p.low, p.high));
-  }
-}
-
-Eigen::VectorXd evaluate_one(const Expression& formula, const SignalTable& table) {
-  Eigen::VectorXd out(static_cast<Eigen::Index>(table.inputs().rows));
-  Evaluator().evaluate(formula, table.inputs(), {out.data(), static_cast<std::size_t>(out.size())});
-  return out;
-}
-
-// What the parameter moves: the base's formula or the atom's columns times their coefficients.
-Eigen::VectorXd moved_part(const LoopModel& model, const Nonlinear& p, const SignalTable& table) {
-  if (p.of_base) return evaluate_one(model.base.formula, table);
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(table.inputs().rows));
-  const std::size_t first = model.first_column(p.atom);
-  const Atom& atom = model.atoms[p.atom];
-  for (std::size_t c = 0; c < atom.columns.size(); ++c) {
-    sum += model.coefficients[static_cast<Eigen::Index>(first + c)] *
-           evaluate_one(atom.columns[c], table);
-  }
-  return sum;
-}
-
-Eigen::VectorXd derivative(LoopModel& model, const Nonlinear& p, const SignalTable& table) {
-  const double value = value_of(model, p);
-  const double step = kRelativeStep * (value != 0 ? std::abs(value) : 1e-3);
-  const double above = std::min(value + step, p.high);
-  const double below = std::max(value - step, p.low);
-  set_value(model, p, above);
-  const Eigen::VectorXd up = moved_part(model, p, table);
-  set_value(model, p, below);
-  const Eigen::VectorXd down = moved_part(model, p, table);
-  set_value(model, p, value);
-  return (up - down) / (above - below);
-}
-
-// A shape that a fit has driven to its bound cannot follow its derivative: to project what it
-// cannot do out of other effects would hide them (a wide step of the load would hide a gain).
-bool held_by_bound(const LoopModel& model, const Nonlinear& p) {
-  const double value = value_of(model, p);
-  return !p.of_base && (value <= p.low || value >= p.high);
-}
-
-std::vector<Expression> linear_columns(const LoopModel& model) {
-  std::vector<Expression> all = model.base.linear_terms;
-  for (const Atom& atom : model.atoms) {
-    all.insert(all.end(), atom.columns.begin(), atom.columns.end());
-  }
-  return all;
-}
-
-// Lengths of columns; 1 of those that are nothing.
-Eigen::VectorXd lengths_of(const Eigen::MatrixXd& x) {
-  Eigen::VectorXd lengths = x.colwise().norm();
-  for (double& length : lengths) length = length > 0 && std::isfinite(length) ? length : 1;
-  return lengths;
-}
-
-// The linear part at the present shapes: whitened columns of unit length, their products, and what
-// is left of the target beside them.
-struct LinearFit {
-  Eigen::MatrixXd x;
-  Eigen::VectorXd lengths;
-  Eigen::MatrixXd gram;
-  Eigen::VectorXd residual;
-  double sum_squares = 0;
-};
-
-// Solves for the linear coefficients.
-LinearFit solve_linear(LoopModel& model, const Observations& data, const Clusters& clusters,
-                       const Noise& noise) {
-  const SignalTable table(data);
-  Eigen::VectorXd y = target_vector(data);
-  if (!model.base.formula.empty()) y -= evaluate_one(model.base.formula, table);
-  LinearFit fit;
-  fit.residual = whitened(y, clusters, noise);
-  fit.x = whitened(evaluate_columns(linear_columns(model), data), clusters, noise);
-  if (fit.x.cols() > 0) {
-    fit.lengths = lengths_of(fit.x);
-    for (Eigen::Index j = 0; j < fit.x.cols(); ++j) fit.x.col(j) /= fit.lengths[j];
-    fit.gram = fit.x.transpose() * fit.x;
-    const Eigen::VectorXd solution =
-        basic_solution_symmetric(fit.gram, fit.x.transpose() * fit.residual, kDependent);
-    model.coefficients = solution.cwiseQuotient(fit.lengths);
-    fit.residual -= fit.x * solution;
-  }
-  fit.sum_squares = fit.residual.squaredNorm();
-  return fit;
-}
-
-// What the non-linear parameters can do that the linear ones cannot: the products of the Jacobian's
-// columns, the linear columns projected out, and its products with the residual.
-struct NonlinearNormal {
-  Eigen::MatrixXd gram;
-  Eigen::VectorXd gradient;
-};
-
-NonlinearNormal nonlinear_normal(LoopModel& model, const std::vector<Nonlinear>& parameters,
-                                 const Observations& data, const Clusters& clusters,
-                                 const Noise& noise, const LinearFit& fit) {
-  const SignalTable table(data);
-  Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(data.rows()),
-                           static_cast<Eigen::Index>(parameters.size()));
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    jacobian.col(static_cast<Eigen::Index>(j)) = derivative(model, parameters[j], table);
-  }
-  jacobian = whitened(std::move(jacobian), clusters, noise);
-  NonlinearNormal out{jacobian.transpose() * jacobian, jacobian.transpose() * fit.residual};
-  if (fit.x.cols() == 0) return out;
-  const Eigen::VectorXd whole = out.gram.diagonal();
-  const Eigen::MatrixXd cross = fit.x.transpose() * jacobian;
-  out.gram -= cross.transpose() * basic_solution_symmetric(fit.gram, cross, kDependent);
-  out.gram.diagonal() = out.gram.diagonal().cwiseMax(kDependent * whole);
-  return out;
-}
-
-// A damped step; parameters that would leave their bounds stop at them. Returns its relative size.
-double take_step(LoopModel& model, const std::vector<Nonlinear>& parameters,
-                 const NonlinearNormal& normal, double damping) {
-  const Eigen::VectorXd scale = normal.gram.diagonal().cwiseMax(1e-300).cwiseSqrt();
-  Eigen::MatrixXd damped =
-      scale.cwiseInverse().asDiagonal() * normal.gram * scale.cwiseInverse().asDiagonal();
-  damped.diagonal().array() += damping;
-  const Eigen::VectorXd step =
-      solve_symmetric(damped, normal.gradient.cwiseQuotient(scale)).cwiseQuotient(scale);
-  double largest = 0;
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    const double before = value_of(model, parameters[j]);
-    const double change = step[static_cast<Eigen::Index>(j)];
-    if (!std::isfinite(change)) continue;
-    set_value(model, parameters[j], before + change);
-    const double after = value_of(model, parameters[j]);
-    largest = std::max(largest, std::abs(after - before) / (before != 0 ? std::abs(before) : 1.0));
-  }
-  return largest;
-}
-
-}  // namespace
 
 void add_rigid_terms(BaseModel& base, const Observations& data) {
   const std::vector<std::string> names = data.names();
@@ -235,6 +94,12 @@ BaseModel formula_base(const Observations& data, std::string_view text) {
   BaseModel base;
   base.name = "formula";
   base.formula = Expression(std::move(nodes));
+  // Fitted exactly where that can be, wherever the constants stand at first.
+  if (add_linear_terms(base.formula, base.linear_terms)) {
+    base.formula = {};
+  } else {
+    base.linear_terms.clear();
+  }
   add_rigid_terms(base, data);
   return base;
 }
@@ -263,12 +128,18 @@ std::size_t LoopModel::first_column(std::size_t atom) const {
   return first;
 }
 
-Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
-  const Eigen::VectorXd lengths = lengths_of(columns);
-  const Eigen::MatrixXd scaled = columns * lengths.cwiseInverse().asDiagonal();
-  return basic_solution_symmetric(scaled.transpose() * scaled, scaled.transpose() * target,
-                                  kDependent)
-      .cwiseQuotient(lengths);
+std::vector<Expression> linear_columns(const LoopModel& model) {
+  std::vector<Expression> all = model.base.linear_terms;
+  for (const Atom& atom : model.atoms) {
+    all.insert(all.end(), atom.columns.begin(), atom.columns.end());
+  }
+  return all;
+}
+
+Eigen::VectorXd evaluate_column(const Expression& formula, const SignalTable& table) {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(table.inputs().rows));
+  Evaluator().evaluate(formula, table.inputs(), {out.data(), static_cast<std::size_t>(out.size())});
+  return out;
 }
 
 Eigen::MatrixXd evaluate_columns(std::span<const Expression> formulas, const Observations& data) {
@@ -289,56 +160,11 @@ Eigen::Map<const Eigen::VectorXd> target_vector(const Observations& data) {
 
 Eigen::VectorXd predict(const LoopModel& model, const Observations& data) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data.rows()));
-  if (!model.base.formula.empty()) out = evaluate_one(model.base.formula, SignalTable(data));
+  if (!model.base.formula.empty()) out = evaluate_column(model.base.formula, SignalTable(data));
   if (model.coefficients.size() > 0) {
     out += evaluate_columns(linear_columns(model), data) * model.coefficients;
   }
   return out;
-}
-
-Eigen::MatrixXd tangent(const LoopModel& model, const Observations& data) {
-  LoopModel copy = model;
-  const SignalTable table(data);
-  const std::vector<Nonlinear> parameters = nonlinear_parameters(model);
-  const Eigen::MatrixXd linear = evaluate_columns(linear_columns(model), data);
-  Eigen::MatrixXd out(linear.rows(), linear.cols() + static_cast<Eigen::Index>(parameters.size()));
-  out.leftCols(linear.cols()) = linear;
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    auto column = out.col(linear.cols() + static_cast<Eigen::Index>(j));
-    if (held_by_bound(model, parameters[j])) {
-      column.setZero();
-    } else {
-      column = derivative(copy, parameters[j], table);
-    }
-  }
-  return out;
-}
-
-void fit_model(LoopModel& model, const Observations& data, const Clusters& clusters,
-               const Noise& noise, FitScope scope) {
-  LinearFit fit = solve_linear(model, data, clusters, noise);
-  const std::vector<Nonlinear> parameters =
-      scope == FitScope::everything ? nonlinear_parameters(model) : std::vector<Nonlinear>();
-  if (parameters.empty()) return;
-  double damping = 1e-3;
-  for (int i = 0; i < kMaxIterations; ++i) {
-    const NonlinearNormal normal = nonlinear_normal(model, parameters, data, clusters, noise, fit);
-    bool improved = false;
-    double step = 0;
-    double decrease = 0;
-    for (int attempt = 0; attempt < 6 && !improved; ++attempt) {
-      LoopModel trial = model;
-      step = take_step(trial, parameters, normal, damping);
-      LinearFit trial_fit = solve_linear(trial, data, clusters, noise);
-      improved = trial_fit.sum_squares < fit.sum_squares;
-      damping *= improved ? 0.2 : 8;
-      if (!improved) continue;
-      decrease = 1 - trial_fit.sum_squares / fit.sum_squares;
-      model = std::move(trial);
-      fit = std::move(trial_fit);
-    }
-    if (!improved || step < kStepTolerance || decrease < 1e-9) return;
-  }
 }
 
 Expression formula_of(const LoopModel& model) {

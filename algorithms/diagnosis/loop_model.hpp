@@ -20,8 +20,10 @@
 namespace tribench::loop {
 
 struct BaseModel {
-  std::string name;                      // "coulomb_viscous", a method, "formula"
-  Expression formula;                    // over the signals; may be empty; its constants are fitted
+  std::string name;  // "coulomb_viscous", a method, "formula"
+  // Over the signals; may be empty. Its free constants are fitted; what is linear in them stands in
+  // linear_terms instead.
+  Expression formula;
   std::vector<Expression> linear_terms;  // each with a coefficient
 };
 
@@ -33,6 +35,8 @@ BaseModel coulomb_viscous_base(const Observations& data);
 // A formula over the signals' names (or the channels'), with the rigid signals beside it. Throws
 // Error (bad_input) that names what is unknown.
 BaseModel formula_base(const Observations& data, std::string_view text);
+// Where the constants stand that a fit may move: an integer exponent is part of the form.
+std::vector<std::size_t> free_constants(const Expression& formula);
 void add_rigid_terms(BaseModel& base, const Observations& data);
 
 struct LoopModel {
@@ -47,24 +51,14 @@ struct LoopModel {
   std::size_t first_column(std::size_t atom) const;  // of its coefficients
 };
 
-// Least squares in which columns that depend on others get no weight.
-Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target);
-
 // Values of formulas, one a column.
 Eigen::MatrixXd evaluate_columns(std::span<const Expression> formulas, const Observations& data);
+Eigen::VectorXd evaluate_column(const Expression& formula, const SignalTable& table);
 Eigen::VectorXd predict(const LoopModel& model, const Observations& data);
 Eigen::Map<const Eigen::VectorXd> target_vector(const Observations& data);
 
-// Every direction in which the fitted model can move: base constants, linear terms, atoms' columns
-// and their refined shapes; zeros for a shape that stands at its bound. rows x directions.
-Eigen::MatrixXd tangent(const LoopModel& model, const Observations& data);
-
-enum class FitScope { linear, everything };
-
-// Fits to data.target, in the metric of `noise`. Leaves the model no worse than it was. A shape
-// that hits its bound stays there. Cost: a few dozen evaluations of the non-linear columns.
-void fit_model(LoopModel& model, const Observations& data, const Clusters& clusters,
-               const Noise& noise, FitScope scope);
+// The columns that the coefficients multiply.
+std::vector<Expression> linear_columns(const LoopModel& model);
 
 // The model as one formula over the signals.
 Expression formula_of(const LoopModel& model);

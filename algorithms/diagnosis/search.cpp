@@ -79,27 +79,22 @@ void Search::instantiate_library() {
   }
   usable_.assign(library_.size(), 1);
   for (std::size_t k = 0; k < library_.size(); ++k) {
-    const auto block = columns_.middleCols(static_cast<Eigen::Index>(blocks_[k].first),
-                                           static_cast<Eigen::Index>(blocks_[k].count));
-    if (!block.allFinite()) usable_[k] = 0;
+    auto block = columns_.middleCols(static_cast<Eigen::Index>(blocks_[k].first),
+                                     static_cast<Eigen::Index>(blocks_[k].count));
+    if (block.allFinite()) continue;
+    usable_[k] = 0;
+    block.setZero();
   }
 }
 
 Round Search::test_all(const FittedModel& state) const {
   Round round;
   round.columns = whitened(columns_, clusters_, state.noise);
-  const Eigen::VectorXd before = round.columns.colwise().squaredNorm();
-  const Eigen::MatrixXd projected = project_off(round.columns, state.basis);
-  round.blocks.resize(library_.size());
+  round.blocks = score_blocks(round.columns, blocks_, state.basis, state.residual, clusters_);
   for (std::size_t k = 0; k < library_.size(); ++k) {
-    if (usable_[k] == 0) continue;
     const bool lonely =
         library_[k].beside_another && atoms_of(library_[k].family, state.model) == 0;
-    if (lonely) continue;
-    const auto first = static_cast<Eigen::Index>(blocks_[k].first);
-    const auto count = static_cast<Eigen::Index>(blocks_[k].count);
-    round.blocks[k] = score_block(projected.middleCols(first, count), before.segment(first, count),
-                                  state.residual, clusters_, 0);
+    if (usable_[k] == 0 || lonely) round.blocks[k].test.testable = false;
   }
   count_carriers(round);
   round.maxima = flip_maxima(round.blocks, flips_);
@@ -172,10 +167,28 @@ bool Search::falls_with_speed(const LoopModel& model, std::size_t family) const 
   return false;
 }
 
+// Whether the one column of a family has the sign that its cause cannot have.
+bool Search::has_impossible_sign(const LoopModel& model) const {
+  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
+    const Atom& atom = model.atoms[k];
+    if (atoms_of(atom.family, model) > 1) continue;
+    for (const Sanity& sanity : families_[atom.family].sanity) {
+      const auto at = std::ranges::find(atom.coefficients, sanity.coefficient);
+      if (at == atom.coefficients.end()) continue;
+      const auto column =
+          model.first_column(k) + static_cast<std::size_t>(at - atom.coefficients.begin());
+      if (sanity.sign * model.coefficients[static_cast<Eigen::Index>(column)] < 0) return true;
+    }
+  }
+  return false;
+}
+
 // Curves of speed that two families can draw are told apart by whether friction falls. A base that
 // is a formula has its own curve, which nobody knows.
 bool Search::stands_for_another_cause(const LoopModel& model) const {
-  if (!options_.physical_vetoes || !model.base.formula.empty()) return false;
+  if (!options_.physical_vetoes) return false;
+  if (has_impossible_sign(model)) return true;
+  if (!model.base.formula.empty()) return false;
   return std::ranges::any_of(model.atoms, [&](const Atom& atom) {
     return atom.curve != SpeedCurve::any &&
            falls_with_speed(model, atom.family) != (atom.curve == SpeedCurve::falls);
@@ -212,20 +225,10 @@ std::optional<Candidate> Search::best_atom(std::size_t family, const Round& roun
   std::ranges::stable_sort(atoms, [&](std::size_t a, std::size_t b) {
     return round.blocks[a].test.score > round.blocks[b].test.score;
   });
-  // A column that the model has already is no part of the effect: an atom that holds one gives way
-  // to one that does without.
-  const auto holds_known_column = [&](std::size_t k) {
-    return static_cast<std::size_t>(round.blocks[k].whitened_sums.cols()) < blocks_[k].count;
-  };
-  if (options_.has("known_columns") && !std::ranges::all_of(atoms, holds_known_column)) {
-    std::erase_if(atoms, holds_known_column);
-  }
   if (atoms.size() > kAtomsTried) atoms.resize(kAtomsTried);
   std::optional<Candidate> best;
   for (const std::size_t k : atoms) {
-    const Eigen::MatrixXd x =
-        beside(state.x, round.columns.middleCols(static_cast<Eigen::Index>(blocks_[k].first),
-                                                 static_cast<Eigen::Index>(blocks_[k].count)));
+    const Eigen::MatrixXd x = beside(state.x, block_of(round.columns, k));
     Eigen::VectorXd losses = held_out_losses(x, state.residual, clusters_, state.noise);
     const Gain gain = paired_gain(state.losses, losses);
     if (!std::isfinite(gain.nats)) continue;  // one fold alone excites it
@@ -239,10 +242,7 @@ std::optional<Candidate> Search::best_atom(std::size_t family, const Round& roun
 // How many independent pieces of data carry an atom, as an effective number: movements where it
 // differs between them rather than within them, else stretches.
 double Search::carriers(const Round& round, std::size_t atom, const FittedModel& state) const {
-  const Eigen::MatrixXd z =
-      project_off(round.columns.middleCols(static_cast<Eigen::Index>(blocks_[atom].first),
-                                           static_cast<Eigen::Index>(blocks_[atom].count)),
-                  state.basis);
+  const Eigen::MatrixXd z = project_off(block_of(round.columns, atom), state.basis);
   double all = 0;
   double squares = 0;
   double between = 0;
@@ -258,16 +258,22 @@ double Search::carriers(const Round& round, std::size_t atom, const FittedModel&
   return by_movement ? all * all / squares : round.blocks[atom].test.effective_clusters;
 }
 
-// With the spread of the movements' offsets that this model itself leaves: what differs between
-// movements shows in that spread more than in the squares.
-Eigen::VectorXd Search::losses_with_own_offsets(const FittedModel& with,
-                                                const Noise& reference) const {
-  Noise noise = reference;
-  noise.between_sd = with.noise.between_sd;
-  const Eigen::VectorXd y =
-      whitened(target_vector(data_) - predict(with.model, data_), clusters_, noise);
-  const Eigen::MatrixXd x = whitened(tangent(with.model, data_), clusters_, noise);
-  return held_out_losses(x, y, clusters_, noise) + offset_nats(clusters_, noise);
+// The losses of the model with an atom more, with the spread of the movements' offsets that it
+// leaves itself: what differs between movements shows in that spread more than in the squares.
+Eigen::VectorXd Search::losses_with_own_offsets(std::size_t atom, const FittedModel& state) const {
+  const Eigen::MatrixXd x = beside(state.raw_tangent, columns_of(atom));
+  const auto fitted =
+      static_cast<std::size_t>(state.model.coefficients.size()) + blocks_[atom].count;
+  Noise noise = state.noise;
+  for (int pass = 0; pass < 2; ++pass) {
+    const Eigen::VectorXd solution = least_squares(whitened(x, clusters_, noise),
+                                                   whitened(state.raw_residual, clusters_, noise));
+    const Eigen::VectorXd residual = state.raw_residual - x * solution;
+    noise.between_sd = estimate_noise(residual, clusters_, fitted, noise_floor_).between_sd;
+  }
+  return held_out_losses(whitened(x, clusters_, noise),
+                         whitened(state.raw_residual, clusters_, noise), clusters_, noise) +
+         offset_nats(clusters_, noise);
 }
 
 // The rescue rule. What is carried by few movements cannot reach a small p by flipping their signs,
@@ -280,10 +286,7 @@ std::optional<Candidate> Search::rescue(std::size_t family, const Round& round,
   for (std::size_t k = 0; k < library_.size(); ++k) {
     if (library_[k].family != family || !round.blocks[k].test.testable) continue;
     if (!(carriers(round, k, state) < kFewClusters)) continue;
-    LoopModel model = state.model;
-    model.add(library_[k]);
-    Eigen::VectorXd losses =
-        losses_with_own_offsets(fit(std::move(model), FitScope::linear), state.noise);
+    Eigen::VectorXd losses = losses_with_own_offsets(k, state);
     const Gain gain = paired_gain(state.losses + offset_nats(clusters_, state.noise), losses);
     if (!(gain.nats > kRescueGain && gain.nats > 2 * gain.error)) continue;
     if (!best || gain.nats > best->gain.nats) {
@@ -298,9 +301,7 @@ std::optional<Candidate> Search::rescue(std::size_t family, const Round& round,
 // swollen would hide it.
 bool Search::differs_between_movements(std::size_t atom, const FittedModel& state) const {
   const Eigen::MatrixXd z =
-      project_off(columns_.middleCols(static_cast<Eigen::Index>(blocks_[atom].first),
-                                      static_cast<Eigen::Index>(blocks_[atom].count)),
-                  orthonormal_basis(tangent(state.model, data_)));
+      project_off(block_of(columns_, atom), orthonormal_basis(tangent(state.model, data_)));
   double between = 0;
   for (const RowRange& m : clusters_.movements) {
     between += z.middleRows(static_cast<Eigen::Index>(m.begin), static_cast<Eigen::Index>(m.size()))
@@ -321,10 +322,7 @@ std::size_t Search::best_shape(std::size_t atom, const Round& round,
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < library_.size(); ++k) {
     if (library_[k].family != library_[atom].family || !round.blocks[k].test.testable) continue;
-    LoopModel model = state.model;
-    model.add(library_[k]);
-    const double loss =
-        losses_with_own_offsets(fit(std::move(model), FitScope::linear), state.noise).sum();
+    const double loss = losses_with_own_offsets(k, state).sum();
     if (loss < least) {
       least = loss;
       best = k;
@@ -366,8 +364,11 @@ void Search::remove_family(LoopModel& model, std::size_t family) const {
 }
 
 bool Search::add_best(const Round& round) {
+  const double least = least_worth();
   for (const Candidate& winner : admitted(round, current_, rejected_)) {
     if (!(winner.gain.nats > winner.gain.error)) return false;
+    // At the grid's shapes it is worth less than it will be.
+    if (worth_beside(columns_of(winner.atom)) < least / 2) continue;
     if (add(winner, round)) return true;
   }
   return false;
@@ -439,25 +440,21 @@ void Search::run() {
   list_untestable(round);
   list_coinciding(round);
   list_candidates(round);
-  // A second column of a family refines it and is no addition; the bound on rounds ends a dance of
-  // swaps.
+  // A second column of a family refines it and is no addition.
   for (std::size_t turn = 0; turn < 3 * options_.max_effects; ++turn) {
     if (found.size() >= options_.max_effects) break;
-    const std::vector<Found> before = found;
     if (!add_best(round)) break;
-    const bool grew = found.size() > before.size();
-    const std::size_t added = found.back().family;
+    const std::vector<Found> before = found;
     reconsider();
     leave_out_cancelling();
-    const bool stayed = std::ranges::count(found, added, &Found::family) > 0;
-    if (!grew || stayed) {
-      rejected_.clear();
-    } else {
-      rejected_.push_back(added);
+    // What did not stand beside the rest is not tried again: the search goes on or ends.
+    for (const Found& one : before) {
+      if (std::ranges::count(found, one.family, &Found::family) == 0) {
+        rejected_.push_back(one.family);
+      }
     }
     round = test_all(current_);
   }
-  if (!found.empty() && options_.has("subsets")) check_exhaustively();
   leave_out_cancelling();
   leave_out_slight();
   test_leftover();

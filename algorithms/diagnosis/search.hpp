@@ -12,6 +12,7 @@
 
 #include "algorithms/diagnosis/diagnosis.hpp"
 #include "algorithms/diagnosis/loop_model.hpp"
+#include "algorithms/diagnosis/model_fit.hpp"
 #include "algorithms/diagnosis/smoothers.hpp"
 #include "algorithms/inference/cross_validation.hpp"
 #include "algorithms/inference/score_test.hpp"
@@ -37,6 +38,8 @@ struct FittedModel {
   Eigen::MatrixXd basis;     // of x, orthonormal
   Eigen::VectorXd residual;  // whitened, orthogonal to the basis
   Eigen::VectorXd losses;    // held-out, by stretch
+  Eigen::MatrixXd raw_tangent;
+  Eigen::VectorXd raw_residual;
 };
 
 // The tests of all atoms against one fitted model.
@@ -95,6 +98,7 @@ class Search {
                                   const std::vector<std::size_t>& skip) const;
   Round test_all(const FittedModel& state) const;
   bool falls_with_speed(const LoopModel& model, std::size_t family) const;
+  bool has_impossible_sign(const LoopModel& model) const;
   bool stands_for_another_cause(const LoopModel& model) const;
   void count_carriers(Round& round) const;
 
@@ -113,7 +117,7 @@ class Search {
   std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round) const;
   double carriers(const Round& round, std::size_t atom, const FittedModel& state) const;
   bool differs_between_movements(std::size_t atom, const FittedModel& state) const;
-  Eigen::VectorXd losses_with_own_offsets(const FittedModel& with, const Noise& reference) const;
+  Eigen::VectorXd losses_with_own_offsets(std::size_t atom, const FittedModel& state) const;
   std::size_t best_shape(std::size_t atom, const Round& round, const FittedModel& state) const;
   std::optional<Candidate> rescue(std::size_t family, const Round& round,
                                   const FittedModel& state) const;
@@ -122,22 +126,26 @@ class Search {
   std::optional<Candidate> best_atom(std::size_t family, const Round& round,
                                      const FittedModel& state) const;
   void reconsider();
-  bool swap_or_drop(std::size_t family);
-  bool renew(std::size_t family, const FittedModel& rest, const Round& round);
+  void drop_insignificant(std::size_t family);
   Gain lead_over_current(const FittedModel& other) const;
   double family_p_given_rest(std::size_t family, const FittedModel& rest, const Round& round,
                              const FittedModel& with) const;
   Eigen::VectorXd plain_losses(const LoopModel& model, const Eigen::MatrixXd& features = {},
                                double ridge = 0) const;
   std::vector<double> worths() const;
+  double least_worth() const;
+  double worth_beside(const Eigen::MatrixXd& columns, double ridge = 0) const;
+  // Of a matrix with the library's columns, those of one atom.
+  auto block_of(const Eigen::MatrixXd& columns, std::size_t atom) const {
+    return columns.middleCols(static_cast<Eigen::Index>(blocks_[atom].first),
+                              static_cast<Eigen::Index>(blocks_[atom].count));
+  }
+  Eigen::MatrixXd columns_of(std::size_t atom) const { return block_of(columns_, atom); }
   void leave_out_slight();
-  bool leftover_is_slight(const Eigen::MatrixXd& features, double ridge) const;
-  void check_exhaustively();
   // A found effect times another input.
   struct Modifier {
     std::size_t family;
     std::vector<std::string> signals;  // as the smoothers' pair
-    bool with_temperature;
     Eigen::MatrixXd columns;
   };
   std::vector<Modifier> modifiers() const;
@@ -151,9 +159,8 @@ class Search {
   Found* home_of(const std::vector<std::string>& inputs, std::size_t end, double nats);
   bool remembers(std::size_t family) const;
   void name_shapes();
-  bool drop_varying(const std::vector<Modifier>& products);
   void drop_proxies(const Smoother& smoother);
-  bool explains_more_than_is_left(const FittedModel& rest, double times = 1) const;
+  bool explains_more_than_is_left(const FittedModel& rest) const;
   static std::size_t atoms_of(std::size_t family, const LoopModel& model);
   void remove_family(LoopModel& model, std::size_t family) const;
 

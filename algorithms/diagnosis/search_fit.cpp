@@ -57,11 +57,11 @@ FittedModel Search::fit(LoopModel model, FitScope scope) const {
     safe = whitening_is_safe(model, data_, clusters_, noise);
     weighing = safe ? noise : plain;
   }
-  out.x = whitened(tangent(model, data_), clusters_, noise);
+  out.raw_tangent = tangent(model, data_);
+  out.raw_residual = target_vector(data_) - predict(model, data_);
+  out.x = whitened(out.raw_tangent, clusters_, noise);
   out.basis = orthonormal_basis(out.x);
-  const Eigen::VectorXd residual =
-      whitened(target_vector(data_) - predict(model, data_), clusters_, noise);
-  out.residual = project_off(residual, out.basis);
+  out.residual = project_off(whitened(out.raw_residual, clusters_, noise), out.basis);
   out.losses = held_out_losses(out.x, out.residual, clusters_, noise);
   out.model = std::move(model);
   out.noise = noise;

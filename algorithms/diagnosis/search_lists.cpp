@@ -74,10 +74,7 @@ void Search::list_coinciding(const Round& round) {
           static_cast<Eigen::Index>(blocks_[a].first), static_cast<Eigen::Index>(blocks_[b].first),
           static_cast<Eigen::Index>(blocks_[a].count), static_cast<Eigen::Index>(blocks_[b].count));
       if (cross.cwiseAbs().maxCoeff() < 0.5F) continue;
-      const auto block = [&](std::size_t k) {
-        return projected.middleCols(static_cast<Eigen::Index>(blocks_[k].first),
-                                    static_cast<Eigen::Index>(blocks_[k].count));
-      };
+      const auto block = [&](std::size_t k) { return block_of(projected, k); };
       if (blocks_[a].count == 1 && blocks_[b].count == 1 &&
           std::abs(cross(0, 0)) < static_cast<float>(kExactCorrelation)) {
         continue;
@@ -171,9 +168,7 @@ void Search::list_candidates(const Round& round) {
 std::vector<AliasFinding> Search::aliases_of(const Candidate& winner, const Round& round) const {
   std::vector<AliasFinding> aliases;
   const auto columns = [&](std::size_t atom) {
-    return project_off(round.columns.middleCols(static_cast<Eigen::Index>(blocks_[atom].first),
-                                                static_cast<Eigen::Index>(blocks_[atom].count)),
-                       current_.basis);
+    return project_off(block_of(round.columns, atom), current_.basis);
   };
   for (std::size_t f = 0; f < families_.size(); ++f) {
     if (f == winner.family || round.family_p[f] > (winner.rescued ? kRescueP : kNearAliasP))

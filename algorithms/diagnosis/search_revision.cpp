@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What the search makes of its earlier choices once more is known: families that are not needed any
-// more, others in their place, other columns of the same.
+// more, columns that cancel each other, what is next to nothing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,9 +18,7 @@ double Search::family_p_given_rest(std::size_t family, const FittedModel& rest, 
     formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
   }
   const Eigen::MatrixXd z = whitened(evaluate_columns(formulas, data_), clusters_, rest.noise);
-  const Eigen::VectorXd before = z.colwise().squaredNorm();
-  const BlockScores block =
-      score_block(project_off(z, rest.basis), before, rest.residual, clusters_, 0);
+  const BlockScores block = score_block(z, rest.basis, rest.residual, clusters_);
   return block.test.testable ? adjusted_p(block.test.score, round.maxima) : 1;
 }
 
@@ -32,66 +30,19 @@ Gain Search::lead_over_current(const FittedModel& other) const {
   return paired_gain(current_.losses, held_out_losses(x, y, clusters_, current_.noise));
 }
 
-// A family's columns were chosen when other effects were still missing and may have stood in for
-// them (harmonics of the position for a step of the load): they are chosen anew beside the rest.
-bool Search::renew(std::size_t family, const FittedModel& rest, const Round& round) {
-  std::vector<std::string> known;
-  for (const Atom& atom : current_.model.atoms) {
-    if (atom.family == family) known.push_back(atom.label);
-  }
-  LoopModel model = rest.model;
-  FittedModel other = rest;
-  for (std::size_t k = 0; k < known.size(); ++k) {
-    const Round own = k == 0 ? round : test_all(other);
-    const std::optional<Candidate> best = best_atom(family, own, other);
-    if (!best || !(best->gain.nats > best->gain.error)) return false;
-    if (k == 0 && std::ranges::count(known, library_[best->atom].label) > 0) return false;
-    model.add(library_[best_shape(best->atom, own, other)]);
-    other = fit(model, FitScope::everything);
-    const Gain lead = lead_over_current(other);
-    if (!(lead.nats > lead.error) || stands_for_another_cause(other.model)) continue;
-    note(fmt::format("'{}' predicts better by {:.1f} nats with other columns: taken",
-                     families_[family].name, lead.nats));
-    std::erase(asked_more_, family);
-    current_ = std::move(other);
-    return true;
-  }
-  return false;
-}
-
-bool Search::swap_or_drop(std::size_t family) {
+// What is not significant beside the rest stood in for something that has been found since.
+void Search::drop_insignificant(std::size_t family) {
   LoopModel without = current_.model;
   remove_family(without, family);
   const FittedModel rest = fit(std::move(without), FitScope::linear);
-  const Round round = test_all(rest);
   const auto entry = std::ranges::find(found, family, &Found::family);
-  const double p = family_p_given_rest(family, rest, round, current_);
-  if (options_.has("removal") && p > (entry->few ? kRescueP : options_.alpha_library)) {
-    FittedModel smaller = fit(rest.model, FitScope::everything);
-    if (stands_for_another_cause(smaller.model)) return false;
-    note(fmt::format("'{}' is not significant given the rest: removed", families_[family].name));
-    found.erase(entry);
-    current_ = std::move(smaller);
-    return true;
-  }
-  if (options_.has("renewal") && renew(family, rest, round)) return true;
-  if (!options_.has("swap")) return false;
-  std::vector<std::size_t> skip;
-  for (const Found& one : found) skip.push_back(one.family);
-  const std::vector<Candidate> rivals = admitted(round, rest, skip);
-  if (rivals.empty()) return false;
-  LoopModel swapped = rest.model;
-  swapped.add(library_[rivals.front().atom]);
-  FittedModel other = fit(std::move(swapped), FitScope::everything);
-  const Gain lead = lead_over_current(other);
-  if (!(lead.nats > lead.error) || stands_for_another_cause(other.model)) return false;
-  const Candidate& rival = rivals.front();
-  note(fmt::format("'{}' replaced by '{}', which predicts better by {:.1f} nats",
-                   families_[family].name, families_[rival.family].name, lead.nats));
-  *entry = {rival.family, round.family_p[rival.family], rival.gain, rival.rescued,
-            aliases_of(rival, round)};
-  current_ = std::move(other);
-  return true;
+  const double p = family_p_given_rest(family, rest, test_all(rest), current_);
+  if (p <= (entry->few ? kRescueP : options_.alpha_library)) return;
+  FittedModel smaller = fit(rest.model, FitScope::everything);
+  if (stands_for_another_cause(smaller.model)) return;
+  note(fmt::format("'{}' is not significant given the rest: removed", families_[family].name));
+  found.erase(entry);
+  current_ = std::move(smaller);
 }
 
 // The rule for a second column holds for the model as it stands: two that stood for something when
@@ -166,21 +117,24 @@ void Search::leave_out_slight() {
   }
 }
 
-bool Search::leftover_is_slight(const Eigen::MatrixXd& features, double ridge) const {
-  if (!options_.has("slight") || found.empty()) return false;
-  const std::vector<double> worth = worths();
-  const double with = plain_losses(current_.model, features, ridge).sum();
-  const double own = plain_losses(current_.model).sum() / with - 1;
-  return own < kSlight * std::min(1.0, *std::ranges::max_element(worth));
+// Less than this is next to nothing beside the effects found; beside none everything counts.
+double Search::least_worth() const {
+  if (!options_.has("slight") || found.empty()) return 0;
+  return kSlight * std::min(1.0, std::ranges::max(worths()));
+}
+
+// How much smaller the squared error is with these columns beside the model.
+double Search::worth_beside(const Eigen::MatrixXd& columns, double ridge) const {
+  return plain_losses(current_.model).sum() / plain_losses(current_.model, columns, ridge).sum() -
+         1;
 }
 
 void Search::reconsider() {
-  if (found.size() < 2) return;
+  if (!options_.has("removal")) return;
   std::vector<std::size_t> families;
   for (const Found& one : found) families.push_back(one.family);
   for (const std::size_t family : families) {
-    if (found.size() < 2) return;
-    swap_or_drop(family);
+    if (found.size() > 1) drop_insignificant(family);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "algorithms/diagnosis/model_fit.hpp"
 #include "foundation/elementary.hpp"
 
 namespace tribench::loop {

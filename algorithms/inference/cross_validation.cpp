@@ -79,45 +79,6 @@ Eigen::VectorXd held_out_losses(const Eigen::MatrixXd& x, const Eigen::VectorXd&
   return losses;
 }
 
-SubsetLosses::SubsetLosses(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y,
-                           const Clusters& clusters, const Noise& noise)
-    : clusters_(clusters), unit_(noise.unit()), width_(columns.cols() + 1) {
-  Eigen::MatrixXd all(columns.rows(), width_);
-  all << columns, y;
-  others_.assign(static_cast<std::size_t>(clusters.folds), Eigen::MatrixXd::Zero(width_, width_));
-  grams_.reserve(clusters.stretches.size());
-  squares_ = columns.colwise().squaredNorm();
-  for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
-    const auto rows = all.middleRows(static_cast<Eigen::Index>(clusters.stretches[c].begin),
-                                     static_cast<Eigen::Index>(clusters.stretches[c].size()));
-    grams_.emplace_back(rows.transpose() * rows);
-    for (int fold = 0; fold < clusters.folds; ++fold) {
-      if (fold != clusters.fold_of[c]) others_[static_cast<std::size_t>(fold)] += grams_.back();
-    }
-  }
-}
-
-Eigen::VectorXd SubsetLosses::losses(std::span<const Eigen::Index> chosen) const {
-  std::vector<Eigen::Index> with_target(chosen.begin(), chosen.end());
-  with_target.push_back(width_ - 1);
-  const auto p = static_cast<Eigen::Index>(chosen.size());
-  const Eigen::VectorXd of_chosen =
-      squares_(std::vector<Eigen::Index>(chosen.begin(), chosen.end()));
-  std::vector<Eigen::VectorXd> contrasts;  // (-solution, 1): the loss is its quadratic form
-  for (const Eigen::MatrixXd& gram : others_) {
-    Eigen::VectorXd contrast(p + 1);
-    contrast << -solve_scaled(gram(with_target, with_target), of_chosen), 1;
-    contrasts.push_back(std::move(contrast));
-  }
-  Eigen::VectorXd losses(static_cast<Eigen::Index>(grams_.size()));
-  for (std::size_t c = 0; c < grams_.size(); ++c) {
-    const Eigen::VectorXd& contrast = contrasts[static_cast<std::size_t>(clusters_.fold_of[c])];
-    const Eigen::MatrixXd gram = grams_[c](with_target, with_target);
-    losses[static_cast<Eigen::Index>(c)] = contrast.dot(gram * contrast) / unit_;
-  }
-  return losses;
-}
-
 Gain paired_gain(const Eigen::VectorXd& losses_before, const Eigen::VectorXd& losses_after) {
   const Eigen::VectorXd difference = losses_before - losses_after;
   const auto count = static_cast<double>(difference.size());

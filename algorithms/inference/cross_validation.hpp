@@ -24,22 +24,6 @@ Eigen::VectorXd held_out_losses(const Eigen::MatrixXd& x, const Eigen::VectorXd&
                                 const Clusters& clusters, const Noise& noise,
                                 Eigen::Index penalised = 0, double ridge = 0);
 
-// The same for many choices of columns of one matrix, from the clusters' Gram matrices.
-class SubsetLosses {
- public:
-  SubsetLosses(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, const Clusters& clusters,
-               const Noise& noise);
-  Eigen::VectorXd losses(std::span<const Eigen::Index> chosen) const;
-
- private:
-  const Clusters& clusters_;
-  double unit_;
-  Eigen::Index width_;                   // columns, y is the last
-  std::vector<Eigen::MatrixXd> grams_;   // per stretch
-  std::vector<Eigen::MatrixXd> others_;  // per fold: of all rows but its own
-  Eigen::VectorXd squares_;              // of the columns, over all rows
-};
-
 struct Gain {
   double nats = 0;
   double error = 0;  // standard error over the clusters

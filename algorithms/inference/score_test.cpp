@@ -24,22 +24,6 @@ Eigen::MatrixXd factor_of(const Eigen::MatrixXd& gram, double ridge) {
   return loaded.llt().matrixL();
 }
 
-// The columns of which the projection has left more than rounding, over their length before it.
-Eigen::MatrixXd columns_left(const Eigen::Ref<const Eigen::MatrixXd>& projected,
-                             const Eigen::Ref<const Eigen::VectorXd>& before,
-                             const Eigen::VectorXd& after) {
-  Eigen::MatrixXd left = projected;
-  Eigen::Index kept = 0;
-  for (Eigen::Index j = 0; j < left.cols(); ++j) {
-    if (!(after[j] > kSmallestShare * before[j])) continue;
-    if (kept != j) left.col(kept) = left.col(j);
-    left.col(kept) /= std::sqrt(before[j]);
-    ++kept;
-  }
-  left.conservativeResize(Eigen::NoChange, kept);
-  return left;
-}
-
 void count_clusters(BlockTest& test, const Eigen::VectorXd& h) {
   const double sum = h.sum();
   const double squares = h.squaredNorm();
@@ -114,30 +98,89 @@ Eigen::MatrixXd project_off(const Eigen::MatrixXd& z, const Eigen::MatrixXd& bas
   return z - basis * (basis.transpose() * z);
 }
 
-BlockScores score_block(const Eigen::Ref<const Eigen::MatrixXd>& projected,
-                        const Eigen::Ref<const Eigen::VectorXd>& before,
-                        const Eigen::VectorXd& residual, const Clusters& clusters, double ridge) {
-  BlockScores out;
-  const Eigen::VectorXd after = projected.colwise().squaredNorm();
-  out.test.share = before.sum() > 0 ? std::sqrt(after.sum() / before.sum()) : 0;
-  const Eigen::MatrixXd zt = columns_left(projected, before, after);
-  if (zt.cols() == 0) return out;
-  out.test.testable = true;
-  out.test.information = after.sum() / static_cast<double>(after.size());
-  const auto count = static_cast<Eigen::Index>(clusters.stretches.size());
-  Eigen::MatrixXd sums(count, zt.cols());
-  Eigen::VectorXd h(count);
-  for (Eigen::Index c = 0; c < count; ++c) {
-    const RowRange& range = clusters.stretches[static_cast<std::size_t>(c)];
-    const auto begin = static_cast<Eigen::Index>(range.begin);
-    const auto size = static_cast<Eigen::Index>(range.size());
-    const auto rows = zt.middleRows(begin, size);
-    sums.row(c).noalias() = residual.segment(begin, size).transpose() * rows;
-    h[c] = rows.squaredNorm();
+namespace {
+
+// Of all columns beside a basis, stretch by stretch, without a copy of the columns less the basis:
+// what the statistic and its null are made of.
+struct ProjectedSums {
+  ProjectedSums(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
+                const Eigen::VectorXd& residual, const Clusters& clusters)
+      : sums(static_cast<Eigen::Index>(clusters.stretches.size()), z.cols()),
+        squares(sums.rows(), z.cols()),
+        along(Eigen::MatrixXd::Zero(basis.cols(), z.cols())),
+        before(z.colwise().squaredNorm()) {
+    std::vector<Eigen::MatrixXd> parts;  // of `along`
+    std::vector<Eigen::MatrixXd> grams;  // of the basis
+    Eigen::MatrixXd of_residual(sums.rows(), basis.cols());
+    for (Eigen::Index c = 0; c < sums.rows(); ++c) {
+      const RowRange& range = clusters.stretches[static_cast<std::size_t>(c)];
+      const auto begin = static_cast<Eigen::Index>(range.begin);
+      const auto size = static_cast<Eigen::Index>(range.size());
+      const auto rows = z.middleRows(begin, size);
+      const auto own = basis.middleRows(begin, size);
+      const auto left = residual.segment(begin, size).transpose();
+      sums.row(c).noalias() = left * rows;
+      of_residual.row(c).noalias() = left * own;
+      squares.row(c) = rows.colwise().squaredNorm();
+      parts.emplace_back(own.transpose() * rows);
+      grams.emplace_back(own.transpose() * own);
+      along += parts.back();
+    }
+    sums -= of_residual * along;
+    for (Eigen::Index c = 0; c < sums.rows(); ++c) {
+      const auto at = static_cast<std::size_t>(c);
+      squares.row(c) += along.cwiseProduct(grams[at] * along - 2 * parts[at]).colwise().sum();
+    }
+    after = (before - along.colwise().squaredNorm().transpose()).cwiseMax(0);
   }
-  count_clusters(out.test, h);
-  finish_scores(out, zt.transpose() * zt, sums, ridge);
+
+  Eigen::MatrixXd sums;     // stretches x columns: residual' (z less the basis)
+  Eigen::MatrixXd squares;  // the same: of z less the basis
+  Eigen::MatrixXd along;    // basis' z
+  Eigen::VectorXd before;   // a column's squares
+  Eigen::VectorXd after;    // ... less the basis
+};
+
+BlockScores score_one(const Eigen::MatrixXd& z, const ProjectedSums& all, const Block& block) {
+  BlockScores out;
+  const auto first = static_cast<Eigen::Index>(block.first);
+  const auto count = static_cast<Eigen::Index>(block.count);
+  const double before = all.before.segment(first, count).sum();
+  const double after = all.after.segment(first, count).sum();
+  out.test.share = before > 0 ? std::sqrt(after / before) : 0;
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index j = first; j < first + count; ++j) {
+    if (all.after[j] > kSmallestShare * all.before[j]) kept.push_back(j);
+  }
+  if (kept.empty()) return out;
+  out.test.testable = true;
+  out.test.information = after / static_cast<double>(count);
+  const Eigen::VectorXd scale = all.before(kept).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd columns = z(Eigen::all, kept);
+  const Eigen::MatrixXd along = all.along(Eigen::all, kept);
+  const Eigen::MatrixXd gram = columns.transpose() * columns - along.transpose() * along;
+  count_clusters(out.test, all.squares(Eigen::all, kept) * scale.cwiseAbs2());
+  finish_scores(out, scale.asDiagonal() * gram * scale.asDiagonal(),
+                all.sums(Eigen::all, kept) * scale.asDiagonal(), 0);
   return out;
+}
+
+}  // namespace
+
+std::vector<BlockScores> score_blocks(const Eigen::MatrixXd& z, std::span<const Block> blocks,
+                                      const Eigen::MatrixXd& basis, const Eigen::VectorXd& residual,
+                                      const Clusters& clusters) {
+  const ProjectedSums all(z, basis, residual, clusters);
+  std::vector<BlockScores> scores;
+  scores.reserve(blocks.size());
+  for (const Block& block : blocks) scores.push_back(score_one(z, all, block));
+  return scores;
+}
+
+BlockScores score_block(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
+                        const Eigen::VectorXd& residual, const Clusters& clusters) {
+  const Block whole{0, static_cast<std::size_t>(z.cols())};
+  return score_blocks(z, std::span(&whole, 1), basis, residual, clusters).front();
 }
 
 BlockScores score_sums(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& sums, double ridge) {

@@ -49,12 +49,15 @@ struct BlockScores {
   MatchedGamma gamma{0, 0};
 };
 
-// zt: rows x p (whitened), projected off the model's basis; before: its columns' sums of squares
-// before that; residual orthogonal to the basis. ridge: added to Zt'Zt as a share of its mean
-// diagonal.
-BlockScores score_block(const Eigen::Ref<const Eigen::MatrixXd>& zt,
-                        const Eigen::Ref<const Eigen::VectorXd>& before,
-                        const Eigen::VectorXd& residual, const Clusters& clusters, double ridge);
+// Of every block of columns of z (rows x columns, whitened; finite) beside a model with this basis
+// and residual, which is orthogonal to it. A column that is all but in the basis is left out of its
+// block. Cost: rows x columns x basis, once.
+std::vector<BlockScores> score_blocks(const Eigen::MatrixXd& z, std::span<const Block> blocks,
+                                      const Eigen::MatrixXd& basis, const Eigen::VectorXd& residual,
+                                      const Clusters& clusters);
+// All columns as one block.
+BlockScores score_block(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
+                        const Eigen::VectorXd& residual, const Clusters& clusters);
 
 // [a b]
 Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);

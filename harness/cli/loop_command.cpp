@@ -30,6 +30,8 @@
 #include "harness/cli/number_options.hpp"
 #include "harness/loop/loop_motion.hpp"
 #include "harness/loop/loop_record_of.hpp"
+#include "harness/machine.hpp"
+#include "harness/progress_line.hpp"
 #include "problems/preparation/recording.hpp"
 #include "problems/reading/explanation.hpp"
 #include "reports/loop_report.hpp"
@@ -61,6 +63,7 @@ struct LoopArguments {
   std::string leave_out;
   bool json = false;
   int suggest = 0;
+  int jobs = 0;
   std::string learn = "none";
   std::uint64_t learn_evaluations = 50'000'000;
   std::string learned;
@@ -260,6 +263,27 @@ void explain(const LoopArguments& arguments) {
              recording.data.movement_names.size());
 }
 
+// A base that is a method has one budget for all searches: they take turns.
+loop::Diagnosis diagnosed(const LoopArguments& arguments, const loop::Observations& data,
+                          const loop::BaseMaker& base, bool base_is_a_method) {
+  constexpr double kShownFrom_s = 2;
+  loop::DiagnosisOptions options = diagnosis_options(arguments);
+  const int jobs = arguments.jobs > 0 ? arguments.jobs : usable_processors();
+  options.threads = base_is_a_method ? 1 : jobs;
+  std::optional<ProgressLine> line;
+  options.progress = [&](std::size_t, std::size_t searches) {
+    if (!line) {
+      line.emplace(searches, static_cast<double>(searches), false,
+                   ProgressUnit{"searches", false, kShownFrom_s});
+    }
+    line->cell_ended(1, false);
+  };
+  loop::Diagnosis diagnosis = loop::diagnose(data, base, options, arguments.seed);
+  // They say how it was reached, and hold references to what ends here.
+  diagnosis.options.progress = nullptr;
+  return diagnosis;
+}
+
 ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) {
   if (arguments.explain) {
     explain(arguments);
@@ -282,8 +306,7 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
   std::unique_ptr<Regressor> method;
   Budget budget(BudgetLimits{.evaluations = arguments.evaluations});
   const loop::BaseMaker base = base_of(arguments, registry, method, budget);
-  loop::Diagnosis diagnosis =
-      loop::diagnose(data, base, diagnosis_options(arguments), arguments.seed);
+  loop::Diagnosis diagnosis = diagnosed(arguments, data, base, method != nullptr);
   if (arguments.learn != "none" && !diagnosis.leftover.signals.empty()) {
     grow_library(arguments, registry, data, base, diagnosis, extras);
   }
@@ -385,6 +408,8 @@ void add_search_options(CLI::App& command, LoopArguments& arguments) {
   command.add_option("--seed", arguments.seed, "same seed, same answer")
       ->transform(whole_number(0))
       ->capture_default_str();
+  command.add_option("--jobs", arguments.jobs, "threads; the answer is the same for any")
+      ->transform(whole_number(0, 1024));
   command.add_option("--evaluations", arguments.evaluations, "what a searched base may spend")
       ->transform(whole_number(0))
       ->capture_default_str();

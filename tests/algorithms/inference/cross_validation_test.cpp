@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -35,9 +34,6 @@ TEST(CrossValidation, WhatOneFoldAloneExcitesPredictsNothingThere) {
   const Case c = make_case();
   const Eigen::VectorXd losses = held_out_losses(c.x, c.y, c.clusters, c.noise);
   EXPECT_TRUE(std::isnan(losses[0]));
-  const SubsetLosses subsets(c.x, c.y, c.clusters, c.noise);
-  const std::array<Eigen::Index, 2> both = {0, 1};
-  EXPECT_TRUE(std::isnan(subsets.losses(both)[0]));
 }
 
 TEST(CrossValidation, WhatTheOthersHaveOfAColumnMustBeMoreThanRounding) {
@@ -60,16 +56,6 @@ TEST(CrossValidation, AColumnOfZerosIsHarmless) {
   const Eigen::VectorXd with = held_out_losses(c.x, c.y, c.clusters, c.noise);
   const Eigen::VectorXd without = held_out_losses(c.x.leftCols(1), c.y, c.clusters, c.noise);
   EXPECT_LT((with - without).cwiseAbs().maxCoeff(), 1e-6);
-}
-
-TEST(CrossValidation, AChoiceOfColumnsHasTheLossesOfItsOwnModel) {
-  Case c = make_case();
-  RandomStream random(3);
-  c.x.col(1) = Eigen::VectorXd::NullaryExpr(200, [&] { return random.normal(); });
-  const SubsetLosses subsets(c.x, c.y, c.clusters, c.noise);
-  const std::array<Eigen::Index, 1> second = {1};
-  const Eigen::VectorXd direct = held_out_losses(c.x.rightCols(1), c.y, c.clusters, c.noise);
-  EXPECT_LT((subsets.losses(second) - direct).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 // Each movement's mean is predicted from the others': with ten the loss is 100/81 of the variance.

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/model_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/fitting/symmetric_system.hpp"
+
+namespace tribench::loop {
+namespace {
+
+constexpr int kMaxIterations = 30;
+constexpr double kStepTolerance = 1e-6;
+constexpr double kRelativeStep = 1e-5;  // of the central differences
+// Of a column's square: less beside the others is rounding.
+constexpr double kDependent = 1e-11;
+
+// One non-linear parameter: where it is, its value and its bounds.
+struct Nonlinear {
+  bool of_base;
+  std::size_t atom;   // or unused
+  std::size_t place;  // node of the base's formula, or shape of the atom
+  double low;
+  double high;
+};
+
+std::vector<Nonlinear> nonlinear_parameters(const LoopModel& model) {
+  std::vector<Nonlinear> all;
+  for (const std::size_t at : free_constants(model.base.formula)) {
+    all.push_back({true, 0, at, -1e300, 1e300});
+  }
+  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
+    for (std::size_t s = 0; s < model.atoms[k].shapes.size(); ++s) {
+      const Shape& shape = model.atoms[k].shapes[s];
+      if (shape.refined()) all.push_back({false, k, s, shape.low, shape.high});
+    }
+  }
+  return all;
+}
+
+double value_of(const LoopModel& model, const Nonlinear& p) {
+  return p.of_base ? model.base.formula.node(p.place).value
+                   : model.atoms[p.atom].shapes[p.place].value;
+}
+
+void set_value(LoopModel& model, const Nonlinear& p, double value) {
+  if (p.of_base) {
+    model.base.formula.set_constant(p.place, value);
+  } else {
+    model.atoms[p.atom].set_shape(p.place, std::clamp(value, p.low, p.high));
+  }
+}
+
+// What the parameter moves: the base's formula or the atom's columns times their coefficients.
+Eigen::VectorXd moved_part(const LoopModel& model, const Nonlinear& p, const SignalTable& table) {
+  if (p.of_base) return evaluate_column(model.base.formula, table);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(table.inputs().rows));
+  const std::size_t first = model.first_column(p.atom);
+  const Atom& atom = model.atoms[p.atom];
+  for (std::size_t c = 0; c < atom.columns.size(); ++c) {
+    sum += model.coefficients[static_cast<Eigen::Index>(first + c)] *
+           evaluate_column(atom.columns[c], table);
+  }
+  return sum;
+}
+
+Eigen::VectorXd derivative(LoopModel& model, const Nonlinear& p, const SignalTable& table) {
+  const double value = value_of(model, p);
+  const double step = kRelativeStep * (value != 0 ? std::abs(value) : 1e-3);
+  const double above = std::min(value + step, p.high);
+  const double below = std::max(value - step, p.low);
+  set_value(model, p, above);
+  const Eigen::VectorXd up = moved_part(model, p, table);
+  set_value(model, p, below);
+  const Eigen::VectorXd down = moved_part(model, p, table);
+  set_value(model, p, value);
+  return (up - down) / (above - below);
+}
+
+// A shape that a fit has driven to its bound cannot follow its derivative: to project what it
+// cannot do out of other effects would hide them (a wide step of the load would hide a gain).
+bool held_by_bound(const LoopModel& model, const Nonlinear& p) {
+  const double value = value_of(model, p);
+  return !p.of_base && (value <= p.low || value >= p.high);
+}
+
+// The linear part at the present shapes: whitened columns of unit length, their products, and what
+// is left of the target beside them. Between the steps of a fit only the columns that have shapes
+// are worked out again.
+class LinearPart {
+ public:
+  LinearPart(const Observations& data, const Clusters& clusters, const Noise& noise)
+      : data_(&data), clusters_(&clusters), noise_(&noise) {}
+
+  // Works out all columns, and solves for the coefficients.
+  void begin(LoopModel& model) {
+    x_ = whitened(evaluate_columns(linear_columns(model), *data_), *clusters_, *noise_);
+    lengths_ = Eigen::VectorXd::Ones(x_.cols());
+    for (Eigen::Index j = 0; j < x_.cols(); ++j) scale(j);
+    gram_ = x_.transpose() * x_;
+    renew_target(model);
+    solve(model);
+  }
+
+  // The same after a change of shapes.
+  void renew(LoopModel& model) {
+    const SignalTable table(*data_);
+    for (std::size_t k = 0; k < model.atoms.size(); ++k) {
+      const Atom& atom = model.atoms[k];
+      if (!std::ranges::any_of(atom.shapes, &Shape::refined)) continue;
+      const auto first = static_cast<Eigen::Index>(model.first_column(k));
+      const auto count = static_cast<Eigen::Index>(atom.columns.size());
+      for (Eigen::Index c = 0; c < count; ++c) {
+        x_.col(first + c) = whitened(
+            evaluate_column(atom.columns[static_cast<std::size_t>(c)], table), *clusters_, *noise_);
+        scale(first + c);
+      }
+      const Eigen::MatrixXd products = x_.transpose() * x_.middleCols(first, count);
+      gram_.middleCols(first, count) = products;
+      gram_.middleRows(first, count) = products.transpose();
+    }
+    renew_target(model);
+    solve(model);
+  }
+
+  const Eigen::MatrixXd& columns() const { return x_; }
+  const Eigen::MatrixXd& gram() const { return gram_; }
+  const Eigen::VectorXd& residual() const { return residual_; }
+  double sum_squares() const { return sum_squares_; }
+
+ private:
+  void scale(Eigen::Index j) {
+    const double length = x_.col(j).norm();
+    lengths_[j] = length > 0 && std::isfinite(length) ? length : 1;
+    x_.col(j) /= lengths_[j];
+  }
+
+  void renew_target(const LoopModel& model) {
+    if (y_.size() > 0 && model.base.formula.empty()) return;
+    Eigen::VectorXd y = target_vector(*data_);
+    if (!model.base.formula.empty()) y -= evaluate_column(model.base.formula, SignalTable(*data_));
+    y_ = whitened(y, *clusters_, *noise_);
+  }
+
+  void solve(LoopModel& model) {
+    residual_ = y_;
+    if (x_.cols() > 0) {
+      const Eigen::VectorXd solution =
+          basic_solution_symmetric(gram_, x_.transpose() * y_, kDependent);
+      model.coefficients = solution.cwiseQuotient(lengths_);
+      residual_ -= x_ * solution;
+    }
+    sum_squares_ = residual_.squaredNorm();
+  }
+
+  const Observations* data_;
+  const Clusters* clusters_;
+  const Noise* noise_;
+  Eigen::MatrixXd x_;
+  Eigen::VectorXd lengths_;
+  Eigen::MatrixXd gram_;
+  Eigen::VectorXd y_;
+  Eigen::VectorXd residual_;
+  double sum_squares_ = 0;
+};
+
+// What the non-linear parameters can do that the linear ones cannot: the products of the Jacobian's
+// columns, the linear columns projected out, and its products with the residual.
+struct NonlinearNormal {
+  Eigen::MatrixXd gram;
+  Eigen::VectorXd gradient;
+};
+
+NonlinearNormal nonlinear_normal(LoopModel& model, const std::vector<Nonlinear>& parameters,
+                                 const Observations& data, const Clusters& clusters,
+                                 const Noise& noise, const LinearPart& fit) {
+  const SignalTable table(data);
+  Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(data.rows()),
+                           static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    jacobian.col(static_cast<Eigen::Index>(j)) = derivative(model, parameters[j], table);
+  }
+  jacobian = whitened(std::move(jacobian), clusters, noise);
+  NonlinearNormal out{jacobian.transpose() * jacobian, jacobian.transpose() * fit.residual()};
+  if (fit.columns().cols() == 0) return out;
+  const Eigen::VectorXd whole = out.gram.diagonal();
+  const Eigen::MatrixXd cross = fit.columns().transpose() * jacobian;
+  out.gram -= cross.transpose() * basic_solution_symmetric(fit.gram(), cross, kDependent);
+  out.gram.diagonal() = out.gram.diagonal().cwiseMax(kDependent * whole);
+  return out;
+}
+
+// A damped step; parameters that would leave their bounds stop at them. Returns its relative size.
+double take_step(LoopModel& model, const std::vector<Nonlinear>& parameters,
+                 const NonlinearNormal& normal, double damping) {
+  const Eigen::VectorXd scale = normal.gram.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  Eigen::MatrixXd damped =
+      scale.cwiseInverse().asDiagonal() * normal.gram * scale.cwiseInverse().asDiagonal();
+  damped.diagonal().array() += damping;
+  const Eigen::VectorXd step =
+      solve_symmetric(damped, normal.gradient.cwiseQuotient(scale)).cwiseQuotient(scale);
+  double largest = 0;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    const double before = value_of(model, parameters[j]);
+    const double change = step[static_cast<Eigen::Index>(j)];
+    if (!std::isfinite(change)) continue;
+    set_value(model, parameters[j], before + change);
+    const double after = value_of(model, parameters[j]);
+    largest = std::max(largest, std::abs(after - before) / (before != 0 ? std::abs(before) : 1.0));
+  }
+  return largest;
+}
+
+}  // namespace
+
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
+  Eigen::VectorXd lengths = columns.colwise().norm();
+  for (double& length : lengths) length = length > 0 && std::isfinite(length) ? length : 1;
+  const Eigen::MatrixXd scaled = columns * lengths.cwiseInverse().asDiagonal();
+  return basic_solution_symmetric(scaled.transpose() * scaled, scaled.transpose() * target,
+                                  kDependent)
+      .cwiseQuotient(lengths);
+}
+
+Eigen::MatrixXd tangent(const LoopModel& model, const Observations& data) {
+  LoopModel copy = model;
+  const SignalTable table(data);
+  const std::vector<Nonlinear> parameters = nonlinear_parameters(model);
+  const Eigen::MatrixXd linear = evaluate_columns(linear_columns(model), data);
+  Eigen::MatrixXd out(linear.rows(), linear.cols() + static_cast<Eigen::Index>(parameters.size()));
+  out.leftCols(linear.cols()) = linear;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    auto column = out.col(linear.cols() + static_cast<Eigen::Index>(j));
+    if (held_by_bound(model, parameters[j])) {
+      column.setZero();
+    } else {
+      column = derivative(copy, parameters[j], table);
+    }
+  }
+  return out;
+}
+
+void fit_model(LoopModel& model, const Observations& data, const Clusters& clusters,
+               const Noise& noise, FitScope scope) {
+  LinearPart fit(data, clusters, noise);
+  fit.begin(model);
+  const std::vector<Nonlinear> parameters =
+      scope == FitScope::everything ? nonlinear_parameters(model) : std::vector<Nonlinear>();
+  if (parameters.empty()) return;
+  double damping = 1e-3;
+  LinearPart trial_fit = fit;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const NonlinearNormal normal = nonlinear_normal(model, parameters, data, clusters, noise, fit);
+    bool improved = false;
+    double step = 0;
+    double decrease = 0;
+    for (int attempt = 0; attempt < 6 && !improved; ++attempt) {
+      LoopModel trial = model;
+      step = take_step(trial, parameters, normal, damping);
+      trial_fit.renew(trial);
+      improved = trial_fit.sum_squares() < fit.sum_squares();
+      damping *= improved ? 0.2 : 8;
+      if (!improved) continue;
+      decrease = 1 - trial_fit.sum_squares() / fit.sum_squares();
+      model = std::move(trial);
+      std::swap(fit, trial_fit);
+    }
+    if (!improved || step < kStepTolerance || decrease < 1e-9) return;
+  }
+}
+
+}  // namespace tribench::loop
