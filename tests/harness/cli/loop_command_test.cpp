@@ -281,6 +281,15 @@ TEST(LoopCommand, MovementsOfOneKindAreLeftOutTogether) {
   EXPECT_EQ(loop["error"]["test_movements"], 12);
 }
 
+TEST(LoopCommand, SaysTheSameWithAnyNumberOfThreads) {
+  const testing::TemporaryFolder folder;
+  const std::string file = file_of(folder, kPlainHeader, 8, 80, plain_line);
+  const std::string alone = run_tribench({"loop", file, "--json", "--jobs", "1"}).output;
+  const Json answer = Json::parse(alone);
+  EXPECT_GT(answer["error"]["rmse_after"], 0);
+  EXPECT_EQ(run_tribench({"loop", file, "--json", "--jobs", "3"}).output, alone);
+}
+
 TEST(LoopCommand, OneRowAMovementIsRefusedWithTheReason) {
   const testing::TemporaryFolder folder;
   const testing::ProgramRun run = run_tribench({"loop", generated(folder, "A/j2/no_load", "1")});
