@@ -4,6 +4,7 @@
 // are linked together hide a call that runs back, and a link that is missing.
 #include <gtest/gtest.h>
 
+#include <iomanip>
 #include <map>
 #include <set>
 #include <sstream>
@@ -52,7 +53,7 @@ RoomArchives read_rooms() {
     std::istringstream words(line);
     std::string name;
     std::string archive;
-    words >> name >> archive;
+    words >> name >> std::quoted(archive);
     RoomArchive& room = rooms[name];
     for (std::string link; words >> link;) {
       const std::string prefix = "tribench::";
