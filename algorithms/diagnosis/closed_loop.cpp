@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/closed_loop.hpp"
-#include "algorithms/diagnosis/model_fit.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "algorithms/diagnosis/model_fit.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 

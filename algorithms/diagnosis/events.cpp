@@ -26,6 +26,7 @@ constexpr double kMostEvents = 0.05;
 constexpr std::array<std::size_t, 4> kLengths = {4, 6, 9, 14};
 constexpr std::array<double, 5> kHeights = {6, 9, 14, 28, 80};
 constexpr std::size_t kLongestPulse = 15;  // rows it touches
+// Likely pulses in a recording from which on one has to stand out of the others.
 constexpr std::size_t kFewestForTail = 8;
 // A start counts only where four neighbouring innovations, clipped, add up to this: no single row
 // and no slow drift passes for a pulse.

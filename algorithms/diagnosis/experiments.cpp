@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/experiments.hpp"
-#include "algorithms/diagnosis/model_fit.hpp"
 
 #include <fmt/format.h>
 
@@ -10,6 +9,7 @@
 
 #include <Eigen/QR>
 
+#include "algorithms/diagnosis/model_fit.hpp"
 #include "foundation/elementary.hpp"
 #include "problems/preparation/derived_channels.hpp"
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "algorithms/expression/text.hpp"
+#include "algorithms/fitting/free_constants.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench::loop {
@@ -47,15 +48,6 @@ bool add_linear_terms(const Expression& sum, std::vector<Expression>& terms) {
 }
 
 }  // namespace
-
-std::vector<std::size_t> free_constants(const Expression& formula) {
-  std::vector<std::size_t> free;
-  for (const std::size_t at : formula.constant_positions()) {
-    const bool exponent = at + 1 < formula.size() && formula.node(at + 1).op == Op::pow;
-    if (!exponent) free.push_back(at);
-  }
-  return free;
-}
 
 void add_rigid_terms(BaseModel& base, const Observations& data) {
   const std::vector<std::string> names = data.names();

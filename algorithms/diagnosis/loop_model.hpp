@@ -35,8 +35,6 @@ BaseModel coulomb_viscous_base(const Observations& data);
 // A formula over the signals' names (or the channels'), with the rigid signals beside it. Throws
 // Error (bad_input) that names what is unknown.
 BaseModel formula_base(const Observations& data, std::string_view text);
-// Where the constants stand that a fit may move: an integer exponent is part of the form.
-std::vector<std::size_t> free_constants(const Expression& formula);
 void add_rigid_terms(BaseModel& base, const Observations& data);
 
 struct LoopModel {

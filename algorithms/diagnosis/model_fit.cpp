@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 
 namespace tribench::loop {
@@ -14,6 +16,7 @@ constexpr double kStepTolerance = 1e-6;
 constexpr double kRelativeStep = 1e-5;  // of the central differences
 // Of a column's square: less beside the others is rounding.
 constexpr double kDependent = 1e-11;
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // One non-linear parameter: where it is, its value and its bounds.
 struct Nonlinear {
@@ -27,7 +30,7 @@ struct Nonlinear {
 std::vector<Nonlinear> nonlinear_parameters(const LoopModel& model) {
   std::vector<Nonlinear> all;
   for (const std::size_t at : free_constants(model.base.formula)) {
-    all.push_back({true, 0, at, -1e300, 1e300});
+    all.push_back({true, 0, at, -kUnbounded, kUnbounded});
   }
   for (std::size_t k = 0; k < model.atoms.size(); ++k) {
     for (std::size_t s = 0; s < model.atoms[k].shapes.size(); ++s) {

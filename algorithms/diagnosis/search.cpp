@@ -331,19 +331,18 @@ std::size_t Search::best_shape(std::size_t atom, const Round& round,
   return best;
 }
 
-std::vector<Candidate> Search::admitted(const Round& round, const FittedModel& state,
-                                        const std::vector<std::size_t>& skip) const {
+std::vector<Candidate> Search::admitted(const Round& round) const {
   std::vector<Candidate> all;
   for (std::size_t f = 0; f < families_.size(); ++f) {
-    if (std::ranges::count(skip, f) > 0 || !(round.family_score[f] > 0)) continue;
+    if (std::ranges::count(rejected_, f) > 0 || !(round.family_score[f] > 0)) continue;
     const bool significant =
         round.rescue_only[f] == 0 && round.family_p[f] <= options_.alpha_library;
     if (!significant && round.family_p[f] >= kRescueP) continue;
-    std::optional<Candidate> one = rescue(f, round, state);
+    std::optional<Candidate> one = rescue(f, round, current_);
     if (significant) {
       // What few movements carry gains by their offsets, significant or not: a smaller p must not
       // make it harder to be admitted.
-      std::optional<Candidate> plain = best_atom(f, round, state);
+      std::optional<Candidate> plain = best_atom(f, round, current_);
       if (!one || (plain && plain->gain.nats >= one->gain.nats)) one = std::move(plain);
     }
     if (one) all.push_back(std::move(*one));
@@ -365,7 +364,7 @@ void Search::remove_family(LoopModel& model, std::size_t family) const {
 
 bool Search::add_best(const Round& round) {
   const double least = least_worth();
-  for (const Candidate& winner : admitted(round, current_, rejected_)) {
+  for (const Candidate& winner : admitted(round)) {
     if (!(winner.gain.nats > winner.gain.error)) return false;
     // At the grid's shapes it is worth less than it will be.
     if (worth_beside(columns_of(winner.atom)) < least / 2) continue;
@@ -435,8 +434,7 @@ void Search::run() {
     leftover_tested = true;
     return;
   }
-  base_round_ = test_all(base_fit_);
-  Round round = base_round_;
+  Round round = test_all(base_fit_);
   list_untestable(round);
   list_coinciding(round);
   list_candidates(round);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The search for missing effects on training movements: rounds of tests, additions by
-// cross-validated gain, swaps, removals and the test for what is left over. Internal to the room.
+// cross-validated gain, removals and the test for what is left over. Internal to the room.
 #pragma once
 
 #include <Eigen/Core>
@@ -93,9 +93,8 @@ class Search {
   std::vector<std::string> notes;
 
   FittedModel fit(LoopModel model, FitScope scope) const;
-  // Families whose p, gain or rescue admit them, best gain first. `skip` are left out.
-  std::vector<Candidate> admitted(const Round& round, const FittedModel& state,
-                                  const std::vector<std::size_t>& skip) const;
+  // Families whose p, gain or rescue admit them beside the present model, best gain first.
+  std::vector<Candidate> admitted(const Round& round) const;
   Round test_all(const FittedModel& state) const;
   bool falls_with_speed(const LoopModel& model, std::size_t family) const;
   bool has_impossible_sign(const LoopModel& model) const;
@@ -175,12 +174,11 @@ class Search {
   Eigen::MatrixXd columns_;    // the library's raw columns, unit rms
   std::vector<Block> blocks_;  // per atom, in columns_
   Flips flips_;
-  // Families that were added and did not stand in the same model: not to be tried again in it.
+  // Families that were added and did not stand beside the rest: not to be tried again.
   std::vector<std::size_t> rejected_;
   std::vector<std::size_t> asked_more_;  // families that would have taken a third column
   std::vector<std::size_t> one_column_;  // families whose second column came to cancel the first
   FittedModel base_fit_;
-  Round base_round_;  // of the base
   FittedModel current_;
   // With all that was found, before the proxies of what it leaves over were dropped.
   struct WholeModel {

@@ -9,9 +9,9 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "algorithms/expression/differentiate.hpp"
+#include "algorithms/fitting/free_constants.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench {
@@ -22,19 +22,6 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kLeastMovements = 8;
 // Of the largest eigenvalue of the scaled J^T J: below it a direction is not determined.
 constexpr double kRankTolerance = 1e-11;
-
-std::vector<std::size_t> free_constants(const Expression& formula) {
-  std::set<std::size_t> exponents;
-  for (std::size_t i = 0; i < formula.size(); ++i) {
-    if (formula.node(i).op != Op::pow) continue;
-    const std::size_t exponent = formula.right_child(i);
-    const Node& node = formula.node(exponent);
-    if (node.is_constant() && node.value == std::round(node.value)) exponents.insert(exponent);
-  }
-  std::vector<std::size_t> places = formula.constant_positions();
-  std::erase_if(places, [&](std::size_t place) { return exponents.contains(place); });
-  return places;
-}
 
 Eigen::MatrixXd jacobian_of(const Expression& formula, std::span<const std::size_t> places,
                             const Inputs& inputs, std::span<double> values) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/levenberg_marquardt.hpp"
 #include "algorithms/fitting/linear_least_squares.hpp"
 #include "foundation/error.hpp"
@@ -85,13 +86,6 @@ Expression sum_of(std::span<const Expression> terms, std::span<const double> coe
 
 // ---- simulated against measured positions
 
-bool is_form(const Expression& formula, std::size_t place) {
-  if (place + 1 >= formula.size()) return false;
-  const Node& next = formula.node(place + 1);
-  const double value = formula.node(place).value;
-  return next.op == Op::pow && value == std::floor(value);
-}
-
 // The free parameters of a model, in one order.
 class ParameterList {
  public:
@@ -135,8 +129,7 @@ class ParameterList {
     low_.push_back(low);
   }
   void add_constants(Expression& formula) {
-    for (const std::size_t place : formula.constant_positions()) {
-      if (is_form(formula, place)) continue;
+    for (const std::size_t place : free_constants(formula)) {
       list_.push_back({nullptr, &formula, place});
       low_.push_back(-kInfinity);
     }

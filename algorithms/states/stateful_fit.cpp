@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "algorithms/expression/differentiate.hpp"
+#include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/levenberg_marquardt.hpp"
 #include "foundation/elementary.hpp"
 
@@ -15,15 +16,6 @@ namespace {
 
 constexpr double kLogReach = 4.605170185988091;  // a factor of 100
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-
-std::vector<std::size_t> free_constants(const Expression& formula) {
-  std::vector<std::size_t> places;
-  for (const std::size_t place : formula.constant_positions()) {
-    const bool is_exponent = place + 1 < formula.size() && formula.node(place + 1).op == Op::pow;
-    if (!is_exponent) places.push_back(place);
-  }
-  return places;
-}
 
 class JointProblem : public LeastSquaresProblem {
  public:

@@ -156,14 +156,7 @@ std::string run_row(const ExplorationRun& run) {
   return text;
 }
 
-double number_of(std::string_view text) {
-  double value = 0;
-  if (!read_csv_number(text, value)) {
-    throw_bad_input(fmt::format("'{}' is no number", text), "explorations.csv",
-                    "give --out a folder of its own");
-  }
-  return value;
-}
+double number_of(std::string_view text) { return number_in_field(text, "explorations.csv"); }
 
 ExplorationRun read_run(std::span<const std::string_view> fields) {
   ExplorationRun run;

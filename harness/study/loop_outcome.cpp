@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "foundation/error.hpp"
+#include "harness/study/runs_file.hpp"
 #include "reports/csv.hpp"
 
 namespace tribench {
@@ -76,14 +77,7 @@ std::vector<std::string> split_list(std::string_view text) {
   return words;
 }
 
-double number_in(std::string_view text) {
-  double value = 0;
-  if (!read_csv_number(text, value)) {
-    throw_bad_input(fmt::format("'{}' is no number", text), "runs.csv",
-                    "give --out a folder of its own");
-  }
-  return value;
-}
+double number_in(std::string_view text) { return number_in_field(text, "runs.csv"); }
 
 }  // namespace
 

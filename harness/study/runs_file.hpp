@@ -32,6 +32,16 @@ struct RunFormat {
   std::function<std::string(const Run&)> key;  // which run it is
 };
 
+// A field of such a file. Throws Error (bad_input) where it is no number.
+inline double number_in_field(std::string_view text, std::string_view file) {
+  double value = 0;
+  if (!read_csv_number(text, value)) {
+    throw_bad_input("'" + std::string(text) + "' is no number", std::string(file),
+                    "give --out a folder of its own");
+  }
+  return value;
+}
+
 template <typename Run>
 class RunsFile {
  public:
