@@ -244,7 +244,7 @@ function movementsPlot(picture, look) {
   return spec;
 }
 
-const nameRoom = (width) => Math.min(190, Math.floor(width * 0.42));
+const nameRoom = (width) => Math.min(250, Math.floor(width * 0.42));
 
 function evidencePlot(picture, look) {
   const c = loopColours(look.dark);
