@@ -8,9 +8,9 @@
 #include <cmath>
 #include <tuple>
 
-#include "algorithms/diagnosis/smoothers.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/score_test.hpp"
+#include "algorithms/loop_model/smoothers.hpp"
 
 namespace tribench::loop {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/diagnosis/model_fit.hpp"
 #include "algorithms/expression/text.hpp"
+#include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench::loop {

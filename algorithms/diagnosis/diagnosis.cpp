@@ -8,15 +8,15 @@
 #include <map>
 #include <mutex>
 
-#include "algorithms/diagnosis/canonical.hpp"
 #include "algorithms/diagnosis/ceiling.hpp"
-#include "algorithms/diagnosis/events.hpp"
 #include "algorithms/diagnosis/findings.hpp"
 #include "algorithms/diagnosis/held_out.hpp"
 #include "algorithms/diagnosis/search.hpp"
+#include "algorithms/inference/bursts.hpp"
 #include "foundation/error.hpp"
 #include "foundation/parallel_for.hpp"
 #include "foundation/suggestion.hpp"
+#include "problems/preparation/canonical.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -183,6 +183,25 @@ std::string_view verdict_name(Verdict verdict) {
 
 namespace {
 
+// Bursts are events: listed by movement and time, their rows left out of every fit.
+void find_events(Diagnosis& out, const Observations& data, const Eigen::VectorXd& residual,
+                 RandomStream random) {
+  std::vector<double> speed;
+  if (const Signal* v = data.find("v")) {
+    for (const double x : v->values) speed.push_back(std::abs(x));
+  }
+  const std::vector<Burst> bursts = find_bursts(data.movement, speed, residual, random);
+  for (const Burst& burst : bursts) {
+    const int movement = data.movement[burst.begin];
+    out.events.push_back({movement,
+                          data.movement_names.empty()
+                              ? std::to_string(movement)
+                              : data.movement_names[static_cast<std::size_t>(movement)],
+                          data.time[burst.begin], data.time[burst.end - 1], burst.peak});
+  }
+  out.masked = rows_about(bursts, data.movement);
+}
+
 // The procedure on the rows of the training movements; nothing is held out here.
 Diagnosis diagnose_training(const Observations& data, const std::vector<int>& test,
                             const BaseMaker& make_base, const DiagnosisOptions& options,
@@ -197,7 +216,7 @@ Diagnosis diagnose_training(const Observations& data, const std::vector<int>& te
   const Eigen::VectorXd rich = rich_residual(data, train_rows, base, out.families, options);
   out.masked.assign(data.rows(), 0);
   if (options.has("bursts")) {
-    out.events = find_events(data, rich, out.masked, random.split("events"));
+    find_events(out, data, rich, random.split("events"));
   }
   const std::vector<char> kept = rows_of(data, test, false, out.masked);
   const Observations train = data.select(kept);

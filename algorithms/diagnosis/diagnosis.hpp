@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "algorithms/diagnosis/loop_model.hpp"
+#include "algorithms/loop_model/loop_model.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench::loop {

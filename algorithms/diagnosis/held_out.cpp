@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "algorithms/diagnosis/canonical.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "problems/preparation/canonical.hpp"
 
 namespace tribench::loop {
 namespace {

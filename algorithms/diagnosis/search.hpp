@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "algorithms/diagnosis/diagnosis.hpp"
-#include "algorithms/diagnosis/loop_model.hpp"
-#include "algorithms/diagnosis/model_fit.hpp"
-#include "algorithms/diagnosis/smoothers.hpp"
 #include "algorithms/inference/cross_validation.hpp"
 #include "algorithms/inference/score_test.hpp"
+#include "algorithms/loop_model/loop_model.hpp"
+#include "algorithms/loop_model/model_fit.hpp"
+#include "algorithms/loop_model/smoothers.hpp"
 
 namespace tribench::loop {
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "algorithms/diagnosis/model_fit.hpp"
+#include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/elementary.hpp"
 
 namespace tribench::loop {

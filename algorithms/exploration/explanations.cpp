@@ -11,8 +11,8 @@
 #include <cmath>
 #include <map>
 
-#include "algorithms/diagnosis/smoothers.hpp"
 #include "algorithms/effects/effect_library.hpp"
+#include "algorithms/loop_model/smoothers.hpp"
 
 namespace tribench::loop {
 namespace {

@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/diagnosis/loop_model.hpp"
 #include "algorithms/exploration/smooth_columns.hpp"
 #include "algorithms/inference/evidence.hpp"
+#include "algorithms/loop_model/loop_model.hpp"
 #include "problems/preparation/observations.hpp"
 
 namespace tribench::loop {

@@ -17,15 +17,6 @@ constexpr int kFoldsOfOneMovement = 5;
 constexpr double kLargestRho = 0.998;
 constexpr std::size_t kFewestForWeights = 10;
 
-std::vector<RowRange> movement_ranges(std::span<const int> movement) {
-  std::vector<RowRange> ranges;
-  for (std::size_t i = 0; i < movement.size(); ++i) {
-    if (i == 0 || movement[i] != movement[i - 1]) ranges.push_back({i, i});
-    ranges.back().end = i + 1;
-  }
-  return ranges;
-}
-
 auto rows_of(const Eigen::VectorXd& column, const RowRange& range) {
   return column.segment(static_cast<Eigen::Index>(range.begin),
                         static_cast<Eigen::Index>(range.size()));
@@ -130,6 +121,15 @@ LogVariances log_variances(const Eigen::VectorXd& residual, const Clusters& clus
 }
 
 }  // namespace
+
+std::vector<RowRange> movement_ranges(std::span<const int> movement) {
+  std::vector<RowRange> ranges;
+  for (std::size_t i = 0; i < movement.size(); ++i) {
+    if (i == 0 || movement[i] != movement[i - 1]) ranges.push_back({i, i});
+    ranges.back().end = i + 1;
+  }
+  return ranges;
+}
 
 Clusters make_clusters(std::span<const int> movement, double correlation_time) {
   Clusters clusters;

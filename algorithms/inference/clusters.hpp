@@ -27,6 +27,9 @@ struct RowRange {
   std::size_t size() const { return end - begin; }
 };
 
+// The rows of each movement: runs of equal numbers.
+std::vector<RowRange> movement_ranges(std::span<const int> movement);
+
 struct Clusters {
   std::vector<RowRange> movements;
   std::vector<RowRange> stretches;

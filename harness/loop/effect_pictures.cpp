@@ -13,9 +13,9 @@
 #include <optional>
 #include <set>
 
-#include "algorithms/diagnosis/smoothers.hpp"
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/text.hpp"
+#include "algorithms/loop_model/smoothers.hpp"
 #include "harness/loop/loop_series.hpp"
 
 namespace tribench::loop {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/diagnosis/loop_model.hpp"
 #include "algorithms/expression/text.hpp"
+#include "algorithms/loop_model/loop_model.hpp"
 #include "foundation/error.hpp"
 #include "harness/motion/motion_trial.hpp"
 #include "problems/preparation/derived_channels.hpp"

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/diagnosis/smoothers.hpp"
 #include "algorithms/expression/canonical.hpp"
 #include "algorithms/expression/text.hpp"
+#include "algorithms/loop_model/smoothers.hpp"
 #include "harness/loop/controller_code.hpp"
 #include "harness/loop/loop_series.hpp"
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "algorithms/diagnosis/diagnosis.hpp"
-#include "algorithms/diagnosis/experiments.hpp"
 #include "algorithms/diagnosis/learned_effect.hpp"
+#include "algorithms/exploration/next_movements.hpp"
 #include "reports/record/loop_record.hpp"
 
 namespace tribench::loop {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "algorithms/diagnosis/smoothers.hpp"
+#include "algorithms/loop_model/smoothers.hpp"
 #include "foundation/order_statistics.hpp"
 
 namespace tribench::loop {

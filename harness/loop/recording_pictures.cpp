@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "algorithms/diagnosis/smoothers.hpp"
+#include "algorithms/loop_model/smoothers.hpp"
 #include "foundation/order_statistics.hpp"
 #include "harness/loop/loop_series.hpp"
 

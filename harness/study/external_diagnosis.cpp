@@ -10,7 +10,7 @@
 
 #include "algorithms/diagnosis/diagnosis.hpp"
 #include "algorithms/diagnosis/held_out.hpp"
-#include "algorithms/diagnosis/model_fit.hpp"
+#include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "algorithms/diagnosis/loop_model.hpp"
 #include "algorithms/effects/effect_library.hpp"
 #include "algorithms/inference/score_test.hpp"
+#include "algorithms/loop_model/loop_model.hpp"
 #include "foundation/elementary.hpp"
 #include "foundation/incomplete_gamma.hpp"
 

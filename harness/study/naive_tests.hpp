@@ -4,7 +4,7 @@
 // Here only to show what that costs; nothing else uses them.
 #pragma once
 
-#include "algorithms/diagnosis/observations.hpp"
+#include "algorithms/loop_model/signal_table.hpp"
 
 namespace tribench {
 

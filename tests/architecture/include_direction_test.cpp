@@ -22,9 +22,9 @@ using Rooms = std::set<std::string>;
 // What a room may include besides itself. A method's room is "method:<folder>".
 const std::map<std::string, Rooms>& allowed() {
   static const Rooms kBelowTheHarness = {
-      "foundation", "problems", "expression",       "interface",  "fitting",
-      "inference",  "states",   "effects",          "method",     "diagnosis",
-      "registry",   "reports",  "forward_dynamics", "exploration"};
+      "foundation", "problems", "expression",       "interface",   "fitting",
+      "inference",  "states",   "effects",          "method",      "diagnosis",
+      "registry",   "reports",  "forward_dynamics", "exploration", "loop_model"};
   const auto with = [](Rooms rooms, const Rooms& more) {
     rooms.insert(more.begin(), more.end());
     return rooms;
@@ -40,11 +40,14 @@ const std::map<std::string, Rooms>& allowed() {
       {"effects", {"foundation", "problems", "expression"}},
       {"forward_dynamics", {"foundation", "problems", "expression", "fitting", "states"}},
       {"method", {"foundation", "problems", "expression", "interface", "fitting", "states"}},
-      {"diagnosis",
+      {"loop_model",
        {"foundation", "problems", "expression", "interface", "fitting", "inference", "effects"}},
+      {"diagnosis",
+       {"foundation", "problems", "expression", "interface", "fitting", "inference", "effects",
+        "loop_model"}},
       {"exploration",  // above the diagnosis, which it asks
        {"foundation", "problems", "expression", "interface", "fitting", "inference", "effects",
-        "diagnosis"}},
+        "loop_model", "diagnosis"}},
       {"registry",
        {"foundation", "problems", "expression", "interface", "fitting", "states", "method",
         "diagnosis"}},
@@ -67,7 +70,7 @@ std::string room_of(const std::string& path) {
   if (slash == std::string::npos) return rest.starts_with("registry") ? "registry" : "interface";
   const std::string folder = rest.substr(0, slash);
   for (const char* floor : {"expression", "fitting", "inference", "states", "effects",
-                            "forward_dynamics", "diagnosis", "exploration"}) {
+                            "forward_dynamics", "loop_model", "diagnosis", "exploration"}) {
     if (folder == floor) return folder;
   }
   return "method:" + folder;

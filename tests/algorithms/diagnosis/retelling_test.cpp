@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/diagnosis/canonical.hpp"
 #include "algorithms/diagnosis/diagnosis.hpp"
 #include "foundation/random.hpp"
 #include "problems/kuka/planted.hpp"
+#include "problems/preparation/canonical.hpp"
 #include "problems/reading/csv.hpp"
 #include "tests/support/paths.hpp"
 

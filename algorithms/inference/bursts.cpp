@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/events.hpp"
+#include "algorithms/inference/bursts.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,18 +7,17 @@
 #include <functional>
 #include <numbers>
 #include <span>
-#include <string>
 #include <utility>
 
-#include "algorithms/diagnosis/burst_noise.hpp"
+#include "algorithms/inference/burst_noise.hpp"
 #include "foundation/elementary.hpp"
 
 namespace tribench::loop {
 namespace {
 
 constexpr std::size_t kMargin = 5;
-// Rows beyond this share are no events: the model is wrong.
-constexpr double kMostEvents = 0.05;
+// Rows beyond this share are no bursts: the model is wrong.
+constexpr double kMostRows = 0.05;
 
 // A pulse is a half sine (the standard form of a shock, IEC 60068-2-27), so many rows long and so
 // many robust standard deviations of the residual high: the lowest is that of which four rows
@@ -40,15 +39,11 @@ constexpr std::size_t kDrawnHeights = 2;
 
 class BurstScan {
  public:
-  BurstScan(const Observations& data, const Eigen::VectorXd& residual) : noise_(data, residual) {
+  BurstScan(std::span<const int> movement, std::span<const double> speed,
+            const Eigen::VectorXd& residual)
+      : noise_(movement, speed, residual) {
     make_pulses();
   }
-
-  struct Burst {
-    std::size_t begin;
-    std::size_t end;
-    double log_ratio;  // of the average
-  };
 
   // The starts that no recording without bursts would show but once in 1 / kFalseBursts;
   // overlapping ones once.
@@ -67,8 +62,9 @@ class BurstScan {
     if (separate.empty()) return {};
     const double wanted = std::max(threshold(random), stands_out_of(separate));
     std::vector<Burst> found;
-    for (const Burst& one : separate) {
-      if (one.log_ratio >= wanted && peak(one) >= kHeights[0] * noise_.robust_sd()) {
+    for (Burst one : separate) {
+      one.peak = peak(one);
+      if (one.log_ratio >= wanted && one.peak >= kHeights[0] * noise_.robust_sd()) {
         found.push_back(one);
       }
     }
@@ -76,6 +72,7 @@ class BurstScan {
     return found;
   }
 
+ private:
   double peak(const Burst& burst) const {
     double most = 0;
     for (std::size_t i = burst.begin; i < burst.end; ++i) {
@@ -84,9 +81,6 @@ class BurstScan {
     return most;
   }
 
-  const BurstNoise& noise() const { return noise_; }
-
- private:
   // Overlapping starts once; the likeliest first.
   static std::vector<Burst> likeliest_of_overlapping(std::vector<Burst> starts) {
     std::ranges::stable_sort(
@@ -246,7 +240,7 @@ class BurstScan {
                           noise_.level_error(movement, rows));
     }
     const Ratios ratios = ratios_at(first, &noise_.innovation()[first], end, levels);
-    return {first, std::min(first + kLengths[ratios.likeliest], end), ratios.all};
+    return {first, std::min(first + kLengths[ratios.likeliest], end), 0, ratios.all};
   }
 
   // One recording of a pulse, drawn: what there is to see from a row before it on.
@@ -327,29 +321,25 @@ class BurstScan {
 
 }  // namespace
 
-std::vector<EventFinding> find_events(const Observations& data, const Eigen::VectorXd& residual,
-                                      std::vector<char>& masked, RandomStream random) {
-  masked.assign(data.rows(), 0);
-  const BurstScan scan(data, residual);
-  std::vector<EventFinding> events;
-  std::size_t flagged = 0;
-  for (const BurstScan::Burst& burst : scan.find(random)) {
-    const int movement = data.movement[burst.begin];
-    events.push_back({movement,
-                      data.movement_names.empty()
-                          ? std::to_string(movement)
-                          : data.movement_names[static_cast<std::size_t>(movement)],
-                      data.time[burst.begin], data.time[burst.end - 1], scan.peak(burst)});
-    flagged += burst.end - burst.begin;
-    const RowRange& m = scan.noise().movements()[scan.noise().movement_at(burst.begin)];
-    const std::size_t from = std::max(m.begin + kMargin, burst.begin) - kMargin;
-    for (std::size_t i = from; i < std::min(m.end, burst.end + kMargin); ++i) masked[i] = 1;
+std::vector<Burst> find_bursts(std::span<const int> movement, std::span<const double> speed,
+                               const Eigen::VectorXd& residual, RandomStream random) {
+  std::vector<Burst> bursts = BurstScan(movement, speed, residual).find(random);
+  std::size_t rows = 0;
+  for (const Burst& burst : bursts) rows += burst.end - burst.begin;
+  if (static_cast<double>(rows) > kMostRows * static_cast<double>(movement.size())) bursts.clear();
+  return bursts;
+}
+
+std::vector<char> rows_about(std::span<const Burst> bursts, std::span<const int> movement) {
+  std::vector<char> about(movement.size(), 0);
+  for (const Burst& burst : bursts) {
+    const std::size_t first = burst.begin - std::min(kMargin, burst.begin);
+    const std::size_t last = std::min(movement.size(), burst.end + kMargin);
+    for (std::size_t i = first; i < last; ++i) {
+      if (movement[i] == movement[burst.begin]) about[i] = 1;
+    }
   }
-  if (static_cast<double>(flagged) > kMostEvents * static_cast<double>(data.rows())) {
-    events.clear();
-    masked.assign(data.rows(), 0);
-  }
-  return events;
+  return about;
 }
 
 }  // namespace tribench::loop

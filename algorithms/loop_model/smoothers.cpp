@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/smoothers.hpp"
+#include "algorithms/loop_model/smoothers.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
-#include "algorithms/diagnosis/canonical.hpp"
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/expression/vector/kernels.hpp"
 #include "algorithms/expression/vector/level.hpp"
 #include "foundation/elementary.hpp"
+#include "problems/preparation/canonical.hpp"
 
 namespace tribench::loop {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/canonical.hpp"
+#include "problems/preparation/canonical.hpp"
 
 #include <algorithm>
 #include <cmath>

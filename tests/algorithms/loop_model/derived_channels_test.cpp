@@ -12,9 +12,9 @@
 #include <fstream>
 #include <vector>
 
-#include "algorithms/diagnosis/loop_model.hpp"
 #include "algorithms/expression/export.hpp"
 #include "algorithms/expression/text.hpp"
+#include "algorithms/loop_model/loop_model.hpp"
 #include "problems/kuka/planted.hpp"
 
 namespace tribench::loop {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The noise in which bursts are looked for: what is left of each row when its movement's offset and
-// what the row before foretells are taken off, in units of the noise at its speed and in its
+// what the row before foretells are taken off, in units of the noise at its level and in its
 // movement, and the law of that. Internal to the room.
 //
 // Levels are of Student's law by maximum likelihood: a burst hardly counts in them, and the level
@@ -13,7 +13,6 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/diagnosis/diagnosis.hpp"
 #include "algorithms/inference/clusters.hpp"
 #include "algorithms/inference/student_law.hpp"
 
@@ -21,8 +20,10 @@ namespace tribench::loop {
 
 class BurstNoise {
  public:
-  // residual: of all rows of the data.
-  BurstNoise(const Observations& data, const Eigen::VectorXd& residual);
+  // movement: a number a row, equal ones together. speed: what the width of the noise may hang on,
+  // a magnitude a row; empty where nothing is known of it. residual: a row each.
+  BurstNoise(std::span<const int> movement, std::span<const double> speed,
+             const Eigen::VectorXd& residual);
 
   // Of the deviations; 0 where there is no noise, and then there is nothing else either.
   double robust_sd() const { return robust_sd_; }
@@ -43,7 +44,7 @@ class BurstNoise {
 
  private:
   void centre(const Eigen::VectorXd& residual);
-  void group_by_speed(const Observations& data);
+  void group_by_speed();
   std::span<const std::size_t> rows_of_speed(std::size_t group) const;
   void scale_by_speed();
   void refine_speeds();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/burst_noise.hpp"
+#include "algorithms/inference/burst_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "foundation/elementary.hpp"
+#include "foundation/order_statistics.hpp"
 
 namespace tribench::loop {
 namespace {
 
-constexpr double kMadToSd = 1.4826;
 constexpr double kLeastShare = 0.02;  // of the typical noise a row's noise is at least
 constexpr std::size_t kSpeeds = 8;    // groups of equal size
 constexpr int kPasses = 2;
@@ -23,28 +23,9 @@ constexpr int kIterationsWithout = 4;  // from the level with the rows
 constexpr std::size_t kNegligible = 50;
 constexpr std::size_t kFewestRows = 3;
 
-// Of an even number of values the mean of the two middle ones: the median of the negated values is
-// the negated median.
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
 double median_magnitude(std::vector<double> values) {
   for (double& x : values) x = std::abs(x);
-  return median(std::move(values));
-}
-
-std::vector<RowRange> ranges_of(const Observations& data) {
-  std::vector<RowRange> ranges;
-  for (std::size_t i = 0; i < data.rows(); ++i) {
-    if (i == 0 || data.movement[i] != data.movement[i - 1]) ranges.push_back({i, i});
-    ranges.back().end = i + 1;
-  }
-  return ranges;
+  return values.empty() ? 0 : median(values);
 }
 
 // Correlation of neighbours; clipped, so that a burst does not count for more than it is.
@@ -78,15 +59,17 @@ double level_of(std::span<const double> z, const StudentLaw& law, double level, 
 
 }  // namespace
 
-BurstNoise::BurstNoise(const Observations& data, const Eigen::VectorXd& residual)
-    : movements_(ranges_of(data)),
-      deviation_(data.rows()),
-      unit_(data.rows(), 1.0),
-      level_(movements_.size(), 1.0) {
+BurstNoise::BurstNoise(std::span<const int> movement, std::span<const double> speed,
+                       const Eigen::VectorXd& residual)
+    : movements_(movement_ranges(movement)),
+      deviation_(movement.size()),
+      unit_(movement.size(), 1.0),
+      level_(movements_.size(), 1.0),
+      speed_(speed.begin(), speed.end()) {
   centre(residual);
   robust_sd_ = kMadToSd * median_magnitude(deviation_);
   if (!(robust_sd_ > 0)) return;
-  group_by_speed(data);
+  group_by_speed();
   for (int pass = 0; pass < kPasses; ++pass) {
     if (pass > 0) refine_speeds();
     scale_by_speed();
@@ -107,8 +90,7 @@ std::size_t BurstNoise::movement_at(std::size_t row) const {
 void BurstNoise::centre(const Eigen::VectorXd& residual) {
   std::vector<double> middles;
   for (const RowRange& m : movements_) {
-    middles.push_back(
-        median(std::vector<double>(residual.data() + m.begin, residual.data() + m.end)));
+    middles.push_back(median(std::span(residual.data() + m.begin, residual.data() + m.end)));
     for (std::size_t i = m.begin; i < m.end; ++i) {
       deviation_[i] = residual[static_cast<Eigen::Index>(i)] - middles.back();
     }
@@ -132,19 +114,17 @@ void BurstNoise::centre(const Eigen::VectorXd& residual) {
 }
 
 // Groups of rows of like speed, and how wide the noise is in each, to begin with.
-void BurstNoise::group_by_speed(const Observations& data) {
-  const std::size_t n = data.rows();
-  const Signal* v = data.find("v");
-  if (v == nullptr || n < 4 * kSpeeds) return;
-  speed_.resize(n);
-  for (std::size_t i = 0; i < n; ++i) speed_[i] = std::abs(v->values[i]);
+void BurstNoise::group_by_speed() {
+  const std::size_t n = deviation_.size();
+  if (n < 4 * kSpeeds) speed_.clear();
+  if (speed_.empty()) return;
   by_speed_.resize(n);
   std::iota(by_speed_.begin(), by_speed_.end(), std::size_t{0});
   std::ranges::stable_sort(by_speed_, {}, [&](std::size_t i) { return speed_[i]; });
   for (std::size_t g = 0; g < kSpeeds; ++g) {
     std::vector<double> magnitudes;
     for (const std::size_t i : rows_of_speed(g)) magnitudes.push_back(std::abs(deviation_[i]));
-    const double sd = kMadToSd * median(std::move(magnitudes));
+    const double sd = kMadToSd * median(magnitudes);
     middle_speed_.push_back(speed_[by_speed_[n * (2 * g + 1) / (2 * kSpeeds)]]);
     speed_level_.push_back(elementary::log(std::max(sd / robust_sd_, kLeastShare)));
   }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/events.hpp"
+#include "algorithms/inference/bursts.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "algorithms/inference/student_law.hpp"
 
@@ -13,14 +14,12 @@ namespace {
 constexpr std::size_t kMovements = 60;
 constexpr std::size_t kRows = 60;
 
-Observations empty_recording() {
-  Observations data;
+std::vector<int> movements() {
+  std::vector<int> movement;
   for (std::size_t i = 0; i < kMovements * kRows; ++i) {
-    data.target.push_back(0);
-    data.time.push_back(static_cast<double>(i));
-    data.movement.push_back(static_cast<int>(i / kRows));
+    movement.push_back(static_cast<int>(i / kRows));
   }
-  return data;
+  return movement;
 }
 
 // Student noise with 5 degrees of freedom, neighbours correlated by 0.6, unit variance.
@@ -34,33 +33,31 @@ Eigen::VectorXd noise(RandomStream random) {
   return r;
 }
 
-std::vector<EventFinding> events_of(const Eigen::VectorXd& residual, std::uint64_t seed) {
-  std::vector<char> masked;
-  return find_events(empty_recording(), residual, masked, RandomStream(seed));
+std::vector<Burst> bursts_of(const Eigen::VectorXd& residual, std::uint64_t seed) {
+  return find_bursts(movements(), {}, residual, RandomStream(seed));
 }
 
-TEST(Events, CleanRecordingsWithHeavyTailsHardlyEverHoldOne) {
+TEST(Bursts, CleanRecordingsWithHeavyTailsHardlyEverHoldOne) {
   int with = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    with += events_of(noise(RandomStream(seed)), seed).empty() ? 0 : 1;
+    with += bursts_of(noise(RandomStream(seed)), seed).empty() ? 0 : 1;
   }
   EXPECT_LE(with, 6);  // 2 are expected; more than 6 in one of 200
 }
 
-TEST(Events, APulseIsFoundWhereItIsAndMasked) {
+TEST(Bursts, APulseIsFoundWhereItIsAndMasked) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     Eigen::VectorXd residual = noise(RandomStream(seed));
     for (Eigen::Index k = 0; k < 6; ++k) {
       residual[630 + k] -= 8 * std::sin(3.14159265 * (static_cast<double>(k) + 0.5) / 6);
     }
-    std::vector<char> masked;
-    const std::vector<EventFinding> events =
-        find_events(empty_recording(), residual, masked, RandomStream(seed));
-    for (const EventFinding& event : events) {
-      if (event.movement != 10 || event.begin > 636 || event.end < 630) continue;
+    const std::vector<Burst> bursts = bursts_of(residual, seed);
+    const std::vector<char> masked = rows_about(bursts, movements());
+    for (const Burst& burst : bursts) {
+      if (burst.begin > 636 || burst.end < 630) continue;
       ++found;
-      EXPECT_GT(event.peak, 4);
+      EXPECT_GT(burst.peak, 4);
       EXPECT_EQ(masked[632], 1);
     }
   }
@@ -68,16 +65,25 @@ TEST(Events, APulseIsFoundWhereItIsAndMasked) {
 }
 
 // A wild row fades away by the noise's own correlation: four rows on one side, and no burst.
-TEST(Events, OneWildRowThatFadesAwayIsNoBurst) {
+TEST(Bursts, OneWildRowThatFadesAwayIsNoBurst) {
   Eigen::VectorXd residual = noise(RandomStream(7));
   for (Eigen::Index k = 0; k < 12; ++k) {
     residual[1230 + k] += 14 * std::pow(0.6, static_cast<double>(k));
   }
-  EXPECT_TRUE(events_of(residual, 7).empty());
+  EXPECT_TRUE(bursts_of(residual, 7).empty());
 }
 
-TEST(Events, ARecordingWithoutNoiseHasNone) {
-  EXPECT_TRUE(events_of(Eigen::VectorXd::Zero(kMovements * kRows), 1).empty());
+TEST(Bursts, ARecordingWithoutNoiseHasNone) {
+  EXPECT_TRUE(bursts_of(Eigen::VectorXd::Zero(kMovements * kRows), 1).empty());
+}
+
+TEST(Bursts, OnlyRowsOfItsOwnMovementAreMaskedAboutOne) {
+  const std::vector<Burst> bursts = {{60, 64, 9, 20}};
+  const std::vector<char> masked = rows_about(bursts, movements());
+  EXPECT_EQ(masked[59], 0);  // the movement before
+  EXPECT_EQ(masked[60], 1);
+  EXPECT_EQ(masked[68], 1);
+  EXPECT_EQ(masked[69], 0);
 }
 
 TEST(StudentLaw, IsRecoveredFromItsDraws) {

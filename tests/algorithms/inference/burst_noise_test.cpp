@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/burst_noise.hpp"
+#include "algorithms/inference/burst_noise.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
+
+#include "foundation/random.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -15,7 +18,8 @@ constexpr double kRho = 0.6;
 
 // Student noise with 5 degrees of freedom, a level a movement, twice as wide at full speed as at 0.
 struct Example {
-  Observations data;
+  std::vector<int> movement;
+  std::vector<double> speed;
   Eigen::VectorXd residual;
   std::vector<double> unit;  // the truth: the scale of each row's innovation
 };
@@ -23,8 +27,6 @@ struct Example {
 Example example(RandomStream random) {
   Example e;
   const StudentLaw law{5, 1};
-  Signal speed;
-  speed.name = "v";
   e.residual.resize(static_cast<Eigen::Index>(kMovements * kRows));
   for (std::size_t m = 0; m < kMovements; ++m) {
     const double level = std::exp(kSpread * random.normal());
@@ -34,19 +36,16 @@ Example example(RandomStream random) {
       state = kRho * state + law.draw(random) * (i == 0 ? 1 / std::sqrt(1 - kRho * kRho) : 1);
       e.unit.push_back(level * (0.5 + 0.5 * v));
       e.residual[static_cast<Eigen::Index>(e.unit.size() - 1)] = e.unit.back() * state;
-      speed.values.push_back(v);
-      e.data.target.push_back(0);
-      e.data.time.push_back(static_cast<double>(i));
-      e.data.movement.push_back(static_cast<int>(m));
+      e.speed.push_back(v);
+      e.movement.push_back(static_cast<int>(m));
     }
   }
-  e.data.signals.push_back(std::move(speed));
   return e;
 }
 
 TEST(BurstNoise, KnowsEachMovementsLevelAsWellAsItSays) {
   const Example e = example(RandomStream(1));
-  const BurstNoise noise(e.data, e.residual);
+  const BurstNoise noise(e.movement, e.speed, e.residual);
   EXPECT_EQ(noise.law().freedom, 5);
   EXPECT_NEAR(noise.rho(), kRho, 0.03);
   double squares = 0;
@@ -64,11 +63,11 @@ TEST(BurstNoise, ABurstDoesNotHideInTheNoiseThatItMakes) {
   Example e = example(RandomStream(2));
   constexpr std::size_t kMovement = 17;
   constexpr std::size_t kFirst = kMovement * kRows + 15;
-  const BurstNoise without(e.data, e.residual);
+  const BurstNoise without(e.movement, e.speed, e.residual);
   for (std::size_t k = 0; k < 6; ++k) {
     e.residual[static_cast<Eigen::Index>(kFirst + k)] += 8 * std::sin(0.5236 * (k + 0.5));
   }
-  const BurstNoise with(e.data, e.residual);
+  const BurstNoise with(e.movement, e.speed, e.residual);
   const double as_taken = with.unit()[kFirst] / without.unit()[kFirst];
   EXPECT_GT(as_taken, 1.05);
   const double left_out = with.unit()[kFirst] * with.level_without(kMovement, kFirst, 7) /

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/observations.hpp"
+#include "algorithms/loop_model/signal_table.hpp"
 
 #include "algorithms/regressor.hpp"
 #include "problems/preparation/observation_rows.hpp"

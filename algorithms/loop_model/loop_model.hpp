@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/diagnosis/observations.hpp"
 #include "algorithms/effects/effect_library.hpp"
 #include "algorithms/inference/clusters.hpp"
+#include "algorithms/loop_model/signal_table.hpp"
 
 namespace tribench::loop {
 

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "algorithms/diagnosis/loop_model.hpp"
+#include "algorithms/loop_model/loop_model.hpp"
 
 namespace tribench::loop {
 

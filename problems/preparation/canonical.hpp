@@ -10,12 +10,12 @@
 //            luck in a diagnosis, of a seed or of a name
 //
 // Multiplying a channel or the target by a power of two changes no decision and no bit but by that
-// factor; times and temperatures enter as differences to their mean. Internal to the room.
+// factor; times and temperatures enter as differences to their mean.
 #pragma once
 
 #include <vector>
 
-#include "algorithms/diagnosis/observations.hpp"
+#include "problems/preparation/observations.hpp"
 
 namespace tribench::loop {
 

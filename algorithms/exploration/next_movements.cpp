@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/experiments.hpp"
+#include "algorithms/exploration/next_movements.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include <Eigen/QR>
 
-#include "algorithms/diagnosis/model_fit.hpp"
+#include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/elementary.hpp"
 #include "problems/preparation/derived_channels.hpp"
 

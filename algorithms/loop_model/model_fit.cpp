@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/model_fit.hpp"
+#include "algorithms/loop_model/model_fit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/experiments.hpp"
+#include "algorithms/exploration/next_movements.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

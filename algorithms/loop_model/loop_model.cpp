@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/loop_model.hpp"
+#include "algorithms/loop_model/loop_model.hpp"
 
 #include <algorithm>
 #include <cmath>

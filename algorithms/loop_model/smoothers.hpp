@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "algorithms/diagnosis/observations.hpp"
 #include "algorithms/inference/flips.hpp"
+#include "algorithms/loop_model/signal_table.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench::loop {
