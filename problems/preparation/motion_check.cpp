@@ -153,6 +153,16 @@ void check_assumed(const DataFile& file) {
   }
 }
 
+// A column of the velocity that nobody fills.
+void check_not_dead(const DataFile& file, const Channel& q, const Channel& v) {
+  const auto is_zero = [](double value) { return value == 0; };
+  const auto [low, high] = std::ranges::minmax(q.values);
+  if (low == high || !std::ranges::all_of(v.values, is_zero)) return;
+  throw_bad_input(
+      fmt::format("'{}' is 0 in every row while '{}' moves", v.name, q.name), file.data.name,
+      fmt::format("leave it out and the velocity is derived: --roles '{}=none'", v.name));
+}
+
 }  // namespace
 
 MotionMatch match_motion(std::span<const double> time, std::span<const double> position,
@@ -188,6 +198,7 @@ void check_motion(const DataFile& file, std::optional<double> gear_ratio) {
   const Channel* v = file.data.find(Role::velocity);
   const Channel* t = file.data.find(Role::time);
   if (q != nullptr && v != nullptr && t != nullptr) {
+    check_not_dead(file, *q, *v);
     const std::vector<RowRange> pieces = pieces_of(t->values, file.data.movement, {});
     check_match(file, match_motion(t->values, q->values, v->values, pieces), gear_ratio);
   }

@@ -408,6 +408,13 @@ std::vector<double> shape_of(std::span<const double> time, const Motion& motion,
 
 }  // namespace
 
+double motion_likelihood(std::span<const double> time, std::span<const double> position,
+                         std::span<const RowRange> pieces) {
+  const Belief belief = read_counts(time, position, pieces);
+  // -2 log of a normal law, the variance at its best.
+  return 0.5 * choose_bandwidth(time, belief, pieces, typical_step(time, pieces)).likelihood;
+}
+
 MotionSmoother::MotionSmoother(std::span<const double> time, std::span<const double> position,
                                std::span<const RowRange> pieces)
     : time_(time), pieces_(pieces.begin(), pieces.end()), step_(typical_step(time, pieces)) {

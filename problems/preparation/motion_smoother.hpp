@@ -44,6 +44,11 @@ struct RowRange {
   std::size_t end = 0;
 };
 
+// The logarithm of how likely the positions are at these times, with the bandwidth that suits them
+// best, up to a constant of the positions: of two tellings of the times the higher is the motion's.
+double motion_likelihood(std::span<const double> time, std::span<const double> position,
+                         std::span<const RowRange> pieces);
+
 // Each piece is smoothed by itself, all with one bandwidth; where the jerk is large through the
 // recording (ramps begin and end) is learned from it, as far as the likelihood rewards it.
 class MotionSmoother {

@@ -25,9 +25,15 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
     out.notes.push_back(std::move(made));
   }
   check_units(out);
+  spread_coarse_stamps(out);
   drop_repeated_stamps(out);
   drop_repeated_messages(out);
-  unwrap(out);
+  unwrap(out, file.readings, options.drive);
+  if (!file.has_movements) {
+    drop_wrong_readings(out);
+    join_jumps(out);
+    settle_clock(out);
+  }
   file.data = std::move(out.data);
   check_motion(file, options.drive.gear_ratio);
   out.data = std::move(file.data);

@@ -11,6 +11,7 @@
 #include "problems/preparation/motion_check.hpp"
 #include "problems/preparation/rigid_body.hpp"
 #include "problems/preparation/segments.hpp"
+#include "problems/preparation/steady_clock.hpp"
 
 namespace tribench {
 namespace {
@@ -22,6 +23,24 @@ constexpr double kMuchCoarser = 4;    // than the derived velocity's noise
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
 }  // namespace
+
+void settle_clock(PreparedRecording& out) {
+  const Channel* q = find_channel(out.data, Role::position);
+  Channel* t = find_channel(out.data, Role::time);
+  if (q == nullptr || t == nullptr || !is_regular(t->values, out.data.movement)) return;
+  const std::vector<RowRange> pieces = pieces_of(t->values, out.data.movement, {});
+  std::optional<SteadyClock> clock = steady_clock(t->values, pieces);
+  if (!clock || motion_likelihood(clock->time, q->values, pieces) <=
+                    motion_likelihood(t->values, q->values, pieces)) {
+    return;
+  }
+  t->values = std::move(clock->time);
+  out.notes.push_back(
+      fmt::format("the stamps of '{}' jitter by {:.2g} ms about even instants, at which the "
+                  "position moves more "
+                  "smoothly: those are taken",
+                  t->name, 1e3 * clock->jitter));
+}
 
 std::optional<DerivedMotion> derive_motion(const PreparedRecording& out) {
   const Channel* q = out.data.find(Role::position);

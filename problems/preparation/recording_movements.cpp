@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/error.hpp"
 #include "problems/preparation/derived_channels.hpp"
 #include "problems/preparation/segments.hpp"
 
@@ -137,6 +138,12 @@ void cut_strokes(PreparedRecording& out, double noise, double blur) {
     names.push_back(
         files > 1 ? fmt::format("{}, stroke {}", out.data.movement_names[file], names.size() + 1)
                   : fmt::format("stroke {}", names.size() + 1));
+  }
+  if (rows.empty()) {
+    throw_bad_input(fmt::format("none of {} rows moves at {:.2g} {} or more for long enough", all,
+                                slow, find_channel(out.data, Role::velocity)->unit),
+                    out.data.name,
+                    "check what was taken for position, velocity and time: --explain");
   }
   keep_rows(out.data, rows);
   out.data.movement = std::move(movement);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "foundation/error.hpp"
 #include "foundation/order_statistics.hpp"
 #include "problems/preparation/segments.hpp"
 #include "problems/table.hpp"
@@ -24,49 +25,181 @@ void keep_rows(Dataset& data, const std::vector<std::size_t>& rows) {
 
 namespace {
 
-// How far the position jumps where it starts again; 0: it does not. Without a gap in time, and a
-// turn or the same jump over and over: a lost message is neither.
-double turn_of(const Channel& q, const Channel* t, const Dataset& data) {
-  const double gap = t != nullptr ? 5 * median_step(t->values, data.movement) : 0;
+// Steps of a channel between rows that follow one another; the step into each row.
+struct Jumps {
+  double largest = 0;
+  double usual = 0;  // 99 % are smaller
   std::vector<double> steps;
+};
+
+// Across lost messages a position may go anywhere.
+Jumps jumps_of(const Channel& q, const Channel* t, const Dataset& data) {
+  const double gap = t != nullptr ? 5 * median_step(t->values, data.movement) : 0;
+  Jumps jumps;
   for (std::size_t i = 1; i < data.rows(); ++i) {
     const bool follows = data.movement[i] == data.movement[i - 1] &&
                          (gap <= 0 || t->values[i] - t->values[i - 1] <= gap);
-    if (follows) steps.push_back(std::abs(q.values[i] - q.values[i - 1]));
+    if (follows) jumps.steps.push_back(std::abs(q.values[i] - q.values[i - 1]));
   }
-  if (steps.size() < 10) return 0;
-  const double largest = *std::ranges::max_element(steps);
-  const double usual = quantile(steps, 0.99);
-  if (usual <= 0 || largest < 20 * usual) return 0;
-  if (std::abs(largest - kRadPerTurn) < 0.1 * kRadPerTurn) return kRadPerTurn;
+  if (jumps.steps.empty()) return jumps;
+  jumps.largest = *std::ranges::max_element(jumps.steps);
+  jumps.usual = quantile(jumps.steps, 0.99);
+  return jumps;
+}
+
+// A turn, of the side of the gear that is told, or what a counter of so many bits holds; 0: the
+// values do not lie within one of those from edge to edge.
+double known_turn(const Channel& q, bool at_motor, const Drive& drive) {
+  const auto [low, high] = std::ranges::minmax(q.values);
+  const double range = high - low;
+  const auto fills = [&](double turn) {
+    constexpr double kFilled = 0.8;
+    return range > kFilled * turn && range < 1.001 * turn;
+  };
+  const double turn = kRadPerTurn / (at_motor && drive.gear_ratio ? *drive.gear_ratio : 1);
+  if (q.unit == "rad" && fills(turn)) return turn;
+  const double count = resolution_of(q.values);
+  for (const int bits : {8, 10, 12, 13, 14, 15, 16, 17, 18, 20, 24, 31, 32}) {
+    const double span = std::ldexp(count, bits);
+    if (count > 0 && fills(span)) return span;
+  }
+  return 0;
+}
+
+// How far the position jumps where it starts again; 0: it does not. Without a gap in time, and
+// across what a turn or a counter holds or by the same over and over: a wrong reading is neither.
+double turn_of(const Channel& q, bool at_motor, const Drive& drive, const Jumps& jumps) {
+  if (jumps.steps.size() < 10 || jumps.usual <= 0) return 0;
+  const auto [low, high] = std::ranges::minmax(q.values);
+  if (jumps.largest > 0.5 * (high - low)) {
+    if (const double turn = known_turn(q, at_motor, drive); turn > 0) return turn;
+  }
+  if (jumps.largest < 20 * jumps.usual) return 0;
+  if (q.unit == "rad" && std::abs(jumps.largest - kRadPerTurn) < 0.1 * kRadPerTurn) {
+    return kRadPerTurn;
+  }
   const auto alike = std::ranges::count_if(
-      steps, [&](double step) { return std::abs(step - largest) < 2 * usual; });
-  return alike >= 3 ? largest : 0;
+      jumps.steps, [&](double step) { return std::abs(step - jumps.largest) < 2 * jumps.usual; });
+  return alike >= 3 ? jumps.largest : 0;
 }
 
 }  // namespace
 
-// An angle that starts again after a turn is laid end to end.
-void unwrap(PreparedRecording& out) {
+namespace {
+
+// How a channel goes on: a position straight, what is noisy as it was.
+enum class GoesOn { straight, level };
+
+// Rows, five at most in a row, after which the channel goes on as before, and which are off that
+// by far more than it ever moves.
+std::vector<char> wrong_readings(const std::vector<double>& x, const std::vector<int>& movement,
+                                 GoesOn how) {
+  constexpr double kFar = 10;          // usual surprises
+  constexpr std::size_t kLongest = 5;  // rows
+  constexpr double kBack = 2;          // usual surprises a row
+  std::vector<char> wrong(x.size(), 0);
+  if (x.size() < 100) return wrong;
+  // From the rows i - 2 and i - 1 to the row i + k.
+  const auto surprise = [&](std::size_t i, std::size_t k) {
+    const double slope = how == GoesOn::straight ? x[i - 1] - x[i - 2] : 0;
+    return std::abs(x[i + k] - x[i - 1] - slope * static_cast<double>(k + 1));
+  };
+  std::vector<double> surprises;
+  for (std::size_t i = 2; i < x.size(); ++i) surprises.push_back(surprise(i, 0));
+  const double usual = quantile(surprises, 0.99);
+  for (std::size_t i = 2; usual > 0 && i + 1 < x.size(); ++i) {
+    if (surprises[i - 2] < kFar * usual) continue;
+    for (std::size_t k = 1; k <= kLongest && i + k < x.size(); ++k) {
+      if (movement[i + k] != movement[i - 2]) break;
+      if (surprise(i, k) > kBack * usual * static_cast<double>(k + 1)) continue;
+      std::fill_n(wrong.begin() + static_cast<std::ptrdiff_t>(i), k, 1);
+      i += k + 1;  // the row after next is the first to be told by rows that are right
+      break;
+    }
+  }
+  return wrong;
+}
+
+}  // namespace
+
+void drop_wrong_readings(PreparedRecording& out) {
+  for (const Role role :
+       {Role::position, Role::velocity, Role::motor_torque, Role::motor_current}) {
+    const Channel* channel = find_channel(out.data, role);
+    if (channel == nullptr) continue;
+    const GoesOn how = role == Role::position ? GoesOn::straight : GoesOn::level;
+    leave_out(out, wrong_readings(channel->values, out.data.movement, how),
+              fmt::format("have a wrong reading of '{}', far off the rows before and after",
+                          channel->name));
+  }
+}
+
+// A position that is set anew has not moved.
+void join_jumps(PreparedRecording& out) {
+  constexpr double kFar = 20;       // usual steps
+  constexpr std::size_t kMost = 3;  // more are recordings that somebody put together
   Channel* q = find_channel(out.data, Role::position);
-  if (q == nullptr || q->unit != "rad") return;
-  const double turn = turn_of(*q, find_channel(out.data, Role::time), out.data);
-  if (turn <= 0) return;
-  std::size_t wraps = 0;
+  const Channel* t = find_channel(out.data, Role::time);
+  if (q == nullptr || t == nullptr || !is_regular(t->values, out.data.movement)) return;
+  const Jumps jumps = jumps_of(*q, t, out.data);
+  if (jumps.steps.size() < 100 || jumps.usual <= 0) return;
+  const double far = kFar * jumps.usual;
+  const auto count = std::ranges::count_if(jumps.steps, [&](double step) { return step > far; });
+  if (count == 0 || static_cast<std::size_t>(count) > kMost) return;
+  const double gap = 1.5 * median_step(t->values, out.data.movement);
   double offset = 0;
+  std::size_t joined = 0;
   for (std::size_t i = 1; i < out.data.rows(); ++i) {
-    const double before = q->values[i - 1] - offset;  // as it was in the file
-    const double step = q->values[i] - before;
     if (out.data.movement[i] != out.data.movement[i - 1]) {
       offset = 0;
-    } else if (std::abs(std::abs(step) - turn) < 0.2 * turn) {
-      offset -= std::copysign(turn, step);
-      ++wraps;
+      continue;
+    }
+    const double jump = q->values[i] + offset - q->values[i - 1];
+    if (t->values[i] - t->values[i - 1] <= gap && std::abs(jump) > far) {
+      offset += (i > 1 ? q->values[i - 1] - q->values[i - 2] : 0) - jump;
+      ++joined;
     }
     q->values[i] += offset;
   }
-  out.notes.push_back(fmt::format("'{}' starts again {} times after {:.4g} rad: laid end to end",
-                                  q->name, wraps, turn));
+  if (joined == 0) return;
+  out.notes.push_back(fmt::format(
+      "'{}' jumps {} times, by {:.4g} {} at most, without having moved: laid end to end", q->name,
+      joined, jumps.largest, q->unit));
+}
+
+// A position that starts again after a turn is laid end to end.
+void unwrap(PreparedRecording& out, const std::vector<ColumnReading>& readings,
+            const Drive& drive) {
+  Channel* q = find_channel(out.data, Role::position);
+  if (q == nullptr) return;
+  const auto reading = std::ranges::find(readings, Role::position, &ColumnReading::role);
+  const bool at_motor = reading != readings.end() && reading->unit.ends_with("@motor");
+  const Channel* t = find_channel(out.data, Role::time);
+  const double turn = turn_of(*q, at_motor, drive, jumps_of(*q, t, out.data));
+  if (turn <= 0) return;
+  const double step_of_time = t != nullptr ? median_step(t->values, out.data.movement) : 0;
+  std::size_t wraps = 0;
+  double offset = 0;
+  double speed = 0;  // of the row before
+  for (std::size_t i = 1; i < out.data.rows(); ++i) {
+    if (out.data.movement[i] != out.data.movement[i - 1]) {
+      offset = 0;
+      speed = 0;
+      continue;
+    }
+    const double dt = t != nullptr ? t->values[i] - t->values[i - 1] : 0;
+    // Where messages are lost the position goes on as before.
+    const double expected = step_of_time > 0 && dt > 1.5 * step_of_time ? speed * dt : 0;
+    const double step = q->values[i] + offset - q->values[i - 1];
+    const double turns = std::round((expected - step) / turn);
+    offset += turns * turn;
+    wraps += turns != 0 ? 1 : 0;
+    q->values[i] += offset;
+    if (dt > 0) speed = (q->values[i] - q->values[i - 1]) / dt;
+  }
+  if (wraps == 0) return;
+  out.notes.push_back(fmt::format("'{}' starts again {} times after {:.4g} {}: laid end to end",
+                                  q->name, wraps, turn, q->unit));
 }
 
 void leave_out(PreparedRecording& out, const std::vector<char>& rows, const std::string& why) {
@@ -78,6 +211,65 @@ void leave_out(PreparedRecording& out, const std::vector<char>& rows, const std:
   }
   out.notes.push_back(fmt::format("{} of {} rows {}: left out", count, rows.size(), why));
   keep_rows(out.data, kept);
+}
+
+namespace {
+
+// Rows that follow one another evenly, from the instants at which their clock ticks: the line
+// through those. False: the rows are not even, some stamp is more than a tick off.
+bool spread_evenly(std::vector<double>& time, const RowRange& piece, double tick) {
+  double n = 0;
+  double mean_row = 0;
+  double mean_time = 0;
+  for (std::size_t i = piece.begin; i < piece.end; ++i) {
+    ++n;
+    mean_row += (static_cast<double>(i) - mean_row) / n;
+    mean_time += (time[i] - mean_time) / n;
+  }
+  double rows = 0;
+  double both = 0;
+  for (std::size_t i = piece.begin; i < piece.end; ++i) {
+    const double row = static_cast<double>(i) - mean_row;
+    rows += row * row;
+    both += row * (time[i] - mean_time);
+  }
+  if (!(both > 0)) return false;
+  const double step = both / rows;
+  std::vector<double> even;
+  for (std::size_t i = piece.begin; i < piece.end; ++i) {
+    even.push_back(mean_time + step * (static_cast<double>(i) - mean_row));
+    if (std::abs(even.back() - time[i]) > tick) return false;
+  }
+  std::ranges::copy(even, time.begin() + static_cast<std::ptrdiff_t>(piece.begin));
+  return true;
+}
+
+}  // namespace
+
+// A clock that ticks more slowly than the rows come: between two gaps they are taken to be even.
+void spread_coarse_stamps(PreparedRecording& out) {
+  constexpr double kOften = 0.3;  // of the rows: fewer are messages that were sent twice
+  Channel* t = find_channel(out.data, Role::time);
+  if (t == nullptr) return;
+  std::size_t repeats = 0;
+  for (std::size_t i = 1; i < out.data.rows(); ++i) {
+    repeats += out.data.movement[i] == out.data.movement[i - 1] && t->values[i] == t->values[i - 1];
+  }
+  if (static_cast<double>(repeats) < kOften * static_cast<double>(out.data.rows())) return;
+  const double tick = median_step(t->values, out.data.movement);
+  const std::vector<RowRange> pieces = pieces_of(t->values, out.data.movement, {});
+  const bool even = std::ranges::all_of(
+      pieces, [&](const RowRange& piece) { return spread_evenly(t->values, piece, tick); });
+  const std::string what = fmt::format(
+      "{} of {} rows have the stamp of the row before in '{}', "
+      "whose clock ticks every {:.3g} s",
+      repeats, out.data.rows(), t->name, tick);
+  if (!even) {
+    throw_bad_input(what, out.data.name,
+                    "give the time's role to a finer column, or to one that counts the samples: "
+                    "--roles 'COLUMN=time[2 ms]'");
+  }
+  out.notes.push_back(what + ": the rows between two gaps are taken to be even in time");
 }
 
 // Stamps that do not move on: the later row of two is left out.

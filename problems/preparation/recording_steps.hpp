@@ -26,15 +26,24 @@ Channel* find_channel(Dataset& data, Role role);  // null: there is none
 void keep_rows(Dataset& data, const std::vector<std::size_t>& rows);
 // Those that are marked, with a sentence: "12 of 900 rows WHY: left out".
 void leave_out(PreparedRecording& out, const std::vector<char>& rows, const std::string& why);
+// A clock that ticks more slowly than the rows come: between two gaps they are taken to be even.
+void spread_coarse_stamps(PreparedRecording& out);
 // Stamps that do not move on: the later row of two is left out.
 void drop_repeated_stamps(PreparedRecording& out);
 void drop_repeated_messages(PreparedRecording& out);
-// An angle that starts again after a turn is laid end to end.
-void unwrap(PreparedRecording& out);
+// A position that starts again after a turn, or where its counter is full, is laid end to end.
+void unwrap(PreparedRecording& out, const std::vector<ColumnReading>& readings, const Drive& drive);
+// Rows whose position, velocity or torque is far off the rows before and after: wrong readings.
+void drop_wrong_readings(PreparedRecording& out);
+// A position that is set anew (a reference run) is laid end to end.
+void join_jumps(PreparedRecording& out);
 // Currents and torques at a limit of the amplifier.
 void drop_clipped(PreparedRecording& out);
 
 // ---- motion (recording_motion.cpp)
+
+// Steady instants in place of jittering stamps, where the position moves more smoothly at them.
+void settle_clock(PreparedRecording& out);
 
 struct DerivedMotion {
   Motion motion;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kGap = 5;            // steps of time
 constexpr double kLongestStep = 0.1;  // s: slower rows do not follow a motion
+constexpr double kUneven = 3.5;       // usual steps: two rows in a row are lost at most
 constexpr double kJump = 2.5;         // usual steps of the position
 constexpr std::size_t kRepeats = 5;   // rows
 constexpr double kLimitBand = 0.02;   // of the range
@@ -98,8 +99,8 @@ bool is_regular(std::span<const double> time, std::span<const int> movement) {
   const std::vector<double> steps = steps_of(time, movement);
   const double middle = quantile(steps, 0.5);
   if (middle <= 0 || middle > kLongestStep) return false;
-  const auto even = std::ranges::count_if(
-      steps, [middle](double step) { return step > 0.5 * middle && step < 1.5 * middle; });
+  const auto even =
+      std::ranges::count_if(steps, [middle](double step) { return step < kUneven * middle; });
   return static_cast<double>(even) >= 0.8 * static_cast<double>(steps.size());
 }
 

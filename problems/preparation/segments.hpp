@@ -21,8 +21,8 @@ double median_step(std::span<const double> time, std::span<const int> movement);
 // 99 % quantile of the magnitudes.
 double top_speed(std::span<const double> velocity);
 
-// At least 80 % of the steps within half of the median, and the median is short enough (0.1 s) to
-// follow a motion: its derivatives can be taken.
+// At least 80 % of the steps are no longer than three and a half medians, and the median is short
+// enough (0.1 s) to follow a motion: its derivatives can be taken, lost rows or not.
 bool is_regular(std::span<const double> time, std::span<const int> movement);
 
 // Rows of one movement without a gap of more than five steps; `left_out` rows belong to none.

@@ -13,6 +13,7 @@
 #include "problems/reading/csv_checks.hpp"
 #include "problems/reading/csv_columns.hpp"
 #include "problems/reading/file_text.hpp"
+#include "problems/reading/time_order.hpp"
 
 namespace tribench {
 namespace {
@@ -216,7 +217,7 @@ DataFile parse_csv(std::string_view text, std::string_view file, const CsvOption
   choose_rows(in, out);
   fill_movements(in, out);
   fill_channels(in, out);
-  check_time(
+  order_by_time(
       out, [&](std::size_t row) { return line_of(text, in.columns.places[in.rows[row]]); }, file);
   demote_current(options, out);
   check_torque_units(out.data, file);

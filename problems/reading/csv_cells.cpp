@@ -8,6 +8,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 
 #include "foundation/error.hpp"
@@ -23,6 +24,16 @@ bool is_missing(std::string_view cell) {
   for (const char c : cell) word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   constexpr std::array kMissing = {"nan", "inf", "infinity", "na", "n/a", "#n/a", "null", "none"};
   return std::find(kMissing.begin(), kMissing.end(), word) != kMissing.end();
+}
+
+// As a bus's monitor writes a counter.
+CellKind read_hexadecimal(std::string_view digits, double& value) {
+  std::uint64_t whole = 0;
+  const char* const end = digits.data() + digits.size();
+  const auto [stop, code] = std::from_chars(digits.data() + 2, end, whole, 16);
+  if (stop != end || code != std::errc()) return CellKind::text;
+  value = static_cast<double>(whole);
+  return CellKind::number;
 }
 
 }  // namespace
@@ -42,6 +53,7 @@ CellKind read_cell(std::string_view cell, bool decimal_comma, double& value) {
     plain[comma] = '.';
     digits = {plain.data(), digits.size()};
   }
+  if (digits.starts_with("0x") || digits.starts_with("0X")) return read_hexadecimal(digits, value);
   // Fortran writes 1.5D-03.
   const std::size_t exponent = digits.find_first_of("dD");
   if (exponent != std::string_view::npos && exponent > 0 && digits.size() <= plain.size()) {

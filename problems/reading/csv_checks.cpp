@@ -14,41 +14,6 @@
 namespace tribench {
 namespace {
 
-// Whether the values change in every row of `restarts` and in no other (restarts[0] is not asked).
-template <typename Value>
-bool changes_with(const std::vector<Value>& values, const std::vector<char>& restarts) {
-  for (std::size_t r = 1; r < values.size(); ++r) {
-    if ((values[r] != values[r - 1]) != (restarts[r] != 0)) return false;
-  }
-  return true;
-}
-
-// The column that names the recordings; empty: none does.
-std::string column_of_recordings(const DataFile& reading, const Channel& time) {
-  std::vector<char> restarts(time.values.size(), 0);
-  for (std::size_t r = 1; r < restarts.size(); ++r) {
-    restarts[r] = time.values[r] < time.values[r - 1] ? 1 : 0;
-  }
-  for (const TextColumn& column : reading.texts) {
-    if (changes_with(column.values, restarts)) return column.name;
-  }
-  for (const Channel& channel : reading.data.channels) {
-    if (&channel != &time && changes_with(channel.values, restarts)) return channel.name;
-  }
-  return {};
-}
-
-std::string mend_of_time(const DataFile& reading, const Channel& time) {
-  if (reading.data.movement_names.size() > 1) return "sort the rows of a movement by time";
-  const std::string recordings = column_of_recordings(reading, time);
-  if (recordings.empty()) {
-    return "sort the rows by time, or name the recordings in a column 'movement'";
-  }
-  return fmt::format(
-      "'{}' changes wherever time begins anew: if it names the recordings, say --roles {}=movement",
-      recordings, recordings);
-}
-
 // A gravity torque may stand in its own unit beside a motor's volts or amperes: it is a load, and
 // the factor between the two is for the model to find.
 bool is_load_in_own_unit(const Dataset& data, const Channel& channel) {
@@ -59,21 +24,6 @@ bool is_load_in_own_unit(const Dataset& data, const Channel& channel) {
 }
 
 }  // namespace
-
-void check_time(const DataFile& reading, const std::function<std::size_t(std::size_t)>& line_of,
-                std::string_view file) {
-  const Dataset& data = reading.data;
-  const Channel* time = data.find(Role::time);
-  if (time == nullptr) return;
-  for (std::size_t r = 1; r < data.rows(); ++r) {
-    if (data.movement[r] != data.movement[r - 1] || time->values[r] >= time->values[r - 1]) {
-      continue;
-    }
-    throw_bad_input(
-        fmt::format("time runs back from {} to {}", time->values[r - 1], time->values[r]),
-        csv_place(file, line_of(r), time->name), mend_of_time(reading, *time));
-  }
-}
 
 void demote_current(const CsvOptions& options, DataFile& reading) {
   for (Channel& current : reading.data.channels) {

@@ -17,6 +17,21 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
+// A clock without a date starts again at midnight.
+void pass_midnight(std::vector<double>& times) {
+  constexpr double kDay = 86400;
+  const auto is_clock = [](double time) { return std::isnan(time) || time < kDay + 1; };
+  if (!std::ranges::all_of(times, is_clock)) return;
+  double days = 0;
+  double before = 0;  // as the clock told it
+  for (double& time : times) {
+    if (std::isnan(time)) continue;
+    if (before - time > kDay / 2) days += kDay;
+    before = time;
+    time += days;
+  }
+}
+
 class ColumnReader {
  public:
   ColumnReader(std::string_view text, std::string_view file, const CsvLayout& layout,
@@ -39,6 +54,7 @@ class ColumnReader {
       if (out_.places.size() == 100) reserve(place);
     }
     for (CsvColumn& column : out_.columns) {
+      if (column.told_in_text) pass_midnight(column.numbers);
       if (column.kind == ColumnKind::found || column.kind == ColumnKind::time) {
         column.kind = ColumnKind::number;
       }
@@ -185,7 +201,8 @@ class ColumnReader {
   }
 
   void add_time(CsvColumn& column, std::string_view cell) {
-    const std::optional<double> time = read_time_text(cell);
+    std::optional<double> time = read_time_text(cell);
+    if (!time) time = read_clock_behind_date(cell);
     if (!time && !column.told_in_text) {
       column.kind = ColumnKind::number;
       add_number(column, cell);

@@ -110,13 +110,31 @@ struct Found {
   std::size_t width = 0;
 };
 
+// The first row: from it on at least half of the lines are as wide. What a recorder says of itself
+// ("Serial;4711") is followed by other lines. None: the number of lines.
+std::size_t first_row(const std::vector<HeadLine>& lines, const std::vector<Cells>& cells) {
+  std::size_t first = lines.size();
+  for (std::size_t row = 0; row < lines.size(); ++row) {
+    if (lines[row].comment || !is_row(cells[row])) continue;
+    first = std::min(first, row);
+    std::size_t all = 0;
+    std::size_t as_wide = 0;
+    for (std::size_t i = row; i < lines.size(); ++i) {
+      if (lines[i].comment) continue;
+      ++all;
+      as_wide += same_width(cells[row], cells[i]) ? 1 : 0;
+    }
+    if (2 * as_wide >= all) return row;
+  }
+  return first;
+}
+
 // The layout that a delimiter would mean; no header: it means none.
 Found try_delimiter(const std::vector<HeadLine>& lines, char delimiter) {
   Found found{delimiter, {}, {}, 0, 0};
   std::vector<Cells> cells;
   for (const HeadLine& line : lines) cells.push_back(cells_of(line, delimiter));
-  std::size_t row = 0;
-  while (row < lines.size() && (lines[row].comment || !is_row(cells[row]))) ++row;
+  const std::size_t row = first_row(lines, cells);
   if (row == lines.size()) return found;
   found.row = row;
   const auto search = [&](bool comments) {
@@ -222,6 +240,14 @@ void check_bytes(std::string_view text, std::string_view file) {
                   "save it as CSV in UTF-8");
 }
 
+void take_off_single_quotes(std::vector<std::string>& header) {
+  const auto is_quoted = [](const std::string& name) {
+    return name.size() > 2 && name.front() == '\'' && name.back() == '\'';
+  };
+  if (!std::ranges::all_of(header, is_quoted)) return;
+  for (std::string& name : header) name = name.substr(1, name.size() - 2);
+}
+
 std::string without_brackets(std::string_view cell) {
   if (cell.size() > 2 && (cell.front() == '[' || cell.front() == '(')) {
     cell = cell.substr(1, cell.size() - 2);
@@ -262,6 +288,7 @@ CsvLayout find_layout(std::string_view text, std::string_view file) {
       (first.size() < layout.header.size() || first.back().empty())) {
     layout.header.pop_back();
   }
+  take_off_single_quotes(layout.header);
   check_header(layout.header, file, header.number);
   if (!has_rows) throw_bad_input("there is a header and no row", std::string(file), "add rows");
   layout.begin = lines[found.row].begin;

@@ -155,7 +155,10 @@ std::string as_utf8(std::string text) {
 std::string read_file_text(const std::filesystem::path& file) {
   std::string text = read_bytes(file);
   if (text.starts_with("\x1F\x8B")) text = unpacked(text, file.string());
-  return as_utf8(std::move(text));
+  text = as_utf8(std::move(text));
+  // Lines that end with a carriage return alone.
+  if (text.find('\n') == std::string::npos) std::ranges::replace(text, '\r', '\n');
+  return text;
 }
 
 }  // namespace tribench

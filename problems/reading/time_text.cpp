@@ -48,6 +48,18 @@ class Front {
   std::string_view text_;
 };
 
+// Hours that "AM" or "PM" add; 0 where neither follows.
+std::optional<int> take_half_of_day(Front& front, int hours) {
+  const std::string_view rest = trimmed(front.rest());
+  if (rest.size() < 2 || (rest[1] != 'M' && rest[1] != 'm')) return 0;
+  front.take(" ");
+  const bool morning = front.take("Aa");
+  if (!morning && !front.take("Pp")) return {};
+  front.take("Mm");
+  if (hours < 1 || hours > 12) return {};
+  return (hours == 12 ? -12 : 0) + (morning ? 0 : 12);
+}
+
 std::optional<double> take_clock(Front& front) {
   const std::optional<int> hours = front.whole(1, 2);
   if (!hours || *hours > 23 || !front.take(":")) return {};
@@ -57,7 +69,9 @@ std::optional<double> take_clock(Front& front) {
   if (!seconds || *seconds > 60) return {};
   const std::optional<double> fraction = front.fraction();
   if (!fraction) return {};
-  return 3600.0 * *hours + 60.0 * *minutes + *seconds + *fraction;
+  const std::optional<int> past_noon = take_half_of_day(front, *hours);
+  if (!past_noon) return {};
+  return 3600.0 * (*hours + *past_noon) + 60.0 * *minutes + *seconds + *fraction;
 }
 
 // Seconds to be taken off; 0 where no zone is named.
@@ -121,6 +135,17 @@ std::optional<double> read_time_text(std::string_view text) {
   Front front(text);
   if (const std::optional<double> clock = take_clock(front); clock && front.at_end()) return clock;
   return read_duration(text);
+}
+
+std::optional<double> read_clock_behind_date(std::string_view text) {
+  Front front(trimmed(text));
+  for (const std::size_t digits : {2, 2}) {
+    if (!front.whole(1, digits) || !front.take("/")) return {};
+  }
+  if (!front.whole(2, 4) || !front.take(" ,_T")) return {};
+  front.take(" ");
+  const std::optional<double> clock = take_clock(front);
+  return clock && front.at_end() ? clock : std::nullopt;
 }
 
 }  // namespace tribench

@@ -4,7 +4,8 @@
 // "14.05.2024 09:12:33,500"), a clock alone ("09:12:33.500"), a duration with its unit
 // ("0.002 sec").
 //
-// A date with slashes and the year last is not read: day and month cannot be told apart.
+// A date with slashes and the year last is not read: day and month cannot be told apart. What is
+// left where it is passed over is the clock.
 #pragma once
 
 #include <optional>
@@ -15,5 +16,9 @@ namespace tribench {
 // In seconds: of a date since 1970 (UTC where it names no zone), of a clock since midnight. None
 // where the text is no such time; a bare number is none either, since its unit stands elsewhere.
 std::optional<double> read_time_text(std::string_view text);
+
+// The clock behind a date with slashes and the year last ("05/06/2024 1:02:03.5 PM"), in seconds
+// since midnight. None where the text is no such time.
+std::optional<double> read_clock_behind_date(std::string_view text);
 
 }  // namespace tribench

@@ -156,6 +156,16 @@ TEST(VendorLogs, spreadsheets_and_their_encodings) {
               told("tim=time"), {0.002, 30 * kDegree, 4});
 }
 
+TEST(VendorLogs, what_a_recorder_says_of_itself_is_no_row) {
+  const std::string rows = "0;0.1;1\n0.002;0.2;2\n0.004;0.3;3\n0.006;0.4;4\n";
+  expect_read("Robot;KR 10\nSerial;4711\n\nt [s];q [rad];tau [Nm]\n" + rows, told(""),
+              {0.002, 0.2, 2});
+  expect_read("'t [s]';'q [rad]';'tau [Nm]'\n" + rows, told(""), {0.002, 0.2, 2});
+  // A monitor of the bus writes its counters so.
+  expect_read("t_s,enc [counts],tau_Nm\n0,0x0A,1\n0.002,0x10,2\n", told("", {}, {16.0, {}}),
+              {0.002, 2 * M_PI, 2});
+}
+
 TEST(VendorLogs, times_in_words) {
   expect_read(
       "timestamp,q_rad,tau_Nm\n2024-05-14T09:12:33.500000Z,0.1,1\n2024-05-14T09:12:33.502Z,0.2,2\n",
@@ -166,6 +176,17 @@ TEST(VendorLogs, times_in_words) {
   EXPECT_EQ(read_time_text("1970-01-02 00:00:01"), 86401);
   EXPECT_EQ(read_time_text("2024-02-29T12:00:00+02:00"), 1709200800);
   EXPECT_EQ(read_time_text("14.05.2024 09:12:33,25"), read_time_text("2024/05/14 09:12:33.25"));
+  // Day and month cannot be told apart, nor need they be; a clock goes on after midnight.
+  expect_read(
+      "Time,q_rad,tau_Nm\n05/06/2024 11:59:59.999 PM,0.1,1\n05/07/2024 12:00:00.001 AM,0.2,2\n",
+      told(""), {86400.001, 0.2, 2});
+  expect_read("Time,q_rad,tau_Nm\n23:59:59.999,0.1,1\n00:00:00.001,0.2,2\n", told(""),
+              {86400.001, 0.2, 2});
+  EXPECT_EQ(read_clock_behind_date("5/14/2024 1:02:03 PM"), 13 * 3600 + 123);
+  for (const char* none : {"", "05/06/2024", "05/06/2024 13:02:03 PM", "2024/05/06 01:02:03",
+                           "05/06/2024 01:02:03 x"}) {
+    EXPECT_FALSE(read_clock_behind_date(none)) << none;
+  }
   for (const char* none : {"", "12", "0.5", "2024-02-30 00:00:00", "05/06/2024 01:02:03",
                            "25:00:00", "1:2:3", "12 rad", "2024-05-14", "09:12:33.5 x"}) {
     EXPECT_FALSE(read_time_text(none)) << none;

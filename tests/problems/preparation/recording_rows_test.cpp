@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+//
+// Rows as recorders spoil them: one clean joint, told with one fault at a time. What comes out is
+// the clean one's motion.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "foundation/error.hpp"
+#include "problems/preparation/recording.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+constexpr double kStep = 0.004;
+constexpr double kTurn = 2 * M_PI;
+
+struct Row {
+  double time = 0;
+  double position = 0;  // rad
+  double torque = 0;
+};
+
+// Swings of up to 1.2 rad and 1.5 rad/s.
+double place_at(double t) { return 0.55 * std::sin(1.36 * t) + 0.65 * std::sin(1.14 * t); }
+double speed_at(double t) {
+  return 0.55 * 1.36 * std::cos(1.36 * t) + 0.65 * 1.14 * std::cos(1.14 * t);
+}
+
+std::vector<Row> swings() {
+  std::vector<Row> rows;
+  for (int i = 0; i < 10'000; ++i) {
+    const double t = kStep * i;
+    const double v = speed_at(t);
+    const double noise = 0.02 * std::sin(17.0 * i) + 0.02 * std::sin(5.3 * i * i);
+    rows.push_back({t, place_at(t), (v > 0 ? 0.5 : -0.5) + 0.3 * v + noise});
+  }
+  return rows;
+}
+
+PreparedRecording prepared(const std::vector<Row>& rows, const char* unit = "rad", Drive drive = {},
+                           int digits = 7) {
+  std::string text = "t,pos,tau\n";
+  for (const Row& row : rows) {
+    text += fmt::format("{:.6f},{:.{}f},{:.4f}\n", row.time, row.position, digits, row.torque);
+  }
+  CsvOptions csv;
+  csv.used.emplace();
+  csv.drive = drive;
+  csv.roles =
+      parse_roles(fmt::format("t=time[s],pos=position[{}],tau=motor_torque[N m]", unit), "--roles");
+  DataOptions options;
+  options.drive = drive;
+  return prepare(parse_csv(text, "log.csv", csv), options);
+}
+
+// The velocity that comes out, against the one of the clean rows at the same instants.
+// late: by how much all of its stamps are.
+void expect_same_motion(const PreparedRecording& recording, const char* note, double late = 0) {
+  EXPECT_THAT(recording.notes, Contains(HasSubstr(note)));
+  const std::vector<double>& t = recording.data.find(Role::time)->values;
+  const std::vector<double>& v = recording.data.find(Role::velocity)->values;
+  EXPECT_GT(t.size(), 5000U);
+  double worst = 0;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    worst = std::max(worst, std::abs(v[i] - speed_at(t[i] - late)));
+  }
+  EXPECT_LT(worst, 0.03) << note;
+}
+
+TEST(RecordingRows, a_clock_that_ticks_more_slowly_than_the_rows_come) {
+  for (const double tick : {1.0, 1.0 / 64}) {  // whole seconds; Windows' clock
+    std::vector<Row> rows = swings();
+    for (Row& row : rows) row.time = tick * std::floor(row.time / tick);
+    expect_same_motion(prepared(rows), "taken to be even in time", -tick / 2);
+  }
+  // Rows that come in bursts do not say when they were made.
+  std::vector<Row> bursts = swings();
+  for (std::size_t i = 0; i < bursts.size(); ++i) {
+    bursts[i].time = std::floor(std::sqrt(static_cast<double>(i)));
+  }
+  EXPECT_THROW(prepared(bursts), Error);
+}
+
+TEST(RecordingRows, stamps_that_jitter_about_a_steady_beat) {
+  std::vector<Row> rows = swings();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].time += 0.3 * kStep * std::sin(7.7 * static_cast<double>(i * i));
+  }
+  expect_same_motion(prepared(rows), "jitter by 0.85 ms about even instants");
+}
+
+// Rows that really were made at uneven instants, stamped rightly, are left as they are.
+TEST(RecordingRows, stamps_that_are_right_are_kept) {
+  std::vector<Row> rows = swings();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    Row& row = rows[i];
+    row.time += 0.4 * kStep * std::sin(7.7 * static_cast<double>(i * i));
+    row.position = place_at(row.time);
+  }
+  const PreparedRecording recording = prepared(rows);
+  EXPECT_THAT(recording.notes, Not(Contains(HasSubstr("jitter"))));
+  expect_same_motion(recording, "velocity is derived");
+}
+
+TEST(RecordingRows, rows_are_lost_at_random) {
+  std::vector<Row> rows;
+  for (const Row& row : swings()) {
+    if (std::sin(5.1 * static_cast<double>(rows.size()) + 900 * row.time) < 0.8)
+      rows.push_back(row);
+  }
+  ASSERT_LT(rows.size(), 9000U);
+  expect_same_motion(prepared(rows), "velocity is derived");
+}
+
+TEST(RecordingRows, wrong_readings_are_left_out_and_counted) {
+  std::vector<Row> rows = swings();
+  for (const std::size_t i : {900U, 4000U, 4001U, 7321U}) rows[i].position = 0;
+  for (const std::size_t i : {1500U, 6000U}) rows[i].torque = 300;
+  const PreparedRecording recording = prepared(rows);
+  expect_same_motion(recording, "have a wrong reading of 'pos'");
+  EXPECT_THAT(recording.notes, Contains(HasSubstr("2 of 9996 rows have a wrong reading of 'tau'")));
+  for (const double torque : recording.data.find(Role::motor_torque)->values) {
+    ASSERT_LT(std::abs(torque), 2);
+  }
+}
+
+TEST(RecordingRows, a_position_that_is_set_anew_has_not_moved) {
+  std::vector<Row> rows = swings();
+  for (std::size_t i = 5000; i < rows.size(); ++i) rows[i].position += 3.3;
+  expect_same_motion(prepared(rows), "jumps 1 times");
+}
+
+// 4 096 counts a turn of the motor in a counter of 16 bits; one turn of the motor in degrees.
+TEST(RecordingRows, counters_and_turns_that_start_again_are_laid_end_to_end) {
+  const Drive drive{4096.0, 100.0};
+  const auto wrapped = [](double x, double full) { return x - full * std::floor(x / full); };
+  std::vector<Row> counts = swings();
+  for (Row& row : counts) {
+    const double count = std::floor(row.position * 100 / kTurn * 4096);
+    row.position = wrapped(count, 65536) - 32768;
+  }
+  expect_same_motion(prepared(counts, "counts@motor", drive, 0), "laid end to end");
+  std::vector<Row> turns = swings();
+  for (Row& row : turns) row.position = wrapped(row.position * 100 * 360 / kTurn, 360);
+  expect_same_motion(prepared(turns, "deg@motor", drive, 3), "laid end to end");
+  // Where messages are lost the joint goes on: here by more than a turn of the motor.
+  std::vector<Row> lost;
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    if (i % 2000 < 1900 || i % 2000 > 1912) lost.push_back(turns[i]);
+  }
+  expect_same_motion(prepared(lost, "deg@motor", drive, 3), "laid end to end");
+}
+
+TEST(RecordingRows, a_velocity_that_nobody_filled_is_refused_with_the_mend) {
+  std::string text = "t_s,pos_rad,vel_rad_s,tau_Nm\n";
+  for (const Row& row : swings()) {
+    text += fmt::format("{:.3f},{:.6f},0.0,{:.4f}\n", row.time, row.position, row.torque);
+  }
+  try {
+    prepare(parse_csv(text, "log.csv"), {});
+    FAIL() << "read";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("--roles 'vel_rad_s=none'"));
+  }
+}
+
+}  // namespace
+}  // namespace tribench
