@@ -1,27 +1,53 @@
 // SPDX-License-Identifier: MIT
 #include "foundation/output_file.hpp"
 
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <system_error>
 
 #include "foundation/error.hpp"
 
 namespace tribench {
+namespace {
 
-void write_file(const std::filesystem::path& file, std::string_view text) {
-  std::filesystem::path partial = file;
-  partial += ".partial";
-  {
-    std::ofstream out(partial, std::ios::binary | std::ios::trunc);
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    out.flush();
-    if (!out) {
-      throw Error(ErrorKind::failed, "cannot be written", file.string(),
-                  "check the disk's free space and the folder's rights");
-    }
-  }
+namespace fs = std::filesystem;
+
+[[noreturn]] void throw_unwritable(const fs::path& file, int error) {
+  throw Error(ErrorKind::failed, fmt::format("cannot be written: {}", std::strerror(error)),
+              file.string(), "check the disk's free space and the folder's rights");
+}
+
+// Whether all of it has arrived; errno says why not.
+bool write_all(const fs::path& file, std::string_view text) {
+  errno = 0;
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.flush();
+  return static_cast<bool>(out);
+}
+
+}  // namespace
+
+void write_file(const fs::path& file, std::string_view text) {
   std::error_code error;
-  std::filesystem::rename(partial, file, error);
+  const fs::file_status status = fs::status(file, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {  // a terminal, a pipe: stays what it is
+    if (!write_all(file, text)) throw_unwritable(file, errno);
+    return;
+  }
+  // Where a link leads, so that the link stays one.
+  const fs::path target = fs::is_symlink(file, error) ? fs::weakly_canonical(file, error) : file;
+  fs::path partial = target;
+  partial += ".partial";
+  if (!write_all(partial, text)) {
+    const int why = errno;
+    fs::remove(partial, error);
+    throw_unwritable(file, why);
+  }
+  fs::rename(partial, target, error);
   if (error) throw Error(ErrorKind::failed, error.message(), file.string());
 }
 

@@ -9,7 +9,8 @@
 namespace tribench {
 
 // Writes the text beside its place and renames it, so that a reader sees the old file or the new,
-// never half of one. Throws Error (failed) naming the file.
+// never half of one. A link is followed; what is no file (a pipe, a terminal, /dev/null) is written
+// to as it is. Throws Error (failed) naming the file; nothing is left beside it then.
 void write_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace tribench

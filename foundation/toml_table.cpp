@@ -19,6 +19,50 @@ std::string place_of(const std::string& file, const toml::source_region& source)
   return fmt::format("{}:{}:{}", file, source.begin.line, source.begin.column);
 }
 
+// Where the text that begins at `begin` with its quote ends: behind the closing quote, or at the
+// end.
+std::size_t end_of_toml_text(std::string_view text, std::size_t begin) {
+  const char quote = text[begin];
+  const std::string three(3, quote);
+  const bool is_long = text.substr(begin, 3) == three;
+  const std::string closing = is_long ? three : std::string(1, quote);
+  for (std::size_t i = begin + closing.size(); i < text.size(); ++i) {
+    if (text[i] == '\\' && quote == '"') {
+      ++i;
+    } else if (text.substr(i, closing.size()) == closing) {
+      return i + closing.size();
+    } else if (text[i] == '\n' && !is_long) {
+      return i;  // never closed: the parser says so
+    }
+  }
+  return text.size();
+}
+
+// a.b.c nests two tables; walking and freeing nested tables takes stack, and the parser bounds only
+// the nesting of values (256).
+constexpr int kMostDots = 16;
+
+// The dots that part keys, outside of texts and comments.
+void check_dotted_keys(std::string_view text, std::string_view file_name) {
+  int dots = 0;
+  std::size_t line = 1;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '#') i = std::min(text.find('\n', i), text.size()) - 1;
+    if (c == '"' || c == '\'') {
+      const std::size_t end = end_of_toml_text(text, i);
+      line += static_cast<std::size_t>(std::ranges::count(text.substr(i, end - i), '\n'));
+      i = end - 1;
+    }
+    if (c == '\n') ++line;
+    if (c == '\n' || c == '=' || c == ',' || c == '{' || c == '[') dots = 0;
+    if (c == '.' && ++dots > kMostDots) {
+      throw_bad_input(fmt::format("a key of more than {} parts", kMostDots),
+                      fmt::format("{}:{}", file_name, line), "no key here has more than a few");
+    }
+  }
+}
+
 TomlValue plain_value(const toml::node& node, const std::string& place) {
   if (const auto flag = node.as_boolean()) return flag->get();
   if (const auto integer = node.as_integer()) return integer->get();
@@ -30,6 +74,7 @@ TomlValue plain_value(const toml::node& node, const std::string& place) {
 }  // namespace
 
 toml::table parse_toml(std::string_view text, std::string_view file_name) {
+  check_dotted_keys(text, file_name);
   try {
     return toml::parse(text, file_name);
   } catch (const toml::parse_error& error) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "harness/progress_line.hpp"
+#include "foundation/standard_streams.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -56,9 +57,9 @@ void ProgressLine::show(bool last) {
                         duration_text(elapsed_s * (predicted_s_ - worked_off_s_) / worked_off_s_));
   }
   if (is_terminal_) {
-    fmt::print(stderr, "\r\033[K{}{}", line, last ? "\n" : "");
+    print_message(fmt::format("\r\033[K{}{}", line, last ? "\n" : ""));
   } else {
-    fmt::print(stderr, "{}\n", line);
+    print_message(fmt::format("{}\n", line));
   }
   std::fflush(stderr);
 }

@@ -16,6 +16,7 @@
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/shell_word.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/run_files.hpp"
 
 namespace tribench {
@@ -128,9 +129,9 @@ bool follow_slurm(const SlurmJobs& jobs, const std::atomic<bool>& stop) {
     const std::size_t left = elements_left(jobs.array) + elements_left(jobs.merge);
     if (left == 0) return true;
     if (is_terminal) {
-      fmt::print(stderr, "\r\033[K{} elements left", left);
+      print_message(fmt::format("\r\033[K{} elements left", left));
     } else if (left != shown) {
-      fmt::print(stderr, "{} elements left\n", left);
+      print_message(fmt::format("{} elements left\n", left));
     }
     shown = left;
     for (int tenth = 0; tenth < 20 && !stop.load(); ++tenth) {

@@ -2,7 +2,6 @@
 #include "harness/whole_run.hpp"
 
 #include <algorithm>
-#include <csignal>
 #include <utility>
 
 #include "foundation/text.hpp"
@@ -28,8 +27,6 @@ std::string own_command_line() {
 WholeRun run_whole(const Grid& grid, const RunOptions& options, const std::atomic<bool>& stop) {
   const RunIdentity identity{print_grid_identity(grid), code_identity(),
                              data_identity(grid, options.data)};
-  // A full disk or a limit on file sizes is an error of write(), not a reason to die.
-  std::signal(SIGXFSZ, SIG_IGN);
   RunSession session{utc_now(), {}, own_command_line(), options, {}};
   session.tally = run_grid(grid, options, identity, stop);
   session.ended = utc_now();

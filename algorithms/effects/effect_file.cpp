@@ -18,6 +18,8 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/suggestion.hpp"
+#include "foundation/text.hpp"
+#include "foundation/toml_table.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -261,13 +263,7 @@ toml::table parse_file(const std::filesystem::path& file) {
     throw_bad_input(fmt::format("the file has {} bytes, more than {}", bytes, kMostBytes),
                     file.string(), "an effect takes a few lines; see --save-effect for the form");
   }
-  try {
-    return toml::parse_file(file.string());
-  } catch (const toml::parse_error& parse_error) {
-    throw_bad_input(std::string(parse_error.description()),
-                    fmt::format("{}:{}", file.string(), parse_error.source().begin.line),
-                    "see --save-effect for the form");
-  }
+  return parse_toml(read_file(file), file.string());
 }
 
 // What belongs to the family and not to one of its atoms.

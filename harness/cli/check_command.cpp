@@ -7,7 +7,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -21,6 +20,7 @@
 #include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
@@ -151,9 +151,7 @@ void save_certificate(const Expression& formula, const NamedBox& box, const Cert
         fmt::format("proved, but the certificate would have more than {} pieces", kMaxPieces),
         "--certificate", "shrink the box or do without");
   }
-  std::ofstream file(path);
-  file << *certificate << '\n';
-  if (!file.flush()) throw Error(ErrorKind::failed, "cannot be written", path);
+  write_file(path, *certificate + "\n");
 }
 
 ExitStatus verify(const CheckOptions& options) {

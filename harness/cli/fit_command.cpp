@@ -21,6 +21,7 @@
 #include "foundation/number_text.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/shell_word.hpp"
+#include "foundation/standard_streams.hpp"
 #include "foundation/text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/data_options.hpp"
@@ -80,11 +81,11 @@ Dataset read_columns(const std::string& file, const FitArguments& arguments) {
   const std::vector<std::filesystem::path> files = {file};
   DataFile reading = read_named_columns(files, *arguments.reading, std::move(used));
   for (const std::string& warning : reading.warnings) {
-    fmt::print(stderr, "tribench: {}\n", warning);
+    print_message(fmt::format("tribench: {}\n", warning));
   }
   if (reading.dropped_rows > 0) {
-    fmt::print(stderr, "tribench: {}: {} rows with missing values dropped\n", file,
-               reading.dropped_rows);
+    print_message(fmt::format("tribench: {}: {} rows with missing values dropped\n", file,
+                              reading.dropped_rows));
   }
   return std::move(reading.data);
 }

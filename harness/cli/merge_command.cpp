@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "foundation/output_file.hpp"
+#include "foundation/standard_streams.hpp"
 #include "foundation/text.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
@@ -29,7 +30,8 @@ struct MergeArguments {
 };
 
 void print_damage(const JournalContents& journal) {
-  for (const std::string& damage : journal.damage) fmt::print(stderr, "tribench: {}\n", damage);
+  for (const std::string& damage : journal.damage)
+    print_message(fmt::format("tribench: {}\n", damage));
 }
 
 void merge(const MergeArguments& arguments) {

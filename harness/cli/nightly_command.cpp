@@ -12,6 +12,7 @@
 
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
@@ -38,8 +39,8 @@ bool notify(const std::string& command, const std::string& summary) {
   const ChildRun run =
       run_child({.command = {"sh", "-c", command}}, summary, {kPatience_s, 1U << 20});
   if (run.exit.ok() && !run.timed_out) return true;
-  fmt::print(stderr, "tribench: --notify: '{}' {}: {}\n", command,
-             run.timed_out ? "took too long" : "failed", run.errors);
+  print_message(fmt::format("tribench: --notify: '{}' {}: {}\n", command,
+                            run.timed_out ? "took too long" : "failed", run.errors));
   return false;
 }
 

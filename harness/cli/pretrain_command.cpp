@@ -14,6 +14,7 @@
 
 #include "algorithms/udsr/pretraining.hpp"
 #include "foundation/error.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
 
@@ -29,8 +30,8 @@ struct Arguments {
 
 void show_progress(double done) {
   if (isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "\rpre-training {:3.0f} %", 100 * done);
-  if (done >= 1) fmt::print(stderr, "\n");
+  print_message(fmt::format("\rpre-training {:3.0f} %", 100 * done));
+  if (done >= 1) print_message("\n");
 }
 
 void run(const Arguments& arguments) {

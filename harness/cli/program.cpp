@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "foundation/standard_streams.hpp"
 #include "foundation/suggestion.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/provenance.hpp"
@@ -71,7 +72,7 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
   const bool is_usage = error.get_exit_code() != 0;
   const std::string unknown = is_usage ? unknown_word(app) : std::string();
   if (!unknown.empty()) {
-    fmt::print(stderr, "{}", unknown);
+    print_message(unknown);
   } else {
     app.exit(error);
   }
@@ -119,20 +120,28 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   return exit_code(status);
 }
 
-}  // namespace
-
-int run_program(int argc, char** argv, const Registry& registry) {
+int run_guarded(int argc, char** argv, const Registry& registry) {
   try {
     if (argc == 2 && std::strcmp(argv[1], kWorkerCommand) == 0) return run_worker(registry);
     return run_command_line(argc, argv, registry);
   } catch (const Error& error) {
-    fmt::print(stderr, "tribench: {}\n", error.what());
+    print_message(fmt::format("tribench: {}\n", error.what()));
     return exit_code(error.kind() == ErrorKind::bad_input ? ExitStatus::bad_input
                                                           : ExitStatus::failed);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "tribench: {}\n", error.what());
+    print_message(fmt::format("tribench: {}\n", error.what()));
     return exit_code(ExitStatus::failed);
   }
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, const Registry& registry) {
+  take_standard_streams();
+  const int status = run_guarded(argc, argv, registry);
+  if (has_output_arrived()) return status;
+  print_message("tribench: the standard output cannot be written; check where it goes\n");
+  return exit_code(ExitStatus::failed);
 }
 
 }  // namespace tribench

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "foundation/output_file.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/curves.hpp"
@@ -37,7 +38,8 @@ struct ReportArguments {
 void refresh_files(const std::filesystem::path& folder) {
   if (!std::filesystem::exists(folder / "cells.jsonl")) return;
   const JournalContents journal = read_journal(folder / "cells.jsonl");
-  for (const std::string& damage : journal.damage) fmt::print(stderr, "tribench: {}\n", damage);
+  for (const std::string& damage : journal.damage)
+    print_message(fmt::format("tribench: {}\n", damage));
   write_result_files(folder, journal.results);
   write_curves(folder, journal.results, full_catalogue_of_run(folder));
 }

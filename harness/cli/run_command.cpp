@@ -19,6 +19,7 @@
 #include "foundation/output_folder.hpp"
 #include "foundation/scratch_folder.hpp"
 #include "foundation/shell_word.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/data_grid_options.hpp"
@@ -128,11 +129,11 @@ void print_end(const RunArguments& arguments, const RunTally& tally,
                const std::filesystem::path& out, const std::string& board) {
   if (!board.empty()) fmt::print("{}\n", board);
   for (const std::string& damage : tally.journal_damage) {
-    fmt::print(stderr, "tribench: cells.jsonl: {}\n", damage);
+    print_message(fmt::format("tribench: cells.jsonl: {}\n", damage));
   }
   if (tally.stopped) {
-    fmt::print(stderr, "stopped: {} of {} cells are done; go on by: {}\n", tally.done(),
-               tally.cells, resuming(arguments, out));
+    print_message(fmt::format("stopped: {} of {} cells are done; go on by: {}\n", tally.done(),
+                              tally.cells, resuming(arguments, out)));
   } else {
     fmt::print("{} cells, {} failed, {:.1f} s; see {}\n", tally.done(), tally.failed, tally.wall_s,
                (out / "leaderboard.md").string());
@@ -145,8 +146,8 @@ void run_to_the_end(const Grid& grid, const RunArguments& arguments, const RunOp
   const WholeRun run = run_whole(grid, options, stop_requested_by({SIGINT, SIGTERM}));
   print_end(arguments, run.tally, options.out, run.board);
   if (run.all_failed()) {
-    fmt::print(stderr, "every cell failed, the first one by: {}\n",
-               reason_text(run.journal.results.front().record.reason));
+    print_message(fmt::format("every cell failed, the first one by: {}\n",
+                              reason_text(run.journal.results.front().record.reason)));
   }
   if (run.tally.stopped || run.all_failed()) status = ExitStatus::failed;
 }
@@ -199,7 +200,8 @@ void run(const RunArguments& arguments, const Registry& registry, ExitStatus& st
   if (arguments.seeds) grid.seed_count = *arguments.seeds;
   if (arguments.evaluations) grid.limits.evaluations = *arguments.evaluations;
   if (arguments.seconds) set_seconds(grid.limits, *arguments.seconds);
-  for (const std::string& note : reading_notes(grid)) fmt::print(stderr, "tribench: {}\n", note);
+  for (const std::string& note : reading_notes(grid))
+    print_message(fmt::format("tribench: {}\n", note));
   if (!arguments.quarantine.empty()) {
     for (std::string& glob : read_quarantine_file(arguments.quarantine)) {
       grid.quarantine.push_back(std::move(glob));

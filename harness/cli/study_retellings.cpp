@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "foundation/error.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/cli/study_loop.hpp"
 #include "harness/study/retelling_study.hpp"
@@ -50,7 +51,7 @@ std::vector<RecordingToTell> listed_recordings(const Arguments& arguments) {
         read_recordings(text, arguments.list, std::filesystem::path(arguments.list).parent_path());
   }
   for (const std::string& name : list.missing) {
-    fmt::print(stderr, "{}: its files are not there, left out\n", name);
+    print_message(fmt::format("{}: its files are not there, left out\n", name));
   }
   std::erase_if(list.recordings,
                 [&](const RecordingToTell& one) { return !one.name.starts_with(arguments.only); });

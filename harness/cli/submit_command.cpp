@@ -11,6 +11,7 @@
 #include <string>
 
 #include "foundation/error.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
@@ -60,7 +61,7 @@ void submit(const SubmitArguments& arguments, const Registry& registry, ExitStat
              (options.out / "log").string());
   if (arguments.detach) return;
   if (!follow_slurm(jobs, stop_requested_by({SIGINT}))) {
-    fmt::print(stderr, "no longer following; the jobs go on\n");
+    print_message("no longer following; the jobs go on\n");
     status = ExitStatus::undecided;
     return;
   }

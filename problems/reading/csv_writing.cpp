@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <fstream>
 #include <iterator>
 #include <ostream>
 
-#include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "problems/reading/csv.hpp"
 
 namespace tribench {
@@ -24,9 +23,7 @@ std::string quoted(const std::string& cell) {
   return text + '"';
 }
 
-}  // namespace
-
-void write_csv(const Dataset& data, std::ostream& out) {
+fmt::memory_buffer csv_text(const Dataset& data) {
   fmt::memory_buffer buffer;
   buffer.append(std::string_view("movement"));
   for (const Channel& channel : data.channels) {
@@ -41,17 +38,19 @@ void write_csv(const Dataset& data, std::ostream& out) {
     }
     buffer.push_back('\n');
   }
-  out.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+  return buffer;
+}
+
+}  // namespace
+
+void write_csv(const Dataset& data, std::ostream& out) {
+  const fmt::memory_buffer text = csv_text(data);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
 }
 
 void write_csv(const Dataset& data, const std::filesystem::path& file) {
-  std::ofstream out(file, std::ios::binary);
-  if (out) write_csv(data, out);
-  out.flush();
-  if (!out) {
-    throw Error(ErrorKind::failed, "cannot write the file", file.string(),
-                "check that the folder exists and is writable");
-  }
+  const fmt::memory_buffer text = csv_text(data);
+  write_file(file, {text.data(), text.size()});
 }
 
 }  // namespace tribench

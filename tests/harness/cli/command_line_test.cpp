@@ -6,11 +6,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench::testing {
@@ -90,6 +92,40 @@ TEST(CommandLine, UnknownWordsAreAnsweredWithTheNearest) {
   expect({"run", "--jbos=3"}, "there is no option '--jbos'; did you mean --jobs?");
   expect({"run", "quick", "more"}, "there is no further argument 'more'");
   expect({}, "A subcommand is required");
+}
+
+// The program with these words and redirections, below what bash does first.
+ProgramRun run_redirected(const std::string& words, const std::string& first = "true") {
+  return run_to_end({"bash", "-c", first + "; exec \"$0\" " + words, program().string()});
+}
+
+// Closed, or on a disk that is full.
+TEST(CommandLine, OutputThatDoesNotArriveIsAFailure) {
+  for (const char* words : {"list methods > /dev/full", "list methods >&-",
+                            "list methods --json > /dev/full", "--version > /dev/full"}) {
+    EXPECT_EQ(run_redirected(words).status, 3) << words;
+  }
+  EXPECT_EQ(run_redirected("list methods > /dev/null").status, 0);
+}
+
+TEST(CommandLine, MessagesThatNobodyHearsChangeNothing) {
+  for (const char* words : {"fit missing.csv --target y --inputs x --method linear 2>&-",
+                            "fit missing.csv --target y --inputs x --method linear 2> /dev/full",
+                            "fit missing.csv --target y --inputs x --method linear <&- >&- 2>&-"}) {
+    const ProgramRun run = run_redirected(words);
+    EXPECT_EQ(run.status, 2) << words;
+    EXPECT_EQ(run.signal, 0) << words;
+  }
+}
+
+// `ulimit -f` counts in kilobytes, and the problem has 100 of them.
+TEST(CommandLine, ALimitOnFileSizesIsAnErrorAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const ProgramRun run = run_redirected(
+      "generate A/j2/load --out '" + (folder / "data.csv").string() + "'", "ulimit -f 8");
+  EXPECT_EQ(run.status, 3) << run.errors;
+  EXPECT_THAT(run.errors, HasSubstr("data.csv: cannot be written: File too large"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 }  // namespace

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "foundation/output_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <future>
+
+#include "foundation/error.hpp"
+#include "foundation/scratch_folder.hpp"
+#include "foundation/text.hpp"
+
+namespace tribench {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+TEST(OutputFile, ALinkStaysALink) {
+  const ScratchFolder folder;
+  write_file(folder.path() / "file", "old");
+  fs::create_symlink("file", folder.path() / "link");
+  write_file(folder.path() / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
+  EXPECT_EQ(read_file(folder.path() / "file"), "new");
+}
+
+// A device that is replaced by a file (/dev/null, as root) is lost to the whole machine.
+TEST(OutputFile, WhatIsNoFileIsWrittenToAsItIs) {
+  const ScratchFolder folder;
+  const fs::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  auto reader = std::async(std::launch::async, [&pipe] { return read_file(pipe); });
+  write_file(pipe, "text");
+  EXPECT_EQ(reader.get(), "text");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST(OutputFile, SaysWhyItCannotBeWritten) {
+  try {
+    write_file("/dev/full", "text");
+    FAIL() << "written";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::failed);
+    EXPECT_THAT(error.what(), HasSubstr("No space left"));
+  }
+}
+
+}  // namespace
+}  // namespace tribench
