@@ -116,6 +116,26 @@ NightBench read_bench(std::string_view line, const std::string& place) {
   return bench;
 }
 
+// The night's words; returns the number of its benches.
+std::size_t read_header(std::string_view line, Night& night, const std::string& place) {
+  const ordered_json header = read_json<ordered_json>(line);
+  if (!header.is_object()) throw_damaged(place);
+  try {
+    night.name = header.value("name", "");
+    night.started = header.value("started", "");
+    night.code = header.value("code", "");
+    night.commit = header.value("commit", "");
+    night.machine = header.value("machine", "");
+    night.grid = header.value("grid", "");
+    night.data = header.value("data", "");
+    night.outcome = header.value("outcome", "");
+    night.bench_conditions = header.value("bench_conditions", "");
+    return header.value("benches", std::size_t{0});
+  } catch (const ordered_json::exception&) {  // another type
+    throw_damaged(place);
+  }
+}
+
 }  // namespace
 
 Night night_of_run(const RunFolder& run, std::string name) {
@@ -161,6 +181,10 @@ std::string print_night(const Night& night) {
     body += "\n";
   }
   for (const NightBench& bench : night.benches) body += print_bench(bench);
+  return night_text(body);
+}
+
+std::string night_text(std::string_view body) {
   return fmt::format("{}{:016x}\n{}", kMagic, key_of(body), body);
 }
 
@@ -172,19 +196,8 @@ Night read_night(std::string_view text, const std::string& place, bool with_seed
   const std::string_view check = text.substr(kMagic.size(), kCheckDigits);
   text.remove_prefix(head + 1);
   if (fmt::format("{:016x}", key_of(text)) != check) throw_damaged(place);
-  const ordered_json header = read_json<ordered_json>(next_field(text, '\n'));
-  if (!header.is_object()) throw_damaged(place);
   Night night;
-  night.name = header.value("name", "");
-  night.started = header.value("started", "");
-  night.code = header.value("code", "");
-  night.commit = header.value("commit", "");
-  night.machine = header.value("machine", "");
-  night.grid = header.value("grid", "");
-  night.data = header.value("data", "");
-  night.outcome = header.value("outcome", "");
-  night.bench_conditions = header.value("bench_conditions", "");
-  const auto benches = header.value("benches", std::size_t{0});
+  const std::size_t benches = read_header(next_field(text, '\n'), night, place);
   const auto lines = static_cast<std::size_t>(std::ranges::count(text, '\n'));
   if (benches > lines) throw_damaged(place);
   while (night.series.size() + benches < lines) {

@@ -61,6 +61,9 @@ Night night_of_run(const RunFolder& run, std::string name);
 
 // As text with a checksum in its first line; read_night(print_night(n)) gives the same night.
 std::string print_night(const Night& night);
+// A body with the first line that says what it is: magic and checksum.
+std::string night_text(std::string_view body);
+
 // Throws Error (bad_input) with `place` where the text is damaged. Without the seeds' errors (which
 // make nine tenths of it) where `with_seeds` is false.
 Night read_night(std::string_view text, const std::string& place, bool with_seeds = true);

@@ -124,13 +124,13 @@ std::vector<Blessing> NightStore::blessings() const {
   std::vector<Blessing> all;
   for (const std::string& name : stems(folder_ / kBlessings, kBlessingEnd)) {
     const fs::path file = folder_ / kBlessings / (name + kBlessingEnd);
-    const ordered_json object =
-        read_json<ordered_json>(read_file_if_there(file).value_or(std::string()));
-    if (!object.is_object() || !object.contains("night") || !object.at("night").is_string()) {
+    try {
+      const ordered_json object = read_json<ordered_json>(read_file_if_there(file).value_or(""));
+      all.push_back({object.at("night"), object.value("reason", ""), object.value("when", "")});
+    } catch (const ordered_json::exception&) {  // no JSON, no object, another type
       throw_bad_input("this blessing is damaged", file.string(),
                       "bring it back from a copy of the store");
     }
-    all.push_back({object.at("night"), object.value("reason", ""), object.value("when", "")});
   }
   return all;
 }

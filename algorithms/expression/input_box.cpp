@@ -10,6 +10,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/formula_name.hpp"
+#include "foundation/sign.hpp"
 
 namespace tribench {
 namespace {
@@ -67,6 +68,30 @@ void add_range(std::string_view part, NamedBox& box) {
   box.ranges.push_back(range);
 }
 
+// A range given to a sign beside its input says nothing that the input does not; the sign comes back
+// where a formula uses it (parse_over). Less than the input's own signs would be another question.
+void leave_out_signs(NamedBox& box) {
+  NamedBox kept;
+  for (std::size_t j = 0; j < box.names.size(); ++j) {
+    const std::string& name = box.names[j];
+    const auto base = name.starts_with(kSign)
+                          ? place_of(box.names, std::string_view(name).substr(kSign.size()))
+                          : std::nullopt;
+    if (!base) {
+      kept.names.push_back(name);
+      kept.ranges.push_back(box.ranges[j]);
+      continue;
+    }
+    const InputRange& of = box.ranges[*base];
+    if (box.ranges[j].low > sign(of.low) || box.ranges[j].high < sign(of.high)) {
+      throw_bad_input(fmt::format("'{}' follows from '{}' and has no range of its own", name,
+                                  box.names[*base]),
+                      "--box", fmt::format("leave it out, or give '{}' less", box.names[*base]));
+    }
+  }
+  box = std::move(kept);
+}
+
 }  // namespace
 
 NamedBox parse_box(std::string_view text) {
@@ -76,12 +101,7 @@ NamedBox parse_box(std::string_view text) {
     add_range(trimmed(text.substr(0, comma)), box);
     text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 1);
   }
-  // A range given to a sign beside its input says nothing that the input does not.
-  for (std::size_t j = 0; j < box.names.size(); ++j) {
-    if (box.names[j].starts_with(kSign)) {
-      box.ranges[j].sign_of = place_of(box.names, box.names[j].substr(kSign.size()));
-    }
-  }
+  leave_out_signs(box);
   return box;
 }
 

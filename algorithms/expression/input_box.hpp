@@ -30,8 +30,8 @@ struct NamedBox {
   InputBox ranges;  // in the order of names
 };
 
-// Reads NAME=LOW:HIGH, separated by commas. Throws Error (bad_input) that says which part is wrong;
-// a name sgn_X needs X beside it and no range of its own.
+// Reads NAME=LOW:HIGH, separated by commas. A name sgn_X beside X needs no range and is left out.
+// Throws Error (bad_input) that says which part is wrong, also where sgn_X has less than X gives it.
 NamedBox parse_box(std::string_view text);
 std::string print_box(const NamedBox& box);
 

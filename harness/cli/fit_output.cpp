@@ -93,20 +93,27 @@ void print_fit(const FitAnswer& answer) {
              record.fit_cpu_s, answer.ended, answer.reproduce);
 }
 
-FitIntervals read_fit_intervals(const nlohmann::json& model, const std::string& file) {
+FitIntervals read_fit_intervals(const nlohmann::json& model, const Expression& formula,
+                                const std::string& file) {
   FitIntervals intervals;
   try {
     const nlohmann::json& kept = model.at("intervals");
     intervals.quantile = kept.at("quantile");
     intervals.covariance = kept.at("covariance").get<std::vector<double>>();
-    for (const nlohmann::json& one : kept.at("constants"))
+    for (const nlohmann::json& one : kept.at("constants")) {
       intervals.places.push_back(one.at("place"));
+    }
   } catch (const nlohmann::json::exception&) {
     throw_bad_input("this model has no intervals", file, "save one by: tribench fit --save FILE");
   }
   const std::size_t p = intervals.places.size();
   if (intervals.covariance.size() != p * p) {
     throw_bad_input("the covariance does not fit the constants", file,
+                    "save the model again by: tribench fit --save FILE");
+  }
+  for (const std::size_t place : intervals.places) {
+    if (place < formula.size() && formula.node(place).is_constant()) continue;
+    throw_bad_input("the intervals are of another formula", file,
                     "save the model again by: tribench fit --save FILE");
   }
   return intervals;

@@ -25,7 +25,9 @@ struct FitAnswer {
 nlohmann::ordered_json fit_json(const FitAnswer& answer);
 void print_fit(const FitAnswer& answer);
 
-// Of a file with the JSON of a fit. Throws Error (bad_input) with the file where it has none.
-FitIntervals read_fit_intervals(const nlohmann::json& model, const std::string& file);
+// Of a file with the JSON of a fit of this formula. Throws Error (bad_input) with the file where it
+// has none, or those of another formula.
+FitIntervals read_fit_intervals(const nlohmann::json& model, const Expression& formula,
+                                const std::string& file);
 
 }  // namespace tribench

@@ -63,12 +63,7 @@ std::string predictions(const std::string& file, const Dataset& data, bool inter
   Evaluator().evaluate(formula, inputs, values);
   std::vector<double> halves;
   if (intervals) {
-    const FitIntervals kept = read_fit_intervals(model, file);
-    for (const std::size_t place : kept.places) {
-      if (place < formula.size() && formula.node(place).is_constant()) continue;
-      throw_bad_input("the intervals are of another formula", file,
-                      "save the model again by: tribench fit --save FILE");
-    }
+    const FitIntervals kept = read_fit_intervals(model, formula, file);
     halves = curve_half_widths(formula, kept, inputs);
   }
   std::string text = intervals ? "prediction,low,high\n" : "prediction\n";

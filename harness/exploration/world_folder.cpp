@@ -58,22 +58,35 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+// The one of `all` that is called so.
+template <typename All, typename NameOf>
+auto named(const All& all, NameOf name_of, std::string_view name)
+    -> std::optional<typename All::value_type> {
+  const auto found = std::ranges::find(all, name, name_of);
+  return found == all.end() ? std::nullopt : std::optional(*found);
+}
+
 simulation::WorldPlan read_plan(const std::filesystem::path& file) {
   const Json json = read_json_or_throw<Json>(text_of(file), file.string());
+  const auto refuse = [&file](std::string_view why) {
+    throw_bad_input(fmt::format("this is no sealed world: {}", why), file.string(),
+                    "make the world again");
+  };
   simulation::WorldPlan plan;
   try {
+    if (!json.at("seed").is_number_unsigned()) refuse("its seed is no whole number from 0 on");
     plan.seed = json.at("seed").get<std::uint64_t>();
-    const auto level = json.at("level").get<std::string>();
-    for (const simulation::WorldLevel one : simulation::kWorldLevels) {
-      if (simulation::world_level_name(one) == level) plan.level = one;
-    }
-    const auto kind = json.value("kind", std::string());
-    for (const simulation::WorldKind one : simulation::kWorldKinds) {
-      if (simulation::world_kind_name(one) == kind) plan.kind = one;
+    const auto level = named(simulation::kWorldLevels, simulation::world_level_name,
+                             json.at("level").get<std::string>());
+    if (!level) refuse("its level is not known");
+    plan.level = *level;
+    if (json.contains("kind")) {
+      plan.kind = named(simulation::kWorldKinds, simulation::world_kind_name,
+                        json.at("kind").get<std::string>());
+      if (!plan.kind) refuse("its kind is not known");
     }
   } catch (const Json::exception& error) {
-    throw_bad_input(fmt::format("this is no sealed world: {}", error.what()), file.string(),
-                    "make the world again");
+    refuse(error.what());
   }
   return plan;
 }
@@ -204,7 +217,7 @@ std::string WorldFolder::reveal() {
   const std::filesystem::path file = folder_ / "world.json";
   const Json known = read_json_or_throw<Json>(text_of(file), file.string());
   const std::string seal = seal_of(world_.truth());
-  if (known.value("truth_sha256", std::string()) != seal) {
+  if (!known.is_object() || !known.contains("truth_sha256") || known["truth_sha256"] != seal) {
     throw_bad_input("the seal does not fit the truth: sealed.json or world.json was changed",
                     folder_.string(), "make the world again");
   }

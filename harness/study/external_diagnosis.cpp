@@ -135,48 +135,57 @@ std::vector<LoopAnswer::Effect> effects_in(const json& object) {
   return effects;
 }
 
-std::vector<LoopAnswer::Burst> bursts_in(const json& object, const Dataset& data) {
+std::vector<LoopAnswer::Burst> bursts_in(const json& object,
+                                         const std::vector<std::string>& movement_names) {
   std::vector<LoopAnswer::Burst> bursts;
   for (const json& event : object.value("events", json::array())) {
     const auto name = event.at("movement_name").get<std::string>();
-    const auto found = std::ranges::find(data.movement_names, name);
-    if (found == data.movement_names.end()) {
+    const auto found = std::ranges::find(movement_names, name);
+    if (found == movement_names.end()) {
       throw Error(ErrorKind::failed, fmt::format("there is no movement '{}'", name));
     }
     bursts.push_back(
-        {static_cast<int>(found - data.movement_names.begin()), event.at("t0"), event.at("t1")});
+        {static_cast<int>(found - movement_names.begin()), event.at("t0"), event.at("t1")});
   }
   return bursts;
 }
 
-LoopAnswer answer_in(const json& object, const PlantedData& planted, const loop::Observations& data,
-                     const std::vector<char>& held_out, const Eigen::VectorXd& before) {
+LoopAnswer answer_in(const json& object, const AskedDiagnosis& asked) {
   LoopAnswer answer;
   answer.effects = effects_in(object);
-  answer.bursts = bursts_in(object, planted.data);
+  answer.bursts = bursts_in(object, asked.movement_names);
   answer.unknown = object.at("verdict") == "UNKNOWN";
   if (object.contains("leftover")) {
     for (const json& input : object.at("leftover").value("inputs", json::array())) {
       answer.inputs.push_back(input.get<std::string>());
     }
   }
-  const auto rows = static_cast<std::size_t>(std::ranges::count(held_out, 1));
+  const auto rows = static_cast<std::size_t>(std::ranges::count(asked.held_out, 1));
   const json& predictions = object.at("held_out");
   if (predictions.size() != rows) {
     throw Error(ErrorKind::failed,
                 fmt::format("'held_out' has {} predictions for {} rows", predictions.size(), rows));
   }
-  answer.before.assign(data.rows(), std::numeric_limits<double>::quiet_NaN());
+  answer.before.assign(asked.held_out.size(), std::numeric_limits<double>::quiet_NaN());
   answer.after = answer.before;
-  for (std::size_t i = 0, next = 0; i < data.rows(); ++i) {
-    if (held_out[i] == 0) continue;
-    answer.before[i] = before[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0, next = 0; i < asked.held_out.size(); ++i) {
+    if (asked.held_out[i] == 0) continue;
+    answer.before[i] = asked.before[i];
     answer.after[i] = predictions[next++].get<double>();
   }
   return answer;
 }
 
 }  // namespace
+
+LoopAnswer read_diagnosis(const std::string& output, const AskedDiagnosis& asked) {
+  try {
+    return answer_in(object_in(output), asked);
+  } catch (const json::exception& error) {
+    throw Error(ErrorKind::failed,
+                fmt::format("the program's answer is malformed: {}", error.what()));
+  }
+}
 
 LoopMethod make_external_diagnosis(std::vector<std::string> command, double limit_s) {
   return [command = std::move(command), limit_s](const LoopCase& one, const PlantedData& planted) {
@@ -186,12 +195,11 @@ LoopMethod make_external_diagnosis(std::vector<std::string> command, double limi
     std::ranges::transform(held_out, train.begin(), [](char row) { return row == 0 ? 1 : 0; });
     const ScratchFolder scratch;
     write_request(scratch.path(), one, planted, held_out, train);
+    const Eigen::VectorXd before = base_prediction(data, train);
     try {
-      const json object = object_in(output_of(command, scratch.path(), limit_s));
-      return answer_in(object, planted, data, held_out, base_prediction(data, train));
-    } catch (const json::exception& error) {
-      throw Error(ErrorKind::failed,
-                  fmt::format("the program's answer is malformed: {}", error.what()), one.key());
+      return read_diagnosis(
+          output_of(command, scratch.path(), limit_s),
+          {planted.data.movement_names, held_out, {before.begin(), before.end()}});
     } catch (const Error& error) {
       throw Error(ErrorKind::failed, error.what(), one.key());
     }

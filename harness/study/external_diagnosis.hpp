@@ -12,6 +12,17 @@
 
 namespace tribench {
 
+// What an answer is read against.
+struct AskedDiagnosis {
+  std::vector<std::string> movement_names;
+  std::vector<char> held_out;  // per row, 1: to be predicted
+  std::vector<double> before;  // the base's predictions, per row
+};
+
+// What a program printed: the last line that is a JSON object. Throws Error (failed) where it is
+// no answer.
+LoopAnswer read_diagnosis(const std::string& output, const AskedDiagnosis& asked);
+
 // command: the words to run; the path of the request is added as the last. Unusable answers and an
 // exit status other than 0 throw Error (failed) that names the case; so does a case that takes
 // longer than `limit_s` of wall time, and the program is ended with all it has started.

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "foundation/error.hpp"
 
@@ -33,7 +34,8 @@ void add_chain_gravity(DataFile&, const std::filesystem::path&) {
 
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s^2
+constexpr double kGravity = 9.81;          // m/s^2
+constexpr std::size_t kMostLinks = 1'000;  // walking a chain takes stack
 
 KDL::Vector vector_of(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
@@ -83,6 +85,10 @@ Arm read_arm(const std::filesystem::path& file) {
   if (!model || !model->getRoot()) {
     throw_bad_input("this is no URDF of a robot", file.string(),
                     "give the file that `xacro` writes, with links and joints");
+  }
+  if (model->links_.size() > kMostLinks) {
+    throw_bad_input(fmt::format("{} links", model->links_.size()), file.string(),
+                    fmt::format("{} at most", kMostLinks));
   }
   Arm arm;
   arm.tree = KDL::Tree(model->getRoot()->name);
@@ -136,6 +142,10 @@ void add_chain_gravity(DataFile& file, const std::filesystem::path& urdf) {
     for (std::size_t j = 0; j < joints; ++j) q(place[j]) = (*positions[j])[r];
     solver.CartToJnt(q, rest, rest, {}, torques);
     gravity.values.push_back(torques(place[which]));
+  }
+  if (!std::ranges::all_of(gravity.values, [](double torque) { return std::isfinite(torque); })) {
+    throw_bad_input("its masses and lengths give no finite torque", urdf.string(),
+                    "masses are in kg and lengths in m");
   }
   const auto [low, high] = std::ranges::minmax(gravity.values);
   file.warnings.push_back(fmt::format("gravity of '{}' is from {}: {:.4g} to {:.4g} {}", held,

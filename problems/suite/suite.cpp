@@ -9,6 +9,8 @@
 #include <set>
 
 #include "foundation/error.hpp"
+#include "foundation/formula_name.hpp"
+#include "foundation/plain_name.hpp"
 #include "foundation/random.hpp"
 #include "foundation/suggestion.hpp"
 #include "foundation/toml_table.hpp"
@@ -16,8 +18,10 @@
 namespace tribench::suite {
 namespace {
 
-constexpr double kLargest = std::numeric_limits<double>::max();
+// Of a range's ends, so that its width is a number too.
+constexpr double kLargest = 0.25 * std::numeric_limits<double>::max();
 constexpr int kMostRows = 1'000'000;
+constexpr double kMostWhole = 0x1p53;  // up to here every whole number is a double
 
 template <typename Value>
 Value choose(const TomlTable& table, const char* key,
@@ -41,10 +45,17 @@ void read_range(const TomlTable& table, const char* low, const char* high, const
   table.read(step, draw.step, 0, kLargest);
 }
 
+bool is_whole(double x) { return std::floor(x) == x && std::abs(x) <= kMostWhole; }
+
 void check_draw(const TomlTable& table, const Draw& draw) {
   if (!(draw.low < draw.high)) {
     throw_bad_input(fmt::format("'low' is {} and 'high' {}", draw.low, draw.high), table.place(),
                     "low must be less than high");
+  }
+  if (draw.kind == Draw::Kind::whole && !(is_whole(draw.low) && is_whole(draw.high))) {
+    throw_bad_input(
+        fmt::format("'low' is {} and 'high' {} with draw = \"whole\"", draw.low, draw.high),
+        table.place(), fmt::format("give whole numbers up to {:g}", kMostWhole));
   }
   if (draw.kind == Draw::Kind::log && draw.low <= 0) {
     throw_bad_input(fmt::format("'low' is {} with draw = \"log\"", draw.low), table.place(),
@@ -53,12 +64,27 @@ void check_draw(const TomlTable& table, const Draw& draw) {
   if (draw.kind == Draw::Kind::lattice && !(draw.step > 0)) {
     throw_bad_input("a lattice needs a 'step'", table.place());
   }
+  if (draw.kind == Draw::Kind::lattice && draw.sign != Draw::Sign::as_drawn) {
+    throw_bad_input("a lattice has no 'sign'", table.place(), "give it a negative 'low'");
+  }
+}
+
+// The rows that the lattices of the inputs make together.
+void check_lattice(const TomlTable& table, const SuiteProblem& problem, Draw SuiteInput::*draw) {
+  double rows = 1;
+  for (const SuiteInput& input : problem.inputs) rows *= lattice_points(input.*draw);
+  if (rows > kMostRows) {
+    throw_bad_input(
+        fmt::format("the lattices of problem '{}' have {:.3g} points", problem.name, rows),
+        table.place(), fmt::format("{} at most: give larger steps", kMostRows));
+  }
 }
 
 SuiteInput read_input(const TomlTable& table) {
   for (const char* key : {"name", "low", "high"}) table.require(key);
   SuiteInput input;
   table.read("name", input.name);
+  require_formula_name(input.name, table.place("name"));
   table.read("unit", input.unit);
   table.read("meaning", input.meaning);
   using enum Draw::Kind;
@@ -83,6 +109,7 @@ SuiteProblem read_problem(const TomlTable& table, const SuiteProblem& defaults) 
   SuiteProblem problem = defaults;
   table.require("name");
   table.read("name", problem.name);
+  require_plain_name(problem.name, "a problem", table.place("name"));
   table.read("note", problem.note);
   table.read("law", problem.law);
   table.read("unit", problem.unit);
@@ -100,6 +127,8 @@ SuiteProblem read_problem(const TomlTable& table, const SuiteProblem& defaults) 
   for (const TomlTable& input : table.array_of_tables("inputs", keys)) {
     problem.inputs.push_back(read_input(input));
   }
+  check_lattice(table, problem, &SuiteInput::train);
+  check_lattice(table, problem, &SuiteInput::test);
   if (!problem.file.empty()) return problem;
   if (problem.law.empty() || problem.inputs.empty()) {
     throw_bad_input(fmt::format("problem '{}' has no data", problem.name), table.place(),
@@ -121,6 +150,12 @@ SuiteReference read_reference(const TomlTable& table) {
 }
 
 }  // namespace
+
+double lattice_points(const Draw& draw) {
+  // Half a step of slack: 0.1 is no binary fraction.
+  return draw.kind == Draw::Kind::lattice ? std::floor((draw.high - draw.low) / draw.step + 0.5) + 1
+                                          : 1;
+}
 
 const SuiteProblem& Suite::find(std::string_view problem) const {
   std::vector<std::string> names;
@@ -151,6 +186,7 @@ Suite read_suite(std::string_view toml, const std::string& file_name) {
   suite.identity = key_of(toml);
   SuiteProblem defaults;
   head.read("name", suite.name);
+  require_plain_name(suite.name, "a suite", head.place("name"));
   head.read("summary", suite.summary);
   head.read("source", suite.source);
   head.read("recovered_below", suite.recovered_below, 0, 1);

@@ -30,6 +30,9 @@ struct Draw {
   Sign sign = Sign::as_drawn;
 };
 
+// How many values a lattice has, a whole number; 1 for what is drawn.
+double lattice_points(const Draw& draw);
+
 struct SuiteInput {
   std::string name;  // as in the law
   std::string unit = "-";

@@ -12,6 +12,7 @@
 
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
+#include "foundation/formula_name.hpp"
 #include "foundation/number_text.hpp"
 #include "foundation/random.hpp"
 #include "problems/reading/csv.hpp"
@@ -41,11 +42,6 @@ double draw_value(const Draw& draw, RandomStream& random) {
   return draw.sign == Draw::Sign::either ? value * random.sign() : value;
 }
 
-std::size_t lattice_points(const Draw& draw) {
-  // Half a step of slack: 0.1 is no binary fraction.
-  return static_cast<std::size_t>(std::floor((draw.high - draw.low) / draw.step + 0.5)) + 1;
-}
-
 void append(Table& table, std::span<const double> point, double value) {
   for (std::size_t j = 0; j < point.size(); ++j) table.columns[j].push_back(point[j]);
   table.target.push_back(value);
@@ -71,7 +67,7 @@ Table lattice_table(const SuiteProblem& wanted, const std::vector<const Draw*>& 
     more = false;
     for (std::size_t j = 0; j < draws.size() && !more; ++j) {
       if (draws[j]->kind != Draw::Kind::lattice) continue;
-      more = ++at[j] < lattice_points(*draws[j]);
+      more = static_cast<double>(++at[j]) < lattice_points(*draws[j]);
       if (!more) at[j] = 0;
     }
   }
@@ -258,6 +254,11 @@ Problem make_table_problem(const Suite& suite, const SuiteProblem& wanted,
   const Dataset rows = read_csv(data_file(wanted.file, data), options).data;
   rows.at(wanted.target);  // throws with the nearest name
   const std::vector<char> marks = test_rows_of(suite, wanted, rows.rows(), data, seed);
+  const auto tested = static_cast<std::size_t>(std::ranges::count(marks, 1));
+  if (tested == 0 || tested == marks.size()) {
+    throw_bad_input(fmt::format("{} of {} rows test", tested, marks.size()), wanted.file,
+                    "some rows have to train and some to test: more rows, or another split");
+  }
   Table train = rows_of(rows, wanted.target, marks, 0);
   Table test = rows_of(rows, wanted.target, marks, 1);
   if (suite.standardise) {
@@ -269,6 +270,7 @@ Problem make_table_problem(const Suite& suite, const SuiteProblem& wanted,
   Problem problem = blank_problem(suite, wanted);
   for (const Channel& channel : rows.channels) {
     if (channel.name == wanted.target) continue;
+    require_formula_name(channel.name, wanted.file);
     const std::vector<double>& values = train.columns[problem.inputs.size()];
     const auto [low, high] = std::ranges::minmax(values);
     const auto known = std::ranges::find(wanted.inputs, channel.name, &SuiteInput::name);

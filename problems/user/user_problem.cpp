@@ -274,7 +274,7 @@ void set_motion(const UserProblem& own, const Dataset& data, const std::vector<c
     tested.movement.assign(tested.rows(), 0);
     tested.movement_names = {own.name};
   }
-  const auto rows = std::make_shared<const MotionCase>(std::move(tested), *own.motion);
+  const auto rows = std::make_shared<const MotionCase>(MotionCase{std::move(tested), *own.motion});
   problem.motion = [rows] { return *rows; };
 }
 

@@ -198,6 +198,20 @@ TEST(Certificate, IsRejectedWhereItsFormulaOrBoxIsNone) {
   }
 }
 
+TEST(InputBox, ASignBesideItsInputIsLeftOutUnlessItSaysLess) {
+  for (const char* text : {"sgn_v=-1:1,v=-2:2", "v=-2:2,sgn_v=-1:1", "v=-2:2,sgn_v=-5:5"}) {
+    NamedBox box = parse_box(text);
+    EXPECT_EQ(print_box(box), "v=-2:2") << text;
+    const Expression formula = parse_over("1/(1 + v*sgn_v)", box);
+    EXPECT_EQ(prove_free(formula, box.ranges).verdict, Verdict::proved_free) << text;
+  }
+  EXPECT_EQ(print_box(parse_box("v=1:2,sgn_v=1:1")), "v=1:2");
+  EXPECT_EQ(print_box(parse_box("sgn_v=0:1")), "sgn_v=0:1") << "nobody's sign";
+  for (const char* text : {"v=-2:2,sgn_v=1:1", "v=-2:2,sgn_v=-1:0", "v=0:2,sgn_v=1:1"}) {
+    EXPECT_THROW(parse_box(text), Error) << text;
+  }
+}
+
 TEST(Certificate, OfGarbageIsRejectedAndTheReasonCanBePrinted) {
   const std::string good = certify(kFormula, kBox);
   RandomStream random(key_of("garbage"));

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+//
+// An arm's URDF file either is refused with a place, or gives the gravity torque as finite numbers.
+#include <cmath>
+
+#include "problems/preparation/chain_gravity.hpp"
+#include "tests/fuzz/fuzz_target.hpp"
+
+TRIBENCH_FUZZ_TARGET(urdf) {
+  using namespace tribench;
+  if (!has_chain_gravity()) return;
+  const fuzz::MemoryFile file(input);
+  for (const std::size_t joints : {1, 2}) {
+    DataFile data;
+    data.joint = 1;
+    for (std::size_t j = 1; j <= joints; ++j) {
+      const std::string name = "q" + std::to_string(j);
+      data.data.channels.push_back({name, "rad", Role::position, {-1, 0, 0.5}});
+      data.joint_positions[static_cast<int>(j)] = name;
+    }
+    data.data.movement = {0, 0, 0};
+    data.data.movement_names = {"a"};
+    if (!fuzz::reads([&] { add_chain_gravity(data, file.path()); })) continue;
+    for (const double torque : data.data.find(Role::gravity_torque)->values) {
+      fuzz::expect(std::isfinite(torque), "a torque is not finite");
+    }
+  }
+}
