@@ -43,7 +43,7 @@ DiagnosisOptions bounded() {
 
 double mean_magnitude(double sd) { return sd * std::sqrt(2 / std::numbers::pi); }
 
-TEST(Ceiling, bounds_independent_noise_from_both_sides_within_a_few_per_cent) {
+TEST(Ceiling, BoundsIndependentNoiseFromBothSidesWithinAFewPerCent) {
   const Observations data = with_noise(0.3, [](double) { return 0.0; });
   const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, bounded(), 1);
   EXPECT_NEAR(diagnosis.error.ceiling, mean_magnitude(0.3), 0.06 * mean_magnitude(0.3));
@@ -52,7 +52,7 @@ TEST(Ceiling, bounds_independent_noise_from_both_sides_within_a_few_per_cent) {
 }
 
 // A bump that no family has: the loop closes nothing of it, a smoother would.
-TEST(Ceiling, says_what_the_library_leaves_unclosed) {
+TEST(Ceiling, SaysWhatTheLibraryLeavesUnclosed) {
   const Observations data =
       with_noise(0.2, [](double q) { return 1.5 * std::exp(-std::pow((q - 0.4) / 0.12, 2)); });
   DiagnosisOptions options = bounded();
@@ -65,7 +65,7 @@ TEST(Ceiling, says_what_the_library_leaves_unclosed) {
   EXPECT_GE(diagnosis.error.closed_high, diagnosis.error.closed_fraction);
 }
 
-TEST(Ceiling, closes_the_gap_of_a_planted_effect_and_brackets_its_noise) {
+TEST(Ceiling, ClosesTheGapOfAPlantedEffectAndBracketsItsNoise) {
   const Observations data =
       observe(kuka::make_planted({.effects = {{"load_coulomb", 2.0}}}, 2).data);
   DiagnosisOptions options = bounded();
@@ -77,7 +77,7 @@ TEST(Ceiling, closes_the_gap_of_a_planted_effect_and_brackets_its_noise) {
   EXPECT_GT(diagnosis.error.closed_fraction_high, 0.97);
 }
 
-TEST(Ceiling, says_why_it_is_not_there) {
+TEST(Ceiling, SaysWhyItIsNotThere) {
   const Observations data = with_noise(0.3, [](double) { return 0.0; });
   ErrorFinding error;
   error.mae_before = error.mae_after = 1;

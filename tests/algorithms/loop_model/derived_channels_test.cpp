@@ -68,7 +68,7 @@ const std::string kFormula = "8*sgn_v + 14*v - 5*sgn_v*exp(-d/0.05) + 0.1*a";
 
 // Two-tone trajectories with reversals: what the loop has found is evaluated on the channels it
 // computed itself; the controller has only position, velocity, acceleration and its clock.
-TEST(DerivedChannels, c_code_gives_the_loops_own_values_on_movements_with_reversals) {
+TEST(DerivedChannels, CCodeGivesTheLoopsOwnValuesOnMovementsWithReversals) {
   if (!has_compiler()) GTEST_SKIP() << "no C compiler";
   const Observations data = observe(kuka::make_planted({}, 3).data);
   const BaseModel model = formula_base(data, kFormula);
@@ -94,7 +94,7 @@ TEST(DerivedChannels, c_code_gives_the_loops_own_values_on_movements_with_revers
   EXPECT_GT(reversals, 50);
 }
 
-TEST(DerivedChannels, c_code_keeps_the_same_distance_to_the_last_bit_by_either_path) {
+TEST(DerivedChannels, CCodeKeepsTheSameDistanceToTheLastBitByEitherPath) {
   if (!has_compiler()) GTEST_SKIP() << "no C compiler";
   for (const PathFrom from : {PathFrom::position, PathFrom::velocity}) {
     const Compiled code("d + 0*v", from);

@@ -9,7 +9,7 @@ namespace {
 
 // Seeds that nothing was settled on. Bounds are what was seen on other seeds (15 and 14), less two
 // of twenty.
-TEST(LogStudy, raw_logs_tell_what_clean_tables_tell) {
+TEST(LogStudy, RawLogsTellWhatCleanTablesTell) {
   LogStudyOptions options;
   options.logs = 20;
   options.first_seed = 1001;

@@ -10,7 +10,7 @@ namespace tribench {
 namespace {
 
 // Whatever unit, layout and sensor a log is told in, it is read as what it is.
-TEST(LogStudy, no_telling_is_misread) {
+TEST(LogStudy, NoTellingIsMisread) {
   for (std::uint64_t seed = 301; seed < 307; ++seed) {
     const LogCase one = make_log_case(seed, 2, 20);
     const simulation::ControlledRun run = simulation::run_under_control(one.plan, one.seed);
@@ -22,7 +22,7 @@ TEST(LogStudy, no_telling_is_misread) {
 }
 
 // The check itself sees a wrong unit.
-TEST(LogStudy, a_wrong_unit_is_seen) {
+TEST(LogStudy, AWrongUnitIsSeen) {
   const LogCase one = make_log_case(1, 2, 20);
   const simulation::ControlledRun run = simulation::run_under_control(one.plan, one.seed);
   ToldLog log = tell_log(run, LogKnowledge::told, RandomStream(1));
@@ -30,7 +30,7 @@ TEST(LogStudy, a_wrong_unit_is_seen) {
   EXPECT_THAT(misread_channel(run, log), ::testing::HasSubstr("motor_torque is read"));
 }
 
-TEST(LogStudy, every_seed_has_its_run) {
+TEST(LogStudy, EverySeedHasItsRun) {
   EXPECT_EQ(make_log_case(10, 2, 20).name, "none/10");
   EXPECT_EQ(make_log_case(9, 2, 20).name, "linear_stribeck_exponential/9");
   EXPECT_TRUE(make_log_case(3, 2, 20).plan.gravity);  // no load friction without a load

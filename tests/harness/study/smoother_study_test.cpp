@@ -7,7 +7,7 @@ namespace tribench {
 namespace {
 
 // What docs/first_log.md says of the table, on one of its encoders and on runs of other seeds.
-TEST(SmootherStudy, what_the_data_choose_is_better_than_widths_that_know_the_truth) {
+TEST(SmootherStudy, WhatTheDataChooseIsBetterThanWidthsThatKnowTheTruth) {
   SmootherStudyOptions options;
   options.bits = {12, 16};
   options.rates_hz = {250};

@@ -17,7 +17,7 @@ ControlledRunPlan short_plan() {
   return plan;
 }
 
-TEST(ControlledRun, the_same_seed_gives_the_same_run) {
+TEST(ControlledRun, TheSameSeedGivesTheSameRun) {
   ControlledRunPlan plan = short_plan();
   plan.cause = "load";
   const ControlledRun one = run_under_control(plan, 3);
@@ -27,7 +27,7 @@ TEST(ControlledRun, the_same_seed_gives_the_same_run) {
   EXPECT_NE(one.data.find(Role::motor_torque)->values, other.data.find(Role::motor_torque)->values);
 }
 
-TEST(ControlledRun, velocity_and_acceleration_are_the_positions) {
+TEST(ControlledRun, VelocityAndAccelerationAreThePositions) {
   const ControlledRun run = run_under_control(short_plan(), 1);
   const std::vector<double>& q = run.data.find(Role::position)->values;
   const std::vector<double>& v = run.data.find(Role::velocity)->values;
@@ -42,7 +42,7 @@ TEST(ControlledRun, velocity_and_acceleration_are_the_positions) {
   EXPECT_GT(top, 0.1);
 }
 
-TEST(ControlledRun, what_is_planted_has_the_size_asked_for) {
+TEST(ControlledRun, WhatIsPlantedHasTheSizeAskedFor) {
   ControlledRunPlan plan = short_plan();
   plan.cause = "viscous_power";
   plan.scale = 3;
@@ -62,7 +62,7 @@ TEST(ControlledRun, what_is_planted_has_the_size_asked_for) {
   EXPECT_THROW(run_under_control(plan, 5), Error);
 }
 
-TEST(ControlledRun, the_clean_table_has_friction_in_motion_alone) {
+TEST(ControlledRun, TheCleanTableHasFrictionInMotionAlone) {
   const ControlledRun run = run_under_control(short_plan(), 2);
   const Dataset clean = run.clean();
   const std::vector<double>& v = clean.find(Role::velocity)->values;

@@ -72,7 +72,7 @@ class ChainGravity : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(ChainGravity, is_what_holds_the_arm) {
+TEST_F(ChainGravity, IsWhatHoldsTheArm) {
   if (!has_chain_gravity()) GTEST_SKIP() << "built without urdfdom and KDL";
   for (const int joint : {1, 2}) {
     const DataFile file = read(joint);
@@ -91,7 +91,7 @@ TEST_F(ChainGravity, is_what_holds_the_arm) {
   }
 }
 
-TEST_F(ChainGravity, says_what_is_wrong_with_the_file_or_the_data) {
+TEST_F(ChainGravity, SaysWhatIsWrongWithTheFileOrTheData) {
   if (!has_chain_gravity()) GTEST_SKIP() << "built without urdfdom and KDL";
   EXPECT_THAT(refusal({}), HasSubstr("--joint N"));
   write("log.csv", "t [s],q1 [deg],q2 [deg],q3 [deg],tau1 [Nm]\n0,0,0,0,1\n1,0,0,0,1\n");
@@ -100,7 +100,7 @@ TEST_F(ChainGravity, says_what_is_wrong_with_the_file_or_the_data) {
   EXPECT_THAT(refusal(1), HasSubstr("no URDF"));
 }
 
-TEST_F(ChainGravity, without_the_libraries_says_how_to_get_them) {
+TEST_F(ChainGravity, WithoutTheLibrariesSaysHowToGetThem) {
   if (has_chain_gravity()) GTEST_SKIP() << "built with urdfdom and KDL";
   EXPECT_THAT(refusal(1), HasSubstr("liborocos-kdl-dev"));
 }

@@ -33,7 +33,7 @@ std::string refusal(const std::string& toml) {
 
 constexpr const char* kText = "run,phi,i,tau\n1,90,100,2\n1,180,,3\n2,270,300,4\n";
 
-TEST(DataOptions, a_table_of_toml_says_what_the_command_line_says) {
+TEST(DataOptions, ATableOfTomlSaysWhatTheCommandLineSays) {
   const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "log.csv";
   std::ofstream(file) << kText;
@@ -50,7 +50,7 @@ TEST(DataOptions, a_table_of_toml_says_what_the_command_line_says) {
   EXPECT_EQ(read.data.at("i").unit, "N m");
 }
 
-TEST(DataOptions, an_empty_table_leaves_the_columns_as_they_are) {
+TEST(DataOptions, AnEmptyTableLeavesTheColumnsAsTheyAre) {
   const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "log.csv";
   std::ofstream(file) << kText;
@@ -62,7 +62,7 @@ TEST(DataOptions, an_empty_table_leaves_the_columns_as_they_are) {
   EXPECT_EQ(read.data.at("phi").values[0], 90);
 }
 
-TEST(DataOptions, a_refusal_names_the_key_and_its_line) {
+TEST(DataOptions, ARefusalNamesTheKeyAndItsLine) {
   EXPECT_THAT(refusal("joint = 1\nroles = 'q=positon'"), HasSubstr("grid.toml:2"));
   EXPECT_THAT(refusal("gear_ratio = 0.0"), HasSubstr("gear_ratio"));
   EXPECT_THAT(refusal("torque_constant = 'much'"), HasSubstr("grid.toml:1"));

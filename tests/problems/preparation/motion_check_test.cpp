@@ -23,7 +23,7 @@ Told sine(double delay) {
   return told;
 }
 
-TEST(MotionCheck, the_slope_is_the_factor_between_the_units) {
+TEST(MotionCheck, TheSlopeIsTheFactorBetweenTheUnits) {
   Told told = sine(0);
   const std::vector<RowRange> whole = {{0, told.time.size()}};
   EXPECT_NEAR(match_motion(told.time, told.position, told.velocity, whole).slope, 1, 1e-3);
@@ -33,7 +33,7 @@ TEST(MotionCheck, the_slope_is_the_factor_between_the_units) {
   EXPECT_LT(match.agreement, -0.99);
 }
 
-TEST(MotionCheck, a_delay_is_found_to_a_tenth_of_a_step) {
+TEST(MotionCheck, ADelayIsFoundToATenthOfAStep) {
   const Told truth = sine(0);
   const std::vector<RowRange> whole = {{0, truth.time.size()}};
   for (const double delay : {0.0131, 0.004, -0.006, 0.05}) {

@@ -56,7 +56,7 @@ double best_savitzky_golay(const std::vector<testing::RawSample>& truth,
 
 // With its bandwidth from the data alone it is better than a Savitzky-Golay filter whose width
 // was chosen by the truth, on encoders of 2^12 to 2^20 counts a turn.
-TEST(MotionSmoother, is_better_than_the_best_savitzky_golay_filter) {
+TEST(MotionSmoother, IsBetterThanTheBestSavitzkyGolayFilter) {
   for (const int bits : {12, 14, 16, 20}) {
     testing::RawLogPlan plan;
     plan.encoder_bits = bits;
@@ -82,7 +82,7 @@ TEST(MotionSmoother, is_better_than_the_best_savitzky_golay_filter) {
   }
 }
 
-TEST(MotionSmoother, uneven_steps_and_a_gap_do_no_harm) {
+TEST(MotionSmoother, UnevenStepsAndAGapDoNoHarm) {
   std::vector<double> time;
   std::vector<double> q;
   double t = 0;
@@ -100,7 +100,7 @@ TEST(MotionSmoother, uneven_steps_and_a_gap_do_no_harm) {
   }
 }
 
-TEST(MotionSmoother, a_long_rest_at_the_begin_leaves_finite_numbers) {
+TEST(MotionSmoother, ALongRestAtTheBeginLeavesFiniteNumbers) {
   std::vector<double> time;
   std::vector<double> q;
   for (int i = 0; i < 5000; ++i) {

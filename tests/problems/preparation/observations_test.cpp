@@ -57,7 +57,7 @@ Dataset at_half_the_rate(const Dataset& data, int rows) {
   return half;
 }
 
-TEST(Observations, a_recording_at_half_the_rate_is_thinned_to_the_same_rows) {
+TEST(Observations, ARecordingAtHalfTheRateIsThinnedToTheSameRows) {
   constexpr int kRows = 501;
   const auto turning = [](int m, int i) { return (2 + m) * std::sin(0.013 * i + 0.3 * m); };
   const Dataset data = movements_of(6, kRows, turning);
@@ -72,7 +72,7 @@ TEST(Observations, a_recording_at_half_the_rate_is_thinned_to_the_same_rows) {
   EXPECT_EQ(whole.movement, half.movement);
 }
 
-TEST(Observations, steady_movements_are_averaged_in_equal_parts_of_whole_movements) {
+TEST(Observations, SteadyMovementsAreAveragedInEqualPartsOfWholeMovements) {
   const Dataset data = movements_of(6, 50, steady_speed);
   const Observations means = observe(data, {.steady = true});
   ASSERT_EQ(means.rows(), 6 * kRowsOfSteadyMovement);
@@ -90,7 +90,7 @@ TEST(Observations, steady_movements_are_averaged_in_equal_parts_of_whole_movemen
   }
 }
 
-TEST(Observations, a_movement_that_turns_is_not_taken_for_steady) {
+TEST(Observations, AMovementThatTurnsIsNotTakenForSteady) {
   const Dataset data = movements_of(6, 50, [](int, int i) { return i < 25 ? 1.0 : -1.0; });
   try {
     observe(data, {.steady = true});
@@ -101,7 +101,7 @@ TEST(Observations, a_movement_that_turns_is_not_taken_for_steady) {
 }
 
 // Path since the velocity crossed zero, found again from the sine it is the integral of.
-TEST(Observations, the_distance_since_a_reversal_is_the_path_travelled_since) {
+TEST(Observations, TheDistanceSinceAReversalIsThePathTravelledSince) {
   constexpr double kRate = 0.05;  // rad a row
   const Dataset data = movements_of(2, 400, [](int, int i) { return std::cos(kRate * i); });
   const Observations out = observe(data);
@@ -120,7 +120,7 @@ TEST(Observations, the_distance_since_a_reversal_is_the_path_travelled_since) {
 }
 
 // Gravity of a joint whose axis is free of it: a model's rounding, and no load.
-TEST(Observations, a_load_below_what_the_rows_can_show_is_left_out_and_said) {
+TEST(Observations, ALoadBelowWhatTheRowsCanShowIsLeftOutAndSaid) {
   Dataset data = movements_of(6, 50, steady_speed);
   data.channels[1].role = Role::motor_torque;
   data.channels.push_back(channel("g", "N m", Role::gravity_torque));
@@ -137,7 +137,7 @@ TEST(Observations, a_load_below_what_the_rows_can_show_is_left_out_and_said) {
 }
 
 // In one direction the mean tells friction's sign, however it varies with the speed.
-TEST(Observations, friction_that_falls_with_speed_in_one_direction_is_not_taken_for_a_wrong_sign) {
+TEST(Observations, FrictionThatFallsWithSpeedInOneDirectionIsNotTakenForAWrongSign) {
   Dataset data = movements_of(6, 50, [](int m, int) { return 1.0 + m; });
   for (double& tau : data.channels[1].values) tau = 20 - tau;
   EXPECT_EQ(observe(data).rows(), 300U);
@@ -152,7 +152,7 @@ double sine_and_hold(int m, int i) {
 }
 
 // A column that is stuck, or that holds something else than the velocity.
-TEST(Observations, a_velocity_that_never_changes_is_believed_only_if_the_position_says_the_same) {
+TEST(Observations, AVelocityThatNeverChangesIsBelievedOnlyIfThePositionSaysTheSame) {
   Dataset data = movements_of(6, 50, steady_speed);
   const auto stuck_at = [&](double value) {
     Dataset stuck = data;

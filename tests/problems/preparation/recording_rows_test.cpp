@@ -74,7 +74,7 @@ void expect_same_motion(const PreparedRecording& recording, const char* note, do
   EXPECT_LT(worst, 0.03) << note;
 }
 
-TEST(RecordingRows, a_clock_that_ticks_more_slowly_than_the_rows_come) {
+TEST(RecordingRows, AClockThatTicksMoreSlowlyThanTheRowsCome) {
   for (const double tick : {1.0, 1.0 / 64}) {  // whole seconds; Windows' clock
     std::vector<Row> rows = swings();
     for (Row& row : rows) row.time = tick * std::floor(row.time / tick);
@@ -88,7 +88,7 @@ TEST(RecordingRows, a_clock_that_ticks_more_slowly_than_the_rows_come) {
   EXPECT_THROW(prepared(bursts), Error);
 }
 
-TEST(RecordingRows, stamps_that_jitter_about_a_steady_beat) {
+TEST(RecordingRows, StampsThatJitterAboutASteadyBeat) {
   std::vector<Row> rows = swings();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     rows[i].time += 0.3 * kStep * std::sin(7.7 * static_cast<double>(i * i));
@@ -97,7 +97,7 @@ TEST(RecordingRows, stamps_that_jitter_about_a_steady_beat) {
 }
 
 // Rows that really were made at uneven instants, stamped rightly, are left as they are.
-TEST(RecordingRows, stamps_that_are_right_are_kept) {
+TEST(RecordingRows, StampsThatAreRightAreKept) {
   std::vector<Row> rows = swings();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Row& row = rows[i];
@@ -109,7 +109,7 @@ TEST(RecordingRows, stamps_that_are_right_are_kept) {
   expect_same_motion(recording, "velocity is derived");
 }
 
-TEST(RecordingRows, rows_are_lost_at_random) {
+TEST(RecordingRows, RowsAreLostAtRandom) {
   std::vector<Row> rows;
   for (const Row& row : swings()) {
     if (std::sin(5.1 * static_cast<double>(rows.size()) + 900 * row.time) < 0.8)
@@ -119,7 +119,7 @@ TEST(RecordingRows, rows_are_lost_at_random) {
   expect_same_motion(prepared(rows), "velocity is derived");
 }
 
-TEST(RecordingRows, wrong_readings_are_left_out_and_counted) {
+TEST(RecordingRows, WrongReadingsAreLeftOutAndCounted) {
   std::vector<Row> rows = swings();
   for (const std::size_t i : {900U, 4000U, 4001U, 7321U}) rows[i].position = 0;
   for (const std::size_t i : {1500U, 6000U}) rows[i].torque = 300;
@@ -131,14 +131,14 @@ TEST(RecordingRows, wrong_readings_are_left_out_and_counted) {
   }
 }
 
-TEST(RecordingRows, a_position_that_is_set_anew_has_not_moved) {
+TEST(RecordingRows, APositionThatIsSetAnewHasNotMoved) {
   std::vector<Row> rows = swings();
   for (std::size_t i = 5000; i < rows.size(); ++i) rows[i].position += 3.3;
   expect_same_motion(prepared(rows), "jumps 1 times");
 }
 
 // 4 096 counts a turn of the motor in a counter of 16 bits; one turn of the motor in degrees.
-TEST(RecordingRows, counters_and_turns_that_start_again_are_laid_end_to_end) {
+TEST(RecordingRows, CountersAndTurnsThatStartAgainAreLaidEndToEnd) {
   const Drive drive{4096.0, 100.0};
   const auto wrapped = [](double x, double full) { return x - full * std::floor(x / full); };
   std::vector<Row> counts = swings();
@@ -158,7 +158,7 @@ TEST(RecordingRows, counters_and_turns_that_start_again_are_laid_end_to_end) {
   expect_same_motion(prepared(lost, "deg@motor", drive, 3), "laid end to end");
 }
 
-TEST(RecordingRows, a_velocity_that_nobody_filled_is_refused_with_the_mend) {
+TEST(RecordingRows, AVelocityThatNobodyFilledIsRefusedWithTheMend) {
   std::string text = "t_s,pos_rad,vel_rad_s,tau_Nm\n";
   for (const Row& row : swings()) {
     text += fmt::format("{:.3f},{:.6f},0.0,{:.4f}\n", row.time, row.position, row.torque);

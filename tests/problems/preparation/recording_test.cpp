@@ -64,7 +64,7 @@ double rms_against_truth(const PreparedRecording& recording, const std::vector<R
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-TEST(PreparedRecording, position_and_current_alone_become_torque_velocity_and_strokes) {
+TEST(PreparedRecording, PositionAndCurrentAloneBecomeTorqueVelocityAndStrokes) {
   RawLogPlan plan;
   const std::vector<RawSample> truth = simulate(plan);
   const PreparedRecording recording = prepared(raw_table(truth, plan, {}), engineer());
@@ -87,7 +87,7 @@ TEST(PreparedRecording, position_and_current_alone_become_torque_velocity_and_st
 }
 
 // The movements that a table does not name are found in it, whoever derived its motion.
-TEST(PreparedRecording, a_table_with_all_of_its_motion_is_cut_into_strokes_too) {
+TEST(PreparedRecording, ATableWithAllOfItsMotionIsCutIntoStrokesToo) {
   std::ostringstream table;
   write_csv(simulation::run_under_control({}, 1).data, table);
   const std::string named = table.str();
@@ -100,7 +100,7 @@ TEST(PreparedRecording, a_table_with_all_of_its_motion_is_cut_into_strokes_too) 
   EXPECT_EQ(prepared(named, {}).data.movement_names.size(), 1U);
 }
 
-TEST(PreparedRecording, gravity_that_no_column_declares_is_found) {
+TEST(PreparedRecording, GravityThatNoColumnDeclaresIsFound) {
   RawLogPlan plan;
   plan.load = 0.08;
   const PreparedRecording recording = prepared(raw_table(simulate(plan), plan, {}), engineer());
@@ -118,7 +118,7 @@ TEST(PreparedRecording, gravity_that_no_column_declares_is_found) {
       nullptr);
 }
 
-TEST(PreparedRecording, a_filtered_velocity_is_known_by_its_delay) {
+TEST(PreparedRecording, AFilteredVelocityIsKnownByItsDelay) {
   RawLogPlan plan;
   RawTelling telling;
   telling.velocity = true;
@@ -134,7 +134,7 @@ TEST(PreparedRecording, a_filtered_velocity_is_known_by_its_delay) {
 }
 
 // A drive that sends its speed in steps of 0.05 rad/s knows less of it than its encoder.
-TEST(PreparedRecording, a_coarse_velocity_gives_way_to_what_its_position_says) {
+TEST(PreparedRecording, ACoarseVelocityGivesWayToWhatItsPositionSays) {
   RawLogPlan plan;
   plan.seconds = 30;
   const std::vector<RawSample> truth = simulate(plan);
@@ -155,7 +155,7 @@ TEST(PreparedRecording, a_coarse_velocity_gives_way_to_what_its_position_says) {
 }
 
 // Every way of telling one physics gives the same channels.
-TEST(PreparedRecording, tellings_of_one_physics_agree) {
+TEST(PreparedRecording, TellingsOfOnePhysicsAgree) {
   RawLogPlan plan;
   const std::vector<RawSample> truth = simulate(plan);
   DataOptions options = engineer();
@@ -174,7 +174,7 @@ TEST(PreparedRecording, tellings_of_one_physics_agree) {
   }
 }
 
-TEST(PreparedRecording, lost_messages_cut_the_recording_and_nothing_is_drawn_through_them) {
+TEST(PreparedRecording, LostMessagesCutTheRecordingAndNothingIsDrawnThroughThem) {
   RawLogPlan plan;
   const std::vector<RawSample> truth = simulate(plan);
   const PreparedRecording recording =
@@ -197,7 +197,7 @@ std::string told_wrong(double position, double velocity, double time) {
   return text;
 }
 
-TEST(PreparedRecording, a_story_that_is_not_possible_is_refused_with_the_mend) {
+TEST(PreparedRecording, AStoryThatIsNotPossibleIsRefusedWithTheMend) {
   const DataOptions options;
   EXPECT_EQ(complaint(told_wrong(1, 1, 1), options), "no error");
   EXPECT_THAT(complaint(told_wrong(57.29578, 1, 1), options), HasSubstr("q=position[deg]"));
@@ -213,7 +213,7 @@ TEST(PreparedRecording, a_story_that_is_not_possible_is_refused_with_the_mend) {
   EXPECT_THAT(complaint(told_wrong(1, 954.9297, 1), geared), HasSubstr("velocity[rpm@motor]"));
 }
 
-TEST(PreparedRecording, different_units_are_never_subtracted) {
+TEST(PreparedRecording, DifferentUnitsAreNeverSubtracted) {
   RawLogPlan plan;
   const std::string text = raw_table(simulate(plan), plan, {.gravity = true});
   EXPECT_THAT(complaint(text, {}), HasSubstr("--torque-constant"));
@@ -223,7 +223,7 @@ TEST(PreparedRecording, different_units_are_never_subtracted) {
   EXPECT_THAT(complaint(text, wrong), HasSubstr("with the factor"));
 }
 
-TEST(PreparedRecording, all_that_is_missing_is_said_at_once) {
+TEST(PreparedRecording, AllThatIsMissingIsSaidAtOnce) {
   const std::string text = "stamp,pos,cur\n0,1,2\n1,2,3\n";
   const std::string said = complaint(text, {});
   for (const char* word : {"unit of 'stamp'", "unit of 'pos'", "unit of 'cur'",
@@ -232,14 +232,14 @@ TEST(PreparedRecording, all_that_is_missing_is_said_at_once) {
   }
 }
 
-TEST(PreparedRecording, friction_that_opposes_the_velocity_is_seen_beside_gravity) {
+TEST(PreparedRecording, FrictionThatOpposesTheVelocityIsSeenBesideGravity) {
   RawLogPlan plan;
   std::vector<RawSample> truth = simulate(plan);
   for (RawSample& sample : truth) sample.torque = -sample.torque;
   EXPECT_THAT(complaint(raw_table(truth, plan, {}), engineer()), HasSubstr("--flip-sign"));
 }
 
-TEST(PreparedRecording, a_current_at_its_limit_is_left_out_and_counted) {
+TEST(PreparedRecording, ACurrentAtItsLimitIsLeftOutAndCounted) {
   RawLogPlan plan;
   std::vector<RawSample> truth = simulate(plan);
   std::size_t clipped = 0;

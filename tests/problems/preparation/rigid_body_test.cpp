@@ -28,7 +28,7 @@ Dataset lifted(bool back) {
   return data;
 }
 
-TEST(RigidBody, gravity_is_found_where_the_joint_goes_both_ways) {
+TEST(RigidBody, GravityIsFoundWhereTheJointGoesBothWays) {
   const auto body = fit_rigid_body(lifted(true));
   ASSERT_TRUE(body);
   EXPECT_NEAR(body->sine, 15, 1);
@@ -36,7 +36,7 @@ TEST(RigidBody, gravity_is_found_where_the_joint_goes_both_ways) {
 }
 
 // One way, under a load of one sign, friction that grows with the load is gravity itself.
-TEST(RigidBody, one_way_alone_gives_no_absurd_gravity) {
+TEST(RigidBody, OneWayAloneGivesNoAbsurdGravity) {
   const auto body = fit_rigid_body(lifted(false));
   if (body) {
     EXPECT_LT(std::abs(body->sine) + std::abs(body->cosine), 100);
@@ -44,7 +44,7 @@ TEST(RigidBody, one_way_alone_gives_no_absurd_gravity) {
 }
 
 // An inertia of 2 under jerks that a smoother took a third off as much as off half its bandwidth.
-TEST(RigidBody, the_torque_tells_what_a_smoother_took_off_the_acceleration) {
+TEST(RigidBody, TheTorqueTellsWhatASmootherTookOffTheAcceleration) {
   Dataset data = lifted(true);
   Channel acceleration{"a", "rad/s^2", Role::acceleration, {}};
   std::vector<double> change;

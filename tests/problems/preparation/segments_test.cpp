@@ -8,7 +8,7 @@
 namespace tribench {
 namespace {
 
-TEST(Segments, a_gap_cuts_and_a_pause_between_strokes_does_too) {
+TEST(Segments, AGapCutsAndAPauseBetweenStrokesDoesToo) {
   std::vector<double> time;
   std::vector<double> v;
   for (int i = 0; i < 3000; ++i) {
@@ -29,7 +29,7 @@ TEST(Segments, a_gap_cuts_and_a_pause_between_strokes_does_too) {
   EXPECT_EQ(strokes.strokes[2].begin, 1500U);
 }
 
-TEST(Segments, a_limit_is_told_from_a_peak) {
+TEST(Segments, ALimitIsToldFromAPeak) {
   std::vector<double> sine;
   std::vector<double> clipped;
   for (int i = 0; i < 5000; ++i) {
@@ -42,7 +42,7 @@ TEST(Segments, a_limit_is_told_from_a_peak) {
   EXPECT_GT(found, 1500U);
 }
 
-TEST(Segments, a_repeated_message_is_told_from_a_coarse_encoder) {
+TEST(Segments, ARepeatedMessageIsToldFromACoarseEncoder) {
   std::vector<double> position;
   std::vector<double> current;
   for (int i = 0; i < 1000; ++i) {

@@ -39,7 +39,7 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-TEST(SteadyClock, the_instants_behind_late_and_lost_messages_are_found) {
+TEST(SteadyClock, TheInstantsBehindLateAndLostMessagesAreFound) {
   for (const double lost : {0.0, 0.05}) {
     const Stamped rows = late_stamps(0.1, lost);
     const std::vector<RowRange> whole = {{0, rows.stamps.size()}};
@@ -51,7 +51,7 @@ TEST(SteadyClock, the_instants_behind_late_and_lost_messages_are_found) {
   }
 }
 
-TEST(SteadyClock, even_stamps_and_rows_without_a_beat_have_none) {
+TEST(SteadyClock, EvenStampsAndRowsWithoutABeatHaveNone) {
   std::vector<double> even;
   std::vector<double> uneven;
   RandomStream random(72);

@@ -90,7 +90,7 @@ TEST(ChannelNames, SayRoleAndUnit) {
   }
 }
 
-TEST(ChannelNames, say_the_joint_and_the_side_of_the_gear) {
+TEST(ChannelNames, SayTheJointAndTheSideOfTheGear) {
   EXPECT_EQ(read_channel_name("q3").joint, 3);
   EXPECT_EQ(read_channel_name("position[0]").joint, 0);
   EXPECT_EQ(read_channel_name("joint_2_current_A").joint, 2);
@@ -99,7 +99,7 @@ TEST(ChannelNames, say_the_joint_and_the_side_of_the_gear) {
   EXPECT_FALSE(read_channel_name("velocity_rad_s").at_motor);
 }
 
-TEST(ChannelNames, every_alias_is_read_as_itself) {
+TEST(ChannelNames, EveryAliasIsReadAsItself) {
   for (const ChannelAlias& alias : channel_aliases()) {
     if (alias.by_unit) {
       EXPECT_EQ(read_channel_name(alias.name).role, Role::none) << alias.name;
@@ -112,7 +112,7 @@ TEST(ChannelNames, every_alias_is_read_as_itself) {
   }
 }
 
-TEST(Units, a_number_before_a_unit_is_how_many_of_it_a_count_is) {
+TEST(Units, ANumberBeforeAUnitIsHowManyOfItACountIs) {
   EXPECT_EQ(find_written_unit("0.229rpm").symbol(), "0.229 rpm");
   EXPECT_EQ(find_written_unit("2.69 mA").scale, 2.69);
   EXPECT_EQ(find_written_unit("0.1%").symbol(), "0.1 %");
@@ -125,7 +125,7 @@ TEST(Units, a_number_before_a_unit_is_how_many_of_it_a_count_is) {
   EXPECT_NEAR((500 + fahrenheit.conversion.offset) * fahrenheit.conversion.factor, 10, 1e-12);
 }
 
-TEST(Units, spellings_are_one_unit_and_strangers_none) {
+TEST(Units, SpellingsAreOneUnitAndStrangersNone) {
   for (const char* text : {"deg/s", "Deg/s", "dps", "\xC2\xB0/s", "deg s^-1", "deg\xC2\xB7s-1"}) {
     ASSERT_NE(find_unit(text), nullptr) << text;
     EXPECT_EQ(find_unit(text)->symbol, "deg/s") << text;

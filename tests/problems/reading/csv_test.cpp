@@ -254,7 +254,7 @@ TEST(Csv, RandomBytesAreAnswered) {
   }
 }
 
-TEST(Csv, converts_channels_with_a_role_and_says_so) {
+TEST(Csv, ConvertsChannelsWithARoleAndSaysSo) {
   const DataFile file = parse_csv(
       "stamp,q [deg],w,i_mA,T [K],x_deg\n"
       "1700000000000000000,90,60,1500,300,90\n1700000000001000000,-180,-60,-500,310,1\n",
@@ -272,7 +272,7 @@ TEST(Csv, converts_channels_with_a_role_and_says_so) {
   EXPECT_EQ(file.readings[2].unit, "rpm@motor");
 }
 
-TEST(Csv, seconds_and_nanoseconds_of_a_stamp_are_one_time) {
+TEST(Csv, SecondsAndNanosecondsOfAStampAreOneTime) {
   const DataFile file = parse_csv(
       "header.stamp.sec,header.stamp.nanosec,position\n"
       "1700000000,999000000,0.1\n1700000001,1000000,0.2\n",
@@ -281,7 +281,7 @@ TEST(Csv, seconds_and_nanoseconds_of_a_stamp_are_one_time) {
   EXPECT_NEAR(file.data.channels[0].values[1] - file.data.channels[0].values[0], 0.002, 1e-9);
 }
 
-TEST(Csv, a_row_of_units_counts_more_than_what_a_source_usually_means) {
+TEST(Csv, ARowOfUnitsCountsMoreThanWhatASourceUsuallyMeans) {
   const DataFile file =
       parse_csv("time;position;velocity\n[ms];[deg];[deg/s]\n0;1,5;2\n10;3;4\n", "log.csv");
   EXPECT_EQ(file.data.rows(), 2U);
@@ -289,7 +289,7 @@ TEST(Csv, a_row_of_units_counts_more_than_what_a_source_usually_means) {
   EXPECT_NEAR(file.data.at("position").values[0], 1.5 * M_PI / 180, 1e-15);
 }
 
-TEST(Csv, of_several_joints_one_is_asked_for) {
+TEST(Csv, OfSeveralJointsOneIsAskedFor) {
   const std::string_view text = "t,q1,dq1,q2,dq2,tau_J_1,tau_J_2\n0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n";
   EXPECT_EQ(parse_csv(text, "arm.csv").joints, (std::vector<int>{1, 2}));
   CsvOptions options;
@@ -302,7 +302,7 @@ TEST(Csv, of_several_joints_one_is_asked_for) {
   EXPECT_THAT(complaint(text, options), HasSubstr("joints: 1, 2"));
 }
 
-TEST(Csv, names_tell_nothing_where_they_are_not_asked) {
+TEST(Csv, NamesTellNothingWhereTheyAreNotAsked) {
   CsvOptions options;
   options.names_tell = false;
   options.used = {{"t", "movement"}};
@@ -314,7 +314,7 @@ TEST(Csv, names_tell_nothing_where_they_are_not_asked) {
   EXPECT_EQ(file.data.at("movement").values, (std::vector<double>{1, 2, 1}));
 }
 
-TEST(Csv, a_unit_that_nobody_knows_is_refused) {
+TEST(Csv, AUnitThatNobodyKnowsIsRefused) {
   EXPECT_THAT(complaint("time_s,q [furlong]\n0,1\n"),
               HasSubstr("'furlong' is no unit of a position"));
   EXPECT_THROW(parse_roles("q=position[rpm]", "--roles"), Error);
@@ -322,14 +322,14 @@ TEST(Csv, a_unit_that_nobody_knows_is_refused) {
   EXPECT_THROW(parse_roles("q=position,q=velocity", "--roles"), Error);
 }
 
-TEST(Csv, a_last_line_that_is_cut_off_is_left_out_and_noted) {
+TEST(Csv, ALastLineThatIsCutOffIsLeftOutAndNoted) {
   const DataFile file = parse_csv("v,y\n1,2\n3,4\n5", "d.csv");
   EXPECT_EQ(file.data.rows(), 2U);
   ASSERT_EQ(file.warnings.size(), 1U);
   EXPECT_THAT(file.warnings[0], HasSubstr("cut off"));
 }
 
-TEST(Csv, a_hundred_thousand_columns_are_read_in_time_that_grows_with_their_number) {
+TEST(Csv, AHundredThousandColumnsAreReadInTimeThatGrowsWithTheirNumber) {
   std::string names = "c0";
   std::string row = "0";
   for (int j = 1; j < 100'000; ++j) {
@@ -345,7 +345,7 @@ TEST(Csv, a_hundred_thousand_columns_are_read_in_time_that_grows_with_their_numb
   EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 5);
 }
 
-TEST(Csv, gzip_is_unpacked_and_damage_named) {
+TEST(Csv, GzipIsUnpackedAndDamageNamed) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path();
   const std::filesystem::path file = folder / fmt::format("tribench-csv-{}.csv.gz", ::getpid());
   gzFile out = gzopen(file.c_str(), "wb");

@@ -41,7 +41,7 @@ std::string complaint(const std::string& text) {
 
 std::vector<double> in_order(const DataFile& file) { return file.data.at("y").values; }
 
-TEST(TimeOrder, messages_that_were_overtaken_are_sorted_with_all_that_they_say) {
+TEST(TimeOrder, MessagesThatWereOvertakenAreSortedWithAllThatTheySay) {
   std::vector<std::pair<double, int>> rows = even_rows(300);
   std::swap(rows[50], rows[51]);
   std::rotate(rows.begin() + 100, rows.begin() + 101, rows.begin() + 104);  // one, three too late
@@ -56,7 +56,7 @@ TEST(TimeOrder, messages_that_were_overtaken_are_sorted_with_all_that_they_say) 
   }
 }
 
-TEST(TimeOrder, a_clock_that_is_set_back_or_begins_anew_makes_another_recording) {
+TEST(TimeOrder, AClockThatIsSetBackOrBeginsAnewMakesAnotherRecording) {
   for (const double back : {0.5, 1.5}) {  // a correction; from 0 again
     std::vector<std::pair<double, int>> rows = even_rows(400);
     for (std::size_t i = 150; i < rows.size(); ++i) rows[i].first -= back;
@@ -69,7 +69,7 @@ TEST(TimeOrder, a_clock_that_is_set_back_or_begins_anew_makes_another_recording)
   }
 }
 
-TEST(TimeOrder, the_newest_row_may_stand_first) {
+TEST(TimeOrder, TheNewestRowMayStandFirst) {
   std::vector<std::pair<double, int>> rows = even_rows(300);
   std::ranges::reverse(rows);
   const DataFile file = parse_csv(table_of(rows), "log.csv");
@@ -77,7 +77,7 @@ TEST(TimeOrder, the_newest_row_may_stand_first) {
   EXPECT_TRUE(std::ranges::is_sorted(in_order(file)));
 }
 
-TEST(TimeOrder, what_is_not_plain_is_refused) {
+TEST(TimeOrder, WhatIsNotPlainIsRefused) {
   // Too many to be messages that were overtaken.
   std::vector<std::pair<double, int>> rows = even_rows(300);
   for (std::size_t i = 0; i + 1 < rows.size(); i += 4) std::swap(rows[i], rows[i + 1]);

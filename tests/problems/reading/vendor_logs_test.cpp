@@ -69,7 +69,7 @@ std::string complaint(const std::string& text, const CsvOptions& options) {
   return "read";
 }
 
-TEST(VendorLogs, controllers) {
+TEST(VendorLogs, Controllers) {
   // KUKA's sensor interface, joints numbered.
   expect_read(
       "Time[ms];AIPos.A1[deg];AIPos.A2[deg];MACur.A1[A];MACur.A2[A]\r\n"
@@ -93,7 +93,7 @@ TEST(VendorLogs, controllers) {
       told(""), {0.002, 3.5 * kDegree, 4.5});
 }
 
-TEST(VendorLogs, drives) {
+TEST(VendorLogs, Drives) {
   const double turn = 2 * M_PI;
   expect_read(
       "timestamp_s,axis0.encoder.pos_estimate [turns@motor],"
@@ -111,7 +111,7 @@ TEST(VendorLogs, drives) {
               told("sample=time[2 ms],angle=position[-1 deg]"), {0.002, -30 * kDegree, 2});
 }
 
-TEST(VendorLogs, recorders) {
+TEST(VendorLogs, Recorders) {
   expect_read(
       "__time,/joint_states/joint_1/position,/joint_states/joint_1/effort,"
       "/joint_states/joint_2/position,/joint_states/joint_2/effort\n"
@@ -131,7 +131,7 @@ TEST(VendorLogs, recorders) {
               HasSubstr("instants of their own"));
 }
 
-TEST(VendorLogs, spreadsheets_and_their_encodings) {
+TEST(VendorLogs, SpreadsheetsAndTheirEncodings) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("tribench-vendor-" + std::to_string(::getpid()));
   const auto read = [&](const std::string& bytes) {
@@ -156,7 +156,7 @@ TEST(VendorLogs, spreadsheets_and_their_encodings) {
               told("tim=time"), {0.002, 30 * kDegree, 4});
 }
 
-TEST(VendorLogs, what_a_recorder_says_of_itself_is_no_row) {
+TEST(VendorLogs, WhatARecorderSaysOfItselfIsNoRow) {
   const std::string rows = "0;0.1;1\n0.002;0.2;2\n0.004;0.3;3\n0.006;0.4;4\n";
   expect_read("Robot;KR 10\nSerial;4711\n\nt [s];q [rad];tau [Nm]\n" + rows, told(""),
               {0.002, 0.2, 2});
@@ -166,7 +166,7 @@ TEST(VendorLogs, what_a_recorder_says_of_itself_is_no_row) {
               {0.002, 2 * M_PI, 2});
 }
 
-TEST(VendorLogs, times_in_words) {
+TEST(VendorLogs, TimesInWords) {
   expect_read(
       "timestamp,q_rad,tau_Nm\n2024-05-14T09:12:33.500000Z,0.1,1\n2024-05-14T09:12:33.502Z,0.2,2\n",
       told(""), {0.002, 0.2, 2});
@@ -195,7 +195,7 @@ TEST(VendorLogs, times_in_words) {
               HasSubstr("log.csv:3:time"));
 }
 
-TEST(VendorLogs, recordings_one_after_the_other_and_words_at_the_end) {
+TEST(VendorLogs, RecordingsOneAfterTheOtherAndWordsAtTheEnd) {
   const DataFile file = parse_csv(
       "time_s,pos_deg,torque_Nm\n0,1,1\n0.002,2,2\ntime_s,pos_deg,torque_Nm\n0,3,3\n0.002,4,4\n"
       "Recording stopped by user\n\n",
@@ -209,7 +209,7 @@ TEST(VendorLogs, recordings_one_after_the_other_and_words_at_the_end) {
   EXPECT_THAT(complaint("time_s,pos_deg,i_A\n0,1,1\n0.1,2\n", told("")), HasSubstr("log.csv:3"));
 }
 
-TEST(VendorLogs, what_is_no_table_or_cannot_be_told_is_refused) {
+TEST(VendorLogs, WhatIsNoTableOrCannotBeToldIsRefused) {
   EXPECT_THAT(complaint("{\"t\": 0.1, \"pos\": 2}\n{\"t\": 0.2, \"pos\": 2}\n", told("")),
               HasSubstr("log.csv:1: these are JSON objects"));
   EXPECT_THAT(complaint("time [ms],pos [mdeg]\n\"1.0\",\"19,607.5\"\n", told("")),
