@@ -60,6 +60,7 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
   }
   adjust_acceleration(out);
   drop_unresolved(out);
+  drop_lonely_acceleration(out);
   check_gravity_factor(out, options);
   fit_gravity(out, gravity);
   return out;

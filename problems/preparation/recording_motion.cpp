@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kEdgeRows = 3;  // of a derived motion, at the ends of a piece
 constexpr double kUnresolved = 0.6;   // standard errors of the acceleration
+constexpr double kMatters = 0.33;     // of the acceleration that the torque's noise leaves visible
 constexpr double kLeastDelay = 0.6;   // steps of time
 constexpr double kMuchCoarser = 4;    // than the derived velocity's noise
 constexpr double kForever = std::numeric_limits<double>::infinity();
@@ -168,9 +169,9 @@ void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived) {
   Channel mark{std::string(kUnresolvedChannel), "-", Role::none, std::vector<double>(t.size(), 0)};
   const double blur = kBlur / (kRadPerTurn * derived.motion.bandwidth);
   double last = -kForever;  // when the acceleration was last seen to change
-  const auto changes = [&](std::size_t i) {
-    return std::abs(change.values[i]) > kUnresolved * derived.motion.acceleration_noise;
-  };
+  const double least = std::max(kUnresolved * derived.motion.acceleration_noise,
+                                kMatters * visible_acceleration(out.data).value_or(0));
+  const auto changes = [&](std::size_t i) { return std::abs(change.values[i]) > least; };
   for (std::size_t i = 0; i < t.size(); ++i) {
     if (changes(i)) last = t[i];
     mark.values[i] = std::abs(t[i] - last) <= blur ? 1 : 0;
@@ -182,6 +183,43 @@ void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived) {
   }
   out.data.channels.push_back(std::move(mark));
   out.data.channels.push_back(std::move(change));
+}
+
+// An inertia that one movement alone tells cannot be judged by leaving movements out: there its
+// error is taken for whatever else is asked about.
+void drop_lonely_acceleration(PreparedRecording& out) {
+  constexpr double kAlone = 0.5;  // of the sum of squares
+  constexpr std::size_t kFewestMovements = 5;
+  const Channel* a = out.data.find("derived_acceleration");
+  const std::size_t movements = out.data.movement_names.size();
+  if (a == nullptr || !has_inertia_of_derived(out.data) || movements < kFewestMovements) return;
+  std::vector<char> lonely(out.data.rows(), 0);
+  for (std::size_t round = 0; round < movements; ++round) {
+    std::vector<double> squares(movements, 0.0);
+    std::vector<double> largest(movements, 0.0);
+    double all = 0;
+    for (std::size_t i = 0; i < lonely.size(); ++i) {
+      if (lonely[i] != 0) continue;
+      const auto m = static_cast<std::size_t>(out.data.movement[i]);
+      squares[m] += a->values[i] * a->values[i];
+      largest[m] = std::max(largest[m], std::abs(a->values[i]));
+      all += a->values[i] * a->values[i];
+    }
+    const auto most = static_cast<std::size_t>(std::ranges::max_element(squares) - squares.begin());
+    if (squares[most] <= kAlone * all) break;
+    largest[most] = 0;
+    const double others = *std::ranges::max_element(largest);
+    bool any = false;
+    for (std::size_t i = 0; i < lonely.size(); ++i) {
+      if (lonely[i] != 0 || static_cast<std::size_t>(out.data.movement[i]) != most) continue;
+      if (std::abs(a->values[i]) <= others) continue;
+      lonely[i] = 1;
+      any = true;
+    }
+    if (!any) break;
+  }
+  leave_out(out, lonely,
+            "accelerate as no other movement does, so that no other tells the inertia");
 }
 
 void drop_unresolved(PreparedRecording& out) {

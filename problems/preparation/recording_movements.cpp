@@ -13,9 +13,9 @@
 namespace tribench {
 namespace {
 
-constexpr double kForgotten = 0.5;            // s without a message: the joint may have turned
-constexpr std::size_t kEnoughMovements = 30;  // as a diagnosis wants them
-constexpr std::size_t kMostStrokes = 150;     // more say no more of independence
+constexpr double kForgotten = 0.5;           // s without a message: the joint may have turned
+constexpr std::size_t kEnoughMovements = 8;  // to leave some out in turn
+constexpr std::size_t kMostStrokes = 150;    // more say no more of independence
 // Slower rows are near a rest: bristles that have not slid yet carry a part of the friction there.
 constexpr double kSlow = 0.02;  // of the top speed
 constexpr double kNoisy = 3;    // of the velocity's noise
@@ -40,7 +40,8 @@ std::vector<ChainedStroke> chained(const std::vector<RowRange>& strokes, const D
 }
 
 // Movements: what lies between two rests, since strokes without one are not independent of each
-// other; where those are too few to tell anything from, the strokes.
+// other, and what one stroke at one speed shows is an offset of its own; where those are too few to
+// tell anything from, the strokes.
 std::vector<std::vector<RowRange>> movements_of(const std::vector<ChainedStroke>& strokes) {
   std::size_t chains = 0;
   for (std::size_t k = 0; k < strokes.size(); ++k) {

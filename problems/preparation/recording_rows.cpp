@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "foundation/error.hpp"
 #include "foundation/order_statistics.hpp"
@@ -91,18 +92,19 @@ namespace {
 enum class GoesOn { straight, level };
 
 // Rows, five at most in a row, after which the channel goes on as before, and which are off that
-// by far more than it ever moves.
-std::vector<char> wrong_readings(const std::vector<double>& x, const std::vector<int>& movement,
-                                 GoesOn how) {
+// by far more than it ever moves. `when`: each row's time.
+std::vector<char> wrong_readings(const std::vector<double>& x, const std::vector<double>& when,
+                                 const std::vector<int>& movement, GoesOn how) {
   constexpr double kFar = 10;          // usual surprises
   constexpr std::size_t kLongest = 5;  // rows
-  constexpr double kBack = 2;          // usual surprises a row
+  constexpr double kBack = 0.2;        // of the surprise
   std::vector<char> wrong(x.size(), 0);
   if (x.size() < 100) return wrong;
-  // From the rows i - 2 and i - 1 to the row i + k.
+  // In the row i + k, for who knows the rows i - 2 and i - 1.
   const auto surprise = [&](std::size_t i, std::size_t k) {
-    const double slope = how == GoesOn::straight ? x[i - 1] - x[i - 2] : 0;
-    return std::abs(x[i + k] - x[i - 1] - slope * static_cast<double>(k + 1));
+    const double slope =
+        how == GoesOn::straight ? (x[i - 1] - x[i - 2]) / (when[i - 1] - when[i - 2]) : 0;
+    return std::abs(x[i + k] - x[i - 1] - slope * (when[i + k] - when[i - 1]));
   };
   std::vector<double> surprises;
   for (std::size_t i = 2; i < x.size(); ++i) surprises.push_back(surprise(i, 0));
@@ -111,13 +113,21 @@ std::vector<char> wrong_readings(const std::vector<double>& x, const std::vector
     if (surprises[i - 2] < kFar * usual) continue;
     for (std::size_t k = 1; k <= kLongest && i + k < x.size(); ++k) {
       if (movement[i + k] != movement[i - 2]) break;
-      if (surprise(i, k) > kBack * usual * static_cast<double>(k + 1)) continue;
+      if (surprise(i, k) > kBack * surprises[i - 2]) continue;
       std::fill_n(wrong.begin() + static_cast<std::ptrdiff_t>(i), k, 1);
       i += k + 1;  // the row after next is the first to be told by rows that are right
       break;
     }
   }
   return wrong;
+}
+
+// Without a time the rows' numbers.
+std::vector<double> when_rows_were(const Dataset& data) {
+  if (const Channel* t = data.find(Role::time)) return t->values;
+  std::vector<double> when(data.rows());
+  std::iota(when.begin(), when.end(), 0.0);
+  return when;
 }
 
 }  // namespace
@@ -128,7 +138,8 @@ void drop_wrong_readings(PreparedRecording& out) {
     const Channel* channel = find_channel(out.data, role);
     if (channel == nullptr) continue;
     const GoesOn how = role == Role::position ? GoesOn::straight : GoesOn::level;
-    leave_out(out, wrong_readings(channel->values, out.data.movement, how),
+    leave_out(out,
+              wrong_readings(channel->values, when_rows_were(out.data), out.data.movement, how),
               fmt::format("have a wrong reading of '{}', far off the rows before and after",
                           channel->name));
   }

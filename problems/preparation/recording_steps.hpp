@@ -61,6 +61,8 @@ void settle_acceleration(PreparedRecording& out, const DerivedMotion& derived);
 // friction. Marked before rows are left out, dropped when the movements are cut.
 void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived);
 void drop_unresolved(PreparedRecording& out);
+// Accelerations that a single movement holds.
+void drop_lonely_acceleration(PreparedRecording& out);
 // A smoother takes something off a derived acceleration that changes fast and leaves noise in one
 // that does not: where between half the bandwidth and beyond the whole it is right the torque
 // tells.

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "foundation/elementary.hpp"
+#include "foundation/order_statistics.hpp"
+#include "problems/preparation/segments.hpp"
 
 namespace tribench {
 namespace {
@@ -56,13 +58,14 @@ struct Rows {
   double speed = 0;  // typical
 };
 
-Rows rows_of(const Dataset& data, const Channel& torque, Eigen::Index more) {
+// Rows slower than `slowest` take no part.
+Rows rows_of(const Dataset& data, const Channel& torque, Eigen::Index more, double slowest = 0) {
   const std::vector<double>& v = data.find(Role::velocity)->values;
   const Channel* a = data.find(Role::acceleration);
   const std::size_t step = std::max<std::size_t>(1, data.rows() / kRows);
   Rows rows;
   for (std::size_t i = 0; i < data.rows(); i += step) {
-    if (v[i] != 0) rows.places.push_back(i);
+    if (std::abs(v[i]) > slowest) rows.places.push_back(i);
   }
   const auto n = static_cast<Eigen::Index>(rows.places.size());
   rows.base = a != nullptr ? 5 : 4;
@@ -79,6 +82,29 @@ Rows rows_of(const Dataset& data, const Channel& torque, Eigen::Index more) {
     rows.speed += std::abs(v[i]) / static_cast<double>(n);
   }
   return rows;
+}
+
+bool turns(const Dataset& data) {
+  const Channel* q = data.find(Role::position);
+  return q != nullptr && q->unit == "rad";
+}
+
+// Declared gravity, sin and cos of an angle: as many columns as there are of those.
+Eigen::Index load_columns(const Dataset& data) {
+  return (data.find(Role::gravity_torque) != nullptr ? 1 : 0) + (turns(data) ? 2 : 0);
+}
+
+void fill_load_columns(const Dataset& data, Rows& rows, Eigen::Index first) {
+  const Channel* gravity = data.find(Role::gravity_torque);
+  const Channel* q = data.find(Role::position);
+  for (Eigen::Index r = 0; r < rows.x.rows(); ++r) {
+    const std::size_t i = rows.places[static_cast<std::size_t>(r)];
+    Eigen::Index column = first;
+    if (gravity != nullptr) rows.x(r, column++) = gravity->values[i];
+    if (!turns(data)) continue;
+    rows.x(r, column++) = elementary::sin(q->values[i]);
+    rows.x(r, column) = elementary::cos(q->values[i]);
+  }
 }
 
 }  // namespace
@@ -128,24 +154,54 @@ std::optional<Blunting> acceleration_blunting(const Dataset& data, std::span<con
   constexpr Eigen::Index kAcceleration = 4;
   const Channel* torque = torque_of(data);
   if (torque == nullptr || !data.find(Role::velocity) || !data.find(Role::acceleration)) return {};
-  const Channel* q = data.find(Role::position);
-  const Channel* gravity = data.find(Role::gravity_torque);
-  const bool turns = q != nullptr && q->unit == "rad";
-  Rows rows = rows_of(data, *torque, 1 + (gravity != nullptr ? 1 : 0) + (turns ? 2 : 0));
+  Rows rows = rows_of(data, *torque, 1 + load_columns(data));
   if (rows.places.size() < kFewest) return {};
   for (Eigen::Index r = 0; r < rows.x.rows(); ++r) {
-    const std::size_t i = rows.places[static_cast<std::size_t>(r)];
-    Eigen::Index column = rows.base;
-    rows.x(r, column++) = change[i];
-    if (gravity != nullptr) rows.x(r, column++) = gravity->values[i];
-    if (!turns) continue;
-    rows.x(r, column++) = elementary::sin(q->values[i]);
-    rows.x(r, column) = elementary::cos(q->values[i]);
+    rows.x(r, rows.base) = change[rows.places[static_cast<std::size_t>(r)]];
   }
+  fill_load_columns(data, rows, rows.base + 1);
   const Fit fit = least_squares(rows.x, rows.y);
   const double inertia = fit.coefficients(kAcceleration);
   if (!(inertia > 0)) return {};
   return Blunting{fit.coefficients(rows.base) / inertia, fit.errors(rows.base) / inertia};
+}
+
+namespace {
+
+// The torque's noise in means of so many rows: from their second differences, which what the motion
+// does to it hardly enters.
+double torque_noise(const std::vector<double>& torque, std::size_t rows_each) {
+  std::vector<double> means;
+  for (std::size_t i = 0; i + rows_each <= torque.size(); i += rows_each) {
+    double sum = 0;
+    for (std::size_t k = i; k < i + rows_each; ++k) sum += torque[k];
+    means.push_back(sum / static_cast<double>(rows_each));
+  }
+  std::vector<double> bends;
+  for (std::size_t i = 2; i < means.size(); ++i) {
+    bends.push_back(means[i] - 2 * means[i - 1] + means[i - 2]);
+  }
+  return kMadToSd * upper_median_magnitude(std::move(bends)) / std::sqrt(6.0);
+}
+
+}  // namespace
+
+std::optional<double> visible_acceleration(const Dataset& data) {
+  constexpr double kSlow = 0.02;        // of the top speed
+  constexpr double kSurely = 5;         // standard errors
+  constexpr std::size_t kMeans = 6000;  // that a diagnosis averages a recording to
+  constexpr Eigen::Index kAcceleration = 4;
+  const Channel* torque = torque_of(data);
+  const Channel* v = data.find(Role::velocity);
+  if (torque == nullptr || v == nullptr || !data.find(Role::acceleration)) return {};
+  Rows rows = rows_of(data, *torque, load_columns(data), kSlow * top_speed(v->values));
+  if (rows.places.size() < kFewest) return {};
+  fill_load_columns(data, rows, rows.base);
+  const Fit fit = least_squares(rows.x, rows.y);
+  const double inertia = fit.coefficients(kAcceleration);
+  if (!(inertia > kSurely * fit.errors(kAcceleration))) return {};
+  const std::size_t rows_each = std::max<std::size_t>(1, data.rows() / kMeans);
+  return torque_noise(torque->values, rows_each) / inertia;
 }
 
 std::optional<GravityFactor> gravity_factor(const Dataset& data) {

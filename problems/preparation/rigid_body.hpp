@@ -46,4 +46,8 @@ struct Blunting {
 };
 std::optional<Blunting> acceleration_blunting(const Dataset& data, std::span<const double> change);
 
+// The change of acceleration that the torque would show: its noise, in means as a diagnosis takes
+// them, divided by the inertia that it tells. Nothing where it tells none.
+std::optional<double> visible_acceleration(const Dataset& data);
+
 }  // namespace tribench

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "foundation/random.hpp"
+
 namespace tribench {
 namespace {
 
@@ -61,6 +63,27 @@ TEST(RigidBody, TheTorqueTellsWhatASmootherTookOffTheAcceleration) {
   EXPECT_NEAR(blunting->share, 1.0 / 3, 0.02);
   EXPECT_LT(blunting->error, 0.05);
   EXPECT_FALSE(acceleration_blunting(lifted(true), change));  // no acceleration
+}
+
+// Noise of 0.1 behind an inertia of 2 hides changes of 0.05.
+TEST(RigidBody, WhatChangeOfTheAccelerationTheTorqueWouldShow) {
+  Dataset data = lifted(true);
+  RandomStream random(5);
+  Channel acceleration{"a", "rad/s^2", Role::acceleration, {}};
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    acceleration.values.push_back(0.6 * 4 * std::cos(0.002 * static_cast<double>(i)));
+    data.channels[2].values[i] += 2 * acceleration.values.back() + 0.1 * random.normal();
+  }
+  EXPECT_FALSE(visible_acceleration(data));
+  data.channels.push_back(acceleration);
+  // Here sin 2t is the speed and cos 2t the place too: without gravity the inertia is plain.
+  data.channels[0].unit = "m";
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    data.channels[2].values[i] -= 15 * std::sin(data.channels[0].values[i]);
+  }
+  const std::optional<double> visible = visible_acceleration(data);
+  ASSERT_TRUE(visible);
+  EXPECT_NEAR(*visible, 0.1 / 2, 0.02);
 }
 
 }  // namespace

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "problems/preparation/recording_steps.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+constexpr double kStep = 0.01;
+
+// So many times there and back at a speed of its own, a rest after each.
+PreparedRecording swings_with_rests(int swings) {
+  PreparedRecording out;
+  Channel time{"t", "s", Role::time, {}};
+  Channel velocity{"v", "rad/s", Role::velocity, {}};
+  for (int k = 0; k < swings; ++k) {
+    const double speed = 0.2 + 0.1 * k;
+    for (int i = 0; i < 500; ++i) {
+      const double t = kStep * i;
+      time.values.push_back(kStep * static_cast<double>(time.values.size()));
+      velocity.values.push_back(t < 2 ? speed : t < 4 ? -speed : 0);
+    }
+  }
+  out.data.channels = {time, velocity};
+  out.data.movement.assign(time.values.size(), 0);
+  out.data.movement_names = {"log"};
+  return out;
+}
+
+// What a stroke at one speed shows would be an offset of its own.
+TEST(RecordingMovements, WhatLiesBetweenRestsIsOneMovementWhereThoseAreEnough) {
+  PreparedRecording ten = swings_with_rests(10);
+  cut_strokes(ten, 0, 0);
+  EXPECT_EQ(ten.data.movement_names.size(), 10U);
+  EXPECT_THAT(ten.notes, Contains(HasSubstr("20 strokes between 10 rests")));
+  PreparedRecording four = swings_with_rests(4);
+  cut_strokes(four, 0, 0);
+  EXPECT_EQ(four.data.movement_names.size(), 8U);
+}
+
+// Six movements; the fourth alone has more than a touch of acceleration, in 40 of its rows.
+TEST(RecordingMovements, AnAccelerationThatOneMovementAloneHoldsIsLeftOut) {
+  PreparedRecording out;
+  Channel torque{"tau", "N m", Role::motor_torque, {}};
+  Channel acceleration{"derived_acceleration", "rad/s^2", Role::acceleration, {}};
+  for (int m = 0; m < 6; ++m) {
+    for (int i = 0; i < 200; ++i) {
+      acceleration.values.push_back(m == 3 && i < 40 ? 8.0 : 0.1 * std::sin(0.1 * i));
+      torque.values.push_back(1);
+      out.data.movement.push_back(m);
+    }
+    out.data.movement_names.push_back("stroke");
+  }
+  out.data.channels = {torque, acceleration};
+  PreparedRecording shared = out;
+  for (double& a : shared.data.channels[1].values) a = std::abs(a) > 0.09 ? 8.0 : a;
+  drop_lonely_acceleration(out);
+  EXPECT_EQ(out.data.rows(), 1160U);
+  for (const double a : out.data.find("derived_acceleration")->values) EXPECT_LT(std::abs(a), 0.2);
+  EXPECT_THAT(out.notes, Contains(HasSubstr("40 of 1200 rows accelerate as no other")));
+  drop_lonely_acceleration(shared);
+  EXPECT_EQ(shared.data.rows(), 1200U);
+}
+
+}  // namespace
+}  // namespace tribench
