@@ -259,15 +259,70 @@ void Rewriter::merge_pairs(const Term& term, std::vector<Expression>& out) const
   }
 }
 
+// (a/c + b) / (d/c + e) = (a + b c) / (d + e c), for every c below a bar.
+void Rewriter::clear_fractions(const Term& term, std::vector<Expression>& out) {
+  const auto is_sum_factor = [&](const Factor& factor, int power) {
+    return factor.power == power && is_sum(factor.base.node(factor.base.root()).op);
+  };
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    for (std::size_t j = 0; j < term.factors.size(); ++j) {
+      if (!is_sum_factor(term.factors[i], 1) || !is_sum_factor(term.factors[j], -1)) continue;
+      const Sum above = sum_at(term.factors[i].base, term.factors[i].base.root());
+      const Sum below = sum_at(term.factors[j].base, term.factors[j].base.root());
+      for (const Factor& cleared : bases_below(above, below)) {
+        Term result = term;
+        result.factors[i].base = formula_of(multiplied(above, cleared));
+        result.factors[j].base = formula_of(multiplied(below, cleared));
+        out.push_back(formula_of(result));
+      }
+    }
+  }
+}
+
+// What stands below a bar in one of two sums, with the highest power that it has there.
+std::vector<Rewriter::Factor> Rewriter::bases_below(const Sum& a, const Sum& b) {
+  std::vector<Factor> bases;
+  for (const Sum* sum : {&a, &b}) {
+    for (const Term& term : *sum) {
+      for (const Factor& factor : term.factors) {
+        if (factor.power >= 0) continue;
+        const auto same = std::ranges::find(bases, factor.base, &Factor::base);
+        if (same == bases.end()) {
+          bases.push_back({factor.base, -factor.power});
+        } else {
+          same->power = std::max(same->power, -factor.power);
+        }
+      }
+    }
+  }
+  return bases;
+}
+
+Rewriter::Sum Rewriter::multiplied(Sum sum, const Factor& by) {
+  for (Term& term : sum) {
+    int left = by.power;
+    for (Factor& factor : term.factors) {
+      if (factor.base != by.base || factor.power >= 0) continue;
+      const int cancelled = std::min(left, -factor.power);
+      factor.power += cancelled;
+      left -= cancelled;
+    }
+    std::erase_if(term.factors, [](const Factor& factor) { return factor.power == 0; });
+    if (left > 0) multiply(term, {by.base, left});
+  }
+  return sum;
+}
+
 void Rewriter::rewrite_product(const Term& term, std::vector<Expression>& out) const {
   out.push_back(formula_of(term));
   multiply_out(term, out);
+  clear_fractions(term, out);
   merge_pairs(term, out);
 }
 
 // ---- functions
 
-// exp(a + c) = e^c exp(a), exp(log x) = x.
+// exp(a + c) = e^c exp(a), exp(log x) = x, exp(a log x) = x^a.
 void Rewriter::rewrite_exp(const Expression& argument, std::vector<Expression>& out) const {
   const Sum sum = sum_at(argument, argument.root());
   for (std::size_t i = 0; i < sum.size(); ++i) {
@@ -284,10 +339,30 @@ void Rewriter::rewrite_exp(const Expression& argument, std::vector<Expression>& 
                is_function(term.factors[0].base, Op::log) && is_product_power(term.coefficient)) {
       multiply(product, {argument_of(term.factors[0].base), static_cast<int>(term.coefficient)});
     } else {
-      continue;
+      const auto log = std::ranges::find_if(term.factors, [&](const Factor& factor) {
+        return factor.power == 1 && is_function(factor.base, Op::log);
+      });
+      if (log == term.factors.end() || !(range(argument_of(log->base)).low > 0)) continue;
+      Term exponent = term;
+      exponent.factors.erase(exponent.factors.begin() + (log - term.factors.begin()));
+      multiply(product,
+               {Expression::binary(Op::pow, argument_of(log->base), formula_of(exponent)), 1});
     }
     out.push_back(formula_of(product));
   }
+}
+
+// log exp x = x; log sqrt x = log(x) / 2, log x^a = a log x where x is positive.
+void Rewriter::rewrite_log(const Expression& argument, std::vector<Expression>& out) const {
+  using build::operator*;
+  if (is_function(argument, Op::exp)) out.push_back(argument_of(argument));
+  if (is_function(argument, Op::sqrt)) {
+    out.push_back(build::constant(0.5) * Expression::unary(Op::log, argument_of(argument)));
+  }
+  if (!is_function(argument, Op::pow)) return;
+  const Expression base = argument.subtree(argument.left_child(argument.root()));
+  const Expression exponent = argument.subtree(argument.right_child(argument.root()));
+  if (range(base).low > 0) out.push_back(exponent * Expression::unary(Op::log, base));
 }
 
 // sqrt(c x^2 y) = sqrt(c) |x| sqrt(y).
@@ -341,7 +416,7 @@ void Rewriter::rewrite_function(Op op, const Expression& argument,
                                 std::vector<Expression>& out) const {
   if (op == Op::exp) rewrite_exp(argument, out);
   if (op == Op::sqrt) rewrite_sqrt(argument, out);
-  if (op == Op::log && is_function(argument, Op::exp)) out.push_back(argument_of(argument));
+  if (op == Op::log) rewrite_log(argument, out);
   if (op == Op::abs) {
     const Interval x = range(argument);
     if (x.low >= 0) out.push_back(argument);

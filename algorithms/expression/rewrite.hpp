@@ -8,7 +8,9 @@
 //              the others dropped
 //   products   a factor that is a sum multiplied out; exponentials and roots merged; x sgn_x = |x|,
 //              |x| sgn_x = x
-//   functions  exp of log and of a constant term, log of exp, roots of squares and of constants,
+//              fractions within a fraction cleared
+//   functions  exp of log and of a constant term, log of exp, of roots and powers, roots of squares
+//   and of constants,
 //              |x| of what has one sign; sin, tanh, exp and cos of arguments so small, tanh of ones
 //              so large, that the difference is below 1e-12 of the value
 //
@@ -58,9 +60,13 @@ class Rewriter {
   void drop_negligible(const Sum& sum, std::vector<Expression>& out) const;
   void rewrite_product(const Term& term, std::vector<Expression>& out) const;
   static void multiply_out(const Term& term, std::vector<Expression>& out);
+  static void clear_fractions(const Term& term, std::vector<Expression>& out);
+  static std::vector<Factor> bases_below(const Sum& a, const Sum& b);
+  static Sum multiplied(Sum sum, const Factor& by);
   void merge_pairs(const Term& term, std::vector<Expression>& out) const;
   void rewrite_function(Op op, const Expression& argument, std::vector<Expression>& out) const;
   void rewrite_exp(const Expression& argument, std::vector<Expression>& out) const;
+  void rewrite_log(const Expression& argument, std::vector<Expression>& out) const;
   void rewrite_sqrt(const Expression& argument, std::vector<Expression>& out) const;
   void replace_small(Op op, const Expression& argument, std::vector<Expression>& out) const;
 

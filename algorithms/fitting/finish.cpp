@@ -5,13 +5,13 @@
 #include <bitset>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "algorithms/expression/edit.hpp"
 #include "algorithms/expression/simplify.hpp"
 #include "algorithms/expression/singularity.hpp"
+#include "algorithms/fitting/named_values.hpp"
 
 namespace tribench {
 namespace {
@@ -21,35 +21,13 @@ constexpr double kRounding = 1e-12;
 // Constants are named where the rows are explained to this part of the target's size: beyond it
 // noise says nothing about their last digits.
 constexpr double kWorthNaming = 1e-5;
-constexpr double kNearValue = 1e-3;  // of the value, for a constant to be tried there
+constexpr double kNearTogether = 1e-6;  // of the value
+constexpr double kNearNothing = 1e-9;
 
 std::bitset<kOpCount> operations_of(const Expression& formula) {
   std::bitset<kOpCount> used;
   for (const Node& node : formula.nodes()) used.set(static_cast<std::size_t>(node.op));
   return used;
-}
-
-// Numbers with a name near c, the simplest first.
-std::vector<double> named_values(double c) {
-  std::vector<double> values;
-  const auto consider = [&](double value) {
-    const bool is_near = std::abs(c - value) <= kNearValue * std::abs(value);
-    if (is_near && value != 0 && std::ranges::count(values, value) == 0) values.push_back(value);
-  };
-  constexpr int kDenominators[] = {1, 2, 3, 4, 5, 6, 8, 10, 12};
-  for (const int q : kDenominators) {
-    const double p = std::nearbyint(c * q);
-    if (std::abs(p) <= 1000) consider(p / q);
-  }
-  constexpr double kRoots[] = {std::numbers::pi,     std::numbers::sqrt2,      std::numbers::sqrt3,
-                               std::numbers::inv_pi, std::numbers::inv_sqrtpi, std::numbers::e};
-  for (const double root : kRoots) {
-    for (const int q : kDenominators) {
-      const double p = std::nearbyint(c / root * q);
-      if (std::abs(p) <= 12) consider(root * (p / q));
-    }
-  }
-  return values;
 }
 
 bool has_a_name(double c) {
@@ -109,7 +87,7 @@ bool FormulaFinisher::try_value(Expression& formula, std::size_t place, double v
   candidate.set_constant(place, value);
   // What the others would have to make good must be small, or every constant is fitted to no end.
   const double moved = errors_of(candidate).square;
-  if (!(moved <= kNearValue * kNearValue * target_square_)) return false;
+  if (!(moved <= kNearNamed * kNearNamed * target_square_)) return false;
   constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   std::vector<double> low;
   std::vector<double> high;
@@ -133,6 +111,26 @@ bool FormulaFinisher::try_value(Expression& formula, std::size_t place, double v
   return true;
 }
 
+// Where several constants are nearly named, one by one none can be moved: the others were fitted
+// beside it. Those that are nearly nothing first go with them, then stay.
+void FormulaFinisher::name_together(Expression& formula) {
+  for (const double nothing : {kNearNothing, 0.0}) {
+    Expression named = formula;
+    for (const std::size_t place : named.constant_positions()) {
+      const double c = named.node(place).value;
+      if (std::abs(c) < nothing && !is_exponent(named, place)) named.set_constant(place, 0);
+      for (const double value : named_values(c)) {
+        if (std::abs(c - value) > kNearTogether * std::abs(value)) continue;
+        named.set_constant(place, value);
+        break;
+      }
+    }
+    if (named == formula || !is_no_worse(errors_of(named), errors_of(formula))) continue;
+    formula = std::move(named);
+    return;
+  }
+}
+
 bool FormulaFinisher::name_a_constant(Expression& formula) {
   for (const std::size_t place : formula.constant_positions()) {
     const double c = formula.node(place).value;
@@ -151,9 +149,10 @@ Expression FormulaFinisher::finish(const Expression& formula) {
   Expression finished = shortest(formula);
   if (before.square > kWorthNaming * kWorthNaming * target_square_) return finished;
   Expression named = finished;
-  bool any = false;
-  while (name_a_constant(named)) any = true;
-  if (!any) return finished;
+  name_together(named);
+  while (name_a_constant(named)) {
+  }
+  if (named == finished) return finished;
   named = shortest(named);
   const bool is_as_safe = is_proved(named) || !is_proved(finished);
   return is_as_safe && is_no_worse(errors_of(named), before) ? named : finished;

@@ -2,7 +2,7 @@
 //
 // The last step of every formula that leaves a method: the shortest form of the same function
 // (expression/simplify.hpp), and constants that are a whole number, a small fraction, a multiple of
-// pi or a root, where the rows cannot tell them apart.
+// pi or a root, or a short decimal (named_values.hpp), where the rows cannot tell them apart.
 //
 // Guarantees: neither the mean squared nor the mean absolute error on the rows grows (beyond 1e-9
 // of itself, and beyond 1e-12 of the target's size, which is rounding); complexity does not grow;
@@ -41,6 +41,8 @@ class FormulaFinisher {
   bool is_no_worse(const RowErrors& errors, const RowErrors& than) const;
   bool is_proved(const Expression& formula) const;
   Expression shortest(const Expression& formula);
+  // Moves all constants that are close to a name at once, if the rows do not mind.
+  void name_together(Expression& formula);
   // Moves one constant to a number that has a name; false where none will do.
   bool name_a_constant(Expression& formula);
   bool try_value(Expression& formula, std::size_t place, double value);

@@ -10,6 +10,12 @@
 #include "algorithms/fitting/exact_choice.hpp"
 
 namespace tribench {
+namespace {
+
+// Of the target's size: a good approximation of a smooth law of one or two inputs leaves more.
+constexpr double kToRounding = 1e-11;
+
+}  // namespace
 
 JointFront::JointFront(const Inputs& inputs, std::span<const double> target)
     : inputs_(inputs), target_(target) {
@@ -59,8 +65,10 @@ void JointFront::add(std::span<const Expression> front, std::size_t chosen) {
     formulas_.push_back(std::move(member.formula));
   }
   const auto exact = simplest_exact(formulas_, inputs_, target_);
-  is_explained_ = exact.has_value();
-  if (exact) chosen_ = *exact;
+  is_explained_ = false;
+  if (!exact) return;
+  chosen_ = *exact;
+  is_explained_ = mean_square(formulas_[chosen_]) <= kToRounding * kToRounding * zero_loss_;
 }
 
 }  // namespace tribench

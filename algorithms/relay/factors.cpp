@@ -34,7 +34,14 @@ class List {
     add(FactorKind::other, constant(1) + power(x, 2), {j});
     add(FactorKind::other, function(Op::tanh, x), {j});
     add(FactorKind::other, function(Op::exp, x) - constant(1), {j});
-    add(FactorKind::other, function(Op::log, x), {j});
+    add(FactorKind::exponential, function(Op::exp, x), {j});
+  }
+  void add_slow(std::size_t j) {
+    add(FactorKind::root, function(Op::sqrt, input(j)), {j});
+    add(FactorKind::logarithm, function(Op::log, input(j)), {j});
+  }
+  void add_powers(std::size_t i, std::size_t j) {
+    add(FactorKind::power, Expression::binary(Op::pow, input(i), input(j)), {i, j});
   }
   void add_pair(std::size_t i, std::size_t j) {
     const Expression a = input(i);
@@ -71,7 +78,11 @@ std::vector<KnownFactor> known_factors(const LogRows& rows, const OperatorSet& o
     if (rows.is_of_order_one(j)) list.add_functions_of(j);
   }
 
+  for (std::size_t j = 0; j < n; ++j) list.add_slow(j);
   for (std::size_t i = 0; i < n && n <= kMostPaired; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      if (i != j && rows.is_of_order_one(j)) list.add_powers(i, j);
+    }
     for (std::size_t j = i + 1; j < n; ++j) {
       if (rows.are_alike(i, j)) list.add_pair(i, j);
     }

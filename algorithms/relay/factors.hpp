@@ -18,7 +18,11 @@ enum class FactorKind {
   wave,        // sine, cosine of an input or of a difference
   difference,  // of two inputs
   sum,
-  other,  // 1 + x, tanh x, ...
+  root,         // of a positive input
+  power,        // x^y
+  logarithm,    // of a positive input
+  exponential,  // of an input of order one
+  other,        // 1 + x, tanh x, ...
 };
 
 struct KnownFactor {

@@ -35,7 +35,7 @@ class FunctionSearch {
         form_(form),
         budget_(budget),
         x_(rows.inputs()[0].values),
-        z_(formed_target(rows, form)),
+        z_(formed_target(rows.target().values, form)),
         scale_(relative_scale(z_, form)),
         scaled_target_(z_) {
     for (std::size_t r = 0; r < z_.size(); ++r) scaled_target_[r] *= scale_[r];
@@ -136,6 +136,17 @@ class FunctionSearch {
     return scales;
   }
 
+  // c_0 + c_1 log(b + a x): b says nothing that c_0 does not.
+  static void set_inside_to_one(Expression& formed) {
+    const std::vector<std::size_t> places = formed.constant_positions();
+    const double c1 = formed.node(places[1]).value;
+    const double b = formed.node(places[2]).value;
+    if (!(b > 0)) return;
+    formed.set_constant(places[0], formed.node(places[0]).value + c1 * elementary::log(b));
+    formed.set_constant(places[2], 1);
+    formed.set_constant(places[3], formed.node(places[3]).value / b);
+  }
+
   std::optional<Expression> polished(Op op, double scale, double phase) const {
     const Expression argument = constant(scale) * input(0);
     Expression formed;
@@ -155,6 +166,7 @@ class FunctionSearch {
     const ConstantFitResult fit =
         ConstantFitter().fit(formed, {{&column, 1}, x_.size()}, z_, weights, options);
     budget_.spend(fit.node_rows);
+    if (op == Op::log) set_inside_to_one(formed);
     const double sign = rows_.target().values[0] < 0 ? -1.0 : 1.0;
     Expression formula = solved_for_target(form_, formed, sign);
     if (!explains(formula, rows_)) return std::nullopt;

@@ -32,10 +32,11 @@ struct Column {
 
 std::vector<Column> columns_of(const LogRows& rows, const OperatorSet& operators, int stage) {
   std::vector<Column> columns;
-  const auto factors = stage == 0 ? known_factors(rows, operators, {})
-                                  : known_factors(rows, operators,
-                                                  {FactorKind::wave, FactorKind::difference,
-                                                   FactorKind::sum, FactorKind::other});
+  const auto factors =
+      stage == 0 ? known_factors(rows, operators, {})
+                 : known_factors(rows, operators,
+                                 {FactorKind::wave, FactorKind::difference, FactorKind::sum,
+                                  FactorKind::power, FactorKind::logarithm, FactorKind::other});
   for (const KnownFactor& known : factors) {
     if (!known.factor.has_logs() || (stage == 1 && known.inputs.size() > 1)) continue;
     columns.push_back({known.factor.formula, known.factor.logs, false});

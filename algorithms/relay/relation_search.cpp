@@ -26,7 +26,9 @@ constexpr double kNoPart = 1e-10;    // of a row's target, that a term explains
 constexpr double kPromising = 1e-5;  // in the Gram matrix, whose rounding is larger
 constexpr std::size_t kMostTerms = 6;
 constexpr std::size_t kSums = 300;  // that are grown (subset_fits.hpp)
-constexpr int kMostDegree = 4;
+// Of a product, by the number of inputs: one, two, more.
+int most_degree(std::size_t inputs) { return inputs == 1 ? 14 : inputs == 2 ? 7 : 4; }
+constexpr std::size_t kFewInputs = 2;  // of which every kind of factor is tried, below the bar too
 
 // A column: a known factor that is no input, to the power 0, 1 or 2, and powers of the inputs.
 struct Product {
@@ -37,7 +39,7 @@ struct Product {
   std::optional<std::size_t> log_of = {};  // log |input|, where T is the logarithm
 
   int degree() const {
-    int sum = factor ? factor_power + 1 : 0;
+    int sum = factor ? std::abs(factor_power) + 1 : 0;
     for (const int a : exponents) sum += std::abs(a);
     return sum;
   }
@@ -74,19 +76,29 @@ std::optional<std::vector<std::size_t>> signs_of_target(const LogRows& rows) {
 class Search {
  public:
   Search(const LogRows& rows, const OperatorSet& operators, Columns columns, std::size_t most)
-      : rows_(rows),
-        operators_(operators),
-        signs_(signs_of_target(rows)),
-        most_steps_(300 * most * most) {
+      : rows_(rows), operators_(operators), signs_(signs_of_target(rows)) {
     if (columns == Columns::with_factors) {
       factors_ = known_factors(rows, operators, {FactorKind::wave, FactorKind::difference});
+      const std::size_t n = rows.inputs().size();
+      if (n == kFewInputs + 1) {
+        factors_ = known_factors(
+            rows, operators,
+            {FactorKind::wave, FactorKind::difference, FactorKind::power, FactorKind::logarithm});
+      } else if (n <= kFewInputs) {
+        factors_ = known_factors(
+            rows, operators,
+            {FactorKind::wave, FactorKind::difference, FactorKind::sum, FactorKind::root,
+             FactorKind::power, FactorKind::logarithm, FactorKind::exponential});
+      }
       std::erase_if(factors_,
                     [](const KnownFactor& known) { return known.kind == FactorKind::input; });
     }
     list_products(most);
+    const std::size_t count = std::min(most, products_.size());
+    most_steps_ = 300 * count * count;
   }
 
-  // `is_ratio`: with one multiple of the target on the right, for the plain form.
+  // `is_ratio`: with one multiple of T(y) on the right, for the plain form and the logarithm.
   std::optional<Expression> run(TargetForm form, bool is_ratio, Budget& budget) const;
 
  private:
@@ -105,13 +117,14 @@ class Search {
   std::vector<KnownFactor> factors_;
   std::optional<std::vector<std::size_t>> signs_;
   std::vector<Product> products_;
-  std::size_t most_steps_;  // of the search for a ratio: 0.1 s for 500 columns
+  std::size_t most_steps_ = 0;  // of the search for a ratio: 0.1 s for 500 columns
 };
 
 // By increasing degree.
 void Search::list_products(std::size_t most) {
   const std::size_t n = rows_.inputs().size();
-  std::vector<std::vector<std::vector<int>>> by_degree(kMostDegree + 1);
+  const int most_of_all = most_degree(n);
+  std::vector<std::vector<std::vector<int>>> by_degree(static_cast<std::size_t>(most_of_all) + 1);
   std::vector<int> exponents(n, 0);
   std::size_t count = 0;
   const auto extend = [&](auto&& self, std::size_t next, int degree, int left) -> void {
@@ -129,12 +142,12 @@ void Search::list_products(std::size_t most) {
     }
     exponents[next] = 0;
   };
-  for (int degree = 0; degree <= kMostDegree; ++degree) extend(extend, 0, degree, degree);
+  for (int degree = 0; degree <= most_of_all; ++degree) extend(extend, 0, degree, degree);
   for (std::size_t j = 0; j < n; ++j) {
     if (!rows_.inputs()[j].has_logs()) continue;
     products_.push_back({std::nullopt, 1, std::vector<int>(n, 0), false, j});
   }
-  for (int degree = 0; degree <= kMostDegree && products_.size() < most; ++degree) {
+  for (int degree = 0; degree <= most_of_all && products_.size() < most; ++degree) {
     for (const auto& powers : by_degree[static_cast<std::size_t>(degree)]) {
       products_.push_back({std::nullopt, 1, powers, false});
     }
@@ -144,13 +157,16 @@ void Search::list_products(std::size_t most) {
         if (products_.size() >= most) break;
         for (std::size_t f = 0; f < factors_.size(); ++f) {
           products_.push_back({f, rest - 1, powers, false});
+          if (n > kFewInputs || !factors_[f].factor.has_logs()) continue;
+          products_.push_back({f, 1 - rest, powers, false});
         }
       }
     }
   }
   if (products_.size() > most) products_.resize(most);
   // Multiples of the target come in hundreds only: each is tried with all pairs of the others.
-  for (std::size_t k = 0; k < products_.size() && products_.size() < most + most / 4; ++k) {
+  const std::size_t plain = products_.size();
+  for (std::size_t k = 0; k < plain && products_.size() < most + most / 4; ++k) {
     if (products_[k].log_of || products_[k].degree() < 1 || products_[k].degree() > 3) continue;
     products_.push_back(products_[k]);
     products_.back().is_beside = true;
@@ -187,16 +203,15 @@ struct Search::Regression {
 Search::Regression Search::regression(TargetForm form, bool is_ratio) const {
   Regression all;
   const std::size_t n = rows_.rows();
-  all.target = formed_target(rows_, form);
-  all.scale = relative_scale(all.target, form);
+  const std::vector<double> formed = formed_target(rows_.target().values, form);
+  all.target = formed;
+  all.scale = relative_scale(formed, form);
   for (std::size_t k = 0; k < products_.size(); ++k) {
     const Product& product = products_[k];
     if (product.is_beside && !is_ratio) continue;
-    if (product.log_of && form != TargetForm::logarithm) continue;
+    if (product.log_of && (form != TargetForm::logarithm || is_ratio)) continue;
     std::vector<double> values = values_of(product);
-    if (product.is_beside) {
-      columns::mul(values.data(), rows_.target().values.data(), values.data(), n);
-    }
+    if (product.is_beside) columns::mul(values.data(), formed.data(), values.data(), n);
     columns::mul(values.data(), all.scale.data(), values.data(), n);
     const double square = columns::dot(values.data(), values.data(), n);
     if (!std::isfinite(square) || square == 0) continue;
@@ -286,6 +301,8 @@ Expression Search::assembled(TargetForm form, const SparseSum& sum,
   std::vector<Expression> powers;
   std::vector<double> exponents;
   double log_constant = 0;
+  const bool is_ratio =
+      std::ranges::any_of(sum.terms, [&](std::size_t term) { return products_[term].is_beside; });
   for (std::size_t k = 0; k < sum.terms.size(); ++k) {
     const Product& product = products_[sum.terms[k]];
     if (product.log_of) {
@@ -295,7 +312,7 @@ Expression Search::assembled(TargetForm form, const SparseSum& sum,
       exponents.push_back(is_half ? nearest_half(power) : power);
       continue;
     }
-    if (form == TargetForm::logarithm && product.degree() == 0) {
+    if (form == TargetForm::logarithm && product.degree() == 0 && !is_ratio) {
       log_constant = coefficients[k];
       continue;
     }
@@ -303,7 +320,7 @@ Expression Search::assembled(TargetForm form, const SparseSum& sum,
     const double c = product.is_beside ? -coefficients[k] : coefficients[k];
     side = sum_of(side, formula_of(product, c, form));
   }
-  if (right.empty() && form != TargetForm::logarithm) right = constant(0);
+  if (right.empty() && (is_ratio || form != TargetForm::logarithm)) right = constant(0);
   if (!beside.empty()) right = right / (constant(1) + beside);
   if (keeps_sign(form)) return solved_for_target(form, right, 1);
   double sign = rows_.target().values[0] < 0 ? -1.0 : 1.0;
@@ -338,6 +355,7 @@ std::optional<Expression> find_relation(const LogRows& rows, const OperatorSet& 
   };
   for (const TargetForm form : kTargetForms) look(form, false);
   if (!shortest) look(TargetForm::plain, true);
+  if (!shortest && rows.inputs().size() <= kFewInputs) look(TargetForm::logarithm, true);
   return shortest;
 }
 

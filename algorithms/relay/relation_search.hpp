@@ -3,7 +3,7 @@
 // Laws that are a short sum of products of powers, of the target itself, of a power or the
 // logarithm of it, or a ratio of two such sums:
 //
-//   T(y) = sum_k c_k P_k(x)   or   y = sum_k c_k P_k(x) + d y Q(x),
+//   T(y) = sum_k c_k P_k(x)   or, for y and log y,   T(y) = sum_k c_k P_k(x) + d T(y) Q(x),
 //   P, Q = (cosine, difference, ...) prod x_i^a_i
 //
 // with T one of y, y^2, 1/y, 1/y^2, log y (there powers of the inputs as factors besides). All

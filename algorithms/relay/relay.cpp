@@ -21,6 +21,7 @@
 #include "algorithms/relay/index_fit.hpp"
 #include "algorithms/relay/log_rows.hpp"
 #include "algorithms/relay/product_search.hpp"
+#include "algorithms/relay/reduced_problem.hpp"
 #include "algorithms/relay/relation_search.hpp"
 
 namespace tribench {
@@ -28,19 +29,30 @@ namespace {
 
 using relay::Columns;
 using relay::LogRows;
+using relay::ReducedProblem;
+using relay::Reduction;
 
 // In the order in which they run: where time is short, the one that finds most alone comes first.
 constexpr std::array kMembers = {"pysr", "udsr", "parfam"};
 // Rows that the searches for structure look at.
 constexpr std::size_t kSearchedRows = 512;
 constexpr std::size_t kMostCollapses = 3;
-constexpr std::size_t kColumns = 500;  // of the search for relations, a round
-constexpr std::size_t kLongSum = 16;   // nodes
-constexpr std::size_t kOrders = 1500;  // of the search for fewer variables, a round
+constexpr std::size_t kColumns = 500;            // of the search for relations, a round
+constexpr std::size_t kLongSum = 16;             // nodes
+constexpr std::size_t kOrders = 1500;            // of the search for fewer variables, a round
+constexpr std::uint64_t kReduced = 500'000'000;  // node-rows for reductions, half a second
+constexpr std::size_t kShort = 14;     // nodes of an exact formula: another way is hardly shorter
+constexpr std::size_t kTried = 60;     // of reductions, most of them not true
+constexpr std::size_t kMoreWays = 5;   // that are looked at when one has explained the rows
+constexpr std::size_t kProblems = 16;  // in fewer variables that are looked at
+constexpr std::size_t kMostDepth = 3;  // of reductions
+constexpr std::size_t kFewInputs = 3;  // with which waves and differences are tried at once
 
 constexpr std::string_view kByProduct = "a product of powers";
 constexpr std::string_view kBySum = "a sum of products";
-constexpr std::string_view kByCollapse = "fewer variables";
+constexpr std::string_view kByReduction = "fewer variables";
+
+enum class Width { narrow, wide };  // wide: with factors (factors.hpp)
 
 // One fit: what it has found so far.
 class Run {
@@ -53,6 +65,9 @@ class Run {
 
   bool has_rows() const { return rows_.rows() > 0; }
   bool has_formula() const { return !joint_.formulas().empty(); }
+  bool is_short() const {
+    return has_formula() && joint_.formulas()[joint_.chosen()].size() <= kShort;
+  }
   bool is_done() const {
     return joint_.is_explained() || context_.budget.remaining() == 0 ||
            context_.budget.out_of_time() || context_.budget.exhausted();
@@ -77,9 +92,18 @@ class Run {
     const LogRows rows(rows_, kSearchedRows);
     if (rows.rows() == 0 || round > 3) return;
     Budget part = context_.budget.share(context_.budget.remaining() / 4);
-    const auto smooth = find_structure(rows, round, part);
+    auto simpler = find_structure(rows, round, part);
     context_.budget.settle(part);
-    if (smooth && !is_done()) search_collapsed(*smooth, solver);
+    if (auto reduced = reduce(round, relay::Guesses::no); reduced && !simpler) {
+      simpler = std::move(reduced);
+    }
+    if (simpler && !is_done()) search(*simpler, solver);
+  }
+
+  // The same where no slope says so, by trial: dear, and seldom needed.
+  void search_guesses(const Regressor& solver, int round) {
+    const auto simpler = reduce(round, relay::Guesses::yes);
+    if (simpler && !is_done()) search(*simpler, solver);
   }
 
   // Sums of products with waves and differences: many, and seldom what a law is.
@@ -121,17 +145,17 @@ class Run {
   }
 
  private:
-  // g as a problem of one input.
-  struct Reduced {
-    std::vector<double> argument;
-    std::vector<double> target;
-    Input input;
-  };
-  Reduced reduced(const relay::Collapse& collapse) const;
   // What is exact is offered; the return is a problem of fewer variables that was not solved.
-  std::optional<relay::Collapse> find_structure(const LogRows& rows, int round, Budget& budget);
-  void solve_collapsed(const relay::Collapse& collapse, Budget& budget);
-  void search_collapsed(const relay::Collapse& collapse, const Regressor& solver);
+  std::optional<ReducedProblem> find_structure(const LogRows& rows, int round, Budget& budget);
+  // The reduced problem with the fewest inputs that was not solved.
+  std::optional<ReducedProblem> reduce(int round, relay::Guesses guesses);
+  // What is exact is offered.
+  void solve(const ReducedProblem& problem, Width width, Budget& budget);
+  void search(const ReducedProblem& problem, const Regressor& solver);
+  ReducedProblem whole() const { return {context_.data.inputs, rows_}; }
+  ReducedProblem collapsed(const relay::Collapse& collapse) const {
+    return {whole(), Reduction{relay::TargetForm::plain, false, collapse.outer, {collapse.inner}}};
+  }
 
   FitContext& context_;
   FiniteRows rows_;
@@ -141,41 +165,7 @@ class Run {
   std::string explained_by_;
 };
 
-// outer * g(inner).
-Expression composed(const relay::Collapse& collapse, const Expression& g) {
-  std::vector<Node> nodes(collapse.outer.nodes().begin(), collapse.outer.nodes().end());
-  for (const Node& node : g.nodes()) {
-    if (node.is_variable()) {
-      const auto inner = collapse.inner.nodes();
-      nodes.insert(nodes.end(), inner.begin(), inner.end());
-    } else {
-      nodes.push_back(node);
-    }
-  }
-  nodes.push_back({0, 1, 0, Op::mul});
-  return Expression(std::move(nodes));
-}
-
-Run::Reduced Run::reduced(const relay::Collapse& collapse) const {
-  Reduced problem{std::vector<double>(rows_.rows()), std::vector<double>(rows_.rows()), {}};
-  Evaluator evaluator;
-  evaluator.evaluate(collapse.inner, rows_.table(), problem.argument);
-  evaluator.evaluate(collapse.outer, rows_.table(), problem.target);
-  for (std::size_t r = 0; r < rows_.rows(); ++r) {
-    problem.target[r] = rows_.target[r] / problem.target[r];
-    if (std::isfinite(problem.argument[r])) continue;
-    problem.target[r] = problem.argument[r];  // no row of the problem: FiniteRows leaves it out
-  }
-  problem.input.name = "p";
-  for (const double x : problem.argument) {
-    if (!std::isfinite(x)) continue;
-    problem.input.low = std::min(problem.input.low, x);
-    problem.input.high = std::max(problem.input.high, x);
-  }
-  return problem;
-}
-
-std::optional<relay::Collapse> Run::find_structure(const LogRows& rows, int round, Budget& budget) {
+std::optional<ReducedProblem> Run::find_structure(const LogRows& rows, int round, Budget& budget) {
   const std::size_t width = std::size_t{1} << round;
   const OperatorSet& operators = context_.operators;
   if (round == 0) {
@@ -192,40 +182,82 @@ std::optional<relay::Collapse> Run::find_structure(const LogRows& rows, int roun
   const auto collapses =
       relay::find_collapses(rows, operators, kOrders * width, kMostCollapses, budget);
   for (const relay::Collapse& collapse : collapses) {
-    solve_collapsed(collapse, budget);
+    solve(collapsed(collapse), Width::narrow, budget);
     if (is_done()) return std::nullopt;
   }
   if (collapses.empty() || !collapses[0].is_smooth) return std::nullopt;
-  return collapses[0];
+  return collapsed(collapses[0]);
 }
 
-// g among known functions and short sums.
-void Run::solve_collapsed(const relay::Collapse& collapse, Budget& budget) {
-  const Reduced problem = reduced(collapse);
-  const double* column = problem.argument.data();
-  const FiniteRows all({{&problem.input, 1}, {&column, 1}, problem.target, {}});
+// g among products, short sums and known functions.
+void Run::solve(const ReducedProblem& problem, Width width, Budget& budget) {
+  const FiniteRows all(problem.data());
   const LogRows rows(all, kSearchedRows);
   if (rows.rows() == 0) return;
+  const OperatorSet& operators = context_.operators;
   const auto try_g = [&](const std::optional<Expression>& g) {
-    if (g) offer(composed(collapse, *g), kByCollapse);
+    if (g) offer(problem.restored(*g), kByReduction);
   };
-  // Both: tanh x is close to x - x^3/3 where x is small, and the front's choice tells them apart.
-  try_g(relay::find_relation(rows, context_.operators, Columns::powers_alone, kColumns, budget));
-  try_g(relay::find_function(rows, context_.operators, budget));
+  try_g(relay::find_product(rows, operators, budget));
+  // All: the front's choice takes the shortest, and tells tanh x from x - x^3/3 where x is small.
+  try_g(relay::find_relation(rows, operators, Columns::powers_alone, kColumns, budget));
+  if (problem.inputs() == 1) try_g(relay::find_function(rows, operators, budget));
+  if (width == Width::narrow || problem.inputs() > kFewInputs || is_done()) return;
+  const std::size_t columns = problem.inputs() == 1 ? kColumns / 5 : 2 * kColumns;
+  try_g(relay::find_relation(rows, operators, Columns::with_factors, columns, budget));
 }
 
 // g by another method.
-void Run::search_collapsed(const relay::Collapse& collapse, const Regressor& solver) {
-  const Reduced problem = reduced(collapse);
-  const double* column = problem.argument.data();
-  const TrainingData data{{&problem.input, 1}, {&column, 1}, problem.target, {}};
+void Run::search(const ReducedProblem& problem, const Regressor& solver) {
+  const TrainingData data = problem.data();
   Budget part = context_.budget.share(context_.budget.remaining() / 4);
   FitContext turn{
-      data,   context_.operators, part, context_.random.split("collapsed"), context_.threads,
-      nullptr};
+      data, context_.operators, part, context_.random.split("reduced"), context_.threads, nullptr};
   const FitResult found = solver.fit(turn);
   context_.budget.settle(part);
-  for (const Expression& g : found.front) offer(composed(collapse, g), kByCollapse);
+  for (const Expression& g : found.front) offer(problem.restored(g), kByReduction);
+}
+
+// What slopes say before guesses, and of these the problem with the fewest inputs: it is looked at
+// next, and reduced further.
+std::optional<ReducedProblem> Run::reduce(int round, relay::Guesses guesses) {
+  const OperatorSet& operators = context_.operators;
+  const bool is_possible = operators.allows(Op::mul) && operators.allows(Op::div);
+  if ((is_done() && is_short()) || round > 0 || !is_possible || rows_.rows() == 0)
+    return std::nullopt;
+  const std::uint64_t most = guesses == relay::Guesses::yes ? 3 * kReduced : kReduced;
+  Budget budget = context_.budget.share(std::min(context_.budget.remaining() / 4, most));
+  std::vector<ReducedProblem> open;
+  open.push_back(whole());
+  std::vector<ReducedProblem> seen;
+  std::size_t tried = 0;
+  std::size_t after = 0;  // looked at since the rows were explained: there may be a shorter way
+  while (!open.empty() && seen.size() < kProblems && tried < kTried && after < kMoreWays &&
+         !budget.exhausted()) {
+    const auto next = std::ranges::min_element(open, {}, [](const ReducedProblem& problem) {
+      return std::pair(problem.is_guess(), problem.inputs());
+    });
+    ReducedProblem problem = std::move(*next);
+    open.erase(next);
+    const auto is_same = [&](const ReducedProblem& other) { return other.is_same_as(problem); };
+    if (std::ranges::any_of(seen, is_same)) continue;
+    ++tried;
+    const FiniteRows all(problem.data());
+    const LogRows rows(all, kSearchedRows);
+    relay::Reductions further = relay::find_reductions(rows, guesses, budget);
+    if (!(further.roughness <= problem.most_roughness())) continue;
+    problem.set_roughness(further.roughness);
+    if (problem.depth() > 0) solve(problem, Width::wide, budget);
+    for (Reduction& each : further.list) {
+      if (problem.depth() < kMostDepth) open.emplace_back(problem, std::move(each));
+    }
+    seen.push_back(std::move(problem));
+    if (is_done() && seen.back().depth() > 0) ++after;
+  }
+  context_.budget.settle(budget);
+  const auto fewest = std::ranges::min_element(seen, {}, &ReducedProblem::inputs);
+  if (fewest == seen.end() || fewest->depth() == 0) return std::nullopt;
+  return std::move(*fewest);
 }
 
 class Relay : public Regressor {
@@ -238,12 +270,17 @@ class Relay : public Regressor {
     Run run(context);
     if (!run.has_rows()) return FitResult::unsupported("no row has a finite target and inputs");
     run.search_structure(*solver_, round_);
+    if (run.is_done() && run.has_formula() && !run.is_short()) {
+      run.search_guesses(*solver_, round_);
+    }
     for (std::size_t k = 0; k < members_.size(); ++k) {
       // The first runs whatever is left; the others where there is something to spend, and to find.
       if (run.is_done() && run.has_formula()) break;
       run.run_member(members_[k].name, *members_[k].method,
                      run.remaining() / (members_.size() - k));
-      if (k == 0 && !run.is_done()) run.search_wide_sums(round_);
+      if (k > 0 || run.is_done()) continue;
+      run.search_wide_sums(round_);
+      run.search_guesses(*solver_, round_);
     }
     return std::move(run).result();
   }

@@ -22,10 +22,10 @@ double median_size(std::vector<double> values) {
 
 }  // namespace
 
-std::vector<double> formed_target(const LogRows& rows, TargetForm form) {
-  if (form == TargetForm::logarithm) return rows.target().logs;
-  std::vector<double> values = rows.target().values;
+std::vector<double> formed_target(std::span<const double> target, TargetForm form) {
+  std::vector<double> values(target.begin(), target.end());
   for (double& y : values) {
+    if (form == TargetForm::logarithm) y = elementary::log(std::abs(y));
     if (is_even_power(form)) y = y * y;
     if (form == TargetForm::inverse || form == TargetForm::inverse_square) y = 1 / y;
   }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "algorithms/expression/expression.hpp"
@@ -24,8 +25,8 @@ constexpr bool keeps_sign(TargetForm form) {
   return form == TargetForm::plain || form == TargetForm::inverse;
 }
 
-// T(y) on the rows.
-std::vector<double> formed_target(const LogRows& rows, TargetForm form);
+// T(y); the logarithm is of |y|.
+std::vector<double> formed_target(std::span<const double> target, TargetForm form);
 
 // y of what T(y) is; times `sign` where T does not keep it.
 Expression solved_for_target(TargetForm form, const Expression& formed, double sign);

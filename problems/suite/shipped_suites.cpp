@@ -10,6 +10,7 @@ std::string_view suite_korns();
 std::string_view suite_strogatz();
 std::string_view suite_feynman();
 std::string_view suite_fastsrb();
+std::string_view suite_handbook();
 std::string_view suite_first_principles();
 std::string_view suite_srbench_blackbox();
 }  // namespace embedded
@@ -25,6 +26,7 @@ const std::vector<ShippedSuite>& shipped_suites() {
       {"strogatz", embedded::suite_strogatz()},
       {"feynman", embedded::suite_feynman()},
       {"fastsrb", embedded::suite_fastsrb()},
+      {"handbook", embedded::suite_handbook()},
       {"first_principles", embedded::suite_first_principles()},
       {"srbench_blackbox", embedded::suite_srbench_blackbox()}};
   return kSuites;

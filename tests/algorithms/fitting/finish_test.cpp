@@ -83,6 +83,22 @@ TEST(Finish, NamesConstantsThatTheRowsCannotTellFromNumbersWithAName) {
   EXPECT_EQ(paper_complexity(Rows("3*v*g").finish("(3 + -1.2e-15*exp(-3*t))*v*g")), 4);
 }
 
+TEST(Finish, NamesTogetherWhatOneByOneCannotMove) {
+  EXPECT_EQ(paper_complexity(Rows("1/(exp(g*t - v) + 1)")
+                                 .finish("1/(0.9999999999978813*exp(-0.9999999999956087*v + "
+                                         "0.9999999999963511*g*t) + 0.9999999999980798) - "
+                                         "6.700637707334459e-13")),
+            paper_complexity(parse("1/(exp(g*t - v) + 1)", kNames)));
+  EXPECT_EQ(Rows("0.0231*v + g").text("0.02309999999999994*v + g"), "0.0231*v + g");
+}
+
+TEST(Finish, WritesPowersAsPowersAndClearsFractionsWithinFractions) {
+  EXPECT_EQ(Rows("v*g^(1/t)").text("v*exp(2*log(sqrt(g))/t)"), "v*g^(1/t)");
+  EXPECT_EQ(Rows("v^g").text("exp(log(v)*g)"), "v^g");
+  EXPECT_EQ(paper_complexity(Rows("v*(1 + g)/(t - g)").finish("v*(1/g + 1)/(t/g - 1)")),
+            paper_complexity(parse("v*(1 + g)/(t - g)", kNames)));
+}
+
 TEST(Finish, LeavesConstantsToTheRowsUnderNoise) {
   const Rows rows("2*v + g", 0.1);
   const Expression fitted = parse("2.0013*v + 0.9987*g", kNames);
