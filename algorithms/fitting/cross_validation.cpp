@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "algorithms/fitting/constant_fit.hpp"
 #include "foundation/random.hpp"
@@ -52,6 +53,17 @@ std::vector<int> folds_of(std::span<const int> movement, int folds) {
   for (const int unit : units) result.push_back(fold_of[unit]);
   return result;
 }
+
+}  // namespace
+
+std::vector<int> held_out_folds(std::span<const int> movement, std::size_t rows, int folds) {
+  if (!movement.empty()) return folds_of(movement, folds);
+  std::vector<int> own(rows);
+  std::iota(own.begin(), own.end(), 0);
+  return folds_of(own, folds);
+}
+
+namespace {
 
 // Per row: is it held out?
 using Marks = std::vector<char>;

@@ -36,6 +36,10 @@ struct CrossValidation {
 // that varies and is not a sign.
 bool reaches_beyond(const Inputs& inputs, const InputBox& box);
 
+// Which fold each row is held out with: movements (the stretches of a single one; rows where none
+// are named) are dealt out in a fixed random order.
+std::vector<int> held_out_folds(std::span<const int> movement, std::size_t rows, int folds);
+
 // formulas: by increasing complexity, at least one. All values finite; movement[r] names the
 // movement of row r. Chosen is the simplest formula whose held-out error exceeds the smallest by
 // less than one standard error of the paired difference (two where it reaches beyond), and is

@@ -6,10 +6,15 @@
 #include <vector>
 
 #include "algorithms/fitting/cross_validation.hpp"
+#include "algorithms/fitting/evidence.hpp"
+#include "algorithms/fitting/linear_sum.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 namespace {
 
+constexpr int kFolds = 10;
+constexpr std::size_t kFewestRows = 12;
 constexpr double kPlainly = 2;  // times the smallest held-out error
 
 double variance_of(std::span<const double> target) {
@@ -19,6 +24,15 @@ double variance_of(std::span<const double> target) {
   double square = 0;
   for (const double y : target) square += (y - mean) * (y - mean) / n;
   return square;
+}
+
+// How much smaller an error is because a search chose the form for it: the evidence's price of a
+// node, and for each input written the choice among all of them, in nats.
+double optimism(const Expression& formula, const Inputs& inputs) {
+  double nats = kNodePrice * static_cast<double>(formula.size());
+  const double choice = elementary::log(static_cast<double>(inputs.columns.size()));
+  for (const Node& node : formula.nodes()) nats += node.is_variable() ? choice : 0;
+  return elementary::exp(2 * nats / static_cast<double>(inputs.rows));
 }
 
 }  // namespace
@@ -39,6 +53,17 @@ std::size_t held_out_choice(std::span<const Expression> front, std::size_t chose
   const double least = std::ranges::min(validation.mean_square);
   const bool stands = own <= kPlainly * least && own <= variance_of(target);
   return stands ? chosen : validation.chosen;
+}
+
+std::optional<Expression> plain_sum_instead(const Expression& chosen, const Inputs& inputs,
+                                            std::span<const double> target,
+                                            std::span<const int> movement) {
+  if (target.size() > kFewRows || target.size() < kFewestRows) return std::nullopt;
+  const std::vector<int> fold = held_out_folds(movement, target.size(), kFolds);
+  const double own = cross_validate({&chosen, 1}, inputs, target, fold, {}, kFolds).mean_square[0];
+  const LinearSum sum = fit_linear_sum(inputs, target, movement);
+  if (own * optimism(chosen, inputs) <= sum.held_out) return std::nullopt;
+  return sum.formula;
 }
 
 }  // namespace tribench

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "algorithms/expression/evaluate.hpp"
@@ -27,5 +28,13 @@ inline constexpr std::size_t kFewRows = 400;
 std::size_t held_out_choice(std::span<const Expression> front, std::size_t chosen,
                             const Inputs& inputs, std::span<const double> target,
                             std::span<const int> movement);
+
+// A sum of few inputs, or the mean, where it stands better than `chosen` on rows held out from
+// both (linear_sum.hpp): what the form of `chosen` gained by being searched on all rows is charged
+// as the evidence charges nodes, and by the number of inputs that each of its leaves could be. None
+// where `chosen` stands, on more than kFewRows rows and on fewer than 12. Cost: some ms.
+std::optional<Expression> plain_sum_instead(const Expression& chosen, const Inputs& inputs,
+                                            std::span<const double> target,
+                                            std::span<const int> movement);
 
 }  // namespace tribench

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "algorithms/expression/text.hpp"
+#include "algorithms/fitting/linear_sum.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench {
@@ -52,6 +53,55 @@ TEST(HeldOutChoice, LeavesAChoiceThatIsHardlyWorse) {
 TEST(HeldOutChoice, LeavesManyRowsToTheMethods) {
   EXPECT_EQ(Rows(401).choice_of({"0.5", "2*v"}, 0), 0U);
   EXPECT_EQ(Rows(400).choice_of({"0.5", "2*v"}, 0), 1U);
+}
+
+TEST(PlainSumInstead, TakesThePlaceOfWhatASearchFoundInFewNoisyRows) {
+  const Rows rows(30, 1.0);
+  const Inputs table{{&rows.column, 1}, rows.v.size()};
+  const auto sum = plain_sum_instead(parse(kWild, kNames), table, rows.target, {});
+  ASSERT_TRUE(sum);
+  EXPECT_EQ(sum->columns_used(), 1U) << print(*sum, kNames);
+  const std::vector<double> noise = [] {
+    std::vector<double> values;
+    RandomStream random(3);
+    for (int r = 0; r < 30; ++r) values.push_back(random.normal());
+    return values;
+  }();
+  const Expression wave = parse("3*sin(9*v)", kNames);
+  const auto plain = plain_sum_instead(wave, table, noise, {});
+  ASSERT_TRUE(plain);
+  const std::vector<double> none(30, 0.0);
+  EXPECT_LT(Evaluator().sum_squared_errors(*plain, table, none).sum, 10)
+      << print(*plain, kNames) << " of noise";
+}
+
+TEST(PlainSumInstead, LeavesAFormThatTheRowsSpeakForAndManyRows) {
+  Rows rows(60, 0.05);
+  for (std::size_t r = 0; r < rows.v.size(); ++r) rows.target[r] += 3 * rows.v[r] * rows.v[r];
+  const Inputs table{{&rows.column, 1}, rows.v.size()};
+  EXPECT_FALSE(plain_sum_instead(parse("2*v + 3*v^2", kNames), table, rows.target, {}));
+  const Rows many(401);
+  EXPECT_FALSE(
+      plain_sum_instead(parse("3*sin(9*v)", kNames), {{&many.column, 1}, 401}, many.target, {}));
+}
+
+// As solving the normal equations says, and with as many inputs as there are.
+TEST(LinearSum, IsTheLeastSquaresLineOfTheInputsThatSaySomething) {
+  RandomStream random(11);
+  std::vector<std::vector<double>> columns(6);
+  std::vector<const double*> pointers;
+  std::vector<double> target;
+  for (int r = 0; r < 80; ++r) {
+    for (auto& column : columns) column.push_back(random.normal());
+    columns[1].back() += columns[0].back();
+    target.push_back(1 + 2 * columns[1].back() - 3 * columns[4].back() + 0.5 * columns[0].back() +
+                     1e-9 * random.normal());
+  }
+  for (const auto& column : columns) pointers.push_back(column.data());
+  const Inputs table{pointers, target.size()};
+  const LinearSum sum = fit_linear_sum(table, target, {});
+  EXPECT_LT(sum.held_out, 1e-16);
+  EXPECT_LT(Evaluator().sum_squared_errors(sum.formula, table, target).sum, 1e-15);
 }
 
 }  // namespace
