@@ -73,82 +73,6 @@ std::vector<char> rows_of(const Observations& data, const std::vector<int>& test
   return keep;
 }
 
-Verdict verdict_of(const Diagnosis& diagnosis, bool leftover_tested) {
-  if (!diagnosis.leftover.inputs.empty()) return Verdict::unknown;
-  if (!diagnosis.effects.empty()) return Verdict::effects;
-  const bool tested = leftover_tested || !diagnosis.candidates.empty();
-  return tested ? Verdict::none : Verdict::cannot_tell;
-}
-
-// What would make the data tell.
-std::vector<std::string> needed_to_tell(const Diagnosis& diagnosis) {
-  std::vector<std::string> needed;
-  needed.push_back(fmt::format(
-      "{} stretches of movement that say something of their own: here are {}, since the residual "
-      "keeps its sign for {:.0f} rows; record {} times as much",
-      kFewestClusters, diagnosis.stretches, diagnosis.correlation_rows,
-      (2 * kFewestClusters - 1) / std::max<std::size_t>(1, diagnosis.stretches)));
-  needed.emplace_back(
-      "the rigid body, where the torque holds it: declare gravity or the computed torque "
-      "(--roles COLUMN=gravity_torque), or name what is to be fitted (--rigid)");
-  return needed;
-}
-
-// The role names of what the family's columns in the model are functions of, signs left out.
-std::vector<std::string> inputs_of(const LoopModel& model,
-                                   const std::vector<EffectFamily>& families,
-                                   const EffectFamily& family, const Observations& data) {
-  std::vector<std::string> names;
-  for (const Atom& atom : model.atoms) {
-    if (&families[atom.family] != &family) continue;
-    for (const Expression& column : atom.columns) {
-      for (const Node& node : column.nodes()) {
-        if (!node.is_variable()) continue;
-        const Signal& signal = data.signals[node.variable];
-        const std::string name = input_name(data, signal.name);
-        const bool sign = signal.role == Role::velocity_sign || signal.role == Role::gravity_sign;
-        if (!sign && std::ranges::count(names, name) == 0) names.push_back(name);
-      }
-    }
-  }
-  return names;
-}
-
-// A finding that is not physical is no finding: the verdict becomes UNKNOWN in its inputs.
-void apply_vetoes(Diagnosis& diagnosis, const Observations& train) {
-  for (std::size_t k = 0; k < diagnosis.effects.size(); ++k) {
-    EffectFinding& finding = diagnosis.effects[k];
-    const auto family = std::ranges::find(diagnosis.families, finding.family, &EffectFamily::name);
-    const std::string objection = physical_objection(finding, *family);
-    if (objection.empty()) continue;
-    finding.provisional = true;
-    finding.objection = objection;
-    diagnosis.notes.push_back(
-        fmt::format("'{}' fits but is not physical ({}): something else is missing", finding.family,
-                    objection));
-    if (!diagnosis.leftover.inputs.empty()) continue;
-    const std::vector<std::string> names =
-        inputs_of(diagnosis.after, diagnosis.families, *family, train);
-    diagnosis.leftover.inputs = names.empty() ? std::vector<std::string>{"velocity"} : names;
-  }
-}
-
-void mark_provisional(Diagnosis& diagnosis, const Observations& train) {
-  if (diagnosis.leftover.signals.empty()) return;
-  for (EffectFinding& finding : diagnosis.effects) {
-    for (const Atom& atom : diagnosis.after.atoms) {
-      if (diagnosis.families[atom.family].name != finding.family) continue;
-      for (const Expression& column : atom.columns) {
-        for (const Node& node : column.nodes()) {
-          if (!node.is_variable()) continue;
-          const std::string& name = train.signals[node.variable].name;
-          if (std::ranges::count(diagnosis.leftover.signals, name) > 0) finding.provisional = true;
-        }
-      }
-    }
-  }
-}
-
 void check_enough(const Observations& train, const BaseModel& base) {
   if (train.rows() == 0) {
     throw_bad_input(fmt::format("no movement has the {} rows it takes to tell noise from effects",
@@ -230,26 +154,12 @@ Diagnosis diagnose_training(const Observations& data, const std::vector<int>& te
   out.correlation_rows = correlation_time(train_rich, uncut.movements);
   Clusters clusters = make_clusters(train.movement, out.correlation_rows);
   if (options.has("weights")) clusters.weight = movement_weights(train_rich, clusters);
-  Search search(train, base, out.families, options, clusters, random.split("search"));
-  search.run();
   out.rows = train.rows();
   out.stretches = clusters.stretches.size();
   out.movements = clusters.movements.size();
-  out.noise = search.current().noise;
-  out.before = search.base().model;
-  out.after = search.current().model;
-  out.effects = effect_findings(search, train, out.families);
-  out.leftover = search.leftover;
-  out.leftover.curve = leftover_curve(search, train);
-  out.untestable = search.untestable;
-  out.aliased = search.aliased;
-  out.alias_map = search.alias_map;
-  out.candidates = search.candidates;
-  out.notes = search.notes;
-  mark_provisional(out, train);
-  if (options.physical_vetoes) apply_vetoes(out, train);
-  out.verdict = verdict_of(out, search.leftover_tested);
-  if (out.verdict == Verdict::cannot_tell) out.needed = needed_to_tell(out);
+  const RandomStream own = random.split("search");
+  const Campaign campaign(train, out.families, options, clusters, own.split("flips"));
+  write_findings(out, search(base, campaign, own), campaign);
   return out;
 }
 

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "algorithms/diagnosis/plausibility.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/loop_model/smoothers.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -92,97 +95,159 @@ void add_parameters(EffectFinding& finding, const FittedModel& fit, const Covari
   }
 }
 
-}  // namespace
-
-std::vector<EffectFinding> effect_findings(const Search& search, const Observations& train,
-                                           const std::vector<EffectFamily>& families) {
-  const FittedModel& fit = search.current();
-  const Covariance covariance = covariance_of(fit, search.clusters());
-  std::vector<EffectFinding> all;
-  int order = 0;
-  for (const Search::Found& one : search.found) {
-    const EffectFamily& family = families[one.family];
-    EffectFinding finding;
-    finding.family = family.name;
-    finding.phrase = family.phrase;
-    finding.order = ++order;
-    finding.adjusted_p = one.p;
-    finding.gain = one.gain.nats;
-    finding.gain_error = one.gain.error;
-    finding.aliases = one.aliases;
-    finding.few_movements = one.few;
-    finding.separate_by = family.separate_by;
-    Eigen::VectorXd contribution = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(train.rows()));
-    for (std::size_t k = 0; k < fit.model.atoms.size(); ++k) {
-      const Atom& atom = fit.model.atoms[k];
-      if (atom.family != one.family) continue;
-      finding.atom += (finding.atom.empty() ? "" : ", ") + atom.label;
-      contribution +=
-          evaluate_columns(atom.columns, train) *
-          fit.model.coefficients.segment(static_cast<Eigen::Index>(fit.model.first_column(k)),
-                                         static_cast<Eigen::Index>(atom.columns.size()));
-      add_parameters(finding, fit, covariance, k);
-    }
-    finding.rms_contribution = contribution.norm() / std::sqrt(static_cast<double>(train.rows()));
-    if (finding.vif > kLargeVif) {
-      finding.notes.push_back("its parameters trade off against others': quote them together only");
-    }
-    finding.another_shape = one.another_shape;
-    if (one.another_shape) {
-      finding.notes.push_back(
-          "of another shape than the library has: what is left over follows its own inputs");
-    }
-    if (finding.few_movements) {
-      finding.notes.push_back("carried by few movements: record more of them (R5, R7)");
-    }
-    all.push_back(std::move(finding));
+std::vector<std::string> notes_of(const EffectFinding& finding) {
+  std::vector<std::string> notes;
+  if (finding.vif > kLargeVif) {
+    notes.emplace_back("its parameters trade off against others': quote them together only");
   }
-  return all;
+  if (finding.another_shape) {
+    notes.emplace_back(
+        "of another shape than the library has: what is left over follows its own inputs");
+  }
+  if (finding.few_movements) {
+    notes.emplace_back("carried by few movements: record more of them (R5, R7)");
+  }
+  return notes;
 }
 
-std::string physical_objection(const EffectFinding& finding, const EffectFamily& family) {
-  for (const Sanity& sanity : family.sanity) {
-    for (const ParameterFinding& p : finding.parameters) {
-      if (p.name != sanity.coefficient) continue;
-      // Against the whole interval: a value that is only perhaps unphysical stands.
-      const bool wrong_sign =
-          sanity.sign != 0 && sanity.sign * p.low < 0 && sanity.sign * p.high < 0;
-      const bool too_large = sanity.largest > 0 &&
-                             std::min(std::abs(p.low), std::abs(p.high)) > sanity.largest &&
-                             p.low * p.high > 0;
-      if (wrong_sign || too_large) return sanity.why;
-    }
+EffectFinding effect_finding(const Found& found, const FittedModel& fit,
+                             const Covariance& covariance, const Campaign& campaign) {
+  const EffectFamily& family = campaign.families[found.family];
+  EffectFinding finding;
+  finding.family = family.name;
+  finding.phrase = family.phrase;
+  finding.adjusted_p = found.p;
+  finding.gain = found.gain.nats;
+  finding.gain_error = found.gain.error;
+  finding.aliases = found.aliases;
+  finding.few_movements = found.few;
+  finding.another_shape = found.another_shape;
+  finding.separate_by = family.separate_by;
+  for (std::size_t k = 0; k < fit.model.atoms.size(); ++k) {
+    const Atom& atom = fit.model.atoms[k];
+    if (atom.family != found.family) continue;
+    finding.atom += (finding.atom.empty() ? "" : ", ") + atom.label;
+    add_parameters(finding, fit, covariance, k);
   }
-  return {};
+  finding.rms_contribution = contribution(fit.model, found.family, campaign.data).norm() /
+                             std::sqrt(static_cast<double>(campaign.data.rows()));
+  for (std::string& note : notes_of(finding)) finding.notes.push_back(std::move(note));
+  return finding;
 }
 
-std::vector<CurvePoint> leftover_curve(const Search& search, const Observations& train) {
-  constexpr int kBins = 40;
-  if (search.leftover.signals.size() != 1) return {};
-  const Signal* signal = train.find(search.leftover.signals[0]);
-  const Eigen::VectorXd residual = target_vector(train) - predict(search.current().model, train);
+// The residual over the leftover's one input: means of bins with their standard errors.
+std::vector<CurvePoint> leftover_curve(const SearchResult& result, const Observations& train) {
+  constexpr std::size_t kBins = 40;
+  if (result.leftover.signals.size() != 1) return {};
+  const Signal* signal = train.find(result.leftover.signals[0]);
+  const Eigen::VectorXd& residual = result.state.model.raw_residual;
   const auto [low, high] = std::ranges::minmax(signal->values);
-  std::vector<double> sum(kBins, 0.0);
-  std::vector<double> squares(kBins, 0.0);
-  std::vector<double> count(kBins, 0.0);
+  struct Bin {
+    double sum = 0;
+    double squares = 0;
+    double count = 0;
+  };
+  std::array<Bin, kBins> bins{};
   for (std::size_t i = 0; i < train.rows(); ++i) {
     const double place = (signal->values[i] - low) / (high - low) * kBins;
-    const auto bin = static_cast<std::size_t>(std::clamp(place, 0.0, kBins - 1.0));
+    Bin& bin = bins[static_cast<std::size_t>(std::clamp(place, 0.0, kBins - 1.0))];
     const double r = residual[static_cast<Eigen::Index>(i)];
-    sum[bin] += r;
-    squares[bin] += r * r;
-    count[bin] += 1;
+    bin.sum += r;
+    bin.squares += r * r;
+    bin.count += 1;
   }
   std::vector<CurvePoint> curve;
-  const double inflation = search.current().noise.inflation;
+  const double inflation = result.state.model.noise.inflation;
   for (std::size_t b = 0; b < kBins; ++b) {
-    if (count[b] < 2) continue;
-    const double mean = sum[b] / count[b];
-    const double variance = std::max(0.0, squares[b] / count[b] - mean * mean);
+    const Bin& bin = bins[b];
+    if (bin.count < 2) continue;
+    const double mean = bin.sum / bin.count;
+    const double variance = std::max(0.0, bin.squares / bin.count - mean * mean);
     curve.push_back({low + (high - low) * (static_cast<double>(b) + 0.5) / kBins, mean,
-                     std::sqrt(variance * std::min(inflation, count[b]) / count[b])});
+                     std::sqrt(variance * std::min(inflation, bin.count) / bin.count)});
   }
   return curve;
+}
+
+// The role names of what a family reads, signs left out.
+std::vector<std::string> inputs_of(std::size_t family, const LoopModel& model,
+                                   const Observations& data) {
+  std::vector<std::string> names;
+  for (const Signal* signal : signals_read(model, family, data)) {
+    const bool sign = signal->role == Role::velocity_sign || signal->role == Role::gravity_sign;
+    const std::string name = input_name(data, signal->name);
+    if (!sign && std::ranges::count(names, name) == 0) names.push_back(name);
+  }
+  return names;
+}
+
+// What reads a signal in which something else is left over may be a part of that.
+bool shares_a_signal(std::size_t family, const LoopModel& model, const LeftoverFinding& leftover,
+                     const Observations& data) {
+  return std::ranges::any_of(signals_read(model, family, data), [&](const Signal* signal) {
+    return std::ranges::count(leftover.signals, signal->name) > 0;
+  });
+}
+
+// A finding that is not physical is no finding: the verdict becomes UNKNOWN in its inputs.
+void veto(Diagnosis& out, EffectFinding& finding, std::size_t family, const Campaign& campaign) {
+  finding.objection = physical_objection(finding, campaign.families[family]);
+  if (finding.objection.empty()) return;
+  finding.provisional = true;
+  out.notes.push_back(fmt::format("'{}' fits but is not physical ({}): something else is missing",
+                                  finding.family, finding.objection));
+  if (!out.leftover.inputs.empty()) return;
+  out.leftover.inputs = inputs_of(family, out.after, campaign.data);
+  if (out.leftover.inputs.empty()) out.leftover.inputs = {"velocity"};
+}
+
+Verdict verdict_of(const Diagnosis& diagnosis, bool leftover_tested) {
+  if (!diagnosis.leftover.inputs.empty()) return Verdict::unknown;
+  if (!diagnosis.effects.empty()) return Verdict::effects;
+  const bool tested = leftover_tested || !diagnosis.candidates.empty();
+  return tested ? Verdict::none : Verdict::cannot_tell;
+}
+
+// What would make the data tell.
+std::vector<std::string> needed_to_tell(const Diagnosis& diagnosis) {
+  std::vector<std::string> needed;
+  needed.push_back(fmt::format(
+      "{} stretches of movement that say something of their own: here are {}, since the residual "
+      "keeps its sign for {:.0f} rows; record {} times as much",
+      kFewestClusters, diagnosis.stretches, diagnosis.correlation_rows,
+      (2 * kFewestClusters - 1) / std::max<std::size_t>(1, diagnosis.stretches)));
+  needed.emplace_back(
+      "the rigid body, where the torque holds it: declare gravity or the computed torque "
+      "(--roles COLUMN=gravity_torque), or name what is to be fitted (--rigid)");
+  return needed;
+}
+
+}  // namespace
+
+void write_findings(Diagnosis& out, const SearchResult& result, const Campaign& campaign) {
+  const SearchState& state = result.state;
+  out.noise = state.model.noise;
+  out.before = result.base.model;
+  out.after = state.model.model;
+  out.leftover = result.leftover;
+  out.leftover.curve = leftover_curve(result, campaign.data);
+  out.untestable = result.first.untestable;
+  out.aliased = result.first.coinciding;
+  out.alias_map = result.first.alias_map;
+  out.candidates = result.first.candidates;
+  out.notes = state.notes;
+  const Covariance covariance = covariance_of(state.model, campaign.clusters);
+  for (const Found& one : state.found) {
+    EffectFinding& finding =
+        out.effects.emplace_back(effect_finding(one, state.model, covariance, campaign));
+    finding.order = static_cast<int>(out.effects.size());
+    finding.provisional = shares_a_signal(one.family, out.after, out.leftover, campaign.data);
+  }
+  for (std::size_t k = 0; k < state.found.size() && campaign.options.physical_vetoes; ++k) {
+    veto(out, out.effects[k], state.found[k].family, campaign);
+  }
+  out.verdict = verdict_of(out, result.leftover_tested);
+  if (out.verdict == Verdict::cannot_tell) out.needed = needed_to_tell(out);
 }
 
 }  // namespace tribench::loop

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-//
-// What is left over that no family explains, where it lives, and which of the families found only
-// stood in for it.
+#include "algorithms/diagnosis/leftover.hpp"
+
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
-#include "algorithms/diagnosis/search.hpp"
+#include "algorithms/diagnosis/worth.hpp"
 #include "algorithms/inference/feature_scores.hpp"
+#include "algorithms/loop_model/smoothers.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -19,213 +19,212 @@ constexpr double kSmootherRidge = 0.02;  // of the mean diagonal (specification,
 // Of what an effect adds: what adds less in the same inputs is its shape.
 constexpr double kShapeShare = 0.1;
 
-}  // namespace
-
-// An effect that lives in one input of a pair, times the other: what there is where the effect's
-// size varies with that other input. Far sharper than a smoother in the pair.
-std::vector<Search::Modifier> Search::modifiers() const {
-  std::vector<Modifier> all;
-  for (const Found& one : found) {
-    std::set<std::string> lives_in;
-    std::vector<Expression> formulas;
-    for (const Atom& atom : current_.model.atoms) {
-      if (atom.family != one.family) continue;
-      formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
-      for (const Expression& column : atom.columns) {
-        for (const Node& node : column.nodes()) {
-          if (!node.is_variable()) continue;
-          const Signal& signal = data_.signals[node.variable];
-          if (signal.role != Role::velocity_sign) lives_in.insert(signal.name);
-        }
-      }
-    }
-    if (lives_in.size() != 1) continue;
-    for (const SignalPair& pair : smoothed_pairs()) {
-      const bool first = *lives_in.begin() == pair[0];
-      if (!first && *lives_in.begin() != pair[1]) continue;
-      const std::string_view name = pair[first ? 1 : 0];
-      const Eigen::VectorXd other = unit_signal(data_, name);
-      if (other.size() == 0) continue;
-      all.push_back({one.family,
-                     {std::string(pair[0]), std::string(pair[1])},
-                     other.asDiagonal() * evaluate_columns(formulas, data_)});
-    }
+// Somewhere to look: a smooth function of one or two signals, or a found effect times another
+// signal: what there is where the effect's size varies with it, far sharper than a smoother in
+// both.
+struct Place {
+  std::vector<std::string> signals;
+  const Smoother* smoother = nullptr;  // or a product
+  Eigen::MatrixXd columns;             // of a product
+  double ridge() const { return smoother != nullptr ? kSmootherRidge : 0; }
+  bool is_product() const { return smoother == nullptr || signals.size() > 1; }
+  Eigen::MatrixXd features(const Observations& data) const {
+    return smoother != nullptr ? with_direction(*smoother, data) : columns;
   }
-  return all;
-}
+};
 
-BlockScores Search::score_modifier(const Modifier& modifier) const {
-  const Eigen::MatrixXd z = whitened(modifier.columns, clusters_, current_.noise);
-  BlockScores block = score_block(z, current_.basis, current_.residual, clusters_);
-  if (block.test.carrying < kFewestClusters) block.test.testable = false;
-  return block;
-}
-
-// The signals that the family's columns in the model are functions of, signs left out. What has a
-// memory of the motion is a function of all of it: near a reversal the path since, the speed and
-// the acceleration tell the same.
-std::vector<std::string> Search::inputs_of(std::size_t family) const {
+// The signals that a family's columns are functions of, signs left out. What has a memory of the
+// motion is a function of all of it: near a reversal the path since, the speed and the acceleration
+// tell the same.
+std::vector<std::string> inputs_of(std::size_t family, const LoopModel& model,
+                                   const Observations& data) {
   std::set<std::string> names;
-  for (const Atom& atom : current_.model.atoms) {
-    if (atom.family != family) continue;
-    for (const Expression& column : atom.columns) {
-      for (const Node& node : column.nodes()) {
-        if (!node.is_variable()) continue;
-        const Signal& signal = data_.signals[node.variable];
-        for (const char* name : {"v", "a", "d"}) {
-          if (signal.has_memory() && data_.find(name) != nullptr) names.insert(name);
-        }
-        if (!signal.name.starts_with("sgn_")) names.insert(signal.name);
-      }
+  for (const Signal* signal : signals_read(model, family, data)) {
+    for (const char* name : {"v", "a", "d"}) {
+      if (signal->has_memory() && data.find(name) != nullptr) names.insert(name);
     }
+    if (!signal->name.starts_with("sgn_")) names.insert(signal->name);
   }
   return {names.begin(), names.end()};
 }
 
-// What the present model predicts better than without these families.
-Gain Search::gain_of(const std::vector<std::size_t>& families) const {
-  LoopModel without = current_.model;
-  for (const std::size_t family : families) remove_family(without, family);
-  const Gain lead = lead_over_current(fit(std::move(without), FitScope::linear));
-  return {-lead.nats, lead.error};
-}
+class LeftoverSearch {
+ public:
+  LeftoverSearch(SearchResult& result, const Campaign& campaign, RandomStream random)
+      : result_(result), campaign_(campaign), smoothers_(make_smoothers(campaign.data, random)) {}
 
-// The effect found before the one at `end` that has all of these inputs, the first of them; none
-// where all that have them add no more than `nats` together: which of them would be at home there
-// matters less than what lives there at all.
-Search::Found* Search::home_of(const std::vector<std::string>& inputs, std::size_t end,
-                               double nats) {
-  Found* home = nullptr;
-  std::vector<std::size_t> families;
-  for (std::size_t k = 0; k < end; ++k) {
-    if (!std::ranges::includes(inputs_of(found[k].family), inputs)) continue;
-    if (home == nullptr) home = &found[k];
-    families.push_back(found[k].family);
+  void test_residual();
+  void name_shapes();
+
+ private:
+  std::vector<Place> places() const;
+  std::vector<Place> products_of(std::size_t family) const;
+  BlockScores score_product(const Eigen::MatrixXd& columns) const;
+  void locate(const std::vector<Place>& places, const std::vector<BlockScores>& blocks,
+              const std::vector<double>& maxima);
+  void drop_proxies(const Smoother& smoother);
+  bool drop_if_superfluous(const Smoother& smoother, std::size_t family, bool excused,
+                           LoopModel& model);
+  bool explains_more_than_is_left(const FittedModel& rest) const;
+  bool remembers(std::size_t family) const;
+  Found* home_of(const std::vector<std::string>& inputs, std::size_t end, double nats);
+
+  SearchState& state() { return result_.state; }
+  const FittedModel& model() const { return result_.state.model; }
+
+  SearchResult& result_;
+  const Campaign& campaign_;
+  std::vector<Smoother> smoothers_;
+  // With all that was found, before the proxies of what it leaves over were dropped.
+  struct WholeModel {
+    FittedModel fit;
+    double leftover_nats;
+  };
+  std::optional<WholeModel> whole_;
+  double nats_ = 0;  // what the best place adds
+};
+
+std::vector<Place> LeftoverSearch::products_of(std::size_t family) const {
+  std::set<std::string> lives_in;
+  for (const Signal* signal : signals_read(model().model, family, campaign_.data)) {
+    if (signal->role != Role::velocity_sign) lives_in.insert(signal->name);
   }
-  return home != nullptr && gain_of(families).nats > nats ? home : nullptr;
-}
-
-bool Search::remembers(std::size_t family) const {
-  const std::vector<std::string> inputs = inputs_of(family);
-  return std::ranges::any_of(
-      inputs, [&](const std::string& name) { return data_.find(name)->has_memory(); });
-}
-
-// No curve of the library is the true one to the last nat. What lives in nothing but the inputs of
-// a larger effect is that effect in another shape: what is left over is no UNKNOWN beside the right
-// name, and where that effect remembers the motion, one that came after it and adds far less gives
-// it its columns.
-void Search::name_shapes() {
-  const bool takes_small_ones = options_.has("shape_of_memory");
-  for (std::size_t k = takes_small_ones ? found.size() : 0; k-- > 1;) {
-    const std::size_t family = found[k].family;
-    const std::vector<std::string> inputs = inputs_of(family);
-    Found* home =
-        inputs.empty() ? nullptr : home_of(inputs, k, gain_of({family}).nats / kShapeShare);
-    if (home == nullptr || !remembers(home->family)) continue;
-    home->another_shape = true;
-    note(
-        fmt::format("'{}' only shapes '{}': in the same inputs more than {:.0f} times as much is "
-                    "explained without it",
-                    families_[family].name, families_[home->family].name, 1 / kShapeShare));
-    for (Atom& atom : current_.model.atoms) {
-      if (atom.family == family) atom.family = home->family;
-    }
-    found.erase(found.begin() + static_cast<std::ptrdiff_t>(k));
+  std::vector<Place> all;
+  if (lives_in.size() != 1) return all;
+  std::vector<Expression> formulas;
+  for (const Atom& atom : model().model.atoms) {
+    if (atom.family != family) continue;
+    formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
   }
-  if (leftover.inputs.empty() || !options_.has("shape_of_leftover")) return;
-  std::vector<std::string> inputs = leftover.signals;
-  std::ranges::sort(inputs);
-  Found* home = home_of(inputs, found.size(), leftover_nats_);
-  if (home == nullptr) return;
-  home->another_shape = true;
-  leftover.inputs.clear();
+  for (const SignalPair& pair : smoothed_pairs()) {
+    const bool first = *lives_in.begin() == pair[0];
+    if (!first && *lives_in.begin() != pair[1]) continue;
+    const Eigen::VectorXd other = unit_signal(campaign_.data, pair[first ? 1 : 0]);
+    if (other.size() == 0) continue;
+    all.push_back({{std::string(pair[0]), std::string(pair[1])},
+                   nullptr,
+                   other.asDiagonal() * evaluate_columns(formulas, campaign_.data)});
+  }
+  return all;
 }
 
-void Search::test_leftover() {
-  if (clusters_.stretches.size() < kFewestClusters) {
-    note(fmt::format(
+std::vector<Place> LeftoverSearch::places() const {
+  std::vector<Place> all;
+  for (const Smoother& smoother : smoothers_) all.push_back({smoother.signals, &smoother, {}});
+  for (const Found& one : result_.state.found) {
+    for (Place& product : products_of(one.family)) all.push_back(std::move(product));
+  }
+  return all;
+}
+
+BlockScores LeftoverSearch::score_product(const Eigen::MatrixXd& columns) const {
+  const Eigen::MatrixXd z = whitened(columns, campaign_.clusters, model().noise);
+  BlockScores block = score_block(z, model().basis, model().residual, campaign_.clusters);
+  if (block.test.carrying < kFewestClusters) block.test.testable = false;
+  return block;
+}
+
+void LeftoverSearch::test_residual() {
+  const std::size_t stretches = campaign_.clusters.stretches.size();
+  if (stretches < kFewestClusters) {
+    state().note(fmt::format(
         "{} stretches of movement are too few to tell whether anything is left over; {} "
         "are needed",
-        clusters_.stretches.size(), kFewestClusters));
+        stretches, kFewestClusters));
     return;
   }
-  leftover_tested = true;
-  const std::vector<Smoother> smoothers = make_smoothers(data_, random_.split("smoothers"));
-  const std::vector<Modifier> products = modifiers();
+  result_.leftover_tested = true;
+  const std::vector<Place> looked_at = places();
+  const FeatureScorer scorer(model().basis, model().residual, campaign_.clusters, model().noise,
+                             direction_of(campaign_.data));
   std::vector<BlockScores> blocks;
-  const FeatureScorer scorer(current_.basis, current_.residual, clusters_, current_.noise,
-                             direction_of(data_));
-  for (const Smoother& smoother : smoothers) {
-    blocks.push_back(scorer.score(smoother.features, kSmootherRidge));
-  }
-  for (const Modifier& modifier : products) blocks.push_back(score_modifier(modifier));
   double largest = 0;
-  for (const BlockScores& block : blocks) largest = std::max(largest, block.test.score);
+  for (const Place& place : looked_at) {
+    blocks.push_back(place.smoother != nullptr
+                         ? scorer.score(place.smoother->features, kSmootherRidge)
+                         : score_product(place.columns));
+    largest = std::max(largest, blocks.back().test.score);
+  }
+  const double alpha = campaign_.options.alpha_leftover;
   // Once so many flips have exceeded it the p-value cannot come below alpha any more.
-  const auto stop = static_cast<std::size_t>(
-      std::ceil(options_.alpha_leftover * static_cast<double>(options_.flips + 1)));
-  const std::vector<double> maxima = flip_maxima(blocks, flips_, largest, stop);
-  leftover.p = adjusted_p(largest, maxima);
-  if (leftover.p > options_.alpha_leftover) return;
-  locate_leftover(smoothers, products, blocks, maxima);
+  const auto stop =
+      static_cast<std::size_t>(std::ceil(alpha * static_cast<double>(campaign_.options.flips + 1)));
+  const std::vector<double> maxima = flip_maxima(blocks, campaign_.flips, largest, stop);
+  result_.leftover.p = adjusted_p(largest, maxima);
+  if (result_.leftover.p <= alpha) locate(looked_at, blocks, maxima);
 }
 
 // Where it lives: what predicts best; a product only if it beats every single input.
-void Search::locate_leftover(const std::vector<Smoother>& smoothers,
-                             const std::vector<Modifier>& products,
-                             const std::vector<BlockScores>& blocks,
-                             const std::vector<double>& maxima) {
-  std::size_t winner = blocks.size();
-  Gain best{-1e300, 0};
+void LeftoverSearch::locate(const std::vector<Place>& places,
+                            const std::vector<BlockScores>& blocks,
+                            const std::vector<double>& maxima) {
+  const Place* winner = nullptr;
+  Gain best;
   Eigen::VectorXd best_losses;
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    if (adjusted_p(blocks[k].test.score, maxima) > options_.alpha_leftover) continue;
-    const bool smooth = k < smoothers.size();
-    const Eigen::MatrixXd features = whitened(
-        smooth ? with_direction(smoothers[k], data_) : products[k - smoothers.size()].columns,
-        clusters_, current_.noise);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (adjusted_p(blocks[k].test.score, maxima) > campaign_.options.alpha_leftover) continue;
+    const Eigen::MatrixXd features =
+        whitened(places[k].features(campaign_.data), campaign_.clusters, model().noise);
     const Eigen::VectorXd losses =
-        held_out_losses(beside(current_.x, features), current_.residual, clusters_, current_.noise,
-                        features.cols(), smooth ? kSmootherRidge : 0);
-    const Gain gain = paired_gain(current_.losses, losses);
-    const bool product = !smooth || smoothers[k].signals.size() > 1;
-    const bool clearly =
-        best_losses.size() == 0 || paired_gain(best_losses, losses).nats >
-                                       (product ? paired_gain(best_losses, losses).error : 0.0);
-    if (gain.nats > best.nats && clearly) {
-      best = gain;
-      best_losses = losses;
-      winner = k;
+        held_out_losses(beside(model().x, features), model().residual, campaign_.clusters,
+                        model().noise, features.cols(), places[k].ridge());
+    const Gain gain = paired_gain(model().losses, losses);
+    if (winner != nullptr) {
+      const Gain lead = paired_gain(best_losses, losses);
+      const bool clearly = lead.nats > (places[k].is_product() ? lead.error : 0.0);
+      if (!(gain.nats > best.nats && clearly)) continue;
+    } else if (std::isnan(gain.nats)) {
+      continue;
     }
+    best = gain;
+    best_losses = losses;
+    winner = &places[k];
   }
-  if (winner == blocks.size()) return;
-  const bool smooth = winner < smoothers.size();
-  const Eigen::MatrixXd features = smooth ? with_direction(smoothers[winner], data_)
-                                          : products[winner - smoothers.size()].columns;
-  if (worth_beside(features, smooth ? kSmootherRidge : 0) < least_worth()) {
-    note("what is left over is next to nothing beside the effects found");
+  if (winner == nullptr) return;
+  const double least =
+      least_worth(worths(model().model, state().families(), campaign_), campaign_.options);
+  if (worth_of(winner->features(campaign_.data), model().model, campaign_, winner->ridge()) <
+      least) {
+    state().note("what is left over is next to nothing beside the effects found");
     return;
   }
-  leftover_nats_ = best.nats;
-  leftover.signals = winner < smoothers.size() ? smoothers[winner].signals
-                                               : products[winner - smoothers.size()].signals;
+  nats_ = best.nats;
+  LeftoverFinding& leftover = result_.leftover;
+  leftover.signals = winner->signals;
   leftover.inputs.clear();
   for (const std::string& signal : leftover.signals) {
-    leftover.inputs.push_back(input_name(data_, signal));
+    leftover.inputs.push_back(input_name(campaign_.data, signal));
   }
-  if (!whole_) whole_ = WholeModel{current_, best.nats};
-  const std::size_t before = found.size();
-  const auto home = std::ranges::find(smoothers, leftover.signals, &Smoother::signals);
-  if (home != smoothers.end() && options_.has("proxies")) drop_proxies(*home);
-  if (found.size() == before) return;
+  if (!whole_) whole_ = WholeModel{model(), nats_};
+  const std::size_t before = state().found.size();
+  const auto home = std::ranges::find(smoothers_, leftover.signals, &Smoother::signals);
+  if (home != smoothers_.end() && campaign_.options.has("proxies")) drop_proxies(*home);
+  if (state().found.size() == before) return;
   // Without its proxies the leftover shows better where it lives.
   const LeftoverFinding known = leftover;
-  test_leftover();
+  test_residual();
   if (leftover.inputs.empty()) {
     leftover.inputs = known.inputs;
     leftover.signals = known.signals;
   }
+}
+
+// Whether the leftover's smoother makes a family superfluous; then the model loses it.
+bool LeftoverSearch::drop_if_superfluous(const Smoother& smoother, std::size_t family, bool excused,
+                                         LoopModel& model) {
+  FittedModel rest = fit_in_its_noise(model.without(family), campaign_, FitScope::linear);
+  if (excused && explains_more_than_is_left(rest)) return false;
+  const Eigen::MatrixXd features =
+      whitened(with_direction(smoother, campaign_.data), campaign_.clusters, rest.noise);
+  rest.basis = orthonormal_basis(beside(rest.x, features));
+  rest.residual = project_off(rest.residual, rest.basis);
+  if (p_beside(rest, family, this->model(), campaign_) <= campaign_.options.alpha_library) {
+    return false;
+  }
+  result_.leftover.proxies_removed.push_back(campaign_.families[family].name);
+  std::erase_if(state().found, [&](const Found& one) { return one.family == family; });
+  model = model.without(family);
+  return true;
 }
 
 // A family that the leftover's smoother makes superfluous is a proxy of what is left over, unless
@@ -234,41 +233,91 @@ void Search::locate_leftover(const std::vector<Smoother>& smoothers,
 // together: each one dropped leaves more for the smoother, which would make the next one look
 // superfluous. A family that asked for more columns than an effect has is not excused
 // (specification, 11.6: a defect at one place is absorbed by many harmonics).
-void Search::drop_proxies(const Smoother& smoother) {
-  const std::size_t before = found.size();
-  LoopModel model = current_.model;
-  const auto drop_if_superfluous = [&](std::size_t family, bool excused) {
-    LoopModel without = model;
-    remove_family(without, family);
-    FittedModel rest = fit(without, FitScope::linear);
-    if (excused && explains_more_than_is_left(rest)) return;
-    rest.basis = orthonormal_basis(
-        beside(rest.x, whitened(with_direction(smoother, data_), clusters_, rest.noise)));
-    rest.residual = project_off(rest.residual, rest.basis);
-    const Round round = test_all(rest);
-    if (family_p_given_rest(family, rest, round, current_) <= options_.alpha_library) return;
-    leftover.proxies_removed.push_back(families_[family].name);
-    std::erase_if(found, [&](const Found& other) { return other.family == family; });
-    model = std::move(without);
-  };
+void LeftoverSearch::drop_proxies(const Smoother& smoother) {
+  LoopModel model = this->model().model;
+  bool dropped = false;
   for (const bool excused : {false, true}) {
-    for (const Found& one : std::vector<Found>(found)) {
-      const bool asked_more = std::ranges::count(asked_more_, one.family) > 0;
-      if (asked_more != excused) drop_if_superfluous(one.family, excused);
+    for (const std::size_t family : state().families()) {
+      const bool asked_more = std::ranges::count(state().asked_more, family) > 0;
+      if (asked_more == excused) continue;
+      dropped = drop_if_superfluous(smoother, family, excused, model) || dropped;
     }
-    if (!excused && found.size() < before) whole_->fit = fit(model, FitScope::everything);
+    if (!excused && dropped) {
+      whole_->fit = fit_in_its_noise(model, campaign_, FitScope::everything);
+    }
   }
-  if (found.size() < before) current_ = fit(std::move(model), FitScope::everything);
+  if (dropped) state().model = fit_in_its_noise(std::move(model), campaign_, FitScope::everything);
 }
 
 // What the whole model has and `rest` has not, against what the whole model leaves over.
-bool Search::explains_more_than_is_left(const FittedModel& rest) const {
-  const Noise& noise = whole_->fit.noise;
-  const Eigen::MatrixXd x = whitened(tangent(rest.model, data_), clusters_, noise);
-  const Eigen::VectorXd y =
-      whitened(target_vector(data_) - predict(rest.model, data_), clusters_, noise);
-  const Gain own = paired_gain(held_out_losses(x, y, clusters_, noise), whole_->fit.losses);
-  return own.nats > whole_->leftover_nats && own.nats > own.error;
+bool LeftoverSearch::explains_more_than_is_left(const FittedModel& rest) const {
+  const Gain lead = lead_over(whole_->fit, rest, campaign_);
+  return -lead.nats > whole_->leftover_nats && -lead.nats > lead.error;
+}
+
+bool LeftoverSearch::remembers(std::size_t family) const {
+  const std::vector<std::string> inputs = inputs_of(family, model().model, campaign_.data);
+  return std::ranges::any_of(
+      inputs, [&](const std::string& name) { return campaign_.data.find(name)->has_memory(); });
+}
+
+// The effect found before the one at `end` that has all of these inputs, the first of them; none
+// where all that have them add no more than `nats` together: which of them would be at home there
+// matters less than what lives there at all.
+Found* LeftoverSearch::home_of(const std::vector<std::string>& inputs, std::size_t end,
+                               double nats) {
+  Found* home = nullptr;
+  std::vector<std::size_t> families;
+  for (std::size_t k = 0; k < end; ++k) {
+    Found& one = state().found[k];
+    if (!std::ranges::includes(inputs_of(one.family, model().model, campaign_.data), inputs)) {
+      continue;
+    }
+    if (home == nullptr) home = &one;
+    families.push_back(one.family);
+  }
+  return home != nullptr && gain_of(families, model(), campaign_).nats > nats ? home : nullptr;
+}
+
+// No curve of the library is the true one to the last nat. What lives in nothing but the inputs of
+// a larger effect is that effect in another shape: what is left over is no UNKNOWN beside the right
+// name, and where that effect remembers the motion, one that came after it and adds far less gives
+// it its columns.
+void LeftoverSearch::name_shapes() {
+  std::vector<Found>& found = state().found;
+  const bool takes_small_ones = campaign_.options.has("shape_of_memory");
+  for (std::size_t k = takes_small_ones ? found.size() : 0; k-- > 1;) {
+    const std::size_t family = found[k].family;
+    const std::vector<std::string> inputs = inputs_of(family, model().model, campaign_.data);
+    const double nats = gain_of({family}, model(), campaign_).nats / kShapeShare;
+    Found* home = inputs.empty() ? nullptr : home_of(inputs, k, nats);
+    if (home == nullptr || !remembers(home->family)) continue;
+    home->another_shape = true;
+    state().note(fmt::format(
+        "'{}' only shapes '{}': in the same inputs more than {:.0f} times as much is "
+        "explained without it",
+        campaign_.families[family].name, campaign_.families[home->family].name, 1 / kShapeShare));
+    for (Atom& atom : state().model.model.atoms) {
+      if (atom.family == family) atom.family = home->family;
+    }
+    found.erase(found.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  LeftoverFinding& leftover = result_.leftover;
+  if (leftover.inputs.empty() || !campaign_.options.has("shape_of_leftover")) return;
+  std::vector<std::string> inputs = leftover.signals;
+  std::ranges::sort(inputs);
+  Found* home = home_of(inputs, found.size(), nats_);
+  if (home == nullptr) return;
+  home->another_shape = true;
+  leftover.inputs.clear();
+}
+
+}  // namespace
+
+void find_leftover(SearchResult& result, const Campaign& campaign, RandomStream random) {
+  LeftoverSearch search(result, campaign, random);
+  search.test_residual();
+  search.name_shapes();
 }
 
 }  // namespace tribench::loop

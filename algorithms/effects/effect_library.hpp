@@ -85,6 +85,7 @@ struct EffectFamily {
   bool angular = false;     // makes sense for an angle only, not for a position in m
   std::string origin = {};  // of a learned effect: the movements it was found on, as text
   std::string title = {};   // a short noun for tables and cards; empty: the name
+  std::string first_experiment() const { return separate_by.empty() ? "" : separate_by[0]; }
 };
 
 // The built-in families, in the order in which they are listed.

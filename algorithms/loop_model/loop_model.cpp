@@ -114,10 +114,50 @@ void LoopModel::remove(std::size_t atom) {
   atoms.erase(atoms.begin() + static_cast<std::ptrdiff_t>(atom));
 }
 
+std::size_t LoopModel::atoms_of(std::size_t family) const {
+  return static_cast<std::size_t>(std::ranges::count(atoms, family, &Atom::family));
+}
+
+LoopModel LoopModel::without(std::size_t family) const {
+  LoopModel rest = *this;
+  for (std::size_t k = rest.atoms.size(); k-- > 0;) {
+    if (rest.atoms[k].family == family) rest.remove(k);
+  }
+  return rest;
+}
+
 std::size_t LoopModel::first_column(std::size_t atom) const {
   std::size_t first = base.linear_terms.size();
   for (std::size_t k = 0; k < atom; ++k) first += atoms[k].columns.size();
   return first;
+}
+
+Eigen::VectorXd contribution(const LoopModel& model, std::size_t family, const Observations& data) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data.rows()));
+  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
+    const Atom& atom = model.atoms[k];
+    if (atom.family != family) continue;
+    sum += evaluate_columns(atom.columns, data) *
+           model.coefficients.segment(static_cast<Eigen::Index>(model.first_column(k)),
+                                      static_cast<Eigen::Index>(atom.columns.size()));
+  }
+  return sum;
+}
+
+std::vector<const Signal*> signals_read(const LoopModel& model, std::size_t family,
+                                        const Observations& data) {
+  std::vector<const Signal*> all;
+  for (const Atom& atom : model.atoms) {
+    if (atom.family != family) continue;
+    for (const Expression& column : atom.columns) {
+      for (const Node& node : column.nodes()) {
+        if (!node.is_variable()) continue;
+        const Signal* signal = &data.signals[node.variable];
+        if (std::ranges::count(all, signal) == 0) all.push_back(signal);
+      }
+    }
+  }
+  return all;
 }
 
 std::vector<Expression> linear_columns(const LoopModel& model) {

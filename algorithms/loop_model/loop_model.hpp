@@ -47,6 +47,8 @@ struct LoopModel {
   void add(Atom atom);
   void remove(std::size_t atom);
   std::size_t first_column(std::size_t atom) const;  // of its coefficients
+  std::size_t atoms_of(std::size_t family) const;
+  LoopModel without(std::size_t family) const;
 };
 
 // Values of formulas, one a column.
@@ -54,6 +56,12 @@ Eigen::MatrixXd evaluate_columns(std::span<const Expression> formulas, const Obs
 Eigen::VectorXd evaluate_column(const Expression& formula, const SignalTable& table);
 Eigen::VectorXd predict(const LoopModel& model, const Observations& data);
 Eigen::Map<const Eigen::VectorXd> target_vector(const Observations& data);
+
+// The share of one family in the prediction.
+Eigen::VectorXd contribution(const LoopModel& model, std::size_t family, const Observations& data);
+// The signals that a family's columns read, each once, in the order of the formulas.
+std::vector<const Signal*> signals_read(const LoopModel& model, std::size_t family,
+                                        const Observations& data);
 
 // The columns that the coefficients multiply.
 std::vector<Expression> linear_columns(const LoopModel& model);

@@ -123,9 +123,9 @@ TEST_F(MeasuredLoop, ScrewDrive1SlowsDownTheFallOfFrictionAndDrive2ClaimsNothing
   EXPECT_TRUE(two["effects"].empty());
 }
 
-// Judged by leaving out whole trajectories, all four gains of each. Least squares expects 1.246 ->
-// 0.80 V; on these rows it gives 1.21 -> 0.95 V with the load gravity alone, 0.76 V with inertia in
-// it.
+// Judged by leaving out whole trajectories, all four gains of each. Least squares on these rows,
+// with the load's inertia fitted to the other trajectories, has a mean error of 0.515 V; with
+// gravity alone 0.579 V.
 TEST_F(MeasuredLoop, BamServoHasFrictionThatGrowsWithTheLoad) {
   const Json json =
       loop("bam-xl330/xl330_pendulum.csv",
@@ -136,14 +136,15 @@ TEST_F(MeasuredLoop, BamServoHasFrictionThatGrowsWithTheLoad) {
   EXPECT_EQ(load["family"], "load_coulomb");
   EXPECT_TRUE(json["confirmed"]);
   EXPECT_EQ(json["error"]["how"], "movements of one 'trajectory' left out in turn");
-  EXPECT_LT(error(json, "rmse_after"), 0.75);
+  EXPECT_LT(error(json, "mae_after"), 0.515);
   // The load is m g l sin(q) + m l^2 a: 0.0049 kg m^2 of the arm's mass, a little less or more.
   EXPECT_EQ(load["params"].at(1)["name"], "J");
   EXPECT_NEAR(load["params"].at(1)["value"], 0.0049, 0.0015);
 }
 
 // Told nothing of a slowest speed, the loop finds from the rows at rest where the direction of
-// friction is not known: kept, they would hide everything (1.12 -> 1.10 V).
+// friction is not known: kept, they would hide everything (1.12 -> 1.10 V). Least squares with the
+// load's inertia has a mean error of 0.402 V on the rows that are left.
 TEST_F(MeasuredLoop, BamServoStandsStillInAThirdOfTheRowsAndTheLoopSaysSo) {
   const Json json =
       loop("bam-xl330/xl330_pendulum.csv", {"--roles", "motor_voltage_V=motor_torque,run=movement",
@@ -151,8 +152,8 @@ TEST_F(MeasuredLoop, BamServoStandsStillInAThirdOfTheRowsAndTheLoopSaysSo) {
   EXPECT_THAT(json["warnings"].dump(), ::testing::HasSubstr("the axis stands still in 36 %"));
   EXPECT_TRUE(json["confirmed"]);
   EXPECT_EQ(json["effects"][0]["family"], "load_coulomb");
-  EXPECT_LT(error(json, "rmse_before"), 0.69);
-  EXPECT_LT(error(json, "rmse_after"), 0.52);
+  EXPECT_LT(error(json, "mae_before"), 0.56);
+  EXPECT_LT(error(json, "mae_after"), 0.402);
 }
 
 // The ripple at twice a motor turn that the sine's recordings of joints 4, 5 and 6 show: 6 to 16

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/fitting/symmetric_system.hpp"
+
+namespace tribench::loop {
+namespace {
+
+// The rescue rule for families carried by few clusters (specification, 6.4).
+constexpr double kFewClusters = 25;
+constexpr double kRescueGain = 12;      // nats
+constexpr std::size_t kAtomsTried = 3;  // of a family, best scores first
+
+// How many independent pieces of data carry an atom, as an effective number: movements where it
+// differs between them rather than within them, else stretches.
+double carriers(const Round& round, std::size_t atom, const FittedModel& model,
+                const Campaign& campaign) {
+  const Eigen::MatrixXd z =
+      project_off(campaign.library.block_of(round.columns, atom), model.basis);
+  double all = 0;
+  double squares = 0;
+  double between = 0;
+  for (const RowRange& m : campaign.clusters.movements) {
+    const auto rows =
+        z.middleRows(static_cast<Eigen::Index>(m.begin), static_cast<Eigen::Index>(m.size()));
+    const double own = rows.squaredNorm();
+    all += own;
+    squares += own * own;
+    between += rows.colwise().sum().squaredNorm() / static_cast<double>(m.size());
+  }
+  const bool by_movement = between > 0.5 * all;
+  return by_movement ? all * all / squares : round.blocks[atom].test.effective_clusters;
+}
+
+// The losses of the model with an atom more, with the spread of the movements' offsets that it
+// leaves itself: what differs between movements shows in that spread more than in the squares.
+Eigen::VectorXd losses_with_own_offsets(std::size_t atom, const FittedModel& model,
+                                        const Campaign& campaign) {
+  const Clusters& clusters = campaign.clusters;
+  const Library& library = campaign.library;
+  const Eigen::MatrixXd x = beside(model.raw_tangent, library.block_of(library.columns, atom));
+  const auto fitted =
+      static_cast<std::size_t>(model.model.coefficients.size()) + library.blocks[atom].count;
+  Noise noise = model.noise;
+  for (int pass = 0; pass < 2; ++pass) {
+    const Eigen::VectorXd solution =
+        least_squares(whitened(x, clusters, noise), whitened(model.raw_residual, clusters, noise));
+    const Eigen::VectorXd residual = model.raw_residual - x * solution;
+    noise.between_sd = estimate_noise(residual, clusters, fitted, campaign.noise_floor).between_sd;
+  }
+  return held_out_losses(whitened(x, clusters, noise),
+                         whitened(model.raw_residual, clusters, noise), clusters, noise) +
+         offset_nats(clusters, noise);
+}
+
+// The rescue rule. What is carried by few movements cannot reach a small p by flipping their signs,
+// but it can explain their offsets: its gain counts what it leaves of their spread.
+std::optional<Candidate> rescue(std::size_t family, const Round& round, const FittedModel& model,
+                                const Campaign& campaign) {
+  std::optional<Candidate> best;
+  if (!campaign.options.has("rescue")) return best;
+  const Eigen::VectorXd offsets = offset_nats(campaign.clusters, model.noise);
+  // All atoms: with few carriers their scores tell next to nothing.
+  for (std::size_t k = 0; k < campaign.library.atoms.size(); ++k) {
+    if (campaign.library.atoms[k].family != family || !round.blocks[k].test.testable) continue;
+    if (!(carriers(round, k, model, campaign) < kFewClusters)) continue;
+    Eigen::VectorXd losses = losses_with_own_offsets(k, model, campaign);
+    const Gain gain = paired_gain(model.losses + offsets, losses);
+    if (!(gain.nats > kRescueGain && gain.nats > 2 * gain.error)) continue;
+    if (!best || gain.nats > best->gain.nats) {
+      losses -= offsets;
+      best = {family, k, gain, std::move(losses), true};
+    }
+  }
+  return best;
+}
+
+// The family's atoms that can be tested; those with a column that the model has already only where
+// there are no others, for what is new in them is one of the others.
+std::vector<std::size_t> testable_atoms(std::size_t family, const Round& round,
+                                        const Campaign& campaign) {
+  std::vector<std::size_t> atoms;
+  for (std::size_t k = 0; k < campaign.library.atoms.size(); ++k) {
+    if (campaign.library.atoms[k].family == family && round.blocks[k].test.testable) {
+      atoms.push_back(k);
+    }
+  }
+  const auto is_whole = [&](std::size_t k) {
+    const auto columns = static_cast<std::size_t>(round.blocks[k].whitened_sums.cols());
+    return columns == campaign.library.blocks[k].count;
+  };
+  if (std::ranges::any_of(atoms, is_whole)) {
+    std::erase_if(atoms, [&](std::size_t k) { return !is_whole(k); });
+  }
+  return atoms;
+}
+
+}  // namespace
+
+std::optional<Candidate> best_atom(std::size_t family, const Round& round, const FittedModel& model,
+                                   const Campaign& campaign) {
+  std::vector<std::size_t> atoms = testable_atoms(family, round, campaign);
+  std::ranges::stable_sort(atoms, [&](std::size_t a, std::size_t b) {
+    return round.blocks[a].test.score > round.blocks[b].test.score;
+  });
+  if (atoms.size() > kAtomsTried) atoms.resize(kAtomsTried);
+  std::optional<Candidate> best;
+  for (const std::size_t k : atoms) {
+    const Eigen::MatrixXd x = beside(model.x, campaign.library.block_of(round.columns, k));
+    Eigen::VectorXd losses = held_out_losses(x, model.residual, campaign.clusters, model.noise);
+    const Gain gain = paired_gain(model.losses, losses);
+    if (!std::isfinite(gain.nats)) continue;  // one fold alone excites it
+    if (!best || gain.nats > best->gain.nats) {
+      best = Candidate{family, k, gain, std::move(losses), false};
+    }
+  }
+  return best;
+}
+
+std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
+                                const Campaign& campaign) {
+  std::vector<Candidate> all;
+  for (std::size_t f = 0; f < campaign.families.size(); ++f) {
+    if (!(round.family_score[f] > 0)) continue;
+    const bool significant =
+        round.rescue_only[f] == 0 && round.family_p[f] <= campaign.options.alpha_library;
+    if (!significant && round.family_p[f] >= kRescueP) continue;
+    std::optional<Candidate> one = rescue(f, round, model, campaign);
+    if (significant) {
+      // What few movements carry gains by their offsets, significant or not: a smaller p must not
+      // make it harder to be admitted.
+      std::optional<Candidate> plain = best_atom(f, round, model, campaign);
+      if (!one || (plain && plain->gain.nats >= one->gain.nats)) one = std::move(plain);
+    }
+    if (one) all.push_back(std::move(*one));
+  }
+  std::ranges::stable_sort(
+      all, [](const Candidate& a, const Candidate& b) { return a.gain.nats > b.gain.nats; });
+  return all;
+}
+
+double canonical_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  const Eigen::MatrixXd qa = orthonormal_basis(a);
+  const Eigen::MatrixXd qb = orthonormal_basis(b);
+  if (qa.cols() == 0 || qb.cols() == 0) return 0;
+  const Eigen::MatrixXd cross = qa.transpose() * qb;
+  const Eigen::MatrixXd gram = cross.transpose() * cross;
+  return std::sqrt(std::min(1.0, spectral_norm_symmetric(gram)));
+}
+
+std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round,
+                                     const FittedModel& model, const Campaign& campaign) {
+  std::vector<AliasFinding> aliases;
+  const EffectFamily& taken = campaign.families[winner.family];
+  const auto columns = [&](std::size_t atom) {
+    return project_off(campaign.library.block_of(round.columns, atom), model.basis);
+  };
+  const double largest_p = winner.rescued ? kRescueP : kNearAliasP;
+  for (std::size_t f = 0; f < campaign.families.size(); ++f) {
+    if (f == winner.family || round.family_p[f] > largest_p) continue;
+    const std::optional<Candidate> rival = best_atom(f, round, model, campaign);
+    if (!rival) continue;
+    const double r = canonical_correlation(columns(winner.atom), columns(rival->atom));
+    const Gain lead = paired_gain(rival->losses, winner.losses);
+    const bool exact = r > kExactCorrelation;
+    if (!exact && lead.nats >= 2 * lead.error) continue;
+    aliases.push_back(
+        {campaign.families[f].name, r, lead.nats, lead.error, exact, taken.first_experiment()});
+  }
+  const std::vector<std::string>& coefficients = campaign.library.atoms[winner.atom].coefficients;
+  for (const KnownAlias& known : taken.known_aliases) {
+    const bool applies =
+        known.coefficient.empty() || std::ranges::count(coefficients, known.coefficient) > 0;
+    if (applies) aliases.push_back({known.name, 1, 0, 0, true, known.separate_by});
+  }
+  return aliases;
+}
+
+}  // namespace tribench::loop

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+//
+// Which effects a round of tests admits beside the present model, and what else they could be.
+// Internal to the room.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "algorithms/diagnosis/round.hpp"
+
+namespace tribench::loop {
+
+// Up to this p a family carried by few clusters may be rescued by its gain (specification, 6.4).
+inline constexpr double kRescueP = 0.15;
+// Up to this p a family is a rival of the one that was taken.
+inline constexpr double kNearAliasP = 0.05;
+inline constexpr double kExactCorrelation = 0.995;
+
+struct Candidate {
+  std::size_t family = 0;
+  std::size_t atom = 0;
+  Gain gain;
+  Eigen::VectorXd losses;
+  bool rescued = false;  // carried by few clusters, admitted by its gain
+};
+
+// The family's atom that predicts best beside the model. None where none can be judged: none is
+// testable, or the folds of the cross-validation do not know its columns.
+std::optional<Candidate> best_atom(std::size_t family, const Round& round, const FittedModel& model,
+                                   const Campaign& campaign);
+
+// Families whose p and gain, or rescue, admit them beside the model; best gain first.
+std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
+                                const Campaign& campaign);
+
+// The families that explain nearly the same, and the causes that always do.
+std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round,
+                                     const FittedModel& model, const Campaign& campaign);
+
+// The largest canonical correlation of two column spaces.
+double canonical_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+}  // namespace tribench::loop

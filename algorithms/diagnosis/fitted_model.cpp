@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/fitted_model.hpp"
+
+namespace tribench::loop {
+namespace {
+
+Clusters unweighted(Clusters clusters) {
+  clusters.weight.clear();
+  return clusters;
+}
+
+// Where correlated noise is all that is wrong, fits with and without whitening agree but for noise.
+// Where they do not, the model lacks something fast (what happens at reversals, a filter's shadow),
+// and to look at changes within a movement would fit that. Hausman 1978: the difference in the
+// fitted values against what it can be at most by noise alone, parameter by parameter. Plain least
+// squares knows no weights of movements either.
+bool whitening_is_safe(const LoopModel& model, const Observations& data, const Clusters& clusters,
+                       const Noise& noise) {
+  const Eigen::MatrixXd x = tangent(model, data);
+  const Eigen::VectorXd y = target_vector(data) - predict(model, data);
+  if (x.cols() == 0) return true;
+  Noise plain;
+  plain.within_sd = 1;
+  const Clusters even = unweighted(clusters);
+  const Eigen::MatrixXd weighted = whitened(x, clusters, plain);
+  const Eigen::VectorXd one = least_squares(whitened(x, even, plain), whitened(y, even, plain));
+  const Eigen::VectorXd other =
+      least_squares(whitened(x, clusters, noise), whitened(y, clusters, noise));
+  const double rows =
+      static_cast<double>(data.rows()) / static_cast<double>(clusters.movements.size());
+  const double most = noise.within_sd * noise.within_sd * noise.inflation +
+                      rows * noise.between_sd * noise.between_sd;
+  return (weighted * (one - other)).squaredNorm() < most * static_cast<double>(x.cols());
+}
+
+}  // namespace
+
+FittedModel fit_in_its_noise(LoopModel model, const Campaign& campaign, FitScope scope) {
+  const Observations& data = campaign.data;
+  const Clusters& clusters = campaign.clusters;
+  FittedModel out;
+  Noise plain;
+  plain.within_sd = 1;
+  Noise noise = plain;
+  bool plainly = true;  // how the coefficients are fitted
+  const Clusters even = unweighted(clusters);
+  const bool formula = !model.base.formula.empty();
+  bool safe = true;
+  for (int pass = 0; pass < 3; ++pass) {
+    // A formula's constants are moved by every pass: the first must start from its best fit, and
+    // the last must undo what a whitening that is not safe has done to them.
+    const bool refine = pass == 1 || (formula && (pass == 0 || !safe));
+    fit_model(model, data, plainly ? even : clusters, plainly ? plain : noise,
+              refine ? scope : FitScope::linear);
+    if (pass == 2) break;
+    const Eigen::VectorXd residual = target_vector(data) - predict(model, data);
+    const auto fitted = static_cast<std::size_t>(model.coefficients.size());
+    noise = estimate_noise(residual, clusters, fitted, campaign.noise_floor);
+    plainly = false;
+    if (pass == 0 || !campaign.options.has("whitening")) continue;
+    noise.whitening = noise.rho;
+    if (whitening_is_safe(model, data, clusters, noise)) continue;
+    noise.whitening = 0;
+    // A model that is wrong predicts best as plain least squares has it.
+    safe = whitening_is_safe(model, data, clusters, noise);
+    plainly = !safe;
+  }
+  out.raw_tangent = tangent(model, data);
+  out.raw_residual = target_vector(data) - predict(model, data);
+  out.x = whitened(out.raw_tangent, clusters, noise);
+  out.basis = orthonormal_basis(out.x);
+  out.residual = project_off(whitened(out.raw_residual, clusters, noise), out.basis);
+  out.losses = held_out_losses(out.x, out.residual, clusters, noise);
+  out.model = std::move(model);
+  out.noise = noise;
+  return out;
+}
+
+Gain lead_over(const FittedModel& present, const FittedModel& other, const Campaign& campaign) {
+  const auto in_its_noise = [&](Eigen::MatrixXd columns) {
+    return whitened(std::move(columns), campaign.clusters, present.noise);
+  };
+  const Eigen::VectorXd y =
+      in_its_noise(target_vector(campaign.data) - predict(other.model, campaign.data));
+  const Eigen::MatrixXd x = in_its_noise(tangent(other.model, campaign.data));
+  return paired_gain(present.losses, held_out_losses(x, y, campaign.clusters, present.noise));
+}
+
+Gain gain_of(const std::vector<std::size_t>& families, const FittedModel& present,
+             const Campaign& campaign) {
+  LoopModel rest = present.model;
+  for (const std::size_t family : families) rest = rest.without(family);
+  const FittedModel other = fit_in_its_noise(std::move(rest), campaign, FitScope::linear);
+  const Gain lead = lead_over(present, other, campaign);
+  return {-lead.nats, lead.error};
+}
+
+}  // namespace tribench::loop

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+//
+// A model fitted to a campaign in the coordinates of its own noise, and what one model predicts
+// better than another. Internal to the room.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "algorithms/diagnosis/campaign.hpp"
+#include "algorithms/inference/cross_validation.hpp"
+#include "algorithms/loop_model/model_fit.hpp"
+
+namespace tribench::loop {
+
+struct FittedModel {
+  LoopModel model;
+  Noise noise;
+  Eigen::MatrixXd x;         // whitened tangent
+  Eigen::MatrixXd basis;     // of x, orthonormal
+  Eigen::VectorXd residual;  // whitened, orthogonal to the basis
+  Eigen::VectorXd losses;    // held-out, by stretch
+  Eigen::MatrixXd raw_tangent;
+  Eigen::VectorXd raw_residual;
+};
+
+// Noise and coefficients in turn. scope: what is fitted besides the coefficients.
+FittedModel fit_in_its_noise(LoopModel model, const Campaign& campaign, FitScope scope);
+
+// What `other` predicts better than `present`, by cross-validation in the noise of `present`.
+Gain lead_over(const FittedModel& present, const FittedModel& other, const Campaign& campaign);
+
+// What `present` predicts better than it would without these families.
+Gain gain_of(const std::vector<std::size_t>& families, const FittedModel& present,
+             const Campaign& campaign);
+
+}  // namespace tribench::loop

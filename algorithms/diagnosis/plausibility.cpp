@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/plausibility.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tribench::loop {
+namespace {
+
+bool reads_velocity_alone(const Expression& formula, const Observations& data) {
+  return std::ranges::all_of(formula.nodes(), [&](const Node& node) {
+    if (!node.is_variable()) return true;
+    const std::string& name = data.signals[node.variable].name;
+    return name == "v" || name == "sgn_v";
+  });
+}
+
+// Friction by the base and one family, as far as they read the velocity alone.
+Eigen::VectorXd friction_of_speed(const LoopModel& model, std::size_t family,
+                                  const Observations& data) {
+  std::vector<Expression> terms;
+  std::vector<double> coefficients;
+  const auto take = [&](const Expression& term, std::size_t column) {
+    if (!reads_velocity_alone(term, data)) return;
+    terms.push_back(term);
+    coefficients.push_back(model.coefficients[static_cast<Eigen::Index>(column)]);
+  };
+  for (std::size_t k = 0; k < model.base.linear_terms.size(); ++k) {
+    take(model.base.linear_terms[k], k);
+  }
+  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
+    if (model.atoms[k].family != family) continue;
+    for (std::size_t j = 0; j < model.atoms[k].columns.size(); ++j) {
+      take(model.atoms[k].columns[j], model.first_column(k) + j);
+    }
+  }
+  return evaluate_columns(terms, data) *
+         Eigen::Map<const Eigen::VectorXd>(coefficients.data(),
+                                           static_cast<Eigen::Index>(coefficients.size()));
+}
+
+// Whether there is less friction somewhere than at the slowest row, in one direction.
+bool falls_with_speed(const Eigen::VectorXd& friction, const std::vector<double>& v) {
+  for (const double direction : {1.0, -1.0}) {
+    double slowest = std::numeric_limits<double>::infinity();
+    double there = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      if (!(direction * v[i] > 0)) continue;
+      const double against = direction * friction[static_cast<Eigen::Index>(i)];
+      least = std::min(least, against);
+      if (std::abs(v[i]) < slowest) {
+        slowest = std::abs(v[i]);
+        there = against;
+      }
+    }
+    if (least < there) return true;
+  }
+  return false;
+}
+
+// Whether the one column of a family has the sign that its cause cannot have.
+bool has_impossible_sign(const LoopModel& model, const std::vector<EffectFamily>& families) {
+  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
+    const Atom& atom = model.atoms[k];
+    if (model.atoms_of(atom.family) > 1) continue;
+    for (const Sanity& sanity : families[atom.family].sanity) {
+      const auto at = std::ranges::find(atom.coefficients, sanity.coefficient);
+      if (at == atom.coefficients.end()) continue;
+      const auto column =
+          model.first_column(k) + static_cast<std::size_t>(at - atom.coefficients.begin());
+      if (sanity.sign * model.coefficients[static_cast<Eigen::Index>(column)] < 0) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool stands_for_another_cause(const LoopModel& model, const Campaign& campaign) {
+  if (!campaign.options.physical_vetoes) return false;
+  if (has_impossible_sign(model, campaign.families)) return true;
+  // A base that is a formula has its own curve, which nobody knows.
+  if (!model.base.formula.empty()) return false;
+  return std::ranges::any_of(model.atoms, [&](const Atom& atom) {
+    if (atom.curve == SpeedCurve::any) return false;
+    const bool falls = falls_with_speed(friction_of_speed(model, atom.family, campaign.data),
+                                        campaign.data.find("v")->values);
+    return falls != (atom.curve == SpeedCurve::falls);
+  });
+}
+
+std::string physical_objection(const EffectFinding& finding, const EffectFamily& family) {
+  for (const Sanity& sanity : family.sanity) {
+    for (const ParameterFinding& p : finding.parameters) {
+      if (p.name != sanity.coefficient) continue;
+      // Against the whole interval: a value that is only perhaps unphysical stands.
+      const bool wrong_sign =
+          sanity.sign != 0 && sanity.sign * p.low < 0 && sanity.sign * p.high < 0;
+      const bool too_large = sanity.largest > 0 &&
+                             std::min(std::abs(p.low), std::abs(p.high)) > sanity.largest &&
+                             p.low * p.high > 0;
+      if (wrong_sign || too_large) return sanity.why;
+    }
+  }
+  return {};
+}
+
+}  // namespace tribench::loop

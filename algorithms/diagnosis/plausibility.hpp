@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+//
+// Whether an effect, as it was fitted, can be what its name says. Internal to the room.
+#pragma once
+
+#include "algorithms/diagnosis/campaign.hpp"
+
+namespace tribench::loop {
+
+// A model with an effect whose sign its cause cannot have, or with a curve of speed that another
+// cause draws: beside Coulomb and viscous friction two families can draw the same curve, told apart
+// by whether friction falls. Nothing where the options ask for no physics.
+bool stands_for_another_cause(const LoopModel& model, const Campaign& campaign);
+
+// What an effect's parameters say against its being physical; empty where nothing.
+std::string physical_objection(const EffectFinding& finding, const EffectFamily& family);
+
+}  // namespace tribench::loop

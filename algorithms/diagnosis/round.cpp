@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/diagnosis/round.hpp"
+
+#include <algorithm>
+
+namespace tribench::loop {
+namespace {
+
+// Down to so many clusters a family may still be rescued by its gain: below, flips do not even
+// reach the p from which on that is looked at.
+constexpr std::size_t kFewestToRescue = 10;
+
+// Atoms that too few clusters carry cannot be tested. A family that has no others may be rescued.
+void count_carriers(Round& round, const Campaign& campaign) {
+  const std::vector<Atom>& atoms = campaign.library.atoms;
+  std::vector<std::size_t> most(campaign.families.size(), 0);
+  for (std::size_t k = 0; k < atoms.size(); ++k) {
+    const BlockTest& test = round.blocks[k].test;
+    std::size_t& count = most[atoms[k].family];
+    if (test.testable) count = std::max(count, test.carrying);
+  }
+  round.rescue_only.assign(campaign.families.size(), 0);
+  for (std::size_t f = 0; f < campaign.families.size(); ++f) {
+    round.rescue_only[f] = most[f] < kFewestClusters ? 1 : 0;
+  }
+  // Its gain has to be one on whole movements: pieces of a few say too little of each other.
+  const bool enough = campaign.clusters.movements.size() >= kFewestClusters;
+  for (std::size_t k = 0; k < atoms.size(); ++k) {
+    BlockTest& test = round.blocks[k].test;
+    const bool rescue_only = enough && round.rescue_only[atoms[k].family] != 0;
+    if (test.carrying < (rescue_only ? kFewestToRescue : kFewestClusters)) test.testable = false;
+  }
+}
+
+}  // namespace
+
+Round test_library(const FittedModel& model, const Campaign& campaign) {
+  const Library& library = campaign.library;
+  Round round;
+  round.columns = whitened(library.columns, campaign.clusters, model.noise);
+  round.blocks =
+      score_blocks(round.columns, library.blocks, model.basis, model.residual, campaign.clusters);
+  for (std::size_t k = 0; k < library.atoms.size(); ++k) {
+    const Atom& atom = library.atoms[k];
+    const bool lonely = atom.beside_another && model.model.atoms_of(atom.family) == 0;
+    if (library.usable[k] == 0 || lonely) round.blocks[k].test.testable = false;
+  }
+  count_carriers(round, campaign);
+  round.maxima = flip_maxima(round.blocks, campaign.flips);
+  round.family_p.assign(campaign.families.size(), 1);
+  round.family_score.assign(campaign.families.size(), 0);
+  for (std::size_t k = 0; k < library.atoms.size(); ++k) {
+    if (!round.blocks[k].test.testable) continue;
+    double& score = round.family_score[library.atoms[k].family];
+    score = std::max(score, round.blocks[k].test.score);
+  }
+  for (std::size_t f = 0; f < campaign.families.size(); ++f) {
+    if (round.family_score[f] > 0) {
+      round.family_p[f] = adjusted_p(round.family_score[f], round.maxima);
+    }
+  }
+  return round;
+}
+
+double p_beside(const FittedModel& rest, std::size_t family, const FittedModel& with,
+                const Campaign& campaign) {
+  std::vector<Expression> formulas;
+  for (const Atom& atom : with.model.atoms) {
+    if (atom.family != family) continue;
+    formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
+  }
+  const Eigen::MatrixXd z =
+      whitened(evaluate_columns(formulas, campaign.data), campaign.clusters, rest.noise);
+  const BlockScores block = score_block(z, rest.basis, rest.residual, campaign.clusters);
+  if (!block.test.testable) return 1;
+  return adjusted_p(block.test.score, test_library(rest, campaign).maxima);
+}
+
+}  // namespace tribench::loop

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+//
+// The tests of the whole library beside one fitted model. Internal to the room.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "algorithms/diagnosis/fitted_model.hpp"
+
+namespace tribench::loop {
+
+// A family excited in fewer clusters cannot reach a small p by sign flips (specification, 3.3).
+inline constexpr std::size_t kFewestClusters = 20;
+
+struct Round {
+  Eigen::MatrixXd columns;          // the library's, whitened with the model's noise
+  std::vector<BlockScores> blocks;  // per atom
+  std::vector<double> maxima;       // over all atoms, per flip
+  std::vector<double> family_p;     // adjusted; 1 where untestable
+  std::vector<double> family_score;
+  std::vector<char> rescue_only;  // carried by fewer clusters than a test by flips needs
+};
+
+Round test_library(const FittedModel& model, const Campaign& campaign);
+
+// The p of a family as it stands in `with`, beside a model without it.
+double p_beside(const FittedModel& rest, std::size_t family, const FittedModel& with,
+                const Campaign& campaign);
+
+}  // namespace tribench::loop
