@@ -42,7 +42,9 @@ Eigen::MatrixXd own_columns(const Explanation& one, const Eigen::MatrixXd& colum
   for (const EffectBlock* block : one.blocks) {
     all.insert(all.end(), block->columns.begin(), block->columns.end());
   }
-  all.insert(all.end(), one.misfit.begin(), one.misfit.end());
+  for (const EffectBlock* block : one.blocks) {
+    all.insert(all.end(), block->misfit.begin(), block->misfit.end());
+  }
   return columns(Eigen::all, all);
 }
 
@@ -85,9 +87,9 @@ Noise Assessor::noise_left_by(const Explanation& one, std::vector<double>& weigh
     rows += sizes.back();
   }
   const Eigen::Index base_count = seen_.front().base.cols();
-  auto own_count = static_cast<Eigen::Index>(one.misfit.size());
+  Eigen::Index own_count = 0;
   for (const EffectBlock* block : one.blocks) {
-    own_count += static_cast<Eigen::Index>(block->columns.size());
+    own_count += static_cast<Eigen::Index>(block->columns.size() + block->misfit.size());
   }
   Eigen::MatrixXd base(static_cast<Eigen::Index>(rows), base_count);
   Eigen::MatrixXd own(static_cast<Eigen::Index>(rows), own_count);
@@ -114,11 +116,13 @@ Noise Assessor::noise_left_by(const Explanation& one, std::vector<double>& weigh
     for (const EffectBlock* block : one.blocks) {
       blocks.push_back({renumbered(block->columns.size()), block->size});
     }
-    for (const EffectBlock& block : blocks) pointers.push_back(&block);
-    const ColumnBlock misfit = renumbered(one.misfit.size());
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      blocks[k].misfit = renumbered(one.blocks[k]->misfit.size());
+      pointers.push_back(&blocks[k]);
+    }
     EvidenceSums sums;
     sums.add(base, own, rest);
-    rest -= own * EvidenceTable(sums).posterior(pointers, misfit).mean;
+    rest -= own * EvidenceTable(sums).posterior(pointers).mean;
   }
   rest -= base * least_squares(base, rest);
   Clusters clusters = clusters_of(sizes);
@@ -147,34 +151,49 @@ bool Assessor::noise_is_as_it_was(const Noise& noise, const std::vector<double>&
   return true;
 }
 
-void Assessor::sum_up(SeenMovement& movement, double weight) {
+void Assessor::add_to(EvidenceSums& sums, const SeenMovement& movement, double weight) const {
   const std::array<std::size_t, 1> size = {static_cast<std::size_t>(movement.base.rows())};
   Clusters clusters = clusters_of(size);
   clusters.weight = {weight};
-  last_.sums.add(whitened(movement.base, clusters, last_.noise),
-                 whitened(movement.columns, clusters, last_.noise),
-                 whitened(movement.target, clusters, last_.noise));
-  movement.weight = weight;
+  sums.add(whitened(movement.base, clusters, last_.noise),
+           whitened(movement.columns, clusters, last_.noise),
+           whitened(movement.target, clusters, last_.noise));
+}
+
+// Movements that no look has seen yet, with what was known before them. How loud each of them is
+// nobody could foresee, and all explanations are told alike.
+void Assessor::hold_forecasts_against_rows(std::span<const double> weights) {
+  const auto is_new = [](const SeenMovement& one) { return one.weight == 0; };
+  if (last_.explanations.empty() || std::ranges::none_of(seen_, is_new)) return;
+  EvidenceSums further = last_.sums;
+  for (std::size_t m = 0; m < seen_.size(); ++m) {
+    if (is_new(seen_[m])) add_to(further, seen_[m], weights[m]);
+  }
+  forecasts_.add(last_.explanations, last_.table, EvidenceTable(further));
+  last_.forecast = forecasts_.verdicts();
 }
 
 const Assessment& Assessor::look() {
   std::vector<double> weights;
   const Explanation before = last_.explanations.empty() ? Explanation() : Explanation(last_.best());
   const Noise noise = noise_left_by(before, weights);
+  hold_forecasts_against_rows(weights);
   if (!noise_is_as_it_was(noise, weights)) {
     last_.noise = noise;
     last_.sums = {};
     for (SeenMovement& movement : seen_) movement.weight = 0;
   }
   for (std::size_t m = 0; m < seen_.size(); ++m) {
-    if (seen_[m].weight == 0) sum_up(seen_[m], weights[m]);
+    if (seen_[m].weight > 0) continue;
+    add_to(last_.sums, seen_[m], weights[m]);
+    seen_[m].weight = weights[m];
   }
   last_.table = EvidenceTable(last_.sums);
   FoundExplanations found = find_explanations(space_, last_.table);
   weigh(found.explanations);
   last_.explanations = std::move(found.explanations);
   last_.blocks = std::move(found.blocks);
-  last_.variance = last_.table.posterior(last_.best().blocks, last_.best().misfit).variance;
+  last_.variance = last_.table.posterior(last_.best().blocks).variance;
   const double limit = -elementary::log(alpha_);
   last_.alive.clear();
   for (std::size_t i = 0; i < last_.explanations.size(); ++i) {

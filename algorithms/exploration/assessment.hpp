@@ -16,12 +16,14 @@
 // known of the noise has changed.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "algorithms/exploration/explanation_search.hpp"
 #include "algorithms/exploration/explanations.hpp"
+#include "algorithms/exploration/forecasts.hpp"
 #include "algorithms/inference/clusters.hpp"
 #include "algorithms/inference/evidence.hpp"
 
@@ -35,6 +37,7 @@ struct Assessment {
   double variance = 0;  // of a whitened row
   EvidenceSums sums;    // of whitened rows
   EvidenceTable table;
+  std::vector<ForecastVerdict> forecast;  // by what they said before it came, the likeliest first
 
   const Explanation& best() const { return explanations.front(); }
   // Posterior of all explanations that say so.
@@ -65,12 +68,14 @@ class Assessor {
   // Of all rows, with the movements' weights.
   Noise noise_left_by(const Explanation& one, std::vector<double>& weights) const;
   bool noise_is_as_it_was(const Noise& noise, const std::vector<double>& weights) const;
-  void sum_up(SeenMovement& movement, double weight);
+  void add_to(EvidenceSums& sums, const SeenMovement& movement, double weight) const;
+  void hold_forecasts_against_rows(std::span<const double> weights);
 
   const ExplanationSpace& space_;
   double alpha_;
   std::vector<SeenMovement> seen_;
   Assessment last_;
+  Forecasts forecasts_;
 };
 
 }  // namespace tribench::loop

@@ -70,7 +70,7 @@ class ExplanationSearch {
     if (!family.unknown) return family.blocks;
     std::vector<EffectBlock> all;
     for (const EffectBlock& block : family.blocks) {
-      EffectBlock seen{{}, block.size};
+      EffectBlock seen{{}, block.size, block.misfit};
       for (const Eigen::Index j : block.columns) {
         if (table_.gram()(j, j) * block.size * block.size >= kVisited) seen.columns.push_back(j);
       }
@@ -111,9 +111,6 @@ class ExplanationSearch {
     Explanation one;
     one.log_prior = log_prior_of(families);
     one.verdict = verdict_of(space_, families);
-    for (const std::size_t f : families) {
-      one.misfit.insert(one.misfit.end(), families_[f].misfit.begin(), families_[f].misfit.end());
-    }
     one.families = std::move(families);
     one.blocks = std::move(blocks);
     one.log_evidence = log_evidence;
@@ -144,8 +141,8 @@ class ExplanationSearch {
   // Every further family beside explanation i, all of its blocks.
   void extend(std::size_t i) {
     const Explanation from = out.explanations[i];
-    const double before = table_.log_factor(from.blocks, from.misfit);
-    const Eigen::VectorXd left = table_.left_of_products(from.blocks, from.misfit);
+    const double before = table_.log_factor(from.blocks);
+    const Eigen::VectorXd left = table_.left_of_products(from.blocks);
     const bool has_unknown =
         std::ranges::any_of(from.families, [&](std::size_t f) { return families_[f].unknown; });
     for (std::size_t f = 0; f < families_.size(); ++f) {
@@ -153,15 +150,13 @@ class ExplanationSearch {
       if (std::ranges::count(from.families, f) > 0) continue;
       std::vector<std::size_t> families = from.families;
       families.push_back(f);
-      ColumnBlock misfit = from.misfit;
-      misfit.insert(misfit.end(), families_[f].misfit.begin(), families_[f].misfit.end());
       std::vector<const EffectBlock*> blocks = from.blocks;
       blocks.push_back(nullptr);
       const EffectBlock* best = nullptr;
       std::vector<double> logs;
       for (const EffectBlock* block : candidates(f, left)) {
         blocks.back() = block;
-        const double log = table_.log_factor(blocks, misfit);
+        const double log = table_.log_factor(blocks);
         if (best == nullptr || log > *std::ranges::max_element(logs)) best = block;
         logs.push_back(log);
       }

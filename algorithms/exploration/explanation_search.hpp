@@ -24,12 +24,16 @@ inline constexpr std::string_view kUnknownVerdict = "UNKNOWN";
 struct Explanation {
   std::vector<std::size_t> families;       // of the space, in its order; empty: nothing is missing
   std::vector<const EffectBlock*> blocks;  // the best of each; the assessment's
-  ColumnBlock misfit;                      // columns beside them
   double log_evidence = 0;                 // over nothing missing
   double log_prior = 0;
   double weight = 0;       // posterior
   double log_e_value = 0;  // against it
   std::string verdict;     // "NONE", "stribeck", "load_coulomb+stribeck", "UNKNOWN", ...
+};
+
+struct WeighedVerdict {
+  std::string verdict;
+  double weight = 0;
 };
 
 struct FoundExplanations {

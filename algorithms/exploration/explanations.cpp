@@ -23,25 +23,23 @@ constexpr std::size_t kWholeFamily = 10;
 constexpr std::array<double, 2> kSizes = {1.5, 0.4};
 constexpr double kExplainedByBase = 1e-4;  // of a column's squares, on the reference
 
-constexpr double kMisfit = 0.4;  // of the noise: what one expects of a family's misfit
+constexpr double kMisfit = 0.27;  // of a family's size: what one expects of its misfit
 constexpr Eigen::Index kMisfitColumns = 14;
 constexpr Eigen::Index kMisfitCentres = 3;
 constexpr double kLeastMisfit = 1e-4;  // of the variance of the direction of most
 
-// Where something else is looked for as a whole, and the finer grid for something narrow.
+// Where something else is looked for as a whole, and the finer grids for something narrow.
 struct PlaceGrid {
   const char* signal;
   Eigen::Index centres;
-  Eigen::Index narrow;
+  std::vector<Eigen::Index> narrow = {};
 };
-constexpr std::array<PlaceGrid, 8> kGrids = {{{"v", 10, 24},
-                                              {"q", 20, 40},
-                                              {"g", 8, 0},
-                                              {"T", 6, 0},
-                                              {"t", 12, 0},
-                                              {"d", 8, 0},
-                                              {"a", 8, 0},
-                                              {"v2", 6, 0}}};
+const std::vector<PlaceGrid>& place_grids() {
+  static const std::vector<PlaceGrid> kGrids = {
+      {"v", 10, {24}}, {"q", 20, {28, 64}}, {"g", 8}, {"T", 6}, {"t", 12}, {"d", 8}, {"a", 8},
+      {"v2", 6}};
+  return kGrids;
+}
 // Of a product: the coarser, the position finer.
 constexpr Eigen::Index kCoarse = 3;
 constexpr Eigen::Index kFiner = 6;
@@ -76,6 +74,36 @@ std::vector<Template> templates_of(const std::vector<Atom>& atoms,
 ColumnBlock merged(const ColumnBlock& first, const ColumnBlock& second) {
   ColumnBlock out = first;
   out.insert(out.end(), second.begin(), second.end());
+  return out;
+}
+
+// How fast the temperature changes in each movement: the slope of a line [K/s].
+Eigen::ArrayXd warming(const Observations& rows) {
+  Eigen::ArrayXd out = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(rows.rows()));
+  const Signal* sensor = rows.find("T");
+  if (sensor == nullptr) return out;
+  const Eigen::Map<const Eigen::ArrayXd> warmth(sensor->values.data(), out.size());
+  const Eigen::Map<const Eigen::ArrayXd> clock(rows.time.data(), out.size());
+  for (const RowRange& range : make_clusters(rows.movement, 1).movements) {
+    const auto first = static_cast<Eigen::Index>(range.begin);
+    const auto count = static_cast<Eigen::Index>(range.size());
+    const Eigen::ArrayXd time = clock.segment(first, count) - clock.segment(first, count).mean();
+    const double squares = time.square().sum();
+    if (squares > 0) {
+      out.segment(first, count) = (time * warmth.segment(first, count)).sum() / squares;
+    }
+  }
+  return out;
+}
+
+// What is narrow need not be as wide as a radial function, or where one is: of those in rows of
+// `centres` from column `first` on, the two to either side of number k.
+ColumnBlock neighbours(Eigen::Index k, Eigen::Index centres, Eigen::Index first) {
+  const Eigen::Index row = k / centres * centres;
+  ColumnBlock out;
+  for (Eigen::Index j = std::max(row, k - 2); j <= std::min(row + centres - 1, k + 2); ++j) {
+    if (j != k) out.push_back(first + j);
+  }
   return out;
 }
 
@@ -137,9 +165,18 @@ void ExplanationSpace::add_library(const std::vector<double>& gear_ratios) {
     for (const std::string& signal : signals) {
       if (SignalAxis axis(reference_, signal); axis.varies()) misfit.axes.push_back(axis);
     }
+    if (std::ranges::count(signals, "T") > 0) misfit.late = late_scale();
     families_.push_back(std::move(family));
     misfits_.push_back(std::move(misfit));
   }
+}
+
+// Empty where no movement of the reference warms or cools.
+Eigen::RowVectorXd ExplanationSpace::late_scale() const {
+  const Eigen::MatrixXd late = warming(reference_).matrix().asDiagonal() * base_columns(reference_);
+  const Eigen::RowVectorXd squares = late.colwise().squaredNorm();
+  if (!(squares.minCoeff() > 0)) return {};
+  return (squares / static_cast<double>(late.rows())).cwiseSqrt().cwiseInverse();
 }
 
 // What remembers the motion lives in all of it.
@@ -179,14 +216,14 @@ void ExplanationSpace::add_places() {
     ColumnBlock whole;
     for (Eigen::Index j = next; j < next + size; ++j) {
       whole.push_back(j);
-      if (each) family.blocks.push_back({{j}});
+      if (each) family.blocks.push_back({{j}, 1, neighbours(j - next, place.centres[0], next)});
     }
     if (!each) family.blocks.push_back({whole});
     places_.push_back(std::move(place));
     next += size;
   };
   std::map<std::string, SignalAxis> axes;
-  for (const PlaceGrid& grid : kGrids) {
+  for (const PlaceGrid& grid : place_grids()) {
     const SignalAxis axis(reference_, grid.signal);
     if (!axis.varies()) continue;
     axes.emplace(grid.signal, axis);
@@ -196,7 +233,7 @@ void ExplanationSpace::add_places() {
     family.unknown = true;
     family.inputs = {input};
     add({{axis}, {grid.centres}}, false, family);
-    if (grid.narrow > 0) add({{axis}, {grid.narrow}}, true, family);
+    for (const Eigen::Index narrow : grid.narrow) add({{axis}, {narrow}}, true, family);
     families_.push_back(std::move(family));
   }
   for (const auto& [first, second] : smoothed_pairs()) {
@@ -234,34 +271,41 @@ void ExplanationSpace::settle_scale() {
   }
   for (ExplainingFamily& family : families_) {
     for (EffectBlock& block : family.blocks) {
-      std::erase_if(block.columns,
-                    [&](Eigen::Index j) { return dead[static_cast<std::size_t>(j)] != 0; });
+      const auto is_dead = [&](Eigen::Index j) { return dead[static_cast<std::size_t>(j)] != 0; };
+      std::erase_if(block.columns, is_dead);
+      std::erase_if(block.misfit, is_dead);
     }
     std::erase_if(family.blocks, [](const EffectBlock& block) { return block.columns.empty(); });
     std::ranges::sort(family.blocks);
     family.blocks.erase(std::ranges::unique(family.blocks).begin(), family.blocks.end());
     std::vector<EffectBlock> sized;
     for (const double size : kSizes) {
-      for (const EffectBlock& block : family.blocks) sized.push_back({block.columns, size});
+      for (const EffectBlock& block : family.blocks)
+        sized.push_back({block.columns, size, block.misfit});
     }
     family.blocks = std::move(sized);
     if (family.blocks.empty()) untestable_.push_back(family.name);
   }
 }
 
-// The family's shapes, then the same times radial functions of each of its signals.
+// The family's shapes, the same times radial functions of each of its signals, then the base times
+// the warming where it lives in a temperature.
 Eigen::MatrixXd ExplanationSpace::shaped(const Misfit& misfit, const Observations& rows,
                                          const Eigen::MatrixXd& formulas) const {
   const Eigen::MatrixXd own = formulas.middleCols(misfit.first, misfit.count) *
                               scale_.segment(misfit.first, misfit.count).asDiagonal();
   const auto axes = static_cast<Eigen::Index>(misfit.axes.size());
-  Eigen::MatrixXd out(own.rows(), own.cols() * (1 + kMisfitCentres * axes));
+  Eigen::MatrixXd out(own.rows(), own.cols() * (1 + kMisfitCentres * axes) + misfit.late.size());
   out.leftCols(own.cols()) = own;
   Eigen::Index next = own.cols();
   for (const SignalAxis& axis : misfit.axes) {
     const Eigen::MatrixXd radial = radial_columns(axis.unit(rows), kMisfitCentres);
     out.middleCols(next, own.cols() * kMisfitCentres) = column_products(radial, own);
     next += own.cols() * kMisfitCentres;
+  }
+  if (misfit.late.size() > 0) {
+    out.rightCols(misfit.late.size()) =
+        warming(rows).matrix().asDiagonal() * base_columns(rows) * misfit.late.asDiagonal();
   }
   return out;
 }
@@ -287,8 +331,9 @@ void ExplanationSpace::add_misfits() {
       // misfit.
       fold.col(k) *= kMisfit * std::sqrt(std::sqrt(values[k] / most) * rows / values[k]);
     }
-    ColumnBlock& own = families_[f].misfit;
-    for (Eigen::Index k = 0; k < kept; ++k) own.push_back(scale_.size() + k);
+    for (EffectBlock& block : families_[f].blocks) {
+      for (Eigen::Index k = 0; k < kept; ++k) block.misfit.push_back(scale_.size() + k);
+    }
     scale_.conservativeResize(scale_.size() + kept);
     scale_.tail(kept).setOnes();
     misfits_[f].fold = std::move(fold);

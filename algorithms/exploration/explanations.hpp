@@ -9,9 +9,10 @@
 // its own misfit: what its shapes become where their size varies smoothly with the family's own
 // signals, the few directions of most variance over the reference. Where the family's shapes vanish
 // (a lag at constant speed, a ripple's mean over a turn) they vanish too, so that a misfit is no
-// reason to name another family.
+// reason to name another family. A sensor of temperature is late, too: what lives in a temperature
+// may live in where the temperature is going.
 //
-// Columns of a row depend on that row and the reference alone.
+// Columns of a row depend on its movement and the reference alone.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,8 +34,7 @@ struct ExplainingFamily {
   // Of a family of the library: those that tell it from others. Speed only carries an effect of
   // anything else.
   std::vector<std::string> characteristic;
-  std::vector<EffectBlock> blocks;  // the same columns in several sizes
-  ColumnBlock misfit;               // of a family of the library
+  std::vector<EffectBlock> blocks;  // the same columns in several sizes, each with the misfit
 };
 
 class ExplanationSpace {
@@ -61,11 +61,13 @@ class ExplanationSpace {
     Eigen::Index first = 0;  // of the formulas
     Eigen::Index count = 0;
     std::vector<SignalAxis> axes;
-    Eigen::MatrixXd fold;  // shapes x (1 + axes) -> columns
+    Eigen::RowVectorXd late;  // scale of the base times the warming; empty: not of a temperature
+    Eigen::MatrixXd fold;     // shapes x (1 + axes), late -> columns
   };
 
   void add_library(const std::vector<double>& gear_ratios);
   std::vector<std::string> signals_of(std::span<const Expression> formulas) const;
+  Eigen::RowVectorXd late_scale() const;
   std::vector<std::string> inputs_of(const std::vector<std::string>& signals) const;
   void add_places();
   void settle_scale();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "algorithms/exploration/movement_choice.hpp"
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench::loop {
@@ -22,9 +23,9 @@ constexpr double kLookAgain = 1.05;       // seconds since the last look
 constexpr std::size_t kMostRefused = 40;  // one after the other
 constexpr std::size_t kFewestMovements = 5;
 constexpr std::size_t kVerdictsTold = 5;
-constexpr int kSureLooks = 3;         // running
 constexpr double kRestCounts = 0.25;  // of a second of motion: it is waited for
-constexpr double kAskAgain = 1.5;     // seconds since the diagnosis said otherwise
+constexpr double kAskAgain = 1.1;     // seconds since the diagnosis said otherwise
+constexpr double kHindsight = 5;      // times alpha: what the weights may leave to others
 
 // Both ways at two speeds, and reversals: without one the distance since the last is not known.
 std::vector<PlannedMovement> opening_movements(const MotionLimits& limits) {
@@ -139,7 +140,8 @@ class Explorer {
         out_.end = ExplorationEnd::budget;
         break;
       }
-      if (!execute(*next, cost_s)) {
+      if (!execute(*next, cost_s) && !execute_rested(*next, cost_s)) {
+        if (next->candidate) refused_[*next->candidate] = 1;
         if (++refused_running_ <= kMostRefused) continue;
         out_.end = ExplorationEnd::nothing_tells;
         break;
@@ -166,7 +168,6 @@ class Explorer {
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::bad_input) throw;
       out_.refused.emplace_back(error.what());
-      if (next.candidate) refused_[*next.candidate] = 1;
       return false;
     }
     now_.time_s += next.movement.rest + cost_s;
@@ -187,17 +188,26 @@ class Explorer {
     return true;
   }
 
-  // Once could be chance: few rows do not tell their noise yet.
+  // What was too warm for a movement need not be after a rest.
+  bool execute_rested(NextMovement next, double cost_s) {
+    if (next.movement.rest >= limits_.longest_rest_s) return false;
+    next.movement.rest = limits_.longest_rest_s;
+    return execute(next, cost_s);
+  }
+
+  double log_e_value_of(const std::string& verdict) const {
+    const auto found = std::ranges::find(last()->forecast, verdict, &ForecastVerdict::verdict);
+    return found == last()->forecast.end() ? 0 : found->log_e_value;
+  }
+
+  // What was said before the rows came says so, what they say in hindsight does, and the diagnosis.
   bool sure() {
-    const std::vector<WeighedVerdict> verdicts = verdicts_of(*last(), false);
-    const bool again = verdicts.front().verdict == sure_of_;
-    const bool now = verdicts.front().weight >= 1 - options_.alpha;
-    sure_looks_ = now ? (again ? sure_looks_ + 1 : 1) : 0;
-    sure_of_ = verdicts.front().verdict;
-    if (sure_looks_ < kSureLooks) return false;
-    if (denied_ == sure_of_ && out_.seconds < kAskAgain * denied_at_s_) return false;
+    const WeighedVerdict leader = verdicts_of(*last(), false).front();
+    if (leader.weight < 1 - kHindsight * options_.alpha) return false;
+    if (log_e_value_of(leader.verdict) < -elementary::log(options_.alpha)) return false;
+    if (denied_ == leader.verdict && out_.seconds < kAskAgain * denied_at_s_) return false;
     if (diagnosis_agrees()) return true;
-    denied_ = sure_of_;
+    denied_ = leader.verdict;
     denied_at_s_ = out_.seconds;
     return false;
   }
@@ -287,6 +297,7 @@ class Explorer {
     const std::vector<WeighedVerdict> verdicts = verdicts_of(*last(), false);
     out_.verdict = verdicts.front().verdict;
     out_.weight = verdicts.front().weight;
+    out_.log_e_value = log_e_value_of(out_.verdict);
     out_.left = verdicts_of(*last(), true);
     out_.unknown = out_.verdict.ends_with(kUnknownVerdict);
     for (const Explanation& one : last()->explanations) {
@@ -317,8 +328,6 @@ class Explorer {
   std::size_t assessed_ = 0;  // movements
   JointNow now_;
   double looked_at_s_ = 0;
-  std::string sure_of_;
-  int sure_looks_ = 0;
   std::string denied_;  // the verdict that the diagnosis did not share, and when
   double denied_at_s_ = 0;
   Exploration out_;

@@ -6,6 +6,11 @@
 //
 //   const Exploration done = explore(limits, execute, options, informative_movements());
 //
+// Sure: what a verdict said of the rows before they came is 1/alpha times likelier than what all
+// others said (forecasts.hpp), in hindsight it has all but a few alpha of the weight, and the
+// loop's own diagnosis of the same rows says the same. A movement that is refused is asked for
+// again after a rest.
+//
 // Who executes is the caller's business: a simulated world, a program, a robot. Deterministic given
 // the answers. Cost: an assessment (assessment.hpp) a look; a look after every movement at first,
 // then whenever the seconds have grown by a twentieth. The loop's own diagnosis, which takes
@@ -43,11 +48,6 @@ struct ExplorerOptions {
 // The rows of a movement. Throws Error (bad_input) where it is refused: another one is asked for.
 using ExecuteMovement = std::function<Dataset(const PlannedMovement&)>;
 
-struct WeighedVerdict {
-  std::string verdict;
-  double weight = 0;
-};
-
 struct ExplorationStep {
   PlannedMovement movement;
   double cost_s = 0;
@@ -68,7 +68,8 @@ struct Exploration {
   std::vector<std::string> families;  // of the library, in it
   bool unknown = false;
   std::vector<std::string> inputs;   // where it lives, where unknown
-  double weight = 0;                 // posterior of the verdict
+  double weight = 0;                 // posterior of the verdict, in hindsight
+  double log_e_value = 0;            // of what it said before the rows came (forecasts.hpp)
   std::vector<WeighedVerdict> left;  // that cannot be excluded, the likeliest first
   // What the loop's own diagnosis said when it was last asked, in the verdict's words; empty:
   // never.

@@ -38,7 +38,8 @@ std::vector<double> load_factors(const MotionLimits& limits) {
 
 struct Layout {
   double begin_s;
-  double temperature_degc;
+  double temperature_degc;  // when it begins
+  double warming_k_s = 0;
 };
 
 // The rows of each movement from its own begin on.
@@ -79,7 +80,7 @@ Dataset rows_of(std::span<const PlannedMovement> movements, const Dataset& like,
             value = now.gravity_nm;
             break;
           case Role::temperature:
-            value = layout.temperature_degc;
+            value = layout.temperature_degc + layout.warming_k_s * t_s;
             break;
           case Role::other_velocity:
             value = now.other.velocity_rad_s;
@@ -162,10 +163,13 @@ Dataset reference_rows(std::span<const PlannedMovement> movements, const Dataset
   const auto count = static_cast<double>(movements.size());
   return rows_of(movements, like, limits, rate_hz, [&](std::size_t m) {
     const double part = (static_cast<double>(m) + 0.5) / count;
-    // Warmth in another order than time (a low-discrepancy sequence).
-    const double warmth = std::fmod(0.5 + 0.6180339887498949 * static_cast<double>(m), 1.0);
-    return Layout{part * limits.seconds,
-                  limits.ambient_degc + kUsualWarmth * warmth * limits.temperature_rise_k};
+    // Warmth, and how it changes, in other orders than time (low-discrepancy sequences).
+    const auto number = static_cast<double>(m);
+    const double warmth = std::fmod(0.5 + 0.6180339887498949 * number, 1.0);
+    const double warming = 2 * std::fmod(0.5 + 0.4142135623730951 * number, 1.0) - 1;
+    const double usual_k = kUsualWarmth * limits.temperature_rise_k;
+    return Layout{part * limits.seconds, limits.ambient_degc + usual_k * warmth,
+                  usual_k * warming / kUsualCooling_s};
   });
 }
 

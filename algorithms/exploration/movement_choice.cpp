@@ -82,7 +82,7 @@ BlockInformation information(const Eigen::MatrixXd& gram, const Eigen::VectorXd&
 }
 
 Eigen::VectorXd mean_of(const Assessment& now, const Explanation& one, const Columns& block) {
-  const EvidenceTable::Posterior posterior = now.table.posterior(one.blocks, one.misfit);
+  const EvidenceTable::Posterior posterior = now.table.posterior(one.blocks);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(block.size()));
   Eigen::Index k = 0;
   for (const EffectBlock* own : one.blocks) {
@@ -100,7 +100,9 @@ Contrast contrast_of(const Assessment& now, const Explanation& larger, const Exp
   Contrast out;
   out.columns = without(columns_of(smaller), block);
   for (const Explanation* one : {&larger, &smaller}) {
-    for (const Eigen::Index j : one->misfit) out.columns.add(j, 1);
+    for (const EffectBlock* own : one->blocks) {
+      for (const Eigen::Index j : own->misfit) out.columns.add(j, 1 / (own->size * own->size));
+    }
   }
   for (std::size_t k = 0; k < block.size(); ++k) {
     out.columns.add(block.column[k], block.precision[k]);

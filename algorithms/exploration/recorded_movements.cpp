@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -134,29 +135,44 @@ AskedRecordings ask(const Observations& data, const Offered& offered, const Verd
   return out;
 }
 
+// In place.
+void cut(const std::vector<double>& time, double longest_s, std::vector<int>& movement,
+         std::vector<std::string>& names) {
+  std::vector<std::string> parted;
+  for (const RowRange& range : make_clusters(movement, 1).movements) {
+    const double begin = time[range.begin];
+    const double whole = time[range.end - 1] - begin;
+    const int wanted = static_cast<int>(std::ceil(whole / longest_s));
+    const int parts =
+        std::clamp(wanted, 1, std::max(1, static_cast<int>(range.size() / kFewestRows)));
+    const int first = static_cast<int>(parted.size());
+    const std::string& name = names[static_cast<std::size_t>(movement[range.begin])];
+    for (int k = 0; k < parts; ++k) {
+      parted.push_back(parts > 1 ? fmt::format("{} part {}", name, k + 1) : name);
+    }
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const double place = whole > 0 ? (time[i] - begin) / whole * parts : 0;
+      movement[i] = first + std::min(parts - 1, static_cast<int>(place));
+    }
+  }
+  names = std::move(parted);
+}
+
 }  // namespace
 
 Observations cut_movements(const Observations& data, double longest_s) {
   Observations out = data;
-  out.movement_names.clear();
   out.group.clear();
-  for (const RowRange& range : make_clusters(data.movement, 1).movements) {
-    const double begin = data.time[range.begin];
-    const double whole = data.time[range.end - 1] - begin;
-    const int wanted = static_cast<int>(std::ceil(whole / longest_s));
-    const int parts =
-        std::clamp(wanted, 1, std::max(1, static_cast<int>(range.size() / kFewestRows)));
-    const int first = static_cast<int>(out.movement_names.size());
-    const std::string& name =
-        data.movement_names[static_cast<std::size_t>(data.movement[range.begin])];
-    for (int k = 0; k < parts; ++k) {
-      out.movement_names.push_back(parts > 1 ? fmt::format("{} part {}", name, k + 1) : name);
-    }
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-      const double place = whole > 0 ? (data.time[i] - begin) / whole * parts : 0;
-      out.movement[i] = first + std::min(parts - 1, static_cast<int>(place));
-    }
-  }
+  cut(data.time, longest_s, out.movement, out.movement_names);
+  return out;
+}
+
+Dataset cut_movements(const Dataset& data, double longest_s) {
+  Dataset out = data;
+  std::vector<double> time(data.rows());
+  std::iota(time.begin(), time.end(), 0.0);
+  const Channel* clock = data.find(Role::time);
+  cut(clock != nullptr ? clock->values : time, longest_s, out.movement, out.movement_names);
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "algorithms/exploration/explanations.hpp"
+#include "problems/dataset.hpp"
 #include "problems/preparation/observations.hpp"
 
 namespace tribench::loop {
@@ -19,6 +20,8 @@ namespace tribench::loop {
 // be asked for a part of a motion. Distances since reversal and the like are those of the whole.
 // longest_s > 0; without a time rows count as seconds.
 Observations cut_movements(const Observations& data, double longest_s);
+// The same of recorded rows; without a time each row is a second.
+Dataset cut_movements(const Dataset& data, double longest_s);
 
 // What rows say: "load_coulomb+stribeck", "NONE". Whose verdict it is does not matter here.
 using VerdictOf = std::function<std::string(const Observations&)>;

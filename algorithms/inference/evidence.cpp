@@ -30,8 +30,8 @@ Eigen::MatrixXd inverse_root(const Eigen::MatrixXd& products) {
 
 }  // namespace
 
-// Of the columns, those of a block times its size, over the root of how many they are: (I +
-// gram)^-1 and what follows.
+// Of the columns, those of a block times its size, over the root of how many they are, then those
+// of the misfits: (I + gram)^-1 and what follows.
 struct EvidenceTable::Solved {
   ColumnBlock columns;
   Eigen::LLT<Eigen::MatrixXd> factor;
@@ -65,8 +65,7 @@ EvidenceTable::EvidenceTable(const EvidenceSums& sums) {
   dof_ = std::max(1.0, static_cast<double>(sums.rows() - root.cols()));
 }
 
-EvidenceTable::Solved EvidenceTable::solve(std::span<const EffectBlock* const> blocks,
-                                           const ColumnBlock& beside) const {
+EvidenceTable::Solved EvidenceTable::solve(std::span<const EffectBlock* const> blocks) const {
   Solved solved;
   ColumnBlock& columns = solved.columns;
   std::vector<double> scale;
@@ -75,8 +74,10 @@ EvidenceTable::Solved EvidenceTable::solve(std::span<const EffectBlock* const> b
     const auto count = static_cast<double>(block->columns.size());
     scale.resize(columns.size(), block->size / std::sqrt(count));
   }
-  columns.insert(columns.end(), beside.begin(), beside.end());
-  scale.resize(columns.size(), 1);
+  for (const EffectBlock* block : blocks) {
+    columns.insert(columns.end(), block->misfit.begin(), block->misfit.end());
+    scale.resize(columns.size(), block->size);
+  }
   const auto count = static_cast<Eigen::Index>(columns.size());
   Eigen::MatrixXd gram(count, count);
   Eigen::VectorXd cross(count);
@@ -97,10 +98,9 @@ EvidenceTable::Solved EvidenceTable::solve(std::span<const EffectBlock* const> b
   return solved;
 }
 
-double EvidenceTable::log_factor(std::span<const EffectBlock* const> blocks,
-                                 const ColumnBlock& beside) const {
+double EvidenceTable::log_factor(std::span<const EffectBlock* const> blocks) const {
   if (blocks.empty() || squares_ <= 0) return 0;
-  const Solved solved = solve(blocks, beside);
+  const Solved solved = solve(blocks);
   double nats = -0.5 * dof_ * elementary::log(solved.squares / squares_);
   const auto& lower = solved.factor.matrixLLT();
   double determinant = 1;
@@ -128,23 +128,22 @@ double EvidenceTable::log_factor(std::span<const EffectBlock* const> blocks,
   return nats;
 }
 
-EvidenceTable::Posterior EvidenceTable::posterior(std::span<const EffectBlock* const> blocks,
-                                                  const ColumnBlock& beside) const {
+EvidenceTable::Posterior EvidenceTable::posterior(
+    std::span<const EffectBlock* const> blocks) const {
   Posterior out;
   if (blocks.empty()) {
     out.variance = squares_ / dof_;
     return out;
   }
-  const Solved solved = solve(blocks, beside);
+  const Solved solved = solve(blocks);
   out.mean = solved.scale.cwiseProduct(solved.mean);
   out.variance = solved.squares / dof_;
   return out;
 }
 
-Eigen::VectorXd EvidenceTable::left_of_products(std::span<const EffectBlock* const> blocks,
-                                                const ColumnBlock& beside) const {
+Eigen::VectorXd EvidenceTable::left_of_products(std::span<const EffectBlock* const> blocks) const {
   if (blocks.empty()) return cross_;
-  const Solved solved = solve(blocks, beside);
+  const Solved solved = solve(blocks);
   Eigen::VectorXd left = cross_;
   for (std::size_t k = 0; k < solved.columns.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);

@@ -11,8 +11,9 @@
 // ruled out at the rate n^(1 + p/2) instead of n^(p/2). The length's expectation is taken at the
 // posterior, block by block.
 //
-// Columns beside the blocks are what an effect may have besides and need not: a normal prior of
-// unit covariance (times sigma^2), with nothing against a coefficient of 0.
+// A block's misfit is what its effect may have besides and need not: columns with a normal prior of
+// unit covariance (times sigma^2 and the block's size squared: what is large may miss by more),
+// with nothing against a coefficient of 0.
 //
 // Columns are scaled by the caller so that 1 is a coefficient one expects, in units of the noise.
 // Rows are whitened (clusters.hpp). Not for models in which columns enter non-linearly.
@@ -30,10 +31,11 @@ namespace tribench::loop {
 // Columns by number.
 using ColumnBlock = std::vector<Eigen::Index>;
 
-// A block whose coefficients are expected to be as large as `size`.
+// A block whose coefficients are expected to be as large as `size`, and what it may miss by.
 struct EffectBlock {
   ColumnBlock columns;
   double size = 1;
+  ColumnBlock misfit = {};
   auto operator<=>(const EffectBlock&) const = default;
 };
 
@@ -62,20 +64,16 @@ class EvidenceTable {
   explicit EvidenceTable(const EvidenceSums& sums);
 
   // ln of the Bayes factor of the blocks together against the base alone. Cost: p^3.
-  double log_factor(std::span<const EffectBlock* const> blocks,
-                    const ColumnBlock& beside = {}) const;
+  double log_factor(std::span<const EffectBlock* const> blocks) const;
 
   struct Posterior {
-    Eigen::VectorXd
-        mean;             // of the blocks' columns in order and those beside, in the caller's scale
-    double variance = 0;  // sigma^2
+    Eigen::VectorXd mean;  // of the blocks' columns in order, then their misfits', as scaled
+    double variance = 0;   // sigma^2
   };
-  Posterior posterior(std::span<const EffectBlock* const> blocks,
-                      const ColumnBlock& beside = {}) const;
+  Posterior posterior(std::span<const EffectBlock* const> blocks) const;
 
   // Products of all columns with what base and blocks leave of the target.
-  Eigen::VectorXd left_of_products(std::span<const EffectBlock* const> blocks,
-                                   const ColumnBlock& beside = {}) const;
+  Eigen::VectorXd left_of_products(std::span<const EffectBlock* const> blocks) const;
 
   // Cross products of what the base leaves of the columns.
   const Eigen::MatrixXd& gram() const { return gram_; }
@@ -83,7 +81,7 @@ class EvidenceTable {
 
  private:
   struct Solved;
-  Solved solve(std::span<const EffectBlock* const> blocks, const ColumnBlock& beside) const;
+  Solved solve(std::span<const EffectBlock* const> blocks) const;
 
   Eigen::MatrixXd gram_;
   Eigen::VectorXd cross_;  // with the target

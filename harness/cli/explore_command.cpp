@@ -21,6 +21,7 @@
 #include "harness/cli/number_options.hpp"
 #include "harness/exploration/executing_program.hpp"
 #include "harness/exploration/exploration_report.hpp"
+#include "harness/exploration/recorded_world.hpp"
 #include "harness/exploration/world_folder.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/reading/file_text.hpp"
@@ -68,11 +69,20 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
   if (!arguments.out.empty()) make_output_folder(arguments.out);
   const loop::NamedPlan& plan = loop::find_plan(arguments.plan);
   std::optional<WorldFolder> folder;
+  std::optional<RecordedWorld> recorded;
   MotionLimits limits;
   loop::ExecuteMovement execute;
   loop::ExplorerOptions options;
   options.alpha = arguments.alpha;
-  if (!arguments.world.empty()) {
+  if (!arguments.world.empty() && RecordedWorld::is_in(arguments.world)) {
+    recorded.emplace(std::filesystem::path(arguments.world));
+    limits = recorded->limits();
+    limits.seconds = std::max(0.0, limits.seconds - recorded->seconds_used());
+    options.start_rad = recorded->position_rad();
+    execute = [&](const PlannedMovement& movement) {
+      return recorded->execute({movement}, "the plan").rows;
+    };
+  } else if (!arguments.world.empty()) {
     folder.emplace(std::filesystem::path(arguments.world));
     limits = folder->world().limits();
     limits.seconds = std::max(0.0, limits.seconds - folder->world().seconds_used());

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 
@@ -118,6 +119,7 @@ std::string exploration_json(const Exploration& done, const SecondOpinion& secon
                          {"unknown", done.unknown},
                          {"inputs", done.inputs},
                          {"weight", done.weight},
+                         {"log_e_value", done.log_e_value},
                          {"end", exploration_end_name(done.end)},
                          {"seconds", done.seconds},
                          {"alpha", alpha},
@@ -136,7 +138,8 @@ std::string exploration_json(const Exploration& done, const SecondOpinion& secon
 std::string exploration_terminal(const Exploration& done, const SecondOpinion& second,
                                  double alpha) {
   std::string text =
-      fmt::format("{} (weight {:.4g}): {}\n", done.verdict, done.weight, end_words(done, alpha));
+      fmt::format("{} (e-value {:.3g}, weight {:.4g}): {}\n", done.verdict,
+                  elementary::exp(done.log_e_value), done.weight, end_words(done, alpha));
   text += fmt::format("  {} movements, {:.1f} s of motion, {} rows\n", done.steps.size(),
                       done.seconds, done.data.rows());
   if (done.unknown) text += fmt::format("  it lives in {}\n", fmt::join(done.inputs, " x "));

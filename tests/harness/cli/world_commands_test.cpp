@@ -98,6 +98,41 @@ TEST(WorldCommand, RevealsWhatTheSealSaidAndNothingIsAskedAfterwards) {
   EXPECT_THAT(late.errors, HasSubstr("revealed"));
 }
 
+// What was recorded is given as it was recorded, the nearest that is left first, each once.
+TEST(WorldCommand, RecordingsAreAWorldOfTheirOwn) {
+  const TemporaryFolder folder;
+  const auto path = [&](const char* name) { return (folder / name).string(); };
+  ASSERT_EQ(run_tribench({"world", "7", "--out", path("joint")}).status, 0);
+  write_text(folder / "all.csv", std::string(kHeader) + kThere + kBack);
+  ASSERT_EQ(run_tribench(
+                {"world", path("joint"), "execute", path("all.csv"), "--out", path("recorded.csv")})
+                .status,
+            0);
+  const ProgramRun made =
+      run_tribench({"world", path("recorded.csv"), "--longest", "100", "--out", path("again")});
+  ASSERT_EQ(made.status, 0) << made.errors;
+  EXPECT_THAT(made.output, HasSubstr("2 recorded movements"));
+  write_text(folder / "back.csv", std::string(kHeader) + "constant,-0.3,0.9,-0.9\n");
+  const auto ask = [&] {
+    return run_tribench({"world", path("again"), "execute", path("back.csv"), "--out",
+                         path("given.csv"), "--json"});
+  };
+  const ProgramRun first = ask();
+  ASSERT_EQ(first.status, 0) << first.errors;
+  EXPECT_EQ(json::parse(first.output)["given"], json::array({"move 2"}));
+  const std::vector<std::string> all = rows_of(read_text(folder / "recorded.csv"));
+  const std::vector<std::string> given = rows_of(read_text(folder / "given.csv"));
+  ASSERT_LT(given.size(), all.size());
+  EXPECT_TRUE(std::ranges::equal(given, std::vector(all.end() - std::ssize(given), all.end())));
+  EXPECT_EQ(json::parse(ask().output)["given"], json::array({"move 1"}));
+  const ProgramRun third = ask();
+  EXPECT_EQ(third.status, 2);
+  EXPECT_THAT(third.errors, HasSubstr("all 2 recorded movements have been given"));
+  const ProgramRun told = run_tribench({"world", path("again"), "reveal"});
+  EXPECT_EQ(told.status, 2);
+  EXPECT_THAT(told.errors, HasSubstr("nobody knows what a recorded joint hides"));
+}
+
 TEST(ExploreCommand, WritesItsPathAndSaysWhenItIsNotSure) {
   const TemporaryFolder folder;
   const std::string world = (folder / "w").string();
