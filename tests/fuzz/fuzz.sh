@@ -24,6 +24,7 @@ seeds_of() {
     grid) echo "$root/grids" ;;
     manifest) echo "$root/problems/measured" ;;
     effect) echo "$root/examples/effects" ;;
+    suite) echo "$root/suites" ;;
     esac
 }
 
