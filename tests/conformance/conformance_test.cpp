@@ -164,6 +164,20 @@ TEST_P(EveryMethod, GivesTheSameFrontForOneTwoAndEightThreads) {
   }
 }
 
+// parfam and udsr once gave another formula where a column was called g, T or tau_m.
+TEST_P(EveryMethod, FindsTheSameWhateverTheColumnsAreCalled) {
+  Sample sample = friction_sample(40);
+  for (Input& input : sample.inputs) input.role = Role::none;
+  Setting setting;
+  setting.evaluations = 1'000'000;
+  const Outcome plain = run(registry_, GetParam(), sample, setting);
+  sample.inputs[0].name = "g";
+  sample.inputs[1].name = "T";
+  const Outcome named = run(registry_, GetParam(), sample, setting);
+  EXPECT_EQ(named.result.front, plain.result.front);
+  EXPECT_EQ(named.result.chosen, plain.result.chosen);
+}
+
 TEST_P(EveryMethod, ReturnsAtOnceWithoutABudget) {
   Sample sample = friction_sample(80);
   Setting setting;

@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
+#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench::testing {
@@ -42,6 +46,17 @@ TEST(ListCommand, GivesTheParametersOfOneMethodAsText) {
   const ProgramRun unknown = list({"methods", "pyrs"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.errors, HasSubstr("did you mean pysr?"));
+}
+
+TEST(ListCommand, NamesEveryGridThatIsShipped) {
+  const ProgramRun run = list({"grids", "--json"});
+  std::vector<std::string> names;
+  for (const auto& grid : nlohmann::json::parse(run.output)) names.push_back(grid.at("name"));
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(source_dir() / "grids")) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path().stem());
+  }
+  EXPECT_THAT(names, ::testing::UnorderedElementsAreArray(files));
 }
 
 TEST(ListCommand, SaysOfOneProblemWhatItIsMadeOf) {

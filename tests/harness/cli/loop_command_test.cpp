@@ -235,6 +235,17 @@ TEST(LoopCommand, FilesWithoutMovementsAreOneMovementEach) {
 }
 
 // Data that leave nothing to be found, or nothing to find it with.
+TEST(LoopCommand, AColumnThatNobodyUsesMayHoldAnything) {
+  const testing::TemporaryFolder folder;
+  const auto answer = [&](const std::string& header, auto line) {
+    const auto run = run_tribench({"loop", file_of(folder, header, 12, 20, line), "--json"});
+    return Json::parse(run.output)["error"];
+  };
+  EXPECT_EQ(answer(std::string(kPlainHeader) + ",junk",
+                   [](int m, int i) { return plain_line(m, i) + (i % 2 == 0 ? ",1e300" : ",-7"); }),
+            answer(kPlainHeader, plain_line));
+}
+
 TEST(LoopCommand, DegenerateDataNeitherCrashNorClaimAnything) {
   const testing::TemporaryFolder folder;
   const auto expect_nothing = [&](const std::string& header, const char* verdict, int status,
