@@ -11,6 +11,7 @@
 #include "algorithms/expression/edit.hpp"
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/singularity.hpp"
+#include "algorithms/expression/sum_of_products.hpp"
 
 namespace tribench {
 namespace {
@@ -18,128 +19,27 @@ namespace {
 bool is_sum(Op op) { return op == Op::add || op == Op::sub; }
 bool is_product(Op op) { return op == Op::mul || op == Op::div; }
 
-Expression power_of(const Expression& base, int power) {
-  return power == 1 ? base : build::power(base, power);
-}
-
 bool is_function(const Expression& formula, Op op) { return formula.node(formula.root()).op == op; }
 Expression argument_of(const Expression& formula) {
   return formula.subtree(formula.only_child(formula.root()));
 }
 
-}  // namespace
-
-// ---- a node as a sum of products, and back
-
-void Rewriter::multiply(Term& term, Factor factor) {
-  if (factor.base.size() == 1 && factor.base.node(0).is_constant()) {
-    const double value = apply(Op::pow, factor.base.node(0).value, factor.power);
-    if (std::isfinite(term.coefficient * value) && value != 0) {
-      term.coefficient *= value;
-      return;
-    }
-  }
-  for (Factor& each : term.factors) {
-    if (each.base == factor.base && (each.power > 0) == (factor.power > 0)) {
-      each.power += factor.power;
-      return;
-    }
-  }
-  term.factors.push_back(std::move(factor));
-}
-
-void Rewriter::add_factors(const Expression& formula, std::size_t i, int power, Term& term) {
-  const Node& node = formula.node(i);
-  if (node.op == Op::mul || node.op == Op::div) {
-    add_factors(formula, formula.left_child(i), power, term);
-    add_factors(formula, formula.right_child(i), node.op == Op::mul ? power : -power, term);
-    return;
-  }
-  if (node.op == Op::neg) {
-    if (power % 2 != 0) term.coefficient = -term.coefficient;
-    add_factors(formula, formula.only_child(i), power, term);
-    return;
-  }
-  if (node.op == Op::pow && formula.node(i - 1).is_constant()) {
-    const double exponent = formula.node(i - 1).value * power;
-    if (formula.node(i - 1).value > 0 && exponent != 0 && is_product_power(exponent) &&
-        is_product_power(formula.node(i - 1).value)) {
-      return add_factors(formula, formula.left_child(i), static_cast<int>(exponent), term);
-    }
-  }
-  multiply(term, {formula.subtree(i), power});
-}
-
-void Rewriter::add_terms(const Expression& formula, std::size_t i, double sign, Sum& sum) {
-  const Node& node = formula.node(i);
-  if (is_sum(node.op)) {
-    add_terms(formula, formula.left_child(i), sign, sum);
-    add_terms(formula, formula.right_child(i), node.op == Op::add ? sign : -sign, sum);
-    return;
-  }
-  if (node.op == Op::neg) return add_terms(formula, formula.only_child(i), -sign, sum);
-  Term term{sign, {}};
-  add_factors(formula, i, 1, term);
-  sum.push_back(std::move(term));
-}
-
-Rewriter::Sum Rewriter::sum_at(const Expression& formula, std::size_t i) {
-  Sum sum;
-  add_terms(formula, i, 1, sum);
-  return sum;
-}
-
-Expression Rewriter::formula_of(const Term& term) {
-  Expression above;
-  Expression below;
-  for (const Factor& factor : term.factors) {
-    Expression& side = factor.power > 0 ? above : below;
-    const Expression power = power_of(factor.base, std::abs(factor.power));
-    side = side.empty() ? power : Expression::binary(Op::mul, side, power);
-  }
-  if (above.empty()) {
-    above = Expression::constant(term.coefficient);
-  } else if (term.coefficient == -1) {
-    above = Expression::unary(Op::neg, above);
-  } else if (term.coefficient != 1) {
-    above = Expression::binary(Op::mul, Expression::constant(term.coefficient), above);
-  }
-  return below.empty() ? above : Expression::binary(Op::div, above, below);
-}
-
-Expression Rewriter::formula_of(const Sum& sum) {
-  Expression formula;
-  for (const Term& term : sum) {
-    Term positive = term;
-    positive.coefficient = std::abs(term.coefficient);
-    if (formula.empty()) {
-      formula = formula_of(term);
-    } else {
-      formula = Expression::binary(term.coefficient < 0 ? Op::sub : Op::add, formula,
-                                   formula_of(positive));
-    }
-  }
-  return formula;
-}
-
-// ---- sums
-
 // For every base on either side of the bar: the terms that have it, divided by the power that all
 // of them hold.
-void Rewriter::take_out_factors(const Sum& sum, std::vector<Expression>& out) {
-  std::vector<Factor> seen;
-  for (const Term& term : sum) {
-    for (const Factor& factor : term.factors) {
+void take_out_factors(const SumOfProducts& sum, std::vector<Expression>& out) {
+  std::vector<TermFactor> seen;
+  for (const SumTerm& term : sum) {
+    for (const TermFactor& factor : term.factors) {
       const bool is_above = factor.power > 0;
-      const auto same = [&](const Factor& other) {
+      const auto same = [&](const TermFactor& other) {
         return other.base == factor.base && (other.power > 0) == is_above;
       };
       if (std::ranges::any_of(seen, same)) continue;
       seen.push_back(factor);
-      Sum inside;
-      Sum outside;
+      SumOfProducts inside;
+      SumOfProducts outside;
       int power = factor.power;
-      for (const Term& each : sum) {
+      for (const SumTerm& each : sum) {
         const auto found = std::ranges::find_if(each.factors, same);
         if (found == each.factors.end()) {
           outside.push_back(each);
@@ -149,38 +49,113 @@ void Rewriter::take_out_factors(const Sum& sum, std::vector<Expression>& out) {
         inside.push_back(each);
       }
       if (inside.size() < 2) continue;
-      for (Term& each : inside) {
+      for (SumTerm& each : inside) {
         std::ranges::find_if(each.factors, same)->power -= power;
-        std::erase_if(each.factors, [](const Factor& f) { return f.power == 0; });
+        std::erase_if(each.factors, [](const TermFactor& f) { return f.power == 0; });
       }
-      Term product;
-      multiply(product, {formula_of(inside), 1});
-      multiply(product, {factor.base, power});
+      SumTerm product;
+      multiply_by(product, {formula_of(inside), 1});
+      multiply_by(product, {factor.base, power});
       outside.push_back(std::move(product));
       out.push_back(formula_of(outside));
     }
   }
 }
 
-void Rewriter::take_out_numbers(const Sum& sum, std::vector<Expression>& out) {
+void take_out_numbers(const SumOfProducts& sum, std::vector<Expression>& out) {
   for (std::size_t first = 0; first < sum.size(); ++first) {
     const double size = std::abs(sum[first].coefficient);
     if (size == 1 || size == 0) continue;
-    Sum inside;
-    Sum outside;
-    for (const Term& term : sum) {
+    SumOfProducts inside;
+    SumOfProducts outside;
+    for (const SumTerm& term : sum) {
       (std::abs(term.coefficient) == size ? inside : outside).push_back(term);
     }
     if (inside.size() < 2 || std::abs(sum[first].coefficient) != size) continue;
-    for (Term& term : inside) term.coefficient = term.coefficient < 0 ? -1 : 1;
+    for (SumTerm& term : inside) term.coefficient = term.coefficient < 0 ? -1 : 1;
     outside.push_back({size, {{formula_of(inside), 1}}});
     out.push_back(formula_of(outside));
   }
 }
 
-void Rewriter::drop_negligible(const Sum& sum, std::vector<Expression>& out) const {
+void multiply_out(const SumTerm& term, std::vector<Expression>& out) {
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    const TermFactor& factor = term.factors[i];
+    if (factor.power != 1 || !is_sum(factor.base.node(factor.base.root()).op)) continue;
+    SumTerm rest = term;
+    rest.factors.erase(rest.factors.begin() + static_cast<std::ptrdiff_t>(i));
+    SumOfProducts sum = sum_of_products(factor.base, factor.base.root());
+    for (SumTerm& each : sum) {
+      each.coefficient *= rest.coefficient;
+      for (const TermFactor& other : rest.factors) multiply_by(each, other);
+    }
+    out.push_back(formula_of(sum));
+  }
+}
+
+// What stands below a bar in one of two sums, with the highest power that it has there.
+std::vector<TermFactor> bases_below(const SumOfProducts& a, const SumOfProducts& b) {
+  std::vector<TermFactor> bases;
+  for (const SumOfProducts* sum : {&a, &b}) {
+    for (const SumTerm& term : *sum) {
+      for (const TermFactor& factor : term.factors) {
+        if (factor.power >= 0) continue;
+        const auto same = std::ranges::find(bases, factor.base, &TermFactor::base);
+        if (same == bases.end()) {
+          bases.push_back({factor.base, -factor.power});
+        } else {
+          same->power = std::max(same->power, -factor.power);
+        }
+      }
+    }
+  }
+  return bases;
+}
+
+SumOfProducts multiplied(SumOfProducts sum, const TermFactor& by) {
+  for (SumTerm& term : sum) {
+    int left = by.power;
+    for (TermFactor& factor : term.factors) {
+      if (factor.base != by.base || factor.power >= 0) continue;
+      const int cancelled = std::min(left, -factor.power);
+      factor.power += cancelled;
+      left -= cancelled;
+    }
+    std::erase_if(term.factors, [](const TermFactor& factor) { return factor.power == 0; });
+    if (left > 0) multiply_by(term, {by.base, left});
+  }
+  return sum;
+}
+
+// (a/c + b) / (d/c + e) = (a + b c) / (d + e c), for every c below a bar.
+void clear_fractions(const SumTerm& term, std::vector<Expression>& out) {
+  const auto is_sum_factor = [&](const TermFactor& factor, int power) {
+    return factor.power == power && is_sum(factor.base.node(factor.base.root()).op);
+  };
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    for (std::size_t j = 0; j < term.factors.size(); ++j) {
+      if (!is_sum_factor(term.factors[i], 1) || !is_sum_factor(term.factors[j], -1)) continue;
+      const SumOfProducts above =
+          sum_of_products(term.factors[i].base, term.factors[i].base.root());
+      const SumOfProducts below =
+          sum_of_products(term.factors[j].base, term.factors[j].base.root());
+      for (const TermFactor& cleared : bases_below(above, below)) {
+        SumTerm result = term;
+        result.factors[i].base = formula_of(multiplied(above, cleared));
+        result.factors[j].base = formula_of(multiplied(below, cleared));
+        out.push_back(formula_of(result));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+// ---- sums
+
+void Rewriter::drop_negligible(const SumOfProducts& sum, std::vector<Expression>& out) const {
   for (std::size_t i = 0; i < sum.size(); ++i) {
-    Sum rest = sum;
+    SumOfProducts rest = sum;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
     const double largest = range(formula_of(sum[i])).magnitude();
     const Expression others = formula_of(rest);
@@ -188,28 +163,13 @@ void Rewriter::drop_negligible(const Sum& sum, std::vector<Expression>& out) con
   }
 }
 
-void Rewriter::rewrite_sum(const Sum& sum, std::vector<Expression>& out) const {
+void Rewriter::rewrite_sum(const SumOfProducts& sum, std::vector<Expression>& out) const {
   take_out_factors(sum, out);
   take_out_numbers(sum, out);
   drop_negligible(sum, out);
 }
 
 // ---- products
-
-void Rewriter::multiply_out(const Term& term, std::vector<Expression>& out) {
-  for (std::size_t i = 0; i < term.factors.size(); ++i) {
-    const Factor& factor = term.factors[i];
-    if (factor.power != 1 || !is_sum(factor.base.node(factor.base.root()).op)) continue;
-    Term rest = term;
-    rest.factors.erase(rest.factors.begin() + static_cast<std::ptrdiff_t>(i));
-    Sum sum = sum_at(factor.base, factor.base.root());
-    for (Term& each : sum) {
-      each.coefficient *= rest.coefficient;
-      for (const Factor& other : rest.factors) multiply(each, other);
-    }
-    out.push_back(formula_of(sum));
-  }
-}
 
 bool Rewriter::is_sign_of(const Expression& sign, const Expression& whole) const {
   if (is_function(sign, Op::sgn)) return argument_of(sign) == whole;
@@ -219,14 +179,14 @@ bool Rewriter::is_sign_of(const Expression& sign, const Expression& whole) const
 }
 
 // Two factors as one, or one as what it is the root or the magnitude of.
-void Rewriter::merge_pairs(const Term& term, std::vector<Expression>& out) const {
-  const auto with = [&](std::size_t i, std::size_t j, const std::vector<Factor>& merged) {
-    Term result{term.coefficient, {}};
+void Rewriter::merge_pairs(const SumTerm& term, std::vector<Expression>& out) const {
+  const auto with = [&](std::size_t i, std::size_t j, const std::vector<TermFactor>& merged) {
+    SumTerm result{term.coefficient, {}};
     for (std::size_t k = 0; k < term.factors.size(); ++k) {
-      if (k != i && k != j) multiply(result, term.factors[k]);
+      if (k != i && k != j) multiply_by(result, term.factors[k]);
     }
-    for (const Factor& each : merged) {
-      if (each.power != 0) multiply(result, each);
+    for (const TermFactor& each : merged) {
+      if (each.power != 0) multiply_by(result, each);
     }
     out.push_back(formula_of(result));
   };
@@ -259,61 +219,7 @@ void Rewriter::merge_pairs(const Term& term, std::vector<Expression>& out) const
   }
 }
 
-// (a/c + b) / (d/c + e) = (a + b c) / (d + e c), for every c below a bar.
-void Rewriter::clear_fractions(const Term& term, std::vector<Expression>& out) {
-  const auto is_sum_factor = [&](const Factor& factor, int power) {
-    return factor.power == power && is_sum(factor.base.node(factor.base.root()).op);
-  };
-  for (std::size_t i = 0; i < term.factors.size(); ++i) {
-    for (std::size_t j = 0; j < term.factors.size(); ++j) {
-      if (!is_sum_factor(term.factors[i], 1) || !is_sum_factor(term.factors[j], -1)) continue;
-      const Sum above = sum_at(term.factors[i].base, term.factors[i].base.root());
-      const Sum below = sum_at(term.factors[j].base, term.factors[j].base.root());
-      for (const Factor& cleared : bases_below(above, below)) {
-        Term result = term;
-        result.factors[i].base = formula_of(multiplied(above, cleared));
-        result.factors[j].base = formula_of(multiplied(below, cleared));
-        out.push_back(formula_of(result));
-      }
-    }
-  }
-}
-
-// What stands below a bar in one of two sums, with the highest power that it has there.
-std::vector<Rewriter::Factor> Rewriter::bases_below(const Sum& a, const Sum& b) {
-  std::vector<Factor> bases;
-  for (const Sum* sum : {&a, &b}) {
-    for (const Term& term : *sum) {
-      for (const Factor& factor : term.factors) {
-        if (factor.power >= 0) continue;
-        const auto same = std::ranges::find(bases, factor.base, &Factor::base);
-        if (same == bases.end()) {
-          bases.push_back({factor.base, -factor.power});
-        } else {
-          same->power = std::max(same->power, -factor.power);
-        }
-      }
-    }
-  }
-  return bases;
-}
-
-Rewriter::Sum Rewriter::multiplied(Sum sum, const Factor& by) {
-  for (Term& term : sum) {
-    int left = by.power;
-    for (Factor& factor : term.factors) {
-      if (factor.base != by.base || factor.power >= 0) continue;
-      const int cancelled = std::min(left, -factor.power);
-      factor.power += cancelled;
-      left -= cancelled;
-    }
-    std::erase_if(term.factors, [](const Factor& factor) { return factor.power == 0; });
-    if (left > 0) multiply(term, {by.base, left});
-  }
-  return sum;
-}
-
-void Rewriter::rewrite_product(const Term& term, std::vector<Expression>& out) const {
+void Rewriter::rewrite_product(const SumTerm& term, std::vector<Expression>& out) const {
   out.push_back(formula_of(term));
   multiply_out(term, out);
   clear_fractions(term, out);
@@ -324,29 +230,29 @@ void Rewriter::rewrite_product(const Term& term, std::vector<Expression>& out) c
 
 // exp(a + c) = e^c exp(a), exp(log x) = x, exp(a log x) = x^a.
 void Rewriter::rewrite_exp(const Expression& argument, std::vector<Expression>& out) const {
-  const Sum sum = sum_at(argument, argument.root());
+  const SumOfProducts sum = sum_of_products(argument, argument.root());
   for (std::size_t i = 0; i < sum.size(); ++i) {
-    Sum rest = sum;
+    SumOfProducts rest = sum;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-    Term product;
-    if (!rest.empty()) multiply(product, {Expression::unary(Op::exp, formula_of(rest)), 1});
-    const Term& term = sum[i];
+    SumTerm product;
+    if (!rest.empty()) multiply_by(product, {Expression::unary(Op::exp, formula_of(rest)), 1});
+    const SumTerm& term = sum[i];
     if (term.factors.empty()) {
       const double scale = apply(Op::exp, term.coefficient);
       if (!(scale > 1e-300 && scale < 1e300)) continue;
       product.coefficient = scale;
     } else if (term.factors.size() == 1 && term.factors[0].power == 1 &&
                is_function(term.factors[0].base, Op::log) && is_product_power(term.coefficient)) {
-      multiply(product, {argument_of(term.factors[0].base), static_cast<int>(term.coefficient)});
+      multiply_by(product, {argument_of(term.factors[0].base), static_cast<int>(term.coefficient)});
     } else {
-      const auto log = std::ranges::find_if(term.factors, [&](const Factor& factor) {
+      const auto log = std::ranges::find_if(term.factors, [&](const TermFactor& factor) {
         return factor.power == 1 && is_function(factor.base, Op::log);
       });
       if (log == term.factors.end() || !(range(argument_of(log->base)).low > 0)) continue;
-      Term exponent = term;
+      SumTerm exponent = term;
       exponent.factors.erase(exponent.factors.begin() + (log - term.factors.begin()));
-      multiply(product,
-               {Expression::binary(Op::pow, argument_of(log->base), formula_of(exponent)), 1});
+      multiply_by(product,
+                  {Expression::binary(Op::pow, argument_of(log->base), formula_of(exponent)), 1});
     }
     out.push_back(formula_of(product));
   }
@@ -367,26 +273,26 @@ void Rewriter::rewrite_log(const Expression& argument, std::vector<Expression>& 
 
 // sqrt(c x^2 y) = sqrt(c) |x| sqrt(y).
 void Rewriter::rewrite_sqrt(const Expression& argument, std::vector<Expression>& out) const {
-  const Sum sum = sum_at(argument, argument.root());
+  const SumOfProducts sum = sum_of_products(argument, argument.root());
   if (sum.size() != 1) return;
-  const Term& inside = sum[0];
+  const SumTerm& inside = sum[0];
   if (inside.coefficient > 0 && inside.coefficient != 1 && !inside.factors.empty()) {
-    Term rest = inside;
+    SumTerm rest = inside;
     rest.coefficient = 1;
-    out.push_back(formula_of(
-        Term{std::sqrt(inside.coefficient), {{Expression::unary(Op::sqrt, formula_of(rest)), 1}}}));
+    out.push_back(formula_of(SumTerm{std::sqrt(inside.coefficient),
+                                     {{Expression::unary(Op::sqrt, formula_of(rest)), 1}}}));
   }
   for (std::size_t i = 0; i < inside.factors.size(); ++i) {
-    const Factor& factor = inside.factors[i];
+    const TermFactor& factor = inside.factors[i];
     if (factor.power < 2 || factor.power % 2 != 0) continue;
-    Term rest = inside;
+    SumTerm rest = inside;
     rest.factors.erase(rest.factors.begin() + static_cast<std::ptrdiff_t>(i));
-    Term product;
+    SumTerm product;
     const Expression root = power_of(factor.base, factor.power / 2);
-    multiply(product, {Expression::unary(Op::abs, root), 1});
+    multiply_by(product, {Expression::unary(Op::abs, root), 1});
     if (range(factor.base).low >= 0) product.factors[0] = {root, 1};
     if (!rest.factors.empty() || rest.coefficient != 1) {
-      multiply(product, {Expression::unary(Op::sqrt, formula_of(rest)), 1});
+      multiply_by(product, {Expression::unary(Op::sqrt, formula_of(rest)), 1});
     }
     out.push_back(formula_of(product));
   }
@@ -447,11 +353,11 @@ std::vector<Expression> Rewriter::rewrites(const Expression& formula) const {
     if (is_sum(op)) {
       const std::size_t parent = parent_of(formula, i);
       const bool is_inner = parent < formula.size() && is_sum(formula.node(parent).op);
-      if (!is_inner) rewrite_sum(sum_at(formula, i), here);
+      if (!is_inner) rewrite_sum(sum_of_products(formula, i), here);
     } else if (is_product(op) || op == Op::pow) {
       const std::size_t parent = parent_of(formula, i);
       const bool is_inner = parent < formula.size() && is_product(formula.node(parent).op);
-      if (!is_inner) rewrite_product(sum_at(formula, i)[0], here);
+      if (!is_inner) rewrite_product(sum_of_products(formula, i)[0], here);
     } else if (arity(op) == 1 && op != Op::neg) {
       rewrite_function(op, formula.subtree(formula.only_child(i)), here);
     }

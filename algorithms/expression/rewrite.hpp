@@ -7,12 +7,10 @@
 //   sums       a common factor, or number, of some terms taken out; a term that is nothing beside
 //              the others dropped
 //   products   a factor that is a sum multiplied out; exponentials and roots merged; x sgn_x = |x|,
-//              |x| sgn_x = x
-//              fractions within a fraction cleared
+//              |x| sgn_x = x; fractions within a fraction cleared
 //   functions  exp of log and of a constant term, log of exp, of roots and powers, roots of squares
-//   and of constants,
-//              |x| of what has one sign; sin, tanh, exp and cos of arguments so small, tanh of ones
-//              so large, that the difference is below 1e-12 of the value
+//              and of constants, |x| of what has one sign; sin, tanh, exp and cos of arguments so
+//              small, tanh of ones so large, that the difference is below 1e-12 of the value
 //
 // A rewrite that needs a fact (a range, a sign) is offered where the box proves it. Values on the
 // box change by rounding, and by kNegligible of themselves where something is left out.
@@ -23,6 +21,7 @@
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/expression/input_box.hpp"
 #include "algorithms/expression/interval.hpp"
+#include "algorithms/expression/sum_of_products.hpp"
 
 namespace tribench {
 
@@ -36,34 +35,10 @@ class Rewriter {
   std::vector<Expression> rewrites(const Expression& formula) const;
 
  private:
-  struct Factor {
-    Expression base;
-    int power = 1;  // not 0
-  };
-  struct Term {
-    double coefficient = 1;
-    std::vector<Factor> factors;  // different bases on either side of the bar
-  };
-  using Sum = std::vector<Term>;
-
-  // The node that ends at i as a sum of products; a product has one term.
-  static Sum sum_at(const Expression& formula, std::size_t i);
-  static void add_terms(const Expression& formula, std::size_t i, double sign, Sum& sum);
-  static void add_factors(const Expression& formula, std::size_t i, int power, Term& term);
-  static void multiply(Term& term, Factor factor);
-  static Expression formula_of(const Term& term);
-  static Expression formula_of(const Sum& sum);
-
-  void rewrite_sum(const Sum& sum, std::vector<Expression>& out) const;
-  static void take_out_factors(const Sum& sum, std::vector<Expression>& out);
-  static void take_out_numbers(const Sum& sum, std::vector<Expression>& out);
-  void drop_negligible(const Sum& sum, std::vector<Expression>& out) const;
-  void rewrite_product(const Term& term, std::vector<Expression>& out) const;
-  static void multiply_out(const Term& term, std::vector<Expression>& out);
-  static void clear_fractions(const Term& term, std::vector<Expression>& out);
-  static std::vector<Factor> bases_below(const Sum& a, const Sum& b);
-  static Sum multiplied(Sum sum, const Factor& by);
-  void merge_pairs(const Term& term, std::vector<Expression>& out) const;
+  void rewrite_sum(const SumOfProducts& sum, std::vector<Expression>& out) const;
+  void drop_negligible(const SumOfProducts& sum, std::vector<Expression>& out) const;
+  void rewrite_product(const SumTerm& term, std::vector<Expression>& out) const;
+  void merge_pairs(const SumTerm& term, std::vector<Expression>& out) const;
   void rewrite_function(Op op, const Expression& argument, std::vector<Expression>& out) const;
   void rewrite_exp(const Expression& argument, std::vector<Expression>& out) const;
   void rewrite_log(const Expression& argument, std::vector<Expression>& out) const;

@@ -153,7 +153,7 @@ class Prover {
   // A box without doubles inside, on which a sign jumps: its corners are all the doubles there
   // are, and the search has evaluated them.
   bool passes_at_corners(const Cell& box, std::size_t failed) const {
-    if (bounds_.at(search_.culprit(failed)).decoration != Decoration::defined) return false;
+    if (bounds_.at(culprit_of(formula_, failed)).decoration != Decoration::defined) return false;
     std::size_t active = 0;
     for (const std::size_t j : bounds_.used_columns()) active += box[j].is_point() ? 0 : 1;
     return active <= WitnessSearch::kMaxCornerInputs;
@@ -174,7 +174,7 @@ class Prover {
 
   // How much the node varies over the box along an input, as far as its derivative tells.
   double variation(const Cell& box, std::size_t axis, std::size_t failed) const {
-    const std::size_t culprit = search_.culprit(failed);
+    const std::size_t culprit = culprit_of(formula_, failed);
     const double width = box[axis].high - box[axis].low;
     const auto along = [&](std::size_t node) {
       return bounds_.derivative(node, axis).magnitude() * width;

@@ -74,11 +74,11 @@ void WitnessSearch::enter(std::span<const Interval> cell) {
   signs_.assign(zeros_.size(), {});
 }
 
-std::size_t WitnessSearch::culprit(std::size_t i) const {
-  const Op op = formula_.node(i).op;
-  if (op == Op::div || op == Op::log || op == Op::sqrt) return i - 1;
-  if (op == Op::pow) return formula_.left_child(i);
-  return i;
+std::size_t culprit_of(const Expression& formula, std::size_t failed) {
+  const Op op = formula.node(failed).op;
+  if (op == Op::div || op == Op::log || op == Op::sqrt) return failed - 1;
+  if (op == Op::pow) return formula.left_child(failed);
+  return failed;
 }
 
 std::size_t WitnessSearch::trace(std::span<const double> point) {
@@ -224,7 +224,7 @@ std::optional<Witness> WitnessSearch::probe_random(std::span<const Interval> box
 }
 
 double WitnessSearch::distance(std::size_t failed) const {
-  const double value = values_[culprit(failed)];
+  const double value = values_[culprit_of(formula_, failed)];
   switch (formula_.node(failed).op) {
     case Op::log:
     case Op::sqrt:

@@ -16,6 +16,9 @@
 
 namespace tribench {
 
+// The node whose zeros, or whose leaving of its domain, make node `failed` fail.
+std::size_t culprit_of(const Expression& formula, std::size_t failed);
+
 class WitnessSearch {
  public:
   explicit WitnessSearch(const Expression& formula);
@@ -38,8 +41,6 @@ class WitnessSearch {
   // The smaller, the closer to failing node `failed` was at the point last probed.
   double distance(std::size_t failed) const;
   double distance_at(std::span<const double> point, std::size_t failed);
-  // The node whose zeros, or whose leaving of its domain, make node `failed` fail.
-  std::size_t culprit(std::size_t failed) const;
 
  private:
   struct Signs {
