@@ -69,8 +69,14 @@ std::string amount(const LoopUnit& unit, double value) {
 std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
 
 std::string where_judged(const LoopError& error) {
-  if (error.how.starts_with("pieces")) return "on pieces of the recording that it never saw";
-  if (error.how.starts_with("none")) return "on the rows that it was fitted to";
+  switch (error.judged_on) {
+    case LoopJudgedOn::pieces_of_one_movement:
+      return "on pieces of the recording that it never saw";
+    case LoopJudgedOn::rows_of_the_fit:
+      return "on the rows that it was fitted to";
+    case LoopJudgedOn::other_movements:
+      break;
+  }
   return "on movements that it never saw";
 }
 

@@ -347,6 +347,7 @@ Diagnosis diagnose_canonical(const Observations& data, const BaseMaker& base,
     const Observations cut = single ? cut_in_pieces(data) : data;
     Diagnosis out = diagnose_training(cut, {}, base, options, random);
     out.error = judge_in_turn(cut, base, out, random.split("in turn"));
+    if (single) out.error.judged_on = JudgedOn::pieces_of_one_movement;
     out.error.how = single ? "pieces of the one movement left out in turn"
                     : cut.group.empty()
                         ? (movements > turns_for(data) ? "a tenth of the movements left out in turn"
@@ -367,6 +368,7 @@ Diagnosis diagnose_canonical(const Observations& data, const BaseMaker& base,
   }
   const std::vector<int> test = choose_test_movements(data, options.test_share);
   Diagnosis out = diagnose_training(data, test, base, options, random);
+  out.error.judged_on = JudgedOn::rows_of_the_fit;
   out.error.how = "none held out";
   const std::vector<char> judged = rows_of(data, test, true, out.masked);
   if (std::ranges::count(judged, 1) > 0) {

@@ -157,9 +157,12 @@ struct MovementError {
   double mean_after = 0;
 };
 
+enum class JudgedOn { other_movements, pieces_of_one_movement, rows_of_the_fit };
+
 struct ErrorFinding {
   std::size_t test_movements = 0;
-  std::string how;  // "held out", "each movement left out in turn", "none held out"
+  JudgedOn judged_on = JudgedOn::other_movements;
+  std::string how;  // in words: "held out", "each movement left out in turn"
   double mae_before = std::numeric_limits<double>::quiet_NaN();
   double mae_after = std::numeric_limits<double>::quiet_NaN();
   double rmse_before = std::numeric_limits<double>::quiet_NaN();

@@ -56,8 +56,21 @@ LoopEffect effect_of(const EffectFinding& from) {
   return to;
 }
 
+LoopJudgedOn judged_on(JudgedOn from) {
+  switch (from) {
+    case JudgedOn::pieces_of_one_movement:
+      return LoopJudgedOn::pieces_of_one_movement;
+    case JudgedOn::rows_of_the_fit:
+      return LoopJudgedOn::rows_of_the_fit;
+    case JudgedOn::other_movements:
+      break;
+  }
+  return LoopJudgedOn::other_movements;
+}
+
 LoopError error_of(const ErrorFinding& from) {
   LoopError to;
+  to.judged_on = judged_on(from.judged_on);
   to.test_movements = from.test_movements;
   to.how = from.how;
   to.mae_before = from.mae_before;

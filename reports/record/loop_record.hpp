@@ -137,9 +137,12 @@ struct LoopMotion {
 };
 
 // Mean absolute errors on what took no part in the fit, before and after.
+enum class LoopJudgedOn { other_movements, pieces_of_one_movement, rows_of_the_fit };
+
 struct LoopError {
   std::size_t test_movements = 0;
-  std::string how;  // "held out", "each movement left out in turn"
+  LoopJudgedOn judged_on = LoopJudgedOn::other_movements;
+  std::string how;  // in words: "held out", "each movement left out in turn"
   double mae_before = kNoFigure;
   double mae_after = kNoFigure;
   double rmse_before = kNoFigure;
