@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -128,6 +129,9 @@ int run_guarded(int argc, char** argv, const Registry& registry) {
     print_message(fmt::format("tribench: {}\n", error.what()));
     return exit_code(error.kind() == ErrorKind::bad_input ? ExitStatus::bad_input
                                                           : ExitStatus::failed);
+  } catch (const std::bad_alloc&) {
+    print_message("tribench: there is not enough memory; give it less data or more memory\n");
+    return exit_code(ExitStatus::failed);
   } catch (const std::exception& error) {
     print_message(fmt::format("tribench: {}\n", error.what()));
     return exit_code(ExitStatus::failed);

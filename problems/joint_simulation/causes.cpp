@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "foundation/elementary.hpp"
@@ -181,41 +183,45 @@ Response notch(RandomStream random) {
              const Instant& now, double) { return bump(now.joint.position_rad - centre, width); };
 }
 
-}  // namespace
-
-const std::vector<Cause>& causes() {
+// Of the speed, the load, the acceleration and the other joint.
+std::vector<Cause> causes_of_speed_and_load() {
   using enum Role;
-  static const std::vector<Cause> kCauses = {
-      {"stribeck_exponential",
-       "s exp(-|v|/vs)",
-       {"stribeck"},
-       {},
-       {Role::velocity},
-       false,
-       exponential_stribeck},
-      {"stribeck_forwards",
-       "exp(-(v/vs)^2), forwards only",
-       {"stribeck"},
-       {},
-       {Role::velocity},
-       false,
-       stribeck_forwards},
-      {"viscous_power",
-       "s |v|^p",
-       {"nonlinear_viscous"},
-       {},
-       {Role::velocity},
-       false,
-       curved_viscous},
-      {"load", "s |g|", {"load_coulomb"}, {}, {gravity_torque}, false, load},
-      {"inertia", "a", {"inertia"}, {"lag"}, {acceleration}, false, simulation::inertia},
-      {"coupling",
-       "the other joint's velocity",
-       {"coupling"},
-       {},
-       {other_velocity},
-       false,
-       simulation::coupling},
+  return {{"stribeck_exponential",
+           "s exp(-|v|/vs)",
+           {"stribeck"},
+           {},
+           {Role::velocity},
+           false,
+           exponential_stribeck},
+          {"stribeck_forwards",
+           "exp(-(v/vs)^2), forwards only",
+           {"stribeck"},
+           {},
+           {Role::velocity},
+           false,
+           stribeck_forwards},
+          {"viscous_power",
+           "s |v|^p",
+           {"nonlinear_viscous"},
+           {},
+           {Role::velocity},
+           false,
+           curved_viscous},
+          {"load", "s |g|", {"load_coulomb"}, {}, {gravity_torque}, false, load},
+          {"inertia", "a", {"inertia"}, {"lag"}, {acceleration}, false, simulation::inertia},
+          {"coupling",
+           "the other joint's velocity",
+           {"coupling"},
+           {},
+           {other_velocity},
+           false,
+           simulation::coupling}};
+}
+
+// Of what the joint has done before.
+std::vector<Cause> causes_of_memory_and_wear() {
+  using enum Role;
+  return {
       // The part of a lag that is linear in the velocity is an inertia and nothing else.
       {"lag_of_velocity",
        "friction of a velocity filtered to first order",
@@ -246,56 +252,72 @@ const std::vector<Cause>& causes() {
        true,
        lugre},
       {"run_in_exponential", "s exp(-t/tau)", {"drift"}, {}, {time}, false, exponential_run_in},
-      {"run_in_logarithm", "-s log(1 + t/tau)", {"drift"}, {}, {time}, false, logarithmic_run_in},
-      {"output_ripple_harmonics",
-       "three harmonics of the output's turn",
-       {"output_ripple"},
-       {},
-       {position},
-       false,
-       output_harmonics},
-      {"output_ripple_drifting",
-       "a wave of the output whose phase drifts",
-       {"output_ripple"},
-       {},
-       {position},
-       false,
-       output_drifting},
-      {"gear_ripple_harmonics",
-       "three harmonics of the motor's turn",
-       {"gear_ripple"},
-       {},
-       {position},
-       false,
-       gear_harmonics},
-      {"gear_ripple_drifting",
-       "a wave of the motor whose phase drifts",
-       {"gear_ripple"},
-       {},
-       {position},
-       false,
-       gear_drifting},
-      {"temperature_lagged",
-       "v exp(-T/T0) of oil that is ahead of the sensor",
-       {"temperature"},
-       {},
-       {temperature},
-       false,
-       warm_oil},
-      {"gravity_wrong",
-       "G sin(q + a little)",
-       {"power_quadrant_gain", "payload"},
-       {},
-       {gravity_torque, position},
-       false,
-       wrong_gravity},
-      {"position_notch",
-       "a narrow notch in position, in no library",
-       {},
-       {},
-       {position},
-       false,
-       notch}};
+      {"run_in_logarithm", "-s log(1 + t/tau)", {"drift"}, {}, {time}, false, logarithmic_run_in}};
+}
+
+// Of the position and the temperature.
+std::vector<Cause> causes_of_position_and_temperature() {
+  using enum Role;
+  return {{"output_ripple_harmonics",
+           "three harmonics of the output's turn",
+           {"output_ripple"},
+           {},
+           {position},
+           false,
+           output_harmonics},
+          {"output_ripple_drifting",
+           "a wave of the output whose phase drifts",
+           {"output_ripple"},
+           {},
+           {position},
+           false,
+           output_drifting},
+          {"gear_ripple_harmonics",
+           "three harmonics of the motor's turn",
+           {"gear_ripple"},
+           {},
+           {position},
+           false,
+           gear_harmonics},
+          {"gear_ripple_drifting",
+           "a wave of the motor whose phase drifts",
+           {"gear_ripple"},
+           {},
+           {position},
+           false,
+           gear_drifting},
+          {"temperature_lagged",
+           "v exp(-T/T0) of oil that is ahead of the sensor",
+           {"temperature"},
+           {},
+           {temperature},
+           false,
+           warm_oil},
+          {"gravity_wrong",
+           "G sin(q + a little)",
+           {"power_quadrant_gain", "payload"},
+           {},
+           {gravity_torque, position},
+           false,
+           wrong_gravity},
+          {"position_notch",
+           "a narrow notch in position, in no library",
+           {},
+           {},
+           {position},
+           false,
+           notch}};
+}
+
+}  // namespace
+
+const std::vector<Cause>& causes() {
+  static const std::vector<Cause> kCauses = [] {
+    std::vector<Cause> all = causes_of_speed_and_load();
+    std::ranges::move(causes_of_memory_and_wear(), std::back_inserter(all));
+    std::ranges::move(causes_of_position_and_temperature(), std::back_inserter(all));
+    return all;
+  }();
   return kCauses;
 }
 
