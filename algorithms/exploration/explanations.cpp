@@ -277,7 +277,8 @@ void ExplanationSpace::settle_scale() {
     }
     std::erase_if(family.blocks, [](const EffectBlock& block) { return block.columns.empty(); });
     std::ranges::sort(family.blocks);
-    family.blocks.erase(std::ranges::unique(family.blocks).begin(), family.blocks.end());
+    family.blocks.erase(std::unique(family.blocks.begin(), family.blocks.end()),
+                        family.blocks.end());
     std::vector<EffectBlock> sized;
     for (const double size : kSizes) {
       for (const EffectBlock& block : family.blocks)

@@ -159,6 +159,7 @@ void set_target(Observations& out, const Dataset& data) {
 std::string signal_name(Role role, std::string_view channel) {
   for (const auto& [known, name] : kSignalNames) {
     if (known == role) return std::string(name);
+    if (role == Role::none && name == channel) return std::string(name) + "_";
   }
   return std::string(channel);
 }

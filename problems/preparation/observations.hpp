@@ -120,7 +120,7 @@ inline constexpr std::size_t kRowsOfSteadyMovement = 5;
 // Throws Error (bad_input): no velocity, no target, friction against velocity, no usable rows.
 Observations observe(const Dataset& data, const ObservationOptions& options = {});
 
-// A role's short name in formulas ("v"), or the channel's own.
+// A role's short name in formulas ("v"), or the channel's own, with _ where that is a role's name.
 std::string signal_name(Role role, std::string_view channel);
 
 // What every observation has, from whatever it was made: rows that are not finite are dropped and
