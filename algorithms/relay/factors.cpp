@@ -12,6 +12,8 @@ namespace {
 
 using namespace build;
 
+constexpr std::size_t kMostWavesTogether = 3;  // inputs: 20 products
+
 class List {
  public:
   List(const LogRows& rows, const OperatorSet& operators, std::initializer_list<FactorKind> kinds)
@@ -42,6 +44,21 @@ class List {
   }
   void add_powers(std::size_t i, std::size_t j) {
     add(FactorKind::power, Expression::binary(Op::pow, input(i), input(j)), {i, j});
+  }
+  // Of inputs j and later ones, `product` times a wave of each of one more.
+  void add_wave_products(std::size_t next, const Expression& product,
+                         const std::vector<std::size_t>& inputs) {
+    for (std::size_t j = next; j < rows_.inputs().size(); ++j) {
+      if (!rows_.is_of_order_one(j)) continue;
+      std::vector<std::size_t> longer = inputs;
+      longer.push_back(j);
+      for (const Op op : {Op::cos, Op::sin}) {
+        const Expression wave = function(op, input(j));
+        const Expression both = product.empty() ? wave : product * wave;
+        if (longer.size() > 1) add(FactorKind::wave_product, both, longer);
+        add_wave_products(j + 1, both, longer);
+      }
+    }
   }
   void add_pair(std::size_t i, std::size_t j) {
     const Expression a = input(i);
@@ -79,6 +96,7 @@ std::vector<KnownFactor> known_factors(const LogRows& rows, const OperatorSet& o
   }
 
   for (std::size_t j = 0; j < n; ++j) list.add_slow(j);
+  if (n <= kMostWavesTogether) list.add_wave_products(0, {}, {});
   for (std::size_t i = 0; i < n && n <= kMostPaired; ++i) {
     for (std::size_t j = 0; j < n; ++j) {
       if (i != j && rows.is_of_order_one(j)) list.add_powers(i, j);

@@ -15,8 +15,9 @@ inline constexpr std::size_t kMostPaired = 12;
 
 enum class FactorKind {
   input,
-  wave,        // sine, cosine of an input or of a difference
-  difference,  // of two inputs
+  wave,          // sine, cosine of an input or of a difference
+  wave_product,  // of sines and cosines of different inputs, of few inputs
+  difference,    // of two inputs
   sum,
   root,         // of a positive input
   power,        // x^y

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "algorithms/expression/build.hpp"
+#include "algorithms/expression/column_kernels.hpp"
 #include "algorithms/fitting/linear_least_squares.hpp"
 #include "algorithms/relay/factors.hpp"
+#include "algorithms/relay/subset_fits.hpp"
 #include "foundation/elementary.hpp"
 
 namespace tribench::relay {
@@ -22,6 +24,8 @@ constexpr double kExact = 1e-8;
 
 constexpr double kNoPart = 1e-6;  // of log |y| that a column explains
 constexpr double kOffRational = 1e-5;
+constexpr double kPromising = 1e-5;  // in the Gram matrix, whose rounding is larger
+constexpr std::size_t kMostFactors = 7;
 
 // A column of the regression: the logarithm of a factor, or what stands in an exponential.
 struct Column {
@@ -112,6 +116,37 @@ Regression sparse(const std::vector<Column>& columns, Regression full,
   return best;
 }
 
+// Of more columns than the rows determine: the shortest sum that is exact, grown from the best
+// pairs. The first column is the constant.
+std::optional<Regression> grown(const std::vector<Column>& columns,
+                                const std::vector<double>& target, Budget& budget) {
+  const std::size_t n = target.size();
+  const std::vector<double> ones(n, 1.0);
+  std::vector<const double*> pointers = {ones.data()};
+  for (const Column& column : columns) pointers.push_back(column.values.data());
+  pointers.push_back(target.data());
+  const std::size_t count = pointers.size();
+  if (!budget.spend(count * count / 16 * n)) return std::nullopt;
+  std::vector<double> gram(count * count);
+  columns::gram(pointers.data(), count, n, gram.data());
+  const SubsetFits fits(std::move(gram), std::vector<char>(count - 1, 0));
+  std::vector<SparseSum> sums = fits.best_pairs();
+  for (std::size_t terms = 2; !sums.empty(); ++terms) {
+    for (const SparseSum& sum : sums) {
+      if (sum.left > kPromising * kPromising) break;
+      std::vector<std::size_t> places;
+      for (const std::size_t term : sum.terms) {
+        if (term > 0) places.push_back(term - 1);
+      }
+      Regression found = regress(columns, std::move(places), target, budget);
+      if (found.rms <= kExact) return found;
+    }
+    if (terms == kMostFactors || !budget.spend(sums.size() * count * terms * terms)) break;
+    sums = fits.grown(sums);
+  }
+  return std::nullopt;
+}
+
 Expression formula_of(const std::vector<Column>& columns, const Regression& found, double sign) {
   std::vector<Expression> factors;
   std::vector<double> exponents;
@@ -143,9 +178,12 @@ std::optional<Expression> find_product(const LogRows& rows, const OperatorSet& o
     const std::vector<Column> columns = columns_of(rows, operators, stage);
     std::vector<std::size_t> all(columns.size());
     std::iota(all.begin(), all.end(), 0);
-    Regression full = regress(columns, all, rows.target().logs, budget);
-    if (!(full.rms <= kExact)) continue;
-    const Regression found = sparse(columns, std::move(full), rows.target().logs, budget);
+    const std::vector<double>& target = rows.target().logs;
+    const bool is_determined = 2 * (all.size() + 1) <= target.size();
+    std::optional<Regression> full =
+        is_determined ? regress(columns, all, target, budget) : grown(columns, target, budget);
+    if (!full || !(full->rms <= kExact)) continue;
+    const Regression found = sparse(columns, std::move(*full), target, budget);
     Expression formula = formula_of(columns, found, 1);
     // The sign follows from the factors' where the exponents are whole; a constant one is set here.
     const Factor values = factor_of(formula, rows);

@@ -81,14 +81,15 @@ class Search {
       factors_ = known_factors(rows, operators, {FactorKind::wave, FactorKind::difference});
       const std::size_t n = rows.inputs().size();
       if (n == kFewInputs + 1) {
-        factors_ = known_factors(
-            rows, operators,
-            {FactorKind::wave, FactorKind::difference, FactorKind::power, FactorKind::logarithm});
+        factors_ =
+            known_factors(rows, operators,
+                          {FactorKind::wave, FactorKind::wave_product, FactorKind::difference,
+                           FactorKind::power, FactorKind::logarithm});
       } else if (n <= kFewInputs) {
         factors_ = known_factors(
             rows, operators,
-            {FactorKind::wave, FactorKind::difference, FactorKind::sum, FactorKind::root,
-             FactorKind::power, FactorKind::logarithm, FactorKind::exponential});
+            {FactorKind::wave, FactorKind::wave_product, FactorKind::difference, FactorKind::sum,
+             FactorKind::root, FactorKind::power, FactorKind::logarithm, FactorKind::exponential});
       }
       std::erase_if(factors_,
                     [](const KnownFactor& known) { return known.kind == FactorKind::input; });
@@ -156,6 +157,8 @@ void Search::list_products(std::size_t most) {
       for (const auto& powers : by_degree[static_cast<std::size_t>(degree - rest)]) {
         if (products_.size() >= most) break;
         for (std::size_t f = 0; f < factors_.size(); ++f) {
+          // Products of waves stand alone: they are many.
+          if (factors_[f].kind == FactorKind::wave_product && degree > rest) continue;
           products_.push_back({f, rest - 1, powers, false});
           if (n > kFewInputs || !factors_[f].factor.has_logs()) continue;
           products_.push_back({f, 1 - rest, powers, false});

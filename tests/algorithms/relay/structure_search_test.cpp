@@ -49,6 +49,15 @@ TEST(ProductSearch, FindsProductsOfPowersSinesAndDifferences) {
   }
 }
 
+TEST(ProductSearch, FindsProductsAmongMoreFactorsThanTheRowsDetermine) {
+  const DrawnLaw law("a*exp(-(g*t))*cos(w*t)",
+                     {{"a", 0.5, 3}, {"g", 0.05, 0.5}, {"t", 0, 6}, {"w", 1, 4}}, 150);
+  Budget budget({});
+  const auto found = relay::find_product(*Rows(law), full(), budget);
+  ASSERT_TRUE(found);
+  EXPECT_LT(law.error_of(*found), 1e-10) << print(*found, law.names);
+}
+
 TEST(ProductSearch, FindsNothingInASumOrUnderNoise) {
   Budget budget({});
   const DrawnLaw sum("a*c + e^2", kFive, 300);
@@ -92,6 +101,16 @@ TEST(RelationSearch, FindsSumsWithCosinesOnlyWhereTheyAreAskedFor) {
   EXPECT_FALSE(relay::find_relation(*Rows(law), full(), relay::Columns::powers_alone, 400, budget));
   const auto found =
       relay::find_relation(*Rows(law), full(), relay::Columns::with_factors, 800, budget);
+  ASSERT_TRUE(found);
+  EXPECT_LT(law.error_of(*found), 1e-9) << print(*found, law.names);
+}
+
+TEST(RelationSearch, FindsSumsOfProductsOfWaves) {
+  const DrawnLaw law("sin(a)*sin(b) + cos(a)*cos(b)*cos(d)",
+                     {{"a", -1.5, 1.5}, {"b", -1.5, 1.5}, {"d", -3, 3}}, 200);
+  Budget budget({});
+  const auto found =
+      relay::find_relation(*Rows(law), full(), relay::Columns::with_factors, 1000, budget);
   ASSERT_TRUE(found);
   EXPECT_LT(law.error_of(*found), 1e-9) << print(*found, law.names);
 }
