@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/bootstrap.hpp"
 #include "algorithms/inference/score_test.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
 
@@ -17,7 +18,6 @@ namespace {
 
 constexpr int kFolds = 5;
 constexpr std::size_t kFewestTriples = 100;
-constexpr int kBootstraps = 2000;
 // Of the mean square of a column; the first makes the correction next to nothing.
 constexpr std::array<double, 5> kPenalties = {10, 1, 0.1, 0.01, 0.001};
 
@@ -178,20 +178,16 @@ void bound_ceiling(ErrorFinding& error, const Observations& judged, const Eigen:
       std::minmax({closed(error.mae_before, error.mae_after, error.ceiling),
                    closed(error.mae_before, error.mae_after, error.attainable)});
   const std::vector<UnitErrors> units = unit_errors(before, after, unit);
-  std::vector<double> drawn;
-  for (int b = 0; b < kBootstraps; ++b) {
-    UnitErrors sum;
-    for (std::size_t k = 0; k < units.size(); ++k) {
-      const UnitErrors& one = units[random.below(units.size())];
-      sum.before += one.before;
-      sum.after += one.after;
-      sum.rows += one.rows;
-    }
-    drawn.push_back(closed(sum.before / sum.rows, sum.after / sum.rows, error.ceiling));
-  }
-  std::ranges::sort(drawn);
-  error.closed_low = drawn[kBootstraps / 40];
-  error.closed_high = drawn[kBootstraps - 1 - kBootstraps / 40];
+  std::tie(error.closed_low, error.closed_high) =
+      bootstrap_interval(units.size(), random, [&](const std::vector<std::size_t>& drawn) {
+        UnitErrors sum;
+        for (const std::size_t k : drawn) {
+          sum.before += units[k].before;
+          sum.after += units[k].after;
+          sum.rows += units[k].rows;
+        }
+        return closed(sum.before / sum.rows, sum.after / sum.rows, error.ceiling);
+      });
 }
 
 }  // namespace tribench::loop

@@ -11,6 +11,7 @@
 #include "algorithms/diagnosis/ceiling.hpp"
 #include "algorithms/diagnosis/findings.hpp"
 #include "algorithms/diagnosis/held_out.hpp"
+#include "algorithms/diagnosis/rich_model.hpp"
 #include "algorithms/diagnosis/search.hpp"
 #include "algorithms/inference/bursts.hpp"
 #include "foundation/error.hpp"

@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <tuple>
 
-#include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/bootstrap.hpp"
 #include "problems/preparation/canonical.hpp"
 
 namespace tribench::loop {
 namespace {
-
-constexpr int kBootstraps = 2000;
 
 // The strata of the split: movements in one direction or in both, by speed.
 struct Kind {
@@ -91,65 +89,6 @@ std::vector<int> choose_test_movements(const Observations& data, double share) {
   return chosen;
 }
 
-Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>& train_rows,
-                              const BaseModel& base, const std::vector<EffectFamily>& families,
-                              const DiagnosisOptions& options) {
-  constexpr double kRidge = 1e-4;
-  constexpr std::size_t kAtomsOfRichModel = 4;
-  std::vector<Expression> formulas = base.linear_terms;
-  const std::vector<double> ratios =
-      options.gear_ratios.empty() ? std::vector<double>{} : options.gear_ratios;
-  for (std::size_t f = 0; f < families.size(); ++f) {
-    std::vector<std::string> missing;
-    std::vector<Atom> atoms = instantiate(families[f], f, data, ratios, missing);
-    std::erase_if(atoms, [](const Atom& atom) { return atom.beside_another; });
-    // Neighbours on a grid of shapes say nearly the same: some of them will do.
-    const std::size_t step = (atoms.size() + kAtomsOfRichModel - 1) / kAtomsOfRichModel;
-    for (std::size_t k = 0; k < atoms.size(); k += std::max<std::size_t>(1, step)) {
-      formulas.insert(formulas.end(), atoms[k].columns.begin(), atoms[k].columns.end());
-    }
-  }
-  Eigen::VectorXd y = target_vector(data);
-  if (!base.formula.empty()) {
-    LoopModel model;
-    model.base.formula = base.formula;
-    y -= predict(model, data);
-  }
-  Eigen::MatrixXd x = evaluate_columns(formulas, data);
-  for (Eigen::Index j = 0; j < x.cols(); ++j) {
-    const double norm = x.col(j).norm();
-    x.col(j) = norm > 0 && std::isfinite(norm) ? Eigen::VectorXd(x.col(j) / norm)
-                                               : Eigen::VectorXd::Zero(x.rows());
-  }
-  std::vector<Eigen::Index> train;
-  for (std::size_t i = 0; i < data.rows(); ++i) {
-    if (train_rows[i] != 0) train.push_back(static_cast<Eigen::Index>(i));
-  }
-  const Eigen::MatrixXd rows = x(train, Eigen::all);
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(x.cols(), x.cols());
-  normal.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
-  Eigen::VectorXd right = rows.transpose() * y(train);
-  const auto residual_of = [&] {
-    Eigen::MatrixXd loaded = normal;
-    loaded.diagonal().array() += kRidge * normal.trace() / static_cast<double>(normal.rows());
-    return Eigen::VectorXd(y - x * solve_symmetric(loaded, right));
-  };
-  const Eigen::VectorXd residual = residual_of();
-  // Huber's weights keep bursts from bending the model; few rows have one below 1.
-  const double sd =
-      std::sqrt(residual(train).squaredNorm() / std::max(1.0, static_cast<double>(train.size())));
-  std::vector<Eigen::Index> wild;
-  for (const Eigen::Index i : train) {
-    if (std::abs(residual[i]) > 2 * sd) wild.push_back(i);
-  }
-  if (wild.empty()) return residual;
-  const Eigen::VectorXd lost = 1 - 2 * sd / residual(wild).array().abs();
-  const Eigen::MatrixXd wild_rows = lost.cwiseSqrt().asDiagonal() * x(wild, Eigen::all);
-  normal.selfadjointView<Eigen::Lower>().rankUpdate(wild_rows.transpose(), -1.0);
-  right -= wild_rows.transpose() * lost.cwiseSqrt().cwiseProduct(y(wild));
-  return residual_of();
-}
-
 ErrorFinding judge(const Observations& data, const Eigen::VectorXd& before,
                    const Eigen::VectorXd& after, std::span<const int> unit, RandomStream random) {
   ErrorFinding out;
@@ -168,18 +107,12 @@ ErrorFinding judge(const Observations& data, const Eigen::VectorXd& before,
   out.means_before = root_mean_square(out.movements, &MovementError::mean_before);
   out.means_after = root_mean_square(out.movements, &MovementError::mean_after);
   const std::vector<MovementError> units = mean_errors(unit, error_before, error_after);
-  std::vector<double> means;
-  for (int b = 0; b < kBootstraps; ++b) {
-    double sum = 0;
-    for (std::size_t k = 0; k < units.size(); ++k) {
-      const MovementError& drawn = units[random.below(units.size())];
-      sum += drawn.before - drawn.after;
-    }
-    means.push_back(sum / static_cast<double>(units.size()));
-  }
-  std::ranges::sort(means);
-  out.difference_low = means[kBootstraps / 40];
-  out.difference_high = means[kBootstraps - 1 - kBootstraps / 40];
+  std::tie(out.difference_low, out.difference_high) =
+      bootstrap_interval(units.size(), random, [&](const std::vector<std::size_t>& drawn) {
+        double sum = 0;
+        for (const std::size_t k : drawn) sum += units[k].before - units[k].after;
+        return sum / static_cast<double>(units.size());
+      });
   return out;
 }
 

@@ -15,12 +15,6 @@ namespace tribench::loop {
 // would be left. However the recording is told, they are the same.
 std::vector<int> choose_test_movements(const Observations& data, double share);
 
-// Residual of every row under the richest model there is (base and all effects, a small ridge),
-// fitted to the training rows: what is left is noise and events, so it says how long noise lasts.
-Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>& train_rows,
-                              const BaseModel& base, const std::vector<EffectFamily>& families,
-                              const DiagnosisOptions& options);
-
 // Errors of both models on `data` (the test movements), movement by movement, with a bootstrap
 // interval of the paired difference. unit: per row, what the bootstrap draws (movements, or pieces
 // of them where they are few); equal numbers stand together.

@@ -60,8 +60,14 @@ class LeftoverSearch {
   std::vector<Place> places() const;
   std::vector<Place> products_of(std::size_t family) const;
   BlockScores score_product(const Eigen::MatrixXd& columns) const;
-  void locate(const std::vector<Place>& places, const std::vector<BlockScores>& blocks,
-              const std::vector<double>& maxima);
+  struct Home {
+    const Place* place;
+    double nats;  // what it adds
+  };
+  std::optional<Home> best_place(const std::vector<Place>& places,
+                                 const std::vector<BlockScores>& blocks,
+                                 const std::vector<double>& maxima) const;
+  void locate(const Home& home);
   void drop_proxies(const Smoother& smoother);
   bool drop_if_superfluous(const Smoother& smoother, std::size_t family, bool excused,
                            LoopModel& model);
@@ -151,15 +157,16 @@ void LeftoverSearch::test_residual() {
       static_cast<std::size_t>(std::ceil(alpha * static_cast<double>(campaign_.options.flips + 1)));
   const std::vector<double> maxima = flip_maxima(blocks, campaign_.flips, largest, stop);
   result_.leftover.p = adjusted_p(largest, maxima);
-  if (result_.leftover.p <= alpha) locate(looked_at, blocks, maxima);
+  if (result_.leftover.p > alpha) return;
+  if (const std::optional<Home> home = best_place(looked_at, blocks, maxima)) locate(*home);
 }
 
-// Where it lives: what predicts best; a product only if it beats every single input.
-void LeftoverSearch::locate(const std::vector<Place>& places,
-                            const std::vector<BlockScores>& blocks,
-                            const std::vector<double>& maxima) {
-  const Place* winner = nullptr;
-  Gain best;
+// Where it lives: what predicts best; a product only if it beats every single input. None where no
+// place is significant by itself.
+std::optional<LeftoverSearch::Home> LeftoverSearch::best_place(
+    const std::vector<Place>& places, const std::vector<BlockScores>& blocks,
+    const std::vector<double>& maxima) const {
+  std::optional<Home> best;
   Eigen::VectorXd best_losses;
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (adjusted_p(blocks[k].test.score, maxima) > campaign_.options.alpha_leftover) continue;
@@ -169,36 +176,37 @@ void LeftoverSearch::locate(const std::vector<Place>& places,
         held_out_losses(beside(model().x, features), model().residual, campaign_.clusters,
                         model().noise, features.cols(), places[k].ridge());
     const Gain gain = paired_gain(model().losses, losses);
-    if (winner != nullptr) {
+    if (std::isnan(gain.nats)) continue;
+    if (best) {
       const Gain lead = paired_gain(best_losses, losses);
       const bool clearly = lead.nats > (places[k].is_product() ? lead.error : 0.0);
-      if (!(gain.nats > best.nats && clearly)) continue;
-    } else if (std::isnan(gain.nats)) {
-      continue;
+      if (!(gain.nats > best->nats && clearly)) continue;
     }
-    best = gain;
+    best = Home{&places[k], gain.nats};
     best_losses = losses;
-    winner = &places[k];
   }
-  if (winner == nullptr) return;
-  const double least =
-      least_worth(worths(model().model, state().families(), campaign_), campaign_.options);
-  if (worth_of(winner->features(campaign_.data), model().model, campaign_, winner->ridge()) <
-      least) {
+  return best;
+}
+
+void LeftoverSearch::locate(const Home& home) {
+  const std::vector<double> found = worths(model().model, state().families(), campaign_);
+  const double worth =
+      worth_of(home.place->features(campaign_.data), model().model, campaign_, home.place->ridge());
+  if (worth < least_worth(found, campaign_.options)) {
     state().note("what is left over is next to nothing beside the effects found");
     return;
   }
-  nats_ = best.nats;
+  nats_ = home.nats;
   LeftoverFinding& leftover = result_.leftover;
-  leftover.signals = winner->signals;
+  leftover.signals = home.place->signals;
   leftover.inputs.clear();
   for (const std::string& signal : leftover.signals) {
     leftover.inputs.push_back(input_name(campaign_.data, signal));
   }
   if (!whole_) whole_ = WholeModel{model(), nats_};
   const std::size_t before = state().found.size();
-  const auto home = std::ranges::find(smoothers_, leftover.signals, &Smoother::signals);
-  if (home != smoothers_.end() && campaign_.options.has("proxies")) drop_proxies(*home);
+  const auto smoother = std::ranges::find(smoothers_, leftover.signals, &Smoother::signals);
+  if (smoother != smoothers_.end() && campaign_.options.has("proxies")) drop_proxies(*smoother);
   if (state().found.size() == before) return;
   // Without its proxies the leftover shows better where it lives.
   const LeftoverFinding known = leftover;

@@ -56,13 +56,13 @@ struct Squares {
   double acceleration = 0;
   double rows = 0;
 
-  void add(const EncodedRun& run, const std::vector<double>& velocity,
-           const std::vector<double>& acceleration) {
+  void add(const EncodedRun& run, const std::vector<double>& derived_velocity,
+           const std::vector<double>& derived_acceleration) {
     for (const std::size_t i : run.judged) {
-      const double dv = velocity[i] - run.velocity[i];
-      const double da = acceleration[i] - run.acceleration[i];
-      this->velocity += dv * dv;
-      this->acceleration += da * da;
+      const double dv = derived_velocity[i] - run.velocity[i];
+      const double da = derived_acceleration[i] - run.acceleration[i];
+      velocity += dv * dv;
+      acceleration += da * da;
     }
     rows += static_cast<double>(run.judged.size());
   }
