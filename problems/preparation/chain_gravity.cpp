@@ -64,16 +64,21 @@ KDL::RigidBodyInertia inertia_of(const urdf::Link& link) {
 }
 
 struct Arm {
+  std::string place;  // the file, for messages
   KDL::Tree tree;
   std::vector<std::string> joints;  // that move, from the root on
 
   void add(const urdf::Link& link) {
     for (const urdf::LinkSharedPtr& child : link.child_links) {
       const urdf::Joint& joint = *child->parent_joint;
-      tree.addSegment(
-          KDL::Segment(child->name, joint_of(joint),
-                       frame_of(joint.parent_to_joint_origin_transform), inertia_of(*child)),
-          link.name);
+      // A link that is there already: following it again would never end.
+      if (!tree.addSegment(
+              KDL::Segment(child->name, joint_of(joint),
+                           frame_of(joint.parent_to_joint_origin_transform), inertia_of(*child)),
+              link.name)) {
+        throw_bad_input(fmt::format("link '{}' hangs on two joints or on itself", child->name),
+                        place, "an arm is a tree of links");
+      }
       if (is_movable(joint)) joints.push_back(joint.name);
       add(*child);
     }
@@ -91,6 +96,7 @@ Arm read_arm(const std::filesystem::path& file) {
                     fmt::format("{} at most", kMostLinks));
   }
   Arm arm;
+  arm.place = file.string();
   arm.tree = KDL::Tree(model->getRoot()->name);
   arm.add(*model->getRoot());
   return arm;

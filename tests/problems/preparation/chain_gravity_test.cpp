@@ -98,6 +98,11 @@ TEST_F(ChainGravity, SaysWhatIsWrongWithTheFileOrTheData) {
   EXPECT_THAT(refusal(1), HasSubstr("2 joints move there (shoulder, elbow), and the data have"));
   write("arm.urdf", "<robot>");
   EXPECT_THAT(refusal(1), HasSubstr("no URDF"));
+  write("arm.urdf",
+        "<robot name='r'><link name='base'/><link name='upper'/>"
+        "<joint name='a' type='fixed'><parent link='base'/><child link='upper'/></joint>"
+        "<joint name='b' type='fixed'><parent link='upper'/><child link='upper'/></joint></robot>");
+  EXPECT_THAT(refusal(1), HasSubstr("'upper' hangs on two joints or on itself"));
 }
 
 TEST_F(ChainGravity, WithoutTheLibrariesSaysHowToGetThem) {
