@@ -68,8 +68,9 @@ void add_range(std::string_view part, NamedBox& box) {
   box.ranges.push_back(range);
 }
 
-// A range given to a sign beside its input says nothing that the input does not; the sign comes back
-// where a formula uses it (parse_over). Less than the input's own signs would be another question.
+// A range given to a sign beside its input says nothing that the input does not; the sign comes
+// back where a formula uses it (parse_over). Less than the input's own signs would be another
+// question.
 void leave_out_signs(NamedBox& box) {
   NamedBox kept;
   for (std::size_t j = 0; j < box.names.size(); ++j) {
@@ -84,9 +85,9 @@ void leave_out_signs(NamedBox& box) {
     }
     const InputRange& of = box.ranges[*base];
     if (box.ranges[j].low > sign(of.low) || box.ranges[j].high < sign(of.high)) {
-      throw_bad_input(fmt::format("'{}' follows from '{}' and has no range of its own", name,
-                                  box.names[*base]),
-                      "--box", fmt::format("leave it out, or give '{}' less", box.names[*base]));
+      throw_bad_input(
+          fmt::format("'{}' follows from '{}' and has no range of its own", name, box.names[*base]),
+          "--box", fmt::format("leave it out, or give '{}' less", box.names[*base]));
     }
   }
   box = std::move(kept);

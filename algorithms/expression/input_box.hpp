@@ -31,7 +31,7 @@ struct NamedBox {
 };
 
 // Reads NAME=LOW:HIGH, separated by commas. A name sgn_X beside X needs no range and is left out.
-// Throws Error (bad_input) that says which part is wrong, also where sgn_X has less than X gives it.
+// Throws Error (bad_input) that says which part is wrong, or that sgn_X has less than X gives it.
 NamedBox parse_box(std::string_view text);
 std::string print_box(const NamedBox& box);
 
