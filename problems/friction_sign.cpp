@@ -44,13 +44,13 @@ double friction_agreement(std::span<const double> friction, std::span<const doub
 
 void refuse_opposing_friction(std::span<const double> friction, const std::string& friction_name,
                               std::span<const double> velocity, const std::string& velocity_name,
-                              const std::string& place) {
+                              const std::string& place, const std::string& mend) {
   const double measured = friction_agreement(friction, velocity);
   if (measured >= kLeastAgreement) return;
   throw_bad_input(
       fmt::format("'{}' opposes '{}' (correlation {:.2f}); friction is positive with velocity here",
                   friction_name, velocity_name, measured),
-      place, "give --flip-sign to change the sign of the torques");
+      place, mend);
 }
 
 }  // namespace tribench

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "problems/friction_sign.hpp"
 
@@ -227,10 +229,36 @@ void check_moving(const Observations& data) {
       v.channel, kMend);
 }
 
+namespace {
+
+// What 1, sin q and cos q leave of `values`.
+std::vector<double> without_place(const std::vector<double>& values, const std::vector<double>& q) {
+  const auto n = static_cast<Eigen::Index>(values.size());
+  Eigen::MatrixXd x(n, 3);
+  for (Eigen::Index r = 0; r < n; ++r) {
+    const double angle = q[static_cast<std::size_t>(r)];
+    x.row(r) << 1, elementary::sin(angle), elementary::cos(angle);
+  }
+  const Eigen::Map<const Eigen::VectorXd> y(values.data(), n);
+  const Eigen::VectorXd rest = y - x * x.colPivHouseholderQr().solve(y);
+  return {rest.begin(), rest.end()};
+}
+
+}  // namespace
+
 void check_sign(const Observations& data) {
   if (!data.rigid.empty()) return;  // inertia and gravity may dominate: no sign to be expected
   const Signal& v = *data.find("v");
-  refuse_opposing_friction(data.target, data.target_name, v.values, v.channel, data.target_name);
+  const Signal* q = data.find("q");
+  // A motor's torque may hold a gravity that nobody declared: turned it would pass for friction.
+  const bool holds_gravity = q != nullptr && q->unit == "rad" &&
+                             friction_agreement(without_place(data.target, q->values),
+                                                without_place(v.values, q->values)) > 0;
+  refuse_opposing_friction(
+      data.target, data.target_name, v.values, v.channel, data.target_name,
+      holds_gravity ? "at the same place it goes with it, so that it holds gravity: declare that "
+                      "with --roles COLUMN=gravity_torque[N m], or give --gravity fit"
+                    : kTurnTheSign);
 }
 
 }  // namespace tribench::loop

@@ -194,5 +194,30 @@ TEST(Observations, ReversalsAndSlowMovementsAreNoRest) {
   EXPECT_EQ(observe(slow).rows(), 2000U);
 }
 
+// A joint that goes up on one side of where it hangs and down on the other, under a gravity that
+// nobody declared.
+TEST(Observations, ATorqueThatHoldsGravityIsNotToldToBeTurned) {
+  const auto complaint = [](double sign, double gravity) {
+    Dataset data = movements_of(20, 100, [](int m, int i) {
+      return (m % 2 == 0 ? 0.6 : -0.6) * (1 + 0.2 * std::sin(0.7 * i + m));
+    });
+    data.channels[1].role = Role::motor_torque;
+    for (std::size_t i = 0; i < data.rows(); ++i) {
+      double& q = data.channels[2].values[i];
+      q += data.movement[i] % 2 == 0 ? -0.7 : 0.7;
+      data.channels[1].values[i] = sign * data.channels[1].values[i] + gravity * std::sin(q);
+    }
+    try {
+      observe(data);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(complaint(1, 40), ::testing::HasSubstr("--gravity fit"));
+  EXPECT_THAT(complaint(-1, 3), ::testing::HasSubstr("--flip-sign"));
+  EXPECT_EQ(complaint(1, 0), "no error");
+}
+
 }  // namespace
 }  // namespace tribench::loop
