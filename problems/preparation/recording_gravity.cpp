@@ -16,7 +16,8 @@ namespace tribench {
 namespace {
 
 constexpr double kMuchExplained = 0.3;
-constexpr double kSure = 10;  // standard errors
+constexpr double kSure = 10;    // standard errors, from which a story is refused
+constexpr double kCertain = 5;  // standard errors of a gravity that explains much
 constexpr double kSameFactor = 0.08;
 
 }  // namespace
@@ -107,7 +108,7 @@ void fit_gravity(PreparedRecording& out, Gravity gravity) {
         "--gravity fit", "declare it: --roles COLUMN=gravity_torque[N m]");
   }
   refuse_turned_sign(out, *body);
-  const bool much = body->explained > kMuchExplained && body->certainty > kSure;
+  const bool much = body->explained > kMuchExplained && body->certainty > kCertain;
   if (gravity == Gravity::none) {
     if (much) {
       out.notes.push_back(
