@@ -58,11 +58,6 @@ std::uint64_t RandomStream::next() {
   return block_[word];
 }
 
-void RandomStream::seek(std::uint64_t position) {
-  position_ = position;
-  if ((position & 1) != 0) block_ = block_of(key_, position >> 1, kDraw);
-}
-
 double RandomStream::uniform() { return static_cast<double>(next() >> 11) * 0x1.0p-53; }
 
 double RandomStream::uniform(double low, double high) { return low + (high - low) * uniform(); }

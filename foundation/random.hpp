@@ -53,10 +53,7 @@ class RandomStream {
   static constexpr std::uint64_t max() { return std::numeric_limits<std::uint64_t>::max(); }
   std::uint64_t operator()() { return next(); }
 
-  // Where the stream stands; a stream restored from these goes on bit for bit (checkpoints).
   std::uint64_t key() const { return key_; }
-  std::uint64_t position() const { return position_; }
-  void seek(std::uint64_t position);
 
  private:
   std::uint64_t key_;

@@ -40,15 +40,6 @@ std::string_view role_name(Role role) {
   return "none";
 }
 
-const std::vector<Role>& all_roles() {
-  static const std::vector<Role> kRoles = [] {
-    std::vector<Role> roles;
-    for (const auto& [role, name] : kRoleNames) roles.push_back(role);
-    return roles;
-  }();
-  return kRoles;
-}
-
 Role find_role(std::string_view name, std::string_view place) {
   std::vector<std::string> names;
   for (const auto& [role, known] : kRoleNames) {

@@ -36,7 +36,6 @@ enum class Role {
 std::string_view role_name(Role role);
 // Throws Error (bad_input) at `place` with the nearest name.
 Role find_role(std::string_view name, std::string_view place = {});
-const std::vector<Role>& all_roles();
 
 struct Channel {
   std::string name;

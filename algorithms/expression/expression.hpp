@@ -109,8 +109,6 @@ class Expression {
   std::vector<std::size_t> constant_positions() const;
   void set_constant(std::size_t position, double value) { nodes_[position].value = value; }
 
-  // Another operation of the same arity in place of node i, arguments unchanged.
-  void set_operation(std::size_t i, Op op) { nodes_[i].op = op; }
   // Another leaf in place of the leaf i.
   void set_leaf(std::size_t i, const Node& leaf) { nodes_[i] = leaf; }
   // Makes room for a tape of this size and hands it out to be overwritten, lengths included; the
