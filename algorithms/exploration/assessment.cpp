@@ -179,6 +179,9 @@ const Assessment& Assessor::look() {
   const Noise noise = noise_left_by(before, weights);
   hold_forecasts_against_rows(weights);
   if (!noise_is_as_it_was(noise, weights)) {
+    // What was said under another noise says nothing: the rows so far are the opening.
+    forecasts_ = {};
+    last_.forecast.clear();
     last_.noise = noise;
     last_.sums = {};
     for (SeenMovement& movement : seen_) movement.weight = 0;

@@ -157,6 +157,24 @@ std::vector<Contrast> contrasts_of(const Assessment& now, double alpha) {
   return all;
 }
 
+// The share of a movement's mean that its offset hides, as whitening takes it away.
+double hidden_share(const Noise& noise, double rows) {
+  const double ratio = noise.between_sd / noise.within_sd;
+  const double effective = rows * (1 - noise.rho) / (1 + noise.rho) * ratio * ratio;
+  return effective / (1 + effective);
+}
+
+// What whitened rows like these would add to the products, each as often as it counts.
+void add_rows(Eigen::MatrixXd& gram, const Eigen::MatrixXd& rows, double counts, const Noise& noise,
+              double variance) {
+  const double shrink = counts * (1 - noise.whitening) * (1 - noise.whitening) / variance;
+  const auto count = static_cast<double>(rows.rows());
+  auto lower = gram.selfadjointView<Eigen::Lower>();
+  lower.rankUpdate(rows.transpose(), shrink);
+  const Eigen::VectorXd mean = rows.colwise().mean();
+  lower.rankUpdate(mean, -shrink * count * hidden_share(noise, counts * count));
+}
+
 }  // namespace
 
 std::vector<MovementChoice> movement_gains(const Assessment& now, const Foreseen& foreseen,
@@ -165,7 +183,6 @@ std::vector<MovementChoice> movement_gains(const Assessment& now, const Foreseen
   std::vector<MovementChoice> choices(movements.size());
   std::vector<double> best_part(movements.size(), 0.0);
   for (std::size_t m = 0; m < movements.size(); ++m) choices[m].movement = m;
-  const double shrink = (1 - now.noise.whitening) * (1 - now.noise.whitening) / now.variance;
   for (const Contrast& contrast : contrasts_of(now, alpha)) {
     const BlockInformation before = information(contrast.gram, contrast.mean);
     const auto p = static_cast<double>(contrast.mean.size());
@@ -177,8 +194,7 @@ std::vector<MovementChoice> movement_gains(const Assessment& now, const Foreseen
       const auto own = rows.middleRows(static_cast<Eigen::Index>(range.begin),
                                        static_cast<Eigen::Index>(range.size()));
       Eigen::MatrixXd gram = contrast.gram;
-      gram.selfadjointView<Eigen::Lower>().rankUpdate(own.transpose(),
-                                                      movements[m].counts * shrink);
+      add_rows(gram, own, movements[m].counts, now.noise, now.variance);
       const BlockInformation after = information(gram, contrast.mean);
       const double shows = 0.5 * (after.squares - before.squares);
       const double fades = (0.5 + 1 / p) * (after.log_determinant - before.log_determinant);
