@@ -214,8 +214,10 @@ TEST_F(MeasuredLoop, KinovaPassesClaimNoEffectOfSpeedLoadOrTimeForCertain) {
                            {"--roles", "model_torque_Nm=gravity_torque", "--gear-ratio", "100"});
     for (const Json& effect : json["effects"]) {
       const std::string family = effect["family"];
-      EXPECT_THAT(family, ::testing::AnyOf("output_ripple", "gear_ripple", "nonlinear_viscous"));
-      if (family == "nonlinear_viscous") EXPECT_TRUE(effect["provisional"]) << joint;
+      if (family == "output_ripple" || family == "gear_ripple") continue;
+      EXPECT_THAT(family, ::testing::AnyOf("nonlinear_viscous", "payload")) << joint;
+      // Not for certain: provisional, or in fewer than half of the repeats ("doubtful").
+      EXPECT_TRUE(effect["provisional"] || effect["chosen_share"] < 0.5) << joint << family;
     }
     std::vector<std::string> declined;
     for (const Json& one : json["untestable"]) declined.push_back(one["family"]);
