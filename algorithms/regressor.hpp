@@ -112,6 +112,10 @@ struct FitResult {
   std::string note;  // one line for the record; says why where unsupported
   // The formulas' form is the user's (a template): whoever shortens formulas leaves them.
   bool keeps_form = false;
+  // On few rows a sum of few inputs may take the chosen formula's place where it stands better on
+  // rows held out (fitting/held_out_choice.hpp): a part of the method, done when all rounds of it
+  // have ended.
+  bool yields_to_plain_sum = false;
   // What the formulas remember: column data.inputs.size() + k is states[k], driven by data.inputs.
   std::vector<StateDeclaration> states = {};
 

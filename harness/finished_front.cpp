@@ -6,12 +6,25 @@
 #include <vector>
 
 #include "algorithms/admission.hpp"
+#include "algorithms/expression/complexity.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/exact_choice.hpp"
 #include "algorithms/fitting/finish.hpp"
 #include "algorithms/fitting/held_out_choice.hpp"
 
 namespace tribench {
+namespace {
+
+// In its place by complexity.
+void choose(Expression formula, FitResult& fit) {
+  const int size = paper_complexity(formula);
+  const auto place = std::ranges::find_if(
+      fit.front, [size](const Expression& other) { return paper_complexity(other) >= size; });
+  fit.chosen = static_cast<std::size_t>(place - fit.front.begin());
+  fit.front.insert(place, std::move(formula));
+}
+
+}  // namespace
 
 void finish_front(const TrainingData& data, const OperatorSet& operators, FitResult& fit) {
   // With states, a formula's numbers stand in the laws too: it is left as it is.
@@ -29,9 +42,16 @@ void finish_front(const TrainingData& data, const OperatorSet& operators, FitRes
     if (same == finished.end()) finished.push_back(std::move(formula));
   }
   fit.front = std::move(finished);
-  const auto exact = simplest_exact(fit.front, rows.table(), rows.target);
-  fit.chosen =
-      exact ? *exact : held_out_choice(fit.front, chosen, rows.table(), rows.target, rows.movement);
+  if (const auto exact = simplest_exact(fit.front, rows.table(), rows.target)) {
+    fit.chosen = *exact;
+    return;
+  }
+  fit.chosen = held_out_choice(fit.front, chosen, rows.table(), rows.target, rows.movement);
+  if (!fit.yields_to_plain_sum) return;
+  if (auto sum = plain_sum_instead(fit.front[fit.chosen], rows.table(), rows.target, rows.movement);
+      sum && operators.admits(*sum)) {
+    choose(std::move(*sum), fit);
+  }
 }
 
 }  // namespace tribench

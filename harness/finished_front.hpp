@@ -2,9 +2,10 @@
 //
 // A method's front as it is judged: every formula in its shortest form (fitting/finish.hpp), each
 // once, and the exact one chosen where the rows have no noise (fitting/exact_choice.hpp), or
-// another where few rows speak plainly against the choice (fitting/held_out_choice.hpp). The one
-// place between methods and judge where formulas are rewritten and a choice is looked at again; a
-// method that was given a form by the user keeps it (FitResult::keeps_form).
+// another where few rows speak plainly against the choice (fitting/held_out_choice.hpp). A plain
+// sum takes its place only in a method that says so (FitResult::yields_to_plain_sum). The one place
+// between methods and judge where formulas are rewritten and a choice is looked at again; a method
+// that was given a form by the user keeps it (FitResult::keeps_form).
 #pragma once
 
 #include "algorithms/regressor.hpp"

@@ -14,10 +14,8 @@
 #include <vector>
 
 #include "algorithms/admission.hpp"
-#include "algorithms/expression/complexity.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
-#include "algorithms/fitting/held_out_choice.hpp"
 #include "algorithms/fitting/joint_front.hpp"
 #include "algorithms/relay/collapse.hpp"
 #include "algorithms/relay/index_fit.hpp"
@@ -144,15 +142,13 @@ class Run {
     FitResult result{joint_.formulas(), joint_.chosen(),
                      context_.budget.exhausted() ? StopReason::budget : StopReason::converged,
                      std::move(note_)};
-    if (!joint_.is_explained()) prefer_plain_sum(result);
+    result.yields_to_plain_sum = true;
     return result;
   }
 
  private:
   // What is exact is offered; the return is a problem of fewer variables that was not solved.
   std::optional<ReducedProblem> find_structure(const LogRows& rows, int round, Budget& budget);
-  // On few rows a sum of few inputs may stand better on rows held out than what a search has found.
-  void prefer_plain_sum(FitResult& result) const;
   // The reduced problem with the fewest inputs that was not solved.
   std::optional<ReducedProblem> reduce(int round, relay::Guesses guesses);
   // What is exact is offered.
@@ -170,16 +166,6 @@ class Run {
   std::string note_;
   std::string explained_by_;
 };
-
-void Run::prefer_plain_sum(FitResult& result) const {
-  std::optional<Expression> sum =
-      plain_sum_instead(result.front[result.chosen], rows_.table(), rows_.target, rows_.movement);
-  if (!sum || !admission_.admits(*sum)) return;
-  const auto place =
-      std::ranges::lower_bound(result.front, paper_complexity(*sum), {}, &paper_complexity);
-  result.chosen = static_cast<std::size_t>(place - result.front.begin());
-  result.front.insert(place, std::move(*sum));
-}
 
 std::optional<ReducedProblem> Run::find_structure(const LogRows& rows, int round, Budget& budget) {
   const std::size_t width = std::size_t{1} << round;

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "harness/finished_front.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "algorithms/expression/text.hpp"
+#include "foundation/random.hpp"
+
+namespace tribench {
+namespace {
+
+// Two thirds of a line's rows are noise, and the front holds one formula that follows the noise.
+FitResult finished_on_few_rows(bool yields) {
+  const std::vector<std::string> names = {"v"};
+  std::vector<double> v;
+  std::vector<double> target;
+  RandomStream random(7);
+  for (int r = 0; r < 30; ++r) {
+    v.push_back(random.uniform(-1, 1));
+    target.push_back(2 * v.back() + random.normal());
+  }
+  const std::vector<Input> inputs = {{"v", "rad/s", Role::velocity, -1, 1, std::nullopt}};
+  const std::vector<const double*> columns = {v.data()};
+  const TrainingData data{inputs, columns, target, {}};
+  FitResult fit;
+  fit.front = {parse("0.3 + 2*v + 3*v^3 + 5*v^5 + 7*v^7 + 9*v^9 + 11*v^11 + 4*sin(9*v)", names)};
+  fit.yields_to_plain_sum = yields;
+  finish_front(data, find_operator_set("full"), fit);
+  return fit;
+}
+
+TEST(FinishedFront, PutsNoFormulaUnderTheNameOfAMethodThatNeverOfferedIt) {
+  EXPECT_EQ(finished_on_few_rows(false).front.size(), 1U);
+}
+
+TEST(FinishedFront, TakesAPlainSumOnFewRowsWhereTheMethodYieldsToIt) {
+  const FitResult fit = finished_on_few_rows(true);
+  ASSERT_EQ(fit.front.size(), 2U);
+  EXPECT_EQ(fit.chosen, 0U);
+  EXPECT_LT(fit.front[0].size(), 8U) << print(fit.front[0], std::vector<std::string>{"v"});
+}
+
+}  // namespace
+}  // namespace tribench
