@@ -8,8 +8,6 @@
 // methods, weights, parameters) is read here.
 #pragma once
 
-#include <istream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -22,13 +20,6 @@ inline constexpr int kMaxJsonDepth = 64;
 // `reason` then says why in one line of printable text, with the line and column.
 template <typename Json>
 Json read_json(std::string_view text, std::string* reason = nullptr);
-
-// Of all that is left in a stream; discarded where it cannot be read.
-template <typename Json>
-Json read_json(std::istream& in, std::string* reason = nullptr) {
-  const std::string text(std::istreambuf_iterator<char>(in), {});
-  return read_json<Json>(std::string_view(text), reason);
-}
 
 // As above; throws Error (bad_input) with the place instead.
 template <typename Json>

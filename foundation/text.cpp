@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
+#include <cctype>
+#include <cstdint>
 
 #include "foundation/error.hpp"
 
@@ -29,17 +29,71 @@ std::vector<std::string> split(std::string_view text, char separator) {
   return pieces;
 }
 
-std::optional<std::string> read_file_if_there(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) return std::nullopt;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(stream), {});
+namespace {
+
+constexpr std::size_t kBlock = 65536;
+
+[[noreturn]] void refuse_length(const std::filesystem::path& file, std::size_t largest) {
+  throw_bad_input(fmt::format("it is longer than {} bytes", largest), file.string(),
+                  "is it the right file? give a part of it");
 }
 
-std::string read_file(const std::filesystem::path& file) {
-  if (std::optional<std::string> text = read_file_if_there(file)) return *std::move(text);
-  throw_bad_input("the file cannot be read", file.string(), "is the path right?");
+// What a device gives before it is read on: zeros and random bytes are no text, UTF-16 with its
+// mark and what gzip packed may hold one.
+bool may_be_text(std::string_view start) {
+  constexpr std::size_t kOneInTwenty = 20;
+  for (const std::string_view mark : {"\x1F\x8B", "\xFF\xFE", "\xFE\xFF"}) {
+    if (start.starts_with(mark)) return true;
+  }
+  const auto is_control = [](unsigned char c) { return c == 127 || (c < 32 && !std::isspace(c)); };
+  return kOneInTwenty * static_cast<std::size_t>(std::ranges::count_if(start, is_control)) <=
+         start.size();
+}
+
+}  // namespace
+
+std::string read_file(const std::filesystem::path& file, std::size_t largest) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    throw_bad_input("this is a folder", file.string(), "give a file");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw_bad_input("the file cannot be read", file.string(), "is the path right?");
+  // A pipe has no size, and one below /proc is 0: what is there is read until it ends.
+  const bool has_end = std::filesystem::is_regular_file(file, ignored);
+  const std::uintmax_t size = has_end ? std::filesystem::file_size(file, ignored) : 0;
+  if (size > largest) refuse_length(file, largest);
+  std::string text(std::max<std::size_t>(size + 1, kBlock), '\0');
+  std::size_t filled = 0;
+  while (true) {
+    stream.read(text.data() + filled, static_cast<std::streamsize>(text.size() - filled));
+    filled += static_cast<std::size_t>(stream.gcount());
+    if (!stream) break;
+    if (!has_end && filled == kBlock && !may_be_text(text)) {
+      throw_bad_input("what it gives is no text", file.string(), "give a file");
+    }
+    if (filled > largest) refuse_length(file, largest);
+    text.resize(2 * filled);
+  }
+  if (stream.bad()) throw Error(ErrorKind::failed, "reading stopped half way", file.string());
+  if (filled > largest) refuse_length(file, largest);
+  text.resize(filled);
+  return text;
+}
+
+std::optional<std::string> read_file_if_there(const std::filesystem::path& file) {
+  if (!open_file_if_there(file)) return std::nullopt;
+  return read_file(file);
+}
+
+std::ifstream open_file_if_there(const std::filesystem::path& file) {
+  std::error_code ignored;
+  std::ifstream stream;
+  stream.setstate(std::ios::failbit);
+  if (!std::filesystem::is_regular_file(file, ignored)) return stream;
+  stream.clear();
+  stream.open(file, std::ios::binary);
+  return stream;
 }
 
 }  // namespace tribench

@@ -3,7 +3,9 @@
 // Text in pieces and whole files. Bytes throughout: nothing here depends on the locale.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,9 +20,19 @@ std::string_view trimmed(std::string_view text);
 // piece; an empty or blank text has none.
 std::vector<std::string> split(std::string_view text, char separator);
 
-// All bytes of a file. Throws Error (bad_input) where it cannot be read.
-std::string read_file(const std::filesystem::path& file);
-// Nothing where there is no such file or it cannot be read.
+// What a reader takes of one file: settings, answers, proofs. Data files have a bound of their own.
+inline constexpr std::size_t kLargestTextFile = std::size_t{256} << 20;
+
+// All bytes of a file that a user named, or of a pipe until it ends. Throws Error (bad_input) where
+// it cannot be read, is longer than `largest` bytes, or is a device or pipe that gives no text:
+// such a one may never end.
+std::string read_file(const std::filesystem::path& file, std::size_t largest = kLargestTextFile);
+
+// Of a file that the program looks for by itself (in a run's folder, a folder of data): nothing
+// where there is no regular file of that name or it cannot be read. Throws where it is too long.
 std::optional<std::string> read_file_if_there(const std::filesystem::path& file);
+// The same for what is read line by line, whatever its length: a stream that has failed where there
+// is no such file.
+std::ifstream open_file_if_there(const std::filesystem::path& file);
 
 }  // namespace tribench

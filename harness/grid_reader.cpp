@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <optional>
 #include <set>
 
@@ -363,12 +362,11 @@ Grid parse_grid(std::string_view toml, const std::string& file_name, const Regis
 
 Grid load_grid(const std::filesystem::path& file, const Registry& registry,
                const Catalogue& catalogue) {
-  const auto text = read_file_if_there(file);
-  if (!text) {
+  if (std::error_code unknown; !std::filesystem::exists(file, unknown)) {
     throw_bad_input("the grid file cannot be read", file.string(),
                     "give the path of a TOML file, or a name from: tribench list grids");
   }
-  Grid grid = parse_grid(*text, file.string(), registry, catalogue);
+  Grid grid = parse_grid(read_file(file), file.string(), registry, catalogue);
   if (grid.reference_file.empty()) return grid;
   const std::filesystem::path reference = file.parent_path() / grid.reference_file;
   const auto figures = read_file_if_there(reference);

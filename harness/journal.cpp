@@ -19,6 +19,7 @@
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 #include "foundation/random.hpp"
+#include "foundation/text.hpp"
 
 namespace tribench {
 namespace {
@@ -133,7 +134,7 @@ std::string RunIdentity::difference(const RunIdentity& other) const {
 }
 
 JournalContents read_journal(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = open_file_if_there(file);
   if (!stream) throw_bad_input("there is no journal", file.string(), "is this a run's folder?");
   JournalContents contents;
   std::map<std::string, std::size_t> place_of_cell;

@@ -8,7 +8,6 @@
 #include <CLI/Version.hpp>
 #include <algorithm>
 #include <ctime>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -89,8 +88,7 @@ ordered_json session_json(const RunSession& session) {
 
 // The sessions of a folder so far; none where there are none or the file is damaged.
 ordered_json earlier_sessions(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  const ordered_json before = read_json<ordered_json>(stream);
+  const ordered_json before = read_json<ordered_json>(read_file_if_there(file).value_or(""));
   if (!before.is_object() || !before.contains("sessions")) return ordered_json::array();
   return before.at("sessions");
 }

@@ -2,15 +2,16 @@
 #include "harness/run_files.hpp"
 
 #include <fmt/format.h>
+#include <sstream>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
+#include "foundation/text.hpp"
 #include "harness/provenance.hpp"
 #include "problems/variant.hpp"
 #include "reports/published.hpp"
@@ -99,8 +100,7 @@ void write_quarantine_file(const std::filesystem::path& folder,
 }
 
 std::vector<std::string> read_quarantine_file(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw_bad_input("the quarantine list cannot be read", file.string());
+  std::istringstream stream(read_file(file));
   std::vector<std::string> globs;
   for (std::string line; std::getline(stream, line);) {
     if (!line.empty() && line.back() == '\r') line.pop_back();

@@ -5,12 +5,12 @@
 #include <openssl/evp.h>
 
 #include <array>
-#include <fstream>
 #include <istream>
 #include <memory>
 #include <sstream>
 
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 
 namespace tribench {
 namespace {
@@ -37,11 +37,8 @@ std::string sha256_of_stream(std::istream& in, const std::string& place) {
 }  // namespace
 
 std::string sha256_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::error_code code;
-  if (!in || std::filesystem::is_directory(file, code)) {
-    throw_bad_input("cannot read the file", file.string(), "check the path");
-  }
+  std::ifstream in = open_file_if_there(file);
+  if (!in) throw_bad_input("this is no file that can be read", file.string(), "check the path");
   return sha256_of_stream(in, file.string());
 }
 

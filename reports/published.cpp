@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 #include "reports/csv.hpp"
 #include "reports/figures.hpp"
 
@@ -200,7 +201,7 @@ void set_yardsticks(PublishedProblem& problem, const RunSummary& summary) {
 
 std::vector<PublishedFigure> read_published(const std::filesystem::path& file,
                                             std::vector<std::string>& complaints) {
-  std::ifstream in(file, std::ios::binary);
+  std::ifstream in = open_file_if_there(file);
   if (!in) return {};
   std::vector<std::string> found;
   std::vector<PublishedFigure> figures = parse_published(in, found);

@@ -8,6 +8,8 @@
 #include <set>
 #include <string_view>
 
+#include "foundation/text.hpp"
+
 namespace tribench {
 namespace {
 
@@ -78,7 +80,7 @@ std::string shortened_value(const std::string& value) {
 }  // namespace
 
 std::map<std::string, std::string> read_settings(const std::filesystem::path& grid_toml) {
-  std::ifstream in(grid_toml);
+  std::ifstream in = open_file_if_there(grid_toml);
   std::map<std::string, std::string> settings;
   std::string item;  // "method" and "method pysr" while its own tables follow
   std::string item_key;

@@ -11,6 +11,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "foundation/text.hpp"
 #include "reports/record/record_csv.hpp"
 
 namespace tribench {
@@ -78,12 +79,12 @@ void flatten(const std::string& prefix, const nlohmann::ordered_json& value,
 }
 
 void read_provenance(RunFolder& run) {
-  std::ifstream in(run.path / "provenance.json");
-  if (!in) {
+  const auto text = read_file_if_there(run.path / "provenance.json");
+  if (!text) {
     run.complaints.push_back("provenance.json is missing: what made this run is not known");
     return;
   }
-  const auto json = read_json<nlohmann::ordered_json>(in);
+  const auto json = read_json<nlohmann::ordered_json>(*text);
   if (json.is_discarded()) {
     run.complaints.push_back("provenance.json is damaged: what made this run is not known");
     return;
@@ -93,7 +94,7 @@ void read_provenance(RunFolder& run) {
 
 // The value of `name` in [grid]; grid.toml is written by the program, so a line is enough.
 std::string grid_name(const fs::path& file) {
-  std::ifstream in(file);
+  std::ifstream in = open_file_if_there(file);
   std::string line;
   bool in_grid = false;
   while (std::getline(in, line)) {

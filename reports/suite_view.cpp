@@ -5,13 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
+#include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "foundation/order_statistics.hpp"
+#include "foundation/text.hpp"
 #include "reports/figures.hpp"
 #include "reports/markdown.hpp"
 
@@ -263,13 +265,15 @@ std::string suites_json(const std::vector<SuiteInfo>& suites) {
 std::vector<SuiteInfo> read_suites(const std::filesystem::path& file,
                                    std::vector<std::string>& complaints) {
   std::vector<SuiteInfo> suites;
-  std::ifstream stream(file);
-  if (!stream) return suites;
+  const auto text = read_file_if_there(file);
+  if (!text) return suites;
   try {
-    for (const nlohmann::json& json : nlohmann::json::parse(stream)) {
+    for (const auto& json : read_json_or_throw<nlohmann::json>(*text, file.string())) {
       suites.push_back(suite_in(json));
     }
   } catch (const nlohmann::json::exception& error) {
+    complaints.push_back(fmt::format("{}: {}", file.filename().string(), error.what()));
+  } catch (const Error& error) {
     complaints.push_back(fmt::format("{}: {}", file.filename().string(), error.what()));
   }
   return suites;

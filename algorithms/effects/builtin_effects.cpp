@@ -211,14 +211,15 @@ EffectFamily gear_ripple() {
                  "torque repeats with the motor's turn",
                  "Taghirad and Belanger 1998; Ghorbel et al. 2001",
                  {}};
+  const ShapeTemplate ratio{
+      .name = "N", .scale = "", .grid = {}, .values = ShapeValues::gear_ratios};
   for (const char* k : {"1", "2", "4"}) {
     const std::string angle = std::string(k) + "*N*q)";
-    const ShapeTemplate ratio{"N", "", {}, 0, 0};  // the grid is the gear ratios
     f.atoms.push_back({{"cos(" + angle, "sin(" + angle}, {"cosine", "sine"}, {ratio}});
     f.atoms.push_back({{"sgn_v*cos(" + angle, "sgn_v*sin(" + angle}, {"cosine", "sine"}, {ratio}});
     f.atoms.push_back(drifting(std::string(k) + "*N*q", {ratio}));
   }
-  f.atoms.push_back(harmonics_of("N*q", {{"N", "", {}, 0, 0}}));
+  f.atoms.push_back(harmonics_of("N*q", {ratio}));
   f.separate_by = {"R6"};
   return f;
 }

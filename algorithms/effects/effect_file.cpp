@@ -132,14 +132,18 @@ ShapeTemplate read_shape(const Entry& entry) {
   shape.high = entry.find<double>("high").value_or(0);
   shape.recorded = entry.find<bool>("recorded").value_or(false);
   shape.reference = entry.find<bool>("reference").value_or(false);
-  const bool plain = shape.grid.empty() && shape.scale.empty() && shape.low == 0 && shape.high == 0;
-  if (shape.name == "N" && !plain) {
-    throw_bad_input("the shape 'N' is the gear ratio and takes no grid, scale, low or high",
-                    entry.place(), "give --gear-ratio, or the shape another name");
+  const bool is_gear_ratio = entry.find<bool>("gear_ratio").value_or(false);
+  const bool plain = shape.grid.empty() && shape.scale.empty() && shape.low == 0 &&
+                     shape.high == 0 && !shape.recorded && !shape.reference;
+  if (is_gear_ratio && !plain) {
+    throw_bad_input(
+        fmt::format("the shape '{}' is the gear ratio and takes nothing else", shape.name),
+        entry.place(), "leave out gear_ratio, or all but name and gear_ratio");
   }
-  if (shape.name != "N" && shape.grid.empty()) {
+  if (is_gear_ratio) shape.values = ShapeValues::gear_ratios;
+  if (!is_gear_ratio && shape.grid.empty()) {
     throw_bad_input(fmt::format("the shape '{}' has no grid", shape.name), entry.place(),
-                    "give it grid = [1.0]");
+                    "give it grid = [1.0], or gear_ratio = true");
   }
   if (shape.high < shape.low) {
     throw_bad_input(fmt::format("the shape '{}' has low = {} above high = {}", shape.name,
@@ -191,8 +195,8 @@ SpeedCurve read_curve(const Entry& entry) {
 AtomTemplate read_atom(const Entry& entry) {
   AtomTemplate atom;
   atom.columns = entry.list<std::string>("columns");
-  for (const Entry& shape :
-       entry.entries("shape", {"name", "scale", "grid", "low", "high", "recorded", "reference"})) {
+  for (const Entry& shape : entry.entries("shape", {"name", "scale", "grid", "low", "high",
+                                                    "recorded", "reference", "gear_ratio"})) {
     atom.shapes.push_back(read_shape(shape));
   }
   check_columns(atom, entry.place());
@@ -301,6 +305,10 @@ toml::table table_of(const AtomTemplate& atom) {
   if (atom.curve != SpeedCurve::any) table.insert("curve", std::string(curve_name(atom.curve)));
   toml::array shapes;
   for (const ShapeTemplate& shape : atom.shapes) {
+    if (shape.values == ShapeValues::gear_ratios) {
+      shapes.push_back(toml::table{{"name", shape.name}, {"gear_ratio", true}});
+      continue;
+    }
     toml::array grid;
     for (const double value : shape.grid) grid.push_back(value);
     shapes.push_back(toml::table{{"name", shape.name},

@@ -93,12 +93,13 @@ Atom make_atom(const AtomTemplate& source, std::size_t family, const Observation
     const ShapeTemplate& shape = source.shapes[k];
     names.push_back(shape.name);
     const bool fixed = !(shape.high > shape.low);
-    const double value = shape.name == "N" ? values[k] : scaled(shape, values[k], data);
+    const double value = scaled(shape, values[k], data);
     atom.shapes.push_back({shape.name,
                            value,
                            fixed ? value : least(shape, data),
                            fixed ? value : scaled(shape, shape.high, data),
-                           {}});
+                           {},
+                           shape.values});
   }
   for (std::size_t c = 0; c < source.columns.size(); ++c) {
     const Expression parsed = parse(source.columns[c], names);
@@ -126,7 +127,7 @@ void expand(const AtomTemplate& source, std::size_t family, const Observations& 
   }
   const ShapeTemplate& shape = source.shapes[values.size()];
   const std::span<const double> grid =
-      shape.name == "N" ? gear_ratios : std::span<const double>(shape.grid);
+      shape.values == ShapeValues::gear_ratios ? gear_ratios : std::span<const double>(shape.grid);
   for (const double value : grid) {
     if (shape.recorded && scaled(shape, value, data) < least(shape, data)) continue;
     values.push_back(value);

@@ -22,6 +22,9 @@
 
 namespace tribench::loop {
 
+// Where a shape has its values from: its own grid, or the gear ratios that are given or usual.
+enum class ShapeValues { grid, gear_ratios };
+
 struct ShapeTemplate {
   std::string name;
   std::string scale;  // signal whose scale multiplies grid, low and high; "g/a": of two; empty: 1
@@ -34,6 +37,8 @@ struct ShapeTemplate {
   // Its one value is the mean of the signal `scale`: the place on an axis whose origin says nothing
   // (a temperature, a time).
   bool reference = false;
+  // Gear ratios are taken as they are: no scale, not refined, and they exclude one another.
+  ShapeValues values = ShapeValues::grid;
 };
 
 // What tells an atom from one of another family that can draw the same curve: beside Coulomb and
@@ -110,6 +115,7 @@ struct Shape {
   double low = 0;
   double high = 0;
   std::vector<Place> places;
+  ShapeValues values = ShapeValues::grid;
   bool refined() const { return high > low; }
 };
 

@@ -59,7 +59,8 @@ std::vector<Template> templates_of(const std::vector<Atom>& atoms,
     // Gear ratios exclude one another: each is a template of its own.
     std::string key = atom.label;
     for (const Shape& shape : atom.shapes) {
-      if (shape.name == "N") key += fmt::format(" N={}", shape.value);
+      if (shape.values != ShapeValues::gear_ratios) continue;
+      key += fmt::format(" {}={}", shape.name, shape.value);
     }
     const auto [found, is_new] = place.try_emplace(key, all.size());
     if (is_new) all.push_back({{}, atom.beside_another});

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -21,6 +20,7 @@
 #include "foundation/json_text.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/suggestion.hpp"
+#include "foundation/text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/loop/controller_code.hpp"
@@ -60,8 +60,7 @@ struct LoopFormula {
 };
 
 LoopFormula read_loop(const std::string& file) {
-  std::ifstream in(file);
-  const nlohmann::json json = read_json<nlohmann::json>(in);
+  const nlohmann::json json = read_json<nlohmann::json>(read_file(file));
   if (!json.is_object() || !json.contains("formula") || !json.contains("symbols")) {
     throw_bad_input("this is no loop.json: it has no formula and symbols", file,
                     "give a formula, or the loop.json that 'tribench loop --out' writes");

@@ -2,19 +2,18 @@
 #include "harness/cli/model_argument.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "foundation/text.hpp"
 
 namespace tribench {
 
 nlohmann::json model_argument(const std::string& model) {
   std::error_code is_no_path;  // a long formula is none
   if (!std::filesystem::is_regular_file(model, is_no_path)) return {{"formula", model}};
-  std::ifstream in(model);
-  const nlohmann::json json = read_json<nlohmann::json>(in);
+  const nlohmann::json json = read_json<nlohmann::json>(read_file(model));
   if (json.is_discarded() || !json.is_object() || !json.contains("formula") ||
       !json["formula"].is_string()) {
     throw_bad_input("this is no model: it has no formula", model,

@@ -6,14 +6,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "foundation/error.hpp"
 #include "foundation/standard_streams.hpp"
+#include "foundation/text.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/cli/study_loop.hpp"
 #include "harness/study/retelling_study.hpp"
@@ -45,10 +44,8 @@ std::vector<RecordingToTell> listed_recordings(const Arguments& arguments) {
     if (!folder) throw_bad_input("no folder of measured data", "--measured", "give --data DIR");
     list = read_recordings(measured_recordings_toml(), "measured_recordings.toml", *folder);
   } else {
-    std::ifstream in(arguments.list);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    list =
-        read_recordings(text, arguments.list, std::filesystem::path(arguments.list).parent_path());
+    list = read_recordings(read_file(arguments.list), arguments.list,
+                           std::filesystem::path(arguments.list).parent_path());
   }
   for (const std::string& name : list.missing) {
     print_message(fmt::format("{}: its files are not there, left out\n", name));

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -16,6 +14,7 @@
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/suggestion.hpp"
+#include "foundation/text.hpp"
 #include "problems/file_hash.hpp"
 
 namespace tribench {
@@ -50,12 +49,10 @@ constexpr std::array kFields = {
     LimitField{"gravity_phase_rad", &MotionLimits::gravity_phase_rad, -10, 10}};
 
 std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) {
-    throw_bad_input("there is no world here", file.parent_path().string(),
-                    "make one: tribench world SEED --out FOLDER");
-  }
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::optional<std::string> text = read_file_if_there(file);
+  if (text) return *std::move(text);
+  throw_bad_input("there is no world here", file.parent_path().string(),
+                  "make one: tribench world SEED --out FOLDER");
 }
 
 // The one of `all` that is called so.

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "algorithms/effects/effect_library.hpp"
@@ -16,6 +15,7 @@
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/plain_name.hpp"
+#include "foundation/text.hpp"
 #include "harness/exploration/world_folder.hpp"
 #include "problems/file_hash.hpp"
 
@@ -159,8 +159,7 @@ std::string leaderboard_of(const std::filesystem::path& folder) {
   std::vector<Json> scores;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".json" || entry.path().stem() == "seals") continue;
-    std::ifstream in(entry.path());
-    const Json score = read_json<Json>(in);
+    const Json score = read_json<Json>(read_file_if_there(entry.path()).value_or(""));
     if (score.is_object() && score.contains("median_seconds")) scores.push_back(score);
   }
   const auto key = [](const Json& one) {

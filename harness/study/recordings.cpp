@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <span>
 #include <sstream>
 
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
+#include "foundation/text.hpp"
 #include "foundation/toml_table.hpp"
 #include "harness/study/loop_cases.hpp"
 #include "problems/reading/csv.hpp"
@@ -55,11 +55,10 @@ RecordingToTell recording_of(const TomlTable& table, const std::filesystem::path
   table.read("files", files);
   table.read("options", recording.options);
   for (const std::string& file : files) {
-    std::ifstream in(folder / file, std::ios::binary);
-    if (!in) return recording;
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const auto text = read_file_if_there(folder / file);
+    if (!text) return recording;
     recording.files.push_back(
-        {std::filesystem::path(file).filename().string(), split_csv(text, file)});
+        {std::filesystem::path(file).filename().string(), split_csv(*text, file)});
   }
   return recording;
 }

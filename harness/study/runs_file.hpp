@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 #include "reports/csv.hpp"
 
 namespace tribench {
@@ -70,7 +71,7 @@ class RunsFile {
 
  private:
   void read_back() {
-    std::ifstream in(file_);
+    std::ifstream in = open_file_if_there(file_);
     if (!in) return;
     const auto header = [&](const std::vector<std::string_view>& names) {
       if (std::ranges::equal(names, format_.columns)) return;

@@ -4,37 +4,21 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 
 namespace tribench {
 namespace {
 
 constexpr std::size_t kLargestText = std::size_t{16} << 30;
+constexpr std::size_t kLargestOfPipe = std::size_t{2} << 30;  // which may never end
 
 std::string read_bytes(const std::filesystem::path& file) {
   std::error_code code;
-  if (std::filesystem::is_directory(file, code)) {
-    throw_bad_input("this is a folder", file.string(), "give a CSV file");
-  }
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw_bad_input("cannot read the file", file.string(), "check the path");
-  std::string text;
-  // A pipe has no size: what is there is read until it ends.
-  const std::uintmax_t size = std::filesystem::file_size(file, code);
-  std::size_t filled = 0;
-  text.resize(code ? 0 : static_cast<std::size_t>(size) + 1);
-  while (true) {
-    if (filled == text.size()) text.resize(std::max<std::size_t>(2 * filled, 65536));
-    in.read(text.data() + filled, static_cast<std::streamsize>(text.size() - filled));
-    filled += static_cast<std::size_t>(in.gcount());
-    if (!in) break;
-  }
-  if (in.bad()) throw Error(ErrorKind::failed, "reading stopped half way", file.string());
-  text.resize(filled);
-  return text;
+  const bool has_end = std::filesystem::is_regular_file(file, code);
+  return read_file(file, has_end ? kLargestText : kLargestOfPipe);
 }
 
 std::string unpacked(const std::string& packed, const std::string& file) {

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <set>
 
@@ -15,6 +13,7 @@
 #include "foundation/formula_name.hpp"
 #include "foundation/number_text.hpp"
 #include "foundation/random.hpp"
+#include "foundation/text.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/reading/csv_cells.hpp"
 
@@ -170,11 +169,6 @@ std::filesystem::path data_file(const std::string& file,
   return *data / file;
 }
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 // The rows that test: those a file of splits names for its seed-th seed (from 1, round and round),
 // else a share drawn with the seed.
 std::vector<char> test_rows_of(const Suite& suite, const SuiteProblem& wanted, std::size_t rows,
@@ -194,7 +188,7 @@ std::vector<char> test_rows_of(const Suite& suite, const SuiteProblem& wanted, s
   }
   const std::filesystem::path file = data_file(wanted.splits, data);
   std::vector<std::string> splits;
-  for (const CsvLine& line : split_csv(text_of(file), file.string()).lines) {
+  for (const CsvLine& line : split_csv(read_file(file), file.string()).lines) {
     if (line.cells.size() == 3 && line.cells[0] == wanted.name) splits.push_back(line.cells[2]);
   }
   if (splits.empty()) {
@@ -317,7 +311,7 @@ std::vector<Suite> known_suites(const std::optional<std::filesystem::path>& data
   }();
   std::vector<Suite> suites = kShipped;
   for (const std::filesystem::path& file : suite_files(data)) {
-    Suite own = read_suite(text_of(file), file.string());
+    Suite own = read_suite(read_file(file), file.string());
     const auto same = std::ranges::find(suites, own.name, &Suite::name);
     if (same == suites.end()) {
       suites.push_back(std::move(own));

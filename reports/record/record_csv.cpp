@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 #include "reports/record/record_columns.hpp"
 
 namespace tribench {
@@ -105,7 +106,7 @@ std::optional<std::string> read_row(const std::vector<std::string_view>& fields,
 template <typename Row>
 CsvReading read_rows(const std::filesystem::path& file, std::span<const RecordColumn<Row>> columns,
                      const std::function<void(Row&&)>& take) {
-  std::ifstream in(file, std::ios::binary);
+  std::ifstream in = open_file_if_there(file);
   if (!in) throw_bad_input("cannot be opened", file.string(), "check the path and its rights");
   std::vector<const RecordColumn<Row>*> matched;
   std::vector<std::string> bad;

@@ -43,12 +43,5 @@ TEST(JsonText, WritesBytesThatAreNoUtf8AsTheReplacementCharacter) {
   EXPECT_EQ(write_json(Json({{"a", "\xff"}})), "{\"a\":\"\xef\xbf\xbd\"}");
 }
 
-TEST(JsonText, ReadsAStreamToItsEnd) {
-  std::istringstream in("{\"a\":\n 3}");
-  EXPECT_EQ(read_json<Json>(in)["a"], 3);
-  std::istringstream none;
-  EXPECT_TRUE(read_json<Json>(none).is_discarded());
-}
-
 }  // namespace
 }  // namespace tribench

@@ -4,7 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
+#include <csignal>
 #include <fstream>
+#include <string>
+#include <thread>
 
 #include "foundation/error.hpp"
 #include "foundation/scratch_folder.hpp"
@@ -13,6 +18,7 @@ namespace tribench {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 TEST(Text, SplitsAtSeparatorsAndTrimsThePieces) {
@@ -20,6 +26,56 @@ TEST(Text, SplitsAtSeparatorsAndTrimsThePieces) {
   EXPECT_THAT(split("a,,b,", ','), ElementsAre("a", "", "b", ""));
   EXPECT_THAT(split(" \n", ','), IsEmpty());
   EXPECT_EQ(trimmed("\r\n x y \t"), "x y");
+}
+
+// The complaint of reading it; empty where it is read.
+std::string complaint_of(const std::filesystem::path& file, std::size_t largest) {
+  try {
+    read_file(file, largest);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+    EXPECT_EQ(error.place(), file.string());
+    return error.what();
+  }
+  return {};
+}
+
+// Without a bound the program would read until its memory ends.
+TEST(Text, ADeviceWithoutAnEndIsRefused) {
+  EXPECT_THAT(complaint_of("/dev/zero", kLargestTextFile), HasSubstr("no text"));
+  EXPECT_THAT(complaint_of("/dev/urandom", kLargestTextFile), HasSubstr("no text"));
+  EXPECT_THAT(complaint_of("/dev", kLargestTextFile), HasSubstr("a folder"));
+  EXPECT_EQ(read_file("/dev/null"), "");
+  EXPECT_FALSE(read_file_if_there("/dev/zero"));
+  EXPECT_FALSE(open_file_if_there("/dev/zero"));
+}
+
+TEST(Text, APipeIsReadToItsEndOrToTheBound) {
+  const ScratchFolder folder;
+  const std::filesystem::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_FALSE(read_file_if_there(pipe));  // and does not wait for a writer
+  std::string text;
+  while (text.size() < 200'000) text += "1.5,-2\n";
+  const auto written = [&] {
+    return std::thread([&] { std::ofstream(pipe, std::ios::binary) << text; });
+  };
+  std::signal(SIGPIPE, SIG_IGN);
+  std::thread whole = written();
+  EXPECT_EQ(read_file(pipe), text);
+  whole.join();
+  std::thread cut = written();
+  EXPECT_THAT(complaint_of(pipe, std::size_t{1} << 16), HasSubstr("longer than"));
+  cut.join();
+}
+
+TEST(Text, AFileIsReadUpToItsBound) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "file";
+  std::ofstream(file) << std::string(100'000, 'x');
+  EXPECT_EQ(read_file(file, 100'000).size(), 100'000U);
+  EXPECT_THAT(complaint_of(file, 99'999), HasSubstr("longer than"));
+  EXPECT_EQ(read_file("/proc/self/stat").empty(), false);  // its size is said to be 0
 }
 
 TEST(Text, AFileIsReadWholeAndAMissingOneIsNamed) {

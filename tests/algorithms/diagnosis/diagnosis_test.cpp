@@ -412,6 +412,23 @@ TEST(Diagnosis, AnUnphysicalEffectIsLeftOverInItsOwnInputs) {
   EXPECT_EQ(diagnosis.leftover.inputs, (std::vector<std::string>{"gravity_torque"}));
 }
 
+// The other way round: "sgn_v" has a "g" too, and a recorded gravity torque is not to be blamed for
+// what lives in the velocity alone.
+TEST(Diagnosis, AnUnphysicalEffectOfVelocityIsNotBlamedOnTheGravityTorque) {
+  Observations data = observe(kuka::make_planted({}, 4).data);
+  const std::vector<double>& v = data.find("v")->values;
+  const std::vector<double>& sign = data.find("sgn_v")->values;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    data.target[i] -= 3 * sign[i] * std::exp(-std::abs(v[i]) / 0.1);
+  }
+  DiagnosisOptions options = options_of_planted();
+  options.physical_vetoes = true;
+  options.families = {"stribeck"};
+  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options, 4);
+  EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
+  EXPECT_EQ(diagnosis.leftover.inputs, (std::vector<std::string>{"velocity"}));
+}
+
 // Grids hand over whatever target they have: all residuals zero, or all of one size.
 TEST(Diagnosis, SaysNothingAboutATargetOfNoughtOrOfOneSize) {
   Observations data = observe(kuka::make_planted({}, 1).data);

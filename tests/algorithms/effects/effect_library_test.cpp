@@ -83,7 +83,8 @@ TEST(EffectLibrary, TheLoopFindsTheRippleOfAScrewWithoutBeingToldItsLead) {
 bool same(const AtomTemplate& a, const AtomTemplate& b) {
   const auto same_shape = [](const ShapeTemplate& x, const ShapeTemplate& y) {
     return x.name == y.name && x.scale == y.scale && x.grid == y.grid && x.low == y.low &&
-           x.high == y.high && x.recorded == y.recorded;
+           x.high == y.high && x.recorded == y.recorded && x.reference == y.reference &&
+           x.values == y.values;
   };
   return a.columns == b.columns && a.coefficients == b.coefficients &&
          a.rigid_load == b.rigid_load && a.curve == b.curve &&
@@ -115,6 +116,33 @@ TEST(EffectFile, HoldsAllThatABuiltInEffectHas) {
   for (std::size_t f = 0; f < read.size(); ++f) {
     EXPECT_TRUE(same(read[f], builtin_effects()[f])) << read[f].name;
   }
+}
+
+// What a shape is called says nothing of where its values come from.
+TEST(EffectFile, AShapeIsTheGearRatioBecauseItSaysSoWhateverItsName) {
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "tribench_gear_shapes.toml";
+  std::ofstream(file)
+      << "[[effect]]\nname = 'x'\nphrase = 'y'\ncolumns = ['exp(-abs(v)/N)']\n"
+         "shape = [{name = 'N', scale = 'v', grid = [0.5, 2.0], low = 0.1, high = 3}]\n"
+         "[[effect]]\nname = 'z'\nphrase = 'y'\ncolumns = ['cos(ratio*q)']\n"
+         "shape = [{name = 'ratio', gear_ratio = true}]\n";
+  const std::vector<EffectFamily> read = read_effects(file);
+  ASSERT_EQ(read.size(), 2U);
+  const Observations data = observe(kuka::make_planted({}, 1).data);
+  const std::vector<double> ratios = {30, 70, 90};
+  std::vector<std::string> missing;
+  const std::vector<Atom> curves = instantiate(read[0], 0, data, ratios, missing);
+  ASSERT_EQ(curves.size(), 2U);
+  EXPECT_EQ(curves[1].shapes[0].value, 2 * signal_scale(data, "v"));
+  EXPECT_TRUE(curves[1].shapes[0].refined());
+  const std::vector<Atom> ripples = instantiate(read[1], 1, data, ratios, missing);
+  ASSERT_EQ(ripples.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(ripples[k].shapes[0].value, ratios[k]);
+    EXPECT_FALSE(ripples[k].shapes[0].refined());
+  }
+  EXPECT_EQ(write_effects(read).find("grid = []"), std::string::npos);
 }
 
 TEST(EffectFile, SaysWhereAnEffectIsIncomplete) {
@@ -171,7 +199,11 @@ TEST(EffectFile, RefusesWhatItDoesNotKnow) {
       {shaped + "shape = [{name = 'l', grid = [1.0], low = 2, high = 1}]\n", "above high"},
       {shaped + "shape = {name = 'l', grid = [1.0]}\n", "'shape' is no list"},
       {shaped + "shape = [{name = 'k', grid = [1.0]}]\n", "no column holds the shape 'k'"},
-      {"columns = [\"cos(N*q)\"]\nshape = [{name = 'N', grid = [7.0]}]\n", "is the gear ratio"},
+      {"columns = ['cos(N*q)']\nshape = [{name = 'N', grid = []}]\n", "gear_ratio = true"},
+      {"columns = ['cos(N*q)']\nshape = [{name = 'N', gear_ratio = 1}]\n",
+       "'gear_ratio' is no true or false"},
+      {"columns = ['cos(N*q)']\nshape = [{name = 'N', gear_ratio = true, grid = [7.0]}]\n",
+       "is the gear ratio"},
       {columns + "sanity = [{coefficient = 'c1', sign = 2}]\n", "'sign' is 2"},
       {columns + "curve = 'up'\n", "'curve' is 'up'"},
       {columns + "[[efect]]\nname = 'z'\n", "did you mean effect"}};

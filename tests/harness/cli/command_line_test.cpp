@@ -18,6 +18,7 @@
 namespace tribench::testing {
 namespace {
 
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 using Words = std::vector<std::string>;
@@ -115,6 +116,30 @@ TEST(CommandLine, MessagesThatNobodyHearsChangeNothing) {
     const ProgramRun run = run_redirected(words);
     EXPECT_EQ(run.status, 2) << words;
     EXPECT_EQ(run.signal, 0) << words;
+  }
+}
+
+// Read to its end, /dev/zero would take all memory and never come to an answer.
+TEST(CommandLine, ADeviceWithoutAnEndIsRefusedByEveryReader) {
+  const TemporaryFolder folder;
+  const std::string data = "'" + (folder / "joint.csv").string() + "'";
+  const std::string out = " --out '" + (folder / "out").string() + "'";
+  ASSERT_EQ(run_redirected("generate A/j2/load --out " + data).status, 0);
+  std::filesystem::create_directory(folder / "run");
+  std::filesystem::create_symlink("/dev/zero", folder / "run/cells.jsonl");
+  const std::string run_folder = "'" + (folder / "run").string() + "'";
+  for (const std::string& words :
+       {"run /dev/zero" + out, "run /dev/stdin" + out, "run --quarantine /dev/zero" + out,
+        "run --data-file /dev/zero --target y --methods linear" + out,
+        std::string("fit /dev/zero --target y --inputs x --method linear"), "loop /dev/zero" + out,
+        "loop " + data + " --learned /dev/zero" + out, std::string("check --verify /dev/zero"),
+        "report " + run_folder, "merge " + run_folder + out}) {
+    const ProgramRun run = run_redirected(words + " </dev/zero", "ulimit -t 20");
+    EXPECT_EQ(run.status, 2) << words << run.errors;
+    EXPECT_EQ(run.signal, 0) << words;
+    EXPECT_THAT(run.errors,
+                AnyOf(HasSubstr("/dev/zero"), HasSubstr("/dev/stdin"), HasSubstr("cells.jsonl")))
+        << words;
   }
 }
 
