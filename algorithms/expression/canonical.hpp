@@ -15,99 +15,47 @@
 // node (bench/proof_bench).
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <utility>
 #include <vector>
 
+#include "algorithms/expression/canonical_forms.hpp"
 #include "algorithms/expression/expression.hpp"
 
 namespace tribench {
 
-struct CanonicalHash {
-  std::uint64_t exact = 0;  // constants included, bit for bit after folding
-  std::uint64_t shape = 0;  // any coefficient but 1, any constant, counts as the same
-  bool operator==(const CanonicalHash&) const = default;
-};
-
-// What a rewrite may ask about a subformula. Empty functions answer no.
-struct RewriteGuard {
-  std::function<bool(const Expression&)> is_finite;    // everywhere on the domain of interest
-  std::function<bool(const Expression&)> is_non_zero;  // finite and nowhere 0
-};
-
 class Canonicalizer {
  public:
   Canonicalizer() = default;
-  explicit Canonicalizer(RewriteGuard guard) : guard_(std::move(guard)) {}
+  explicit Canonicalizer(RewriteGuard guard) : forms_(std::move(guard)) {}
 
-  CanonicalHash hash(const Expression& formula);
+  CanonicalHash hash(const Expression& formula) { return forms_.at(build(formula)).hash; }
   // The canonical form as a tape. Its own canonical form has the same hash, but where it keeps 0
   // times something that may be singular.
-  Expression canonical(const Expression& formula);
+  Expression canonical(const Expression& formula) { return written_out(forms_, build(formula)); }
 
  private:
-  enum class Kind : std::uint8_t { constant, variable, product, sum, function };
-
-  // One node of the canonical tree. A sum is value + sum of number * part, a product is
-  // value * product of part ^ number (number a non-zero integer), a function applies op to its
-  // parts. Parts lie side by side in parts_.
-  struct Item {
-    Kind kind = Kind::constant;
-    Op op = Op::constant;
-    bool is_total = true;  // finite for all finite inputs but for overflow
-    std::uint16_t variable = 0;
-    std::uint32_t first = 0;
-    std::uint32_t count = 0;
-    std::uint32_t size = 1;
-    double value = 0;
-    CanonicalHash hash;
-  };
-  struct Part {
-    std::uint32_t item = 0;
-    double number = 1;
-  };
+  using Kind = CanonicalForms::Kind;
+  using Item = CanonicalForms::Item;
+  using Part = CanonicalForms::Part;
 
   std::uint32_t build(const Expression& formula);
   std::uint32_t build_node(Op op, std::uint32_t left, std::uint32_t right);
-  std::uint32_t constant(double value);
-  std::uint32_t variable(std::uint16_t column);
   std::uint32_t sum(std::uint32_t a, std::uint32_t b, double coefficient_b);
   std::uint32_t product(std::uint32_t a, std::uint32_t b, int exponent_b);
   std::uint32_t scaled(std::uint32_t item, double factor);
   std::uint32_t power(std::uint32_t base, std::uint32_t exponent);
   std::uint32_t function(Op op, std::uint32_t argument);
   std::uint32_t magnitude(std::uint32_t argument);
-  std::uint32_t opaque(Op op, std::uint32_t left, std::uint32_t right);
 
+  // Collect in the scratch; `finish` makes one node of what was collected.
   void add_terms(std::uint32_t item, double coefficient, double& constant);
   void add_factors(std::uint32_t item, int exponent, double& coefficient);
   bool add_product_factors(const Item& product, int exponent, double& coefficient);
-  void sort_scratch();
-  void merge_terms();
-  void merge_factors();
   std::uint32_t finish_sum(double constant);
   std::uint32_t finish_product(double coefficient);
-  std::uint32_t keep(Item item);  // with the scratch as its parts
-  std::uint32_t push(Item item);
-  std::uint32_t unit_of(std::uint32_t product);
-  void seal(Item& item) const;  // hash, size and totality of a sum or product from its parts
-  bool leads_negative(const Item& item) const;
-  bool precedes(const Part& a, const Part& b) const;
-  bool same_base(const Part& a, const Part& b) const;
-  bool is_finite(std::uint32_t item) const;
-  bool is_non_zero(std::uint32_t item) const;
 
-  Expression emit(std::uint32_t item) const;
-  void emit(std::uint32_t item, std::vector<Node>& tape) const;
-  void emit_sum(const Item& item, std::vector<Node>& tape) const;
-  void emit_term(std::uint32_t item, double coefficient, std::vector<Node>& tape) const;
-  void emit_power(const Part& part, std::vector<Node>& tape) const;
-  void emit_product(const Item& item, double coefficient, std::vector<Node>& tape) const;
-
-  RewriteGuard guard_;
-  std::vector<Item> items_;
-  std::vector<Part> parts_;
+  CanonicalForms forms_;
   std::vector<Part> scratch_;  // the terms or factors being collected
   std::vector<std::uint32_t> stack_;
 };
