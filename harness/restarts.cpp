@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/admission.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/joint_front.hpp"
 
@@ -17,7 +18,7 @@ FitResult fit_until_spent(FitResult first, const FitRound& round, bool widens,
   // Models with states are fitted from a grid of starts: another round would find the same.
   if (first.front.empty() || !first.states.empty()) return first;
   const FiniteRows rows(data);
-  JointFront joint(rows.table(), rows.target);
+  JointFront joint(rows.table(), rows.target, rows.movement, input_box(data.inputs));
   joint.add(first.front, first.chosen);
   const int most_alike = widens ? 3 : 1;
   std::vector<Expression> before = first.front;

@@ -93,6 +93,43 @@ void multiply_out(const SumTerm& term, std::vector<Expression>& out) {
   }
 }
 
+// k exp(a + c) (d x + f y) = exp(a) (k e^c d x + k e^c f y): numbers of any size that only undo
+// each other become one a term.
+void absorb_numbers(const SumTerm& term, std::vector<Expression>& out) {
+  SumTerm rest{1, {}};
+  double log_scale = 0;
+  for (const TermFactor& factor : term.factors) {
+    TermFactor kept = factor;
+    if (is_function(factor.base, Op::exp)) {
+      const Expression argument = argument_of(factor.base);
+      SumOfProducts exponent = sum_of_products(argument, argument.root());
+      for (const SumTerm& each : exponent) {
+        if (each.factors.empty()) log_scale += factor.power * each.coefficient;
+      }
+      std::erase_if(exponent, [](const SumTerm& each) { return each.factors.empty(); });
+      if (!exponent.empty()) kept.base = Expression::unary(Op::exp, formula_of(exponent));
+    }
+    rest.factors.push_back(std::move(kept));
+  }
+  if (log_scale == 0) return;
+  for (std::size_t i = 0; i < rest.factors.size(); ++i) {
+    const TermFactor& factor = rest.factors[i];
+    if (factor.power != 1 || !is_sum(factor.base.node(factor.base.root()).op)) continue;
+    SumOfProducts sum = sum_of_products(factor.base, factor.base.root());
+    bool is_finite = true;
+    for (SumTerm& each : sum) {
+      // By logarithms: neither e^c nor k need be a number by itself.
+      const double size = std::abs(each.coefficient * term.coefficient);
+      const double scaled = size > 0 ? apply(Op::exp, apply(Op::log, size) + log_scale) : size;
+      each.coefficient = std::copysign(scaled, each.coefficient * term.coefficient);
+      is_finite = is_finite && scaled < 1e300 && (scaled > 1e-300 || size == 0);
+    }
+    SumTerm result = rest;
+    result.factors[i].base = formula_of(sum);
+    if (is_finite) out.push_back(formula_of(result));
+  }
+}
+
 // What stands below a bar in one of two sums, with the highest power that it has there.
 std::vector<TermFactor> bases_below(const SumOfProducts& a, const SumOfProducts& b) {
   std::vector<TermFactor> bases;
@@ -223,6 +260,7 @@ void Rewriter::rewrite_product(const SumTerm& term, std::vector<Expression>& out
   out.push_back(formula_of(term));
   multiply_out(term, out);
   clear_fractions(term, out);
+  absorb_numbers(term, out);
   merge_pairs(term, out);
 }
 

@@ -6,8 +6,10 @@
 //
 //   sums       a common factor, or number, of some terms taken out; a term that is nothing beside
 //              the others dropped
-//   products   a factor that is a sum multiplied out; exponentials and roots merged; x sgn_x = |x|,
-//              |x| sgn_x = x; fractions within a fraction cleared
+//   products   a factor that is a sum multiplied out, or scaled by the constants of exponents
+//   beside
+//              it; exponentials and roots merged; x sgn_x = |x|, |x| sgn_x = x; fractions within a
+//              fraction cleared
 //   functions  exp of log and of a constant term, log of exp, of roots and powers, roots of squares
 //              and of constants, |x| of what has one sign; sin, tanh, exp and cos of arguments so
 //              small, tanh of ones so large, that the difference is below 1e-12 of the value

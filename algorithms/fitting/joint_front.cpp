@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "algorithms/expression/complexity.hpp"
+#include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/evidence.hpp"
 #include "algorithms/fitting/exact_choice.hpp"
+#include "algorithms/fitting/posterior_choice.hpp"
 
 namespace tribench {
 namespace {
@@ -17,58 +19,111 @@ constexpr double kToRounding = 1e-11;
 
 }  // namespace
 
-JointFront::JointFront(const Inputs& inputs, std::span<const double> target)
-    : inputs_(inputs), target_(target) {
+JointFront::JointFront(const Inputs& inputs, std::span<const double> target,
+                       std::span<const int> movement, InputBox box)
+    : inputs_(inputs), target_(target), movement_(movement), box_(std::move(box)) {
   for (const double y : target) zero_loss_ += y * y / static_cast<double>(target.size());
 }
 
-double JointFront::mean_square(const Expression& formula) {
-  const ErrorSum sum = evaluator_.sum_squared_errors(formula, inputs_, target_);
-  if (sum.status != ErrorSumStatus::complete) return HUGE_VAL;
-  return sum.sum / static_cast<double>(target_.size());
-}
-
-double JointFront::against(const Expression& formula) {
-  const double error = mean_square(formula);
-  if (std::isinf(error)) return error;
-  return evidence_against(formula, error, zero_loss_, target_.size());
-}
-
-void JointFront::add(std::span<const Expression> front, std::size_t chosen) {
-  struct Member {
-    int complexity;
-    double error;
-    Expression formula;
-  };
-  Expression stands_for = front[chosen];
-  if (!formulas_.empty() && against(formulas_[chosen_]) <= against(stands_for)) {
-    stands_for = formulas_[chosen_];
+void JointFront::add(std::span<const Expression> front, std::optional<std::size_t> chosen) {
+  for (std::size_t k = 0; k < front.size(); ++k) {
+    const auto known = std::ranges::find(members_, front[k], &Member::formula);
+    if (known != members_.end()) {
+      known->is_choice = known->is_choice || chosen == k;
+      continue;
+    }
+    const ErrorSum sum = evaluator_.sum_squared_errors(front[k], inputs_, target_);
+    const double error = sum.status == ErrorSumStatus::complete
+                             ? sum.sum / static_cast<double>(target_.size())
+                             : HUGE_VAL;
+    members_.push_back({front[k], paper_complexity(front[k]), error,
+                        evidence_against(front[k], error, zero_loss_, target_.size()),
+                        chosen == k});
   }
-  std::vector<Member> all;
-  const auto take = [&](const Expression& formula) {
-    all.push_back({paper_complexity(formula), mean_square(formula), formula});
-  };
-  std::ranges::for_each(formulas_, take);
-  for (const Expression& formula : front) {
-    if (std::ranges::count(formulas_, formula) == 0) take(formula);
-  }
-  std::ranges::stable_sort(all, [](const Member& a, const Member& b) {
+  std::ranges::stable_sort(members_, [](const Member& a, const Member& b) {
     return a.complexity != b.complexity ? a.complexity < b.complexity : a.error < b.error;
   });
-  formulas_.clear();
-  double best = HUGE_VAL;
-  for (Member& member : all) {
-    const bool is_chosen = member.formula == stands_for;
-    if (!(member.error < best) && !is_chosen) continue;
-    best = std::min(best, member.error);
-    if (is_chosen) chosen_ = formulas_.size();
-    formulas_.push_back(std::move(member.formula));
+  // What is neither on the front nor a choice, and has no weight, is heard no more.
+  double least = HUGE_VAL;
+  for (const Member& member : members_) least = std::min(least, member.against);
+  std::vector<Member> kept;
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    const Member& member = members_[k];
+    if (member.is_choice || member.against <= least + kNegligibleNats || is_on_front(k)) {
+      kept.push_back(member);
+    }
   }
-  const auto exact = simplest_exact(formulas_, inputs_, target_);
+  members_ = std::move(kept);
+  is_settled_ = false;
   is_explained_ = false;
-  if (!exact) return;
-  chosen_ = *exact;
-  is_explained_ = mean_square(formulas_[chosen_]) <= kToRounding * kToRounding * zero_loss_;
+  const double rounding = kToRounding * kToRounding * zero_loss_;
+  if (std::ranges::none_of(members_, [=](const Member& m) { return m.error <= rounding; })) return;
+  settle();
+  is_explained_ = is_exact_ && members_[places_[chosen_]].error <= rounding;
+}
+
+bool JointFront::is_on_front(std::size_t place) const {
+  const auto before = std::span(members_).first(place);
+  const double error = members_[place].error;
+  return std::isfinite(error) &&
+         std::ranges::none_of(before, [=](const Member& other) { return other.error <= error; });
+}
+
+// Where no search stands for any, all on the front are candidates.
+std::size_t JointFront::choose() const {
+  const bool any = std::ranges::any_of(members_, &Member::is_choice);
+  std::vector<std::size_t> places;
+  std::vector<Expression> candidates;
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    if (any ? !members_[k].is_choice : !is_on_front(k)) continue;
+    places.push_back(k);
+    candidates.push_back(members_[k].formula);
+  }
+  if (candidates.empty()) return 0;
+  if (candidates.size() == 1) return places[0];
+  if (reaches_beyond(inputs_, box_)) {
+    return places[cross_validate(candidates, inputs_, target_, movement_, box_).chosen];
+  }
+  std::vector<WeighedFormula> pool;
+  for (const Member& member : members_) {
+    pool.push_back({&member.formula, member.against, member.error});
+  }
+  return places[simplest_typical(distances_from_posterior_mean(candidates, pool, inputs_))];
+}
+
+void JointFront::settle() {
+  if (is_settled_ || members_.empty()) return;
+  is_settled_ = true;
+  list([&](std::size_t k) { return is_on_front(k); });
+  const auto exact = simplest_exact(formulas_, inputs_, target_);
+  is_exact_ = exact.has_value();
+  if (exact) {
+    chosen_ = *exact;
+    return;
+  }
+  const std::size_t choice = choose();
+  list([&](std::size_t k) { return k == choice || is_on_front(k); });
+  chosen_ = static_cast<std::size_t>(std::ranges::find(places_, choice) - places_.begin());
+}
+
+void JointFront::list(const std::function<bool(std::size_t)>& is_taken) {
+  places_.clear();
+  formulas_.clear();
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    if (!is_taken(k)) continue;
+    places_.push_back(k);
+    formulas_.push_back(members_[k].formula);
+  }
+}
+
+const std::vector<Expression>& JointFront::formulas() {
+  settle();
+  return formulas_;
+}
+
+std::size_t JointFront::chosen() {
+  settle();
+  return chosen_;
 }
 
 }  // namespace tribench

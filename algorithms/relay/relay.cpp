@@ -61,13 +61,11 @@ class Run {
       : context_(context),
         rows_(context.data),
         admission_(context),
-        joint_(rows_.table(), rows_.target) {}
+        joint_(rows_.table(), rows_.target, rows_.movement, input_box(context.data.inputs)) {}
 
   bool has_rows() const { return rows_.rows() > 0; }
-  bool has_formula() const { return !joint_.formulas().empty(); }
-  bool is_short() const {
-    return has_formula() && joint_.formulas()[joint_.chosen()].size() <= kShort;
-  }
+  bool has_formula() const { return !joint_.empty(); }
+  bool is_short() { return has_formula() && joint_.formulas()[joint_.chosen()].size() <= kShort; }
   bool is_done() const {
     return joint_.is_explained() || context_.budget.remaining() == 0 ||
            context_.budget.out_of_time() || context_.budget.exhausted();
@@ -83,7 +81,7 @@ class Run {
         ConstantFitter().fit(formula, rows_.table(), rows_.target, {}, options);
     context_.budget.spend(fit.node_rows);
     if (fit.status == FitStatus::not_finite) return;
-    joint_.add(std::array{std::move(formula)}, 0);
+    joint_.add(std::array{std::move(formula)}, std::nullopt);
     if (joint_.is_explained() && explained_by_.empty()) explained_by_ = found_by;
   }
 
@@ -135,7 +133,7 @@ class Run {
   std::uint64_t remaining() const { return context_.budget.remaining(); }
 
   FitResult result() && {
-    if (joint_.formulas().empty()) return FitResult::unsupported(std::move(note_));
+    if (joint_.empty()) return FitResult::unsupported(std::move(note_));
     if (!explained_by_.empty()) {
       note_ += fmt::format("{}explained by {}", note_.empty() ? "" : "; ", explained_by_);
     }

@@ -156,19 +156,19 @@ std::size_t Pruner::least_needed(const Expression& formula, std::uint64_t& node_
   return least;
 }
 
-std::vector<Pruner::Step> Pruner::path(Expression formula, std::size_t fewest,
-                                       std::uint64_t& node_rows) {
+std::vector<Pruner::Step> Pruner::path(Expression formula, std::size_t fewest, Budget& budget) {
   std::vector<Step> steps;
   while (true) {
     const ConstantFitResult fit = fitter_.fit(formula, problem_->inputs(), problem_->target());
-    node_rows += fit.node_rows;
+    std::uint64_t cost = fit.node_rows;
     if (fit.status == FitStatus::not_finite || fit.status == FitStatus::no_constants) break;
     const double mean = fit.sum_squares / static_cast<double>(problem_->rows());
     steps.push_back(
         {formula, std::sqrt(problem_->variance() > 0 ? mean / problem_->variance() : mean)});
     if (movable_constants(formula).size() <= fewest) break;
-    const std::size_t term = least_needed(formula, node_rows);
-    if (term == formula.size()) break;
+    const std::size_t term = least_needed(formula, cost);
+    budget.spend(cost);
+    if (budget.out_of_time() || term == formula.size()) break;
     formula = without_term(formula, term);
   }
   return steps;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "algorithms/budget.hpp"
 #include "algorithms/expression/differentiate.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/udsr/scoring.hpp"
@@ -32,8 +33,8 @@ class Pruner {
     Expression formula;  // constants at their minimum
     double nrmse = 0;
   };
-  // From the formula itself down to at most `fewest` terms. node_rows is increased by the cost.
-  std::vector<Step> path(Expression formula, std::size_t fewest, std::uint64_t& node_rows);
+  // From the formula itself down to at most `fewest` terms, or as far as the clock allows.
+  std::vector<Step> path(Expression formula, std::size_t fewest, Budget& budget);
 
  private:
   // The place of the term to drop, or the size of the tape where none can be.

@@ -247,24 +247,30 @@ class Search {
 
   // With constants before every term, then with ever fewer terms.
   void offer_sparser(const udsr::Sequence& sequence) {
+    if (budget_.exhausted()) return;
     const udsr::Scored scored = scorer_.score(sequence);
     if (scored.reward <= 0 || !budget_.spend(scoring_cost(problem_, sequence))) return;
-    std::uint64_t cost = 0;
     // Without constants a formula has none but those that the linear token was solved for.
     const Expression start =
         settings_.tokens.constants ? udsr::with_constants(scored.formula) : scored.formula;
-    for (udsr::Pruner::Step& step : pruner_.path(start, kFewestConstants, cost)) {
+    for (udsr::Pruner::Step& step : pruner_.path(start, kFewestConstants, budget_)) {
       add(std::move(step.formula), step.nrmse);
     }
-    budget_.spend(cost);
   }
 
-  // The linear token by itself.
+  // The linear token by itself. Coefficients are solved for: they stand where there is no time to
+  // polish them.
   void offer_polynomials() {
     std::uint64_t cost = 0;
     const std::vector<Expression> polynomials = udsr::select_terms(wide_terms_, problem_, cost);
     budget_.spend(cost);
-    for (const Expression& formula : polynomials) offer(formula);
+    for (const Expression& formula : polynomials) {
+      if (budget_.exhausted()) {
+        add(formula, scorer_.nrmse(formula));
+      } else {
+        offer(formula);
+      }
+    }
   }
 
   const Settings& settings_;
@@ -335,8 +341,14 @@ class Udsr : public Regressor {
                   context.threads);
     std::vector<Expression> front = solve(search, context, sample, context.random, 0);
     // All rows, most of which the search has not seen, say how long a formula may be: on all rows
-    // whatever the form lacks is significant as hundreds of small terms.
-    if (!front.empty()) front.resize(1 + shortest_as_good(front, problem));
+    // whatever the form lacks is significant as hundreds of small terms. What the sample does not
+    // support is not looked at on all of them.
+    if (!front.empty()) {
+      const auto supported =
+          udsr::choose(udsr::Choice::bic, front, {}, search.problem(), {}, searching);
+      front.resize(1 + supported);
+      front.resize(1 + shortest_as_good(front, problem));
+    }
     for (Expression& formula : front) all.take(std::move(formula));
     context.budget.settle(searching);
     return all.front();

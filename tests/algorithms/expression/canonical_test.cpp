@@ -246,6 +246,26 @@ TEST(Simplify, FindsTheShortForm) {
   }
 }
 
+// As a search printed it: e^-344 and 1e150, of which nothing is left but their product.
+TEST(Simplify, TakesTogetherNumbersThatOnlyUndoEachOther) {
+  const InputBox box = {{-2, 2}, {-60, 60}, {0, 0, 0}};  // t is the sign of v
+  const Expression formula =
+      formula_of("(t*2.46e+150 + v*8.69e+149 - 1.77e+149)*exp(v*g - 344.14)");
+  const Expression simple = simplify(formula, box);
+  EXPECT_LT(paper_complexity(simple), paper_complexity(formula));
+  for (const Node& node : simple.nodes()) {
+    if (node.is_constant()) EXPECT_LT(std::abs(node.value), 100) << print(simple, kNames);
+  }
+  Evaluator evaluator;
+  for (const double v : {-1.5, -0.2, 0.7}) {
+    const std::vector<double> point = {v, 1.3, v < 0 ? -1.0 : 1.0};
+    const double before = evaluator.evaluate_at(formula, point);
+    EXPECT_NEAR(evaluator.evaluate_at(simple, point), before, 1e-12 * std::abs(before));
+  }
+  const Expression plain = formula_of("(2*v + 3*g)*exp(v*g)");
+  EXPECT_EQ(paper_complexity(simplify(plain, box)), paper_complexity(plain));
+}
+
 TEST(Simplify, UsesTheSignOfAnInput) {
   const InputBox box = {{-2, 2}, {-60, 60}, {0, 0, 0}};  // t is the sign of v
   const auto text = [&](const char* formula) {

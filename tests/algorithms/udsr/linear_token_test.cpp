@@ -107,15 +107,15 @@ TEST_F(LinearTokenTest, CannotBeInvertedWhereTheTargetLeavesTheRange) {
 TEST_F(LinearTokenTest, PruningEndsAtTheTermsThatMadeTheData) {
   make("3*v - 2*v*w");
   const Scored full = Scorer(*problem).score(sequence_of(library, {"linear"}));
-  std::uint64_t cost = 0;
-  const std::vector<Pruner::Step> path = Pruner(*problem).path(full.formula, 1, cost);
+  Budget budget{{}};
+  const std::vector<Pruner::Step> path = Pruner(*problem).path(full.formula, 1, budget);
   ASSERT_GE(path.size(), 2U);
   const Pruner::Step& two = path[path.size() - 2];
   EXPECT_LT(two.nrmse, 1e-9);
   EXPECT_GT(path.back().nrmse, 0.1);
   const std::vector<std::string> names = {"v", "w"};
   EXPECT_EQ(two.formula.constant_positions().size(), 2U) << print(two.formula, names);
-  EXPECT_GT(cost, 0U);
+  EXPECT_GT(budget.spent(), 0U);
 }
 
 TEST_F(LinearTokenTest, PruningMovesTheScalesInsideFunctions) {
@@ -124,9 +124,10 @@ TEST_F(LinearTokenTest, PruningMovesTheScalesInsideFunctions) {
   const Scored scored = Scorer(*problem).score(
       sequence_of(library, {"*", "linear", "exp", "-", "x2", "*", "x1", "x1"}));
   ASSERT_GT(scored.nrmse, 1e-4);
-  std::uint64_t cost = 0;
+  Budget budget{{}};
   double best = 1;
-  for (const Pruner::Step& step : Pruner(*problem).path(with_constants(scored.formula), 4, cost)) {
+  for (const Pruner::Step& step :
+       Pruner(*problem).path(with_constants(scored.formula), 4, budget)) {
     if (step.formula.constant_positions().size() <= 6) best = std::min(best, step.nrmse);
   }
   EXPECT_LT(best, 1e-6);

@@ -101,10 +101,10 @@ TEST(Udsr, ChoosesNoRefutedFormulaAndOffersNoneWhereTheOperatorSetAsksForProofs)
       return prove_free(formula, box).verdict != Verdict::proved_free;
     });
   };
-  const FitResult risky = fit(curve, kSmall, 1, 40'000'000, "paper+div");
+  const FitResult risky = fit(curve, kSmall, 1, 100'000'000, "paper+div");
   EXPECT_GT(unproved(risky), 0);
   EXPECT_NE(prove_free(risky.front[risky.chosen], box).verdict, Verdict::refuted);
-  EXPECT_EQ(unproved(fit(curve, kSmall, 1, 40'000'000, "paper+safe_div")), 0);
+  EXPECT_EQ(unproved(fit(curve, kSmall, 1, 100'000'000, "paper+safe_div")), 0);
 }
 
 TEST(Udsr, EveryPartCanBeSwitchedAndMatters) {
