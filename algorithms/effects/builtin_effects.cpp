@@ -306,7 +306,7 @@ EffectFamily lag() {
   f.atoms = {
       {{"sgn_v*exp(-abs(v)/vl)*sgn(v*a)"}, {"lag"}, {{"vl", "v", {0.07, 0.15, 0.3}, 0.02, 0.6}}}};
   // Friction of the velocity as it was: its viscous part is an inertia, and no lag.
-  for (const int lag_ms : kLagsMs) {
+  for (const int lag_ms : kLags_ms) {
     const std::string late = lagged_velocity_name(lag_ms);
     f.atoms.push_back(
         {{"tanh(" + late + "/vw) - tanh(v/vw)"}, {"late"}, {{"vw", "v", {0.07, 0.2}, 0.02, 0.6}}});

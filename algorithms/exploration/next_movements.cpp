@@ -100,7 +100,7 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
     }
   };
   std::vector<FirstOrderLag> lags;
-  for (const int lag_ms : kLagsMs) lags.emplace_back(lag_ms * 1e-3);
+  for (const int lag_ms : kLags_ms) lags.emplace_back(lag_ms * 1e-3);
   double distance = 0;
   double v_before = 0;
   double q_before = movement.kind == "two_tone" ? middle : movement.from;
@@ -133,7 +133,7 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
     set("q", i, q);
     if (std::isfinite(distance)) set("d", i, distance);
     for (std::size_t k = 0; k < lags.size(); ++k) {
-      set(lagged_velocity_name(kLagsMs[k]), i, lags[k].next(v, movement.duration / kRows));
+      set(lagged_velocity_name(kLags_ms[k]), i, lags[k].next(v, movement.duration / kRows));
     }
     if (gravity.norm() > 0) {
       set("g", i, g);

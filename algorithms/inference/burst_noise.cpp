@@ -4,20 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <span>
 #include <utility>
 
+#include "algorithms/inference/noise_by_speed.hpp"
 #include "foundation/elementary.hpp"
 #include "foundation/order_statistics.hpp"
 
 namespace tribench::loop {
 namespace {
 
-constexpr double kLeastShare = 0.02;  // of the typical noise a row's noise is at least
-constexpr std::size_t kSpeeds = 8;    // groups of equal size
 constexpr int kPasses = 2;
-constexpr int kIterations = 8;         // for a level; each leaves a third of the error
 constexpr int kIterationsWithout = 4;  // from the level with the rows
 // Fewer rows than this share of a movement's do not change its level.
 constexpr std::size_t kNegligible = 50;
@@ -45,18 +42,6 @@ double neighbour_correlation(const std::vector<double>& deviation,
   return square > 0 ? std::clamp(product / square, 0.0, 0.998) : 0;
 }
 
-// The scale of z as a multiple of the law's, by maximum likelihood, from `level` on.
-double level_of(std::span<const double> z, const StudentLaw& law, double level, int iterations) {
-  const double unit = law.scale * law.scale;
-  double square = level * level * unit;
-  for (int k = 0; k < iterations; ++k) {
-    double sum = 0;
-    for (const double x : z) sum += x * x * (law.freedom + 1) / (law.freedom + x * x / square);
-    square = std::max(sum / static_cast<double>(z.size()), kLeastShare * kLeastShare * unit);
-  }
-  return std::sqrt(square / unit);
-}
-
 }  // namespace
 
 BurstNoise::BurstNoise(std::span<const int> movement, std::span<const double> speed,
@@ -64,20 +49,19 @@ BurstNoise::BurstNoise(std::span<const int> movement, std::span<const double> sp
     : movements_(movement_ranges(movement)),
       deviation_(movement.size()),
       unit_(movement.size(), 1.0),
-      level_(movements_.size(), 1.0),
-      speed_(speed.begin(), speed.end()) {
+      level_(movements_.size(), 1.0) {
   centre(residual);
   robust_sd_ = kMadToSd * median_magnitude(deviation_);
   if (!(robust_sd_ > 0)) return;
-  group_by_speed();
+  NoiseBySpeed by_speed(speed, deviation_, robust_sd_);
   for (int pass = 0; pass < kPasses; ++pass) {
-    if (pass > 0) refine_speeds();
-    scale_by_speed();
+    if (pass > 0) by_speed.refine(innovation_, law_);
+    unit_ = by_speed.units();
     innovate();
     if (pass == 0) law_ = fit_student(innovation_);
     scale_by_movement();
   }
-  speed_variance_ = variance_of_speed_levels();
+  speed_variance_ = by_speed.variance(law_, spread_, movements_);
 }
 
 std::size_t BurstNoise::movement_at(std::size_t row) const {
@@ -113,52 +97,6 @@ void BurstNoise::centre(const Eigen::VectorXd& residual) {
   }
 }
 
-// Groups of rows of like speed, and how wide the noise is in each, to begin with.
-void BurstNoise::group_by_speed() {
-  const std::size_t n = deviation_.size();
-  if (n < 4 * kSpeeds) speed_.clear();
-  if (speed_.empty()) return;
-  by_speed_.resize(n);
-  std::iota(by_speed_.begin(), by_speed_.end(), std::size_t{0});
-  std::ranges::stable_sort(by_speed_, {}, [&](std::size_t i) { return speed_[i]; });
-  for (std::size_t g = 0; g < kSpeeds; ++g) {
-    std::vector<double> magnitudes;
-    for (const std::size_t i : rows_of_speed(g)) magnitudes.push_back(std::abs(deviation_[i]));
-    const double sd = kMadToSd * median(magnitudes);
-    middle_speed_.push_back(speed_[by_speed_[n * (2 * g + 1) / (2 * kSpeeds)]]);
-    speed_level_.push_back(elementary::log(std::max(sd / robust_sd_, kLeastShare)));
-  }
-}
-
-std::span<const std::size_t> BurstNoise::rows_of_speed(std::size_t group) const {
-  const std::size_t n = by_speed_.size();
-  const std::size_t first = n * group / kSpeeds;
-  return std::span(by_speed_).subspan(first, n * (group + 1) / kSpeeds - first);
-}
-
-// The noise at the row's speed; between the middles of the groups its logarithm is straight.
-void BurstNoise::scale_by_speed() {
-  std::ranges::fill(unit_, robust_sd_);
-  for (std::size_t i = 0; i < speed_.size(); ++i) {
-    std::size_t g = 1;
-    while (g + 1 < kSpeeds && speed_[i] > middle_speed_[g]) ++g;
-    const double width = middle_speed_[g] - middle_speed_[g - 1];
-    const double part =
-        width > 0 ? std::clamp((speed_[i] - middle_speed_[g - 1]) / width, -0.5, 1.5) : 1;
-    unit_[i] = robust_sd_ * elementary::exp(speed_level_[g - 1] +
-                                            part * (speed_level_[g] - speed_level_[g - 1]));
-  }
-}
-
-// The same again, from innovations and with the movements' own levels out of the way.
-void BurstNoise::refine_speeds() {
-  for (std::size_t g = 0; g < speed_level_.size(); ++g) {
-    std::vector<double> z;
-    for (const std::size_t i : rows_of_speed(g)) z.push_back(innovation_[i]);
-    speed_level_[g] += elementary::log(std::max(level_of(z, law_, 1, kIterations), kLeastShare));
-  }
-}
-
 void BurstNoise::innovate() {
   std::vector<double>& z = innovation_;
   z.resize(deviation_.size());
@@ -173,25 +111,10 @@ void BurstNoise::innovate() {
 // What `rows` rows say of a movement's level (the information in a t law about its scale), together
 // with what the others say.
 BurstNoise::Level BurstNoise::shrunk_level(double own, double rows) const {
-  const double sampling = (law_.freedom + 3) / (2 * law_.freedom * rows);
+  const double sampling = law_.variance_of_log_level(rows);
   const double kept = spread_ > 0 ? spread_ / (spread_ + sampling) : 0;
   return {elementary::exp(mean_log_level_ + kept * (elementary::log(own) - mean_log_level_)),
           kept * sampling};
-}
-
-// Of the logarithm of a speed's noise: its rows tell it, and the movements they are in.
-double BurstNoise::variance_of_speed_levels() const {
-  double sum = 0;
-  for (std::size_t g = 0; g < speed_level_.size(); ++g) {
-    std::vector<double> rows_of(movements_.size(), 0.0);
-    const std::span<const std::size_t> rows = rows_of_speed(g);
-    for (const std::size_t i : rows) ++rows_of[movement_at(i)];
-    double squares = 0;
-    for (const double n : rows_of) squares += n * n;
-    const auto n = static_cast<double>(rows.size());
-    sum += (law_.freedom + 3) / (2 * law_.freedom * n) + spread_ * squares / (n * n);
-  }
-  return speed_level_.empty() ? 0 : sum / static_cast<double>(speed_level_.size());
 }
 
 void BurstNoise::scale_by_movement() {
@@ -203,9 +126,9 @@ void BurstNoise::scale_by_movement() {
     const auto rows = static_cast<double>(movements_[m].size());
     own.push_back(
         level_of(std::span(innovation_).subspan(movements_[m].begin, movements_[m].size()), law_, 1,
-                 kIterations));
+                 kLevelIterations));
     mean_log_level_ += elementary::log(own.back()) / count;
-    sampling += (law_.freedom + 3) / (2 * law_.freedom * rows) / count;
+    sampling += law_.variance_of_log_level(rows) / count;
   }
   double spread = 0;
   for (const double x : own) {

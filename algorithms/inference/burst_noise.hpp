@@ -44,11 +44,6 @@ class BurstNoise {
 
  private:
   void centre(const Eigen::VectorXd& residual);
-  void group_by_speed();
-  std::span<const std::size_t> rows_of_speed(std::size_t group) const;
-  void scale_by_speed();
-  void refine_speeds();
-  double variance_of_speed_levels() const;
   void innovate();
   void scale_by_movement();
   struct Level {
@@ -62,10 +57,6 @@ class BurstNoise {
   std::vector<double> innovation_;
   std::vector<double> unit_;
   std::vector<double> level_;  // per movement, part of unit_
-  std::vector<double> speed_;
-  std::vector<std::size_t> by_speed_;  // rows, slowest first
-  std::vector<double> middle_speed_;   // per group
-  std::vector<double> speed_level_;    // ... the logarithm of its noise over the robust sd
   double robust_sd_ = 0;
   double rho_ = 0;
   double mean_log_level_ = 0;

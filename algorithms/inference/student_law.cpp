@@ -52,4 +52,15 @@ StudentLaw fit_student(std::span<const double> z) {
   return best;
 }
 
+double level_of(std::span<const double> z, const StudentLaw& law, double level, int iterations) {
+  const double unit = law.scale * law.scale;
+  double square = level * level * unit;
+  for (int k = 0; k < iterations; ++k) {
+    double sum = 0;
+    for (const double x : z) sum += x * x * (law.freedom + 1) / (law.freedom + x * x / square);
+    square = std::max(sum / static_cast<double>(z.size()), kLeastLevel * kLeastLevel * unit);
+  }
+  return std::sqrt(square / unit);
+}
+
 }  // namespace tribench::loop

@@ -65,7 +65,7 @@ class FirstOrderLag {
 
 // A factor of two apart: what lies between is nearly a sum of its neighbours. From what a drive's
 // current loop and filters take (20 ms) to what bristles and lubricant do (0.2 s; Hess, Soom 1990).
-inline constexpr std::array<int, 3> kLagsMs = {30, 60, 120};
+inline constexpr std::array<int, 3> kLags_ms = {30, 60, 120};
 std::string lagged_velocity_name(int lag_ms);
 std::string lagged_velocity_recipe(int lag_ms);
 

@@ -115,7 +115,7 @@ void add_lagged_velocities(Observations& data) {
   if (t == nullptr || t->unit != "s" || data.find("a") == nullptr) return;
   const std::vector<double> time = t->values;
   const Signal v = *data.find("v");
-  for (const int lag_ms : kLagsMs) {
+  for (const int lag_ms : kLags_ms) {
     Signal signal{lagged_velocity_name(lag_ms), v.channel, v.unit, Role::none, {}, {}};
     signal.recipe = lagged_velocity_recipe(lag_ms);
     FirstOrderLag lag(lag_ms * 1e-3);

@@ -146,7 +146,7 @@ TEST(DerivedChannels, FilteredVelocitiesAreTheSameForAClockThatCountsFrom1970) {
   }
   const Observations one = observe(early);
   const Observations other = observe(late);
-  for (const int lag_ms : kLagsMs) {
+  for (const int lag_ms : kLags_ms) {
     const std::string name = lagged_velocity_name(lag_ms);
     ASSERT_NE(one.find(name), nullptr);
     EXPECT_EQ(one.find(name)->values, other.find(name)->values) << name;

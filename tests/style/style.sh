@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# usage: tests/style/style.sh [SECONDS [BASE]]
+# Formatting and clang-tidy on the C++ files that changed since BASE (else in the day before the last
+# commit), the latest first. Formatting looks at all of them; what clang-tidy has not begun within
+# SECONDS (120) is counted and left. Exit status 1 where something is found. Needs clang-format-14,
+# clang-tidy-14 and a configured build/release.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+seconds=${1:-120}
+range=(${2:+"$2..HEAD"})
+[ ${#range[@]} -gt 0 ] || range=("--since=@$(($(git log -1 --format=%ct) - 86400))")
+
+mapfile -t files < <(git log "${range[@]}" --format= --name-only --diff-filter=AMR -- '*.cpp' '*.hpp' |
+    awk '!seen[$0]++' | while read -r file; do [ ! -f "$file" ] || echo "$file"; done)
+if [ ${#files[@]} -eq 0 ]; then
+    echo "style: no C++ file has changed"
+    exit 0
+fi
+clang-format-14 --dry-run -Werror "${files[@]}"
+
+# A header is seen with the sources that include it; what the compiler is not called for has no flags.
+left=$(mktemp)
+trap 'rm -f "$left"' EXIT
+sources=()
+for file in "${files[@]}"; do
+    ! grep -q "/$file\"" build/release/compile_commands.json || sources+=("$file")
+done
+check() { # DEADLINE LEFT FILE
+    if [ "$(date +%s)" -ge "$1" ]; then
+        echo "$3" >>"$2"
+    else
+        clang-tidy-14 -p build/release --quiet "$3" 2> >(grep -v 'warnings\? generated' >&2)
+    fi
+}
+export -f check
+printf '%s\0' "${sources[@]}" |
+    xargs -0 -r -n 1 -P "$(nproc)" bash -c 'check "$@"' - "$(($(date +%s) + seconds))" "$left"
+echo "style: ${#files[@]} files formatted, $((${#sources[@]} - $(wc -l <"$left"))) of" \
+    "${#sources[@]} sources read by clang-tidy in $SECONDS s, no findings"
