@@ -24,8 +24,11 @@
 #include <span>
 #include <vector>
 
+#include "algorithms/expression/box_points.hpp"
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/expression/interval.hpp"
+#include "algorithms/expression/interval_gradient.hpp"
+#include "algorithms/expression/natural_extension.hpp"
 #include "algorithms/expression/polynomial_range.hpp"
 
 namespace tribench {
@@ -54,53 +57,28 @@ class FormulaBounds {
   // its evaluation.
   const Interval& real_root() const { return real_root_; }
 
-  const Expression& formula() const { return formula_; }
+  const Expression& formula() const { return extension_.formula(); }
   // The columns that occur in the formula, ascending.
   const std::vector<std::size_t>& used_columns() const { return used_; }
 
  private:
-  using Values = std::vector<DecoratedInterval>;
-
-  // The natural extension of node i from its children's bounds in `values`.
-  DecoratedInterval extend(std::size_t i, std::span<const Interval> box,
-                           const Values& values) const;
-  // Fills `values` up to the first node that may fail, whose place it returns (or the size).
-  std::size_t pass(std::span<const Interval> box, Values& values) const;
   void choose_active(std::span<const Interval> box);
-  void pass_points(std::span<const Interval> box);
   void bound_error(std::size_t i);
-  double unary_error(std::size_t i) const;
-  double binary_error(std::size_t i) const;
   double rounding_of(std::size_t i) const;
-  bool scales_exactly(std::size_t i) const;
-  void bound_gradient(std::size_t i);
-  Interval unary_slope(std::size_t i) const;
-  void power_gradient(std::size_t i);
   void refine(std::size_t i, std::span<const Interval> box);
-  bool meet_corners(std::size_t i, Interval& range) const;
   void meet_polynomial(std::size_t i, std::span<const Interval> box, Interval& range) const;
-  Interval* gradient(std::size_t i) { return gradients_.data() + i * active_.size(); }
-  const Interval* gradient(std::size_t i) const { return gradients_.data() + i * active_.size(); }
 
-  static constexpr std::size_t kMaxCornerInputs = 2;
-
-  Expression formula_;
-  std::vector<bool> same_operands_;  // binary nodes whose operands are the same formula
+  NaturalExtension extension_;
   std::vector<std::optional<Polynomial>> polynomials_;  // by node; empty until sharpened
   std::vector<std::size_t> used_;                       // columns that occur, ascending
   std::vector<std::size_t> active_;                     // those whose range is not a point
-  Values values_;
+  NaturalExtension::Values values_;
   Interval real_root_;
   std::size_t failed_ = 0;
   std::vector<double> errors_;
-  double widening_ = 0;              // of the node at hand
-  std::vector<Interval> gradients_;  // node-major, one per active column
-  std::vector<Interval> point_box_;  // the box's centre
-  std::vector<Interval> corner_box_;
-  Values centre_;
-  std::size_t centre_failed_ = 0;
-  std::vector<Values> corners_;  // bit j of the index: active column j at its upper end
-  std::vector<std::size_t> corners_failed_;
+  double widening_ = 0;  // of the node at hand
+  IntervalGradient gradient_;
+  BoxPoints points_;
 };
 
 }  // namespace tribench

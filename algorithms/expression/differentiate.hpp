@@ -18,10 +18,11 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "algorithms/expression/derivative_block.hpp"
+#include "algorithms/expression/derivative_plan.hpp"
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/expression.hpp"
 
@@ -42,7 +43,7 @@ class Differentiator {
   // Differentiate with respect to inputs 0 .. inputs - 1.
   void prepare_for_inputs(const Expression& formula, std::size_t inputs);
 
-  std::size_t parameters() const { return parameter_count_; }
+  std::size_t parameters() const { return plan_.parameters(); }
   // New values of the constants named in `prepare`, in that order.
   void set_constants(std::span<const double> values);
 
@@ -61,56 +62,7 @@ class Differentiator {
                         std::span<const double> weights, NormalEquations& result);
 
  private:
-  enum class Kind : std::uint8_t { scalar, column };
-  // A place of the tape. A subtree of constants alone is a scalar, all else a column; the slots
-  // are the columns of the workspace that hold its values and its adjoint.
-  struct Step {
-    Op op = Op::constant;
-    Kind kind = Kind::scalar;
-    bool wanted = false;       // a parameter lies in the subtree
-    bool whole_power = false;  // ^ with a constant whole exponent
-    int exponent = 0;
-    std::uint32_t a = 0;  // places of the children; of a variable, the input
-    std::uint32_t b = 0;
-    std::uint32_t value_slot = 0;
-    std::uint32_t adjoint_slot = 0;
-  };
-  // A column of derivatives: scale * data[i], or scale alone where data is null.
-  struct Adjoint {
-    const double* data = nullptr;
-    double scale = 0;
-  };
-  struct Leaf {
-    std::uint32_t place;
-    std::uint32_t parameter;
-  };
-
-  // What the columns behind the slots are for; on the way back all but the residual are free.
-  enum Spare : std::size_t { kOnes, kResidual, kWeighted, kTemporary, kSpareSlots };
-
-  void compile(const Expression& formula);
-  void assign_slots();
-  // Lays out the workspace for blocks of at most `rows`; the number of rows a block has.
   std::size_t begin_blocks(std::size_t rows);
-  double* slot(std::size_t which) { return memory_begin_ + which * stride_; }
-  double* spare(Spare which) { return slot(slot_count_ + which); }
-  bool is_scalar(std::size_t place) const { return steps_[place].kind == Kind::scalar; }
-
-  void forward_scalars();
-  void forward(const Inputs& inputs, std::size_t row, std::size_t n);
-  void forward_unary(const Step& step, double* out, std::size_t n);
-  void forward_binary(const Step& step, double* out, std::size_t n);
-  void forward_power(const Step& step, double* out, std::size_t n);
-  void backward(std::size_t n);
-  void backward_product(std::size_t place, std::size_t n);
-  void backward_quotient(std::size_t place, std::size_t n);
-  void backward_power(std::size_t place, std::size_t n);
-  void backward_base(std::size_t place, std::size_t n);
-  void backward_exponent(std::size_t place, std::size_t n);
-  void backward_unary(std::size_t place, std::size_t n);
-  Adjoint times(const Adjoint& adjoint, const double* column, double* out, std::size_t n);
-  Adjoint over(const Adjoint& adjoint, const double* column, double* out, std::size_t n);
-  const double* column_of(std::size_t place, double* spare_column, std::size_t n);
   void write_values(double* out, std::size_t n) const;
   void write_jacobian(std::size_t row, std::size_t n, std::size_t rows, double* jacobian);
   double residuals(std::span<const double> target, std::span<const double> weights, std::size_t row,
@@ -118,20 +70,11 @@ class Differentiator {
   void accumulate(std::span<const double> weights, std::size_t row, std::size_t n,
                   NormalEquations& result);
 
-  std::vector<Step> steps_;
-  std::vector<double> scalars_;         // per place: the value of a scalar
-  std::vector<const double*> columns_;  // per place: the values of a column
-  std::vector<Adjoint> adjoints_;       // per place
-  std::vector<Leaf> leaves_;
-  std::vector<std::uint32_t> stack_;
+  DerivativePlan plan_;
+  DerivativeBlock block_;
   std::vector<const double*> summands_;
   std::vector<double> scales_;
   std::vector<bool> written_;
-  std::vector<double> memory_;
-  double* memory_begin_ = nullptr;
-  std::size_t slot_count_ = 0;
-  std::size_t stride_ = 0;
-  std::size_t parameter_count_ = 0;
   bool values_are_current_ = false;
 };
 
