@@ -6,6 +6,7 @@
 
 #include "algorithms/diagnosis/diagnosis.hpp"
 #include "problems/kuka/planted.hpp"
+#include "problems/preparation/test_movements.hpp"
 
 namespace tribench {
 namespace {
@@ -16,8 +17,10 @@ void diagnose_planted(benchmark::State& state, const kuka::PlantedCase& planted,
   loop::DiagnosisOptions options;
   options.physical_vetoes = false;
   options.gear_ratios = {160};
+  const std::vector<int> test = loop::choose_test_movements(data, 0.2);
   for (auto _ : state) {
-    const loop::Diagnosis diagnosis = loop::diagnose(data, loop::coulomb_viscous_base, options, 1);
+    const loop::Diagnosis diagnosis =
+        loop::diagnose(data, loop::coulomb_viscous_base, options, test);
     if (diagnosis.verdict != expected) {
       state.SkipWithError("the verdict is wrong");
       return;

@@ -72,7 +72,6 @@ class ClosedLoop : public Regressor {
  public:
   ClosedLoop(const Parameters& parameters, const MakeMethod& other)
       : base_name_(parameters.text("base")) {
-    options_.test_share = 0;  // the harness holds movements out, and judges
     options_.alpha_library = parameters.number("alpha_library");
     options_.alpha_leftover = parameters.number("alpha_leftover");
     options_.flips = static_cast<std::size_t>(parameters.integer("flips"));
@@ -120,8 +119,7 @@ class ClosedLoop : public Regressor {
       result.reason = StopReason::budget;
       return result;
     }
-    const Diagnosis diagnosis =
-        diagnose(data, base_maker(context), options_, context.random.split("diagnosis").key());
+    const Diagnosis diagnosis = diagnose(data, base_maker(context), options_);
     report(context, data, diagnosis, result);
     return result;
   }

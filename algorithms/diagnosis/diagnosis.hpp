@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // Residual -> missing effect -> refit -> verdict: the procedure of the specification, section 4,
-// from observations and a base model to findings. No files, no printing: loop_json.hpp writes it
-// down.
-//
-// A movement of the test set is never looked at before the verdict stands.
+// from observations and a base model to findings. What the model before and after is worth on
+// movements that it has not seen is the judge's to say (harness/loop/judged_diagnosis.hpp).
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -31,21 +28,12 @@ struct DiagnosisOptions {
   // The paper's own raw data hold seven at once: both branches, their curvature, three terms of the
   // load and two ripples.
   std::size_t max_effects = 8;
-  double test_share = 0.2;  // of the movements; 0: no movements are held out
   // Empty: the usual ratios are scanned, and the scan is paid for in the statistics.
   std::vector<double> gear_ratios;
   bool physical_vetoes = true;
-  bool resample = false;  // search again with movements left out: how sure each effect is
-  bool ceiling = false;   // bound the noise too: what else could be had (ceiling.hpp)
   std::vector<EffectFamily> learned;  // families beside the built-in ones
   std::vector<std::string> families;  // to be tested; empty: all
   std::vector<std::string> without;   // rules left out, to see what they are worth (rules.hpp)
-  // The searches without some movements run side by side, with the same answer; a base that is a
-  // method takes one thread (its budget is one).
-  int threads = 1;
-  // Told after each search: how many have ended, of how many. Empty: nobody. From any thread, one
-  // at a time.
-  std::function<void(std::size_t, std::size_t)> progress;
   bool has(std::string_view rule) const { return std::ranges::count(without, rule) == 0; }
 };
 
@@ -148,50 +136,9 @@ struct CandidateFinding {
   double detectable = std::numeric_limits<double>::quiet_NaN();
 };
 
-struct MovementError {
-  int movement = 0;
-  double before = 0;  // mean absolute error
-  double after = 0;
-  std::size_t rows = 0;
-  double mean_before = 0;  // of the error with its sign
-  double mean_after = 0;
-};
-
-enum class JudgedOn { other_movements, pieces_of_one_movement, rows_of_the_fit };
-
-struct ErrorFinding {
-  std::size_t test_movements = 0;
-  JudgedOn judged_on = JudgedOn::other_movements;
-  std::string how;  // in words: "held out", "each movement left out in turn"
-  double mae_before = std::numeric_limits<double>::quiet_NaN();
-  double mae_after = std::numeric_limits<double>::quiet_NaN();
-  double rmse_before = std::numeric_limits<double>::quiet_NaN();
-  double rmse_after = std::numeric_limits<double>::quiet_NaN();
-  double max_before = std::numeric_limits<double>::quiet_NaN();
-  double max_after = std::numeric_limits<double>::quiet_NaN();
-  // Root mean square of the movements' mean errors: what noise within them does not hide.
-  double means_before = std::numeric_limits<double>::quiet_NaN();
-  double means_after = std::numeric_limits<double>::quiet_NaN();
-  double difference_low = std::numeric_limits<double>::quiet_NaN();  // before - after, 95 %
-  double difference_high = std::numeric_limits<double>::quiet_NaN();
-  // Where asked for (DiagnosisOptions::ceiling): the noise lies between `ceiling`, which no model
-  // does better than, and `attainable`, which a smooth one reaches; the share of the gap that was
-  // closed between the two figures that follow from them, the first with its 95 % interval.
-  double ceiling = std::numeric_limits<double>::quiet_NaN();
-  double attainable = std::numeric_limits<double>::quiet_NaN();
-  double closed_fraction = std::numeric_limits<double>::quiet_NaN();
-  double closed_low = std::numeric_limits<double>::quiet_NaN();
-  double closed_high = std::numeric_limits<double>::quiet_NaN();
-  double closed_fraction_high = std::numeric_limits<double>::quiet_NaN();
-  std::string ceiling_note;  // why a figure is missing
-  std::vector<MovementError> movements;
-  bool confirmed = true;  // the effects' improvement holds on the test movements
-};
-
 struct Diagnosis {
   Verdict verdict = Verdict::none;
   DiagnosisOptions options;
-  std::uint64_t seed = 0;
   Noise noise;
   std::size_t rows = 0;
   std::size_t stretches = 0;
@@ -203,24 +150,26 @@ struct Diagnosis {
   std::vector<CoincidingFamilies> aliased;
   AliasMap alias_map;
   std::vector<EventFinding> events;
-  ErrorFinding error;
   std::vector<CandidateFinding> candidates;  // of the first round
   std::vector<std::string> needed;           // where it cannot tell: what would be
   std::vector<std::string> notes;
   LoopModel before;  // fitted to the training movements
   LoopModel after;
-  std::vector<int> test_movements;
-  std::vector<char> masked;  // per row of the data: part of an event
+  std::vector<int> held_out;  // movements it has not looked at, ascending
+  std::vector<char> masked;   // per row of the data: part of an event
   std::vector<EffectFamily> families;
 };
 
-// With forty movements or more a fifth of them is held out. With fewer, which leave too few to
-// judge by, all take part in the verdict and the whole procedure is repeated with each movement (a
-// tenth of them where movements and rows are many) left out in turn to judge it; a single movement
-// is cut into five pieces for that. Deterministic
-// given the seed. Cost: some tens of milliseconds for 6 000 rows. Throws Error (bad_input) where
-// there are too few rows to fit the base.
+// Per row 1 for rows of the movements in (or not in) `movements`, which are ascending, without
+// those masked and without movements that are too short to say anything.
+std::vector<char> usable_rows(const Observations& data, const std::vector<int>& movements,
+                              bool in_them, const std::vector<char>& masked);
+
+// held_out: movements to which nothing is fitted and by which nothing is chosen, ascending; bursts
+// in them are listed too, found apart. Deterministic: no seed decides anything.
+// Cost: some tens of milliseconds for 6 000 rows. Throws Error (bad_input) where there are too few
+// rows to fit the base.
 Diagnosis diagnose(const Observations& data, const BaseMaker& base, const DiagnosisOptions& options,
-                   std::uint64_t seed);
+                   const std::vector<int>& held_out = {});
 
 }  // namespace tribench::loop

@@ -17,7 +17,7 @@ std::vector<int> half_of_movements(const Diagnosis& diagnosis, const Observation
                                    RandomStream random) {
   std::vector<int> training;
   for (const int m : data.movements()) {
-    if (!std::ranges::binary_search(diagnosis.test_movements, m)) training.push_back(m);
+    if (!std::ranges::binary_search(diagnosis.held_out, m)) training.push_back(m);
   }
   random.shuffle(std::span(training));
   training.resize(training.size() / 2);
@@ -29,7 +29,7 @@ std::vector<char> rows_in(const Diagnosis& diagnosis, const Observations& data,
                           const std::vector<int>& half, bool in_half) {
   std::vector<char> keep(data.rows());
   for (std::size_t i = 0; i < data.rows(); ++i) {
-    const bool test = std::ranges::binary_search(diagnosis.test_movements, data.movement[i]);
+    const bool test = std::ranges::binary_search(diagnosis.held_out, data.movement[i]);
     const bool own = std::ranges::binary_search(half, data.movement[i]);
     const bool masked = !diagnosis.masked.empty() && diagnosis.masked[i] != 0;
     keep[i] = !test && !masked && own == in_half ? 1 : 0;
@@ -78,9 +78,9 @@ bool varies(const Expression& formula, const Observations& data) {
 
 std::optional<LearnedEffect> learn_effect(const Diagnosis& diagnosis, const Observations& data,
                                           const Regressor& method, const std::string& method_name,
-                                          Budget& budget) {
+                                          Budget& budget, std::uint64_t seed) {
   if (diagnosis.leftover.signals.empty()) return std::nullopt;
-  const RandomStream random = RandomStream(diagnosis.seed).split("learned");
+  const RandomStream random = RandomStream(seed).split("learned");
   const std::vector<int> half = half_of_movements(diagnosis, data, random.split("halves"));
   const Observations finding = data.select(rows_in(diagnosis, data, half, true));
   const Observations testing = data.select(rows_in(diagnosis, data, half, false));
@@ -105,10 +105,9 @@ std::optional<LearnedEffect> learn_effect(const Diagnosis& diagnosis, const Obse
   DiagnosisOptions options = diagnosis.options;
   options.learned = {learned.family};
   options.families = {learned.family.name};
-  options.test_share = 0;
   const std::string base = formula_text(diagnosis.after, data);
   const BaseMaker maker = [&base](const Observations& rows) { return formula_base(rows, base); };
-  const Diagnosis second = diagnose(testing, maker, options, random.split("test").key());
+  const Diagnosis second = diagnose(testing, maker, options);
   if (!second.candidates.empty()) {
     learned.p = second.candidates[0].adjusted_p;
     learned.gain = second.candidates[0].gain;

@@ -6,6 +6,7 @@
 // statistics on the other half, on which it was not found.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -26,9 +27,9 @@ struct LearnedEffect {
 };
 
 // Nothing where nothing is left over or the method gives no formula that varies.
-// Deterministic given the diagnosis's seed. Cost: the budget, and one diagnosis.
+// Deterministic given the seed. Cost: the budget, and one diagnosis.
 std::optional<LearnedEffect> learn_effect(const Diagnosis& diagnosis, const Observations& data,
                                           const Regressor& method, const std::string& method_name,
-                                          Budget& budget);
+                                          Budget& budget, std::uint64_t seed);
 
 }  // namespace tribench::loop

@@ -216,7 +216,6 @@ class Explorer {
   // families, and finds something of no library left over just where the verdict does.
   bool diagnosis_agrees() {
     DiagnosisOptions options;
-    options.test_share = 0;
     if (limits_.gear_ratio > 0) options.gear_ratios = {limits_.gear_ratio};
     const DiagnosedFamilies found = diagnosed_families(observe(out_.data), options);
     out_.diagnosis = verdict_text(found.names, found.unknown);
@@ -358,7 +357,7 @@ MovementPlan informative_movements() {
 }
 
 DiagnosedFamilies diagnosed_families(const Observations& rows, const DiagnosisOptions& options) {
-  const Diagnosis found = diagnose(rows, coulomb_viscous_base, options, 1);
+  const Diagnosis found = diagnose(rows, coulomb_viscous_base, options);
   DiagnosedFamilies out;
   for (const EffectFinding& effect : found.effects) out.names.push_back(effect.family);
   out.unknown = found.verdict == Verdict::unknown;

@@ -195,8 +195,7 @@ std::vector<ProposedMovement> propose_movements(const Diagnosis& diagnosis,
   std::vector<char> keep(data.rows());
   for (std::size_t i = 0; i < data.rows(); ++i) {
     const bool masked = i < diagnosis.masked.size() && diagnosis.masked[i] != 0;
-    keep[i] =
-        !masked && !std::ranges::binary_search(diagnosis.test_movements, data.movement[i]) ? 1 : 0;
+    keep[i] = !masked && !std::ranges::binary_search(diagnosis.held_out, data.movement[i]) ? 1 : 0;
   }
   const Observations train = data.select(keep);
   const Clusters clusters = make_clusters(train.movement, 1);

@@ -148,8 +148,6 @@ loop::DiagnosisOptions diagnosis_options(const LoopArguments& arguments) {
   options.alpha_leftover = arguments.alpha_leftover;
   options.flips = static_cast<std::size_t>(arguments.flips);
   options.families = arguments.effects;
-  options.ceiling = true;
-  options.resample = true;
   options.physical_vetoes = !arguments.any_sign;
   if (!arguments.learned.empty()) options.learned = loop::read_effects(arguments.learned);
   if (arguments.reading->drive.gear_ratio) {
@@ -157,6 +155,13 @@ loop::DiagnosisOptions diagnosis_options(const LoopArguments& arguments) {
   }
   if (arguments.screw_lead > 0) options.gear_ratios = {2 * std::numbers::pi / arguments.screw_lead};
   return options;
+}
+
+loop::JudgingOptions judging_options() {
+  loop::JudgingOptions judging;
+  judging.bounds = true;
+  judging.resample = true;
+  return judging;
 }
 
 std::string title_of(const LoopArguments& arguments) {
@@ -189,17 +194,17 @@ void print_extras(const LoopArguments& arguments, const loop::LoopExtras& extras
 // it was not found on, runs the loop again with it.
 void grow_library(const LoopArguments& arguments, const Registry& registry,
                   const loop::Observations& data, const loop::BaseMaker& base,
-                  loop::Diagnosis& diagnosis, loop::LoopExtras& extras) {
+                  loop::JudgedDiagnosis& diagnosis, loop::LoopExtras& extras) {
   const std::unique_ptr<Regressor> method = registry.make(arguments.learn);
   Budget budget(BudgetLimits{.evaluations = arguments.learn_evaluations});
   const std::optional<loop::LearnedEffect> learned =
-      loop::learn_effect(diagnosis, data, *method, arguments.learn, budget);
+      loop::learn_effect(diagnosis, data, *method, arguments.learn, budget, arguments.seed);
   if (!learned) return;
   extras.learned.push_back(*learned);
   if (!learned->accepted) return;
   loop::DiagnosisOptions options = diagnosis.options;
   options.learned.push_back(learned->family);
-  diagnosis = loop::diagnose(data, base, options, arguments.seed);
+  diagnosis = loop::diagnose_and_judge(data, base, options, judging_options());
   for (loop::EffectFinding& effect : diagnosis.effects) {
     if (effect.family != learned->family.name) continue;
     // Its p on movements it was not found on; the search's own would flatter it.
@@ -264,24 +269,21 @@ void explain(const LoopArguments& arguments) {
 }
 
 // A base that is a method has one budget for all searches: they take turns.
-loop::Diagnosis diagnosed(const LoopArguments& arguments, const loop::Observations& data,
-                          const loop::BaseMaker& base, bool base_is_a_method) {
+loop::JudgedDiagnosis diagnosed(const LoopArguments& arguments, const loop::Observations& data,
+                                const loop::BaseMaker& base, bool base_is_a_method) {
   constexpr double kShownFrom_s = 2;
-  loop::DiagnosisOptions options = diagnosis_options(arguments);
+  loop::JudgingOptions judging = judging_options();
   const int jobs = arguments.jobs > 0 ? arguments.jobs : usable_processors();
-  options.threads = base_is_a_method ? 1 : jobs;
+  judging.threads = base_is_a_method ? 1 : jobs;
   std::optional<ProgressLine> line;
-  options.progress = [&](std::size_t, std::size_t searches) {
+  judging.progress = [&](std::size_t, std::size_t searches) {
     if (!line) {
       line.emplace(searches, static_cast<double>(searches), false,
                    ProgressUnit{"searches", false, kShownFrom_s});
     }
     line->cell_ended(1, false);
   };
-  loop::Diagnosis diagnosis = loop::diagnose(data, base, options, arguments.seed);
-  // They say how it was reached, and hold references to what ends here.
-  diagnosis.options.progress = nullptr;
-  return diagnosis;
+  return loop::diagnose_and_judge(data, base, diagnosis_options(arguments), judging);
 }
 
 ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) {
@@ -301,12 +303,13 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
   }
   loop::LoopExtras extras;
   extras.title = title_of(arguments);
+  extras.seed = arguments.seed;
   LoopRecording whole;
   const loop::Observations data = read_observations(arguments, extras.steps, whole);
   std::unique_ptr<Regressor> method;
   Budget budget(BudgetLimits{.evaluations = arguments.evaluations});
   const loop::BaseMaker base = base_of(arguments, registry, method, budget);
-  loop::Diagnosis diagnosis = diagnosed(arguments, data, base, method != nullptr);
+  loop::JudgedDiagnosis diagnosis = diagnosed(arguments, data, base, method != nullptr);
   if (arguments.learn != "none" && !diagnosis.leftover.signals.empty()) {
     grow_library(arguments, registry, data, base, diagnosis, extras);
   }

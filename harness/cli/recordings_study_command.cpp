@@ -114,7 +114,6 @@ void print_recordings(const RecordingsFindings& found, int orders) {
 void run_recordings(const RecordingsArguments& arguments) {
   const loop::Observations data = offered_movements(arguments);
   loop::DiagnosisOptions options;
-  options.test_share = 0;
   if (arguments.reading->drive.gear_ratio) {
     options.gear_ratios = {*arguments.reading->drive.gear_ratio};
   }

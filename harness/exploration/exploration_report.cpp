@@ -88,9 +88,8 @@ SecondOpinion second_opinion(const Exploration& done, double gear_ratio) {
   try {
     const loop::Observations data = loop::observe(done.data);
     loop::DiagnosisOptions options;
-    options.test_share = 0;
     if (gear_ratio > 0) options.gear_ratios = {gear_ratio};
-    const loop::Diagnosis found = loop::diagnose(data, loop::coulomb_viscous_base, options, 1);
+    const loop::Diagnosis found = loop::diagnose(data, loop::coulomb_viscous_base, options);
     out.verdict = loop::verdict_name(found.verdict);
     for (const loop::EffectFinding& effect : found.effects) out.effects.push_back(effect.family);
     out.model = loop::formula_text(found.after, data);

@@ -107,11 +107,11 @@ LoopMotion loop_motion(const Diagnosis& diagnosis, const Observations& data, Dat
   recording = beginnings(recording);
   rename_channels(data, recording);
   std::vector<char> held_out(recording.movement_names.size(), 0);
-  for (const int m : diagnosis.test_movements) held_out[static_cast<std::size_t>(m)] = 1;
+  for (const int m : diagnosis.held_out) held_out[static_cast<std::size_t>(m)] = 1;
   const double before = error_of(diagnosis.before, data, recording, held_out, setup);
   const double after = error_of(diagnosis.after, data, recording, held_out, setup);
   if (!std::isfinite(before) || !std::isfinite(after)) return motion;
-  return {before, after, unit.name, kAhead_s, !diagnosis.test_movements.empty()};
+  return {before, after, unit.name, kAhead_s, !diagnosis.held_out.empty()};
 }
 
 }  // namespace tribench::loop

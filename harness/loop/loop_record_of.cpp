@@ -97,7 +97,7 @@ LoopError error_of(const ErrorFinding& from) {
   return to;
 }
 
-void add_lists(LoopRecord& record, const Diagnosis& diagnosis) {
+void add_lists(LoopRecord& record, const JudgedDiagnosis& diagnosis) {
   for (const EffectFinding& one : diagnosis.effects) record.effects.push_back(effect_of(one));
   const LeftoverFinding& left = diagnosis.leftover;
   record.leftover = {left.p, left.inputs, left.proxies_removed, {}};
@@ -147,7 +147,7 @@ std::string meaning_of(const Observations& data, const Signal& signal) {
   return words;
 }
 
-void add_symbols(LoopRecord& record, const Diagnosis& diagnosis, const Observations& data) {
+void add_symbols(LoopRecord& record, const JudgedDiagnosis& diagnosis, const Observations& data) {
   std::vector<char> used(data.signals.size(), 0);
   for (const LoopModel* model : {&diagnosis.before, &diagnosis.after}) {
     for (const Node& node : formula_of(*model).nodes()) {
@@ -178,7 +178,7 @@ Expression sum_of(Expression sum, double coefficient, const Expression& column) 
   return sum.empty() ? term : Expression::binary(Op::add, sum, term);
 }
 
-void add_terms(LoopRecord& record, const Diagnosis& diagnosis, const Observations& data) {
+void add_terms(LoopRecord& record, const JudgedDiagnosis& diagnosis, const Observations& data) {
   const LoopModel& model = diagnosis.after;
   Expression base = model.base.formula;
   for (std::size_t j = 0; j < model.base.linear_terms.size(); ++j) {
@@ -200,7 +200,7 @@ void add_terms(LoopRecord& record, const Diagnosis& diagnosis, const Observation
   }
 }
 
-void add_words(LoopRecord& record, const Diagnosis& diagnosis) {
+void add_words(LoopRecord& record, const JudgedDiagnosis& diagnosis) {
   for (const EffectFamily& family : diagnosis.families) {
     record.families.push_back(
         {family.name, family.title.empty() ? spaced(family.name) : family.title, family.phrase});
@@ -210,7 +210,7 @@ void add_words(LoopRecord& record, const Diagnosis& diagnosis) {
   }
 }
 
-std::string code_of(const Diagnosis& diagnosis, const Observations& data) {
+std::string code_of(const JudgedDiagnosis& diagnosis, const Observations& data) {
   const Signal* d = data.find("d");
   std::optional<PathFrom> from;
   if (d != nullptr && !d->recipe.empty()) {
@@ -221,7 +221,7 @@ std::string code_of(const Diagnosis& diagnosis, const Observations& data) {
 
 }  // namespace
 
-LoopRecord loop_record_of(const Diagnosis& diagnosis, const Observations& data,
+LoopRecord loop_record_of(const JudgedDiagnosis& diagnosis, const Observations& data,
                           const LoopExtras& extras) {
   LoopRecord record;
   record.title = extras.title;
@@ -231,7 +231,7 @@ LoopRecord loop_record_of(const Diagnosis& diagnosis, const Observations& data,
   record.alpha_library = diagnosis.options.alpha_library;
   record.alpha_leftover = diagnosis.options.alpha_leftover;
   record.flips = diagnosis.options.flips;
-  record.seed = diagnosis.seed;
+  record.seed = extras.seed;
   record.noise = {diagnosis.noise.within_sd,     diagnosis.noise.between_sd,
                   diagnosis.noise.rho,           diagnosis.rows,
                   diagnosis.movements,           diagnosis.stretches,

@@ -6,16 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/diagnosis/diagnosis.hpp"
 #include "algorithms/diagnosis/learned_effect.hpp"
 #include "algorithms/exploration/next_movements.hpp"
+#include "harness/loop/judged_diagnosis.hpp"
 #include "reports/record/loop_record.hpp"
 
 namespace tribench::loop {
 
 // What goes beside the diagnosis.
 struct LoopExtras {
-  std::string title;  // the data's name
+  std::string title;       // the data's name
+  std::uint64_t seed = 0;  // of what was learned: nothing else hangs on one
   std::vector<LearnedEffect> learned;
   std::vector<ProposedMovement> suggestions;
   std::vector<LoopDataStep> steps;  // what became of the rows
@@ -23,7 +24,7 @@ struct LoopExtras {
 };
 
 // data: what was diagnosed. Cost: a few evaluations of both models on every row.
-LoopRecord loop_record_of(const Diagnosis& diagnosis, const Observations& data,
+LoopRecord loop_record_of(const JudgedDiagnosis& diagnosis, const Observations& data,
                           const LoopExtras& extras = {});
 
 }  // namespace tribench::loop

@@ -67,9 +67,9 @@ LoopResidualRows residual_rows(const LoopRows& all) {
 // Where every movement (or piece of the one movement) was left out in turn, its error then; else
 // the errors of the models as they stand.
 std::vector<LoopMovementPoint> movement_points(const LoopRows& all) {
-  const Diagnosis& diagnosis = all.diagnosis;
+  const JudgedDiagnosis& diagnosis = all.diagnosis;
   std::vector<LoopMovementPoint> points;
-  if (diagnosis.test_movements.empty() && !diagnosis.error.movements.empty()) {
+  if (diagnosis.held_out.empty() && !diagnosis.error.movements.empty()) {
     const bool pieces = all.data.movements().size() == 1;
     for (const MovementError& one : diagnosis.error.movements) {
       const auto m = static_cast<std::size_t>(one.movement);
@@ -88,7 +88,7 @@ std::vector<LoopMovementPoint> movement_points(const LoopRows& all) {
     const auto begin = static_cast<Eigen::Index>(i);
     const auto size = static_cast<Eigen::Index>(end - i);
     points.push_back({all.data.movement_names[static_cast<std::size_t>(movement)],
-                      std::ranges::binary_search(diagnosis.test_movements, movement),
+                      std::ranges::binary_search(diagnosis.held_out, movement),
                       before.segment(begin, size).mean(), after.segment(begin, size).mean()});
     i = end;
   }
@@ -107,7 +107,7 @@ LoopAliasMap alias_map(const AliasMap& map) {
 
 }  // namespace
 
-LoopRows loop_rows(const Diagnosis& diagnosis, const Observations& data) {
+LoopRows loop_rows(const JudgedDiagnosis& diagnosis, const Observations& data) {
   LoopRows all{diagnosis,
                data,
                {},
@@ -260,7 +260,7 @@ std::vector<double> mean_errors(const Bins& bins, const Eigen::VectorXd& values,
   return out;
 }
 
-void add_series(LoopRecord& record, const Diagnosis& diagnosis, const Observations& data) {
+void add_series(LoopRecord& record, const JudgedDiagnosis& diagnosis, const Observations& data) {
   const LoopRows all = loop_rows(diagnosis, data);
   record.friction_rms = friction_rms(all);
   LoopPictures& pictures = record.pictures;

@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/diagnosis/diagnosis.hpp"
+#include "harness/loop/judged_diagnosis.hpp"
 #include "reports/record/loop_record.hpp"
 
 namespace tribench::loop {
 
 // What all pictures look at. Rows of bursts are not among `rows`.
 struct LoopRows {
-  const Diagnosis& diagnosis;
+  const JudgedDiagnosis& diagnosis;
   const Observations& data;
   std::vector<std::size_t> rows;
   Eigen::VectorXd before;  // predictions, of every row of the data
@@ -26,7 +26,7 @@ struct LoopRows {
   double rows_of_noise = 1;  // how many rows the noise lasts: what a mean's error counts by
 };
 
-LoopRows loop_rows(const Diagnosis& diagnosis, const Observations& data);
+LoopRows loop_rows(const JudgedDiagnosis& diagnosis, const Observations& data);
 
 // 1 or -1 a row; all 1 where the data have no direction.
 Eigen::VectorXd direction(const Observations& data);
@@ -53,7 +53,7 @@ std::vector<LoopMapPicture> leftover_maps(const LoopRows& rows);
 std::vector<LoopTrace> traces(const LoopRows& rows);
 
 // All pictures of the record, and its friction_rms.
-void add_series(LoopRecord& record, const Diagnosis& diagnosis, const Observations& data);
+void add_series(LoopRecord& record, const JudgedDiagnosis& diagnosis, const Observations& data);
 
 // Means of rows in bins of `x`. by: the bin of each of the chosen rows, as cut_bins gives it.
 struct Bins {

@@ -81,7 +81,7 @@ LoopTrace trace_of(const LoopRows& all, int movement, const char* why) {
   LoopTrace trace;
   trace.movement = data.movement_names[static_cast<std::size_t>(movement)];
   trace.why = why;
-  trace.held_out = std::ranges::binary_search(all.diagnosis.test_movements, movement);
+  trace.held_out = std::ranges::binary_search(all.diagnosis.held_out, movement);
   // Without a time the movement's number stands for it, the same in every row.
   trace.has_time = end - begin > 1 && data.time[end - 1] > data.time[begin];
   const std::size_t step = (end - begin + kTraceRows - 1) / kTraceRows;
@@ -200,8 +200,8 @@ std::vector<LoopTrace> traces(const LoopRows& all) {
   std::vector<Fall> falls;
   for (const std::size_t i : all.rows) {
     const int movement = all.data.movement[i];
-    const bool shown = all.diagnosis.test_movements.empty() ||
-                       std::ranges::binary_search(all.diagnosis.test_movements, movement);
+    const bool shown = all.diagnosis.held_out.empty() ||
+                       std::ranges::binary_search(all.diagnosis.held_out, movement);
     if (!shown) continue;
     if (falls.empty() || falls.back().movement != movement) falls.push_back({movement, 0, 0});
     falls.back().sum += fall[static_cast<Eigen::Index>(i)];

@@ -8,13 +8,13 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "algorithms/diagnosis/diagnosis.hpp"
-#include "algorithms/diagnosis/held_out.hpp"
 #include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 #include "foundation/scratch_folder.hpp"
+#include "harness/loop/judged_diagnosis.hpp"
+#include "problems/preparation/test_movements.hpp"
 #include "problems/reading/csv.hpp"
 
 namespace tribench {
@@ -47,7 +47,7 @@ Dataset part_of(const Dataset& data, const std::vector<char>& keep, bool with_ta
 // Per row 1 for the movements that the loop itself holds out.
 std::vector<char> held_out_rows(const loop::Observations& data) {
   const std::vector<int> test =
-      loop::choose_test_movements(data, loop::DiagnosisOptions().test_share);
+      loop::choose_test_movements(data, loop::JudgingOptions().test_share);
   std::vector<char> held_out(data.rows());
   for (std::size_t i = 0; i < data.rows(); ++i) {
     held_out[i] = std::ranges::binary_search(test, data.movement[i]) ? 1 : 0;

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "algorithms/diagnosis/diagnosis.hpp"
 #include "algorithms/diagnosis/rules.hpp"
+#include "harness/loop/judged_diagnosis.hpp"
 
 namespace tribench {
 
@@ -19,8 +19,8 @@ LoopAnswer diagnose(const LoopCase& one, const PlantedData& planted,
   options.physical_vetoes = !one.any_sign;
   options.gear_ratios = {one.gear_ratio};
   options.without = without;
-  const loop::Diagnosis diagnosis =
-      loop::diagnose(data, loop::coulomb_viscous_base, options, one.seed);
+  const std::vector<int> test = loop::held_out_movements(data, loop::JudgingOptions().test_share);
+  const loop::Diagnosis diagnosis = loop::diagnose(data, loop::coulomb_viscous_base, options, test);
   LoopAnswer answer;
   for (const loop::EffectFinding& effect : diagnosis.effects) {
     answer.effects.push_back({effect.family, {}, effect.another_shape});
@@ -38,7 +38,7 @@ LoopAnswer diagnose(const LoopCase& one, const PlantedData& planted,
   answer.before.assign(data.rows(), std::numeric_limits<double>::quiet_NaN());
   answer.after = answer.before;
   for (std::size_t i = 0; i < data.rows(); ++i) {
-    if (!std::ranges::binary_search(diagnosis.test_movements, data.movement[i])) continue;
+    if (!std::ranges::binary_search(test, data.movement[i])) continue;
     if (diagnosis.masked[i] != 0) continue;
     answer.before[i] = before[static_cast<Eigen::Index>(i)];
     answer.after[i] = after[static_cast<Eigen::Index>(i)];

@@ -12,6 +12,7 @@ namespace {
 struct MovementKey {
   std::size_t begin;
   std::size_t end;
+  bool is_last;
   std::vector<float> sizes;  // mean magnitudes of the velocity, the target and the other signals
 };
 
@@ -33,11 +34,12 @@ float mean_magnitude(const std::vector<double>& values, std::size_t begin, std::
   return static_cast<float>(sum / static_cast<double>(end - begin));
 }
 
-std::vector<MovementKey> movement_keys(const Observations& data) {
+std::vector<MovementKey> movement_keys(const Observations& data, const std::vector<int>& last) {
   const std::vector<const std::vector<double>*> channels = channels_of(data);
   std::vector<MovementKey> keys;
   for (std::size_t i = 0; i < data.rows(); ++i) {
-    if (i == 0 || data.movement[i] != data.movement[i - 1]) keys.push_back({i, i, {}});
+    if (i == 0 || data.movement[i] != data.movement[i - 1])
+      keys.push_back({i, i, std::ranges::binary_search(last, data.movement[i]), {}});
     keys.back().end = i + 1;
   }
   for (MovementKey& key : keys) {
@@ -56,9 +58,10 @@ std::vector<char> Canonical::as_told(const std::vector<char>& marks) const {
   return out;
 }
 
-Canonical canonical(const Observations& told) {
-  std::vector<MovementKey> keys = movement_keys(told);
+Canonical canonical(const Observations& told, const std::vector<int>& last) {
+  std::vector<MovementKey> keys = movement_keys(told, last);
   std::ranges::stable_sort(keys, [](const MovementKey& a, const MovementKey& b) {
+    if (a.is_last != b.is_last) return b.is_last;
     return a.sizes != b.sizes ? a.sizes < b.sizes : a.end - a.begin < b.end - b.begin;
   });
   Canonical out;

@@ -6,7 +6,8 @@
 //
 //   order    the diagnosis runs on rows in an order that follows from their content alone
 //   mirror   where a procedure has to call one direction the first, it asks mirror_sign
-//   chance   every random draw comes from a stream with a fixed key (diagnosis.cpp): there is no
+//   chance   every random draw comes from a stream with a fixed key (diagnosis.cpp,
+//   judged_diagnosis.cpp): there is no
 //            luck in a diagnosis, of a seed or of a name
 //
 // Multiplying a channel or the target by a power of two changes no decision and no bit but by that
@@ -19,8 +20,9 @@
 
 namespace tribench::loop {
 
-// The same recording, its movements ordered by their size, speed and load. Rows of a movement keep
-// their order, movements their numbers.
+// The same recording, its movements ordered by their speed, size and load. Rows of a movement keep
+// their order, movements their numbers. The movements of `last` (ascending) come after all others,
+// whose order owes nothing to them.
 struct Canonical {
   Observations data;
   std::vector<std::size_t> row_of;  // per row of `data`: its row as it was told
@@ -28,7 +30,7 @@ struct Canonical {
   // A mark per row of `data` as one per row as it was told.
   std::vector<char> as_told(const std::vector<char>& marks) const;
 };
-Canonical canonical(const Observations& told);
+Canonical canonical(const Observations& told, const std::vector<int>& last = {});
 
 // 1, or -1 in the mirrored recording (every signed quantity negated); 1 where it is its own mirror
 // image.

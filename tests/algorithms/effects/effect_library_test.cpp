@@ -63,12 +63,12 @@ TEST(EffectLibrary, AJointHasRipplesOfTheUsualGears) {
 TEST(EffectLibrary, TheLoopFindsTheRippleOfAScrewWithoutBeingToldItsLead) {
   Observations data = linear_axis(3);
   DiagnosisOptions options;
-  EXPECT_EQ(diagnose(data, coulomb_viscous_base, options, 3).verdict, Verdict::none);
+  EXPECT_EQ(diagnose(data, coulomb_viscous_base, options).verdict, Verdict::none);
   const std::vector<double> q = data.find("q")->values;
   for (std::size_t i = 0; i < data.rows(); ++i) {
     data.target[i] += 0.3 * std::cos(2 * std::numbers::pi * q[i] / 0.01 + 0.7);
   }
-  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options, 3);
+  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options);
   ASSERT_EQ(diagnosis.effects.size(), 1U);
   EXPECT_EQ(diagnosis.effects[0].family, "gear_ripple");
   double period = 0;  // 10 mm, whichever lead it is a harmonic of
@@ -236,7 +236,7 @@ TEST(EffectFile, RefusesGridsThatMultiply) {
 TEST(EffectFile, RefusesASecondEffectOfOneName) {
   DiagnosisOptions options;
   options.learned = {family("stribeck")};
-  EXPECT_THROW(diagnose(observe(kuka::make_planted({}, 1).data), coulomb_viscous_base, options, 1),
+  EXPECT_THROW(diagnose(observe(kuka::make_planted({}, 1).data), coulomb_viscous_base, options),
                Error);
 }
 
@@ -249,11 +249,11 @@ TEST(EffectFile, OfTheExamplesFindsWhatTheBuiltInLibraryLacks) {
   }
   DiagnosisOptions options;
   options.gear_ratios = {160};
-  EXPECT_EQ(diagnose(data, coulomb_viscous_base, options, 5).verdict, Verdict::unknown);
+  EXPECT_EQ(diagnose(data, coulomb_viscous_base, options).verdict, Verdict::unknown);
   options.learned =
       read_effects(tribench::testing::source_dir() / "examples/effects/transmission.toml");
   EXPECT_EQ(options.learned.size(), 3U);
-  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options, 5);
+  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options);
   EXPECT_EQ(diagnosis.verdict, Verdict::effects);
   ASSERT_EQ(diagnosis.effects.size(), 1U);
   EXPECT_EQ(diagnosis.effects[0].family, "friction_ripple");

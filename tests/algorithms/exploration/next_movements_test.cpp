@@ -26,7 +26,7 @@ Proposals proposals_for(const kuka::PlantedCase& planted, std::size_t count) {
   DiagnosisOptions options;
   options.physical_vetoes = false;
   options.gear_ratios = {160};
-  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options, 1);
+  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options);
   std::vector<ProposedMovement> movements = propose_movements(diagnosis, data, count);
   return {std::move(data), std::move(movements)};
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How small an error these data allow, where nobody knows the noise: two bounds. Internal to the
-// room.
+// How small an error these data allow, where nobody knows the noise: two bounds.
 //
 //   floor       mean |e''| / sqrt(6) of the residual's second differences within movements, e''
 //   being
@@ -18,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/diagnosis/diagnosis.hpp"
+#include "harness/loop/loop_judge.hpp"
 
 namespace tribench::loop {
 
@@ -31,8 +30,8 @@ Eigen::VectorXd smooth_correction(const Observations& data, const std::vector<ch
 // Fills in the error's bounds and the share of the gap that was closed, with a 95 % bootstrap over
 // units. before, after, corrected: errors of the judged rows. Leaves NaN and says why in
 // error.ceiling_note where there is no gap or too little to tell.
-void bound_ceiling(ErrorFinding& error, const Observations& judged, const Eigen::VectorXd& before,
-                   const Eigen::VectorXd& after, const Eigen::VectorXd& corrected,
-                   std::span<const int> unit, RandomStream random);
+void bound_noise(ErrorFinding& error, const Observations& judged, const Eigen::VectorXd& before,
+                 const Eigen::VectorXd& after, const Eigen::VectorXd& corrected,
+                 std::span<const int> unit, RandomStream random);
 
 }  // namespace tribench::loop

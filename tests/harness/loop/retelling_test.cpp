@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/diagnosis/diagnosis.hpp"
 #include "foundation/random.hpp"
+#include "harness/loop/judged_diagnosis.hpp"
 #include "problems/kuka/planted.hpp"
 #include "problems/preparation/canonical.hpp"
 #include "problems/reading/csv.hpp"
@@ -100,23 +100,22 @@ const std::vector<Retelling>& retellings() {
   return kAll;
 }
 
-Diagnosis diagnosed(const Dataset& data, const ObservationOptions& observing, std::uint64_t seed) {
+JudgedDiagnosis diagnosed(const Dataset& data, const ObservationOptions& observing) {
   DiagnosisOptions options;
   options.physical_vetoes = false;
-  return diagnose(observe(data, observing), coulomb_viscous_base, options, seed);
+  return diagnose_and_judge(observe(data, observing), coulomb_viscous_base, options);
 }
 
 void expect_one_story(const Dataset& data, const ObservationOptions& observing,
                       const std::string& what) {
-  const Diagnosis plain = diagnosed(data, observing, 1);
-  EXPECT_EQ(story(plain), story(diagnosed(data, observing, 2))) << what << ", another seed";
+  const JudgedDiagnosis plain = diagnosed(data, observing);
   std::vector<Retelling> all = retellings();
   // Movements laid end to end: their rows' times are rounded elsewhere.
   if (observing.unordered) all.push_back({"shuffled", shuffle_movements, 1, 1e-9});
   for (const Retelling& retelling : all) {
     Dataset told = data;
     retelling.tell(told);
-    const Diagnosis other = diagnosed(told, observing, 1);
+    const JudgedDiagnosis other = diagnosed(told, observing);
     EXPECT_EQ(story(plain), story(other)) << what << ", " << retelling.name;
     const double bound = retelling.tolerance * retelling.error_factor;
     EXPECT_NEAR(plain.error.mae_after * retelling.error_factor, other.error.mae_after,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/ceiling.hpp"
+#include "harness/loop/noise_bounds.hpp"
 
 #include <fmt/format.h>
 
@@ -155,9 +155,9 @@ Eigen::VectorXd smooth_correction(const Observations& data, const std::vector<ch
   return x * solve(whole, penalty);
 }
 
-void bound_ceiling(ErrorFinding& error, const Observations& judged, const Eigen::VectorXd& before,
-                   const Eigen::VectorXd& after, const Eigen::VectorXd& corrected,
-                   std::span<const int> unit, RandomStream random) {
+void bound_noise(ErrorFinding& error, const Observations& judged, const Eigen::VectorXd& before,
+                 const Eigen::VectorXd& after, const Eigen::VectorXd& corrected,
+                 std::span<const int> unit, RandomStream random) {
   error.attainable = std::min(corrected.cwiseAbs().mean(), error.mae_after);
   const double floor = noise_floor(judged, corrected);
   if (std::isnan(floor)) {

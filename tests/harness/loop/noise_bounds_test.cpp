@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/ceiling.hpp"
+#include "harness/loop/noise_bounds.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "harness/loop/judged_diagnosis.hpp"
 #include "problems/kuka/planted.hpp"
 
 namespace tribench::loop {
@@ -35,29 +36,27 @@ Observations with_noise(double noise, Unexplained unexplained) {
   return observe(data);
 }
 
-DiagnosisOptions bounded() {
-  DiagnosisOptions options;
-  options.ceiling = true;
-  return options;
+JudgedDiagnosis bounded(const Observations& data, const DiagnosisOptions& options) {
+  return diagnose_and_judge(data, coulomb_viscous_base, options, {.bounds = true});
 }
 
 double mean_magnitude(double sd) { return sd * std::sqrt(2 / std::numbers::pi); }
 
-TEST(Ceiling, BoundsIndependentNoiseFromBothSidesWithinAFewPerCent) {
+TEST(NoiseBounds, BoundsIndependentNoiseFromBothSidesWithinAFewPerCent) {
   const Observations data = with_noise(0.3, [](double) { return 0.0; });
-  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, bounded(), 1);
+  const JudgedDiagnosis diagnosis = bounded(data, {});
   EXPECT_NEAR(diagnosis.error.ceiling, mean_magnitude(0.3), 0.06 * mean_magnitude(0.3));
   EXPECT_NEAR(diagnosis.error.attainable, mean_magnitude(0.3), 0.06 * mean_magnitude(0.3));
   EXPECT_LE(diagnosis.error.ceiling, diagnosis.error.attainable);
 }
 
 // A bump that no family has: the loop closes nothing of it, a smoother would.
-TEST(Ceiling, SaysWhatTheLibraryLeavesUnclosed) {
+TEST(NoiseBounds, SaysWhatTheLibraryLeavesUnclosed) {
   const Observations data =
       with_noise(0.2, [](double q) { return 1.5 * std::exp(-std::pow((q - 0.4) / 0.12, 2)); });
-  DiagnosisOptions options = bounded();
+  DiagnosisOptions options;
   options.families = {"stribeck", "nonlinear_viscous"};
-  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options, 1);
+  const JudgedDiagnosis diagnosis = bounded(data, options);
   EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
   EXPECT_NEAR(diagnosis.error.attainable, mean_magnitude(0.2), 0.15 * mean_magnitude(0.2));
   EXPECT_LT(diagnosis.error.closed_fraction_high, 0.1);
@@ -65,19 +64,19 @@ TEST(Ceiling, SaysWhatTheLibraryLeavesUnclosed) {
   EXPECT_GE(diagnosis.error.closed_high, diagnosis.error.closed_fraction);
 }
 
-TEST(Ceiling, ClosesTheGapOfAPlantedEffectAndBracketsItsNoise) {
+TEST(NoiseBounds, ClosesTheGapOfAPlantedEffectAndBracketsItsNoise) {
   const Observations data =
       observe(kuka::make_planted({.effects = {{"load_coulomb", 2.0}}}, 2).data);
-  DiagnosisOptions options = bounded();
+  DiagnosisOptions options;
   options.gear_ratios = {160};
   options.physical_vetoes = false;
-  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options, 2);
+  const JudgedDiagnosis diagnosis = bounded(data, options);
   EXPECT_LE(diagnosis.error.ceiling, diagnosis.error.attainable);
   EXPECT_LE(diagnosis.error.attainable, diagnosis.error.mae_after);
   EXPECT_GT(diagnosis.error.closed_fraction_high, 0.97);
 }
 
-TEST(Ceiling, SaysWhyItIsNotThere) {
+TEST(NoiseBounds, SaysWhyItIsNotThere) {
   const Observations data = with_noise(0.3, [](double) { return 0.0; });
   ErrorFinding error;
   error.mae_before = error.mae_after = 1;
@@ -87,7 +86,7 @@ TEST(Ceiling, SaysWhyItIsNotThere) {
     return keep;
   }());
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(20);
-  bound_ceiling(error, few, ones, ones, ones, few.movement, RandomStream(1));
+  bound_noise(error, few, ones, ones, ones, few.movement, RandomStream(1));
   EXPECT_TRUE(std::isnan(error.ceiling));
   EXPECT_FALSE(error.ceiling_note.empty());
 }

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+#include "harness/loop/judged_diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "algorithms/loop_model/model_fit.hpp"
+#include "foundation/parallel_for.hpp"
+#include "harness/loop/noise_bounds.hpp"
+#include "problems/preparation/canonical.hpp"
+#include "problems/preparation/test_movements.hpp"
+
+namespace tribench::loop {
+namespace {
+
+constexpr std::size_t kFewMovements = 40;     // a fifth of them is too few to judge by
+constexpr std::size_t kWantedMovements = 30;  // R9
+constexpr std::size_t kPiecesOfOneMovement = 5;
+// Movements are left out in at least so many turns; in more, one movement each, where the rows of
+// all turns together stay below the second figure.
+constexpr std::size_t kFewestTurns = 10;
+constexpr std::size_t kRowsOfAllTurns = 60'000;
+
+// Pieces of each movement, as independent of one another as rows ten correlation times apart.
+std::vector<int> pieces(const Observations& data, double correlation_rows) {
+  const Clusters clusters = make_clusters(data.movement, correlation_rows);
+  std::vector<int> unit(data.rows());
+  for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
+    for (std::size_t i = clusters.stretches[c].begin; i < clusters.stretches[c].end; ++i) {
+      unit[i] = static_cast<int>(c);
+    }
+  }
+  return unit;
+}
+
+std::size_t turns_for(const Observations& data) {
+  return std::max(kFewestTurns, kRowsOfAllTurns / std::max<std::size_t>(1, data.rows()));
+}
+
+// The movements that are left out at once, each set in ascending order: those of a group, or single
+// ones, or where they are many, a tenth of them.
+std::vector<std::vector<int>> left_out_together(const Observations& data) {
+  std::map<int, std::size_t> place;  // of a group's number, in the order of their first movements
+  std::vector<std::vector<int>> all;
+  const auto turns = static_cast<int>(turns_for(data));
+  int turn = 0;
+  for (const int m : data.movements()) {
+    const int number =
+        data.group.empty() ? turn++ % turns : data.group[static_cast<std::size_t>(m)];
+    const auto [known, is_new] = place.try_emplace(number, all.size());
+    if (is_new) all.emplace_back();
+    all[known->second].push_back(m);
+  }
+  for (std::vector<int>& movements : all) std::ranges::sort(movements);
+  return all;
+}
+
+// One recording: five pieces of it stand for movements.
+Observations cut_in_pieces(const Observations& data) {
+  Observations out = data;
+  out.movement_names.clear();
+  out.group.clear();
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    out.movement[i] = static_cast<int>(i * kPiecesOfOneMovement / data.rows());
+  }
+  for (std::size_t k = 0; k < kPiecesOfOneMovement; ++k) {
+    out.movement_names.push_back(fmt::format("piece {}", k + 1));
+  }
+  // Within one movement everything that grows with it passes for the campaign's time.
+  for (const char* name : {"t", "T"}) out.withheld.push_back({name, "there is one movement"});
+  return out;
+}
+
+// What the models fitted without them make of the movements left out, in rows of all data.
+struct LeftOut {
+  Eigen::VectorXd before;
+  Eigen::VectorXd after;
+  Eigen::VectorXd corrected;  // as `after` where no bounds are asked for
+
+  explicit LeftOut(std::size_t rows)
+      : before(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows))),
+        after(before),
+        corrected(before) {}
+};
+
+// How often searches on parts of the data choose the same effects.
+class ChosenShares {
+ public:
+  void count(const Diagnosis& part) {
+    ++searches_;
+    for (const EffectFinding& effect : part.effects) ++times_[effect.family];
+  }
+  void write(Diagnosis& whole) const {
+    if (searches_ == 0) return;
+    for (EffectFinding& effect : whole.effects) {
+      const auto found = times_.find(effect.family);
+      effect.chosen_share = found == times_.end() ? 0 : found->second / searches_;
+    }
+  }
+
+ private:
+  double searches_ = 0;
+  std::map<std::string, double> times_;
+};
+
+// One recording, in its canonical order, and what is asked of it.
+class LoopJudge {
+ public:
+  LoopJudge(const Observations& data, const BaseMaker& base, const DiagnosisOptions& options,
+            const JudgingOptions& judging)
+      : data_(data), base_(base), options_(options), judging_(judging) {}
+
+  JudgedDiagnosis with_held_out(const std::vector<int>& test) const;
+  JudgedDiagnosis in_turn() const;
+
+ private:
+  std::vector<Diagnosis> searches_without(const std::vector<std::vector<int>>& sets) const;
+  void search_again(JudgedDiagnosis& whole) const;
+  void add_predictions(LeftOut& all, const Diagnosis& fitted, const RandomStream& random) const;
+  ErrorFinding judged(const std::vector<char>& rows, const LeftOut& models,
+                      std::span<const int> unit) const;
+
+  const Observations& data_;
+  const BaseMaker& base_;
+  const DiagnosisOptions& options_;
+  const JudgingOptions& judging_;
+  RandomStream random_{key_of("judge")};
+};
+
+// The searches without the movements of each set, in their order.
+std::vector<Diagnosis> LoopJudge::searches_without(
+    const std::vector<std::vector<int>>& sets) const {
+  std::vector<Diagnosis> all(sets.size());
+  std::size_t ended = 1;  // the search with all of them
+  std::mutex mutex;
+  const auto tell = [&] {
+    const std::lock_guard lock(mutex);
+    if (judging_.progress) judging_.progress(ended++, sets.size() + 1);
+  };
+  tell();
+  parallel_for(sets.size(), judging_.threads, [&](std::size_t k) {
+    all[k] = diagnose(data_, base_, options_, sets[k]);
+    tell();
+  });
+  return all;
+}
+
+// Many movements: the search again without a tenth of the training movements in turn.
+void LoopJudge::search_again(JudgedDiagnosis& whole) const {
+  if (whole.effects.empty()) return;
+  const std::vector<char> training = usable_rows(data_, whole.held_out, false, {});
+  std::vector<std::vector<int>> sets = left_out_together(data_.select(training));
+  for (std::vector<int>& left : sets) {
+    left.insert(left.end(), whole.held_out.begin(), whole.held_out.end());
+    std::ranges::sort(left);
+  }
+  ChosenShares shares;
+  for (const Diagnosis& part : searches_without(sets)) shares.count(part);
+  shares.write(whole);
+}
+
+// Of the rows that a diagnosis has not seen.
+void LoopJudge::add_predictions(LeftOut& all, const Diagnosis& fitted,
+                                const RandomStream& random) const {
+  const Eigen::VectorXd before = predict(fitted.before, data_);
+  const Eigen::VectorXd after = predict(fitted.after, data_);
+  Eigen::VectorXd corrected = after;
+  if (judging_.bounds) {
+    corrected += smooth_correction(data_, usable_rows(data_, fitted.held_out, false, fitted.masked),
+                                   target_vector(data_) - after, random.split("smooth"));
+  }
+  for (std::size_t i = 0; i < data_.rows(); ++i) {
+    if (!std::ranges::binary_search(fitted.held_out, data_.movement[i])) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    all.before[at] = before[at];
+    all.after[at] = after[at];
+    all.corrected[at] = corrected[at];
+  }
+}
+
+// Errors on the rows with rows[i] != 0. unit: of those rows.
+ErrorFinding LoopJudge::judged(const std::vector<char>& rows, const LeftOut& models,
+                               std::span<const int> unit) const {
+  std::vector<Eigen::Index> kept;
+  for (std::size_t i = 0; i < data_.rows(); ++i) {
+    if (rows[i] != 0) kept.push_back(static_cast<Eigen::Index>(i));
+  }
+  const Observations part = data_.select(rows);
+  const Eigen::VectorXd before = models.before(kept);
+  const Eigen::VectorXd after = models.after(kept);
+  ErrorFinding error = judge(part, before, after, unit, random_.split("bootstrap"));
+  if (judging_.bounds) {
+    const auto y = target_vector(part);
+    bound_noise(error, part, y - before, y - after, y - models.corrected(kept), unit,
+                random_.split("bounds"));
+  }
+  return error;
+}
+
+// Few movements: the whole procedure again for each, without it, and all of them judged together.
+// Says of each effect how many of them choose it too.
+JudgedDiagnosis LoopJudge::in_turn() const {
+  JudgedDiagnosis whole{diagnose(data_, base_, options_), {}};
+  const std::vector<std::vector<int>> sets = left_out_together(data_);
+  const std::vector<Diagnosis> parts = searches_without(sets);
+  ChosenShares shares;
+  LeftOut all(data_.rows());
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    shares.count(parts[k]);
+    add_predictions(all, parts[k], random_.split(k));
+  }
+  shares.write(whole);
+  const std::vector<char> usable = usable_rows(data_, {}, false, whole.masked);
+  whole.error = judged(usable, all, pieces(data_.select(usable), whole.correlation_rows));
+  whole.error.how =
+      !data_.group.empty() ? fmt::format("movements of one '{}' left out in turn", data_.group_name)
+      : data_.movements().size() > turns_for(data_) ? "a tenth of the movements left out in turn"
+                                                    : "each movement left out in turn";
+  return whole;
+}
+
+JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) const {
+  JudgedDiagnosis whole{diagnose(data_, base_, options_, test), {}};
+  whole.error.judged_on = JudgedOn::rows_of_the_fit;
+  whole.error.how = "none held out";
+  const std::vector<char> rows = usable_rows(data_, test, true, whole.masked);
+  if (std::ranges::count(rows, 1) == 0) return whole;
+  LeftOut models(data_.rows());
+  add_predictions(models, whole, random_);
+  whole.error = judged(rows, models, data_.select(rows).movement);
+  whole.error.how = "held out";
+  if (judging_.resample) search_again(whole);
+  return whole;
+}
+
+JudgedDiagnosis judge_canonical(const Observations& data, const BaseMaker& base,
+                                const DiagnosisOptions& options, const JudgingOptions& judging) {
+  const std::size_t movements = data.movements().size();
+  if (movements >= kFewMovements && data.group.empty()) {
+    return LoopJudge(data, base, options, judging)
+        .with_held_out(held_out_movements(data, judging.test_share));
+  }
+  if (movements == 1) {
+    const Observations pieces = cut_in_pieces(data);
+    JudgedDiagnosis out = LoopJudge(pieces, base, options, judging).in_turn();
+    out.error.judged_on = JudgedOn::pieces_of_one_movement;
+    out.error.how = "pieces of the one movement left out in turn";
+    out.notes.push_back(
+        "there is one movement: nothing that differs between movements (temperature, drift, "
+        "repeatability) can be tested");
+    return out;
+  }
+  JudgedDiagnosis out = LoopJudge(data, base, options, judging).in_turn();
+  if (movements < kWantedMovements) {
+    out.notes.push_back(
+        fmt::format("there are {} movements: what differs between movements (temperature, drift, "
+                    "repeatability) can hardly be tested; {} are wanted",
+                    movements, kWantedMovements));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<int> held_out_movements(const Observations& data, double share) {
+  const bool few = data.movements().size() < kFewMovements;
+  return few || !data.group.empty() ? std::vector<int>() : choose_test_movements(data, share);
+}
+
+JudgedDiagnosis diagnose_and_judge(const Observations& data, const BaseMaker& base,
+                                   const DiagnosisOptions& options, const JudgingOptions& judging) {
+  const Canonical told = canonical(data);
+  JudgedDiagnosis out = judge_canonical(told.data, base, options, judging);
+  out.masked = told.as_told(out.masked);
+  // Without a row to judge by there is nothing against them.
+  const bool judged = out.error.judged_on != JudgedOn::rows_of_the_fit;
+  out.error.confirmed = !judged || out.effects.empty() || out.error.difference_low > 0;
+  return out;
+}
+
+}  // namespace tribench::loop

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "harness/loop/judged_diagnosis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "problems/kuka/planted.hpp"
+#include "problems/reading/csv.hpp"
+#include "tests/support/paths.hpp"
+
+namespace tribench::loop {
+namespace {
+
+// Signs of planted effects are random: the vetoes, which know which sign is physical, stay out.
+JudgedDiagnosis diagnose_planted(const kuka::PlantedCase& planted, std::uint64_t seed,
+                                 const JudgingOptions& judging = {}) {
+  DiagnosisOptions options;
+  options.physical_vetoes = false;
+  options.gear_ratios = {160};
+  return diagnose_and_judge(observe(kuka::make_planted(planted, seed).data), coulomb_viscous_base,
+                            options, judging);
+}
+
+std::vector<std::string> families(const Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const EffectFinding& effect : diagnosis.effects) names.push_back(effect.family);
+  return names;
+}
+
+class PlantedEffect : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(PlantedEffect, IsNamedAndClosesTheLoopOnMovementsNobodyTouched) {
+  const JudgedDiagnosis diagnosis = diagnose_planted({.effects = {{GetParam(), 1.0}}}, 2);
+  EXPECT_EQ(diagnosis.verdict, Verdict::effects);
+  EXPECT_EQ(families(diagnosis), std::vector<std::string>{GetParam()});
+  EXPECT_LT(diagnosis.error.mae_after, diagnosis.error.mae_before);
+  EXPECT_GE(diagnosis.error.test_movements, 20U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, PlantedEffect,
+                         ::testing::Values("stribeck", "nonlinear_viscous", "load_coulomb",
+                                           "load_viscous", "power_quadrant_gain",
+                                           "power_quadrant_step", "payload", "output_ripple",
+                                           "gear_ripple", "temperature", "drift", "hysteresis",
+                                           "lag", "inertia", "coupling"));
+
+// Mean magnitude of the planted noise in the movements that a diagnosis has held out.
+double noise_held_out(const std::vector<kuka::Plant>& effects, const Diagnosis& diagnosis,
+                      std::uint64_t seed) {
+  const PlantedData planted = kuka::make_planted({.effects = effects}, seed);
+  double sum = 0;
+  double rows = 0;
+  for (std::size_t i = 0; i < planted.data.rows(); ++i) {
+    const int movement = planted.data.movement[i];
+    if (!std::ranges::binary_search(diagnosis.held_out, movement)) continue;
+    sum += std::abs(planted.truth.noise[i]);
+    rows += 1;
+  }
+  return sum / rows;
+}
+
+// The other joint moves in fewer stretches than a test by flips needs; what its motion explains of
+// whole movements speaks for itself.
+TEST(JudgedDiagnosis, AnEffectInAFewStretchesIsRescuedByItsGain) {
+  for (const std::uint64_t seed : {954432U, 954494U}) {
+    const JudgedDiagnosis diagnosis = diagnose_planted({.effects = {{"coupling", 2.0}}}, seed);
+    EXPECT_EQ(families(diagnosis), std::vector<std::string>{"coupling"});
+    EXPECT_TRUE(diagnosis.effects.at(0).few_movements);
+    EXPECT_EQ(std::ranges::count(diagnosis.untestable, "coupling", &UntestableFinding::family), 0);
+    EXPECT_LT(diagnosis.error.mae_after,
+              1.03 * noise_held_out({{"coupling", 2.0}}, diagnosis, seed));
+    EXPECT_GT(diagnosis.error.mae_before, 1.3 * diagnosis.error.mae_after);
+  }
+}
+
+// One sine of a UR10e's joint: presliding of less than a thousandth of the stroke.
+TEST(JudgedDiagnosis, ReportsNoTwoColumnsThatOnlyCancelEachOther) {
+  const auto folder = tribench::testing::shared_data();
+  if (!folder) GTEST_SKIP() << tribench::testing::kNoSharedData;
+  const Observations data =
+      observe(read_csv(*folder / "ur10e-jointwise/joint6.csv").data).thinned(6000);
+  const JudgedDiagnosis diagnosis = diagnose_and_judge(data, coulomb_viscous_base, {});
+  const auto is_known = [&](const char* name) {
+    return std::ranges::count(diagnosis.effects, name, &EffectFinding::family) > 0;
+  };
+  ASSERT_TRUE(is_known("hysteresis"));
+  EXPECT_LT(diagnosis.error.mae_after, 0.85 * diagnosis.error.mae_before);
+  for (const EffectFinding& effect : diagnosis.effects) {
+    double largest = 0;
+    for (const ParameterFinding& p : effect.parameters) {
+      if (p.name == "presliding") largest = std::max(largest, std::abs(p.value));
+    }
+    // The Coulomb friction there is 0.25 A: nothing builds up to more than that.
+    EXPECT_LT(largest, 0.3) << effect.family;
+  }
+  // Nothing is said twice.
+  std::vector<std::string> notes = diagnosis.notes;
+  std::ranges::sort(notes);
+  EXPECT_TRUE(std::ranges::adjacent_find(notes) == notes.end());
+}
+
+TEST(JudgedDiagnosis, IsTheSameAgain) {
+  const kuka::PlantedCase planted{.effects = {{"load_coulomb", 0.5}}};
+  const JudgedDiagnosis one = diagnose_planted(planted, 8);
+  const JudgedDiagnosis two = diagnose_planted(planted, 8);
+  EXPECT_EQ(one.error.mae_after, two.error.mae_after);
+  EXPECT_EQ(one.leftover.p, two.leftover.p);
+  EXPECT_EQ(families(one), families(two));
+  EXPECT_EQ(formula_of(one.after), formula_of(two.after));
+}
+
+// Searches side by side and one after the other: the same, bit for bit.
+TEST(JudgedDiagnosis, IsTheSameOnAnyNumberOfThreads) {
+  const kuka::PlantedCase planted{.effects = {{"stribeck", 1.0}}};
+  const JudgedDiagnosis one = diagnose_planted(planted, 8, {.resample = true, .threads = 1});
+  const JudgedDiagnosis two = diagnose_planted(planted, 8, {.resample = true, .threads = 2});
+  ASSERT_EQ(one.effects.size(), 1U);
+  EXPECT_GT(one.effects[0].chosen_share, 0.5);
+  EXPECT_EQ(one.effects[0].chosen_share, two.effects.at(0).chosen_share);
+  EXPECT_EQ(one.error.difference_low, two.error.difference_low);
+}
+
+}  // namespace
+}  // namespace tribench::loop
