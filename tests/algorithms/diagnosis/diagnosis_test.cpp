@@ -360,7 +360,7 @@ TEST(Diagnosis, AnUnphysicalEffectOfVelocityIsNotBlamedOnTheGravityTorque) {
   DiagnosisOptions options = options_of_planted();
   options.physical_vetoes = true;
   options.families = {"stribeck"};
-  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, options, 4);
+  const Diagnosis diagnosis = diagnose_most(data, options);
   EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
   EXPECT_EQ(diagnosis.leftover.inputs, (std::vector<std::string>{"velocity"}));
 }
