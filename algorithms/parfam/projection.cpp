@@ -25,6 +25,16 @@ void denominator_from(Denominators kind, const std::vector<double>& q, std::vect
   }
 }
 
+// dD / dq.
+void denominator_slope(Denominators kind, const std::vector<double>& q,
+                       std::vector<double>& slope) {
+  if (kind == Denominators::safe) {
+    columns::mul(q.data(), 2.0, slope.data(), q.size());
+  } else {
+    std::ranges::fill(slope, 1.0);
+  }
+}
+
 // products[i * b.size() + j] = sum_r a_i[r] b_j[r].
 void cross_products(std::span<const double* const> a, std::span<const double* const> b,
                     std::size_t rows, std::vector<double>& products) {
@@ -39,6 +49,22 @@ void cross_products(std::span<const double* const> a, std::span<const double* co
         products[i * b.size() + j + k] = sums[k];
     }
   }
+}
+
+// The product of the columns named by the bits of `functions`, but for one of them; none: null.
+const double* product_of(std::span<const double* const> factors, unsigned functions,
+                         std::size_t without, std::vector<double>& space) {
+  const double* product = nullptr;
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    if (((functions >> i) & 1U) == 0 || i == without) continue;
+    if (product == nullptr) {
+      product = factors[i];
+    } else {
+      columns::mul(product, factors[i], space.data(), space.size());
+      product = space.data();
+    }
+  }
+  return product;
 }
 
 }  // namespace
@@ -64,6 +90,7 @@ Projection::Projection(const Structure& structure, std::span<const double* const
       values->resize(rows_);
     }
     argument.bottom.assign(rows_, 1.0);
+    factors_.push_back(argument.g.data());
   }
   denominator_begin_ = inner_count_;
   inner_count_ += structure.out_denominator.size();
@@ -80,29 +107,6 @@ Projection::Projection(const Structure& structure, std::span<const double* const
   coefficients_.resize(linear);
   // Multiplications of the Gram matrix and of the polynomials, four to a node.
   pass_cost_ = (linear * (linear + 1) / 8 + inner_count_ + linear + 4) * rows_;
-}
-
-const double* Projection::product_of(unsigned functions, std::size_t without,
-                                     std::vector<double>& space) {
-  const double* product = nullptr;
-  for (std::size_t i = 0; i < arguments_.size(); ++i) {
-    if (((functions >> i) & 1U) == 0 || i == without) continue;
-    if (product == nullptr) {
-      product = arguments_[i].g.data();
-    } else {
-      columns::mul(product, arguments_[i].g.data(), space.data(), rows_);
-      product = space.data();
-    }
-  }
-  return product;
-}
-
-void Projection::denominator_slope(const std::vector<double>& q, std::vector<double>& slope) const {
-  if (denominators_ == Denominators::safe) {
-    columns::mul(q.data(), 2.0, slope.data(), rows_);
-  } else {
-    std::ranges::fill(slope, 1.0);
-  }
 }
 
 void Projection::evaluate_arguments(std::span<const double> inner) {
@@ -129,7 +133,7 @@ void Projection::evaluate_out_denominator(std::span<const double> inner) {
     values_.clear();
     for (std::size_t place : group.places) values_.push_back(inner[denominator_begin_ + place]);
     columns::combine(group.columns.data(), values_.data(), values_.size(), part_.data(), rows_);
-    const double* product = product_of(group.functions, kNone, space_);
+    const double* product = product_of(factors_, group.functions, kNone, space_);
     if (product != nullptr) columns::mul(part_.data(), product, part_.data(), rows_);
     columns::add(q_.data(), part_.data(), q_.data(), rows_);
   }
@@ -139,7 +143,7 @@ void Projection::evaluate_out_denominator(std::span<const double> inner) {
 void Projection::make_basis() {
   const bool divides = !denominator_groups_.empty();
   for (const MonomialGroup& group : numerator_groups_) {
-    const double* product = product_of(group.functions, kNone, space_);
+    const double* product = product_of(factors_, group.functions, kNone, space_);
     for (std::size_t k = 0; k < group.columns.size(); ++k) {
       const std::size_t place = group.places[k];
       double* out = basis_memory_.data() + place * rows_;
@@ -200,7 +204,7 @@ void Projection::write_inner_columns(const Argument& argument, std::span<const d
     columns::mul(scaled, column, jacobian_column(k++), rows_);
   }
   if (argument.denominator.empty()) return;
-  denominator_slope(argument.q, slope_);
+  denominator_slope(denominators_, argument.q, slope_);
   columns::mul(scaled, argument.value.data(), scaled, rows_);
   columns::mul(scaled, slope_.data(), scaled, rows_);
   columns::mul(scaled, -1.0, scaled, rows_);
@@ -211,13 +215,13 @@ void Projection::write_inner_columns(const Argument& argument, std::span<const d
 
 void Projection::write_out_denominator_columns() {
   if (denominator_groups_.empty()) return;
-  denominator_slope(q_, slope_);
+  denominator_slope(denominators_, q_, slope_);
   // df/dq = -f D' / D
   columns::div(fitted_.data(), bottom_.data(), weight_.data(), rows_);
   columns::mul(weight_.data(), slope_.data(), weight_.data(), rows_);
   columns::mul(weight_.data(), -1.0, weight_.data(), rows_);
   for (const MonomialGroup& group : denominator_groups_) {
-    const double* product = product_of(group.functions, kNone, space_);
+    const double* product = product_of(factors_, group.functions, kNone, space_);
     for (std::size_t k = 0; k < group.columns.size(); ++k) {
       double* out = jacobian_column(denominator_begin_ + group.places[k]);
       columns::mul(weight_.data(), group.columns[k], out, rows_);
@@ -230,7 +234,7 @@ void Projection::write_out_denominator_columns() {
 void Projection::make_jacobian() {
   std::vector<double> out_slope(rows_);
   if (!denominator_groups_.empty()) {
-    denominator_slope(q_, out_slope);
+    denominator_slope(denominators_, q_, out_slope);
     columns::mul(out_slope.data(), fitted_.data(), out_slope.data(), rows_);
   }
   for (std::size_t i = 0; i < arguments_.size(); ++i) {
@@ -243,7 +247,7 @@ void Projection::make_jacobian() {
       values_.clear();
       for (std::size_t place : group.places) values_.push_back(coefficients[begin + place]);
       columns::combine(group.columns.data(), values_.data(), values_.size(), part_.data(), rows_);
-      const double* others = product_of(group.functions, i, space_);
+      const double* others = product_of(factors_, group.functions, i, space_);
       if (others != nullptr) columns::mul(part_.data(), others, part_.data(), rows_);
       if (of_denominator) {
         columns::mul(part_.data(), out_slope.data(), part_.data(), rows_);

@@ -70,8 +70,6 @@ class Projection : public LeastSquaresProblem {
   void make_jacobian();
   void write_inner_columns(const Argument& argument, std::span<const double> weight);
   void write_out_denominator_columns();
-  const double* product_of(unsigned functions, std::size_t without, std::vector<double>& space);
-  void denominator_slope(const std::vector<double>& q, std::vector<double>& slope) const;
   double* jacobian_column(std::size_t k) { return jacobian_.data() + k * rows_; }
 
   Structure structure_;
@@ -81,6 +79,7 @@ class Projection : public LeastSquaresProblem {
   Budget& budget_;
   MonomialColumns columns_;
   std::vector<Argument> arguments_;
+  std::vector<const double*> factors_;  // their functions' values, g
   std::vector<MonomialGroup> numerator_groups_;
   std::vector<MonomialGroup> denominator_groups_;
   std::size_t denominator_begin_ = 0;

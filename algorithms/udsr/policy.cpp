@@ -37,7 +37,11 @@ TokenId draw(const Eigen::Ref<const VectorXd>& weights, double u) {
 
 }  // namespace
 
-Policy::Layout Policy::layout() const {
+PolicyShape::PolicyShape(const TokenLibrary& library)
+    : operations_(static_cast<int>(library.operations())),
+      tokens_(static_cast<int>(library.size())) {}
+
+PolicyShape::Layout PolicyShape::layout() const {
   Layout at;
   at.recurrent = at.input + 4 * kH * inputs();
   at.gate_bias = at.recurrent + 4 * kH * kH;
@@ -48,33 +52,24 @@ Policy::Layout Policy::layout() const {
 }
 
 Policy::Policy(const TokenLibrary& library, RandomStream random)
-    : library_(&library), start_(VectorXd::Zero(2 * kH)) {
-  const Layout at = layout();
+    : library_(&library), shape_(library), start_(VectorXd::Zero(2 * kH)) {
+  const PolicyShape::Layout at = shape_.layout();
   parameters_ = VectorXd::Zero(at.size);
   parameters_.segment(at.gate_bias + kH, kH).setOnes();  // forget gate
-  const double limit = std::sqrt(6.0 / static_cast<double>(kH + outputs()));
+  const double limit = std::sqrt(6.0 / static_cast<double>(kH + shape_.outputs()));
   for (Index i = at.output; i < at.output_bias; ++i) parameters_[i] = random.uniform(-limit, limit);
 }
 
-int Policy::parent_column(int parent) const {
-  return parent >= 0 ? parent : static_cast<int>(library_->operations());
-}
-
-int Policy::sibling_column(int sibling) const {
-  const int first = static_cast<int>(library_->operations()) + 1;
-  return first + (sibling >= 0 ? sibling : static_cast<int>(library_->size()));
-}
-
 void Policy::set_gate_input(const Traversal& traversal, Eigen::Ref<VectorXd> gates) const {
-  const Layout at = layout();
-  const ConstMatrix input(parameters_.data() + at.input, 4 * kH, inputs());
+  const PolicyShape::Layout at = shape_.layout();
+  const ConstMatrix input(parameters_.data() + at.input, 4 * kH, shape_.inputs());
   const ConstVector bias(parameters_.data() + at.gate_bias, 4 * kH);
-  gates = bias + input.col(parent_column(traversal.parent())) +
-          input.col(sibling_column(traversal.left_sibling()));
+  gates = bias + input.col(shape_.parent_column(traversal.parent())) +
+          input.col(shape_.sibling_column(traversal.left_sibling()));
 }
 
 void Policy::step(MatrixXd& gates, MatrixXd& cell, MatrixXd& hidden) const {
-  columns::add_product(parameters_.data() + layout().recurrent, hidden.data(), 4 * kH, kH,
+  columns::add_product(parameters_.data() + shape_.layout().recurrent, hidden.data(), 4 * kH, kH,
                        static_cast<std::size_t>(hidden.cols()), gates.data());
   // The logistic function of x is (1 + tanh(x / 2)) / 2: one pass serves all four gates.
   gates.topRows(2 * kH) *= 0.5;
@@ -91,9 +86,9 @@ void Policy::step(MatrixXd& gates, MatrixXd& cell, MatrixXd& hidden) const {
 }
 
 MatrixXd Policy::logits(const MatrixXd& hidden) const {
-  const Layout at = layout();
-  const ConstMatrix output(parameters_.data() + at.output, outputs(), kH);
-  const ConstVector bias(parameters_.data() + at.output_bias, outputs());
+  const PolicyShape::Layout at = shape_.layout();
+  const ConstMatrix output(parameters_.data() + at.output, shape_.outputs(), kH);
+  const ConstVector bias(parameters_.data() + at.output_bias, shape_.outputs());
   MatrixXd result = bias.replicate(1, hidden.cols());
   result.noalias() += output * hidden;
   return result;

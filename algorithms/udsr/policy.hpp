@@ -27,9 +27,40 @@ struct WeightedSequence {
   const Eigen::VectorXd* start = nullptr;  // this sequence's own first state; see begin_from
 };
 
-class Policy {
+// Where everything lies in the parameters of a policy over these tokens.
+class PolicyShape {
  public:
   static constexpr int kHidden = 32;
+
+  explicit PolicyShape(const TokenLibrary& library);
+
+  // Columns of the input layer: operations as parent, then none, tokens as sibling, then none.
+  int inputs() const { return operations_ + tokens_ + 2; }
+  int outputs() const { return tokens_; }
+  int parent_column(int parent) const { return parent >= 0 ? parent : operations_; }
+  int sibling_column(int sibling) const {
+    return operations_ + 1 + (sibling >= 0 ? sibling : tokens_);
+  }
+
+  // The gates are stacked input, forget, cell, output.
+  struct Layout {
+    Eigen::Index input = 0;      // 4 kHidden x inputs()
+    Eigen::Index recurrent = 0;  // 4 kHidden x kHidden
+    Eigen::Index gate_bias = 0;  // 4 kHidden
+    Eigen::Index output = 0;     // outputs() x kHidden
+    Eigen::Index output_bias = 0;
+    Eigen::Index size = 0;
+  };
+  Layout layout() const;
+
+ private:
+  int operations_;
+  int tokens_;
+};
+
+class Policy {
+ public:
+  static constexpr int kHidden = PolicyShape::kHidden;
 
   // Recurrent weights start at zero, the output layer Glorot-uniform, as in the original.
   Policy(const TokenLibrary& library, RandomStream random);
@@ -55,22 +86,7 @@ class Policy {
   Eigen::VectorXd& parameters() { return parameters_; }
   const TokenLibrary& library() const { return *library_; }
 
-  // Columns of the input layer: operations as parent, then none, tokens as sibling, then none.
-  int inputs() const { return static_cast<int>(library_->operations() + library_->size()) + 2; }
-  int outputs() const { return static_cast<int>(library_->size()); }
-  int parent_column(int parent) const;
-  int sibling_column(int sibling) const;
-
-  // Where each block lies in parameters(); the gates are stacked input, forget, cell, output.
-  struct Layout {
-    Eigen::Index input = 0;      // 4 kHidden x inputs()
-    Eigen::Index recurrent = 0;  // 4 kHidden x kHidden
-    Eigen::Index gate_bias = 0;  // 4 kHidden
-    Eigen::Index output = 0;     // outputs() x kHidden
-    Eigen::Index output_bias = 0;
-    Eigen::Index size = 0;
-  };
-  Layout layout() const;
+  const PolicyShape& shape() const { return shape_; }
 
  private:
   struct Unrolled;
@@ -89,6 +105,7 @@ class Policy {
                          Eigen::VectorXd& gradient) const;
 
   const TokenLibrary* library_;
+  PolicyShape shape_;
   Eigen::VectorXd parameters_;
   Eigen::VectorXd start_;
 };

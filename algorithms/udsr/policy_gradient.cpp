@@ -97,11 +97,11 @@ void Policy::unroll(std::span<const Sequence* const> sequences, const MatrixXd& 
     MatrixXd gates(4 * kH, n);
     std::vector<int> parent;
     std::vector<int> sibling;
-    MatrixXd shift = MatrixXd::Zero(outputs(), n);
+    MatrixXd shift = MatrixXd::Zero(shape_.outputs(), n);
     for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) {
       const auto column = static_cast<Index>(j);
-      parent.push_back(parent_column(traversals[j].parent()));
-      sibling.push_back(sibling_column(traversals[j].left_sibling()));
+      parent.push_back(shape_.parent_column(traversals[j].parent()));
+      sibling.push_back(shape_.sibling_column(traversals[j].left_sibling()));
       set_gate_input(traversals[j], gates.col(column));
       prior.add_to(traversals[j], {shift.col(column).data(), library_->size()});
       traversals[j].push((*sequences[j])[t]);
@@ -137,10 +137,10 @@ std::vector<double> Policy::log_probabilities(std::span<const Sequence* const> s
 // The loss of step t, and its way back through the softmax and the output layer.
 void Policy::add_output_gradient(const Unrolled& run, std::size_t t, StepErrors& errors,
                                  VectorXd& gradient) const {
-  const Layout at = layout();
-  Eigen::Map<MatrixXd> d_output(gradient.data() + at.output, outputs(), kH);
-  Eigen::Map<VectorXd> d_output_bias(gradient.data() + at.output_bias, outputs());
-  const ConstMatrix output(parameters_.data() + at.output, outputs(), kH);
+  const PolicyShape::Layout at = shape_.layout();
+  Eigen::Map<MatrixXd> d_output(gradient.data() + at.output, shape_.outputs(), kH);
+  Eigen::Map<VectorXd> d_output_bias(gradient.data() + at.output_bias, shape_.outputs());
+  const ConstMatrix output(parameters_.data() + at.output, shape_.outputs(), kH);
   const double discount = elementary::pow(errors.gamma, static_cast<double>(t));
   const MatrixXd& log_p = run.log_p[t];
   MatrixXd p(log_p.rows(), log_p.cols());
@@ -152,7 +152,7 @@ void Policy::add_output_gradient(const Unrolled& run, std::size_t t, StepErrors&
     const double entropy = entropy_of(log_p.col(j), p.col(j));
     const double entropy_weight = item.entropy * discount;
     errors.loss -= item.advantage * log_p(token, j) + entropy_weight * entropy;
-    for (Index k = 0; k < outputs(); ++k) {
+    for (Index k = 0; k < shape_.outputs(); ++k) {
       if (log_p(k, j) == kForbidden) continue;
       d_logits(k, j) = item.advantage * (p(k, j) - (k == token ? 1.0 : 0.0)) +
                        entropy_weight * p(k, j) * (log_p(k, j) + entropy);
@@ -166,8 +166,8 @@ void Policy::add_output_gradient(const Unrolled& run, std::size_t t, StepErrors&
 // Back through the cell of step t; leaves the errors of step t - 1.
 void Policy::add_cell_gradient(const Unrolled& run, std::size_t t, StepErrors& errors,
                                VectorXd& gradient) const {
-  const Layout at = layout();
-  Eigen::Map<MatrixXd> d_input(gradient.data() + at.input, 4 * kH, inputs());
+  const PolicyShape::Layout at = shape_.layout();
+  Eigen::Map<MatrixXd> d_input(gradient.data() + at.input, 4 * kH, shape_.inputs());
   Eigen::Map<VectorXd> d_gate_bias(gradient.data() + at.gate_bias, 4 * kH);
   const Index n = errors.hidden.cols();
   const MatrixXd& gates = run.gates[t];
@@ -219,7 +219,7 @@ double Policy::loss(std::span<const WeightedSequence> batch, const Prior& prior,
   }
   Unrolled run;
   unroll(sequences, first, prior, run);
-  const Layout at = layout();
+  const PolicyShape::Layout at = shape_.layout();
   gradient = VectorXd::Zero(at.size);
   errors.hidden.resize(kH, 0);
   errors.cell.resize(kH, 0);

@@ -80,7 +80,7 @@ Stored parse_stored(std::string_view text, std::string_view place) {
 class Transfer {
  public:
   Transfer(const Stored& from, Policy& to)
-      : from_(from), to_(to), hidden_(Policy::kHidden), at_(to.layout()) {
+      : from_(from), to_(to), hidden_(Policy::kHidden), at_(to.shape().layout()) {
     const auto inputs = static_cast<Eigen::Index>(from.operations + from.tokens.size() + 2);
     from_recurrent_ = 4 * hidden_ * inputs;
     from_bias_ = from_recurrent_ + 4 * hidden_ * hidden_;
@@ -94,17 +94,18 @@ class Transfer {
     const TokenLibrary& library = to_.library();
     to_.parameters().segment(at_.recurrent, 4 * hidden_ * hidden_ + 4 * hidden_) =
         from_.parameters.segment(from_recurrent_, 4 * hidden_ * hidden_ + 4 * hidden_);
-    copy_input(static_cast<Eigen::Index>(from_.operations), to_.parent_column(-1));
+    copy_input(static_cast<Eigen::Index>(from_.operations), to_.shape().parent_column(-1));
     copy_input(static_cast<Eigen::Index>(from_.operations + 1 + from_.tokens.size()),
-               to_.sibling_column(-1));
+               to_.shape().sibling_column(-1));
     for (std::size_t i = 0; i < library.size(); ++i) {
       const auto id = static_cast<TokenId>(i);
       const auto found = place_of(from_.tokens, library[id].name);
       if (!found) continue;
       const auto source = static_cast<Eigen::Index>(*found);
-      if (library.is_operation(id)) copy_input(source, to_.parent_column(static_cast<int>(i)));
+      if (library.is_operation(id))
+        copy_input(source, to_.shape().parent_column(static_cast<int>(i)));
       copy_input(static_cast<Eigen::Index>(from_.operations) + 1 + source,
-                 to_.sibling_column(static_cast<int>(i)));
+                 to_.shape().sibling_column(static_cast<int>(i)));
       copy_output(source, static_cast<Eigen::Index>(i));
     }
   }
@@ -118,7 +119,7 @@ class Transfer {
   }
   void copy_output(Eigen::Index from, Eigen::Index to) {
     for (Eigen::Index h = 0; h < hidden_; ++h) {
-      to_.parameters()[at_.output + h * to_.outputs() + to] =
+      to_.parameters()[at_.output + h * to_.shape().outputs() + to] =
           from_.parameters[from_output_ + h * outputs() + from];
     }
     to_.parameters()[at_.output_bias + to] = from_.parameters[from_output_bias_ + from];
@@ -127,7 +128,7 @@ class Transfer {
   const Stored& from_;
   Policy& to_;
   Eigen::Index hidden_;
-  Policy::Layout at_;
+  PolicyShape::Layout at_;
   Eigen::Index from_recurrent_ = 0;
   Eigen::Index from_bias_ = 0;
   Eigen::Index from_output_ = 0;
