@@ -67,7 +67,7 @@ void flatten(const std::string& prefix, const nlohmann::ordered_json& value,
              std::vector<std::pair<std::string, std::string>>& out) {
   if (value.is_object()) {
     for (const auto& [key, item] : value.items()) {
-      flatten(prefix.empty() ? key : prefix + "." + key, item, out);
+      flatten(prefix.empty() ? key : fmt::format("{}.{}", prefix, key), item, out);
     }
   } else if (value.is_array() && !value.empty()) {
     for (std::size_t i = 0; i < value.size(); ++i) {

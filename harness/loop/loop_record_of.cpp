@@ -173,7 +173,7 @@ std::string short_formula(const Expression& formula, const Observations& data) {
   return print(canonical, data.names());
 }
 
-Expression sum_of(Expression sum, double coefficient, const Expression& column) {
+Expression sum_of(const Expression& sum, double coefficient, const Expression& column) {
   Expression term = Expression::binary(Op::mul, Expression::constant(coefficient), column);
   return sum.empty() ? term : Expression::binary(Op::add, sum, term);
 }

@@ -135,6 +135,23 @@ TEST(EstimateNoise, FindsWhatTheRowsWereMadeWith) {
               std::sqrt((24000.0 - 6) / (24000 - 6 - 12000)), 1e-12);
 }
 
+// As loud as its weight says, a movement tells the same as one of the usual noise, the first and
+// the last of them too.
+TEST(EstimateNoise, CountsEachMovementByItsWeight) {
+  Clusters clusters = make_clusters(movements_of({40, 40, 40, 40}), 1);
+  RandomStream random(6);
+  Eigen::VectorXd residual(160);
+  for (double& x : residual) x = random.normal();
+  const Noise alike = estimate_noise(residual, clusters, 0, 0);
+  clusters.weight = {0.25, 1, 2, 0.1};
+  for (Eigen::Index i = 0; i < 160; ++i) {
+    residual[i] /= clusters.weight[static_cast<std::size_t>(i / 40)];
+  }
+  const Noise weighted = estimate_noise(residual, clusters, 0, 0);
+  EXPECT_NEAR(weighted.within_sd, alike.within_sd, 1e-12);
+  EXPECT_NEAR(weighted.rho, alike.rho, 1e-12);
+}
+
 // The noise within movements moves their means too: that is no offset.
 TEST(EstimateNoise, OffsetsAreWhatMeansDifferByBeyondTheNoise) {
   const Clusters clusters = many_movements();
