@@ -103,15 +103,19 @@ void absorb_numbers(const SumTerm& term, std::vector<Expression>& out) {
     if (is_function(factor.base, Op::exp)) {
       const Expression argument = argument_of(factor.base);
       SumOfProducts exponent = sum_of_products(argument, argument.root());
+      double constant = 0;
       for (const SumTerm& each : exponent) {
-        if (each.factors.empty()) log_scale += factor.power * each.coefficient;
+        if (each.factors.empty()) constant += factor.power * each.coefficient;
       }
       std::erase_if(exponent, [](const SumTerm& each) { return each.factors.empty(); });
-      if (!exponent.empty()) kept.base = Expression::unary(Op::exp, formula_of(exponent));
+      if (!exponent.empty()) {
+        kept.base = Expression::unary(Op::exp, formula_of(exponent));
+        log_scale += constant;
+      }
     }
     rest.factors.push_back(std::move(kept));
   }
-  if (log_scale == 0) return;
+  if (log_scale == 0 && term.coefficient == 1) return;
   for (std::size_t i = 0; i < rest.factors.size(); ++i) {
     const TermFactor& factor = rest.factors[i];
     if (factor.power != 1 || !is_sum(factor.base.node(factor.base.root()).op)) continue;
@@ -120,7 +124,8 @@ void absorb_numbers(const SumTerm& term, std::vector<Expression>& out) {
     for (SumTerm& each : sum) {
       // By logarithms: neither e^c nor k need be a number by itself.
       const double size = std::abs(each.coefficient * term.coefficient);
-      const double scaled = size > 0 ? apply(Op::exp, apply(Op::log, size) + log_scale) : size;
+      const double scaled =
+          size > 0 && log_scale != 0 ? apply(Op::exp, apply(Op::log, size) + log_scale) : size;
       each.coefficient = std::copysign(scaled, each.coefficient * term.coefficient);
       is_finite = is_finite && scaled < 1e300 && (scaled > 1e-300 || size == 0);
     }

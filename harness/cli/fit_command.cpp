@@ -47,6 +47,7 @@ struct FitArguments {
   std::string external;
   std::string weights;
   std::string sigma;
+  std::string category;
   std::string group;
   std::optional<user::HeldOut> held_out;
   std::string save;
@@ -75,7 +76,8 @@ std::pair<std::string, std::string> name_and_value(const std::string& text, cons
 // A column is what --inputs and --target say; its name means nothing.
 Dataset read_columns(const std::string& file, const FitArguments& arguments) {
   std::vector<std::string> used = arguments.inputs;
-  for (const std::string* more : {&arguments.target, &arguments.weights, &arguments.sigma}) {
+  for (const std::string* more :
+       {&arguments.target, &arguments.weights, &arguments.sigma, &arguments.category}) {
     if (!more->empty()) used.push_back(*more);
   }
   const std::vector<std::filesystem::path> files = {file};
@@ -191,15 +193,22 @@ Problem make_problem(const FitArguments& arguments, const std::vector<std::strin
   return user::make_user_problem(own, {}, arguments.seed);
 }
 
-// Weights travel with the rows as an input that no method sees; taken out again here.
-std::vector<double> take_weights(const FitArguments& arguments, Problem& problem) {
-  if (arguments.weights.empty() && arguments.sigma.empty()) return {};
+// Weights and categories travel with the rows as an input that no method sees; taken out again
+// here.
+CategoryColumn take_last_input(Problem& problem) {
   Stage& stage = problem.stages.front();
-  std::vector<double> weights = std::move(stage.train.columns.back());
+  CategoryColumn column = {std::move(stage.train.columns.back()),
+                           std::move(problem.test.columns.back())};
   problem.inputs.pop_back();
   stage.inputs.pop_back();
   stage.train.columns.pop_back();
   problem.test.columns.pop_back();
+  return column;
+}
+
+std::vector<double> take_weights(const FitArguments& arguments, Problem& problem) {
+  if (arguments.weights.empty() && arguments.sigma.empty()) return {};
+  std::vector<double> weights = take_last_input(problem).train;
   if (arguments.sigma.empty()) return weights;
   for (std::size_t r = 0; r < weights.size(); ++r) {
     if (!(weights[r] > 0)) {
@@ -253,13 +262,26 @@ CellResult run_method(const FitArguments& arguments, const Problem& problem,
   return result;
 }
 
+void fit_shared_shape(const FitArguments& arguments, Problem& problem, const ChosenMethod& chosen) {
+  const CategoryColumn categories = take_last_input(problem);
+  const CategoryFit shared =
+      fit_by_category(problem, categories, *chosen.method,
+                      task_of(arguments, problem, chosen.fixed_form), chosen.widened);
+  if (arguments.json) {
+    fmt::print("{}\n", category_json(shared).dump(2));
+  } else {
+    print_category_fit(shared);
+  }
+}
+
 void fit(const FitArguments& arguments, const Registry& registry) {
   const ChosenMethod chosen = choose_method(arguments, registry);
   std::vector<std::string> inputs = arguments.inputs;
-  for (const std::string* column : {&arguments.weights, &arguments.sigma}) {
+  for (const std::string* column : {&arguments.weights, &arguments.sigma, &arguments.category}) {
     if (!column->empty()) inputs.push_back(*column);
   }
   Problem problem = make_problem(arguments, inputs);
+  if (!arguments.category.empty()) return fit_shared_shape(arguments, problem, chosen);
   const std::vector<double> weights = take_weights(arguments, problem);
   const CellTask task = task_of(arguments, problem, chosen.fixed_form);
   FitAnswer answer;
@@ -365,10 +387,15 @@ void add_judging_options(CLI::App& command, FitArguments& arguments) {
                      "unit of the intervals");
   CLI::Option* weights = command.add_option("--weights", arguments.weights,
                                             "a column: how much each row's squared error counts");
+  CLI::Option* sigma = command.add_option("--sigma", arguments.sigma,
+                                          "a column: the standard deviation of each row's target");
+  sigma->excludes(weights);
   command
-      .add_option("--sigma", arguments.sigma,
-                  "a column: the standard deviation of each row's target")
-      ->excludes(weights);
+      .add_option("--category", arguments.category,
+                  "a column of numbers (a joint's, a machine's): one shape for all, with constants "
+                  "of each one's own, beside each one's own formula")
+      ->excludes(weights)
+      ->excludes(sigma);
 }
 
 }  // namespace
@@ -382,12 +409,15 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
   auto arguments = std::make_shared<FitArguments>();
   add_method_options(*command, *arguments);
   add_data_options(*command, arguments->reading);
-  command->add_option("--state", arguments->states,
-                      "a state as an input, as in 'z = dahl(v, sliding=1e-4)': its parameters are "
-                      "fitted with what is found; needs a column with role time; repeatable");
+  CLI::Option* states = command->add_option(
+      "--state", arguments->states,
+      "a state as an input, as in 'z = dahl(v, sliding=1e-4)': its parameters are "
+      "fitted with what is found; needs a column with role time; repeatable");
   const BudgetOptions budget = add_budget_options(*command, *arguments);
   add_judging_options(*command, *arguments);
-  command->add_option("--save", arguments->save, "a file for `tribench predict`, with intervals");
+  CLI::Option* save = command->add_option("--save", arguments->save,
+                                          "a file for `tribench predict`, with intervals");
+  command->get_option("--category")->excludes(states)->excludes(save);
   command->add_flag("--json", arguments->json, "print JSON");
   command->callback([arguments, &registry, budget] {
     if (arguments->external.empty() && arguments->method.empty()) arguments->method = "relay";

@@ -93,6 +93,50 @@ void print_fit(const FitAnswer& answer) {
              record.fit_cpu_s, answer.ended, answer.reproduce);
 }
 
+Json category_json(const CategoryFit& fit) {
+  Json categories = Json::array();
+  const auto record_json = [](const Record& record) {
+    return Json{{"formula", record.formula},
+                {"complexity", record.complexity},
+                {"mae_train", number(record.mae_train)},
+                {"mae_test", number(record.mae_test)},
+                {"rmse_test", number(record.rmse_test)},
+                {"singularity", record_word(record.singularity)}};
+  };
+  for (const CategoryResult& each : fit.categories) {
+    Json one = {{"category", each.category}, {"constants", each.constants}};
+    one.update(record_json(each.record));
+    one["own"] = record_json(each.own);
+    categories.push_back(std::move(one));
+  }
+  return {{"shape", fit.shape},
+          {"complexity", fit.complexity},
+          {"evaluations", fit.evaluations},
+          {"fit_cpu_s", number(fit.fit_cpu_s)},
+          {"ended", fit.was_ended_by_clock ? "seconds" : "finished"},
+          {"categories", categories}};
+}
+
+void print_category_fit(const CategoryFit& fit) {
+  fmt::print("shape, p1() and so on constants of each category's own (complexity {}):\n  {}\n\n",
+             fit.complexity, fit.shape);
+  fmt::print("{:>10}  {:>12}  {:>12}  {:>12}  {:>12}  constants\n", "category", "MAE train",
+             "MAE test", "own, train", "own, test");
+  for (const CategoryResult& each : fit.categories) {
+    std::string constants;
+    for (const double value : each.constants) constants += " " + figure(value);
+    fmt::print("{:>10}  {:>12}  {:>12}  {:>12}  {:>12} {}\n", figure(each.category),
+               figure(each.record.mae_train), figure(each.record.mae_test),
+               figure(each.own.mae_train), figure(each.own.mae_test), constants);
+  }
+  fmt::print("\neach one's own formula:\n");
+  for (const CategoryResult& each : fit.categories) {
+    fmt::print("{:>10}  {}\n", figure(each.category), each.own.formula);
+  }
+  fmt::print("{} node-rows, {:.3g} CPU seconds; ended by: {}\n", fit.evaluations, fit.fit_cpu_s,
+             fit.was_ended_by_clock ? "seconds" : "finished");
+}
+
 FitIntervals read_fit_intervals(const nlohmann::json& model, const Expression& formula,
                                 const std::string& file) {
   FitIntervals intervals;

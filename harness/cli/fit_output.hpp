@@ -8,6 +8,7 @@
 #include <string>
 
 #include "algorithms/fitting/fit_intervals.hpp"
+#include "harness/category_fit.hpp"
 #include "harness/cell_task.hpp"
 
 namespace tribench {
@@ -24,6 +25,10 @@ struct FitAnswer {
 
 nlohmann::ordered_json fit_json(const FitAnswer& answer);
 void print_fit(const FitAnswer& answer);
+
+// Of one shape for several categories.
+nlohmann::ordered_json category_json(const CategoryFit& fit);
+void print_category_fit(const CategoryFit& fit);
 
 // Of a file with the JSON of a fit of this formula. Throws Error (bad_input) with the file where it
 // has none, or those of another formula.

@@ -187,6 +187,66 @@ TEST_F(UnequalRowsTest, AProgramIsAMethod) {
   EXPECT_THAT(refusal({"--external", "bash 'open"}), HasSubstr("--external"));
 }
 
+// tau = a sgn(v) + b v + c v^3 in three machines, of sizes that differ a thousandfold.
+class CategoryTest : public FitTest {
+ protected:
+  void SetUp() override {
+    const double constants[3][3] = {{3, 2, -0.3}, {0.02, -0.005, 0.004}, {40, 10, 6}};
+    std::string text = "v,machine,one,count,tau\n";
+    for (int k = 0; k < 3; ++k) {
+      const auto& [a, b, c] = constants[k];
+      for (int i = 0; i < 60; ++i) {
+        const double v = -1.97 + 0.0667 * i;
+        const double exact = (v > 0 ? a : -a) + b * v + c * v * v * v;
+        text +=
+            fmt::format("{},{},1,{},{}\n", v, k + 4, i, exact + 1e-3 * a * std::sin(9.7 * i + k));
+      }
+    }
+    write_text(folder_ / "train.csv", text);
+  }
+  std::vector<std::string> words(std::vector<std::string> more) {
+    std::vector<std::string> all = {"--target", "tau",  "--inputs",      "v,sgn_v",
+                                    "--method", "pysr", "--evaluations", "100000000"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+};
+
+TEST_F(CategoryTest, OneShapeHasConstantsOfEachOnesOwn) {
+  const ProgramRun run = fit(words({"--category", "machine", "--json"}));
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const json answer = json::parse(run.output);
+  EXPECT_THAT(answer.at("shape").get<std::string>(), HasSubstr("p1()"));
+  const json& machines = answer.at("categories");
+  ASSERT_EQ(machines.size(), 3U);
+  const double sizes[] = {3, 0.02, 40};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(machines[k].at("category").get<double>(), static_cast<double>(k) + 4);
+    EXPECT_LT(machines[k].at("mae_train").get<double>(), 1e-3 * sizes[k]);
+    EXPECT_EQ(machines[k].at("constants").size(), machines[0].at("constants").size());
+    EXPECT_FALSE(machines[k].at("own").at("formula").get<std::string>().empty());
+  }
+  EXPECT_NE(machines[0].at("constants"), machines[1].at("constants"));
+  EXPECT_EQ(json::parse(fit(words({"--category", "machine", "--json"})).output).at("categories"),
+            machines);
+  // The same rows without it: no one formula is any good for all.
+  const json together = json::parse(fit(words({"--json"})).output);
+  EXPECT_GT(together.at("mae_train").get<double>(), 1);
+}
+
+TEST_F(CategoryTest, RefusesWhatIsNoColumnOfCategories) {
+  const auto refusal = [&](std::vector<std::string> more) {
+    const ProgramRun run = fit(words(std::move(more)));
+    EXPECT_EQ(run.status, 2) << run.errors;
+    return run.errors;
+  };
+  EXPECT_THAT(refusal({"--category", "one"}), HasSubstr("one value"));
+  EXPECT_THAT(refusal({"--category", "count"}),
+              AllOf(HasSubstr("3 training rows"), HasSubstr("10")));
+  EXPECT_THAT(refusal({"--category", "machin"}), HasSubstr("machine"));
+  EXPECT_THAT(refusal({"--category", "machine", "--weights", "one"}), HasSubstr("--category"));
+}
+
 TEST_F(UnequalRowsTest, ASavedModelPredictsWithIntervals) {
   const std::string model = (folder_ / "model.json").string();
   answer({"--method", "linear", "--save", model});

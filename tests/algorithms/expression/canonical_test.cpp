@@ -264,6 +264,8 @@ TEST(Simplify, TakesTogetherNumbersThatOnlyUndoEachOther) {
   }
   const Expression plain = formula_of("(2*v + 3*g)*exp(v*g)");
   EXPECT_EQ(paper_complexity(simplify(plain, box)), paper_complexity(plain));
+  EXPECT_EQ(print(simplify(formula_of("-4*t*(0.5*exp(v) - 0.25)"), box), kNames),
+            "t*(-2*exp(v) + 1)");
 }
 
 TEST(Simplify, UsesTheSignOfAnInput) {
