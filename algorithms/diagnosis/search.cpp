@@ -36,6 +36,10 @@ bool add(SearchState& state, const Candidate& winner, const Round& round,
   FittedModel extended = fit_in_its_noise(std::move(model), campaign, FitScope::everything);
   // One fold alone can tell of it: that it holds elsewhere too is beyond these data.
   if (!extended.losses.allFinite()) return false;
+  if (!(winner.gain.nats > winner.gain.error)) {
+    const Gain fitted = gain_of({winner.family}, extended, campaign);
+    if (!(fitted.nats > fitted.error)) return false;
+  }
   if (stands_for_another_cause(extended.model, campaign)) return false;
   if (known == 0) {
     state.found.push_back({winner.family, round.family_p[winner.family], winner.gain,
@@ -50,7 +54,6 @@ bool add_best(SearchState& state, const Round& round, const Campaign& campaign) 
   const double least =
       least_worth(worths(state.model.model, state.families(), campaign), campaign.options);
   for (const Candidate& winner : admitted(round, state.model, campaign)) {
-    if (!(winner.gain.nats > winner.gain.error)) return false;
     if (std::ranges::count(state.left_out, winner.family) > 0) continue;
     // At the grid's shapes it is worth less than it will be.
     const Eigen::MatrixXd columns =
@@ -88,6 +91,33 @@ bool leave_out_slight(SearchState& state, const Campaign& campaign) {
   return false;
 }
 
+// In and out until neither changes anything, and what is left over then. A second column of a
+// family is no addition.
+SearchResult take_effects(SearchResult out, Round round, const Campaign& campaign,
+                          RandomStream random) {
+  while (add_best(out.state, round, campaign) || leave_out_slight(out.state, campaign)) {
+    round = test_library(out.state.model, campaign);
+  }
+  out.taken = out.state.families();
+  out.whole = out.state.model;
+  find_leftover(out, campaign, random.split("smoothers"));
+  return out;
+}
+
+// The effect that is taken first stands for what others share with it, and the right ones may find
+// too little left. Where something is left over in the end, the search begins again without it:
+// what then leaves nothing over and predicts better is taken.
+SearchResult begin_otherwise(SearchResult one, SearchResult start, const Round& round,
+                             const Campaign& campaign, RandomStream random) {
+  if (one.leftover.inputs.empty() || one.taken.empty()) return one;
+  start.state.left_out.push_back(one.taken.front());
+  const FittedModel& whole = one.whole;
+  SearchResult other = take_effects(std::move(start), round, campaign, random);
+  if (!other.leftover.inputs.empty() || other.state.found.empty()) return one;
+  const Gain lead = lead_over(whole, other.state.model, campaign);
+  return lead.nats > 0 ? other : one;
+}
+
 }  // namespace
 
 std::vector<std::size_t> SearchState::families() const {
@@ -106,25 +136,22 @@ SearchResult search(const BaseModel& base, const Campaign& campaign, RandomStrea
   model.base = base;
   model.coefficients.setZero(static_cast<Eigen::Index>(base.linear_terms.size()));
   out.base = fit_in_its_noise(std::move(model), campaign, FitScope::everything);
-  SearchState& state = out.state;
-  state.model = out.base;
+  out.state.model = out.base;
   if (!(out.base.raw_residual.norm() > kNothingLeft * target_vector(campaign.data).norm())) {
-    state.note("the base model leaves no residual");
+    out.state.note("the base model leaves no residual");
     out.first.untestable = campaign.library.missing;
     out.leftover_tested = true;
     return out;
   }
-  Round round = test_library(out.base, campaign);
+  const Round round = test_library(out.base, campaign);
   out.first = first_look(round, out.base, campaign);
-  // In and out until neither changes anything. A second column of a family is no addition.
-  while (add_best(state, round, campaign) || leave_out_slight(state, campaign)) {
-    round = test_library(state.model, campaign);
-  }
-  find_leftover(out, campaign, random.split("smoothers"));
+  out = begin_otherwise(take_effects(out, round, campaign, random), out, round, campaign, random);
   // As they stand beside each other, whatever way the search has come.
-  for (Found& one : state.found) one.gain = gain_of({one.family}, state.model, campaign);
+  for (Found& one : out.state.found) {
+    one.gain = gain_of({one.family}, out.state.model, campaign);
+  }
   // What its gain has rescued was testable after all.
-  for (const Found& one : state.found) {
+  for (const Found& one : out.state.found) {
     std::erase_if(out.first.untestable, [&](const UntestableFinding& finding) {
       return finding.family == campaign.families[one.family].name;
     });

@@ -40,6 +40,8 @@ struct SearchResult {
   FirstLook first;
   LeftoverFinding leftover;
   bool leftover_tested = false;
+  std::vector<std::size_t> taken;  // families, before any gave way to the leftover
+  FittedModel whole;               // the model with all of them
 };
 
 // Cost: a round of tests an effect found, some fits each, and one of the smoothers.

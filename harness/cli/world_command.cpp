@@ -54,7 +54,8 @@ std::uint64_t seed_of(const std::string& text) {
 void make_recorded_world(const WorldArguments& arguments) {
   const std::vector<std::filesystem::path> files = {arguments.world};
   const PreparedRecording recording =
-      prepare(read_data(files, *arguments.reading, std::vector<std::string>()), *arguments.reading);
+      prepare(read_data(files, *arguments.reading, std::vector<std::string>()), *arguments.reading,
+              Gravity::automatic, SlowRows::kept);
   const RecordedWorld world =
       RecordedWorld::create(arguments.out, recording.data, arguments.longest_s,
                             arguments.reading->drive.gear_ratio.value_or(0));

@@ -12,7 +12,8 @@
 
 namespace tribench {
 
-PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gravity) {
+PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gravity,
+                          SlowRows slow) {
   check_complete(file);
   PreparedRecording out;
   out.notes = file.warnings;
@@ -57,6 +58,8 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
   const bool raw = out.derived_velocity || out.data.find("derived_acceleration") != nullptr;
   if (!file.has_movements && (raw || out.data.movement_names.size() == 1)) {
     cut_strokes(out, noise, blur);
+  } else if (slow == SlowRows::left_out) {
+    settle_strokes(out, out.derived_velocity ? noise : 0);
   }
   adjust_acceleration(out);
   drop_unresolved(out);

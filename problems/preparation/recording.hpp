@@ -6,7 +6,7 @@
 // refused with the mend.
 //
 // A file that has its movements, its velocity and its acceleration comes out as it went in, but for
-// rows at a limit of the amplifier.
+// rows at a limit of the amplifier and slow ones near a rest or a reversal.
 #pragma once
 
 #include <string>
@@ -22,6 +22,12 @@ enum class Gravity {
   none,       // there is none, or the columns declare it
 };
 
+// Slow rows of declared movements, near rests and reversals.
+enum class SlowRows {
+  left_out,  // they do not count for friction
+  kept,      // a recording is wanted as it is
+};
+
 struct PreparedRecording {
   Dataset data;
   std::vector<std::string> rigid;  // channels whose coefficients are fitted with the base
@@ -32,6 +38,6 @@ struct PreparedRecording {
 // Throws Error (bad_input): all that is missing at once, a story that is not possible, two
 // quantities of different units where one would have to be subtracted from the other.
 PreparedRecording prepare(DataFile file, const DataOptions& options,
-                          Gravity gravity = Gravity::automatic);
+                          Gravity gravity = Gravity::automatic, SlowRows slow = SlowRows::left_out);
 
 }  // namespace tribench

@@ -17,8 +17,9 @@ constexpr double kForgotten = 0.5;           // s without a message: the joint m
 constexpr std::size_t kEnoughMovements = 8;  // to leave some out in turn
 constexpr std::size_t kMostStrokes = 150;    // more say no more of independence
 // Slower rows are near a rest: bristles that have not slid yet carry a part of the friction there.
-constexpr double kSlow = 0.02;  // of the top speed
-constexpr double kNoisy = 3;    // of the velocity's noise
+constexpr double kSlow = 0.02;       // of the top speed
+constexpr double kSomewhere = 0.01;  // of the longest stroke's way
+constexpr double kNoisy = 3;         // of the velocity's noise
 
 // A stroke, and which of the stretches between two rests it belongs to.
 struct ChainedStroke {
@@ -79,11 +80,17 @@ std::vector<ChainedStroke> without_ends(const std::vector<ChainedStroke>& stroke
   return inner;
 }
 
+bool knows_distance(const Dataset& data) {
+  return std::ranges::any_of(data.channels, [](const Channel& channel) {
+    return channel.name.starts_with("distance_since_reversal");
+  });
+}
+
 // The path since the direction last changed, told before a stroke's ends are cut off: the position
 // knows it where the velocity is blurred. Lost messages do not make it start anew.
 void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) {
   const Channel* q = find_channel(out.data, Role::position);
-  if (q == nullptr) return;
+  if (q == nullptr || knows_distance(out.data)) return;
   const std::vector<double>& v = find_channel(out.data, Role::velocity)->values;
   const std::vector<double>& t = find_channel(out.data, Role::time)->values;
   Channel distance{std::string(loop::kDerivedDistance), q->unit, Role::none,
@@ -106,6 +113,61 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
   out.data.channels.push_back(std::move(distance));
 }
 
+// A movement is slow or fast by itself: what creeps all along is not at rest.
+std::vector<RowRange> strokes_of_movements(const Dataset& data, const Channel& t, const Channel& v,
+                                           double noise) {
+  std::vector<RowRange> strokes;
+  for (std::size_t begin = 0; begin < data.rows();) {
+    std::size_t end = begin + 1;
+    while (end < data.rows() && data.movement[end] == data.movement[begin]) ++end;
+    const auto time = std::span(t.values).subspan(begin, end - begin);
+    const auto movement = std::span(data.movement).subspan(begin, end - begin);
+    const Strokes found = strokes_of(time, std::span(v.values).subspan(begin, end - begin),
+                                     pieces_of(time, movement, {}), noise, 1);
+    for (const RowRange& stroke : found.strokes) {
+      strokes.push_back({begin + stroke.begin, begin + stroke.end});
+    }
+    begin = end;
+  }
+  return strokes;
+}
+
+// What is slow, and how far a stroke has to get that is slow all along to be near no rest.
+struct Slow {
+  double speed = 0;
+  double way = 0;
+
+  Slow(const std::vector<RowRange>& strokes, const std::vector<double>& t,
+       const std::vector<double>& v, double noise)
+      : speed(std::max(kSlow * top_speed(v), kNoisy * noise)) {
+    for (const RowRange& stroke : strokes) way = std::max(way, kSomewhere * way_of(stroke, t, v));
+  }
+
+  static double way_of(const RowRange& stroke, const std::vector<double>& t,
+                       const std::vector<double>& v) {
+    double sum = 0;
+    for (std::size_t i = stroke.begin + 1; i < stroke.end; ++i) {
+      sum += std::abs(v[i]) * (t[i] - t[i - 1]);
+    }
+    return sum;
+  }
+};
+
+// A stroke's rows from where it is first fast to where it is last; all of a stroke that creeps from
+// one place to another, but for rows as slow as the noise.
+void add_moving(std::vector<std::size_t>& rows, RowRange stroke, const Slow& slow,
+                const std::vector<double>& t, const std::vector<double>& v, double noise) {
+  const auto is_slow = [&](std::size_t i) { return std::abs(v[i]) < slow.speed; };
+  const bool gets_there = Slow::way_of(stroke, t, v) > slow.way;
+  RowRange fast = stroke;
+  while (fast.begin < fast.end && is_slow(fast.begin)) ++fast.begin;
+  while (fast.end > fast.begin && is_slow(fast.end - 1)) --fast.end;
+  if (fast.begin < fast.end || !gets_there) stroke = fast;
+  for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
+    if (std::abs(v[i]) >= kNoisy * noise) rows.push_back(i);
+  }
+}
+
 }  // namespace
 
 void cut_strokes(PreparedRecording& out, double noise, double blur) {
@@ -122,16 +184,14 @@ void cut_strokes(PreparedRecording& out, double noise, double blur) {
   if (strokes.size() < 2) return;
   const std::size_t all = out.data.rows();
   const std::size_t files = out.data.movement_names.size();
-  const double slow = std::max(kSlow * top_speed(v->values), kNoisy * noise);
+  const Slow slow(found.strokes, t->values, v->values, noise);
   std::vector<std::size_t> rows;
   std::vector<int> movement;
   std::vector<std::string> names;
   for (const std::vector<RowRange>& group : movements_of(strokes)) {
     const std::size_t before = rows.size();
     for (const RowRange& stroke : group) {
-      for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
-        if (std::abs(v->values[i]) >= slow) rows.push_back(i);
-      }
+      add_moving(rows, stroke, slow, t->values, v->values, noise);
     }
     if (rows.size() == before) continue;
     movement.resize(rows.size(), static_cast<int>(names.size()));
@@ -142,7 +202,7 @@ void cut_strokes(PreparedRecording& out, double noise, double blur) {
   }
   if (rows.empty()) {
     throw_bad_input(fmt::format("none of {} rows moves at {:.2g} {} or more for long enough", all,
-                                slow, find_channel(out.data, Role::velocity)->unit),
+                                slow.speed, find_channel(out.data, Role::velocity)->unit),
                     out.data.name,
                     "check what was taken for position, velocity and time: --explain");
   }
@@ -153,8 +213,29 @@ void cut_strokes(PreparedRecording& out, double noise, double blur) {
       "no column names the movements: {} strokes between {} rests and {} reversals make {}; {:.0f} "
       "% of the rows, at rest, slower than {:.2g} {} or in shorter strokes, are left out",
       strokes.size(), found.rests, found.reversals, out.data.movement_names.size(),
-      100.0 * static_cast<double>(all - out.data.rows()) / static_cast<double>(all), slow,
+      100.0 * static_cast<double>(all - out.data.rows()) / static_cast<double>(all), slow.speed,
       find_channel(out.data, Role::velocity)->unit));
+}
+
+void settle_strokes(PreparedRecording& out, double noise) {
+  const Channel* t = find_channel(out.data, Role::time);
+  const Channel* v = find_channel(out.data, Role::velocity);
+  if (t == nullptr || v == nullptr || !is_regular(t->values, out.data.movement)) return;
+  const std::vector<RowRange> strokes = strokes_of_movements(out.data, *t, *v, noise);
+  const Slow slow(strokes, t->values, v->values, noise);
+  std::vector<std::size_t> rows;
+  bool from_rest = false;  // else nobody knows how far back the last reversal lies
+  for (const RowRange& stroke : strokes) {
+    add_moving(rows, stroke, slow, t->values, v->values, noise);
+    from_rest = from_rest || std::abs(v->values[stroke.begin]) < slow.speed;
+  }
+  if (rows.empty() || rows.size() == out.data.rows()) return;
+  if (from_rest) add_distance(out, strokes);
+  const std::size_t all = out.data.rows();
+  keep_rows(out.data, rows);
+  out.notes.push_back(fmt::format(
+      "{} of {} rows, at rest or slower than {:.2g} {}, where bristles may not slide yet: left out",
+      all - rows.size(), all, slow.speed, find_channel(out.data, Role::velocity)->unit));
 }
 
 }  // namespace tribench

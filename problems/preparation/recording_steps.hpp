@@ -75,6 +75,9 @@ void drop_edges(PreparedRecording& out, const DerivedMotion& derived);
 // Strokes for movements. noise: of the velocity; blur: s that it is uncertain around a rest or a
 // reversal.
 void cut_strokes(PreparedRecording& out, double noise, double blur);
+// Within movements that a column or several files name: the same rows are left out, near rests and
+// reversals, and the path since the last reversal is told by the rows that stay and those that go.
+void settle_strokes(PreparedRecording& out, double noise);
 
 // ---- gravity (recording_gravity.cpp)
 

@@ -252,5 +252,44 @@ TEST(PreparedRecording, ACurrentAtItsLimitIsLeftOutAndCounted) {
               Contains(HasSubstr("at its limit")));
 }
 
+// Two movements named by a column: one from rest to 1 rad/s and back to rest, one that creeps with
+// a hundredth of it from one place to another.
+std::string told_movements() {
+  std::string text = "movement,time_s,position_rad,velocity_rad_s,acceleration_rad_s2,torque_Nm\n";
+  double position = 0;
+  for (int i = 0; i < 800; ++i) {
+    const bool creeps = i >= 400;
+    const int k = i % 400;
+    const double phase = 3.14159265358979 * k / 399;
+    const double speed = creeps ? 0.01 : std::sin(phase);
+    const double change = creeps ? 0 : std::cos(phase) * 3.14159265358979 / 3.99;
+    position += 0.01 * speed;
+    text += fmt::format("{},{:.2f},{:.9f},{},{},{}\n", creeps ? "slow" : "fast", 0.01 * i, position,
+                        speed, change, 2 + speed + 0.01 * (i * 37 % 11));
+  }
+  return text;
+}
+
+TEST(PreparedRecording, DeclaredMovementsLoseSlowRowsAtRestsAndKeepACreepingStroke) {
+  DataOptions options;
+  options.roles = parse_roles("torque_Nm=friction_torque", "--roles");
+  const PreparedRecording recording = prepared(told_movements(), options);
+  ASSERT_EQ(recording.data.movement_names, (std::vector<std::string>{"fast", "slow"}));
+  EXPECT_EQ(std::ranges::count(recording.data.movement, 1), 400);
+  const std::vector<double>& v = recording.data.find(Role::velocity)->values;
+  const std::vector<double>& d = recording.data.at("distance_since_reversal (derived)").values;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (recording.data.movement[i] == 0) {
+      EXPECT_GE(v[i], 0.02);
+    }
+  }
+  // Told by the rows that are gone too.
+  EXPECT_NEAR(d.front(), 0.000472, 1e-6);  // by hand: three steps from rest
+  EXPECT_THAT(recording.notes, Contains(HasSubstr("of 800 rows, at rest or slower than 0.02")));
+  const PreparedRecording whole = prepare(parse_csv(told_movements(), "log.csv", csv_of(options)),
+                                          options, Gravity::automatic, SlowRows::kept);
+  EXPECT_EQ(whole.data.rows(), 800U);
+}
+
 }  // namespace
 }  // namespace tribench
