@@ -246,7 +246,9 @@ std::vector<std::string> pick_problems(const TomlTable& table,
     }
     for (const std::string& name : pick_names({base}, known, "problem", table.place("problems"))) {
       const std::string whole = name + suffix;
-      at_place(table.place("problems"), [&] { return varied({name, {}, {}, {}}, suffix); });
+      at_place(table.place("problems"), [&, &suffix = suffix] {
+        return varied({name, {}, {}, {}}, suffix);
+      });
       if (std::ranges::count(variants, whole) == 0) variants.push_back(whole);
     }
   }

@@ -32,18 +32,93 @@ constexpr int kSpares = 5;               // vector registers kept from the regis
 // What stands behind the plan's scalars.
 enum Extra : std::size_t { kSignBit, kAbsBits, kOne, kShift, kTopBit, kSignificand, kUnit };
 
-template <typename T>
-class Generator : public Xbyak::CodeGenerator, public CodeMemory {
+// The instructions of a loop over rows, for one width of registers and one element.
+class RowAssembler : public Xbyak::CodeGenerator, public CodeMemory {
  public:
-  Generator(const Expression& formula, const Plan& plan, VectorLevel level, std::size_t code_bytes)
+  RowAssembler(std::size_t code_bytes, VectorLevel level, std::size_t element_bytes)
       : CodeGenerator(code_bytes, Xbyak::DontSetProtectRWE),
-        formula_(formula),
-        plan_(plan),
         wide_(level == VectorLevel::avx512),
-        multiplies_(wide_ && divider_is_slow()) {}
+        double_(element_bytes == 8) {}
 
   // Two registers less than there are at AVX2: one for scalars, one for what a power needs.
   int stack_registers() const { return wide_ ? 32 - kSpares : 15; }
+
+ protected:
+  Reg64 pointer(std::size_t k) const {
+    const std::array<Reg64, kPointers> registers = {r8, r9, r10, rbx, rbp, r12, r13, r14, r15};
+    return registers[k];
+  }
+  Xmm vector(int index) const {
+    if (wide_) return Xbyak::Zmm(index);
+    return Xbyak::Ymm(index);
+  }
+  Xmm spare(int k) const { return vector((wide_ ? 31 : 15) - k); }
+  int offset(std::size_t scalar) const { return static_cast<int>(scalar * (double_ ? 8 : 4)); }
+  void broadcast(const Xmm& to, std::size_t scalar) {
+    const Address at = ptr[rsi + offset(scalar)];
+    if (double_) {
+      wide_ ? vbroadcastsd(Xbyak::Zmm(to.getIdx()), at) : vbroadcastsd(Xbyak::Ymm(to.getIdx()), at);
+    } else {
+      vbroadcastss(to, at);
+    }
+  }
+  // Calls f with a scalar as an operand: in memory where an instruction can spread it.
+  template <typename F>
+  void with_scalar(std::size_t scalar, F f) {
+    if (wide_) {
+      f(ptr_b[rsi + offset(scalar)]);
+    } else {
+      broadcast(spare(0), scalar);
+      f(spare(0));
+    }
+  }
+
+  void arithmetic(Op op, const Xmm& to, const Xmm& a, const Operand& b) {
+    switch (op) {
+      case Op::add:
+        return double_ ? vaddpd(to, a, b) : vaddps(to, a, b);
+      case Op::sub:
+        return double_ ? vsubpd(to, a, b) : vsubps(to, a, b);
+      case Op::mul:
+        return double_ ? vmulpd(to, a, b) : vmulps(to, a, b);
+      default:
+        return double_ ? vdivpd(to, a, b) : vdivps(to, a, b);
+    }
+  }
+
+  void square_root(const Xmm& to, const Xmm& a) { double_ ? vsqrtpd(to, a) : vsqrtps(to, a); }
+  void flip_bits(const Xmm& to, const Operand& bits) {
+    double_ ? vxorpd(to, to, bits) : vxorps(to, to, bits);
+  }
+  void keep_bits(const Xmm& to, const Operand& bits) {
+    double_ ? vandpd(to, to, bits) : vandps(to, to, bits);
+  }
+  void reciprocal(const Xmm& to, const Xmm& a) {  // to 14 bits
+    double_ ? vrcp14pd(to, a) : vrcp14ps(to, a);
+  }
+  void fused(const Xmm& to, const Xmm& a, const Xmm& b) {  // to = a b + to
+    double_ ? vfmadd231pd(to, a, b) : vfmadd231ps(to, a, b);
+  }
+  void fused_into_factor(const Xmm& to, const Xmm& a, const Xmm& b) {  // to = a to + b
+    double_ ? vfmadd213pd(to, a, b) : vfmadd213ps(to, a, b);
+  }
+  void fused_negated(const Xmm& to, const Xmm& a, const Xmm& b) {  // to = to - a b
+    double_ ? vfnmadd231pd(to, a, b) : vfnmadd231ps(to, a, b);
+  }
+
+  bool wide_;
+  bool double_;
+};
+
+// The loop of a region of a formula.
+class Generator : public RowAssembler {
+ public:
+  Generator(const Expression& formula, const Plan& plan, VectorLevel level,
+            std::size_t element_bytes, std::size_t code_bytes)
+      : RowAssembler(code_bytes, level, element_bytes),
+        formula_(formula),
+        plan_(plan),
+        multiplies_(wide_ && divider_is_slow()) {}
 
   Loop loop(std::size_t root) {
     root_ = root;
@@ -76,8 +151,6 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
   }
 
  private:
-  static constexpr bool kDouble = sizeof(T) == 8;
-
   struct SlowDivision {
     Xbyak::Label begin;
     Xbyak::Label done;
@@ -86,18 +159,7 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
     int b;
   };
 
-  Reg64 pointer(std::size_t k) const {
-    const std::array<Reg64, kPointers> registers = {r8, r9, r10, rbx, rbp, r12, r13, r14, r15};
-    return registers[k];
-  }
-  Xmm vector(int index) const {
-    if (wide_) return Xbyak::Zmm(index);
-    return Xbyak::Ymm(index);
-  }
-  Xmm spare(int k) const { return vector((wide_ ? 31 : 15) - k); }
   std::size_t extra(Extra which) const { return plan_.scalars.size() + which; }
-  std::size_t left(std::size_t i) const { return formula_.left_child(i); }
-  std::size_t right(std::size_t i) const { return formula_.right_child(i); }
 
   // Whether the value is there before the region runs. Its root is what it computes.
   bool is_leaf(std::size_t i) const {
@@ -114,8 +176,8 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
       used_.push_back(plan_.nodes[i].index);
       return;
     }
-    collect(right(i));
-    if (arity(formula_.node(i).op) == 2) collect(left(i));
+    collect(formula_.right_child(i));
+    if (arity(formula_.node(i).op) == 2) collect(formula_.left_child(i));
   }
 
   // The rows of an operand; one scratch register serves those that have none of their own.
@@ -127,44 +189,12 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
     mov(r11, ptr[rdi + 8 * static_cast<int>(operand)]);
     return ptr[r11 + rax];
   }
-  int offset(std::size_t scalar) const { return static_cast<int>(scalar * sizeof(T)); }
-  void broadcast(const Xmm& to, std::size_t scalar) {
-    const Address at = ptr[rsi + offset(scalar)];
-    if constexpr (kDouble) {
-      wide_ ? vbroadcastsd(Xbyak::Zmm(to.getIdx()), at) : vbroadcastsd(Xbyak::Ymm(to.getIdx()), at);
-    } else {
-      vbroadcastss(to, at);
-    }
-  }
-  // Calls f with a scalar as an operand: in memory where an instruction can spread it.
-  template <typename F>
-  void with_scalar(std::size_t scalar, F f) {
-    if (wide_) {
-      f(ptr_b[rsi + offset(scalar)]);
-    } else {
-      broadcast(spare(0), scalar);
-      f(spare(0));
-    }
-  }
   template <typename F>
   void with_leaf(std::size_t i, F f) {
     if (is_scalar(i)) {
       with_scalar(plan_.nodes[i].index, f);
     } else {
       f(rows_of(i));
-    }
-  }
-
-  void arithmetic(Op op, const Xmm& to, const Xmm& a, const Operand& b) {
-    switch (op) {
-      case Op::add:
-        return kDouble ? vaddpd(to, a, b) : vaddps(to, a, b);
-      case Op::sub:
-        return kDouble ? vsubpd(to, a, b) : vsubps(to, a, b);
-      case Op::mul:
-        return kDouble ? vmulpd(to, a, b) : vmulps(to, a, b);
-      default:
-        return kDouble ? vdivpd(to, a, b) : vdivps(to, a, b);
     }
   }
 
@@ -181,23 +211,19 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
     const Op op = formula_.node(i).op;
     if (op == Op::pow) return emit_power(i, r);
     if (arity(op) == 2) return emit_binary(op, i, r);
-    emit(right(i), r);
+    emit(formula_.right_child(i), r);
     if (op == Op::sqrt) {
-      kDouble ? vsqrtpd(vector(r), vector(r)) : vsqrtps(vector(r), vector(r));
+      square_root(vector(r), vector(r));
     } else if (op == Op::neg) {
-      with_scalar(extra(kSignBit), [&](const Operand& bits) {
-        kDouble ? vxorpd(vector(r), vector(r), bits) : vxorps(vector(r), vector(r), bits);
-      });
+      with_scalar(extra(kSignBit), [&](const Operand& bits) { flip_bits(vector(r), bits); });
     } else {
-      with_scalar(extra(kAbsBits), [&](const Operand& bits) {
-        kDouble ? vandpd(vector(r), vector(r), bits) : vandps(vector(r), vector(r), bits);
-      });
+      with_scalar(extra(kAbsBits), [&](const Operand& bits) { keep_bits(vector(r), bits); });
     }
   }
 
   void emit_binary(Op op, std::size_t i, int r) {
-    const std::size_t a = left(i);
-    const std::size_t b = right(i);
+    const std::size_t a = formula_.left_child(i);
+    const std::size_t b = formula_.right_child(i);
     const bool multiplies = op == Op::div && multiplies_;
     if (is_leaf(b) && !multiplies) {
       emit(a, r);
@@ -219,10 +245,10 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
 
   // As the block kernel: squares of the base, multiplied together where the exponent has a bit.
   void emit_power(std::size_t i, int r) {
-    const int exponent = static_cast<int>(formula_.node(right(i)).value);
+    const int exponent = static_cast<int>(formula_.node(formula_.right_child(i)).value);
     const auto size = static_cast<unsigned>(exponent < 0 ? -exponent : exponent);
     if (size == 0) return broadcast(vector(r), extra(kOne));
-    emit(left(i), r);
+    emit(formula_.left_child(i), r);
     int result = r;
     bool started = false;
     for (unsigned m = size; m != 0; m >>= 1) {
@@ -243,16 +269,6 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
     }
   }
 
-  void fused(const Xmm& to, const Xmm& a, const Xmm& b) {  // to = a b + to
-    kDouble ? vfmadd231pd(to, a, b) : vfmadd231ps(to, a, b);
-  }
-  void fused_into_factor(const Xmm& to, const Xmm& a, const Xmm& b) {  // to = a to + b
-    kDouble ? vfmadd213pd(to, a, b) : vfmadd213ps(to, a, b);
-  }
-  void fused_negated(const Xmm& to, const Xmm& a, const Xmm& b) {  // to = to - a b
-    kDouble ? vfnmadd231pd(to, a, b) : vfnmadd231ps(to, a, b);
-  }
-
   // divide_by_multiplying of foundation/elementary/lanes.hpp.
   void emit_quotient(int result, int in_a, int in_b) {
     const Xmm a = vector(in_a);
@@ -267,10 +283,10 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
     slow_.back().a = in_a;
     slow_.back().b = in_b;
     jump_if_unusual(a, b, t, e, slow_.back().begin);
-    kDouble ? vrcp14pd(y, b) : vrcp14ps(y, b);
+    reciprocal(y, b);
     vmovaps(e, one);
     fused_negated(e, b, y);
-    if constexpr (kDouble) {
+    if (double_) {
       vmovaps(t, e);
       fused(t, e, e);
       fused_into_factor(y, t, y);
@@ -292,7 +308,7 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
   void jump_if_unusual(const Xmm& a, const Xmm& b, const Xmm& t, const Xmm& e,
                        Xbyak::Label& where) {
     const auto scalar = [&](Extra which) { return ptr_b[rsi + offset(extra(which))]; };
-    if constexpr (kDouble) {
+    if (double_) {
       vpaddq(t, a, scalar(kShift));
       vpaddq(e, b, scalar(kShift));
       vpandq(t, t, e);
@@ -323,7 +339,6 @@ class Generator : public Xbyak::CodeGenerator, public CodeMemory {
 
   const Expression& formula_;
   const Plan& plan_;
-  bool wide_;
   bool multiplies_;
   std::size_t root_ = 0;
   unsigned divisions_ = 0;
@@ -368,7 +383,8 @@ Loops generate_loops(const Expression& formula, const Plan& plan, VectorLevel le
   Loops loops;
   if (level == VectorLevel::baseline) return loops;
   try {
-    auto code = std::make_unique<Generator<T>>(formula, plan, level, code_bytes(formula, plan));
+    auto code =
+        std::make_unique<Generator>(formula, plan, level, sizeof(T), code_bytes(formula, plan));
     for (const Step& step : plan.steps) {
       const bool is_region = step.kind == Step::Kind::region;
       if (is_region && plan.nodes[step.node].registers > code->stack_registers()) return {};

@@ -42,6 +42,77 @@ std::vector<double> steps_of(double low, double high, std::size_t count) {
   return steps;
 }
 
+// What a motion is like: the grid that states are looked for on.
+struct MotionScales {
+  double step_seconds = 0;
+  double step_travel = 0;  // how far the joint comes in a step
+  double span = 0;         // and between its extremes
+  double top_speed = 0;
+};
+
+double step_seconds_of(const MotionRows& motion) {
+  std::vector<double> steps;
+  for (std::size_t r = 1; r < motion.rows(); ++r) {
+    if (!is_start(motion, r)) steps.push_back(motion.time[r] - motion.time[r - 1]);
+  }
+  return median_of(std::move(steps));
+}
+
+double span_of(const MotionRows& motion, const double* v) {
+  double widest = 0;
+  double at = 0;
+  double low = 0;
+  double high = 0;
+  for (std::size_t r = 1; r < motion.rows(); ++r) {
+    if (is_start(motion, r)) {
+      at = low = high = 0;
+      continue;
+    }
+    at += 0.5 * (v[r - 1] + v[r]) * (motion.time[r] - motion.time[r - 1]);
+    low = std::min(low, at);
+    high = std::max(high, at);
+    widest = std::max(widest, high - low);
+  }
+  return widest;
+}
+
+// velocity: the column of the motion; speeds at the used rows count.
+MotionScales scales_of(const MotionRows& motion, std::size_t velocity,
+                       std::vector<double> used_velocities) {
+  for (double& v : used_velocities) v = std::abs(v);
+  MotionScales scales;
+  for (const double speed : used_velocities) scales.top_speed = std::max(scales.top_speed, speed);
+  scales.step_seconds = step_seconds_of(motion);
+  scales.step_travel = median_of(std::move(used_velocities)) * scales.step_seconds;
+  scales.span = span_of(motion, motion.columns[velocity]);
+  return scales;
+}
+
+// z' = v - |v| z / g(v), as the formula has it.
+void write_rate(const StateDeclaration& state, std::span<const double> velocity,
+                std::span<const double> z, std::span<double> out) {
+  for (std::size_t r = 0; r < z.size(); ++r) {
+    out[r] = state_rate(state.law, state.parameters, {z[r], false}, {velocity[r], 1});
+  }
+}
+
+// Of z' by theta j, where z itself moves by `slope`.
+void write_rate_slope(const StateDeclaration& state,
+                      const std::vector<std::vector<double>>& by_theta, std::size_t j,
+                      std::span<const double> velocity, std::span<const double> z,
+                      std::span<const double> slope, std::span<double> out) {
+  const std::vector<double>& p = state.parameters;
+  for (std::size_t r = 0; r < z.size(); ++r) {
+    const double speed = std::abs(velocity[r]);
+    const double ratio = speed / p[2];
+    const double share = elementary::exp(-(ratio * ratio));
+    const double g = p[0] + (p[1] - p[0]) * share;
+    const double moved = by_theta[0][j] * (1 - share) + by_theta[1][j] * share +
+                         by_theta[2][j] * (p[1] - p[0]) * share * 2 * ratio * ratio / p[2];
+    out[r] = -speed * (slope[r] - z[r] * moved / g) / g;
+  }
+}
+
 }  // namespace
 
 DynamicFeatures::DynamicFeatures(DynamicModel model, DynamicTerms terms,
@@ -149,14 +220,6 @@ std::vector<double> DynamicFeatures::at_rows(const std::vector<double>& along_mo
   return taken;
 }
 
-// z' = v - |v| z / g(v), as the formula has it.
-void DynamicFeatures::write_rate(const StateDeclaration& state, std::span<const double> z,
-                                 std::span<double> out) const {
-  for (std::size_t r = 0; r < z.size(); ++r) {
-    out[r] = state_rate(state.law, state.parameters, {z[r], false}, {velocity_[r], 1});
-  }
-}
-
 bool DynamicFeatures::evaluate(std::span<const double> theta, std::span<double> features) {
   const std::vector<StateDeclaration> all = states(theta);
   if (!budget_.spend(kStateNodes * all.size() * data_.motion.rows())) return false;
@@ -174,7 +237,7 @@ bool DynamicFeatures::evaluate(std::span<const double> theta, std::span<double> 
     if (terms_.asymmetric) {
       std::ranges::transform(z, column().begin(), [](double x) { return std::abs(x); });
     }
-    if (model_ == DynamicModel::lugre) write_rate(state, z, column());
+    if (model_ == DynamicModel::lugre) write_rate(state, velocity_, z, column());
   }
   for (const std::vector<double>& linear : linear_) std::ranges::copy(linear, column().begin());
   return true;
@@ -209,78 +272,21 @@ bool DynamicFeatures::differentiate(std::span<const double> theta, std::span<dou
         std::ranges::transform(slope, z, column().begin(),
                                [](double dz, double at) { return dz * sign(at); });
       }
-      if (model_ == DynamicModel::lugre)
-        write_rate_slope(all[i], by_theta[i], j, z, slope, column());
+      if (model_ == DynamicModel::lugre) {
+        write_rate_slope(all[i], by_theta[i], j, velocity_, z, slope, column());
+      }
     }
   }
   return true;
 }
 
-// Of z' by theta j, where z itself moves by `slope`.
-void DynamicFeatures::write_rate_slope(const StateDeclaration& state,
-                                       const std::vector<std::vector<double>>& by_theta,
-                                       std::size_t j, std::span<const double> z,
-                                       std::span<const double> slope, std::span<double> out) const {
-  const std::vector<double>& p = state.parameters;
-  for (std::size_t r = 0; r < z.size(); ++r) {
-    const double speed = std::abs(velocity_[r]);
-    const double ratio = speed / p[2];
-    const double share = elementary::exp(-(ratio * ratio));
-    const double g = p[0] + (p[1] - p[0]) * share;
-    const double moved = by_theta[0][j] * (1 - share) + by_theta[1][j] * share +
-                         by_theta[2][j] * (p[1] - p[0]) * share * 2 * ratio * ratio / p[2];
-    out[r] = -speed * (slope[r] - z[r] * moved / g) / g;
-  }
-}
-
-double DynamicFeatures::top_speed() const {
-  double top = 0;
-  for (const double v : velocity_) top = std::max(top, std::abs(v));
-  return top;
-}
-
-double DynamicFeatures::step_seconds() const {
-  std::vector<double> steps;
-  for (std::size_t r = 1; r < data_.motion.rows(); ++r) {
-    if (!is_start(data_.motion, r)) {
-      steps.push_back(data_.motion.time[r] - data_.motion.time[r - 1]);
-    }
-  }
-  return median_of(std::move(steps));
-}
-
-// How far the joint comes in a step, and between its extremes.
-double DynamicFeatures::step_travel() const {
-  std::vector<double> travels;
-  for (const double v : velocity_) travels.push_back(std::abs(v));
-  return median_of(std::move(travels)) * step_seconds();
-}
-
-double DynamicFeatures::span() const {
-  const double* v = data_.motion.columns[inputs_.velocity];
-  double widest = 0;
-  double at = 0;
-  double low = 0;
-  double high = 0;
-  for (std::size_t r = 1; r < data_.motion.rows(); ++r) {
-    if (is_start(data_.motion, r)) {
-      at = low = high = 0;
-      continue;
-    }
-    at += 0.5 * (v[r - 1] + v[r]) * (data_.motion.time[r] - data_.motion.time[r - 1]);
-    low = std::min(low, at);
-    high = std::max(high, at);
-    widest = std::max(widest, high - low);
-  }
-  return widest;
-}
-
 SeparableOptions DynamicFeatures::options() const {
   SeparableOptions options;
-  const double step = step_travel();
-  const double widest = std::max(span(), 10 * step);
-  const double top = top_speed();
-  const double seconds = step_seconds();
+  const MotionScales scales = scales_of(data_.motion, inputs_.velocity, velocity_);
+  const double step = scales.step_travel;
+  const double widest = std::max(scales.span, 10 * step);
+  const double top = scales.top_speed;
+  const double seconds = scales.step_seconds;
   const auto log = [](double x) { return elementary::log(std::max(x, 1e-300)); };
   options.low = {log(0.02 * step), 1, log(1e-3 * top), 0.1, log(0.1 * seconds)};
   options.high = {log(widest), kMostRatio, log(top), 2, log(1e3 * seconds)};

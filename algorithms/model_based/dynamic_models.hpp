@@ -56,20 +56,10 @@ class DynamicFeatures : public SeparableModel {
   std::size_t state_count() const;
   std::size_t own_features() const;  // of the states; the linear ones follow
   std::vector<std::vector<double>> linear_columns() const;
-  double step_travel() const;
-  double span() const;
-  double top_speed() const;
-  double step_seconds() const;
   // d parameter / d theta: [state][parameter][theta]
   std::vector<std::vector<std::vector<double>>> parameter_slopes(
       std::span<const double> theta) const;
   std::vector<double> at_rows(const std::vector<double>& along_motion) const;
-  void write_rate(const StateDeclaration& state, std::span<const double> z,
-                  std::span<double> out) const;
-  void write_rate_slope(const StateDeclaration& state,
-                        const std::vector<std::vector<double>>& by_theta, std::size_t j,
-                        std::span<const double> z, std::span<const double> slope,
-                        std::span<double> out) const;
 
   DynamicModel model_;
   DynamicTerms terms_;
