@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "algorithms/expression/edit.hpp"
-#include "algorithms/pysr/backsolve.hpp"
 
 namespace tribench::pysr {
 namespace {
@@ -21,8 +20,7 @@ constexpr int kBurstRetries = 4;
 Island::Island(const Shared& shared)
     : shared_(shared),
       form_(shared.validator.form()),
-      scorer_(shared.validator, shared.rule),
-      grower_(shared.operators, form_, shared.libraries),
+      offspring_(shared),
       best_seen_(shared.options.max_size) {
   success_.fill(1);
 }
@@ -32,7 +30,7 @@ void Island::populate(RandomStream random, Budget& budget) {
   if (options.constructions > 0) construct(random, budget);
   const SizeFrequencies frequencies(options.max_size);
   const EpochState state{frequencies, best_seen_, options.max_size};
-  const Step step{state, shared_.rows, 1};
+  const EventState step{state, shared_.rows, 1};
   while (static_cast<int>(members_.size()) < options.population_size) {
     std::optional<Member> member;
     for (int attempt = 0; attempt < options.attempts && !member; ++attempt) {
@@ -40,12 +38,12 @@ void Island::populate(RandomStream random, Budget& budget) {
         return random_part(form_, part, options.initial_operators, shared_.operators, random);
       });
       if (!shared_.validator.admits(formula, options.max_size)) continue;
-      member = scored(std::move(formula), step, true, budget);
+      member = offspring_.scored(std::move(formula), step, true, budget);
       if (budget.exhausted()) return;
     }
     if (!member) {
       const auto zero = [](std::size_t) { return Expression::constant(0); };
-      member = scored(form_.assembled(zero), step, true, budget);
+      member = offspring_.scored(form_.assembled(zero), step, true, budget);
     }
     if (!member) return;
     member->birth = clock_++;
@@ -59,7 +57,7 @@ void Island::construct(RandomStream& random, Budget& budget) {
   Climber climber(options, shared_.operators, shared_.validator, shared_.rows, shared_.libraries,
                   shared_.rule);
   climber.on_fitted([this](const Fitted& fitted) {
-    best_seen_.offer(scorer_.member_of(fitted.formula, fitted.loss));
+    best_seen_.offer(offspring_.scorer().member_of(fitted.formula, fitted.loss));
   });
   std::vector<Fitted> built;
   for (int i = 0; i < options.constructions && !budget.exhausted(); ++i) {
@@ -73,9 +71,9 @@ void Island::construct(RandomStream& random, Budget& budget) {
       built[i] = climber.climb(std::move(built[i]), effort, random, budget);
     }
     if (static_cast<int>(members_.size()) >= options.population_size) break;
-    Member member = scorer_.member_of(std::move(built[i].formula), built[i].loss);
+    Member member = offspring_.scorer().member_of(std::move(built[i].formula), built[i].loss);
     member.birth = clock_++;
-    is_new(member.formula);
+    offspring_.is_new(member.formula);
     members_.push_back(std::move(member));
   }
 }
@@ -98,10 +96,14 @@ void Island::evolve(const EpochState& state, RandomStream random, Budget& budget
         options.annealing && options.cycles > 1
             ? 1 - static_cast<double>(cycle) / static_cast<double>(options.cycles - 1)
             : 1;
-    const Step step{state, batched ? batch : shared_.rows, temperature};
+    const EventState step{state, batched ? batch : shared_.rows, temperature};
     for (int e = 0; e < events; ++e) {
       if (budget.exhausted() || members_.empty()) return;
-      event(step, random, budget);
+      if (random.chance(options.crossover_probability)) {
+        crossover_event(step, random, budget);
+      } else {
+        mutation_event(step, random, budget);
+      }
     }
   }
   if (batched) {
@@ -109,22 +111,15 @@ void Island::evolve(const EpochState& state, RandomStream random, Budget& budget
     const std::vector<Member> batch_best = best_seen_.members();
     best_seen_ = HallOfFame(options.max_size);
     for (const Member& member : batch_best) {
-      const auto loss = scorer_.mean_square(member.formula, shared_.rows, budget);
-      if (loss) best_seen_.offer(scorer_.member_of(member.formula, *loss));
+      const auto loss = offspring_.scorer().mean_square(member.formula, shared_.rows, budget);
+      if (loss) best_seen_.offer(offspring_.scorer().member_of(member.formula, *loss));
     }
   }
   tidy(state, random, budget);
 }
 
-void Island::event(const Step& step, RandomStream& random, Budget& budget) {
-  if (random.chance(shared_.options.crossover_probability)) {
-    crossover_event(step, random, budget);
-  } else {
-    mutation_event(step, random, budget);
-  }
-}
-
-MutationKind Island::draw_mutation(const Subject& subject, const Step& step, RandomStream& random) {
+MutationKind Island::draw_mutation(const Subject& subject, const EventState& step,
+                                   RandomStream& random) {
   const Options& options = shared_.options;
   MutationWeights weights = conditioned(options.weights, subject.formula, subject.parent.size,
                                         step.state.max_size, form_.arguments(subject.part).size());
@@ -136,7 +131,7 @@ MutationKind Island::draw_mutation(const Subject& subject, const Step& step, Ran
   return draw_kind(weights, random);
 }
 
-void Island::mutation_event(const Step& step, RandomStream& random, Budget& budget) {
+void Island::mutation_event(const EventState& step, RandomStream& random, Budget& budget) {
   const Options& options = shared_.options;
   const Member parent = members_[run_tournament(members_, step.state.frequencies, options, random)];
   const int attempts = options.mutation_burst ? 1 + kBurstRetries : 1;
@@ -156,14 +151,18 @@ void Island::mutation_event(const Step& step, RandomStream& random, Budget& budg
 }
 
 std::optional<Member> Island::accepted_child(MutationKind kind, const Subject& subject,
-                                             const Step& step, RandomStream& random,
+                                             const EventState& step, RandomStream& random,
                                              Budget& budget) {
   const Member& parent = subject.parent;
-  if (kind == MutationKind::backsolve) return solved_back(parent, step, random, budget);
+  if (kind == MutationKind::backsolve) {
+    std::optional<Member> child = offspring_.solved_back(parent, members_, step, random, budget);
+    if (child) best_seen_.offer(*child);
+    return child;
+  }
   const bool exempt = kind == MutationKind::simplify || kind == MutationKind::optimize;
   std::optional<Member> best;
-  for (Expression& child : propose(kind, subject, step, random, budget)) {
-    std::optional<Member> member = scored(std::move(child), step, exempt, budget);
+  for (Expression& child : offspring_.propose(kind, subject, step, random, budget)) {
+    std::optional<Member> member = offspring_.scored(std::move(child), step, exempt, budget);
     if (budget.exhausted()) return std::nullopt;
     if (!member) continue;
     best_seen_.offer(*member);
@@ -176,27 +175,7 @@ std::optional<Member> Island::accepted_child(MutationKind kind, const Subject& s
   return best;
 }
 
-// Judged on all rows, and taken only where it is better there.
-std::optional<Member> Island::solved_back(const Member& parent, const Step& step,
-                                          RandomStream& random, Budget& budget) {
-  const Step whole{step.state, shared_.rows, step.temperature};
-  std::optional<Expression> child =
-      backsolve(parent.formula, members_, shared_.rows,
-                static_cast<std::size_t>(step.state.max_size), random, budget);
-  if (!child) return std::nullopt;
-  if (shared_.options.fit_children) *child = form_.simplified(*child);
-  if (!shared_.validator.admits(*child, step.state.max_size)) return std::nullopt;
-  std::optional<Member> member = scored(std::move(*child), whole, false, budget);
-  if (!member) return std::nullopt;
-  const auto before = scorer_.mean_square(parent.formula, shared_.rows, budget);
-  if (!before || !(member->cost < scorer_.member_of(parent.formula, *before).cost)) {
-    return std::nullopt;
-  }
-  best_seen_.offer(*member);
-  return member;
-}
-
-void Island::crossover_event(const Step& step, RandomStream& random, Budget& budget) {
+void Island::crossover_event(const EventState& step, RandomStream& random, Budget& budget) {
   const Options& options = shared_.options;
   const SizeFrequencies& frequencies = step.state.frequencies;
   const Member a = members_[run_tournament(members_, frequencies, options, random)];
@@ -213,7 +192,7 @@ void Island::crossover_event(const Step& step, RandomStream& random, Budget& bud
       continue;
     }
     for (Expression* child : {&first, &second}) {
-      std::optional<Member> member = scored(std::move(*child), step, false, budget);
+      std::optional<Member> member = offspring_.scored(std::move(*child), step, false, budget);
       if (budget.exhausted()) return;
       if (member) replace_oldest(std::move(*member));
     }
@@ -231,7 +210,7 @@ void Island::optimise(Member& member, RandomStream& random, Budget& budget) {
   const Options& options = shared_.options;
   Expression best = member.formula;
   std::optional<double> best_loss =
-      scorer_.fit(best, shared_.rows, options.optimize_iterations, budget);
+      offspring_.scorer().fit(best, shared_.rows, options.optimize_iterations, budget);
   for (int restart = 0; restart < options.optimize_restarts; ++restart) {
     Expression trial = member.formula;
     for (const std::size_t place : trial.constant_positions()) {
@@ -240,14 +219,15 @@ void Island::optimise(Member& member, RandomStream& random, Budget& budget) {
       // A zero would never move under a relative perturbation (SymbolicRegression.jl #637).
       trial.set_constant(place, value == 0 ? random.normal() : value * (1 + 0.5 * random.normal()));
     }
-    const auto loss = scorer_.fit(trial, shared_.rows, options.optimize_iterations, budget);
+    const auto loss =
+        offspring_.scorer().fit(trial, shared_.rows, options.optimize_iterations, budget);
     if (loss && (!best_loss || *loss < *best_loss)) {
       best_loss = loss;
       best = std::move(trial);
     }
   }
   if (!best_loss) return;
-  Member optimised = scorer_.member_of(std::move(best), *best_loss);
+  Member optimised = offspring_.scorer().member_of(std::move(best), *best_loss);
   if (!(optimised.cost < member.cost)) return;
   optimised.birth = clock_++;
   member = std::move(optimised);
@@ -263,10 +243,10 @@ void Island::tidy(const EpochState& state, RandomStream& random, Budget& budget)
     const bool batched = options.batching == Batching::on;
     if (shorter || batched) {
       if (!shorter) simpler = member.formula;
-      const auto loss = scorer_.mean_square(simpler, shared_.rows, budget);
+      const auto loss = offspring_.scorer().mean_square(simpler, shared_.rows, budget);
       if (loss) {
         const std::uint64_t birth = member.birth;
-        member = scorer_.member_of(std::move(simpler), *loss);
+        member = offspring_.scorer().member_of(std::move(simpler), *loss);
         member.birth = birth;
       }
     }

@@ -59,6 +59,31 @@ TEST(BurstNoise, KnowsEachMovementsLevelAsWellAsItSays) {
   EXPECT_NEAR(squares / static_cast<double>(kMovements), 1, 0.35);
 }
 
+// Of a movement that is left out whole nothing is known but what the others' levels are like: e
+// times as loud from one to the next, the one in the middle typical.
+TEST(BurstNoise, AMovementLeftOutWholeIsAsLoudAsTheOthersAreApart) {
+  constexpr std::size_t kLong = 600;
+  RandomStream random(4);
+  const StudentLaw law{5, 0.5};
+  std::vector<int> movement;
+  Eigen::VectorXd residual(3 * kLong);
+  for (std::size_t i = 0; i < kLong; ++i) {
+    const double drawn = law.draw(random);
+    for (std::size_t m = 0; m < 3; ++m) {
+      residual[static_cast<Eigen::Index>(m * kLong + i)] =
+          drawn * std::exp(static_cast<double>(m) - 1);
+    }
+  }
+  for (std::size_t i = 0; i < 3 * kLong; ++i) movement.push_back(static_cast<int>(i / kLong));
+  const BurstNoise noise(movement, {}, residual);
+  for (std::size_t m = 0; m < 3; ++m) {
+    EXPECT_NEAR(noise.level_error(m, kLong), 1, 0.02);
+    const double typical =
+        noise.unit()[m * kLong] * noise.law().scale * noise.level_without(m, m * kLong, kLong);
+    EXPECT_NEAR(typical, law.scale, 0.06);
+  }
+}
+
 TEST(BurstNoise, ABurstDoesNotHideInTheNoiseThatItMakes) {
   Example e = example(RandomStream(2));
   constexpr std::size_t kMovement = 17;

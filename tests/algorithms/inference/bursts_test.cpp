@@ -64,6 +64,27 @@ TEST(Bursts, APulseIsFoundWhereItIsAndMasked) {
   EXPECT_GE(found, 93);
 }
 
+// The lengths that are looked for are told apart, the shortest and the longest too.
+TEST(Bursts, APulseIsAsLongAsItWas) {
+  for (const int rows : {4, 14}) {
+    double length = 0;
+    int found = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Eigen::VectorXd residual = noise(RandomStream(seed));
+      for (Eigen::Index k = 0; k < rows; ++k) {
+        residual[630 + k] += 12 * std::sin(3.14159265 * (static_cast<double>(k) + 0.5) / rows);
+      }
+      for (const Burst& burst : bursts_of(residual, seed)) {
+        if (burst.begin > 640 || burst.end < 630) continue;
+        ++found;
+        length += static_cast<double>(burst.end - burst.begin);
+      }
+    }
+    EXPECT_GE(found, 19) << rows;
+    EXPECT_NEAR(length / found, rows, 0.2 * rows) << rows;
+  }
+}
+
 // A wild row fades away by the noise's own correlation: four rows on one side, and no burst.
 TEST(Bursts, OneWildRowThatFadesAwayIsNoBurst) {
   Eigen::VectorXd residual = noise(RandomStream(7));

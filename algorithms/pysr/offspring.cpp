@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-//
-// What an island tries: children that a kind of mutation proposes, and what they are worth.
+#include "algorithms/pysr/offspring.hpp"
+
 #include <algorithm>
 
-#include "algorithms/pysr/island.hpp"
+#include "algorithms/pysr/backsolve.hpp"
 #include "algorithms/pysr/simplify.hpp"
 
 namespace tribench::pysr {
@@ -24,14 +24,16 @@ constexpr double kCompoundChance = 0.25;
 
 }  // namespace
 
-Alphabet Island::alphabet_of(std::size_t part) const {
-  return {shared_.operators, form_.arguments(part).size()};
-}
+Offspring::Offspring(const Shared& shared)
+    : shared_(shared),
+      form_(shared.validator.form()),
+      scorer_(shared.validator, shared.rule),
+      grower_(shared.operators, form_, shared.libraries) {}
 
-std::vector<Expression> Island::structural(MutationKind kind, const Subject& subject,
-                                           const Step& step, RandomStream& random) {
+std::vector<Expression> Offspring::structural(MutationKind kind, const Subject& subject,
+                                              const EventState& step, RandomStream& random) {
   const Options& options = shared_.options;
-  const Alphabet alphabet = alphabet_of(subject.part);
+  const Alphabet alphabet{shared_.operators, form_.arguments(subject.part).size()};
   const auto outside = static_cast<int>(subject.parent.formula.size() - subject.formula.size());
   const MutationSettings settings{step.temperature, options.perturbation_factor,
                                   options.negate_probability, options.compat,
@@ -56,8 +58,9 @@ std::vector<Expression> Island::structural(MutationKind kind, const Subject& sub
   return {};
 }
 
-std::vector<Expression> Island::propose(MutationKind kind, const Subject& subject, const Step& step,
-                                        RandomStream& random, Budget& budget) {
+std::vector<Expression> Offspring::propose(MutationKind kind, const Subject& subject,
+                                           const EventState& step, RandomStream& random,
+                                           Budget& budget) {
   const Member& parent = subject.parent;
   std::vector<Expression> children;
   if (kind == MutationKind::grow || kind == MutationKind::prune) {
@@ -86,10 +89,12 @@ std::vector<Expression> Island::propose(MutationKind kind, const Subject& subjec
   return structural(kind, subject, step, random);
 }
 
-bool Island::is_new(const Expression& child) { return seen_.insert(structure_hash(child)).second; }
+bool Offspring::is_new(const Expression& child) {
+  return seen_.insert(structure_hash(child)).second;
+}
 
-std::optional<Member> Island::scored(Expression child, const Step& step, bool exempt,
-                                     Budget& budget) {
+std::optional<Member> Offspring::scored(Expression child, const EventState& step, bool exempt,
+                                        Budget& budget) {
   std::optional<double> loss;
   if (shared_.options.fit_children) {
     const bool first_time = is_new(child);
@@ -102,7 +107,8 @@ std::optional<Member> Island::scored(Expression child, const Step& step, bool ex
   return scorer_.member_of(std::move(child), *loss);
 }
 
-std::optional<double> Island::fitted_loss(Expression& child, const Step& step, Budget& budget) {
+std::optional<double> Offspring::fitted_loss(Expression& child, const EventState& step,
+                                             Budget& budget) {
   std::optional<double> loss = scorer_.fit(child, step.rows, kFirstSteps, budget);
   if (!loss) return std::nullopt;
   if (shared_.options.linear_scaling) loss = scaled_loss(child, step, *loss, budget);
@@ -112,8 +118,8 @@ std::optional<double> Island::fitted_loss(Expression& child, const Step& step, B
   return scorer_.fit(child, step.rows, kFurtherSteps, budget);
 }
 
-std::optional<double> Island::scaled_loss(Expression& child, const Step& step, double loss,
-                                          Budget& budget) {
+std::optional<double> Offspring::scaled_loss(Expression& child, const EventState& step, double loss,
+                                             Budget& budget) {
   // A child far from its target may lack no more than a scale and an offset.
   const std::optional<double> best = step.state.hall.best_loss_up_to(step.state.max_size);
   if (best && loss <= kPromising * *best) return loss;
@@ -129,6 +135,25 @@ std::optional<double> Island::scaled_loss(Expression& child, const Step& step, d
   if (!scaled_loss || *scaled_loss > 0.5 * loss) return loss;
   child = std::move(scaled);
   return scaled_loss;
+}
+
+std::optional<Member> Offspring::solved_back(const Member& parent, std::span<const Member> members,
+                                             const EventState& step, RandomStream& random,
+                                             Budget& budget) {
+  const EventState whole{step.state, shared_.rows, step.temperature};
+  std::optional<Expression> child =
+      backsolve(parent.formula, members, shared_.rows,
+                static_cast<std::size_t>(step.state.max_size), random, budget);
+  if (!child) return std::nullopt;
+  if (shared_.options.fit_children) *child = form_.simplified(*child);
+  if (!shared_.validator.admits(*child, step.state.max_size)) return std::nullopt;
+  std::optional<Member> member = scored(std::move(*child), whole, false, budget);
+  if (!member) return std::nullopt;
+  const auto before = scorer_.mean_square(parent.formula, shared_.rows, budget);
+  if (!before || !(member->cost < scorer_.member_of(parent.formula, *before).cost)) {
+    return std::nullopt;
+  }
+  return member;
 }
 
 }  // namespace tribench::pysr
