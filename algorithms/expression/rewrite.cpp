@@ -135,6 +135,56 @@ void absorb_numbers(const SumTerm& term, std::vector<Expression>& out) {
   }
 }
 
+// The terms of `sum` with products of a sum and the sign `s` multiplied out, each with s at most
+// once: s^2 is 1 where s is not 0.
+SumOfProducts with_sign_once(const SumOfProducts& sum, const Expression& s) {
+  SumOfProducts out;
+  for (const SumTerm& term : sum) {
+    const auto is_s = [&](const TermFactor& factor) { return factor.base == s; };
+    const auto is_open = [&](const TermFactor& factor) {
+      return factor.power == 1 && is_sum(factor.base.node(factor.base.root()).op);
+    };
+    const auto sign = std::ranges::find_if(term.factors, is_s);
+    const auto open = std::ranges::find_if(term.factors, is_open);
+    if (sign == term.factors.end()) {
+      out.push_back(term);
+    } else if (open != term.factors.end()) {
+      SumTerm rest = term;
+      rest.factors.erase(rest.factors.begin() + (open - term.factors.begin()));
+      SumOfProducts inside = sum_of_products(open->base, open->base.root());
+      for (SumTerm& each : inside) {
+        each.coefficient *= rest.coefficient;
+        for (const TermFactor& other : rest.factors) multiply_by(each, other);
+      }
+      for (SumTerm& each : with_sign_once(inside, s)) out.push_back(std::move(each));
+    } else {
+      SumTerm once = term;
+      const bool is_odd = sign->power % 2 != 0;
+      std::erase_if(once.factors, is_s);
+      if (is_odd) multiply_by(once, {s, 1});
+      out.push_back(std::move(once));
+    }
+  }
+  return out;
+}
+
+// s a + s^2 b as s a + b, with s written once.
+Expression parted_by_sign(const Expression& sum, const Expression& s) {
+  SumOfProducts odd;
+  SumOfProducts even;
+  for (SumTerm& term : with_sign_once(sum_of_products(sum, sum.root()), s)) {
+    const auto sign = std::ranges::find(term.factors, s, &TermFactor::base);
+    if (sign == term.factors.end()) {
+      even.push_back(std::move(term));
+      continue;
+    }
+    term.factors.erase(sign);
+    odd.push_back(std::move(term));
+  }
+  if (!odd.empty()) even.push_back({1, {{s, 1}, {formula_of(odd), 1}}});
+  return formula_of(even);
+}
+
 // What stands below a bar in one of two sums, with the highest power that it has there.
 std::vector<TermFactor> bases_below(const SumOfProducts& a, const SumOfProducts& b) {
   std::vector<TermFactor> bases;
@@ -261,11 +311,36 @@ void Rewriter::merge_pairs(const SumTerm& term, std::vector<Expression>& out) co
   }
 }
 
+// Beside a sign s, which makes 0 of all where it is 0, every other s^2 is 1: s f(s (a - s b)) is
+// s f(s a - b).
+void Rewriter::use_sign(const SumTerm& term, std::vector<Expression>& out) const {
+  for (const TermFactor& sign : term.factors) {
+    const Expression& s = sign.base;
+    const bool is_input = s.size() == 1 && s.node(0).is_variable() &&
+                          s.node(0).variable < box_.size() && box_[s.node(0).variable].sign_of;
+    if (sign.power < 1 || !(is_input || is_function(s, Op::sgn))) continue;
+    for (std::size_t i = 0; i < term.factors.size(); ++i) {
+      const Expression& base = term.factors[i].base;
+      const Op op = base.node(base.root()).op;
+      SumTerm result = term;
+      if (is_sum(op)) {
+        result.factors[i].base = parted_by_sign(base, s);
+      } else if (arity(op) == 1 && op != Op::neg) {
+        result.factors[i].base = Expression::unary(op, parted_by_sign(argument_of(base), s));
+      } else {
+        continue;
+      }
+      out.push_back(formula_of(result));
+    }
+  }
+}
+
 void Rewriter::rewrite_product(const SumTerm& term, std::vector<Expression>& out) const {
   out.push_back(formula_of(term));
   multiply_out(term, out);
   clear_fractions(term, out);
   absorb_numbers(term, out);
+  use_sign(term, out);
   merge_pairs(term, out);
 }
 

@@ -6,9 +6,9 @@
 //
 //   sums       a common factor, or number, of some terms taken out; a term that is nothing beside
 //              the others dropped
-//   products   a factor that is a sum multiplied out, or scaled by the constants of exponents
-//   beside
-//              it; exponentials and roots merged; x sgn_x = |x|, |x| sgn_x = x; fractions within a
+//   products   a factor that is a sum multiplied out, or scaled by numbers beside it and by the
+//              constants of exponents; exponentials and roots merged; x sgn_x = |x|,
+//              |x| sgn_x = x; beside a sign its square in another factor 1; fractions within a
 //              fraction cleared
 //   functions  exp of log and of a constant term, log of exp, of roots and powers, roots of squares
 //              and of constants, |x| of what has one sign; sin, tanh, exp and cos of arguments so
@@ -40,6 +40,7 @@ class Rewriter {
   void rewrite_sum(const SumOfProducts& sum, std::vector<Expression>& out) const;
   void drop_negligible(const SumOfProducts& sum, std::vector<Expression>& out) const;
   void rewrite_product(const SumTerm& term, std::vector<Expression>& out) const;
+  void use_sign(const SumTerm& term, std::vector<Expression>& out) const;
   void merge_pairs(const SumTerm& term, std::vector<Expression>& out) const;
   void rewrite_function(Op op, const Expression& argument, std::vector<Expression>& out) const;
   void rewrite_exp(const Expression& argument, std::vector<Expression>& out) const;

@@ -342,7 +342,9 @@ FitResult search(const Options& given, FitContext& context) {
     const Rows seen = prepare_rows(options, form, all, context, note);
     result = Search(options, form, context, all, seen).run();
   }
-  if (!result.front.empty()) add_to_note(note, form.parts_of(result.front[result.chosen]));
+  // The clock had run out before anything was scored.
+  if (result.front.empty()) return unsearched(form, all, "no budget");
+  add_to_note(note, form.parts_of(result.front[result.chosen]));
   result.note = std::move(note);
   result.keeps_form = !form.is_whole();
   return result;

@@ -48,6 +48,15 @@ constexpr std::size_t kProblems = 16;  // in fewer variables that are looked at
 constexpr std::size_t kMostDepth = 3;  // of reductions
 constexpr std::size_t kFewInputs = 3;  // with which waves and differences are tried at once
 
+// What can be left out, to see what it is worth; the members besides, by their names.
+constexpr std::string_view kNothing = "nothing";
+constexpr std::string_view kProducts = "products";
+constexpr std::string_view kSums = "sums";
+constexpr std::string_view kCollapses = "collapses";
+constexpr std::string_view kReductions = "reductions";
+constexpr std::string_view kGuesses = "guesses";
+constexpr std::string_view kWideSums = "wide_sums";
+
 constexpr std::string_view kByProduct = "a product of powers";
 constexpr std::string_view kBySum = "a sum of products";
 constexpr std::string_view kByReduction = "fewer variables";
@@ -57,8 +66,9 @@ enum class Width { narrow, wide };  // wide: with factors (factors.hpp)
 // One fit: what it has found so far.
 class Run {
  public:
-  explicit Run(FitContext& context)
+  Run(FitContext& context, std::string_view without)
       : context_(context),
+        without_(without),
         rows_(context.data),
         admission_(context),
         joint_(rows_.table(), rows_.target, rows_.movement, input_box(context.data.inputs)) {}
@@ -92,14 +102,16 @@ class Run {
     Budget part = context_.budget.share(context_.budget.remaining() / 4);
     auto simpler = find_structure(rows, round, part);
     context_.budget.settle(part);
-    if (auto reduced = reduce(round, relay::Guesses::no); reduced && !simpler) {
-      simpler = std::move(reduced);
+    if (has(kReductions)) {
+      auto reduced = reduce(round, relay::Guesses::no);
+      if (reduced && !simpler) simpler = std::move(reduced);
     }
     if (simpler && !is_done()) search(*simpler, solver);
   }
 
   // The same where no slope says so, by trial: dear, and seldom needed.
   void search_guesses(const Regressor& solver, int round) {
+    if (!has(kGuesses)) return;
     const auto simpler = reduce(round, relay::Guesses::yes);
     if (simpler && !is_done()) search(*simpler, solver);
   }
@@ -107,7 +119,7 @@ class Run {
   // Sums of products with waves and differences: many, and seldom what a law is.
   void search_wide_sums(int round) {
     const LogRows rows(rows_, kSearchedRows);
-    if (rows.rows() == 0 || round > 3) return;
+    if (rows.rows() == 0 || round > 3 || !has(kWideSums)) return;
     Budget part = context_.budget.share(context_.budget.remaining() / 4);
     offer(relay::find_relation(rows, context_.operators, Columns::with_factors,
                                3 * kColumns << round, part),
@@ -157,7 +169,10 @@ class Run {
     return {whole(), Reduction{relay::TargetForm::plain, false, collapse.outer, {collapse.inner}}};
   }
 
+  bool has(std::string_view part) const { return without_ != part; }
+
   FitContext& context_;
+  std::string_view without_;
   FiniteRows rows_;
   Admission admission_;
   JointFront joint_;
@@ -169,9 +184,12 @@ std::optional<ReducedProblem> Run::find_structure(const LogRows& rows, int round
   const std::size_t width = std::size_t{1} << round;
   const OperatorSet& operators = context_.operators;
   if (round == 0) {
-    offer(relay::find_product(rows, operators, budget), kByProduct);
+    if (has(kProducts)) offer(relay::find_product(rows, operators, budget), kByProduct);
     if (is_done()) return std::nullopt;
-    const auto sum = relay::find_relation(rows, operators, Columns::powers_alone, kColumns, budget);
+    std::optional<Expression> sum;
+    if (has(kSums)) {
+      sum = relay::find_relation(rows, operators, Columns::powers_alone, kColumns, budget);
+    }
     offer(sum, kBySum);
     // A long sum of powers may be a short one of differences.
     if (sum && sum->size() > kLongSum) {
@@ -179,6 +197,7 @@ std::optional<ReducedProblem> Run::find_structure(const LogRows& rows, int round
     }
     if (is_done()) return std::nullopt;
   }
+  if (!has(kCollapses)) return std::nullopt;
   const auto collapses =
       relay::find_collapses(rows, operators, kOrders * width, kMostCollapses, budget);
   for (const relay::Collapse& collapse : collapses) {
@@ -262,12 +281,15 @@ std::optional<ReducedProblem> Run::reduce(int round, relay::Guesses guesses) {
 
 class Relay : public Regressor {
  public:
-  Relay(int round, const MakeMethod& other) : round_(round), solver_(other("pysr", 0)) {
-    for (const char* name : kMembers) members_.push_back({name, other(name, round)});
+  Relay(int round, std::string without, const MakeMethod& other)
+      : round_(round), without_(std::move(without)), solver_(other("pysr", 0)) {
+    for (const char* name : kMembers) {
+      if (without_ != name) members_.push_back({name, other(name, round)});
+    }
   }
 
   FitResult fit(FitContext& context) const override {
-    Run run(context);
+    Run run(context, without_);
     if (!run.has_rows()) return FitResult::unsupported("no row has a finite target and inputs");
     run.search_structure(*solver_, round_);
     if (run.is_done() && run.has_formula() && !run.is_short()) {
@@ -291,6 +313,7 @@ class Relay : public Regressor {
     std::unique_ptr<Regressor> method;
   };
   int round_;
+  std::string without_;
   std::unique_ptr<Regressor> solver_;  // of problems with one input
   std::vector<Member> members_;
 };
@@ -302,11 +325,20 @@ AlgorithmEntry relay_entry() {
   entry.name = "relay";
   entry.summary =
       "structure (products, sums, fewer variables), then pysr, udsr and parfam, on one front";
+  std::vector<std::string> choices;
+  for (const std::string_view part :
+       {kNothing, kProducts, kSums, kCollapses, kReductions, kGuesses, kWideSums}) {
+    choices.emplace_back(part);
+  }
+  choices.insert(choices.end(), kMembers.begin(), kMembers.end());
   entry.parameters = {
-      {"round", "how wide the members search: 0 as by themselves", std::int64_t{0}, 0, 1000}};
+      {"round", "how wide the members search: 0 as by themselves", std::int64_t{0}, 0, 1000},
+      {"without", "a part that is left out, to see what it is worth", std::string(kNothing), 0, 0,
+       choices}};
   entry.make = [](const Parameters& parameters,
                   const MakeMethod& other) -> std::unique_ptr<Regressor> {
-    return std::make_unique<Relay>(static_cast<int>(parameters.integer("round")), other);
+    return std::make_unique<Relay>(static_cast<int>(parameters.integer("round")),
+                                   parameters.text("without"), other);
   };
   entry.widened = [](int round) {
     return std::map<std::string, ParameterValue>{{"round", std::int64_t{round}}};

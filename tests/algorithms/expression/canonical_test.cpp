@@ -268,6 +268,27 @@ TEST(Simplify, TakesTogetherNumbersThatOnlyUndoEachOther) {
             "t*(-2*exp(v) + 1)");
 }
 
+// As udsr printed it: e^-88 hidden behind the square of a sign.
+TEST(Simplify, TakesTheSquareOfASignForOneBesideTheSign) {
+  const InputBox box = {{-2, 2}, {-60, 60}, {0, 0, 0}};  // t is the sign of v
+  const Expression formula = formula_of(
+      "1.19e39*t*exp(t*(1.67*v + 0.0069*v^3 - t*(v*(0.85*v - 0.03) + 87.8) - 0.065)) - 0.05");
+  const Expression simple = simplify(formula, box);
+  EXPECT_LT(paper_complexity(simple), paper_complexity(formula)) << print(simple, kNames);
+  for (const Node& node : simple.nodes()) {
+    if (node.is_constant()) EXPECT_LT(std::abs(node.value), 1000) << print(simple, kNames);
+  }
+  Evaluator evaluator;
+  for (const double v : {-1.5, -0.2, 0.0, 0.7}) {
+    const std::vector<double> point = {v, 1.3, v < 0 ? -1.0 : v > 0 ? 1.0 : 0.0};
+    const double before = evaluator.evaluate_at(formula, point);
+    EXPECT_NEAR(evaluator.evaluate_at(simple, point), before, 1e-12 * (1 + std::abs(before)));
+  }
+  // Without the sign in front, its square is 0 at 0.
+  const Expression alone = formula_of("exp(t*(v - t*g))");
+  EXPECT_EQ(paper_complexity(simplify(alone, box)), paper_complexity(alone));
+}
+
 TEST(Simplify, UsesTheSignOfAnInput) {
   const InputBox box = {{-2, 2}, {-60, 60}, {0, 0, 0}};  // t is the sign of v
   const auto text = [&](const char* formula) {

@@ -40,6 +40,30 @@ TEST(Relay, StaysWithItsMembersWhereNoStructureIsExact) {
   EXPECT_EQ(result.note, "");
 }
 
+// Every part can be left out, and what it alone finds is then found by another or not at all.
+TEST(Relay, DoesWithoutAnyOfItsParts) {
+  const DrawnLaw law("2.5*x^2/y", {{"x", 1, 3}, {"y", 1, 3}}, 60);
+  for (const char* part : {"nothing", "products", "sums", "collapses", "reductions", "guesses",
+                           "wide_sums", "pysr", "udsr", "parfam"}) {
+    FitOptions options = with_evaluations(30'000'000);
+    options.parameters["without"] = std::string(part);
+    const FitResult result = run_fit(law.data(), "relay", options);
+    EXPECT_LT(law.error_of(result.front[result.chosen]), 1e-9) << part;
+    const bool by_product = result.note == "explained by a product of powers";
+    EXPECT_EQ(by_product, part != std::string("products")) << part << ": " << result.note;
+  }
+}
+
+// The searches for structure may take all of the time: a formula there is all the same.
+TEST(Relay, AnswersWhenTheClockHasRunOutBeforeItsMembers) {
+  const DrawnLaw law("2*x + 0.5", {{"x", -1, 1}}, 60, 0.05);
+  FitOptions options;
+  options.limits.cpu_seconds = 0;
+  for (const char* name : {"pysr", "relay"}) {
+    EXPECT_EQ(run_fit(law.data(), name, options).front.size(), 1U) << name;
+  }
+}
+
 // Hundreds of pairs are left alone: what is looked for is still found, within memory and time.
 TEST(Relay, TakesDozensOfInputs) {
   std::vector<testing::DrawnInput> inputs;
