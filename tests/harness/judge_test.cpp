@@ -177,6 +177,15 @@ TEST(JudgeFormula, AsksForAGrowingFrictionBeyondTheStribeckRange) {
   EXPECT_EQ(judged("v^3 - 3 * v").monotone, PhysicsProof::refuted);   // falls up to 1
 }
 
+// The top speed is that of the faster direction: up to 2 of 8 friction may fall.
+TEST(JudgeFormula, TakesTheStribeckRangeOfTheFasterDirection) {
+  Problem problem = two_stage_problem();
+  problem.inputs[0].high = 8;
+  Record record;
+  judge_formula(problem, {parse("v^3 - 3 * v", problem.input_names()), {}}, record);
+  EXPECT_EQ(record.monotone, PhysicsProof::proved);
+}
+
 TEST(JudgeFront, KeepsNoFormulaWithoutAnErrorBesideOneThatHasIt) {
   const Problem problem = two_stage_problem();
   const std::vector<std::string> names = problem.input_names();

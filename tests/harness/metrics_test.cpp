@@ -39,6 +39,20 @@ TEST(ComputeErrors, GivesNoFigureWhereTheFormulaHasNoValue) {
   EXPECT_TRUE(std::isnan(figures.r2));
 }
 
+TEST(ComputeErrors, GivesNoFigureForOneInfiniteValueNorForNoRow) {
+  const double values[] = {1, std::numeric_limits<double>::infinity()};
+  const double target[] = {1, 2};
+  EXPECT_TRUE(std::isnan(compute_errors(values, target).mae));
+  EXPECT_TRUE(std::isnan(compute_errors(values, target).max_error));
+  EXPECT_TRUE(std::isnan(compute_errors({}, {}).mae));
+}
+
+TEST(ComputeErrors, TheLargestErrorMayBeSmall) {
+  const double values[] = {1, 2.25};
+  const double target[] = {1, 2};
+  EXPECT_DOUBLE_EQ(compute_errors(values, target).max_error, 0.25);
+}
+
 TEST(ComputeErrors, GivesNoRatioWhereItHasNoMeaning) {
   const double values[] = {1, 2};
   const double zeros[] = {0, 0};

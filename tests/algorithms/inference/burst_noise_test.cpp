@@ -48,6 +48,9 @@ TEST(BurstNoise, KnowsEachMovementsLevelAsWellAsItSays) {
   const BurstNoise noise(e.movement, e.speed, e.residual);
   EXPECT_EQ(noise.law().freedom, 5);
   EXPECT_NEAR(noise.rho(), kRho, 0.03);
+  // A movement's first row has none before it: it is an innovation by itself.
+  const double first = noise.deviation()[0] / noise.unit()[0];
+  EXPECT_NEAR(noise.innovation()[0], first * std::sqrt(1 - noise.rho() * noise.rho()), 1e-9);
   double squares = 0;
   for (std::size_t m = 0; m < kMovements; ++m) {
     const std::size_t row = m * kRows + 10;

@@ -91,6 +91,10 @@ TEST(EvidenceTable, PosteriorIsThatOfTheNormalPrior) {
   const Eigen::VectorXd mean = normal.inverse() * columns.transpose() * target;
   EXPECT_LT((found.mean - mean).cwiseAbs().maxCoeff(), 1e-10);
   EXPECT_NEAR(found.variance, (target - columns * mean).dot(target) / 50, 1e-10);
+  // What the columns still see of what is left.
+  const Eigen::VectorXd left =
+      table.left_of_products(std::array<const EffectBlock*, 2>{&one, &two});
+  EXPECT_LT((left - columns.transpose() * (target - columns * mean)).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 }  // namespace
