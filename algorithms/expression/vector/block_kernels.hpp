@@ -181,15 +181,16 @@ void fill_kernel(T* out, const T* a, const T*, const T*, std::size_t n) {
 
 constexpr std::size_t kSums = 16;
 
-inline void add_errors(double* sums, const double* a, const double* b, std::size_t n) {
+// error_at(i): the errors of the lanes from row i on.
+template <typename T, typename ErrorAt>
+void add_squares(double* sums, const T* a, const T* b, std::size_t n, const ErrorAt& error_at) {
   constexpr std::size_t kParts = kSums / kWidth<double>;
   F64 total[kParts];
   for (std::size_t p = 0; p < kParts; ++p) total[p] = load<F64>(sums + p * kWidth<double>);
   std::size_t i = 0;
   for (; i + kSums <= n; i += kSums) {
     for (std::size_t p = 0; p < kParts; ++p) {
-      const std::size_t at = i + p * kWidth<double>;
-      const F64 error = load<F64>(a + at) - load<F64>(b + at);
+      const F64 error = error_at(i + p * kWidth<double>);
       total[p] = total[p] + error * error;
     }
   }
@@ -200,25 +201,16 @@ inline void add_errors(double* sums, const double* a, const double* b, std::size
   }
 }
 
+inline void add_errors(double* sums, const double* a, const double* b, std::size_t n) {
+  add_squares(sums, a, b, n, [&](std::size_t at) { return load<F64>(a + at) - load<F64>(b + at); });
+}
+
 // Errors are taken in float, their squares summed in double.
 inline void add_errors(double* sums, const float* a, const float* b, std::size_t n) {
   using Half = float __attribute__((vector_size(kLaneBytes / 2)));
-  constexpr std::size_t kParts = kSums / kWidth<double>;
-  F64 total[kParts];
-  for (std::size_t p = 0; p < kParts; ++p) total[p] = load<F64>(sums + p * kWidth<double>);
-  std::size_t i = 0;
-  for (; i + kSums <= n; i += kSums) {
-    for (std::size_t p = 0; p < kParts; ++p) {
-      const std::size_t at = i + p * kWidth<double>;
-      const F64 error = __builtin_convertvector(load<Half>(a + at) - load<Half>(b + at), F64);
-      total[p] = total[p] + error * error;
-    }
-  }
-  for (std::size_t p = 0; p < kParts; ++p) store(sums + p * kWidth<double>, total[p]);
-  for (std::size_t lane = 0; i < n; ++i, ++lane) {
-    const auto error = static_cast<double>(a[i] - b[i]);
-    sums[lane] = sums[lane] + error * error;
-  }
+  add_squares(sums, a, b, n, [&](std::size_t at) {
+    return __builtin_convertvector(load<Half>(a + at) - load<Half>(b + at), F64);
+  });
 }
 
 template <typename T>
