@@ -14,6 +14,7 @@ std::string_view peer_grid();
 std::string_view parfam_optimizers_grid();
 std::string_view udsr_ablation_grid();
 std::string_view udsr_ablation_nguyen_grid();
+std::string_view relay_ablation_grid();
 std::string_view paper_reference();
 }  // namespace embedded
 
@@ -47,7 +48,8 @@ const std::vector<ShippedGrid>& shipped_grids() {
       shipped("peer", embedded::peer_grid()),
       shipped("parfam_optimizers", embedded::parfam_optimizers_grid()),
       shipped("udsr_ablation", embedded::udsr_ablation_grid()),
-      shipped("udsr_ablation_nguyen", embedded::udsr_ablation_nguyen_grid())};
+      shipped("udsr_ablation_nguyen", embedded::udsr_ablation_nguyen_grid()),
+      shipped("relay_ablation", embedded::relay_ablation_grid())};
   return kGrids;
 }
 
