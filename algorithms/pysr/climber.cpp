@@ -34,7 +34,7 @@ Climber::Climber(const Options& options, const OperatorSet& operators, const Val
       grower_(operators, validator.form(), libraries) {}
 
 std::optional<Fitted> Climber::fitted(Expression formula, int steps, Budget& budget) {
-  formula = validator_.form().simplified(formula);
+  formula = simplified(validator_.form(), formula);
   if (!validator_.admits(formula, options_.max_size)) return std::nullopt;
   Memory& memory = memory_[structure_hash(formula)];
   if (memory.visits >= kMostVisits) return memory.best;

@@ -124,7 +124,7 @@ void Validator::read_part_sizes(const std::string& text) {
 
 void Validator::read_units(const Options& options, std::span<const Input> inputs) {
   for (const Input& input : inputs) input_dimensions_.push_back(parse_unit(input.unit));
-  for (const Expression& column : form_.further_columns()) {
+  for (const Expression& column : form_.columns().formulas()) {
     const std::optional<Dimension> dimension = dimension_of(column, input_dimensions_);
     if (!dimension) {
       throw_bad_input("the template adds or takes functions of what has other units", "template",

@@ -37,6 +37,7 @@ Form::Form(std::size_t inputs) : Form(inputs, first_columns(inputs)) {}
 
 Form::Form(std::size_t inputs, std::vector<std::size_t> arguments)
     : inputs_(inputs),
+      columns_(inputs),
       outer_(Expression::variable(kFirstPart)),
       drawn_{0},
       takes_all_(arguments == first_columns(inputs)) {
@@ -44,7 +45,7 @@ Form::Form(std::size_t inputs, std::vector<std::size_t> arguments)
 }
 
 Form::Form(std::string_view text, std::span<const std::string> names)
-    : inputs_(names.size()), names_(names.begin(), names.end()) {
+    : inputs_(names.size()), columns_(names.size()) {
   std::vector<Hole> holes;
   Expression formula = parse_with_holes(text, names, holes);
   if (holes.empty()) {
@@ -58,7 +59,7 @@ Form::Form(std::string_view text, std::span<const std::string> names)
         throw_bad_input(fmt::format("an argument of the part '{}' holds no input", hole.name),
                         "template", "name inputs, or nothing for a number to be fitted");
       }
-      const std::size_t column = column_of(argument).variable;
+      const std::size_t column = columns_.leaf_of(argument).variable;
       if (std::ranges::count(part.arguments, column) == 0) part.arguments.push_back(column);
     }
     if (!part.arguments.empty()) drawn_.push_back(parts_.size());
@@ -77,7 +78,7 @@ Form::Form(std::string_view text, std::span<const std::string> names)
 // Appends the outer form of the subtree that ends at `node`: what holds no part becomes a column.
 void Form::build(const Expression& text, std::size_t node, std::vector<Node>& outer) {
   if (std::ranges::none_of(subtree_nodes(text, node), is_part) && !is_exponent(text, node)) {
-    outer.push_back(column_of(text.subtree(node)));
+    outer.push_back(columns_.leaf_of(text.subtree(node)));
     return;
   }
   const Children children = children_of(text, node);
@@ -85,46 +86,11 @@ void Form::build(const Expression& text, std::size_t node, std::vector<Node>& ou
   outer.push_back(text.node(node));
 }
 
-Node Form::column_of(const Expression& formula) {
-  if (formula.node(formula.root()).is_variable()) return formula.node(formula.root());
-  const auto known = std::ranges::find(further_, formula);
-  const auto place = static_cast<std::size_t>(known - further_.begin());
-  if (known == further_.end()) further_.push_back(formula);
-  return Node::input(inputs_ + place);
-}
-
-const Expression* Form::further(std::size_t column) const {
-  return column < inputs_ ? nullptr : &further_[column - inputs_];
-}
-
-bool Form::is_argument(std::size_t part, std::size_t column) const {
-  return std::ranges::count(parts_[part].arguments, column) > 0;
-}
-
 bool Form::has_fixed_exponent() const {
   for (std::size_t i = 0; i < outer_.size(); ++i) {
     if (is_exponent(outer_, i)) return true;
   }
   return false;
-}
-
-Rows Form::extended(Rows rows) const {
-  Evaluator evaluator;
-  std::vector<std::vector<double>> columns;
-  for (const Expression& formula : further_) {
-    std::vector<double> values(rows.size());
-    evaluator.evaluate(formula, rows.inputs(), values);
-    const auto bad = std::ranges::find_if(values, [](double x) { return !std::isfinite(x); });
-    if (bad != values.end()) {
-      throw_bad_input(fmt::format("'{}' is {} in row {} of the complete rows",
-                                  print(formula, names_), *bad, bad - values.begin() + 1),
-                      "template", "let the template compute only what the data allow");
-    }
-    columns.push_back(std::move(values));
-  }
-  columns.insert(columns.begin(), std::make_move_iterator(rows.columns.begin()),
-                 std::make_move_iterator(rows.columns.end()));
-  return {std::move(columns), std::move(rows.target)};
 }
 
 std::size_t Form::place(const Expression& formula, std::size_t part) const {
@@ -186,11 +152,6 @@ std::size_t Form::draw_part(RandomStream& random) const {
   return drawn_.size() == 1 ? drawn_[0] : drawn_[random.below(drawn_.size())];
 }
 
-Expression Form::simplified(const Expression& formula) const {
-  if (is_whole()) return pysr::simplified(formula);
-  return assembled([&](std::size_t k) { return pysr::simplified(part(formula, k)); });
-}
-
 bool Form::fits(const Expression& formula) const {
   if (takes_all_) return true;
   std::size_t left = formula.size();  // nodes not yet compared
@@ -202,37 +163,13 @@ bool Form::fits(const Expression& formula) const {
       continue;
     }
     const bool known = std::ranges::all_of(subtree_nodes(formula, left - 1), [&](const Node& node) {
-      return !node.is_variable() || is_argument(wanted.variable - kFirstPart, node.variable);
+      return !node.is_variable() ||
+             std::ranges::count(parts_[wanted.variable - kFirstPart].arguments, node.variable) > 0;
     });
     if (!known) return false;
     left -= formula.node(left - 1).length;
   }
   return left == 0;
-}
-
-Expression Form::written_out(const Expression& formula) const {
-  if (further_.empty()) return formula;
-  std::vector<Node> tape;
-  for (const Node& node : formula.nodes()) {
-    const Expression* further_column = node.is_variable() ? further(node.variable) : nullptr;
-    if (further_column == nullptr) {
-      tape.push_back(node);
-    } else {
-      tape.insert(tape.end(), further_column->nodes().begin(), further_column->nodes().end());
-    }
-  }
-  return Expression(std::move(tape));
-}
-
-std::string Form::parts_of(const Expression& formula) const {
-  if (names_.empty()) return {};
-  const std::optional<Expression> own = read(formula);
-  std::string text;
-  for (std::size_t k = 0; own && k < parts_.size(); ++k) {
-    const Expression part = written_out(own->subtree(place(*own, k)));
-    text += fmt::format("{}{} = {}", k == 0 ? "" : "; ", parts_[k].name, print(part, names_));
-  }
-  return text;
 }
 
 std::optional<Expression> Form::read(const Expression& formula) const {
@@ -242,7 +179,7 @@ std::optional<Expression> Form::read(const Expression& formula) const {
   // Takes a whole column where it stands next; false where it does not.
   const auto take_column = [&](std::size_t column) {
     const Node leaf = Node::input(column);
-    const Expression* text = further(column);
+    const Expression* text = columns_.formula_of(column);
     const std::span<const Node> wanted = text == nullptr ? std::span(&leaf, 1) : text->nodes();
     if (left < wanted.size() ||
         !std::ranges::equal(wanted, formula.nodes().subspan(left - wanted.size(), wanted.size()),
@@ -274,6 +211,22 @@ std::optional<Expression> Form::read(const Expression& formula) const {
   if (left != 0) return std::nullopt;
   std::ranges::reverse(reversed);
   return Expression(std::move(reversed));
+}
+
+Expression simplified(const Form& form, const Expression& formula) {
+  if (form.is_whole()) return simplified(formula);
+  return form.assembled([&](std::size_t k) { return simplified(form.part(formula, k)); });
+}
+
+std::string parts_text(const Form& form, std::span<const std::string> names,
+                       const Expression& formula) {
+  const std::optional<Expression> own = form.read(formula);
+  std::string text;
+  for (std::size_t k = 0; own && k < form.parts(); ++k) {
+    const Expression part = form.columns().written_out(own->subtree(form.place(*own, k)));
+    text += fmt::format("{}{} = {}", k == 0 ? "" : "; ", form.name(k), print(part, names));
+  }
+  return text;
 }
 
 }  // namespace tribench::pysr

@@ -27,7 +27,7 @@
 #include <vector>
 
 #include "algorithms/expression/expression.hpp"
-#include "algorithms/pysr/rows.hpp"
+#include "algorithms/pysr/computed_columns.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench::pysr {
@@ -52,11 +52,8 @@ class Form {
   // The columns of the rows that are its arguments.
   std::span<const std::size_t> arguments(std::size_t part) const { return parts_[part].arguments; }
 
-  // The rows with a column for everything of the template that is computed from inputs alone.
-  // Throws Error (bad_input) where one is not finite.
-  Rows extended(Rows rows) const;
-  // The formulas of these further columns, over the inputs.
-  std::span<const Expression> further_columns() const { return further_; }
+  // What the form computes from inputs alone, as columns beside them.
+  const ComputedColumns& columns() const { return columns_; }
 
   // Where the part ends in a formula of this form. O(size of the outer form).
   std::size_t place(const Expression& formula, std::size_t part) const;
@@ -70,18 +67,10 @@ class Form {
 
   // A part drawn for a change, among those with arguments; no draw where there is no choice.
   std::size_t draw_part(RandomStream& random) const;
-  // Each part simplified.
-  Expression simplified(const Expression& formula) const;
-
   // Whether a tape has this form, each part with no variables but its arguments.
   bool fits(const Expression& formula) const;
-  // As a formula of the inputs.
-  Expression written_out(const Expression& formula) const;
-  // The inverse: a formula of the inputs read as one of this form; none where it has another.
+  // A formula of the inputs, written out, read as one of this form; none where it has another.
   std::optional<Expression> read(const Expression& formula) const;
-  // What a formula of the inputs, written out, puts in for the parts: "f = 2*abs(v); p = 0.3".
-  // Empty without a template and for a formula of another form.
-  std::string parts_of(const Expression& formula) const;
 
  private:
   struct Part {
@@ -89,17 +78,21 @@ class Form {
     std::vector<std::size_t> arguments;
   };
   void build(const Expression& text, std::size_t node, std::vector<Node>& outer);
-  Node column_of(const Expression& formula);
-  bool is_argument(std::size_t part, std::size_t column) const;
-  const Expression* further(std::size_t column) const;
 
   std::size_t inputs_;
-  std::vector<std::string> names_;   // of the inputs; empty without a template
-  Expression outer_;                 // part k is the variable kFirstPart + k
-  std::vector<Part> parts_;          // in the order of the tape
-  std::vector<Expression> further_;  // columns inputs_, inputs_ + 1, ...
-  std::vector<std::size_t> drawn_;   // parts with arguments
-  bool takes_all_ = false;           // one part, argument i is column i: nothing to rename
+  Expression outer_;         // part k is the variable kFirstPart + k
+  std::vector<Part> parts_;  // in the order of the tape
+  ComputedColumns columns_;
+  std::vector<std::size_t> drawn_;  // parts with arguments
+  bool takes_all_ = false;          // one part, argument i is column i: nothing to rename
 };
+
+// Each part simplified.
+Expression simplified(const Form& form, const Expression& formula);
+
+// What a formula of the inputs, written out, puts in for the parts: "f = 2*abs(v); p = 0.3". Empty
+// for a formula of another form.
+std::string parts_text(const Form& form, std::span<const std::string> names,
+                       const Expression& formula);
 
 }  // namespace tribench::pysr

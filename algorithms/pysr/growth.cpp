@@ -275,7 +275,7 @@ std::vector<Proposal> Grower::prune(const Expression& formula, const Rows& rows,
       Expression pruned = formula;
       const double change = formula.node(i).value - value;
       pruned.set_constant(i, value);
-      pruned = form_->simplified(pruned);
+      pruned = simplified(*form_, pruned);
       if (pruned.size() < formula.size()) {
         proposals.push_back({std::move(pruned), -change * change / unit[k]});
       }

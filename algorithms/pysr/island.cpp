@@ -237,7 +237,7 @@ void Island::tidy(const EpochState& state, RandomStream& random, Budget& budget)
   const Options& options = shared_.options;
   for (Member& member : members_) {
     if (budget.exhausted()) return;
-    Expression simpler = form_.simplified(member.formula);
+    Expression simpler = simplified(form_, member.formula);
     const bool shorter =
         simpler.size() < member.formula.size() && shared_.validator.admits(simpler, state.max_size);
     const bool batched = options.batching == Batching::on;

@@ -69,7 +69,7 @@ std::vector<Expression> Offspring::propose(MutationKind kind, const Subject& sub
                                                          2 * kGrowthChildren, random, budget)
                                           : grower_.prune(parent.formula, step.rows, budget);
     for (Proposal& proposal : proposals) {
-      Expression child = form_.simplified(proposal.formula);
+      Expression child = simplified(form_, proposal.formula);
       if (!shared_.validator.admits(child, step.state.max_size)) continue;
       if (shared_.options.novelty && seen_.contains(structure_hash(child))) continue;
       children.push_back(std::move(child));
@@ -79,7 +79,7 @@ std::vector<Expression> Offspring::propose(MutationKind kind, const Subject& sub
   }
   if (kind == MutationKind::simplify || kind == MutationKind::optimize) {
     Expression child =
-        kind == MutationKind::simplify ? form_.simplified(parent.formula) : parent.formula;
+        kind == MutationKind::simplify ? simplified(form_, parent.formula) : parent.formula;
     if (kind == MutationKind::optimize) {
       scorer_.fit(child, step.rows, shared_.options.optimize_iterations, budget);
     }
@@ -145,7 +145,7 @@ std::optional<Member> Offspring::solved_back(const Member& parent, std::span<con
       backsolve(parent.formula, members, shared_.rows,
                 static_cast<std::size_t>(step.state.max_size), random, budget);
   if (!child) return std::nullopt;
-  if (shared_.options.fit_children) *child = form_.simplified(*child);
+  if (shared_.options.fit_children) *child = simplified(form_, *child);
   if (!shared_.validator.admits(*child, step.state.max_size)) return std::nullopt;
   std::optional<Member> member = scored(std::move(*child), whole, false, budget);
   if (!member) return std::nullopt;

@@ -11,15 +11,12 @@
 #include "algorithms/pysr/feature_selection.hpp"
 
 namespace tribench::pysr {
-namespace {
 
 std::vector<std::string> names_of(std::span<const Input> inputs) {
   std::vector<std::string> names;
   for (const Input& input : inputs) names.push_back(input.name);
   return names;
 }
-
-}  // namespace
 
 void add_to_note(std::string& note, const std::string& what) {
   if (!note.empty() && !what.empty()) note += "; ";

@@ -16,6 +16,8 @@ namespace tribench::pysr {
 // Appends to the one line of a record's note.
 void add_to_note(std::string& note, const std::string& what);
 
+std::vector<std::string> names_of(std::span<const Input> inputs);
+
 // `rows` has the inputs alone. Throws Error (bad_input) for a template that does not fit them.
 Form prepare_form(const Options& options, const Rows& rows, FitContext& context, std::string& note);
 

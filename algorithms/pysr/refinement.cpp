@@ -61,7 +61,7 @@ std::vector<Candidate> refined_front(Climber& climber, const Options& options, c
     Candidate candidate{fitted.formula, {}};
     candidate.point.loss = fitted.loss;
     candidate.point.evidence_against = fitted.against;
-    candidate.point.size = paper_complexity(form.written_out(fitted.formula));
+    candidate.point.size = paper_complexity(form.columns().written_out(fitted.formula));
     candidates.push_back(std::move(candidate));
   };
   climber.on_fitted(enter);

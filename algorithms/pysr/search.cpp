@@ -255,7 +255,7 @@ std::vector<Candidate> Search::polished_front() {
   std::function<bool(const Expression&)> admitted;
   if (options_.safe || context_.operators.proved_free_only()) {
     admitted = [&](const Expression& formula) {
-      return prove_free(form.written_out(formula), box_).verdict == Verdict::proved_free;
+      return prove_free(form.columns().written_out(formula), box_).verdict == Verdict::proved_free;
     };
   }
   return refined_front(climber, options_, form, all_, hall_.front(), admitted,
@@ -283,7 +283,7 @@ FitResult Search::result_of(const std::vector<Candidate>& front) const {
   std::vector<std::size_t> places;
   for (const Candidate& candidate : front) {
     places.push_back(result.front.size());
-    result.front.push_back(validator_.form().written_out(candidate.formula));
+    result.front.push_back(validator_.form().columns().written_out(candidate.formula));
     points.push_back(candidate.point);
   }
   // The formula the method stands for must not be wrong between the training points: the next
@@ -311,7 +311,7 @@ FitResult unsearched(const Form& form, const Rows& rows, std::string note) {
   for (const double value : rows.target) mean += value / static_cast<double>(rows.size());
   if (!form.is_whole()) mean = 0;
   const auto part = [mean](std::size_t) { return Expression::constant(mean); };
-  return {{form.written_out(form.assembled(part))},
+  return {{form.columns().written_out(form.assembled(part))},
           0,
           StopReason::budget,
           std::move(note),
@@ -325,7 +325,8 @@ FitResult search(const Options& given, FitContext& context) {
   if (complete.size() == 0) return FitResult::unsupported("no row has a finite target and inputs");
   std::string note;
   const Form form = prepare_form(given, complete, context, note);
-  const Rows all = form.extended(std::move(complete));
+  const std::vector<std::string> names = names_of(context.data.inputs);
+  const Rows all = form.columns().extended(std::move(complete), names);
   if (form.is_whole() &&
       std::ranges::adjacent_find(all.target, std::ranges::not_equal_to{}) == all.target.end()) {
     return {{Expression::constant(all.target[0])}, 0, StopReason::converged, "constant target"};
@@ -344,7 +345,9 @@ FitResult search(const Options& given, FitContext& context) {
   }
   // The clock had run out before anything was scored.
   if (result.front.empty()) return unsearched(form, all, "no budget");
-  add_to_note(note, form.parts_of(result.front[result.chosen]));
+  if (!given.form.empty()) {
+    add_to_note(note, parts_text(form, names, result.front[result.chosen]));
+  }
   result.note = std::move(note);
   result.keeps_form = !form.is_whole();
   return result;
