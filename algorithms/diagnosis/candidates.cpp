@@ -142,6 +142,108 @@ std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
   return all;
 }
 
+namespace {
+
+// Atoms whose columns are as they stand, so that two of them can be compared with two others.
+bool is_rigid(const Atom& atom) {
+  return std::ranges::none_of(atom.shapes, [](const Shape& shape) { return shape.refined(); });
+}
+
+// Pairs of a family's atoms, a first one that may stand alone and any second, by what they explain
+// of the residual more than by chance.
+class Pairs {
+ public:
+  Pairs(std::size_t family, const Eigen::MatrixXd& x, const Eigen::VectorXd& y, const Round& round,
+        const Campaign& campaign)
+      : campaign_(campaign) {
+    const std::vector<Atom>& atoms = campaign.library.atoms;
+    std::vector<Eigen::Index> columns;
+    for (std::size_t k = 0; k < atoms.size(); ++k) {
+      if (atoms[k].family != family || campaign.library.usable[k] == 0) continue;
+      const Block& block = campaign.library.blocks[k];
+      atoms_.push_back(
+          {k, static_cast<Eigen::Index>(columns.size()), static_cast<Eigen::Index>(block.count)});
+      for (std::size_t j = 0; j < block.count; ++j) {
+        columns.push_back(static_cast<Eigen::Index>(block.first + j));
+      }
+    }
+    const Eigen::MatrixXd basis = orthonormal_basis(x);
+    const Eigen::MatrixXd z = project_off(round.columns(Eigen::all, columns), basis);
+    gram_ = z.transpose() * z;
+    cross_ = z.transpose() * project_off(y, basis);
+  }
+
+  // Best first.
+  std::vector<std::pair<std::size_t, std::size_t>> ranked(double unit) const {
+    std::vector<std::pair<double, std::pair<std::size_t, std::size_t>>> all;
+    for (const Place& first : atoms_) {
+      const Atom& atom = campaign_.library.atoms[first.atom];
+      if (atom.beside_another || !is_rigid(atom)) continue;
+      for (const Place& second : atoms_) {
+        if (second.atom == first.atom) continue;
+        const auto columns = static_cast<double>(first.count + second.count);
+        all.push_back({explained(first, second) / unit - columns, {first.atom, second.atom}});
+      }
+    }
+    std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (const auto& one : all) pairs.push_back(one.second);
+    return pairs;
+  }
+
+ private:
+  struct Place {
+    std::size_t atom;
+    Eigen::Index first;  // column
+    Eigen::Index count;
+  };
+
+  double explained(const Place& a, const Place& b) const {
+    constexpr double kRidge = 1e-6;
+    std::vector<Eigen::Index> columns;
+    for (const Place& one : {a, b}) {
+      for (Eigen::Index j = 0; j < one.count; ++j) columns.push_back(one.first + j);
+    }
+    Eigen::MatrixXd gram = gram_(columns, columns);
+    gram.diagonal() *= 1 + kRidge;
+    const Eigen::VectorXd cross = cross_(columns);
+    return cross.dot(solve_symmetric(gram, cross));
+  }
+
+  const Campaign& campaign_;
+  std::vector<Place> atoms_;
+  Eigen::MatrixXd gram_;
+  Eigen::VectorXd cross_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> best_pair(const Candidate& second, const Round& round,
+                                   const FittedModel& model, const Campaign& campaign) {
+  const std::vector<Atom>& own = model.model.atoms;
+  const auto first = std::ranges::find(own, second.family, &Atom::family);
+  if (first == own.end() || !is_rigid(*first)) return {};
+  const LoopModel rest = model.model.without(second.family);
+  const Eigen::MatrixXd x = whitened(tangent(rest, campaign.data), campaign.clusters, model.noise);
+  const Eigen::VectorXd y = whitened(target_vector(campaign.data) - predict(rest, campaign.data),
+                                     campaign.clusters, model.noise);
+  std::vector<std::pair<std::size_t, std::size_t>> pairs =
+      Pairs(second.family, x, y, round, campaign).ranked(model.noise.unit());
+  if (pairs.size() > kAtomsTried) pairs.resize(kAtomsTried);
+  std::vector<std::size_t> best;
+  Eigen::VectorXd best_losses = second.losses;
+  for (const auto& [a, b] : pairs) {
+    const Eigen::MatrixXd both = beside(beside(x, campaign.library.block_of(round.columns, a)),
+                                        campaign.library.block_of(round.columns, b));
+    Eigen::VectorXd losses = held_out_losses(both, y, campaign.clusters, model.noise);
+    const Gain lead = paired_gain(best_losses, losses);
+    if (!(lead.nats > lead.error)) continue;
+    best = {a, b};
+    best_losses = std::move(losses);
+  }
+  return best;
+}
+
 double canonical_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   const Eigen::MatrixXd qa = orthonormal_basis(a);
   const Eigen::MatrixXd qb = orthonormal_basis(b);

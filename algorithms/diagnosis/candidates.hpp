@@ -36,6 +36,12 @@ std::optional<Candidate> best_atom(std::size_t family, const Round& round, const
 std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
                                 const Campaign& campaign);
 
+// Which of several waves is the first is told beside its second alone, where the joint does not
+// turn far enough: two atoms of the family of `second` that predict better together than the one in
+// the model and `second`. Empty: none do, or the one in the model has a shape of its own.
+std::vector<std::size_t> best_pair(const Candidate& second, const Round& round,
+                                   const FittedModel& model, const Campaign& campaign);
+
 // The families that explain nearly the same, and the causes that always do.
 std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round,
                                      const FittedModel& model, const Campaign& campaign);

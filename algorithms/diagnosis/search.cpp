@@ -31,8 +31,11 @@ bool add(SearchState& state, const Candidate& winner, const Round& round,
         kMostAtoms, campaign.families[winner.family].name));
     return false;
   }
-  LoopModel model = state.model.model;
-  model.add(campaign.library.atoms[winner.atom]);
+  std::vector<std::size_t> atoms;
+  if (known == 1) atoms = best_pair(winner, round, state.model, campaign);
+  LoopModel model = atoms.empty() ? state.model.model : state.model.model.without(winner.family);
+  if (atoms.empty()) atoms = {winner.atom};
+  for (const std::size_t atom : atoms) model.add(campaign.library.atoms[atom]);
   FittedModel extended = fit_in_its_noise(std::move(model), campaign, FitScope::everything);
   // One fold alone can tell of it: that it holds elsewhere too is beyond these data.
   if (!extended.losses.allFinite()) return false;
@@ -111,10 +114,9 @@ SearchResult begin_otherwise(SearchResult one, SearchResult start, const Round& 
                              const Campaign& campaign, RandomStream random) {
   if (one.leftover.inputs.empty() || one.taken.empty()) return one;
   start.state.left_out.push_back(one.taken.front());
-  const FittedModel& whole = one.whole;
   SearchResult other = take_effects(std::move(start), round, campaign, random);
   if (!other.leftover.inputs.empty() || other.state.found.empty()) return one;
-  const Gain lead = lead_over(whole, other.state.model, campaign);
+  const Gain lead = lead_over(one.whole, other.state.model, campaign);
   return lead.nats > 0 ? other : one;
 }
 

@@ -14,6 +14,7 @@
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
 #include "problems/data_problem.hpp"
+#include "problems/joint_simulation/controlled_run.hpp"
 #include "problems/joint_simulation/simulated_campaign.hpp"
 #include "problems/kuka/planted.hpp"
 #include "problems/preparation/test_movements.hpp"
@@ -373,6 +374,17 @@ TEST(Diagnosis, SaysNothingAboutATargetOfNoughtOrOfOneSize) {
     const Diagnosis diagnosis = diagnose_most(data, options_of_planted());
     EXPECT_TRUE(diagnosis.effects.empty()) << size;
     EXPECT_TRUE(diagnosis.events.empty()) << size;
+  }
+}
+
+// In a third of a turn twice a wave explains nearly what the wave does: taken first it left a
+// payload beside it.
+TEST(Diagnosis, HarmonicsOfAWaveAreToldInAThirdOfATurn) {
+  for (const std::uint64_t seed : {8106U, 8186U}) {
+    const simulation::ControlledRun run = simulation::run_under_control(
+        {.cause = "output_ripple_harmonics", .scale = 1.5, .rate_hz = 250}, seed);
+    const Observations data = observe(run.clean()).averaged(6000).data;
+    EXPECT_EQ(families(diagnose_most(data, {})), std::vector<std::string>{"output_ripple"}) << seed;
   }
 }
 
