@@ -160,6 +160,11 @@ TEST_F(UnequalRowsTest, WeightsAndStandardDeviationsSayWhichRowsCount) {
   EXPECT_FALSE(knows_the_slope(answer({"--method", "linear"}), 0.01));
   EXPECT_TRUE(knows_the_slope(answer({"--method", "linear", "--sigma", "sigma"}), 0.01));
   EXPECT_TRUE(knows_the_slope(answer({"--method", "linear", "--weights", "weight"}), 0.01));
+  for (const char* method : {"pysr", "udsr", "parfam", "relay"}) {
+    EXPECT_TRUE(knows_the_slope(
+        answer({"--method", method, "--evaluations", "30000000", "--sigma", "sigma"}), 0.01))
+        << method;
+  }
   EXPECT_THAT(refusal({"--method", "linear", "--weights", "bad"}),
               AllOf(HasSubstr("row 1"), HasSubstr("0 or more")));
   EXPECT_THAT(refusal({"--method", "linear", "--sigma", "weight"}), HasSubstr("above 0"));
