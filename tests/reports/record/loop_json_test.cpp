@@ -35,6 +35,9 @@ TEST(LoopJson, RoundsTheSeriesOfPictures) {
   EXPECT_EQ(x[0], 1);
   EXPECT_EQ(x[1], 0.12346);
   EXPECT_TRUE(x[2].is_null());
+  // Of the largest, however small that is.
+  record.pictures.friction.series[0].x = {1e-6, 1.23456789e-7};
+  EXPECT_EQ(loop_pictures_json(record)["friction"]["series"][0]["x"][1], 1.2346e-7);
 }
 
 }  // namespace

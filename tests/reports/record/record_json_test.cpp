@@ -77,6 +77,14 @@ TEST(RecordJson, RefusesAWordThatIsNoneOfTheColumns) {
   }
 }
 
+TEST(RecordRow, HasTheColumnsAskedForInTheirOrderAndNoOther) {
+  Record record;
+  record.cell = "a cell";
+  record.method = "line";
+  EXPECT_EQ(record_row(record, {"method", "cell"}).dump(), "[\"line\",\"a cell\"]");
+  EXPECT_THROW(record_row(record, {"method", "no_column"}), Error);
+}
+
 TEST(FailureReason, IsReadBackWhateverItSays) {
   for (const std::string text :
        {"", "timeout", "cpu_limit", "out_of_memory", "quarantined", "crashed (SIGSEGV)",
