@@ -210,14 +210,28 @@ bool completes_time(const ColumnPlan& first, const ColumnPlan& second) {
          second.unit.symbol() == "ns";
 }
 
+bool is_named_time(const ColumnPlan& plan, std::string_view unit) {
+  const ColumnReading& reading = plan.reading;
+  return reading.role == Role::time && plan.unit.symbol() == unit && reading.unit_from == "name";
+}
+
+// Seconds beside nanoseconds, both named so, are a stamp before any other column that sounds like a
+// time: a recorder's own time beside the message's.
+bool is_split_stamp(const ColumnPlan& plan, const std::vector<ColumnPlan>& plans) {
+  return is_named_time(plan, "s") &&
+         std::ranges::any_of(plans, [](const auto& other) { return is_named_time(other, "ns"); });
+}
+
 // A role given by hand takes it away from columns that only sound like it; of several that sound
 // alike the one whose name is closest keeps it, then the first.
 void settle_roles(std::vector<ColumnPlan>& plans, DataFile& out) {
   std::map<Role, std::size_t> owner;
   std::vector<std::size_t> order(plans.size());
   for (std::size_t j = 0; j < order.size(); ++j) order[j] = j;
-  std::ranges::stable_sort(
-      order, {}, [&](std::size_t j) { return plans[j].role_given ? -1 : plans[j].doubt; });
+  std::ranges::stable_sort(order, {}, [&](std::size_t j) {
+    if (plans[j].role_given) return -2;
+    return is_split_stamp(plans[j], plans) ? -1 : plans[j].doubt;
+  });
   for (const std::size_t j : order) {
     ColumnPlan& plan = plans[j];
     if (plan.reading.role == Role::none) continue;

@@ -281,6 +281,17 @@ TEST(Csv, SecondsAndNanosecondsOfAStampAreOneTime) {
   EXPECT_NEAR(file.data.channels[0].values[1] - file.data.channels[0].values[0], 0.002, 1e-9);
 }
 
+TEST(Csv, AStampInTwoColumnsIsTheTimeBesideARecordersOwn) {
+  const DataFile file = parse_csv(
+      "Time,header.stamp.secs,header.stamp.nsecs,position\n"
+      "1700000009.2,1700000000,999000000,0.1\n1700000009.3,1700000001,1000000,0.2\n",
+      "bag.csv");
+  const Channel* time = file.data.find(Role::time);
+  ASSERT_NE(time, nullptr);
+  EXPECT_EQ(time->name, "header.stamp.secs");
+  EXPECT_NEAR(time->values[1] - time->values[0], 0.002, 1e-9);
+}
+
 TEST(Csv, ARowOfUnitsCountsMoreThanWhatASourceUsuallyMeans) {
   const DataFile file =
       parse_csv("time;position;velocity\n[ms];[deg];[deg/s]\n0;1,5;2\n10;3;4\n", "log.csv");
