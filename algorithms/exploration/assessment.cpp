@@ -114,7 +114,8 @@ Noise Assessor::noise_left_by(const Explanation& one, std::vector<double>& weigh
       return block;
     };
     for (const EffectBlock* block : one.blocks) {
-      blocks.push_back({renumbered(block->columns.size()), block->size});
+      blocks.push_back(*block);
+      blocks.back().columns = renumbered(block->columns.size());
     }
     for (std::size_t k = 0; k < blocks.size(); ++k) {
       blocks[k].misfit = renumbered(one.blocks[k]->misfit.size());

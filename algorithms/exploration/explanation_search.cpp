@@ -34,6 +34,20 @@ constexpr double kVisited = 20;
 
 double choose(double n, int k) { return k == 2 ? n * (n - 1) / 2 : n * (n - 1) * (n - 2) / 6; }
 
+// Of a block the columns with these numbers in it.
+EffectBlock part_of(const EffectBlock& block, const ColumnBlock& kept) {
+  if (kept.size() == block.columns.size()) return block;
+  EffectBlock part{{}, block.size, block.misfit};
+  for (const Eigen::Index k : kept)
+    part.columns.push_back(block.columns[static_cast<std::size_t>(k)]);
+  if (block.metric.size() > 0) {
+    part.metric = block.metric(kept, kept);
+    part.metric /= part.metric.trace();
+  }
+  if (block.shared.size() > 0) part.shared = block.shared(kept, Eigen::all);
+  return part;
+}
+
 class ExplanationSearch {
  public:
   ExplanationSearch(const ExplanationSpace& space, const EvidenceTable& table)
@@ -70,11 +84,13 @@ class ExplanationSearch {
     if (!family.unknown) return family.blocks;
     std::vector<EffectBlock> all;
     for (const EffectBlock& block : family.blocks) {
-      EffectBlock seen{{}, block.size, block.misfit};
-      for (const Eigen::Index j : block.columns) {
-        if (table_.gram()(j, j) * block.size * block.size >= kVisited) seen.columns.push_back(j);
+      ColumnBlock seen;
+      for (std::size_t k = 0; k < block.columns.size(); ++k) {
+        const Eigen::Index j = block.columns[k];
+        if (table_.gram()(j, j) * block.size * block.size < kVisited) continue;
+        seen.push_back(static_cast<Eigen::Index>(k));
       }
-      if (!seen.columns.empty()) all.push_back(std::move(seen));
+      if (!seen.empty()) all.push_back(part_of(block, seen));
     }
     return all;
   }

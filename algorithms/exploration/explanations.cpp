@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
@@ -27,6 +28,8 @@ constexpr double kMisfit = 0.27;  // of a family's size: what one expects of its
 constexpr Eigen::Index kMisfitColumns = 14;
 constexpr Eigen::Index kMisfitCentres = 3;
 constexpr double kLeastMisfit = 1e-4;  // of the variance of the direction of most
+// Of the mean squares of a block's columns: sums of them that are smaller are no effect of it.
+constexpr double kSameShape = 1e-4;
 
 // Where something else is looked for as a whole, and the finer grids for something narrow.
 struct PlaceGrid {
@@ -133,6 +136,7 @@ ExplanationSpace::ExplanationSpace(const Observations& reference,
   add_places();
   settle_scale();
   add_misfits();
+  measure_blocks();
   std::erase_if(families_, [](const ExplainingFamily& family) { return family.blocks.empty(); });
 }
 
@@ -277,15 +281,9 @@ void ExplanationSpace::settle_scale() {
       std::erase_if(block.misfit, is_dead);
     }
     std::erase_if(family.blocks, [](const EffectBlock& block) { return block.columns.empty(); });
-    std::ranges::sort(family.blocks);
-    family.blocks.erase(std::unique(family.blocks.begin(), family.blocks.end()),
-                        family.blocks.end());
-    std::vector<EffectBlock> sized;
-    for (const double size : kSizes) {
-      for (const EffectBlock& block : family.blocks)
-        sized.push_back({block.columns, size, block.misfit});
-    }
-    family.blocks = std::move(sized);
+    std::ranges::stable_sort(family.blocks, {}, &EffectBlock::columns);
+    const auto again = std::ranges::unique(family.blocks, {}, &EffectBlock::columns);
+    family.blocks.erase(again.begin(), again.end());
     if (family.blocks.empty()) untestable_.push_back(family.name);
   }
 }
@@ -339,6 +337,33 @@ void ExplanationSpace::add_misfits() {
     scale_.conservativeResize(scale_.size() + kept);
     scale_.tail(kept).setOnes();
     misfits_[f].fold = std::move(fold);
+  }
+}
+
+// The size of an effect and what a misfit has of it, over the reference; then every block in
+// several sizes.
+void ExplanationSpace::measure_blocks() {
+  const Eigen::MatrixXd base = base_columns(reference_);
+  Eigen::MatrixXd all = columns(reference_);
+  all -= base * base.colPivHouseholderQr().solve(all);
+  for (ExplainingFamily& family : families_) {
+    for (EffectBlock& block : family.blocks) {
+      const Eigen::MatrixXd own = all(Eigen::all, block.columns);
+      Eigen::MatrixXd gram = own.transpose() * own;
+      const double squares = gram.trace();
+      block.metric = gram / squares;
+      gram.diagonal().array() += kSameShape * squares / static_cast<double>(gram.cols());
+      if (block.misfit.empty()) continue;
+      block.shared = gram.llt().solve(own.transpose() * all(Eigen::all, block.misfit));
+    }
+    std::vector<EffectBlock> sized;
+    for (const double size : kSizes) {
+      for (EffectBlock& block : family.blocks) {
+        block.size = size;
+        sized.push_back(block);
+      }
+    }
+    family.blocks = std::move(sized);
   }
 }
 

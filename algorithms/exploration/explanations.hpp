@@ -9,7 +9,8 @@
 // its own misfit: what its shapes become where their size varies smoothly with the family's own
 // signals, the few directions of most variance over the reference. Where the family's shapes vanish
 // (a lag at constant speed, a ripple's mean over a turn) they vanish too, so that a misfit is no
-// reason to name another family. A sensor of temperature is late, too: what lives in a temperature
+// reason to name another family. What it has of the block's own shapes over the reference is the
+// effect and no misfit. A sensor of temperature is late, too: what lives in a temperature
 // may live in where the temperature is going.
 //
 // Columns of a row depend on its movement and the reference alone.
@@ -72,6 +73,7 @@ class ExplanationSpace {
   void add_places();
   void settle_scale();
   void add_misfits();
+  void measure_blocks();
   Eigen::MatrixXd shaped(const Misfit& misfit, const Observations& rows,
                          const Eigen::MatrixXd& formulas) const;
   // Unscaled; without the misfits' columns.

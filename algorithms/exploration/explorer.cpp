@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "algorithms/exploration/movement_choice.hpp"
@@ -15,7 +16,7 @@
 namespace tribench::loop {
 namespace {
 
-constexpr double kForeseenRate = 0.25;  // foreseen rows for a recorded one
+constexpr std::size_t kForeseenEvery = 4;  // of the rows that would be recorded
 constexpr double kReferenceRate_hz = 1;
 constexpr double kForeseeAgain = 1.3;  // time since it was foreseen
 constexpr double kWarmer_k = 2;
@@ -25,9 +26,10 @@ constexpr std::size_t kFewestMovements = 5;
 constexpr std::size_t kVerdictsTold = 5;
 constexpr double kRestCounts = 0.25;  // of a second of motion: it is waited for
 constexpr double kAskAgain = 1.1;     // seconds since the diagnosis said otherwise
-constexpr double kHindsight = 5;      // times alpha: what the weights may leave to others
 
-// Both ways at two speeds, and reversals: without one the distance since the last is not known.
+// Reversals, without which the distance since the last is not known, and both ways at two speeds;
+// with the loads and the other joint that the limits allow, as that costs no second. Then the same
+// without them, in place of what was refused.
 std::vector<PlannedMovement> opening_movements(const MotionLimits& limits) {
   const double centre = 0.5 * (limits.lowest_rad + limits.highest_rad);
   const double narrow = 0.0625 * (limits.highest_rad - limits.lowest_rad);
@@ -35,11 +37,23 @@ std::vector<PlannedMovement> opening_movements(const MotionLimits& limits) {
   PlannedMovement turns = two_tone_movement(0.6 * speed, centre - narrow, centre + narrow, 1);
   turns.duration *= 0.5;
   std::vector<PlannedMovement> all = {turns};
-  for (const auto& [part, reach] : {std::pair{0.5, 3.0}, std::pair{0.2, 1.0}}) {
-    for (const double direction : {1.0, -1.0}) {
-      all.push_back(constant_movement(direction * part * speed, centre - reach * narrow,
-                                      centre + reach * narrow, 1));
-    }
+  const double heavy = limits.greatest_load_factor;
+  const double light = limits.least_load_factor;
+  for (const auto& [part, reach, load] :
+       {std::tuple{0.5, 3.0, heavy}, std::tuple{-0.5, 3.0, light}, std::tuple{0.2, 1.0, light},
+        std::tuple{-0.2, 1.0, heavy}}) {
+    PlannedMovement straight =
+        constant_movement(part * speed, centre - reach * narrow, centre + reach * narrow, load);
+    if (broken_limit(straight, limits).broken()) straight.load_factor = 1;
+    all.push_back(straight);
+  }
+  all[1].other_velocity = limits.greatest_other_velocity_rad_s;
+  all[4].other_velocity = limits.greatest_other_velocity_rad_s;
+  for (std::size_t k = 0; k < kFewestMovements; ++k) {
+    PlannedMovement plain = all[k];
+    plain.load_factor = 1;
+    plain.other_velocity = 0;
+    all.push_back(plain);
   }
   return all;
 }
@@ -64,13 +78,20 @@ std::vector<WeighedVerdict> verdicts_of(const Assessment& now, bool alive_only) 
 
 std::vector<MovementRows> rows_of(const Observations& foreseen, std::size_t movements) {
   std::vector<MovementRows> rows(movements);
-  for (MovementRows& one : rows) one.counts = 1 / kForeseenRate;
+  for (MovementRows& one : rows) one.counts = static_cast<double>(kForeseenEvery);
   for (std::size_t i = 0; i < foreseen.rows(); ++i) {
     RowRange& range = rows[static_cast<std::size_t>(foreseen.movement[i])].rows;
     if (range.size() == 0) range.begin = i;
     range.end = i + 1;
   }
   return rows;
+}
+
+// Every so many rows. What remembers the motion needs all rows before it is thinned.
+Observations thinned(const Observations& rows, std::size_t every) {
+  std::vector<char> kept(rows.rows(), 0);
+  for (std::size_t i = every / 2; i < kept.size(); i += every) kept[i] = 1;
+  return rows.select(kept);
 }
 
 // Gains are those of the last look; what a movement costs changes with where the joint stands.
@@ -92,7 +113,7 @@ std::optional<NextMovement> RankedMovements::best(const ExplorationState& state)
     return cost_s[m] + kRestCounts * state.candidates[m].rest;
   };
   if (ranked_at_ != state.last->sums.rows()) {
-    choices_ = movement_gains(*state.last, state.foreseen, state.options.alpha);
+    choices_ = movement_gains(*state.last, state.foreseen, state.disputed);
     ranked_at_ = state.last->sums.rows();
   }
   const MovementChoice* best = nullptr;
@@ -128,8 +149,8 @@ class Explorer {
         out_.end = ExplorationEnd::stopped;
         break;
       }
-      const ExplorationState state{limits_, options_,    out_,      last(),
-                                   now_,    candidates_, foreseen_, refused_};
+      const ExplorationState state{limits_,     options_,  out_,     last(),    now_,
+                                   candidates_, foreseen_, refused_, disputed()};
       const std::optional<NextMovement> next = plan_(state);
       if (!next) {
         out_.end = ExplorationEnd::nothing_tells;
@@ -203,7 +224,7 @@ class Explorer {
   // What was said before the rows came says so, what they say in hindsight does, and the diagnosis.
   bool sure() {
     const WeighedVerdict leader = verdicts_of(*last(), false).front();
-    if (leader.weight < 1 - kHindsight * options_.alpha) return false;
+    if (leader.weight < 1 - options_.alpha) return false;
     if (log_e_value_of(leader.verdict) < -elementary::log(options_.alpha)) return false;
     if (denied_ == leader.verdict && out_.seconds < kAskAgain * denied_at_s_) return false;
     if (diagnosis_agrees()) return true;
@@ -242,14 +263,23 @@ class Explorer {
     });
   }
 
+  // Until the diagnosis agrees, what it says is a rival: it asks for an effect in several
+  // movements.
+  std::string disputed() const {
+    const bool denied = assessor_ && !denied_.empty() && last()->best().verdict == denied_;
+    return denied ? out_.diagnosis : "";
+  }
+
   bool can_look() const { return out_.steps.size() >= kFewestMovements; }
   const Assessment* last() const { return assessor_ ? &assessor_->last() : nullptr; }
 
   void make_space() {
-    const Dataset reference = reference_rows(candidates_, out_.data, limits_, kReferenceRate_hz);
+    const Dataset all = reference_rows(candidates_, out_.data, limits_, limits_.rate_hz);
+    const auto every = static_cast<std::size_t>(std::max(1.0, limits_.rate_hz / kReferenceRate_hz));
+    const Observations reference = thinned(observe_plan(all), every);
     std::vector<double> ratios;
     if (limits_.gear_ratio > 0) ratios.push_back(limits_.gear_ratio);
-    space_ = std::make_unique<ExplanationSpace>(observe_plan(reference), ratios);
+    space_ = std::make_unique<ExplanationSpace>(reference, ratios);
     out_.untestable = space_->untestable();
     assessor_ = std::make_unique<Assessor>(*space_, options_.alpha);
   }
@@ -264,9 +294,9 @@ class Explorer {
     foreseen_at_ = now_;
     // What was refused may be allowed at another warmth.
     std::ranges::fill(refused_, 0);
-    const Dataset plan =
-        foreseen_rows(candidates_, out_.data, limits_, now_, kForeseenRate * limits_.rate_hz);
-    const Observations rows = with_signals_of(space_->reference(), observe_plan(plan), plan);
+    const Dataset plan = foreseen_rows(candidates_, out_.data, limits_, now_, limits_.rate_hz);
+    const Observations all = thinned(observe_plan(plan), kForeseenEvery);
+    const Observations rows = with_signals_of(space_->reference(), all, plan);
     foreseen_.base = space_->base_columns(rows);
     foreseen_.columns = space_->columns(rows);
     foreseen_.movements = rows_of(rows, candidates_.size());

@@ -91,6 +91,7 @@ struct ExplorationState {
   std::span<const PlannedMovement> candidates;
   const Foreseen& foreseen;          // of the candidates, once there was a look
   const std::vector<char>& refused;  // per candidate
+  std::string disputed;              // what the diagnosis said instead of the likeliest verdict
 };
 
 struct NextMovement {

@@ -116,11 +116,13 @@ std::vector<PlannedMovement> candidate_movements(const MotionLimits& limits, dou
     movement.other_velocity = other_rad_s;
     keep_if_allowed(all, std::move(movement), limits, longest_s);
   };
+  const double other = limits.greatest_other_velocity_rad_s;
   for (const double part : kSpeeds) {
     const double speed = part * limits.speed_rad_s;
     for (const double factor : load_factors(limits)) {
       for (const double direction : {1.0, -1.0}) {
         add(constant_movement(direction * speed, low, high, factor), 0, 0);
+        if (other > 0) add(constant_movement(direction * speed, low, high, factor), 0, other);
         add(constant_movement(direction * speed, low, centre, factor), 0, 0);
         add(constant_movement(direction * speed, centre, high, factor), 0, 0);
         add(constant_movement(direction * speed, centre - narrow, centre + narrow, factor), 0, 0);
@@ -129,19 +131,17 @@ std::vector<PlannedMovement> candidate_movements(const MotionLimits& limits, dou
         PlannedMovement tones =
             two_tone_movement(speed, centre - reach * narrow, centre + reach * narrow, factor);
         add(tones, 0, 0);
+        if (other > 0) add(tones, 0, other);
         tones.duration /= 3;
         add(tones, 0, 0);
+        if (other > 0) add(tones, 0, other);
       }
     }
-    const double other = limits.greatest_other_velocity_rad_s;
     for (const double direction : {1.0, -1.0}) {
-      if (other > 0) add(constant_movement(direction * speed, low, high, 1), 0, other);
       add(constant_movement(direction * speed, low, high, 1), limits.longest_rest_s, 0);
       add(constant_movement(direction * speed, centre - narrow, centre + narrow, 1),
           limits.longest_rest_s, 0);
     }
-    if (other > 0)
-      add(two_tone_movement(speed, centre - 3 * narrow, centre + 3 * narrow, 1), 0, other);
     add(two_tone_movement(speed, centre - 3 * narrow, centre + 3 * narrow, 1),
         limits.longest_rest_s, 0);
   }

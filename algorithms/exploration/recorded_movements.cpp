@@ -71,7 +71,6 @@ struct Asking {
   const Foreseen& foreseen;
   const std::vector<char>& asked;
   const Assessment* last = nullptr;
-  double alpha = 0;
 };
 
 // What tells most of the base, a second.
@@ -105,7 +104,7 @@ Next most_evidence(const Asking& now) {
   if (now.last == nullptr) return most_of_the_base(now);
   std::optional<Next> best;
   double most = 0;
-  for (const MovementChoice& choice : movement_gains(*now.last, now.foreseen, now.alpha)) {
+  for (const MovementChoice& choice : movement_gains(*now.last, now.foreseen)) {
     if (now.asked[choice.movement] != 0) continue;
     const double rate = choice.gain / now.offered.seconds[choice.movement];
     if (best && !(rate > most)) continue;
@@ -191,7 +190,7 @@ AskedRecordings ask_for_recordings(const ExplanationSpace& space, const Observat
   Assessor assessor(space, alpha);
   const auto choose = [&](const std::vector<char>& asked) {
     const bool known = assessor.movements() >= kOpening;
-    return most_evidence({offered, foreseen, asked, known ? &assessor.last() : nullptr, alpha});
+    return most_evidence({offered, foreseen, asked, known ? &assessor.last() : nullptr});
   };
   const auto told = [&](std::size_t movement) {
     std::vector<char> one(offered.rows.size(), 0);

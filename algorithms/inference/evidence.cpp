@@ -28,10 +28,40 @@ Eigen::MatrixXd inverse_root(const Eigen::MatrixXd& products) {
          parts.eigenvalues().tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
+// Of coefficients in units of the noise: normal about `mean` / sigma with a covariance, where
+// 1/sigma^2 has a gamma distribution of this mean.
+struct NormalGamma {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;
+  double degrees_of_freedom;
+  double precision;
+};
+
+// Expectation of the fourth power of the effect, over that under the prior's unit covariance.
+double fourth_power(const Eigen::MatrixXd& metric, const NormalGamma& over) {
+  const Eigen::Index size = over.mean.size();
+  const Eigen::MatrixXd own =
+      metric.size() > 0 ? metric
+                        : Eigen::MatrixXd::Identity(size, size) / static_cast<double>(size);
+  const Eigen::MatrixXd spread = own * over.covariance;
+  const Eigen::VectorXd weighed = own * over.mean;
+  const double trace = spread.trace();
+  const double length = over.precision * over.mean.dot(weighed);
+  const double both = over.precision * weighed.dot(over.covariance * weighed);
+  const double squares = length * length * (1 + 2 / over.degrees_of_freedom) + 2 * length * trace +
+                         trace * trace + 4 * both +
+                         2 * spread.cwiseProduct(spread.transpose()).sum();
+  return squares / (1 + 2 * own.squaredNorm());
+}
+
 }  // namespace
 
-// Of the columns, those of a block times its size, over the root of how many they are, then those
-// of the misfits: (I + gram)^-1 and what follows.
+double prior_variance(const EffectBlock& block) {
+  return block.size * block.size / (2 * static_cast<double>(block.columns.size()));
+}
+
+// Of the columns, those of a block times its prior's spread, then what the misfits' have for
+// themselves: (I + gram)^-1 and what follows.
 struct EvidenceTable::Solved {
   ColumnBlock columns;
   Eigen::LLT<Eigen::MatrixXd> factor;
@@ -65,32 +95,55 @@ EvidenceTable::EvidenceTable(const EvidenceSums& sums) {
   dof_ = std::max(1.0, static_cast<double>(sums.rows() - root.cols()));
 }
 
+// Where a block's columns and its misfit's stand among all that are solved for.
+struct EvidenceTable::Places {
+  Eigen::Index own = 0;
+  Eigen::Index misfit = 0;
+};
+
+std::vector<EvidenceTable::Places> EvidenceTable::places_of(
+    std::span<const EffectBlock* const> blocks) {
+  std::vector<Places> places;
+  Eigen::Index next = 0;
+  for (const EffectBlock* block : blocks) {
+    places.push_back({next, 0});
+    next += static_cast<Eigen::Index>(block->columns.size());
+  }
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    places[b].misfit = next;
+    next += static_cast<Eigen::Index>(blocks[b]->misfit.size());
+  }
+  return places;
+}
+
 EvidenceTable::Solved EvidenceTable::solve(std::span<const EffectBlock* const> blocks) const {
   Solved solved;
   ColumnBlock& columns = solved.columns;
   std::vector<double> scale;
   for (const EffectBlock* block : blocks) {
     columns.insert(columns.end(), block->columns.begin(), block->columns.end());
-    const auto count = static_cast<double>(block->columns.size());
-    scale.resize(columns.size(), block->size / std::sqrt(count));
+    scale.resize(columns.size(), std::sqrt(prior_variance(*block)));
   }
   for (const EffectBlock* block : blocks) {
     columns.insert(columns.end(), block->misfit.begin(), block->misfit.end());
     scale.resize(columns.size(), block->size);
   }
-  const auto count = static_cast<Eigen::Index>(columns.size());
-  Eigen::MatrixXd gram(count, count);
-  Eigen::VectorXd cross(count);
-  solved.scale = Eigen::Map<const Eigen::VectorXd>(scale.data(), count);
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const Eigen::Index column = columns[static_cast<std::size_t>(j)];
-    for (Eigen::Index i = j; i < count; ++i) {
-      gram(i, j) =
-          solved.scale[i] * solved.scale[j] * gram_(columns[static_cast<std::size_t>(i)], column);
-    }
-    gram(j, j) += 1;
-    cross[j] = solved.scale[j] * cross_[column];
+  Eigen::MatrixXd gram = gram_(columns, columns);
+  Eigen::VectorXd cross = cross_(columns);
+  const std::vector<Places> places = places_of(blocks);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const Eigen::MatrixXd& shared = blocks[b]->shared;
+    if (shared.size() == 0) continue;
+    const auto [own, misfit] = places[b];
+    gram.middleCols(misfit, shared.cols()) -= gram.middleCols(own, shared.rows()) * shared;
+    gram.middleRows(misfit, shared.cols()) -=
+        shared.transpose() * gram.middleRows(own, shared.rows());
+    cross.segment(misfit, shared.cols()) -= shared.transpose() * cross.segment(own, shared.rows());
   }
+  solved.scale = Eigen::Map<const Eigen::VectorXd>(scale.data(), gram.cols());
+  gram = (solved.scale.asDiagonal() * gram * solved.scale.asDiagonal()).eval();
+  gram.diagonal().array() += 1;
+  cross = solved.scale.cwiseProduct(cross);
   solved.factor.compute(gram);
   solved.mean = solved.factor.solve(cross);
   // Rounding must not make a perfect fit better than perfect.
@@ -113,16 +166,17 @@ double EvidenceTable::log_factor(std::span<const EffectBlock* const> blocks) con
   }
   Eigen::Index own = 0;
   for (const EffectBlock* block : blocks) own += static_cast<Eigen::Index>(block->columns.size());
-  // The diagonal of the inverse is the squared length of the columns of L^-1.
+  // A block of the inverse is the product of the columns of L^-1.
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(lower.rows(), own);
   solved.factor.matrixL().solveInPlace(inverse);
   const double precision = dof_ / solved.squares;
   Eigen::Index first = 0;
   for (const EffectBlock* block : blocks) {
     const auto size = static_cast<Eigen::Index>(block->columns.size());
-    const double spread = inverse.middleCols(first, size).squaredNorm();
-    const double length = solved.mean.segment(first, size).squaredNorm() * precision;
-    nats += elementary::log((length + spread) / static_cast<double>(size));
+    const Eigen::MatrixXd roots = inverse.middleCols(first, size);
+    nats += elementary::log(
+        fourth_power(block->metric, {solved.mean.segment(first, size), roots.transpose() * roots,
+                                     dof_, dof_ / solved.squares}));
     first += size;
   }
   return nats;
@@ -137,19 +191,28 @@ EvidenceTable::Posterior EvidenceTable::posterior(
   }
   const Solved solved = solve(blocks);
   out.mean = solved.scale.cwiseProduct(solved.mean);
+  const std::vector<Places> places = places_of(blocks);
+  out.effects = out.mean.head(places.front().misfit);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const Eigen::MatrixXd& shared = blocks[b]->shared;
+    if (shared.size() == 0) continue;
+    out.mean.segment(places[b].own, shared.rows()) -=
+        shared * out.mean.segment(places[b].misfit, shared.cols());
+  }
   out.variance = solved.squares / dof_;
   return out;
 }
 
 Eigen::VectorXd EvidenceTable::left_of_products(std::span<const EffectBlock* const> blocks) const {
   if (blocks.empty()) return cross_;
-  const Solved solved = solve(blocks);
-  Eigen::VectorXd left = cross_;
-  for (std::size_t k = 0; k < solved.columns.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    left -= solved.scale[i] * solved.mean[i] * gram_.col(solved.columns[k]);
+  ColumnBlock columns;
+  for (const EffectBlock* block : blocks) {
+    columns.insert(columns.end(), block->columns.begin(), block->columns.end());
   }
-  return left;
+  for (const EffectBlock* block : blocks) {
+    columns.insert(columns.end(), block->misfit.begin(), block->misfit.end());
+  }
+  return cross_ - gram_(Eigen::all, columns) * posterior(blocks).mean;
 }
 
 }  // namespace tribench::loop

@@ -6,14 +6,18 @@
 // Base coefficients and the noise's standard deviation have their invariant priors (flat, 1/sigma),
 // so that the factor is one of the residual's direction and length alone; under the base its
 // expectation is 1 at any stopping time (a test martingale), whatever base and noise are. A block's
-// coefficients have a normal prior of unit covariance (times sigma^2, over the number of its
-// columns) times their own squared length: nothing near zero, so that a block that is absent is
-// ruled out at the rate n^(1 + p/2) instead of n^(p/2). The length's expectation is taken at the
-// posterior, block by block.
+// coefficients have a normal prior (covariance sigma^2 size^2 / 2 over the number of its columns)
+// times the fourth power of the effect that they make (its square by the block's metric; the sum of
+// squares without one): nothing near no effect, likeliest about 1.4 times the block's size. A block
+// that is absent is ruled out at the rate n^(2 + p/2) instead of n^(p/2). Columns that are nearly
+// alike make no effect where they cancel. The power's expectation is taken at the posterior, block
+// by block.
 //
 // A block's misfit is what its effect may have besides and need not: columns with a normal prior of
 // unit covariance (times sigma^2 and the block's size squared: what is large may miss by more),
-// with nothing against a coefficient of 0.
+// with nothing against a coefficient of 0. What a misfit shares with the block's columns is the
+// effect, and no misfit: else a misfit could cancel an effect that is not there, and no number of
+// rows would rule it out.
 //
 // Columns are scaled by the caller so that 1 is a coefficient one expects, in units of the noise.
 // Rows are whitened (clusters.hpp). Not for models in which columns enter non-linearly.
@@ -36,8 +40,14 @@ struct EffectBlock {
   ColumnBlock columns;
   double size = 1;
   ColumnBlock misfit = {};
-  auto operator<=>(const EffectBlock&) const = default;
+  // Squared size of the effect of unit coefficients is u' metric u, trace 1; empty: all alike.
+  Eigen::MatrixXd metric = {};
+  // Columns x misfit: what the misfit's columns have of the block's; empty: nothing.
+  Eigen::MatrixXd shared = {};
 };
+
+// Of a coefficient, in the noise's.
+double prior_variance(const EffectBlock& block);
 
 // Cross products of base, columns and target over whitened rows: all that evidence needs, so that
 // further rows cost what they cost alone. Rows are independent of those added before.
@@ -67,8 +77,9 @@ class EvidenceTable {
   double log_factor(std::span<const EffectBlock* const> blocks) const;
 
   struct Posterior {
-    Eigen::VectorXd mean;  // of the blocks' columns in order, then their misfits', as scaled
-    double variance = 0;   // sigma^2
+    Eigen::VectorXd mean;     // of the blocks' columns in order, then their misfits', as scaled
+    Eigen::VectorXd effects;  // of the blocks' columns, what the misfits share with them included
+    double variance = 0;      // sigma^2
   };
   Posterior posterior(std::span<const EffectBlock* const> blocks) const;
 
@@ -81,6 +92,8 @@ class EvidenceTable {
 
  private:
   struct Solved;
+  struct Places;
+  static std::vector<Places> places_of(std::span<const EffectBlock* const> blocks);
   Solved solve(std::span<const EffectBlock* const> blocks) const;
 
   Eigen::MatrixXd gram_;

@@ -114,8 +114,12 @@ std::string seal_key(const simulation::WorldPlan& plan) {
   return fmt::format("{:016x}{:016x}", random.next(), random.next());
 }
 
+std::string sealed_text(const simulation::WorldTruth& truth) {
+  return seal_key(truth.plan) + "\n" + truth_json(truth);
+}
+
 std::string seal_of(const simulation::WorldTruth& truth) {
-  return sha256_of_text(seal_key(truth.plan) + "\n" + truth_json(truth));
+  return sha256_of_text(sealed_text(truth));
 }
 
 std::string limits_json(const MotionLimits& limits) {
@@ -220,6 +224,7 @@ std::string WorldFolder::reveal() {
   }
   const Json revealed = {{"key", seal_key(world_.truth().plan)},
                          {"truth_sha256", seal},
+                         {"sealed_text", sealed_text(world_.truth())},
                          {"truth", Json::parse(truth_json(world_.truth()))}};
   write_file(folder_ / "revealed.json", write_json(revealed, 1) + "\n");
   return write_json(revealed, 1);

@@ -24,8 +24,10 @@ namespace tribench {
 // The truth as text, for seals and scorers: kind, level, seed, noise, and each cause with the names
 // that are right for it.
 std::string truth_json(const simulation::WorldTruth& truth);
-// Of the plan alone; SHA-256 of key, a line feed and the truth is what is published first.
+// Of the plan alone.
 std::string seal_key(const simulation::WorldPlan& plan);
+// The key, a line feed, the truth: its SHA-256 is the seal, which is published first.
+std::string sealed_text(const simulation::WorldTruth& truth);
 std::string seal_of(const simulation::WorldTruth& truth);
 
 std::string limits_json(const MotionLimits& limits);

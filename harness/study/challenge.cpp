@@ -15,6 +15,7 @@
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/plain_name.hpp"
+#include "foundation/suggestion.hpp"
 #include "foundation/text.hpp"
 #include "harness/exploration/world_folder.hpp"
 #include "problems/file_hash.hpp"
@@ -92,8 +93,21 @@ Json rows_of(const Dataset& data) {
   return out;
 }
 
+std::vector<std::string> family_names() {
+  std::vector<std::string> names;
+  for (const loop::EffectFamily& family : loop::builtin_effects()) names.push_back(family.name);
+  return names;
+}
+
 void take_verdict(const Json& verdict, const simulation::World& world, ChallengeResult& result) {
   const auto families = verdict.value("families", std::vector<std::string>());
+  // A slip of the pen is no wrong verdict.
+  const std::vector<std::string> known = family_names();
+  for (const std::string& family : families) {
+    if (std::ranges::count(known, family) > 0) continue;
+    throw_bad_input(fmt::format("there is no family '{}'", family), "verdict",
+                    did_you_mean(family, known));
+  }
   const bool unknown = verdict.value("unknown", false);
   std::vector<std::string> words = families;
   if (unknown) words.emplace_back("UNKNOWN");
@@ -103,11 +117,9 @@ void take_verdict(const Json& verdict, const simulation::World& world, Challenge
 }
 
 void converse(Talk& talk, simulation::World& world, ChallengeResult& result) {
-  Json families = Json::array();
-  for (const loop::EffectFamily& family : loop::builtin_effects()) families.push_back(family.name);
   talk.say({{"protocol", kProtocol},
             {"seal", result.seal},
-            {"families", families},
+            {"families", family_names()},
             {"limits", Json::parse(limits_json(world.limits()))}});
   for (std::size_t k = 0; k < kMostRequests; ++k) {
     const Json heard = talk.hear();
@@ -154,13 +166,27 @@ Json score_json(const ChallengeScore& score) {
           {"results", worlds}};
 }
 
-// Of every score in the folder: most right first, then fewest wrong, then fewest seconds.
-std::string leaderboard_of(const std::filesystem::path& folder) {
+bool is_of_worlds(const Json& score, const Json& seals) {
+  const Json results = score.value("results", Json::array());
+  return std::ranges::all_of(results, [&](const Json& one) {
+    return std::ranges::count(seals, one.value("seal", Json())) > 0;
+  });
+}
+
+// Of every score in the folder on worlds with these seals: most right first, then fewest wrong,
+// then fewest seconds.
+std::string leaderboard_of(const std::filesystem::path& folder, const Json& seals) {
   std::vector<Json> scores;
+  std::vector<std::string> others;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".json" || entry.path().stem() == "seals") continue;
     const Json score = read_json<Json>(read_file_if_there(entry.path()).value_or(""));
-    if (score.is_object() && score.contains("median_seconds")) scores.push_back(score);
+    if (!score.is_object() || !score.contains("median_seconds")) continue;
+    if (is_of_worlds(score, seals)) {
+      scores.push_back(score);
+    } else {
+      others.push_back(score.value("name", std::string()));
+    }
   }
   const auto key = [](const Json& one) {
     return std::tuple(-one.value("right", 0.0) / std::max(1.0, one.value("worlds", 1.0)),
@@ -180,9 +206,13 @@ std::string leaderboard_of(const std::filesystem::path& folder) {
                         one.value("name", std::string()), worlds, right, wrong,
                         worlds - right - wrong, one.value("median_seconds", 0.0));
   }
-  return text +
-         "\nA verdict that is not right counts as all of a world's seconds. Worlds are the same\n"
-         "where seals.json is the same.\n";
+  text += "\nA verdict that is not right counts as all of a world's seconds.\n";
+  std::ranges::sort(others);
+  if (!others.empty()) {
+    text += fmt::format("Not ranked, since scored on other worlds than those of seals.json: {}.\n",
+                        fmt::join(others, ", "));
+  }
+  return text;
 }
 
 }  // namespace
@@ -253,7 +283,7 @@ ChallengeScore run_challenge(const ChallengePlan& plan, const std::string& name,
     score.results.push_back(run_challenge_world(command, one, plan.wall_s));
   }
   write_file(folder / (name + ".json"), write_json(score_json(score), 1) + "\n");
-  write_file(folder / "leaderboard.md", leaderboard_of(folder));
+  write_file(folder / "leaderboard.md", leaderboard_of(folder, seals));
   return score;
 }
 
@@ -263,6 +293,7 @@ std::string revealed_challenge(const ChallengePlan& plan) {
     const simulation::World world(one);
     worlds.push_back({{"key", seal_key(one)},
                       {"truth_sha256", seal_of(world.truth())},
+                      {"sealed_text", sealed_text(world.truth())},
                       {"truth", Json::parse(truth_json(world.truth()))}});
   }
   return write_json(Json{{"secret", plan.secret}, {"worlds", worlds}}, 1) + "\n";

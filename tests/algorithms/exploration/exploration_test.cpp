@@ -89,6 +89,12 @@ TEST(Evidence, PosteriorIsWhatWasPlanted) {
   EXPECT_NEAR(std::sqrt(found.variance), 0.2, 0.01);
 }
 
+std::vector<std::string> left_by(const Exploration& done) {
+  std::vector<std::string> verdicts;
+  for (const WeighedVerdict& one : done.left) verdicts.push_back(one.verdict);
+  return verdicts;
+}
+
 Exploration explored(std::uint64_t seed, simulation::WorldKind kind, std::string_view plan,
                      double budget_s = 600) {
   simulation::World world({seed, simulation::WorldLevel::easy, kind});
@@ -112,7 +118,28 @@ TEST(Explorer, NamesWhatAnEasyWorldHides) {
         << family << " for " << truth.family;
   }
   EXPECT_GE(done.log_e_value, std::log(100));
-  EXPECT_GE(done.weight, 0.95);
+  EXPECT_GE(done.weight, 0.99);
+}
+
+// With one load alone a wrong gain of the gravity torque is a payload: no movement tells them
+// apart.
+TEST(Explorer, SaysWhatItsLimitsDoNotLetItTellApart) {
+  const auto end = [](bool may_load) {
+    simulation::World world({23, simulation::WorldLevel::easy, simulation::WorldKind::single});
+    EXPECT_EQ(world.truth().effects[0].family, "gravity_wrong");
+    MotionLimits limits = world.limits();
+    if (!may_load) limits.least_load_factor = limits.greatest_load_factor = 1;
+    ExplorerOptions options;
+    options.budget_s = 80;
+    return explore(
+        limits,
+        [&](const PlannedMovement& movement) { return world.execute(movement, "the plan"); },
+        options, informative_movements());
+  };
+  const Exploration alike = end(false);
+  EXPECT_NE(alike.end, ExplorationEnd::sure);
+  EXPECT_THAT(left_by(alike), ::testing::IsSupersetOf({"payload", "power_quadrant_gain"}));
+  EXPECT_THAT(left_by(end(true)), ::testing::Not(::testing::Contains("payload")));
 }
 
 TEST(Explorer, AsksTheSameAgain) {

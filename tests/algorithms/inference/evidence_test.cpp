@@ -36,7 +36,10 @@ TEST(EvidenceTable, FactorsAverageToOneUnderTheBase) {
   RandomStream random(key_of("evidence"));
   const Eigen::MatrixXd base = normals(kRows, 2, random);
   const Eigen::MatrixXd columns = normals(kRows, 3, random);
-  for (const EffectBlock& block : {EffectBlock{{0}}, EffectBlock{{1, 2}, 0.5}}) {
+  EffectBlock measured = {{0, 1, 2}, 0.5};
+  measured.metric = Eigen::Vector3d(0.6, 0.3, 0.1).asDiagonal();
+  measured.metric(0, 1) = measured.metric(1, 0) = 0.2;
+  for (const EffectBlock& block : {EffectBlock{{0}}, EffectBlock{{1, 2}, 0.5}, measured}) {
     constexpr int kRuns = 20000;
     double sum = 0;
     double squares = 0;
@@ -63,7 +66,7 @@ TEST(EvidenceTable, FavoursWhatIsThere) {
   EXPECT_EQ(table.degrees_of_freedom(), 199);
 }
 
-// A column that explains nothing at all is ruled out at the rate n^(3/2).
+// A column that explains nothing at all is ruled out at the rate n^(5/2).
 TEST(EvidenceTable, AnAbsentColumnCostsAsItsRowsDo) {
   Eigen::MatrixXd column(100, 1);
   Eigen::VectorXd target(100);
@@ -72,8 +75,53 @@ TEST(EvidenceTable, AnAbsentColumnCostsAsItsRowsDo) {
     target[i] = i % 4 < 2 ? 1 : -1;
   }
   const EvidenceTable table = table_of(Eigen::MatrixXd::Ones(100, 1), column, target);
-  EXPECT_NEAR(log_factor(table, {{0}}), -1.5 * std::log(101), 1e-10);
-  EXPECT_NEAR(log_factor(table, {{0}, 2}), -1.5 * std::log(401), 1e-10);
+  EXPECT_NEAR(log_factor(table, {{0}}), -2.5 * std::log(51), 1e-10);
+  EXPECT_NEAR(log_factor(table, {{0}, 2}), -2.5 * std::log(201), 1e-10);
+}
+
+// Two columns that are nearly one make no effect where they cancel: what is absent is ruled out as
+// if they were one.
+TEST(EvidenceTable, ColumnsThatCancelAreNoEffect) {
+  RandomStream random(4);
+  constexpr Eigen::Index kMany = 4000;
+  Eigen::MatrixXd columns = normals(kMany, 2, random);
+  columns.col(1) = columns.col(0) + 0.01 * columns.col(1);
+  const EvidenceTable table =
+      table_of(Eigen::MatrixXd::Ones(kMany, 1), columns, normals(kMany, 1, random));
+  EffectBlock alike = {{0, 1}};
+  EXPECT_GT(log_factor(table, alike), -8);
+  alike.metric = Eigen::Matrix2d::Constant(0.5);
+  EXPECT_LT(log_factor(table, alike), -12);
+}
+
+// A misfit with the effect's own shape would cancel an effect that is not there, so that no number
+// of rows ruled it out.
+TEST(EvidenceTable, AMisfitDoesNotCancelAnAbsentEffect) {
+  const auto factor = [](Eigen::Index rows, bool knows_what_is_shared) {
+    RandomStream random(5);
+    Eigen::MatrixXd columns = normals(rows, 2, random);
+    columns.col(1) = 0.27 * (columns.col(0) + 0.3 * columns.col(1));
+    EffectBlock block = {{0}, 0.4, {1}};
+    if (knows_what_is_shared) block.shared = Eigen::MatrixXd::Constant(1, 1, 0.27);
+    const Eigen::VectorXd target = normals(rows, 1, random);
+    return log_factor(table_of(Eigen::MatrixXd::Ones(rows, 1), columns, target), block);
+  };
+  EXPECT_LT(factor(40000, true), -14);
+  EXPECT_LT(factor(40000, true), factor(40000, false) - 4);
+}
+
+TEST(EvidenceTable, AMisfitsShareOfTheEffectIsTheEffects) {
+  RandomStream random(6);
+  Eigen::MatrixXd columns = normals(3000, 2, random);
+  columns.col(1) = columns.col(0) + 0.5 * columns.col(1);
+  const Eigen::VectorXd target = columns * Eigen::Vector2d(1, 0.6) + normals(3000, 1, random);
+  EffectBlock block = {{0}, 1, {1}};
+  block.shared = Eigen::MatrixXd::Constant(1, 1, 1);
+  const EvidenceTable table = table_of(Eigen::MatrixXd::Ones(3000, 1), columns, target);
+  const auto found = table.posterior(std::array<const EffectBlock*, 1>{&block});
+  EXPECT_NEAR(found.effects[0], 1.6, 0.06);
+  EXPECT_NEAR(found.mean[0], 1, 0.15);
+  EXPECT_NEAR(found.mean[1], 0.6, 0.15);
 }
 
 // The posterior of normal coefficients with a prior of unit covariance over the block's size.
@@ -85,7 +133,7 @@ TEST(EvidenceTable, PosteriorIsThatOfTheNormalPrior) {
   const EffectBlock one = {{0}};
   const EffectBlock two = {{1, 2}};
   const auto found = table.posterior(std::array<const EffectBlock*, 2>{&one, &two});
-  const Eigen::Vector3d precision(1, 2, 2);
+  const Eigen::Vector3d precision(2, 4, 4);
   const Eigen::MatrixXd normal =
       columns.transpose() * columns + Eigen::MatrixXd(precision.asDiagonal());
   const Eigen::VectorXd mean = normal.inverse() * columns.transpose() * target;

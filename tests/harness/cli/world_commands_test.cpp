@@ -215,6 +215,7 @@ TEST(ChallengeCommand, SealsScoresAndRanksPrograms) {
     none += world["truth"]["kind"] == "none" ? 1 : 0;
     EXPECT_EQ(sha256_of_text(world["key"].get<std::string>() + "\n" + world["truth"].dump()),
               seals[k]);
+    EXPECT_EQ(sha256_of_text(world["sealed_text"].get<std::string>()), seals[k]);
   }
   const json score = json::parse(nothing.output);
   EXPECT_EQ(score["right"], none);
@@ -225,6 +226,38 @@ TEST(ChallengeCommand, SealsScoresAndRanksPrograms) {
     EXPECT_THAT(leaderboard, HasSubstr(name));
   }
   EXPECT_LT(leaderboard.find("| silent |"), leaderboard.size());
+}
+
+TEST(ChallengeCommand, AFamilyThatThereIsNotIsNoVerdict) {
+  const TemporaryFolder folder;
+  const std::string script = (folder / "slip.sh").string();
+  write_text(script, entry("{\"families\": [\"stribek\"], \"unknown\": false}"));
+  const ProgramRun done =
+      run_tribench({"challenge", "--worlds", "1", "--out", (folder / "board").string(), "--json",
+                    "--command", "sh", script});
+  EXPECT_EQ(done.status, 3);
+  const json score = json::parse(done.output);
+  EXPECT_EQ(score["wrong"], 0);
+  EXPECT_THAT(score["results"][0]["reason"].get<std::string>(), HasSubstr("stribeck"));
+}
+
+TEST(ChallengeCommand, RanksOnlyScoresOnTheSameWorlds) {
+  const TemporaryFolder folder;
+  const std::string board = (folder / "board").string();
+  const std::string script = (folder / "silent.sh").string();
+  write_text(script, entry("null"));
+  write_text(folder / "secret.txt", "nobody knows this\n");
+  const ProgramRun practice = run_tribench({"challenge", "--worlds", "2", "--name", "practice",
+                                            "--out", board, "--command", "sh", script});
+  ASSERT_EQ(practice.status, 0) << practice.errors;
+  const ProgramRun sealed =
+      run_tribench({"challenge", "--worlds", "2", "--name", "sealed", "--secret-file",
+                    (folder / "secret.txt").string(), "--out", board, "--command", "sh", script});
+  ASSERT_EQ(sealed.status, 0) << sealed.errors;
+  const std::string leaderboard = read_text(folder / "board/leaderboard.md");
+  EXPECT_THAT(leaderboard, HasSubstr("| sealed |"));
+  EXPECT_THAT(leaderboard, ::testing::Not(HasSubstr("| practice |")));
+  EXPECT_THAT(leaderboard, HasSubstr("seals.json: practice"));
 }
 
 TEST(ChallengeCommand, TheEntryToBeginWithTakesPart) {
