@@ -283,7 +283,7 @@ std::string verdict_of(const ExplanationSpace& space, const std::vector<std::siz
 
 std::string verdict_text(std::vector<std::string> names, bool unknown) {
   std::ranges::sort(names);
-  names.erase(std::ranges::unique(names).begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   if (unknown) names.emplace_back(kUnknownVerdict);
   return names.empty() ? "NONE" : fmt::format("{}", fmt::join(names, "+"));
 }

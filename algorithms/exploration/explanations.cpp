@@ -282,8 +282,11 @@ void ExplanationSpace::settle_scale() {
     }
     std::erase_if(family.blocks, [](const EffectBlock& block) { return block.columns.empty(); });
     std::ranges::stable_sort(family.blocks, {}, &EffectBlock::columns);
-    const auto again = std::ranges::unique(family.blocks, {}, &EffectBlock::columns);
-    family.blocks.erase(again.begin(), again.end());
+    const auto same = [](const EffectBlock& a, const EffectBlock& b) {
+      return a.columns == b.columns;
+    };
+    const auto again = std::unique(family.blocks.begin(), family.blocks.end(), same);
+    family.blocks.erase(again, family.blocks.end());
     if (family.blocks.empty()) untestable_.push_back(family.name);
   }
 }

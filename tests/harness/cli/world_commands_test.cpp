@@ -232,11 +232,10 @@ TEST(ChallengeCommand, AFamilyThatThereIsNotIsNoVerdict) {
   const TemporaryFolder folder;
   const std::string script = (folder / "slip.sh").string();
   write_text(script, entry("{\"families\": [\"stribek\"], \"unknown\": false}"));
-  const ProgramRun done =
-      run_tribench({"challenge", "--worlds", "1", "--out", (folder / "board").string(), "--json",
-                    "--command", "sh", script});
+  const ProgramRun done = run_tribench({"challenge", "--worlds", "1", "--out",
+                                        (folder / "board").string(), "--command", "sh", script});
   EXPECT_EQ(done.status, 3);
-  const json score = json::parse(done.output);
+  const json score = json::parse(read_text(folder / "board/entry.json"));
   EXPECT_EQ(score["wrong"], 0);
   EXPECT_THAT(score["results"][0]["reason"].get<std::string>(), HasSubstr("stribeck"));
 }
