@@ -145,9 +145,7 @@ std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
 namespace {
 
 // Atoms whose columns are as they stand, so that two of them can be compared with two others.
-bool is_rigid(const Atom& atom) {
-  return std::ranges::none_of(atom.shapes, [](const Shape& shape) { return shape.refined(); });
-}
+bool is_rigid(const Atom& atom) { return atom.shapes.empty(); }
 
 // Pairs of a family's atoms, a first one that may stand alone and any second, by what they explain
 // of the residual more than by chance.
@@ -180,7 +178,7 @@ class Pairs {
       const Atom& atom = campaign_.library.atoms[first.atom];
       if (atom.beside_another || !is_rigid(atom)) continue;
       for (const Place& second : atoms_) {
-        if (second.atom == first.atom) continue;
+        if (second.atom == first.atom || !is_rigid(campaign_.library.atoms[second.atom])) continue;
         const auto columns = static_cast<double>(first.count + second.count);
         all.push_back({explained(first, second) / unit - columns, {first.atom, second.atom}});
       }

@@ -227,7 +227,9 @@ loop::Observations read_observations(const LoopArguments& arguments,
   DataFile file = read_files(arguments);
   steps.push_back({"read from the file", file.data.rows()});
   whole.unit = loop::position_unit(file);
-  PreparedRecording recording = prepare(std::move(file), *arguments.reading, arguments.gravity);
+  // Who says which rows are slow means those and no others.
+  PreparedRecording recording = prepare(std::move(file), *arguments.reading, arguments.gravity,
+                                        arguments.min_speed ? SlowRows::kept : SlowRows::left_out);
   steps.push_back({"cut into movements, derived channels added", recording.data.rows()});
   std::vector<std::string> rigid = arguments.rigid;
   rigid.insert(rigid.end(), recording.rigid.begin(), recording.rigid.end());

@@ -42,7 +42,8 @@ struct RecordingsArguments {
 loop::Observations offered_movements(const RecordingsArguments& arguments) {
   const std::vector<std::filesystem::path> files(arguments.files.begin(), arguments.files.end());
   const PreparedRecording recording =
-      prepare(read_data(files, *arguments.reading, std::vector<std::string>()), *arguments.reading);
+      prepare(read_data(files, *arguments.reading, std::vector<std::string>()), *arguments.reading,
+              Gravity::automatic, arguments.min_speed ? SlowRows::kept : SlowRows::left_out);
   const loop::Observations all =
       loop::observe(recording.data,
                     {recording.rigid, arguments.min_speed, arguments.unordered, arguments.steady});

@@ -222,7 +222,8 @@ void settle_strokes(PreparedRecording& out, double noise) {
   const Channel* v = find_channel(out.data, Role::velocity);
   if (t == nullptr || v == nullptr || !is_regular(t->values, out.data.movement)) return;
   const std::vector<RowRange> strokes = strokes_of_movements(out.data, *t, *v, noise);
-  const Slow slow(strokes, t->values, v->values, noise);
+  Slow slow(strokes, t->values, v->values, noise);
+  slow.way = 0;  // somebody has told them apart: each small stroke is wanted
   std::vector<std::size_t> rows;
   bool from_rest = false;  // else nobody knows how far back the last reversal lies
   for (const RowRange& stroke : strokes) {
