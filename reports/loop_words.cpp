@@ -20,7 +20,6 @@ constexpr int kDigits = 4;
 // Shares of the searches with movements left out that find an effect again.
 constexpr double kVerySure = 0.95;
 constexpr double kSure = 0.8;
-constexpr double kLikely = 0.5;
 constexpr std::size_t kNamedEffects = 3;  // in the headline
 constexpr std::size_t kNamedSizes = 5;    // that would have been seen
 
@@ -120,13 +119,15 @@ std::string error_sentence(const LoopRecord& record) {
   return text + '.' + motion_sentence(record);
 }
 
+bool is_unstable(const LoopEffect& effect) { return effect.chosen_share < kStableShare; }
+
 std::string grade_of(const LoopEffect& effect) {
   if (!effect.objection.empty()) return "not physical";
   if (effect.provisional) return "provisional";
   if (!known(effect.chosen_share)) return "passes the test";
   if (effect.chosen_share >= kVerySure) return "very sure";
   if (effect.chosen_share >= kSure) return "sure";
-  return effect.chosen_share >= kLikely ? "likely" : "doubtful";
+  return is_unstable(effect) ? "doubtful" : "likely";
 }
 
 std::vector<std::string> doubts_of(const LoopRecord& record, const LoopEffect& effect) {
@@ -134,6 +135,8 @@ std::vector<std::string> doubts_of(const LoopRecord& record, const LoopEffect& e
   if (!effect.objection.empty()) {
     all.push_back(fmt::format("Not physical ({}): it stands for something else.",
                               plain_text(record, effect.objection)));
+  } else if (is_unstable(effect)) {
+    all.push_back("The search does not find it again where some movements are left out.");
   } else if (effect.provisional) {
     all.push_back("It shares an input with what is still unexplained.");
   }

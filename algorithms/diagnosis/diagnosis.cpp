@@ -94,29 +94,37 @@ std::string_view verdict_name(Verdict verdict) {
 
 namespace {
 
-// Bursts are events: listed by movement and time, their rows left out of every fit. Looked for in
-// the rows from begin to end alone.
-void find_events(Diagnosis& out, const Observations& data, const Eigen::VectorXd& residual,
-                 std::size_t begin, std::size_t end, RandomStream random) {
+// The bursts of the first `end` rows.
+std::vector<Burst> bursts_until(std::size_t end, const Observations& data,
+                                const Eigen::VectorXd& residual, RandomStream random) {
   std::vector<double> speed;
   if (const Signal* v = data.find("v")) {
-    for (std::size_t i = begin; i < end; ++i) speed.push_back(std::abs(v->values[i]));
+    for (std::size_t i = 0; i < end; ++i) speed.push_back(std::abs(v->values[i]));
   }
-  const auto movement = std::span(data.movement).subspan(begin, end - begin);
-  const std::vector<Burst> bursts = find_bursts(
-      movement, speed,
-      residual.segment(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)),
-      random);
+  return find_bursts(std::span(data.movement).first(end), speed,
+                     residual.head(static_cast<Eigen::Index>(end)), random);
+}
+
+// Bursts are events: listed by movement and time, their rows left out of every fit. Those of the
+// rows to fit to are what stands out of them alone; those of the rows from `first_held` on, what
+// stands out of the whole recording.
+void find_events(Diagnosis& out, const Observations& data, const Eigen::VectorXd& residual,
+                 std::size_t first_held, RandomStream random) {
+  std::vector<Burst> bursts = bursts_until(first_held, data, residual, random);
+  if (first_held < data.rows()) {
+    for (const Burst& burst : bursts_until(data.rows(), data, residual, random)) {
+      if (burst.begin >= first_held) bursts.push_back(burst);
+    }
+  }
   for (const Burst& burst : bursts) {
-    const int number = movement[burst.begin];
-    out.events.push_back(
-        {number,
-         data.movement_names.empty() ? std::to_string(number)
-                                     : data.movement_names[static_cast<std::size_t>(number)],
-         data.time[begin + burst.begin], data.time[begin + burst.end - 1], burst.peak});
+    const int movement = data.movement[burst.begin];
+    out.events.push_back({movement,
+                          data.movement_names.empty()
+                              ? std::to_string(movement)
+                              : data.movement_names[static_cast<std::size_t>(movement)],
+                          data.time[burst.begin], data.time[burst.end - 1], burst.peak});
   }
-  std::ranges::copy(rows_about(bursts, movement),
-                    out.masked.begin() + static_cast<std::ptrdiff_t>(begin));
+  out.masked = rows_about(bursts, data.movement);
 }
 
 // data: the movements held out stand last.
@@ -136,8 +144,7 @@ Diagnosis diagnose_canonical(const Observations& data, const std::vector<int>& h
     const auto held = [&](int movement) { return std::ranges::binary_search(held_out, movement); };
     const auto first_held =
         static_cast<std::size_t>(std::ranges::find_if(data.movement, held) - data.movement.begin());
-    find_events(out, data, rich, 0, first_held, random.split("events"));
-    find_events(out, data, rich, first_held, data.rows(), random.split("events held out"));
+    find_events(out, data, rich, first_held, random.split("events"));
   }
   const std::vector<char> kept = usable_rows(data, held_out, false, out.masked);
   const Observations train = data.select(kept);

@@ -72,8 +72,9 @@ struct EffectFinding {
   std::vector<AliasFinding> aliases;
   std::vector<std::string> separate_by;
   bool few_movements = false;  // carried by few movements: ask for more of them
-  bool provisional = false;    // shares an input with the leftover, or is not physical
-  std::string objection;       // why it is not physical; empty where it is
+  // Shares an input with the leftover, is not physical, or is not found again in parts of the data.
+  bool provisional = false;
+  std::string objection;  // why it is not physical; empty where it is
   // This cause, but a curve that the library does not have: more is left over in its own inputs.
   bool another_shape = false;
   // Share of the searches with some movements left out that choose it too; NaN where there are
@@ -166,7 +167,7 @@ std::vector<char> usable_rows(const Observations& data, const std::vector<int>& 
                               bool in_them, const std::vector<char>& masked);
 
 // held_out: movements to which nothing is fitted and by which nothing is chosen, ascending; bursts
-// in them are listed too, found apart. Deterministic: no seed decides anything.
+// in them are listed too. Deterministic: no seed decides anything.
 // Cost: some tens of milliseconds for 6 000 rows. Throws Error (bad_input) where there are too few
 // rows to fit the base.
 Diagnosis diagnose(const Observations& data, const BaseMaker& base, const DiagnosisOptions& options,

@@ -282,14 +282,17 @@ EffectFamily hysteresis() {
                  "friction builds up with the distance after a reversal",
                  "Dahl 1968; LuGre 1995",
                  {}};
-  f.atoms = {
-      {{"sgn_v*exp(-d/lambda)"},
-       {"presliding"},
-       {{"lambda", "d", {0.0001, 0.0003, 0.001, 0.004, 0.01, 0.03}, 0.00003, 0.1, true}}},
-      {.columns = {"exp(-d/lambda)"},
-       .coefficients = {"presliding_half_gap"},
-       .shapes = {{"lambda", "d", {0.0001, 0.0003, 0.001, 0.004, 0.01, 0.03}, 0.00003, 0.1, true}},
-       .by_direction = true}};
+  // A movement that starts in motion has its bristles bent already, or (a joint held by a brake)
+  // not yet: the data say which.
+  for (const std::string distance : {std::string("d"), std::string(kSeenDistance)}) {
+    const ShapeTemplate lambda{"lambda", distance, {0.0001, 0.0003, 0.001, 0.004, 0.01, 0.03},
+                               0.00003,  0.1,      true};
+    f.atoms.push_back({{"sgn_v*exp(-" + distance + "/lambda)"}, {"presliding"}, {lambda}});
+    f.atoms.push_back({.columns = {"exp(-" + distance + "/lambda)"},
+                       .coefficients = {"presliding_half_gap"},
+                       .shapes = {lambda},
+                       .by_direction = true});
+  }
   // Both are transients over the path since the torque on the gear turned.
   f.known_aliases = {{"backlash", "load the joint so that its gear stays on one flank (R3)"}};
   f.separate_by = {"R4"};

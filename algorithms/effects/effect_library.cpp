@@ -138,7 +138,7 @@ void expand(const AtomTemplate& source, std::size_t family, const Observations& 
 
 // A signal's name for those who have not read a formula yet.
 std::string signal_words(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kWords = {{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kWords = {{
       {"v", "velocity"},
       {"a", "acceleration"},
       {"q", "position"},
@@ -146,6 +146,7 @@ std::string signal_words(std::string_view name) {
       {"T", "temperature"},
       {"t", "time through the campaign"},
       {"d", "reversal"},
+      {kSeenDistance, "reversal"},
       {"v2", "other joint's velocity"},
       {"a2", "other joint's acceleration"},
   }};
@@ -159,7 +160,7 @@ double signal_scale(const Observations& data, std::string_view name) {
   const Signal* signal = data.find(name);
   if (signal == nullptr || signal->values.empty()) return 1;
   // A distance since reversal is measured against the range of the joint.
-  if (name == "d" && data.find("q") != nullptr) return signal_scale(data, "q");
+  if (is_distance(name) && data.find("q") != nullptr) return signal_scale(data, "q");
   if (name == "q" || name == "T" || name == "t") {
     std::vector<double> turned = signal->values;
     for (double& x : turned) x = -x;

@@ -30,6 +30,13 @@ constexpr double kAskAgain = 1.1;     // seconds since the diagnosis said otherw
 // Reversals, without which the distance since the last is not known, and both ways at two speeds;
 // with the loads and the other joint that the limits allow, as that costs no second. Then the same
 // without them, in place of what was refused.
+// What is asked for starts from rest: how far back it has turned is known.
+Observations executed(const Dataset& data) {
+  Observations rows = observe(data);
+  rows.take_away(kSeenDistance, "movements that are asked for start from rest");
+  return rows;
+}
+
 std::vector<PlannedMovement> opening_movements(const MotionLimits& limits) {
   const double centre = 0.5 * (limits.lowest_rad + limits.highest_rad);
   const double narrow = 0.0625 * (limits.highest_rad - limits.lowest_rad);
@@ -238,7 +245,7 @@ class Explorer {
   bool diagnosis_agrees() {
     DiagnosisOptions options;
     if (limits_.gear_ratio > 0) options.gear_ratios = {limits_.gear_ratio};
-    const DiagnosedFamilies found = diagnosed_families(observe(out_.data), options);
+    const DiagnosedFamilies found = diagnosed_families(executed(out_.data), options);
     out_.diagnosis = verdict_text(found.names, found.unknown);
     std::vector<std::string> ours;
     for (const std::size_t f : last()->best().families) {

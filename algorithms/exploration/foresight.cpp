@@ -177,6 +177,7 @@ Observations observe_plan(const Dataset& rows) {
   ObservationOptions every_row;
   every_row.min_speed = 0;
   Observations out = observe(rows, every_row);
+  out.take_away(kSeenDistance, "movements that are asked for start from rest");
   const Channel* time = rows.find(Role::time);
   if (time == nullptr || out.rows() != rows.rows()) return out;
   for (Signal& signal : out.signals) {

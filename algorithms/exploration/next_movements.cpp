@@ -131,7 +131,10 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
     set("sgn_v", i, sign);
     set("a", i, a);
     set("q", i, q);
-    if (std::isfinite(distance)) set("d", i, distance);
+    if (std::isfinite(distance)) {
+      set("d", i, distance);
+      set(kSeenDistance, i, distance);
+    }
     for (std::size_t k = 0; k < lags.size(); ++k) {
       set(lagged_velocity_name(kLags_ms[k]), i, lags[k].next(v, movement.duration / kRows));
     }

@@ -125,7 +125,7 @@ std::unique_ptr<Memory> memory_of(const StateDeclaration& state, std::span<const
 }
 
 std::unique_ptr<Memory> memory_of(std::string_view name) {
-  if (name == "d") {
+  if (loop::is_distance(name)) {
     return make_memory(loop::DistanceSinceReversal(loop::PathFrom::position),
                        [](loop::DistanceSinceReversal& channel, double dt_s, const Reached& at) {
                          return channel.next(at.velocity, at.position, dt_s);

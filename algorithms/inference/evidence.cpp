@@ -169,7 +169,6 @@ double EvidenceTable::log_factor(std::span<const EffectBlock* const> blocks) con
   // A block of the inverse is the product of the columns of L^-1.
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(lower.rows(), own);
   solved.factor.matrixL().solveInPlace(inverse);
-  const double precision = dof_ / solved.squares;
   Eigen::Index first = 0;
   for (const EffectBlock* block : blocks) {
     const auto size = static_cast<Eigen::Index>(block->columns.size());

@@ -71,7 +71,8 @@ LoopFormula read_loop(const std::string& file) {
   for (const nlohmann::json& symbol : json["symbols"]) {
     const std::string name = symbol.value("name", "");
     has_position = has_position || name == "q";
-    derives_distance = derives_distance || (name == "d" && symbol.contains("computed_as"));
+    derives_distance =
+        derives_distance || (loop::is_distance(name) && symbol.contains("computed_as"));
   }
   if (derives_distance) {
     loop.distance_from = has_position ? loop::PathFrom::position : loop::PathFrom::velocity;
@@ -159,7 +160,8 @@ void write_export(ExportArguments arguments) {
     names = options.box->names;
   }
   const std::vector<std::string> called = export_arguments(formula, names, options);
-  const bool has_history = from && form == CodeForm::c && std::ranges::count(called, "d") > 0;
+  const bool has_history =
+      from && form == CodeForm::c && std::ranges::any_of(called, loop::is_distance);
   if (!has_history && !arguments.derive.empty()) {
     throw_bad_input(form == CodeForm::c ? "the formula has no input d" : "only C has a history",
                     "--derive", "leave it out");

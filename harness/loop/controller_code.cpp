@@ -10,7 +10,7 @@ std::string controller_code(const Expression& formula, std::span<const std::stri
                             const ExportOptions& options, std::optional<PathFrom> path) {
   std::string code = export_code(formula, names, CodeForm::c, options);
   const std::vector<std::string> called = export_arguments(formula, names, options);
-  if (path && std::ranges::count(called, "d") > 0) {
+  if (path && std::ranges::any_of(called, is_distance)) {
     code += c_history_code(options.function, called, *path);
   }
   return code;

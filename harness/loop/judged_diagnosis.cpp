@@ -16,6 +16,7 @@
 #include "harness/loop/noise_bounds.hpp"
 #include "problems/preparation/canonical.hpp"
 #include "problems/preparation/test_movements.hpp"
+#include "reports/record/loop_record.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -102,6 +103,8 @@ class ChosenShares {
     for (EffectFinding& effect : whole.effects) {
       const auto found = times_.find(effect.family);
       effect.chosen_share = found == times_.end() ? 0 : found->second / searches_;
+      if (effect.chosen_share >= kStableShare) continue;
+      effect.provisional = true;
     }
   }
 

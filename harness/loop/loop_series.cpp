@@ -167,7 +167,7 @@ double friction_rms(const LoopRows& all) {
 }
 
 bool worth_a_look(const Signal& signal) {
-  return !signal.name.starts_with("sgn_") && signal.name != "a2" && !signal.is_filtered();
+  return !signal.name.starts_with("sgn_") && signal.name != "a2" && !signal.is_variant();
 }
 
 LoopAxis axis_of(const Observations& data, std::string_view signal) {

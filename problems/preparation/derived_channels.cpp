@@ -54,10 +54,16 @@ std::string lagged_velocity_recipe(int lag_ms) {
       lag_ms);
 }
 
+bool is_distance(std::string_view name) { return name == "d" || name == kSeenDistance; }
+
 std::string distance_recipe() {
   return "d grows by abs(q - q_before), or abs(v)*dt; at the first row after a change of v's sign "
          "it "
          "is 0.5*abs(v)*dt*abs(v)/(abs(v) + abs(v_before)), at a movement's first row 0";
+}
+
+std::string seen_distance_recipe() {
+  return "d; as long as it can be until the first reversal of a movement that starts in motion";
 }
 
 std::string c_history_code(std::string_view function, std::span<const std::string> arguments,
@@ -66,10 +72,14 @@ std::string c_history_code(std::string_view function, std::span<const std::strin
   std::vector<std::string> taken = {"v"};
   if (by_position) taken.emplace_back("q");
   for (const std::string& name : arguments) {
-    if (name != "d" && std::ranges::count(taken, name) == 0) taken.push_back(name);
+    if (!is_distance(name) && std::ranges::count(taken, name) == 0) taken.push_back(name);
   }
   std::string parameters;
   for (const std::string& name : taken) parameters += fmt::format("double {}, ", name);
+  std::string distances;
+  for (const std::string& name : arguments) {
+    if (is_distance(name)) distances += fmt::format("  const double {} = h->d;\n", name);
+  }
   constexpr std::string_view kCode = R"(
 /* What {0} needs to know of the movement so far, for d: the distance since the velocity last
  * changed its sign. One a joint; begin each movement with {0}_start. */
@@ -98,13 +108,13 @@ double {0}_step({0}_history *h, {2}double dt) {{
     h->d += fabs({3});
   }}
   h->v_before = v;
-{4}  const double d = h->d;
-  return {0}({5});
+{4}{6}  return {0}({5});
 }}
 )";
   return fmt::format(kCode, function, by_position ? " q_before," : "", parameters,
                      by_position ? "q - h->q_before" : "v * dt",
-                     by_position ? "  h->q_before = q;\n" : "", fmt::join(arguments, ", "));
+                     by_position ? "  h->q_before = q;\n" : "", fmt::join(arguments, ", "),
+                     distances);
 }
 
 }  // namespace tribench::loop

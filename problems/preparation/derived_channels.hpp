@@ -44,8 +44,15 @@ class DistanceSinceReversal {
   double distance_ = 0;
 };
 
-// The channel's name where it was computed before the recording was cut, and not by `observe`.
+// The same, but as far as any where a movement starts in motion. A movement that starts from
+// standstill, as a controller's does, has the one in the other.
+inline constexpr std::string_view kSeenDistance = "d_seen";
+
+// The channels' names where they were computed before the recording was cut, and not by `observe`.
 inline constexpr std::string_view kDerivedDistance = "distance_since_reversal (derived)";
+inline constexpr std::string_view kDerivedSeenDistance = "distance_since_seen_reversal (derived)";
+// Slower than this share of its top speed a movement starts from standstill.
+inline constexpr double kStandstill = 0.05;
 
 // A quantity after a first-order filter, one movement row by row. Exact for what is straight
 // between the rows, however far apart they are.
@@ -69,10 +76,12 @@ inline constexpr std::array<int, 3> kLags_ms = {30, 60, 120};
 std::string lagged_velocity_name(int lag_ms);
 std::string lagged_velocity_recipe(int lag_ms);
 
+bool is_distance(std::string_view name);  // d or d_seen
+std::string seen_distance_recipe();
 // "d = ..." in words, for reports.
 std::string distance_recipe();
 
-// C around a function `function`(arguments...) of which one argument is d: the state
+// C around a function `function`(arguments...) of which one argument is d or d_seen: the state
 // <function>_history, <function>_start(), which begins a movement, and <function>_step(), which
 // takes the other arguments, v (and q) and dt, keeps d up to date and returns the function's value.
 std::string c_history_code(std::string_view function, std::span<const std::string> arguments,

@@ -63,32 +63,52 @@ void add_campaign_time(Observations& data) {
   if (restarts) found->recipe = "time of the movements laid end to end";
 }
 
-// Some movement turns or starts from standstill: else it is not known how far back the last
-// reversal lies, and "distance" would be a name for the place within a recording.
-bool knows_a_reversal(const Observations& data, const std::vector<double>& v) {
-  constexpr double kStandstill = 0.05;  // of the movement's top speed
-  std::size_t begin = 0;
-  for (std::size_t i = 1; i <= v.size(); ++i) {
-    if (i < v.size() && data.movement[i] == data.movement[begin]) {
-      if (v[i] * v[begin] < 0) return true;
-      continue;
-    }
+// Per row whether it is seen how far back the last reversal lies: from a movement's first change of
+// direction on, or throughout where it starts from standstill.
+std::vector<char> reversal_is_seen(const Observations& data, const std::vector<double>& v) {
+  std::vector<char> seen(v.size(), 0);
+  for (std::size_t begin = 0, end = 0; begin < v.size(); begin = end) {
     double top = 0;
-    for (std::size_t k = begin; k < i; ++k) top = std::max(top, std::abs(v[k]));
-    if (std::abs(v[begin]) < kStandstill * top) return true;
-    begin = i;
+    for (end = begin; end < v.size() && data.movement[end] == data.movement[begin]; ++end) {
+      top = std::max(top, std::abs(v[end]));
+    }
+    std::size_t from = begin;
+    if (!(std::abs(v[begin]) < kStandstill * top)) {
+      while (from < end && !(v[from] * v[begin] < 0)) ++from;
+    }
+    std::fill(seen.begin() + static_cast<std::ptrdiff_t>(from),
+              seen.begin() + static_cast<std::ptrdiff_t>(end), char{1});
   }
-  return false;
+  return seen;
 }
 
-// Path since the velocity last changed its sign; starts at 0 with every movement.
+// A movement that starts in motion has turned before the recording began: as far back as any
+// reversal that is seen.
+void add_seen_distance(Observations& data, Signal signal, const std::vector<char>& seen) {
+  if (std::ranges::count(seen, 0) == 0) return;
+  signal.name = kSeenDistance;
+  signal.recipe = seen_distance_recipe();
+  double farthest = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i] != 0) farthest = std::max(farthest, signal.values[i]);
+  }
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i] == 0) signal.values[i] = farthest;
+  }
+  data.signals.push_back(std::move(signal));
+}
+
+// Path since the velocity last changed its sign; starts at 0 with every movement. None where no
+// reversal is seen: "distance" would be a name for the place within a recording.
 void add_distance(Observations& data) {
   if (data.find("d") != nullptr) return;
   const Signal* v = data.find("v");
   const Signal* q = data.find("q");
   const Signal* t = data.find("t");
   const bool timed = t != nullptr && t->recipe != "number of the movement in the file";
-  if (v == nullptr || (q == nullptr && !timed) || !knows_a_reversal(data, v->values)) return;
+  if (v == nullptr || (q == nullptr && !timed)) return;
+  const std::vector<char> seen = reversal_is_seen(data, v->values);
+  if (std::ranges::count(seen, 1) == 0) return;
   Signal signal{"d", "", q != nullptr ? q->unit : v->unit + " s", Role::none, {}, {}};
   signal.recipe = distance_recipe();
   DistanceSinceReversal distance(q != nullptr ? PathFrom::position : PathFrom::velocity);
@@ -98,7 +118,8 @@ void add_distance(Observations& data) {
     const double dt = timed && !starts ? t->values[i] - t->values[i - 1] : 0;
     signal.values.push_back(distance.next(v->values[i], q != nullptr ? q->values[i] : 0, dt));
   }
-  data.signals.push_back(std::move(signal));
+  data.signals.push_back(signal);
+  add_seen_distance(data, std::move(signal), seen);
 }
 
 // A clock tells the time between rows no better than this (s): a file whose time counts from 1970
@@ -377,13 +398,16 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
     const std::string name = signal_name(channel.role, channel.name);
     const bool wanted = std::ranges::count(kSignalNames, channel.role,
                                            &std::pair<Role, std::string_view>::first) > 0 ||
-                        channel.name.starts_with("distance_since_reversal");
+                        channel.name.starts_with("distance_since_reversal") ||
+                        channel.name == kDerivedSeenDistance;
     const bool rigid = std::ranges::count(options.rigid, channel.name) > 0;
     if ((!wanted && !rigid) || out.find(name) != nullptr) continue;
-    const bool distance = channel.name.starts_with("distance_since_reversal");
-    out.signals.push_back(
-        {distance ? "d" : name, channel.name, channel.unit, channel.role, {}, channel.values});
-    if (channel.name == kDerivedDistance) out.signals.back().recipe = distance_recipe();
+    out.signals.push_back({name, channel.name, channel.unit, channel.role, {}, channel.values});
+    Signal& signal = out.signals.back();
+    if (channel.name.starts_with("distance_since_reversal")) signal.name = "d";
+    if (channel.name == kDerivedSeenDistance) signal.name = kSeenDistance;
+    if (channel.name == kDerivedDistance) signal.recipe = distance_recipe();
+    if (channel.name == kDerivedSeenDistance) signal.recipe = seen_distance_recipe();
     if (rigid) out.rigid.push_back(name);
   }
   for (const std::string& name : options.rigid) data.at(name);

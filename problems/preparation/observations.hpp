@@ -8,6 +8,7 @@
 //   a        acceleration                 t       time through the campaign
 //   q        position                     v2 a2   the other joint's velocity and acceleration
 //   g sgn_g  gravity torque and its sign  d       distance since the last reversal
+//   d_seen   d, but far where a movement starts in motion: it has turned before the recording began
 //   v_lag30 v_lag60 v_lag120              velocity after a first-order filter of so many ms
 //
 // NaN policy: rows in which a used channel or the target is not finite are dropped and counted in
@@ -22,6 +23,7 @@
 #include <vector>
 
 #include "problems/dataset.hpp"
+#include "problems/preparation/derived_channels.hpp"
 
 // The room's words are common ones (Atom, Noise, Search): they have a namespace of their own.
 namespace tribench::loop {
@@ -33,10 +35,11 @@ struct Signal {
   Role role = Role::none;
   std::string recipe;  // how it is computed where it is no column of the data, else empty
   std::vector<double> values;
-  // A velocity after a filter: nothing to look at beside the velocity itself.
-  bool is_filtered() const { return name.starts_with("v_lag"); }
+  // A velocity after a filter, a distance read otherwise: nothing to look at beside the signal
+  // itself.
+  bool is_variant() const { return name.starts_with("v_lag") || name == kSeenDistance; }
   // It follows from the motion before (a distance since reversal, a filtered velocity).
-  bool has_memory() const { return name == "d" || is_filtered(); }
+  bool has_memory() const { return name == "d" || is_variant(); }
 };
 
 // A signal in which no effect can be tested, and why: "there is one movement".

@@ -86,8 +86,23 @@ bool knows_distance(const Dataset& data) {
   });
 }
 
+// As `distance`, but as far as any reversal that is seen where none is.
+void add_seen_distance(PreparedRecording& out, Channel distance, const std::vector<char>& seen) {
+  double farthest = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i] != 0) farthest = std::max(farthest, distance.values[i]);
+  }
+  if (!(farthest > 0) || std::ranges::count(seen, 0) == 0) return;
+  distance.name = loop::kDerivedSeenDistance;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i] == 0) distance.values[i] = farthest;
+  }
+  out.data.channels.push_back(std::move(distance));
+}
+
 // The path since the direction last changed, told before a stroke's ends are cut off: the position
-// knows it where the velocity is blurred. Lost messages do not make it start anew.
+// knows it where the velocity is blurred. Lost messages do not make it start anew. A reversal is
+// seen where a stroke follows another or starts from standstill.
 void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) {
   const Channel* q = find_channel(out.data, Role::position);
   if (q == nullptr || knows_distance(out.data)) return;
@@ -97,12 +112,19 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
                    std::vector<double>(out.data.rows(), 0.0)};
   loop::DistanceSinceReversal path(loop::PathFrom::position);
   const RowRange* before = nullptr;
+  std::vector<char> seen(out.data.rows(), 1);
   for (const RowRange& stroke : strokes) {
     const std::size_t middle = stroke.begin + (stroke.end - stroke.begin) / 2;
-    const bool goes_on = before != nullptr && before->end == stroke.begin &&
-                         t[stroke.begin] - t[stroke.begin - 1] < kForgotten &&
-                         v[middle] * v[before->begin + (before->end - before->begin) / 2] > 0;
+    const bool follows = before != nullptr && before->end == stroke.begin &&
+                         t[stroke.begin] - t[stroke.begin - 1] < kForgotten;
+    const bool goes_on =
+        follows && v[middle] * v[before->begin + (before->end - before->begin) / 2] > 0;
     if (!goes_on) path.start_movement();
+    const bool turned =
+        follows || std::abs(v[stroke.begin]) < loop::kStandstill * std::abs(v[middle]);
+    const bool is_seen = goes_on ? seen[stroke.begin - 1] != 0 : turned;
+    std::fill(seen.begin() + static_cast<std::ptrdiff_t>(stroke.begin),
+              seen.begin() + static_cast<std::ptrdiff_t>(stroke.end), is_seen ? char{1} : char{0});
     for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
       const double direction = v[middle] > 0 ? 1 : -1;  // of the stroke: noise at its ends is none
       distance.values[i] =
@@ -110,7 +132,8 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
     }
     before = &stroke;
   }
-  out.data.channels.push_back(std::move(distance));
+  out.data.channels.push_back(distance);
+  add_seen_distance(out, std::move(distance), seen);
 }
 
 // A movement is slow or fast by itself: what creeps all along is not at rest.

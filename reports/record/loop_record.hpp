@@ -56,6 +56,10 @@ struct LoopAlias {
   std::string separate_by;
 };
 
+// Of the searches on parts of the data: an effect that fewer of them choose is provisional.
+// Stability selection takes 0.6 to 0.9 (Meinshausen, Buehlmann 2010).
+inline constexpr double kStableShare = 0.6;
+
 struct LoopEffect {
   std::string family;
   std::string atom;  // its columns as the library writes them

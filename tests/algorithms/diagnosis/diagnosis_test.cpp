@@ -174,6 +174,30 @@ TEST(Diagnosis, PreslidingOfAThousandthOfTheStrokeIsNoLagAndNoFallWithSpeed) {
   }
 }
 
+// Bristles that were bent before the recording began. With distances that start at 0 in each of its
+// movements this was told as presliding and a lag.
+TEST(Diagnosis, PreslidingOfMovementsCutOutOfMotionIsNoLag) {
+  RandomStream random(5);
+  std::string text = "movement,time_s,q,v,a,friction_torque_Nm\n";
+  for (int m = 0; m < 45; ++m) {
+    const double w = random.uniform(0.6, 1.8);
+    const double size = random.uniform(0.3, 1.0);
+    const double begin = random.uniform(0, 6);
+    double bristles = 0;
+    for (int i = 0; i < 300; ++i) {
+      const double angle = begin + 0.02 * w * i;
+      const double v = size * w * std::cos(angle);
+      const double s = v > 0 ? 1 : -1;
+      bristles = i == 0 ? s : s + (bristles - s) * std::exp(-0.02 * std::abs(v) / 0.03);
+      const double y = 3 * s + 6 * v + 2 * (bristles - s) + 0.2 * random.normal();
+      text += fmt::format("{},{},{},{},{},{}\n", m, 10 * m + 0.02 * i, size * std::sin(angle), v,
+                          -size * w * w * std::sin(angle), y);
+    }
+  }
+  EXPECT_EQ(families(diagnose_most(observe(parse_csv(text, "cut.csv").data), {})),
+            std::vector<std::string>{"hysteresis"});
+}
+
 // The same curve up to its sign, at a third of the top speed: whether friction falls tells whose it
 // is.
 TEST(Diagnosis, AWideCurveIsStribeckWhereFrictionFallsAndNonlinearWhereItRises) {

@@ -72,6 +72,30 @@ TEST(Observations, DistanceSinceReversalIsKnownOnlyWhereSomethingTurnsOrStartsFr
   EXPECT_GT(data.find("d")->values[49], 4.0);
 }
 
+// What was before the recording began is not seen: as far back as any reversal that is.
+TEST(Observations, AMovementThatStartsInMotionHasTurnedBeforeTheRecordingBegan) {
+  std::string text = "movement,time_s,v,friction_torque_Nm\n";
+  for (int m = 0; m < 2; ++m) {
+    for (int i = 0; i < 50; ++i) {
+      const double v = m == 0 ? std::cos(0.1 * i) : std::sin(0.1 * i);
+      text += std::to_string(m) + "," + std::to_string(0.1 * i) + "," + std::to_string(v) + "," +
+              std::to_string(v) + "\n";
+    }
+  }
+  const Observations data = observe(parse_csv(text, "d.csv").data);
+  ASSERT_NE(data.find("d_seen"), nullptr);
+  const std::vector<double>& d = data.find("d")->values;
+  const std::vector<double>& seen = data.find("d_seen")->values;
+  const double farthest = *std::ranges::max_element(d);
+  std::size_t before_the_turn = 0;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    const bool unseen = data.movement[i] == 0 && data.time[i] < 1.55;
+    before_the_turn += unseen ? 1 : 0;
+    EXPECT_EQ(seen[i], unseen ? farthest : d[i]) << i;
+  }
+  EXPECT_EQ(before_the_turn, 16U);
+}
+
 // A column may be named as effects name it.
 TEST(Observations, ColumnsNamedLikeSignalsAreTheirSignals) {
   std::string text = "movement,v,g,q,tau_f\n";

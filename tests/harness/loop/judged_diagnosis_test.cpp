@@ -10,6 +10,7 @@
 
 #include "problems/kuka/planted.hpp"
 #include "problems/reading/csv.hpp"
+#include "reports/record/loop_record.hpp"
 #include "tests/support/paths.hpp"
 
 namespace tribench::loop {
@@ -111,6 +112,14 @@ TEST(JudgedDiagnosis, IsTheSameAgain) {
   EXPECT_EQ(one.leftover.p, two.leftover.p);
   EXPECT_EQ(families(one), families(two));
   EXPECT_EQ(formula_of(one.after), formula_of(two.after));
+}
+
+// One movement of many carries it: the search does not find it without that one.
+TEST(JudgedDiagnosis, WhatTheSearchesOnPartsDoNotFindAgainIsProvisional) {
+  for (const EffectFinding& effect :
+       diagnose_planted({.effects = {{"coupling", 2.0}}}, 954432, {.resample = true}).effects) {
+    EXPECT_EQ(effect.provisional, effect.chosen_share < kStableShare);
+  }
 }
 
 // Searches side by side and one after the other: the same, bit for bit.
