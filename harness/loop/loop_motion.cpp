@@ -42,8 +42,8 @@ bool reads(const Expression& formula, const Observations& data, std::string_view
 // out, so that it is computed from that.
 void rename_channels(const Observations& data, Dataset& recording) {
   std::erase_if(recording.channels, [](const Channel& channel) {
-    return channel.name == "sin_q" || channel.name == "cos_q" || channel.name == kDerivedDistance ||
-           channel.name == kDerivedSeenDistance;
+    return channel.name == "sin_q" || channel.name == "cos_q" ||
+           derived_signal(channel.name).has_value();
   });
   for (const Signal& signal : data.signals) {
     if (!signal.recipe.empty() || signal.role == Role::position || signal.role == Role::velocity ||

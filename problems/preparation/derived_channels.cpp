@@ -11,6 +11,13 @@
 namespace tribench::loop {
 namespace {
 
+double rounded_step(double dt) {
+  constexpr double kClock = 1e-5;
+  return dt > 100 * kClock ? kClock * std::round(dt / kClock) : dt;
+}
+
+constexpr std::string_view kDerived = " (derived)";
+
 double sign_of(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
 
 }  // namespace
@@ -52,6 +59,35 @@ std::string lagged_velocity_recipe(int lag_ms) {
   return fmt::format(
       "v after a first-order filter of {} ms, straight between rows; v in a movement's first row",
       lag_ms);
+}
+
+std::vector<double> lagged_velocity(int lag_ms, std::span<const double> v,
+                                    std::span<const double> time, std::span<const int> movement) {
+  std::vector<double> late;
+  FirstOrderLag lag(lag_ms * 1e-3);
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const bool starts = i == 0 || movement[i] != movement[i - 1];
+    if (starts) lag.start_movement();
+    late.push_back(lag.next(v[i], starts ? 0 : rounded_step(time[i] - time[i - 1])));
+  }
+  return late;
+}
+
+std::string derived_channel_name(std::string_view signal) {
+  return fmt::format("{}{}", signal, kDerived);
+}
+
+std::optional<DerivedSignal> derived_signal(std::string_view channel) {
+  if (!channel.ends_with(kDerived)) return std::nullopt;
+  const std::string signal(channel.substr(0, channel.size() - kDerived.size()));
+  if (signal == "d") return DerivedSignal{signal, distance_recipe()};
+  if (signal == kSeenDistance) return DerivedSignal{signal, seen_distance_recipe()};
+  for (const int lag_ms : kLags_ms) {
+    if (signal == lagged_velocity_name(lag_ms)) {
+      return DerivedSignal{signal, lagged_velocity_recipe(lag_ms)};
+    }
+  }
+  return std::nullopt;
 }
 
 bool is_distance(std::string_view name) { return name == "d" || name == kSeenDistance; }

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -48,9 +49,17 @@ class DistanceSinceReversal {
 // standstill, as a controller's does, has the one in the other.
 inline constexpr std::string_view kSeenDistance = "d_seen";
 
-// The channels' names where they were computed before the recording was cut, and not by `observe`.
-inline constexpr std::string_view kDerivedDistance = "distance_since_reversal (derived)";
-inline constexpr std::string_view kDerivedSeenDistance = "distance_since_seen_reversal (derived)";
+// What a signal that is computed before a recording is cut is called among its channels; `observe`
+// takes it as it is.
+std::string derived_channel_name(std::string_view signal);
+
+struct DerivedSignal {
+  std::string signal;
+  std::string recipe;
+};
+// Of such a name; empty for any other.
+std::optional<DerivedSignal> derived_signal(std::string_view channel);
+
 // Slower than this share of its top speed a movement starts from standstill.
 inline constexpr double kStandstill = 0.05;
 
@@ -75,6 +84,10 @@ class FirstOrderLag {
 inline constexpr std::array<int, 3> kLags_ms = {30, 60, 120};
 std::string lagged_velocity_name(int lag_ms);
 std::string lagged_velocity_recipe(int lag_ms);
+// time in s; starts anew with every movement. A clock tells the time between rows no better than
+// 10 us: a file whose time counts from 1970 gives the same filter as one that counts from 0.
+std::vector<double> lagged_velocity(int lag_ms, std::span<const double> v,
+                                    std::span<const double> time, std::span<const int> movement);
 
 bool is_distance(std::string_view name);  // d or d_seen
 std::string seen_distance_recipe();

@@ -122,13 +122,6 @@ void add_distance(Observations& data) {
   add_seen_distance(data, std::move(signal), seen);
 }
 
-// A clock tells the time between rows no better than this (s): a file whose time counts from 1970
-// must give the same filter as one that counts from 0.
-double rounded_step(double dt) {
-  constexpr double kClock = 1e-5;
-  return dt > 100 * kClock ? kClock * std::round(dt / kClock) : dt;
-}
-
 // To first order a late velocity differs from the velocity by the acceleration: without one, an
 // inertia that the data do not hold would pass for late friction.
 void add_lagged_velocities(Observations& data) {
@@ -137,16 +130,10 @@ void add_lagged_velocities(Observations& data) {
   const std::vector<double> time = t->values;
   const Signal v = *data.find("v");
   for (const int lag_ms : kLags_ms) {
-    Signal signal{lagged_velocity_name(lag_ms), v.channel, v.unit, Role::none, {}, {}};
-    signal.recipe = lagged_velocity_recipe(lag_ms);
-    FirstOrderLag lag(lag_ms * 1e-3);
-    for (std::size_t i = 0; i < data.rows(); ++i) {
-      const bool starts = i == 0 || data.movement[i] != data.movement[i - 1];
-      if (starts) lag.start_movement();
-      signal.values.push_back(
-          lag.next(v.values[i], starts ? 0 : rounded_step(time[i] - time[i - 1])));
-    }
-    data.signals.push_back(std::move(signal));
+    const std::string name = lagged_velocity_name(lag_ms);
+    if (data.find(name) != nullptr) continue;  // told before rows were cut
+    data.signals.push_back({name, v.channel, v.unit, Role::none, lagged_velocity_recipe(lag_ms),
+                            lagged_velocity(lag_ms, v.values, time, data.movement)});
   }
 }
 
@@ -382,6 +369,25 @@ Shortened Observations::averaged(std::size_t most) const {
   return {means_of(*this, end), rows_each, step > 1 ? fmt::format(", one mean in {}", step) : ""};
 }
 
+namespace {
+
+// A channel that effects are written in, or that is rigid; the first where there are two of a role.
+void add_signal(Observations& out, const Channel& channel, bool rigid) {
+  const std::optional<DerivedSignal> derived = derived_signal(channel.name);
+  const bool recorded_distance = channel.name.starts_with("distance_since_reversal");
+  const bool wanted =
+      std::ranges::count(kSignalNames, channel.role, &std::pair<Role, std::string_view>::first) > 0;
+  const std::string name = derived             ? derived->signal
+                           : recorded_distance ? "d"
+                                               : signal_name(channel.role, channel.name);
+  if (!(wanted || rigid || derived || recorded_distance) || out.find(name) != nullptr) return;
+  out.signals.push_back({name, channel.name, channel.unit, channel.role,
+                         derived ? derived->recipe : std::string(), channel.values});
+  if (rigid) out.rigid.push_back(name);
+}
+
+}  // namespace
+
 Observations observe(const Dataset& data, const ObservationOptions& options) {
   if (data.rows() == 0) throw_bad_input("the file has no rows", data.name);
   if (data.find(Role::velocity) == nullptr) {
@@ -395,20 +401,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   out.place = places_of(data.movement);
   for (const Channel& channel : data.channels) {
     if (channel.values.size() != data.rows()) continue;  // a text column: movement
-    const std::string name = signal_name(channel.role, channel.name);
-    const bool wanted = std::ranges::count(kSignalNames, channel.role,
-                                           &std::pair<Role, std::string_view>::first) > 0 ||
-                        channel.name.starts_with("distance_since_reversal") ||
-                        channel.name == kDerivedSeenDistance;
-    const bool rigid = std::ranges::count(options.rigid, channel.name) > 0;
-    if ((!wanted && !rigid) || out.find(name) != nullptr) continue;
-    out.signals.push_back({name, channel.name, channel.unit, channel.role, {}, channel.values});
-    Signal& signal = out.signals.back();
-    if (channel.name.starts_with("distance_since_reversal")) signal.name = "d";
-    if (channel.name == kDerivedSeenDistance) signal.name = kSeenDistance;
-    if (channel.name == kDerivedDistance) signal.recipe = distance_recipe();
-    if (channel.name == kDerivedSeenDistance) signal.recipe = seen_distance_recipe();
-    if (rigid) out.rigid.push_back(name);
+    add_signal(out, channel, std::ranges::count(options.rigid, channel.name) > 0);
   }
   for (const std::string& name : options.rigid) data.at(name);
   complete_signals(out);

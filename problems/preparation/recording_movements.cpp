@@ -82,7 +82,8 @@ std::vector<ChainedStroke> without_ends(const std::vector<ChainedStroke>& stroke
 
 bool knows_distance(const Dataset& data) {
   return std::ranges::any_of(data.channels, [](const Channel& channel) {
-    return channel.name.starts_with("distance_since_reversal");
+    return channel.name.starts_with("distance_since_reversal") ||
+           channel.name == loop::derived_channel_name("d");
   });
 }
 
@@ -93,7 +94,7 @@ void add_seen_distance(PreparedRecording& out, Channel distance, const std::vect
     if (seen[i] != 0) farthest = std::max(farthest, distance.values[i]);
   }
   if (!(farthest > 0) || std::ranges::count(seen, 0) == 0) return;
-  distance.name = loop::kDerivedSeenDistance;
+  distance.name = loop::derived_channel_name(loop::kSeenDistance);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (seen[i] == 0) distance.values[i] = farthest;
   }
@@ -108,7 +109,7 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
   if (q == nullptr || knows_distance(out.data)) return;
   const std::vector<double>& v = find_channel(out.data, Role::velocity)->values;
   const std::vector<double>& t = find_channel(out.data, Role::time)->values;
-  Channel distance{std::string(loop::kDerivedDistance), q->unit, Role::none,
+  Channel distance{loop::derived_channel_name("d"), q->unit, Role::none,
                    std::vector<double>(out.data.rows(), 0.0)};
   loop::DistanceSinceReversal path(loop::PathFrom::position);
   const RowRange* before = nullptr;
@@ -134,6 +135,19 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
   }
   out.data.channels.push_back(distance);
   add_seen_distance(out, std::move(distance), seen);
+}
+
+// The velocities that late friction follows, told before rows are cut: what is slow is where they
+// differ from the velocity most.
+void add_lagged_velocities(PreparedRecording& out) {
+  if (find_channel(out.data, Role::acceleration) == nullptr) return;
+  const Channel v = *find_channel(out.data, Role::velocity);
+  const std::vector<double> time = find_channel(out.data, Role::time)->values;
+  for (const int lag_ms : loop::kLags_ms) {
+    out.data.channels.push_back({loop::derived_channel_name(loop::lagged_velocity_name(lag_ms)),
+                                 v.unit, Role::none,
+                                 loop::lagged_velocity(lag_ms, v.values, time, out.data.movement)});
+  }
 }
 
 // A movement is slow or fast by itself: what creeps all along is not at rest.
@@ -200,6 +214,7 @@ void cut_strokes(PreparedRecording& out, double noise, double blur) {
   const Strokes found = strokes_of(t->values, v->values,
                                    pieces_of(t->values, out.data.movement, {}), noise, kFewestRows);
   add_distance(out, found.strokes);
+  add_lagged_velocities(out);
   t = find_channel(out.data, Role::time);
   v = find_channel(out.data, Role::velocity);
   const std::vector<ChainedStroke> strokes =
@@ -255,6 +270,7 @@ void settle_strokes(PreparedRecording& out, double noise) {
   }
   if (rows.empty() || rows.size() == out.data.rows()) return;
   if (from_rest) add_distance(out, strokes);
+  add_lagged_velocities(out);
   const std::size_t all = out.data.rows();
   keep_rows(out.data, rows);
   out.notes.push_back(fmt::format(

@@ -277,7 +277,7 @@ TEST(PreparedRecording, DeclaredMovementsLoseSlowRowsAtRestsAndKeepACreepingStro
   ASSERT_EQ(recording.data.movement_names, (std::vector<std::string>{"fast", "slow"}));
   EXPECT_EQ(std::ranges::count(recording.data.movement, 1), 400);
   const std::vector<double>& v = recording.data.find(Role::velocity)->values;
-  const std::vector<double>& d = recording.data.at("distance_since_reversal (derived)").values;
+  const std::vector<double>& d = recording.data.at("d (derived)").values;
   for (std::size_t i = 0; i < v.size(); ++i) {
     if (recording.data.movement[i] == 0) {
       EXPECT_GE(v[i], 0.02);
