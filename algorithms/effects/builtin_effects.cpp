@@ -284,7 +284,8 @@ EffectFamily hysteresis() {
                  {}};
   // A movement that starts in motion has its bristles bent already, or (a joint held by a brake)
   // not yet: the data say which.
-  for (const std::string distance : {std::string("d"), std::string(kSeenDistance)}) {
+  for (const std::string_view name : {std::string_view("d"), kSeenDistance}) {
+    const std::string distance(name);
     const ShapeTemplate lambda{"lambda", distance, {0.0001, 0.0003, 0.001, 0.004, 0.01, 0.03},
                                0.00003,  0.1,      true};
     f.atoms.push_back({{"sgn_v*exp(-" + distance + "/lambda)"}, {"presliding"}, {lambda}});

@@ -131,7 +131,7 @@ class Generator : public RowAssembler {
     const std::size_t saved = std::min(used_.size(), kPointers);
     for (std::size_t k = kCallerSaved; k < saved; ++k) push(pointer(k));
     for (std::size_t k = 0; k < saved; ++k) {
-      mov(pointer(k), ptr[rdi + 8 * static_cast<int>(used_[k])]);
+      mov(pointer(k), ptr[rdi + 8 * static_cast<std::size_t>(used_[k])]);
     }
     if (multiplies_) broadcast(spare(4), extra(kOne));
     xor_(eax, eax);
@@ -186,7 +186,7 @@ class Generator : public RowAssembler {
     const auto at = static_cast<std::size_t>(std::lower_bound(used_.begin(), used_.end(), operand) -
                                              used_.begin());
     if (at < kPointers) return ptr[pointer(at) + rax];
-    mov(r11, ptr[rdi + 8 * static_cast<int>(operand)]);
+    mov(r11, ptr[rdi + 8 * static_cast<std::size_t>(operand)]);
     return ptr[r11 + rax];
   }
   template <typename F>

@@ -182,8 +182,8 @@ void add_terms(LoopRecord& record, const JudgedDiagnosis& diagnosis, const Obser
   const LoopModel& model = diagnosis.after;
   Expression base = model.base.formula;
   for (std::size_t j = 0; j < model.base.linear_terms.size(); ++j) {
-    base = sum_of(std::move(base), model.coefficients[static_cast<Eigen::Index>(j)],
-                  model.base.linear_terms[j]);
+    base =
+        sum_of(base, model.coefficients[static_cast<Eigen::Index>(j)], model.base.linear_terms[j]);
   }
   record.terms.push_back({{}, short_formula(base, data)});
   for (const EffectFinding& effect : diagnosis.effects) {
@@ -193,7 +193,7 @@ void add_terms(LoopRecord& record, const JudgedDiagnosis& diagnosis, const Obser
       if (diagnosis.families[atom.family].name != effect.family) continue;
       for (std::size_t c = 0; c < atom.columns.size(); ++c) {
         const auto j = static_cast<Eigen::Index>(model.first_column(k) + c);
-        sum = sum_of(std::move(sum), model.coefficients[j], atom.columns[c]);
+        sum = sum_of(sum, model.coefficients[j], atom.columns[c]);
       }
     }
     record.terms.push_back({effect.family, short_formula(sum, data)});

@@ -2,8 +2,9 @@
 # usage: tests/style/style.sh [SECONDS [BASE]]
 # Formatting and clang-tidy on the C++ files that changed since BASE (else in the day before the last
 # commit), the latest first. Formatting looks at all of them, clang-tidy at the sources of the
-# program; what it has not begun within SECONDS (120) is counted and left. Exit status 1 where
-# something is found. Needs clang-format-14, clang-tidy-14 and a built build/release.
+# program; what it has not begun within SECONDS (120) is counted and left. Exit status 1 where the
+# formatting is another, 123 where clang-tidy finds something. Needs clang-format-14, clang-tidy-14
+# and a built build/release.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds=${1:-120}
