@@ -102,6 +102,18 @@ std::string seen_distance_recipe() {
   return "d; as long as it can be until the first reversal of a movement that starts in motion";
 }
 
+std::vector<double> seen_distance(std::vector<double> distance, std::span<const char> seen) {
+  double farthest = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i] != 0) farthest = std::max(farthest, distance[i]);
+  }
+  if (!(farthest > 0) || std::ranges::count(seen, 0) == 0) return {};
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i] == 0) distance[i] = farthest;
+  }
+  return distance;
+}
+
 std::string c_history_code(std::string_view function, std::span<const std::string> arguments,
                            PathFrom from) {
   const bool by_position = from == PathFrom::position;

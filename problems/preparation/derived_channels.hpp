@@ -91,6 +91,9 @@ std::vector<double> lagged_velocity(int lag_ms, std::span<const double> v,
 
 bool is_distance(std::string_view name);  // d or d_seen
 std::string seen_distance_recipe();
+// d_seen from d and, per row, whether the reversal that d counts from is seen. Empty where all are,
+// or none: then it says nothing that d does not.
+std::vector<double> seen_distance(std::vector<double> distance, std::span<const char> seen);
 // "d = ..." in words, for reports.
 std::string distance_recipe();
 

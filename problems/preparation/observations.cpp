@@ -82,22 +82,6 @@ std::vector<char> reversal_is_seen(const Observations& data, const std::vector<d
   return seen;
 }
 
-// A movement that starts in motion has turned before the recording began: as far back as any
-// reversal that is seen.
-void add_seen_distance(Observations& data, Signal signal, const std::vector<char>& seen) {
-  if (std::ranges::count(seen, 0) == 0) return;
-  signal.name = kSeenDistance;
-  signal.recipe = seen_distance_recipe();
-  double farthest = 0;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (seen[i] != 0) farthest = std::max(farthest, signal.values[i]);
-  }
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (seen[i] == 0) signal.values[i] = farthest;
-  }
-  data.signals.push_back(std::move(signal));
-}
-
 // Path since the velocity last changed its sign; starts at 0 with every movement. None where no
 // reversal is seen: "distance" would be a name for the place within a recording.
 void add_distance(Observations& data) {
@@ -119,7 +103,12 @@ void add_distance(Observations& data) {
     signal.values.push_back(distance.next(v->values[i], q != nullptr ? q->values[i] : 0, dt));
   }
   data.signals.push_back(signal);
-  add_seen_distance(data, std::move(signal), seen);
+  // A movement that starts in motion has turned before the recording began.
+  signal.values = seen_distance(std::move(signal.values), seen);
+  if (signal.values.empty()) return;
+  signal.name = kSeenDistance;
+  signal.recipe = seen_distance_recipe();
+  data.signals.push_back(std::move(signal));
 }
 
 // To first order a late velocity differs from the velocity by the acceleration: without one, an

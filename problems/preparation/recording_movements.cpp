@@ -87,20 +87,6 @@ bool knows_distance(const Dataset& data) {
   });
 }
 
-// As `distance`, but as far as any reversal that is seen where none is.
-void add_seen_distance(PreparedRecording& out, Channel distance, const std::vector<char>& seen) {
-  double farthest = 0;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (seen[i] != 0) farthest = std::max(farthest, distance.values[i]);
-  }
-  if (!(farthest > 0) || std::ranges::count(seen, 0) == 0) return;
-  distance.name = loop::derived_channel_name(loop::kSeenDistance);
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (seen[i] == 0) distance.values[i] = farthest;
-  }
-  out.data.channels.push_back(std::move(distance));
-}
-
 // The path since the direction last changed, told before a stroke's ends are cut off: the position
 // knows it where the velocity is blurred. Lost messages do not make it start anew. A reversal is
 // seen where a stroke follows another or starts from standstill.
@@ -134,7 +120,10 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
     before = &stroke;
   }
   out.data.channels.push_back(distance);
-  add_seen_distance(out, std::move(distance), seen);
+  distance.values = loop::seen_distance(std::move(distance.values), seen);
+  if (distance.values.empty()) return;
+  distance.name = loop::derived_channel_name(loop::kSeenDistance);
+  out.data.channels.push_back(std::move(distance));
 }
 
 // The velocities that late friction follows, told before rows are cut: what is slow is where they
