@@ -27,7 +27,7 @@ CLI::Option* add_data_options(CLI::App& command, std::shared_ptr<DataOptions> op
   command
       .add_option("--joint", options->joint, "of several joints in the columns' names (q1 ... q7)")
       ->transform(whole_number(0, kMostJoints));
-  command.add_option("--where", options->where, "COLUMN=NUMBER: use these rows only");
+  command.add_option("--where", options->where, "COLUMN=VALUE: use these rows only");
   command.add_flag("--drop-missing", options->drop_missing, "drop and count incomplete rows");
   command.add_flag("--flip-sign", options->flip_sign, "the file's torques oppose the velocity");
   command

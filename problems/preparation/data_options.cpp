@@ -24,20 +24,38 @@ std::optional<double> number_of(std::string_view text) {
 
 struct Condition {
   std::string column;
-  double value = 0;
+  std::string text;
+  std::optional<double> value;  // where the text is a number
 };
 
 Condition parse_condition(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos || equals == 0) {
-    throw_bad_input(fmt::format("'{}' is no COLUMN=NUMBER", text), "--where");
+    throw_bad_input(fmt::format("'{}' is no COLUMN=VALUE", text), "--where");
   }
-  const std::optional<double> value = number_of(text.substr(equals + 1));
-  if (!value) {
-    throw_bad_input(fmt::format("'{}' is no number", text.substr(equals + 1)), "--where",
-                    "write COLUMN=NUMBER");
+  std::string wanted = text.substr(equals + 1);
+  const std::optional<double> value = number_of(wanted);
+  return {text.substr(0, equals), std::move(wanted), value};
+}
+
+std::vector<std::size_t> rows_where(const DataFile& file, const Condition& condition) {
+  std::vector<std::size_t> rows;
+  const auto texts = std::ranges::find(file.texts, condition.column, &TextColumn::name);
+  if (texts != file.texts.end()) {
+    for (std::size_t i = 0; i < texts->values.size(); ++i) {
+      if (texts->values[i] == condition.text) rows.push_back(i);
+    }
+    return rows;
   }
-  return {text.substr(0, equals), *value};
+  const std::vector<double>& column = file.data.at(condition.column).values;
+  if (!condition.value) {
+    throw_bad_input(fmt::format("'{}' is no number", condition.text), "--where",
+                    fmt::format("column '{}' holds numbers", condition.column));
+  }
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    if (column[i] == *condition.value) rows.push_back(i);
+  }
+  return rows;
 }
 
 template <typename Values>
@@ -47,15 +65,12 @@ void keep(Values& values, const std::vector<std::size_t>& rows) {
 }
 
 void keep_rows_where(DataFile& file, const Condition& condition) {
-  const std::vector<double>& column = file.data.at(condition.column).values;
-  std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < column.size(); ++i) {
-    if (column[i] == condition.value) rows.push_back(i);
-  }
+  const std::vector<std::size_t> rows = rows_where(file, condition);
   if (rows.empty()) {
     throw_bad_input("no row is left",
-                    fmt::format("--where {}={}", condition.column, condition.value));
+                    fmt::format("--where {}={}", condition.column, condition.text));
   }
+  if (file.in_turn.starts_with(condition.column + " = ")) file.in_turn.clear();
   for (Channel& channel : file.data.channels) keep(channel.values, rows);
   for (TextColumn& text : file.texts) keep(text.values, rows);
   keep(file.data.movement, rows);

@@ -2,6 +2,7 @@
 #include "problems/preparation/recording.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "foundation/error.hpp"
 #include "problems/preparation/motion_check.hpp"
@@ -11,6 +12,28 @@
 #include "problems/preparation/recording_steps.hpp"
 
 namespace tribench {
+namespace {
+
+// A velocity is enough to go on, but without a position nothing is known of gravity: one may stand
+// in the file under a name that says nothing.
+void note_no_position(PreparedRecording& out, const DataFile& file) {
+  if (file.data.find(Role::position) != nullptr) return;
+  std::vector<std::string> strangers;
+  for (const ColumnReading& reading : file.readings) {
+    const bool known = reading.role != Role::none || !reading.remark.empty();
+    if (!known) strangers.push_back(fmt::format("'{}'", reading.column));
+  }
+  if (strangers.empty()) return;
+  constexpr std::size_t kShown = 12;
+  const bool more = strangers.size() > kShown;
+  if (more) strangers.resize(kShown);
+  out.notes.push_back(fmt::format(
+      "no column is the position, so gravity and ripples cannot be told; not understood: {}{} "
+      "(--roles COLUMN=position[UNIT])",
+      fmt::join(strangers, ", "), more ? ", ..." : ""));
+}
+
+}  // namespace
 
 PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gravity,
                           SlowRows slow) {
@@ -21,6 +44,7 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
     out.notes.push_back(fmt::format("{} rows with missing values dropped", file.dropped_rows));
   }
   for (std::string& one : what_was_converted(file)) out.notes.push_back(std::move(one));
+  note_no_position(out, file);
   out.data = std::move(file.data);
   if (std::string made = make_torque(out.data, options); !made.empty()) {
     out.notes.push_back(std::move(made));

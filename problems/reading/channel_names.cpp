@@ -41,6 +41,15 @@ constexpr std::array<std::string_view, 18> kElsewhere = {
     "bus", "dc",  "supply", "battery", "tcp",     "tool",   "tool0", "cartesian", "ee",
     "fan", "imu", "brake",  "base",    "gripper", "wrench", "ft",    "gps",       "odom"};
 
+// In a name that would be known by its unit alone: what is no measurement of the joint.
+constexpr std::array<std::string_view, 40> kNoMeasurement = {
+    "phase",   "electrical", "elec",   "el",           "cycle",      "period",      "duration",
+    "delay",   "latency",    "jitter", "dt",           "delta",      "diff",        "lag",
+    "age",     "timeout",    "exec",   "step",         "ambient",    "room",        "ground",
+    "support", "peak",       "rated",  "deadband",     "slip",       "gravity",     "grav",
+    "rigid",   "model",      "comp",   "compensation", "ff",         "feedforward", "coriolis",
+    "inertia", "friction",   "ext",    "external",     "disturbance"};
+
 template <std::size_t N>
 bool is_among(const std::array<std::string_view, N>& list, std::string_view word) {
   return std::ranges::find(list, word) != list.end();
@@ -173,6 +182,17 @@ std::string take_brackets(std::string_view& name) {
   return {};
 }
 
+// "angle_0.01deg": what one count is, behind the last line. A larger number ("load_cell_10Nm") is a
+// range.
+std::string take_count(std::string_view& name) {
+  const std::size_t cut = name.find_last_of("_ ");
+  if (cut == std::string_view::npos || cut == 0) return {};
+  const std::string_view last = name.substr(cut + 1);
+  if (!last.starts_with("0.") || find_written_unit(last).unit == nullptr) return {};
+  name = name.substr(0, cut);
+  return std::string(last);
+}
+
 // A unit as the last words: the longest that leaves a name that goes with it.
 bool read_written_unit(const Words& words, NameReading& reading) {
   for (std::size_t cut = 1; cut < words.size(); ++cut) {
@@ -206,7 +226,8 @@ void read_unit_alone(std::string_view name, NameReading& reading) {
 // A name without a sign prefix and a path before it.
 NameReading read_last(std::string_view whole) {
   std::string_view name = whole;
-  const std::string inside = take_brackets(name);
+  std::string inside = take_brackets(name);
+  if (inside.empty()) inside = take_count(name);
   NameReading reading;
   reading.known = find_written_unit(inside);
   reading.at_motor = reading.known.at_motor;
@@ -270,6 +291,29 @@ NameReading read_channel_name(std::string_view name) {
   }
   reading.unit = reading.known.unit != nullptr ? reading.known.symbol() : "-";
   return reading;
+}
+
+bool names_something_else(std::string_view name) {
+  return std::ranges::any_of(split_words(name, true), [](const std::string& word) {
+    const std::string plain = lower(word);
+    return is_among(kSetPoints, plain) || is_among(kElsewhere, plain) ||
+           is_among(kNoMeasurement, plain);
+  });
+}
+
+bool names_motor(std::string_view name) {
+  return std::ranges::any_of(split_words(name, true), [](const std::string& word) {
+    return lower(word) == "motor" || lower(word) == "mot";
+  });
+}
+
+bool names_joint(std::string_view name) {
+  constexpr std::array<std::string_view, 11> kWords = {"joint", "axis", "achse", "motor",
+                                                       "drive", "dof",  "name",  "actuator",
+                                                       "id",    "node", "gelenk"};
+  return std::ranges::any_of(split_words(name, true), [&](const std::string& word) {
+    return is_among(kWords, lower(word));
+  });
 }
 
 bool is_torque_like(Role role) {

@@ -33,6 +33,16 @@ struct NameReading {
 // joint's. Letters' case decides between t and T alone.
 NameReading read_channel_name(std::string_view name);
 
+// Whether a word of the name says that it is no measurement of the joint: a set point, an error, a
+// limit; a bus, a tool; a phase; how long something took.
+bool names_something_else(std::string_view name);
+
+// Whether a word of the name says the motor.
+bool names_motor(std::string_view name);
+
+// Whether a word of the name says that it tells joints apart.
+bool names_joint(std::string_view name);
+
 // Torques and what stands for them (a force, a current, a voltage).
 bool is_torque_like(Role role);
 

@@ -260,6 +260,65 @@ void settle_roles(std::vector<ColumnPlan>& plans, DataFile& out) {
   }
 }
 
+// The role that a column may have by its unit, where nothing else has it.
+Role role_of(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::time:
+      return Role::time;
+    case Dimension::angle:
+      return Role::position;
+    case Dimension::current:
+      return Role::motor_current;
+    case Dimension::torque:
+      return Role::motor_torque;
+    case Dimension::temperature:
+      return Role::temperature;
+    default:
+      return Role::none;
+  }
+}
+
+// Of what the motor gives there is one column: a torque or its current.
+Role kind_of(Role role) {
+  const bool effort = role == Role::motor_current || role == Role::friction_torque;
+  return effort ? Role::motor_torque : role;
+}
+
+// "phase_A" and "flag_s" are not in amperes and seconds: one letter tells in brackets or in a row
+// of units alone.
+bool is_plainly_written(const ColumnPlan& plan) {
+  const std::string& name = plan.reading.column;
+  const bool letter = name.size() > 1 && name[name.size() - 2] == '_';
+  return !plan.reading.unit_assumed && (!letter || plan.reading.unit_from == "row of units");
+}
+
+// The one column in a unit of time, angle, current, torque or temperature ("tick_ms",
+// "shoulder [deg]") is what its unit says, where no name says what is.
+void take_roles_by_unit(std::vector<ColumnPlan>& plans, DataFile& out) {
+  std::map<Role, std::vector<std::size_t>> candidates;
+  std::set<Role> owned;
+  for (std::size_t j = 0; j < plans.size(); ++j) {
+    const ColumnPlan& plan = plans[j];
+    const Role role = plan.reading.role;
+    if (role != Role::none) owned.insert(kind_of(role));
+    if (role != Role::none || !plan.reading.remark.empty() || plan.unit.unit == nullptr) continue;
+    const Role may_be = role_of(plan.unit.unit->dimension);
+    if (may_be == Role::none || plan.unit.unit->counts || !is_plainly_written(plan)) continue;
+    if (names_something_else(plan.reading.column)) continue;
+    candidates[kind_of(may_be)].push_back(j);
+  }
+  for (const auto& [role, columns] : candidates) {
+    if (owned.contains(role) || columns.size() != 1) continue;
+    ColumnPlan& plan = plans[columns.front()];
+    plan.reading.role = role_of(plan.unit.unit->dimension);
+    plan.reading.role_from = "the only one in such a unit";
+    plan.unit.at_motor = plan.unit.at_motor || names_motor(plan.reading.column);
+    out.warnings.push_back(fmt::format(
+        "column '{}' is taken for the {}: it is the only one in {} (--roles says otherwise)",
+        plan.reading.column, role_name(plan.reading.role), plan.unit.unit->symbol));
+  }
+}
+
 }  // namespace
 
 std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& options,
@@ -281,6 +340,7 @@ std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& 
   }
   if (options.names_tell) choose_joint(options, plans, out);
   settle_roles(plans, out);
+  if (options.names_tell && out.joints.empty()) take_roles_by_unit(plans, out);
   for (ColumnPlan& plan : plans) {
     const Role role = plan.reading.role;
     plan.used =

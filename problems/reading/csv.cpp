@@ -92,8 +92,37 @@ bool is_missing(const Reading& in, std::size_t row, std::size_t j) {
                   "pandas: merge_asof)");
 }
 
+// A thermometer answers more slowly than a drive: where most rows have no temperature it goes
+// straight from one reading to the next.
+void join_slow_readings(Reading& in, DataFile& out) {
+  for (std::size_t j = 0; j < in.plans.size(); ++j) {
+    if (in.plans[j].reading.role != Role::temperature) continue;
+    std::vector<double>& values = in.columns.columns[j].numbers;
+    std::vector<std::size_t> told;
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      if (!is_missing(in, row, j)) told.push_back(row);
+    }
+    if (told.size() < 2 || 2 * told.size() > values.size()) continue;
+    std::fill(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(told.front()),
+              values[told.front()]);
+    std::fill(values.begin() + static_cast<std::ptrdiff_t>(told.back()), values.end(),
+              values[told.back()]);
+    for (std::size_t k = 1; k < told.size(); ++k) {
+      const double begin = values[told[k - 1]];
+      const double slope = (values[told[k]] - begin) / static_cast<double>(told[k] - told[k - 1]);
+      for (std::size_t row = told[k - 1] + 1; row < told[k]; ++row) {
+        values[row] = begin + slope * static_cast<double>(row - told[k - 1]);
+      }
+    }
+    out.warnings.push_back(
+        fmt::format("'{}' has a value in {} of {} rows: it goes straight from one to the next",
+                    in.layout.header[j], told.size(), values.size()));
+  }
+}
+
 void choose_rows(Reading& in, DataFile& out) {
   check_texts(in);
+  join_slow_readings(in, out);
   std::vector<std::size_t> looked_at;
   for (std::size_t j = 0; j < in.plans.size(); ++j) {
     if (in.plans[j].used && in.plans[j].kind != ColumnKind::unused) looked_at.push_back(j);
@@ -194,6 +223,14 @@ void fill_channels(Reading& in, DataFile& out) {
     }
     out.readings.push_back(plan.reading);
   }
+  const auto is_unused = [](const ColumnPlan& plan) { return plan.kind == ColumnKind::unused; };
+  if (out.data.channels.empty() && std::ranges::any_of(in.plans, is_unused)) {
+    throw_bad_input(fmt::format("no column's name is known: {}", fmt::join(in.layout.header, ", ")),
+                    in.file,
+                    fmt::format("say what they are, with --roles '{}=time[s],COLUMN=position[UNIT],"
+                                "COLUMN=motor_current[A]'",
+                                in.layout.header.front()));
+  }
   if (out.data.channels.empty()) {
     throw_bad_input("no column holds numbers", in.file, "give at least one column of numbers");
   }
@@ -220,6 +257,7 @@ DataFile parse_csv(std::string_view text, std::string_view file, const CsvOption
   order_by_time(
       out, [&](std::size_t row) { return line_of(text, in.columns.places[in.rows[row]]); }, file);
   demote_current(options, out);
+  if (options.names_tell) find_joints_in_turn(in.layout, out);
   check_torque_units(out.data, file);
   return out;
 }

@@ -74,6 +74,9 @@ struct DataFile {
   std::optional<int> joint;  // that was chosen
   // Number and channel of each joint whose position was asked for, in the order of the numbers.
   std::map<int, std::string> joint_positions;
+  // "joint = 1, 2": a column in which several joints take turns, and what it calls them; else
+  // empty.
+  std::string in_turn;
   bool has_movements = false;  // a column tells them
   std::size_t dropped_rows = 0;
   std::vector<std::string> warnings;  // one sentence each

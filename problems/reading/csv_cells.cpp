@@ -17,12 +17,13 @@ namespace tribench {
 namespace {
 
 bool is_missing(std::string_view cell) {
-  if (cell.empty()) return true;
+  if (cell.find_first_not_of('-') == std::string_view::npos) return true;  // empty, or a dash
   if (cell.front() == '+' || cell.front() == '-') cell.remove_prefix(1);
-  if (cell.empty() || cell.size() > 8) return false;
+  if (cell.empty() || cell.size() > 9) return false;
   std::string word;
   for (const char c : cell) word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  constexpr std::array kMissing = {"nan", "inf", "infinity", "na", "n/a", "#n/a", "null", "none"};
+  constexpr std::array kMissing = {"nan",  "inf",  "infinity", "na",     "n/a", "n.a.",  "#n/a",
+                                   "null", "none", "nil",      "<null>", "\\n", "nan()", "?"};
   return std::find(kMissing.begin(), kMissing.end(), word) != kMissing.end();
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// What the torques of a file must be to one another once they are read: they share a unit. Cells
+// What a file must be once it is read: its torques share a unit, its rows are of one joint. Cells
 // and roles are read in csv.cpp.
 #pragma once
 
 #include <string_view>
 
 #include "problems/reading/csv.hpp"
+#include "problems/reading/csv_layout.hpp"
 
 namespace tribench {
 
@@ -17,5 +18,8 @@ void demote_current(const CsvOptions& options, DataFile& reading);
 // Throws Error (bad_input) where torque-like channels differ in unit. A gravity torque may stand
 // in its own unit beside a motor's volts or amperes.
 void check_torque_units(const Dataset& data, std::string_view file);
+
+// Says in the file which column tells several joints apart that take turns row by row.
+void find_joints_in_turn(const CsvLayout& layout, DataFile& out);
 
 }  // namespace tribench

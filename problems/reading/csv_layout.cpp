@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -190,8 +191,43 @@ Found best_layout(const std::vector<HeadLine>& lines) {
   return best.header ? best : plain_layout(lines);
 }
 
+// Whether two columns hold the same in all rows of the head, as where a recorder gives each channel
+// the time. What stands still there may differ later.
+bool is_repeated(const std::vector<Cells>& rows, std::size_t first, std::size_t second) {
+  const bool same = std::ranges::all_of(
+      rows, [&](const Cells& row) { return second < row.size() && row[first] == row[second]; });
+  return same && rows.size() > 1 && rows.front()[first] != rows.back()[first];
+}
+
+// A column that is repeated gets a name of its own, which means nothing.
+void name_repeated(std::vector<std::string>& header, const std::vector<Cells>& rows,
+                   std::vector<std::string>& notes) {
+  std::map<std::string, std::size_t, std::less<>> places;
+  std::string noted;
+  for (std::size_t j = 0; j < header.size(); ++j) {
+    const auto [first, is_new] = places.try_emplace(header[j], j);
+    if (is_new || header[j].empty() || !is_repeated(rows, first->second, j)) continue;
+    if (noted.empty()) noted = header[j];
+    std::string name = header[j];
+    while (!places.try_emplace(name, j).second) name += " again";
+    header[j] = std::move(name);
+  }
+  if (!noted.empty()) {
+    notes.push_back(
+        fmt::format("column '{}' stands in the file again: the first one counts", noted));
+  }
+}
+
 void check_header(std::vector<std::string>& header, std::string_view file, std::size_t line) {
   std::set<std::string_view> seen;
+  const auto holds_numbers = [](std::string_view cell) {
+    return cell.find_first_of("0123456789") != std::string_view::npos &&
+           cell.find_first_not_of("0123456789.,eE+- \t\r") == std::string_view::npos;
+  };
+  if (std::ranges::all_of(header, holds_numbers)) {
+    throw_bad_input("the first line holds numbers, not names", csv_place(file, line),
+                    "add a line with the columns' names before it");
+  }
   if (header.size() > 1 && header.front().empty()) header.front() = "index";  // as pandas writes it
   for (std::size_t j = 0; j < header.size(); ++j) {
     if (header[j].empty()) {
@@ -202,10 +238,6 @@ void check_header(std::vector<std::string>& header, std::string_view file, std::
       throw_bad_input(fmt::format("two columns are named '{}'", header[j]), csv_place(file, line),
                       "rename one of them");
     }
-  }
-  if (std::ranges::all_of(header, is_number)) {
-    throw_bad_input("the first line holds numbers, not names", csv_place(file, line),
-                    "add a line with the columns' names");
   }
 }
 
@@ -238,6 +270,14 @@ void check_bytes(std::string_view text, std::string_view file) {
       1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n'));
   throw_bad_input("this is not a text file (it holds a zero byte)", csv_place(file, line),
                   "save it as CSV in UTF-8");
+}
+
+std::vector<Cells> rows_of(const std::vector<HeadLine>& lines, const Found& found) {
+  std::vector<Cells> rows;
+  for (std::size_t i = found.row; i < lines.size(); ++i) {
+    if (!lines[i].comment) rows.push_back(cells_of(lines[i], found.delimiter));
+  }
+  return rows;
 }
 
 void take_off_single_quotes(std::vector<std::string>& header) {
@@ -289,6 +329,8 @@ CsvLayout find_layout(std::string_view text, std::string_view file) {
     layout.header.pop_back();
   }
   take_off_single_quotes(layout.header);
+  layout.first_rows = rows_of(lines, found);
+  name_repeated(layout.header, layout.first_rows, layout.notes);
   check_header(layout.header, file, header.number);
   if (!has_rows) throw_bad_input("there is a header and no row", std::string(file), "add rows");
   layout.begin = lines[found.row].begin;

@@ -23,7 +23,8 @@ struct CsvLayout {
   std::string head;                // the bytes from the line of names up to the rows
   std::size_t begin = 0;           // byte at which the rows begin
   std::size_t line = 1;            // its number in the file, from 1
-  std::vector<std::string> notes;  // what was passed over, one sentence each
+  std::vector<std::vector<std::string>> first_rows;  // some tens of them
+  std::vector<std::string> notes;                    // what was passed over, one sentence each
 };
 
 // Throws Error (bad_input) where the text is empty, binary, has no row, or no line that names every

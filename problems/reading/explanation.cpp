@@ -28,6 +28,14 @@ std::vector<std::string> what_is_missing(const DataFile& file) {
                                   fmt::join(file.joints, ", ")));
     return missing;
   }
+  if (!file.in_turn.empty()) {
+    const std::size_t comma = file.in_turn.find(',');
+    std::string one = file.in_turn.substr(0, comma);
+    std::erase(one, ' ');
+    missing.push_back(
+        fmt::format("the rows of several joints stand in turn ({}): choose one with --where '{}'",
+                    file.in_turn, one));
+  }
   if (!has(file, {Role::friction_torque, Role::motor_torque, Role::motor_current})) {
     missing.emplace_back(
         "there is no friction or motor torque and no motor current: name it with --roles "

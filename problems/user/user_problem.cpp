@@ -185,7 +185,7 @@ void set_units_and_box(const UserProblem& own, Problem& problem) {
     if (input->low < range.first || input->high > range.second) {
       throw_bad_input(fmt::format("'{}' is from {} to {} in the rows and from {} to {} in the box",
                                   column, input->low, input->high, range.first, range.second),
-                      own.name, "widen the box, or leave rows out by where = \"COLUMN=NUMBER\"");
+                      own.name, "widen the box, or leave rows out by where = \"COLUMN=VALUE\"");
     }
     input->low = range.first;
     input->high = range.second;

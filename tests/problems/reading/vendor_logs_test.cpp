@@ -3,6 +3,7 @@
 // Logs as drives, controllers, recorders and spreadsheets write them: each is read as what it is,
 // or refused with the place and the mend; and the line of roles that is proposed reads the same
 // again.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -12,6 +13,8 @@
 #include <fstream>
 
 #include "foundation/error.hpp"
+#include "foundation/scratch_folder.hpp"
+#include "problems/preparation/data_options.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/reading/explanation.hpp"
 #include "problems/reading/time_text.hpp"
@@ -225,6 +228,73 @@ TEST(VendorLogs, WhatIsNoTableOrCannotBeToldIsRefused) {
   const DataFile boot =
       parse_csv("stamp,q_rad,i_A\n2000000000000,1,2\n2000002000000,3,4\n", "log.csv", told(""));
   EXPECT_THAT(roles_line(boot), HasSubstr("stamp=time[?]"));
+}
+
+TEST(VendorLogs, AColumnAloneInItsUnitIsWhatTheUnitSays) {
+  const DataFile file = parse_csv(
+      "tick_ms,shoulder [deg],J_A [A],housing (degC),set_deg,phase_ms\n0,90,1,30,1,2\n"
+      "2,91,2,31,1,2\n",
+      "log.csv", told(""));
+  EXPECT_EQ(roles_line(file),
+            "tick_ms=time[ms],\"shoulder [deg]\"=position[deg],\"J_A [A]\"=motor_current[A],"
+            "\"housing (degC)\"=temperature[degC]");
+  EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("'shoulder [deg]' is taken for the "
+                                                           "position: it is the only one in deg")));
+  // Two of a kind are for the user to tell apart; one letter behind a line is no unit.
+  const DataFile two =
+      parse_csv("t,elbow [deg],wrist [deg],line_A\n0,1,2,3\n", "log.csv", told(""));
+  EXPECT_EQ(roles_line(two), "t=time[s]");
+}
+
+TEST(VendorLogs, AColumnThatIsWrittenAgainCountsOnce) {
+  // A scope that gives each channel the time.
+  const std::string text =
+      "Name;Axis.ActPos [deg];Name;Axis.ActTorque [Nm]\n0;90;0;1\n2;91;2;2\n4;92;4;3\n";
+  const DataFile file = parse_csv(text, "log.csv", told("Name=time[ms]"));
+  expect_sample(file, 1, {0.002, 91 * kDegree, 2});
+  EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("'Name' stands in the file again")));
+  // What stands still in both tells nothing of what they are.
+  EXPECT_THAT(complaint("t;vel;vel\n0;0;0\n1;0;0\n2;0;0\n", told("")),
+              HasSubstr("two columns are named"));
+}
+
+TEST(VendorLogs, AThermometerThatIsReadMoreRarelyGoesStraightBetweenItsReadings) {
+  const DataFile file = parse_csv(
+      "t,q,tau [Nm],temp [degC]\n0,1,1,\n1,2,1,20\n2,3,1,\n3,4,1,-\n4,5,1,\n5,6,1,28\n6,7,1,null\n",
+      "log.csv", told(""));
+  EXPECT_EQ(file.data.find(Role::temperature)->values,
+            (std::vector<double>{20, 20, 22, 24, 26, 28, 28}));
+  EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("a value in 2 of 7 rows")));
+  // A few that are missing are as anywhere.
+  EXPECT_THAT(complaint("t,q,temp [degC]\n0,1,20\n1,2,-\n2,2,21\n", told("")),
+              HasSubstr("'-' is not"));
+}
+
+TEST(VendorLogs, JointsThatTakeTurnsRowByRowAreToldApartByWhere) {
+  std::string text = "time_s,joint_name,pos_deg,tau_Nm\n";
+  for (int i = 0; i < 12; ++i) {
+    text += fmt::format("{}.0,shoulder,{},1\n{}.1,elbow,{},2\n", i, 10 + i, i, 50 - i);
+  }
+  const DataFile file = parse_csv(text, "log.csv", told(""));
+  EXPECT_THAT(what_is_missing(file),
+              ::testing::Contains(HasSubstr("stand in turn (joint_name = shoulder, elbow): choose "
+                                            "one with --where 'joint_name=shoulder'")));
+  const ScratchFolder folder;
+  const std::vector<std::filesystem::path> files = {folder.path() / "log.csv"};
+  std::ofstream(files[0]) << text;
+  DataOptions options;
+  options.where = "joint_name=elbow";
+  const DataFile elbow = read_data(files, options, std::vector<std::string>{});
+  EXPECT_THAT(what_is_missing(elbow), ::testing::IsEmpty());
+  EXPECT_EQ(elbow.data.rows(), 12U);
+  EXPECT_NEAR(elbow.data.find(Role::position)->values[1], 49 * kDegree, 1e-12);
+}
+
+TEST(VendorLogs, NamesThatSayNothingAreListedWithTheMend) {
+  EXPECT_THAT(complaint("c1,c2\n0,1\n", told("")),
+              ::testing::AllOf(HasSubstr("no column's name is known: c1, c2"),
+                               HasSubstr("--roles 'c1=time[s]")));
+  EXPECT_THAT(complaint("0.1 2\n0.2 3\n", told("c1=time")), HasSubstr("holds numbers, not names"));
 }
 
 }  // namespace
