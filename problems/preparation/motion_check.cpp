@@ -101,10 +101,12 @@ void check_match(const DataFile& file, const MotionMatch& match, std::optional<d
   const std::string what = fmt::format("'{}' changes {:.4g} times as fast as '{}' says", position,
                                        match.slope, velocity);
   if (match.slope < 0 && std::abs(elementary::log(-match.slope)) < kGood) {
+    const std::string& unit = reading_of(file, Role::velocity)->unit;
     throw_bad_input(what, file.data.name,
-                    fmt::format("one of the two has its sign turned: turn it in the file (and the "
-                                "torque's with --flip-sign, where '{}' is wrong)",
-                                velocity));
+                    fmt::format("one of the two has its sign turned: turn it with --roles "
+                                "'{0}=velocity[-1 {1}]' (or the position's and, where the torque "
+                                "goes with '{0}', --flip-sign)",
+                                velocity, unit.empty() ? "rad/s" : unit));
   }
   const std::vector<Suspect> list = suspects(gear_ratio);
   const Suspect* suspect = find_suspect(file, list, match.slope);
@@ -151,6 +153,19 @@ void check_assumed(const DataFile& file) {
         file.data.name,
         fmt::format("say it: --roles '{0}=time[ms]', or '{0}=time[s]' if it is so", time->column));
   }
+}
+
+// A slide's position beside its motor's speed, or a joint's beside a slide's.
+void check_same_side(const Channel& q, const Channel& v, double slope, const std::string& file) {
+  const bool slides = q.unit == "m";
+  const bool turns = q.unit == "rad";
+  if (!(slides && v.unit == "rad/s") && !(turns && v.unit == "m/s")) return;
+  const double lead = kTurn * std::abs(slides ? slope : 1 / slope);
+  throw_bad_input(
+      fmt::format("'{}' is in {} and '{}' in {}: of the two sides of a screw or belt ({:.4g} mm a "
+                  "turn)",
+                  q.name, q.unit, v.name, v.unit, 1e3 * lead),
+      file, fmt::format("leave it out and the velocity is derived: --roles '{}=none'", v.name));
 }
 
 // A column of the velocity that nobody fills.
@@ -200,7 +215,9 @@ void check_motion(const DataFile& file, std::optional<double> gear_ratio) {
   if (q != nullptr && v != nullptr && t != nullptr) {
     check_not_dead(file, *q, *v);
     const std::vector<RowRange> pieces = pieces_of(t->values, file.data.movement, {});
-    check_match(file, match_motion(t->values, q->values, v->values, pieces), gear_ratio);
+    const MotionMatch match = match_motion(t->values, q->values, v->values, pieces);
+    check_same_side(*q, *v, match.slope, file.data.name);
+    check_match(file, match, gear_ratio);
   }
   check_assumed(file);
 }

@@ -204,13 +204,23 @@ TEST(PreparedRecording, AStoryThatIsNotPossibleIsRefusedWithTheMend) {
   EXPECT_THAT(complaint(told_wrong(1, 57.29578, 1), options), HasSubstr("dq=velocity[deg/s]"));
   EXPECT_THAT(complaint(told_wrong(1, 9.549297, 1), options), HasSubstr("dq=velocity[rpm]"));
   EXPECT_THAT(complaint(told_wrong(1, 1, 1000), options), HasSubstr("time=time[ms]"));
-  EXPECT_THAT(complaint(told_wrong(1, -1, 1), options), HasSubstr("sign turned"));
+  EXPECT_THAT(complaint(told_wrong(1, -1, 1), options),
+              ::testing::AllOf(HasSubstr("sign turned"), HasSubstr("'dq=velocity[-1 rad/s]'")));
   // Both in degrees agree with one another; the range of motion does not agree with radians.
   EXPECT_THAT(complaint(told_wrong(57.29578, 57.29578, 1), options), HasSubstr("q=position[deg]"));
   DataOptions geared;
   geared.drive.gear_ratio = 100;
   EXPECT_THAT(complaint(told_wrong(1, 100, 1), geared), HasSubstr("velocity[rad/s@motor]"));
   EXPECT_THAT(complaint(told_wrong(1, 954.9297, 1), geared), HasSubstr("velocity[rpm@motor]"));
+}
+
+TEST(PreparedRecording, ASlideBesideItsMotorsSpeedIsRefusedWithTheScrewsLead) {
+  DataOptions options;  // 20 mm a turn
+  options.roles = parse_roles("q=position[mm],dq=velocity[rpm]", "--roles");
+  EXPECT_THAT(complaint(told_wrong(1000, 3000, 1), options),
+              ::testing::AllOf(HasSubstr("(20 mm a turn)"), HasSubstr("'dq=none'")));
+  options.roles = parse_roles("q=position[mm],dq=none", "--roles");
+  EXPECT_EQ(complaint(told_wrong(1000, 3000, 1), options), "no error");
 }
 
 TEST(PreparedRecording, DifferentUnitsAreNeverSubtracted) {
