@@ -2,6 +2,7 @@
 #include "algorithms/budget.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 
 namespace tribench {
@@ -21,7 +22,8 @@ double process_cpu_seconds() {
 Budget::Budget(const BudgetLimits& limits)
     : limits_(limits),
       cpu_start_(process_cpu_seconds()),
-      out_of_time_(std::make_shared<std::atomic<bool>>(false)) {}
+      out_of_time_(std::make_shared<std::atomic<bool>>(false)),
+      cut_by_clock_(std::make_shared<std::atomic<bool>>(false)) {}
 
 std::uint64_t Budget::remaining() const {
   return limits_.evaluations - std::min(spent_, limits_.evaluations);
@@ -36,15 +38,18 @@ void Budget::book(std::uint64_t node_rows) {
   if (remaining() == 0) exhausted_ = true;
 }
 
-bool Budget::check_clock() {
+bool Budget::in_time() {
   spent_at_next_clock_check_ = spent_ + kClockInterval;
-  if (process_cpu_seconds() - cpu_start_ > limits_.cpu_seconds) out_of_time_->store(true);
+  if (process_cpu_seconds() - cpu_start_ > limits_.cpu_seconds) {
+    out_of_time_->store(true);
+    cut_by_clock_->store(true);
+  }
   return !out_of_time();
 }
 
 bool Budget::spend(std::uint64_t node_rows) {
   if (exhausted_ || node_rows > remaining() ||
-      (spent_ + node_rows >= spent_at_next_clock_check_ && !check_clock())) {
+      (spent_ + node_rows >= spent_at_next_clock_check_ && !in_time())) {
     exhausted_ = true;
     return false;
   }
@@ -61,9 +66,18 @@ Budget Budget::share(std::uint64_t node_rows) const {
   return part;
 }
 
+Budget Budget::share(std::uint64_t node_rows, double of_seconds) const {
+  Budget part = share(node_rows);
+  if (!std::isfinite(limits_.cpu_seconds)) return part;
+  const double so_far = process_cpu_seconds() - cpu_start_;
+  part.limits_.cpu_seconds = so_far + of_seconds * std::max(0.0, limits_.cpu_seconds - so_far);
+  part.out_of_time_ = std::make_shared<std::atomic<bool>>(false);
+  return part;
+}
+
 void Budget::settle(const Budget& part) {
   spent_ += part.spent_;
-  if (part.out_of_time() || remaining() == 0) exhausted_ = true;
+  if (out_of_time() || remaining() == 0) exhausted_ = true;
 }
 
 }  // namespace tribench

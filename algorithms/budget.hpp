@@ -28,6 +28,9 @@ class Budget {
   // the seconds have run out; from then on always false.
   bool spend(std::uint64_t node_rows);
   bool exhausted() const { return exhausted_; }
+  // Looks at the clock now: for work that spends nothing, or much at once. False once the seconds
+  // have run out; it changes nothing as long as they have not.
+  bool in_time();
   std::uint64_t spent() const { return spent_; }
   std::uint64_t remaining() const;
   // CPU seconds left; infinite without a limit. For a program run beside this one, which cannot
@@ -35,24 +38,27 @@ class Budget {
   double remaining_seconds() const;
   // Books what such a program says it has spent, overdrawn or not.
   void book(std::uint64_t node_rows);
-  // Whether the clock, rather than the evaluations, ended it: such a result is not reproducible.
   bool out_of_time() const { return out_of_time_->load(std::memory_order_relaxed); }
+  // Whether the clock, rather than the evaluations, ended it or a part of it: such a result is not
+  // reproducible.
+  bool was_cut_by_clock() const { return cut_by_clock_->load(std::memory_order_relaxed); }
 
   // A part of what remains, to be spent independently (by an island, a structure), so that the
   // outcome does not depend on which thread runs first. `settle` books what the part has spent.
-  // The seconds are common to all.
+  // The seconds are common to all, but for a part of a share of them (0 .. 1 of what is left): what
+  // comes after a search needs a reserve.
   Budget share(std::uint64_t node_rows) const;
+  Budget share(std::uint64_t node_rows, double of_seconds) const;
   void settle(const Budget& part);
 
  private:
-  bool check_clock();
-
   BudgetLimits limits_;
   std::uint64_t spent_ = 0;
   std::uint64_t spent_at_next_clock_check_ = 0;
   bool exhausted_ = false;
   double cpu_start_ = 0;
-  std::shared_ptr<std::atomic<bool>> out_of_time_;
+  std::shared_ptr<std::atomic<bool>> out_of_time_;   // shared by all with the same seconds
+  std::shared_ptr<std::atomic<bool>> cut_by_clock_;  // shared by all parts
 };
 
 // CPU seconds of this process so far, all threads.

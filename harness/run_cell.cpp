@@ -360,7 +360,7 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
   const Problem& judged = fit.extended ? *fit.extended : problem;
   judge_formula(judged, fit.chosen, record);
   result.front = judge_front(judged, fit.front, fit.chosen_place, record);
-  if (budget.out_of_time()) note_end_by_clock(record);
+  if (budget.was_cut_by_clock()) note_end_by_clock(record);
   return result;
 }
 

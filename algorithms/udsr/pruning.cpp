@@ -156,7 +156,8 @@ std::size_t Pruner::least_needed(const Expression& formula, std::uint64_t& node_
   return least;
 }
 
-std::vector<Pruner::Step> Pruner::path(Expression formula, std::size_t fewest, Budget& budget) {
+std::vector<Pruner::Step> Pruner::path(Expression formula, std::size_t fewest, Budget& budget,
+                                       Budget& clock) {
   std::vector<Step> steps;
   while (true) {
     const ConstantFitResult fit = fitter_.fit(formula, problem_->inputs(), problem_->target());
@@ -168,7 +169,7 @@ std::vector<Pruner::Step> Pruner::path(Expression formula, std::size_t fewest, B
     if (movable_constants(formula).size() <= fewest) break;
     const std::size_t term = least_needed(formula, cost);
     budget.spend(cost);
-    if (budget.out_of_time() || term == formula.size()) break;
+    if (!clock.in_time() || term == formula.size()) break;
     formula = without_term(formula, term);
   }
   return steps;

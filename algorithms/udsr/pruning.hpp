@@ -33,8 +33,9 @@ class Pruner {
     Expression formula;  // constants at their minimum
     double nrmse = 0;
   };
-  // From the formula itself down to at most `fewest` terms, or as far as the clock allows.
-  std::vector<Step> path(Expression formula, std::size_t fewest, Budget& budget);
+  // From the formula itself down to at most `fewest` terms, or as far as the seconds of `clock`
+  // allow, which may be a part of the budget's.
+  std::vector<Step> path(Expression formula, std::size_t fewest, Budget& budget, Budget& clock);
 
  private:
   // The place of the term to drop, or the size of the tape where none can be.

@@ -176,9 +176,12 @@ Errors separability_errors(const Smoother& smoother, const Reduction& reduction,
   return errors;
 }
 
-// Sets the error; true where it is small and the permuted controls are all worse.
+// Sets the error; true where it is small and the permuted controls are all worse, as far as there
+// is time to see.
 bool is_accepted(const Smoother& smoother, Reduction& reduction, RandomStream& random,
+                 Budget& budget,
                  const std::function<Errors(std::span<const std::size_t>)>& errors) {
+  if (!budget.in_time()) return false;
   std::vector<std::size_t> order(smoother.rows());
   for (std::size_t r = 0; r < order.size(); ++r) order[r] = r;
   Errors own = errors(order);
@@ -187,6 +190,7 @@ bool is_accepted(const Smoother& smoother, Reduction& reduction, RandomStream& r
   if (!(reduction.error <= kErrorFactor * smoother.held_out_error())) return false;
   for (int p = 0; p < kPermutations; ++p) {
     random.shuffle(std::span(order));
+    if (!budget.in_time()) return false;
     if (upper_median(errors(order)) <= reduction.error) return false;
   }
   return true;
@@ -322,28 +326,30 @@ Expression substituted(const Expression& formula, std::span<const Expression> su
 }  // namespace
 
 std::optional<Reduction> find_reduction(const Smoother& smoother, std::span<const Input> inputs,
-                                        const OperatorSet& allowed, RandomStream random) {
+                                        const OperatorSet& allowed, RandomStream random,
+                                        Budget& budget) {
   const std::vector<Group> groups = groups_of(inputs);
   std::optional<Reduction> best;
   const auto consider = [&best](const Reduction& reduction) {
     if (!best || reduction.error < best->error) best = reduction;
   };
   for (Reduction& reduction : symmetries(groups, allowed)) {
-    if (is_accepted(smoother, reduction, random, [&](std::span<const std::size_t> order) {
+    if (is_accepted(smoother, reduction, random, budget, [&](std::span<const std::size_t> order) {
           return symmetry_errors(smoother, reduction, order);
         })) {
       consider(reduction);
     }
   }
   for (Reduction& reduction : separabilities(groups, allowed)) {
+    if (!budget.in_time()) return std::nullopt;
     const Parts parts = part_values(smoother, reduction.part, inputs.size());
-    if (is_accepted(smoother, reduction, random, [&](std::span<const std::size_t> order) {
+    if (is_accepted(smoother, reduction, random, budget, [&](std::span<const std::size_t> order) {
           return separability_errors(smoother, reduction, parts, order);
         })) {
       consider(reduction);
     }
   }
-  return best;
+  return budget.in_time() ? best : std::nullopt;
 }
 
 std::vector<Subproblem> split(const Reduction& reduction, const Smoother& smoother,

@@ -31,9 +31,11 @@ struct Reduction {
 };
 
 // The accepted reduction with the smallest error, if any. An input and its sign stay together and
-// take no part in symmetries. `allowed` says which operations may recombine the parts.
+// take no part in symmetries. `allowed` says which operations may recombine the parts. None where
+// the seconds run out.
 std::optional<Reduction> find_reduction(const Smoother& smoother, std::span<const Input> inputs,
-                                        const OperatorSet& allowed, RandomStream random);
+                                        const OperatorSet& allowed, RandomStream random,
+                                        Budget& budget);
 
 // A problem of its own: inputs, columns and target that a search can be run on, and how its
 // formula goes back into the original inputs.

@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kBeam = 100;
 constexpr std::size_t kMostTerms = 12;
 constexpr std::size_t kRowsForATerm = 5;
+constexpr std::size_t kSubsetsALook = 500;  // at the clock: a millisecond
 // Residuals below this share of the target are rounding.
 constexpr double kRounding = 1e-14;
 
@@ -70,7 +71,9 @@ class Subsets {
 };
 
 // The best subsets that are a member of the beam and one term more.
-std::vector<Rated> next_level(const std::vector<Rated>& beam, const Subsets& subsets) {
+// None where the seconds run out.
+std::vector<Rated> next_level(const std::vector<Rated>& beam, const Subsets& subsets,
+                              Budget& budget) {
   std::set<Subset> wider;
   for (const Rated& member : beam) {
     for (Eigen::Index term = 0; term < subsets.terms(); ++term) {
@@ -81,7 +84,9 @@ std::vector<Rated> next_level(const std::vector<Rated>& beam, const Subsets& sub
     }
   }
   std::vector<Rated> level;
+  std::size_t looked_at = 0;
   for (const Subset& subset : wider) {
+    if (looked_at++ % kSubsetsALook == 0 && !budget.in_time()) return {};
     const double sum_squares = subsets.sum_squares(subset);
     if (std::isfinite(sum_squares)) level.push_back({subset, sum_squares});
   }
@@ -118,15 +123,15 @@ std::vector<Monomial> wide_terms(std::span<const Input> inputs, int degree, std:
 }
 
 std::vector<Expression> select_terms(std::span<const Monomial> terms, const ScoringProblem& problem,
-                                     std::uint64_t& node_rows) {
-  if (terms.empty()) return {};
+                                     Budget& budget) {
+  if (terms.empty() || !budget.in_time()) return {};
   const Subsets subsets(terms, problem);
-  node_rows += terms.size() * terms.size() * problem.rows();
+  std::uint64_t node_rows = terms.size() * terms.size() * problem.rows();
   const auto n = static_cast<double>(problem.rows());
   std::vector<std::pair<double, Rated>> all;  // nats against
   std::vector<Rated> beam = {{}};
   for (std::size_t size = 1; size <= std::min(kMostTerms, terms.size()); ++size) {
-    beam = next_level(beam, subsets);
+    beam = next_level(beam, subsets, budget);
     for (const Rated& rated : beam) {
       const double against = 0.5 * n * elementary::log(rated.sum_squares) +
                              0.5 * static_cast<double>(size) * elementary::log(n);
@@ -134,6 +139,7 @@ std::vector<Expression> select_terms(std::span<const Monomial> terms, const Scor
     }
     node_rows += kBeam * terms.size() * size * size;
   }
+  budget.spend(node_rows);
   std::ranges::stable_sort(all, {}, &std::pair<double, Rated>::first);
   std::vector<Expression> result;
   for (const auto& [against, rated] : all) {

@@ -13,9 +13,9 @@
 // subset that leads to a best one.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
+#include "algorithms/budget.hpp"
 #include "algorithms/udsr/scoring.hpp"
 
 namespace tribench::udsr {
@@ -26,9 +26,9 @@ namespace tribench::udsr {
 std::vector<Monomial> wide_terms(std::span<const Input> inputs, int degree, std::size_t rows);
 
 // The polynomials of at most 12 of these terms with the most evidence, the best first: at most 100,
-// none with less than exp(-15) of the best one's. Coefficients by least squares. node_rows is
-// increased by the cost.
+// none with less than exp(-15) of the best one's. Coefficients by least squares. Where
+// the seconds run out, of as many terms as were looked at by then.
 std::vector<Expression> select_terms(std::span<const Monomial> terms, const ScoringProblem& problem,
-                                     std::uint64_t& node_rows);
+                                     Budget& budget);
 
 }  // namespace tribench::udsr

@@ -179,7 +179,7 @@ class Search {
   // Trains a policy, then offers what it found and sparser versions of the best.
   void run(const RandomStream& random) {
     // A fifth is kept for what makes a formula out of what the search has found.
-    Budget searching = budget_.share(budget_.remaining() / 5 * 4);
+    Budget searching = budget_.share(budget_.remaining() / 5 * 4, 0.8);
     Scoreboard scoreboard(problem_, searching, progress_, threads_);
     udsr::Policy policy(library_, random.split("policy"));
     if (!settings_.weights_text.empty()) {
@@ -193,7 +193,11 @@ class Search {
     udsr::train(policy, prior, settings_.training, random.split("training"), scoreboard);
     budget_.settle(searching);
     for (const auto& [complexity, entry] : scoreboard.front()) add(entry.formula, entry.nrmse);
-    for (const Scoreboard::Entry& entry : scoreboard.promising()) offer_sparser(entry.sequence);
+    // Of a linear token of hundreds of terms one path takes seconds; the polynomials come after it.
+    Budget clock = budget_.share(0, 0.5);
+    for (const Scoreboard::Entry& entry : scoreboard.promising()) {
+      offer_sparser(entry.sequence, clock);
+    }
     offer_polynomials();
   }
 
@@ -246,14 +250,14 @@ class Search {
   bool is_admitted(const Expression& formula) const { return admission_.may_be_offered(formula); }
 
   // With constants before every term, then with ever fewer terms.
-  void offer_sparser(const udsr::Sequence& sequence) {
-    if (budget_.exhausted()) return;
+  void offer_sparser(const udsr::Sequence& sequence, Budget& clock) {
+    if (budget_.exhausted() || clock.out_of_time()) return;
     const udsr::Scored scored = scorer_.score(sequence);
     if (scored.reward <= 0 || !budget_.spend(scoring_cost(problem_, sequence))) return;
     // Without constants a formula has none but those that the linear token was solved for.
     const Expression start =
         settings_.tokens.constants ? udsr::with_constants(scored.formula) : scored.formula;
-    for (udsr::Pruner::Step& step : pruner_.path(start, kFewestConstants, budget_)) {
+    for (udsr::Pruner::Step& step : pruner_.path(start, kFewestConstants, budget_, clock)) {
       add(std::move(step.formula), step.nrmse);
     }
   }
@@ -261,9 +265,7 @@ class Search {
   // The linear token by itself. Coefficients are solved for: they stand where there is no time to
   // polish them.
   void offer_polynomials() {
-    std::uint64_t cost = 0;
-    const std::vector<Expression> polynomials = udsr::select_terms(wide_terms_, problem_, cost);
-    budget_.spend(cost);
+    const std::vector<Expression> polynomials = udsr::select_terms(wide_terms_, problem_, budget_);
     for (const Expression& formula : polynomials) {
       if (budget_.exhausted()) {
         add(formula, scorer_.nrmse(formula));
@@ -336,10 +338,13 @@ class Udsr : public Regressor {
     const std::vector<double> target = at_rows(problem.target(), rows);
     const std::vector<int> movement = at_rows(problem.movement(), rows);
     const TrainingData sample = {context.data.inputs, pointers, target, movement};
-    Budget searching = context.budget.share(context.budget.remaining() / 5 * 4);
+    // The rest is for all rows.
+    Budget searching = context.budget.share(context.budget.remaining() / 5 * 4, 0.8);
+    FitContext part{sample,         context.operators, searching,
+                    context.random, context.threads,   context.progress};
     Search search(settings_, sample, context.operators, searching, context.progress,
                   context.threads);
-    std::vector<Expression> front = solve(search, context, sample, context.random, 0);
+    std::vector<Expression> front = solve(search, part, sample, context.random, 0);
     // All rows, most of which the search has not seen, say how long a formula may be: on all rows
     // whatever the form lacks is significant as hundreds of small terms. What the sample does not
     // support is not looked at on all of them.
@@ -396,8 +401,8 @@ class Udsr : public Regressor {
     const TrainingData finite = {data.inputs, problem.inputs().columns, problem.target(),
                                  problem.movement()};
     const udsr::Smoother smoother(finite.table(), finite.target, random.split("smoother"));
-    const std::optional<udsr::Reduction> reduction =
-        udsr::find_reduction(smoother, finite.inputs, context.operators, random.split("tests"));
+    const std::optional<udsr::Reduction> reduction = udsr::find_reduction(
+        smoother, finite.inputs, context.operators, random.split("tests"), context.budget);
     if (!reduction) return;
     const std::vector<udsr::Subproblem> parts = udsr::split(*reduction, smoother, finite);
     std::vector<std::vector<Expression>> choices;

@@ -108,7 +108,7 @@ TEST_F(LinearTokenTest, PruningEndsAtTheTermsThatMadeTheData) {
   make("3*v - 2*v*w");
   const Scored full = Scorer(*problem).score(sequence_of(library, {"linear"}));
   Budget budget{{}};
-  const std::vector<Pruner::Step> path = Pruner(*problem).path(full.formula, 1, budget);
+  const std::vector<Pruner::Step> path = Pruner(*problem).path(full.formula, 1, budget, budget);
   ASSERT_GE(path.size(), 2U);
   const Pruner::Step& two = path[path.size() - 2];
   EXPECT_LT(two.nrmse, 1e-9);
@@ -127,7 +127,7 @@ TEST_F(LinearTokenTest, PruningMovesTheScalesInsideFunctions) {
   Budget budget{{}};
   double best = 1;
   for (const Pruner::Step& step :
-       Pruner(*problem).path(with_constants(scored.formula), 4, budget)) {
+       Pruner(*problem).path(with_constants(scored.formula), 4, budget, budget)) {
     if (step.formula.constant_positions().size() <= 6) best = std::min(best, step.nrmse);
   }
   EXPECT_LT(best, 1e-6);

@@ -25,7 +25,8 @@ class SimplificationTest : public testing::Test {
     }
     columns = {a.data(), b.data()};
     smoother.emplace(Inputs{columns, y.size()}, y, RandomStream(22));
-    return find_reduction(*smoother, inputs, find_operator_set("full"), RandomStream(23));
+    Budget budget({});
+    return find_reduction(*smoother, inputs, find_operator_set("full"), RandomStream(23), budget);
   }
   bool finds(ReductionKind kind, const std::function<double(double, double)>& law) {
     const std::optional<Reduction> found = reduction_of(law, 0.002);
@@ -91,7 +92,9 @@ TEST_F(SimplificationTest, KeepsAnInputAndItsSignTogether) {
                                     {"sgn_v", "-", Role::velocity_sign, -1, 1, 0},
                                     {"g", "N m", Role::gravity_torque, -1, 1, std::nullopt}};
   const Smoother smooth({all, v.size()}, target, RandomStream(32));
-  const auto found = find_reduction(smooth, named, find_operator_set("paper"), RandomStream(33));
+  Budget budget({});
+  const auto found =
+      find_reduction(smooth, named, find_operator_set("paper"), RandomStream(33), budget);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->kind, ReductionKind::additive);
   EXPECT_EQ(found->part, (std::vector<std::size_t>{0, 1}));

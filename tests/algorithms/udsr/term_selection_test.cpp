@@ -80,12 +80,12 @@ TEST(WideTerms, AreAPolynomialOfItsOwnOnEitherSideOfZeroWithFiveRowsATerm) {
 
 TEST(SelectTerms, PutsTheTermsThatMadeTheDataFirst) {
   const Rows rows("6*s - 0.5 + 3*v - 2*v^4*s", 90, 0.003);
-  std::uint64_t cost = 0;
+  Budget budget({});
   const std::vector<Expression> found =
-      select_terms(wide_terms(rows.inputs, 6, 90), *rows.problem, cost);
+      select_terms(wide_terms(rows.inputs, 6, 90), *rows.problem, budget);
   ASSERT_FALSE(found.empty());
   EXPECT_LE(found.size(), 100U);
-  EXPECT_GT(cost, 0U);
+  EXPECT_GT(budget.spent(), 0U);
   const std::string first = print(found.front(), rows.names);
   EXPECT_NE(first.find("v^4*s"), std::string::npos) << first;
   EXPECT_EQ(movable_constants(found.front()).size(), 4U) << first;
@@ -97,8 +97,8 @@ TEST(SelectTerms, FindsTheBestOfAllSubsets) {
   const Rows rows("exp(v)*s + 0.3*v", 60, 0.05);
   const std::vector<Monomial> terms = wide_terms(rows.inputs, 4, 60);
   ASSERT_EQ(terms.size(), 10U);
-  std::uint64_t cost = 0;
-  const std::vector<Expression> found = select_terms(terms, *rows.problem, cost);
+  Budget budget({});
+  const std::vector<Expression> found = select_terms(terms, *rows.problem, budget);
   const auto n = static_cast<double>(rows.y.size());
   double best = std::numeric_limits<double>::infinity();
   for (unsigned chosen = 1; chosen < 1U << terms.size(); ++chosen) {

@@ -150,5 +150,33 @@ TEST(Udsr, TheRecursionCanBeSwitchedOffAndMatters) {
   EXPECT_NE(front(true), front(false));
 }
 
+// What follows the search (a reduction, hundreds of terms, fits on all rows) looks at the clock
+// too.
+TEST(Udsr, KeepsItsSecondsOnManyRowsAndInputs) {
+  constexpr std::size_t kRows = 12000;
+  RandomStream random(53);
+  std::vector<Input> inputs;
+  std::vector<std::vector<double>> values;
+  std::vector<const double*> columns;
+  for (int j = 0; j < 9; ++j) {
+    inputs.push_back({"x" + std::to_string(j), "-", Role::none, -1, 1, std::nullopt});
+    values.emplace_back();
+    for (std::size_t r = 0; r < kRows; ++r) values.back().push_back(random.uniform(-1, 1));
+  }
+  for (const auto& column : values) columns.push_back(column.data());
+  std::vector<double> y;
+  std::vector<int> movement;
+  for (std::size_t r = 0; r < kRows; ++r) {
+    y.push_back(values[0][r] * values[1][r] + std::exp(values[2][r]) + random.normal());
+    movement.push_back(static_cast<int>(r));
+  }
+  const TrainingData data{inputs, columns, y, movement};
+  Budget budget({.cpu_seconds = 0.7});
+  FitContext context{data, find_operator_set("full"), budget, RandomStream(7)};
+  const double start = process_cpu_seconds();
+  EXPECT_FALSE(Registry().make("udsr", {})->fit(context).front.empty());
+  EXPECT_LT(process_cpu_seconds() - start, 1.2);
+}
+
 }  // namespace
 }  // namespace tribench
