@@ -16,6 +16,7 @@ inline constexpr std::size_t kMostPaired = 12;
 enum class FactorKind {
   input,
   wave,          // sine, cosine of an input or of a difference
+  angle_sum,     // sine, cosine of the sum of two inputs, as in chains of links
   wave_product,  // of sines and cosines of different inputs, of few inputs
   difference,    // of two inputs
   sum,

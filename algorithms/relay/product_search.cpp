@@ -142,7 +142,7 @@ std::optional<Regression> grown(const std::vector<Column>& columns,
       if (found.rms <= kExact) return found;
     }
     if (terms == kMostFactors || !budget.spend(sums.size() * count * terms * terms)) break;
-    sums = fits.grown(sums);
+    sums = fits.grown(sums, budget);
   }
   return std::nullopt;
 }

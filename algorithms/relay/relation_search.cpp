@@ -25,7 +25,8 @@ constexpr double kExact = 1e-8;      // of a row's target, root mean square
 constexpr double kNoPart = 1e-10;    // of a row's target, that a term explains
 constexpr double kPromising = 1e-5;  // in the Gram matrix, whose rounding is larger
 constexpr std::size_t kMostTerms = 6;
-constexpr std::size_t kSums = 300;  // that are grown (subset_fits.hpp)
+constexpr std::size_t kMostColumns = 2000;  // 0.2 s and 50 MB for their products
+constexpr std::size_t kSums = 300;          // that are grown (subset_fits.hpp)
 // Of a product, by the number of inputs: one, two, more.
 int most_degree(std::size_t inputs) { return inputs == 1 ? 14 : inputs == 2 ? 7 : 4; }
 constexpr std::size_t kFewInputs = 2;  // of which every kind of factor is tried, below the bar too
@@ -73,18 +74,23 @@ std::optional<std::vector<std::size_t>> signs_of_target(const LogRows& rows) {
   return std::nullopt;
 }
 
+// What the columns marked as beside are: none are taken, multiples of T(y), or of y beside y^2.
+enum class Shape { sum, ratio, quadratic };
+
 class Search {
  public:
-  Search(const LogRows& rows, const OperatorSet& operators, Columns columns, std::size_t most)
+  Search(const LogRows& rows, const OperatorSet& operators, Columns columns, std::size_t most,
+         std::size_t most_beside)
       : rows_(rows), operators_(operators), signs_(signs_of_target(rows)) {
     if (columns == Columns::with_factors) {
-      factors_ = known_factors(rows, operators, {FactorKind::wave, FactorKind::difference});
+      factors_ = known_factors(rows, operators,
+                               {FactorKind::wave, FactorKind::angle_sum, FactorKind::difference});
       const std::size_t n = rows.inputs().size();
       if (n == kFewInputs + 1) {
         factors_ =
             known_factors(rows, operators,
-                          {FactorKind::wave, FactorKind::wave_product, FactorKind::difference,
-                           FactorKind::power, FactorKind::logarithm});
+                          {FactorKind::wave, FactorKind::angle_sum, FactorKind::wave_product,
+                           FactorKind::difference, FactorKind::power, FactorKind::logarithm});
       } else if (n <= kFewInputs) {
         factors_ = known_factors(
             rows, operators,
@@ -94,22 +100,24 @@ class Search {
       std::erase_if(factors_,
                     [](const KnownFactor& known) { return known.kind == FactorKind::input; });
     }
-    list_products(most);
+    list_products(most, most_beside);
     const std::size_t count = std::min(most, products_.size());
     most_steps_ = 300 * count * count;
   }
 
-  // `is_ratio`: with one multiple of T(y) on the right, for the plain form and the logarithm.
-  std::optional<Expression> run(TargetForm form, bool is_ratio, Budget& budget) const;
+  // A ratio has one multiple of T(y) on the right, for the plain form and the logarithm.
+  std::optional<Expression> run(TargetForm form, Shape shape, Budget& budget) const;
 
  private:
   struct Regression;
 
-  Regression regression(TargetForm form, bool is_ratio) const;
-  void list_products(std::size_t most);
+  Regression regression(TargetForm form, Shape shape) const;
+  void list_products(std::size_t most, std::size_t most_beside);
   std::vector<double> values_of(const Product& product) const;
   Expression formula_of(const Product& product, double coefficient, TargetForm form) const;
-  std::optional<Expression> exact(TargetForm form, SparseSum sum, const Regression& all) const;
+  std::optional<Expression> exact(TargetForm form, Shape shape, SparseSum sum,
+                                  const Regression& all) const;
+  Expression root_of_quadratic(const SparseSum& sum, std::span<const double> coefficients) const;
   Expression assembled(TargetForm form, const SparseSum& sum,
                        std::span<const double> coefficients) const;
 
@@ -122,7 +130,7 @@ class Search {
 };
 
 // By increasing degree.
-void Search::list_products(std::size_t most) {
+void Search::list_products(std::size_t most, std::size_t most_beside) {
   const std::size_t n = rows_.inputs().size();
   const int most_of_all = most_degree(n);
   std::vector<std::vector<std::vector<int>>> by_degree(static_cast<std::size_t>(most_of_all) + 1);
@@ -159,6 +167,9 @@ void Search::list_products(std::size_t most) {
         for (std::size_t f = 0; f < factors_.size(); ++f) {
           // Products of waves stand alone: they are many.
           if (factors_[f].kind == FactorKind::wave_product && degree > rest) continue;
+          // A length times a wave of its angle.
+          if (factors_[f].kind == FactorKind::angle_sum && (degree > rest + 1 || rest > 2))
+            continue;
           products_.push_back({f, rest - 1, powers, false});
           if (n > kFewInputs || !factors_[f].factor.has_logs()) continue;
           products_.push_back({f, 1 - rest, powers, false});
@@ -169,8 +180,8 @@ void Search::list_products(std::size_t most) {
   if (products_.size() > most) products_.resize(most);
   // Multiples of the target come in hundreds only: each is tried with all pairs of the others.
   const std::size_t plain = products_.size();
-  for (std::size_t k = 0; k < plain && products_.size() < most + most / 4; ++k) {
-    if (products_[k].log_of || products_[k].degree() < 1 || products_[k].degree() > 3) continue;
+  for (std::size_t k = 0; k < plain && products_.size() < most + most_beside; ++k) {
+    if (products_[k].log_of || products_[k].degree() > 3) continue;
     products_.push_back(products_[k]);
     products_.back().is_beside = true;
   }
@@ -203,7 +214,7 @@ struct Search::Regression {
   std::vector<char> once;           // multiples of the target
 };
 
-Search::Regression Search::regression(TargetForm form, bool is_ratio) const {
+Search::Regression Search::regression(TargetForm form, Shape shape) const {
   Regression all;
   const std::size_t n = rows_.rows();
   const std::vector<double> formed = formed_target(rows_.target().values, form);
@@ -211,10 +222,16 @@ Search::Regression Search::regression(TargetForm form, bool is_ratio) const {
   all.scale = relative_scale(formed, form);
   for (std::size_t k = 0; k < products_.size(); ++k) {
     const Product& product = products_[k];
-    if (product.is_beside && !is_ratio) continue;
-    if (product.log_of && (form != TargetForm::logarithm || is_ratio)) continue;
+    // A constant share of T(y) says nothing; of y beside y^2 it does.
+    const bool is_fit =
+        shape == Shape::quadratic || (shape == Shape::ratio && product.degree() > 0);
+    if (product.is_beside && !is_fit) continue;
+    if (product.log_of && (form != TargetForm::logarithm || shape != Shape::sum)) continue;
     std::vector<double> values = values_of(product);
-    if (product.is_beside) columns::mul(values.data(), formed.data(), values.data(), n);
+    if (product.is_beside) {
+      const std::vector<double>& of = shape == Shape::quadratic ? rows_.target().values : formed;
+      columns::mul(values.data(), of.data(), values.data(), n);
+    }
     columns::mul(values.data(), all.scale.data(), values.data(), n);
     const double square = columns::dot(values.data(), values.data(), n);
     if (!std::isfinite(square) || square == 0) continue;
@@ -226,9 +243,9 @@ Search::Regression Search::regression(TargetForm form, bool is_ratio) const {
   return all;
 }
 
-std::optional<Expression> Search::run(TargetForm form, bool is_ratio, Budget& budget) const {
-  if (!keeps_sign(form) && !signs_) return std::nullopt;
-  const Regression all = regression(form, is_ratio);
+std::optional<Expression> Search::run(TargetForm form, Shape shape, Budget& budget) const {
+  if (!keeps_sign(form) && shape != Shape::quadratic && !signs_) return std::nullopt;
+  const Regression all = regression(form, shape);
   const std::size_t count = all.columns.size();
   const std::size_t n = rows_.rows();
   // A product in the Gram matrix costs an eighth of what a node of a formula does.
@@ -246,19 +263,19 @@ std::optional<Expression> Search::run(TargetForm form, bool is_ratio, Budget& bu
   for (std::size_t terms = 2; !sums.empty(); ++terms) {
     for (const SparseSum& sum : sums) {
       if (sum.left > kPromising * kPromising) break;
-      if (auto found = exact(form, sum, all)) return found;
+      if (auto found = exact(form, shape, sum, all)) return found;
     }
     if (terms == kMostTerms || !budget.spend(kSums * count * terms * terms)) break;
-    sums = fits.grown(sums);
-    if (terms > 2 || !is_ratio || !budget.spend(most_steps_ / 4)) continue;
-    std::ranges::copy(fits.best_with_one_marked(most_steps_), std::back_inserter(sums));
+    sums = fits.grown(sums, budget);
+    if (terms > 2 || shape == Shape::sum || !budget.spend(most_steps_ / 4)) continue;
+    std::ranges::copy(fits.best_with_one_marked(most_steps_, budget), std::back_inserter(sums));
     std::ranges::stable_sort(sums, {}, &SparseSum::left);
   }
   return std::nullopt;
 }
 
 // Without the terms that explain less than what may be left over.
-std::optional<Expression> Search::exact(TargetForm form, SparseSum sum,
+std::optional<Expression> Search::exact(TargetForm form, Shape shape, SparseSum sum,
                                         const Regression& all) const {
   const double n = static_cast<double>(rows_.rows());
   std::vector<double> coefficients;
@@ -277,8 +294,10 @@ std::optional<Expression> Search::exact(TargetForm form, SparseSum sum,
     sum.terms = std::move(kept);
   }
   for (std::size_t& term : sum.terms) term = all.places[term];
-  Expression formula = assembled(form, sum, coefficients);
-  if (!operators_.admits(formula) || !explains(formula, rows_)) return std::nullopt;
+  Expression formula = shape == Shape::quadratic ? root_of_quadratic(sum, coefficients)
+                                                 : assembled(form, sum, coefficients);
+  if (formula.empty() || !operators_.admits(formula) || !explains(formula, rows_))
+    return std::nullopt;
   return formula;
 }
 
@@ -295,6 +314,26 @@ Expression Search::formula_of(const Product& product, double coefficient, Target
     exponents.push_back(product.factor_power);
   }
   return product_of(coefficient, factors, exponents);
+}
+
+// y^2 = b y + c: b / 2 and the root that is on all rows on the same side of it. Empty where there
+// is no such side, or nothing but b or c.
+Expression Search::root_of_quadratic(const SparseSum& sum,
+                                     std::span<const double> coefficients) const {
+  Expression half;
+  Expression rest;
+  for (std::size_t k = 0; k < sum.terms.size(); ++k) {
+    const Product& product = products_[sum.terms[k]];
+    if (product.is_beside) {
+      half = sum_of(half, formula_of(product, coefficients[k] / 2, TargetForm::plain));
+    } else {
+      rest = sum_of(rest, formula_of(product, coefficients[k], TargetForm::plain));
+    }
+  }
+  if (half.empty() || rest.empty()) return {};
+  const Expression root = function(Op::sqrt, power(half, 2) + rest);
+  Expression above = half + root;
+  return explains(above, rows_) ? above : half - root;
 }
 
 Expression Search::assembled(TargetForm form, const SparseSum& sum,
@@ -349,17 +388,29 @@ std::optional<Expression> find_relation(const LogRows& rows, const OperatorSet& 
   if (rows.rows() < 20 || !operators.allows(Op::mul) || !operators.allows(Op::div)) {
     return std::nullopt;
   }
-  Search search(rows, operators, columns, most);
+  most = std::min(most, kMostColumns);
+  const Search search(rows, operators, columns, most, most / 4);
   std::optional<Expression> shortest;
-  const auto look = [&](TargetForm form, bool is_ratio) {
+  const auto look = [&](TargetForm form, Shape shape) {
     if (budget.exhausted()) return;
-    auto found = search.run(form, is_ratio, budget);
+    auto found = search.run(form, shape, budget);
     if (found && (!shortest || found->size() < shortest->size())) shortest = std::move(found);
   };
-  for (const TargetForm form : kTargetForms) look(form, false);
-  if (!shortest) look(TargetForm::plain, true);
-  if (!shortest && rows.inputs().size() <= kFewInputs) look(TargetForm::logarithm, true);
+  for (const TargetForm form : kTargetForms) look(form, Shape::sum);
+  if (!shortest) look(TargetForm::plain, Shape::ratio);
+  if (!shortest && rows.inputs().size() <= kFewInputs) look(TargetForm::logarithm, Shape::ratio);
   return shortest;
+}
+
+std::optional<Expression> find_root(const LogRows& rows, const OperatorSet& operators,
+                                    Columns columns, std::size_t most, Budget& budget) {
+  if (rows.rows() < 20 || !operators.allows(Op::mul) || !operators.allows(Op::div) ||
+      !operators.allows(Op::sqrt)) {
+    return std::nullopt;
+  }
+  most = std::min(most, kMostColumns);
+  const Search search(rows, operators, columns, most, most / 2);
+  return search.run(TargetForm::square, Shape::quadratic, budget);
 }
 
 }  // namespace tribench::relay

@@ -29,4 +29,10 @@ enum class Columns { powers_alone, with_factors };  // factors.hpp: waves, sums 
 std::optional<Expression> find_relation(const LogRows& rows, const OperatorSet& operators,
                                         Columns columns, std::size_t most, Budget& budget);
 
+// One root of a quadratic equation, y^2 = d y Q(x) + sum_k c_k P_k(x): what is left of a balance
+// where y stands in two places (a height of fall, a crank, an equilibrium). The columns as above,
+// at the cost of one T.
+std::optional<Expression> find_root(const LogRows& rows, const OperatorSet& operators,
+                                    Columns columns, std::size_t most, Budget& budget);
+
 }  // namespace tribench::relay

@@ -23,6 +23,7 @@
 #include "algorithms/relay/product_search.hpp"
 #include "algorithms/relay/reduced_problem.hpp"
 #include "algorithms/relay/relation_search.hpp"
+#include "algorithms/relay/scaled_function.hpp"
 
 namespace tribench {
 namespace {
@@ -37,7 +38,9 @@ constexpr std::array kMembers = {"pysr", "udsr", "parfam"};
 // Rows that the searches for structure look at.
 constexpr std::size_t kSearchedRows = 512;
 constexpr std::size_t kMostCollapses = 3;
+constexpr std::size_t kFewRows = 300;            // that tell a sum of six among 700 columns
 constexpr std::size_t kColumns = 500;            // of the search for relations, a round
+constexpr std::size_t kMoreColumns = 700;        // with waves
 constexpr std::size_t kLongSum = 16;             // nodes
 constexpr std::size_t kOrders = 1500;            // of the search for fewer variables, a round
 constexpr std::uint64_t kReduced = 500'000'000;  // node-rows for reductions, half a second
@@ -46,6 +49,9 @@ constexpr std::size_t kTried = 60;     // of reductions, most of them not true
 constexpr std::size_t kMoreWays = 5;   // that are looked at when one has explained the rows
 constexpr std::size_t kProblems = 16;  // in fewer variables that are looked at
 constexpr std::size_t kMostDepth = 3;  // of reductions
+constexpr double kQuarter = 0.25;      // of the seconds that are left, for a search for structure
+constexpr double kMost = 0.6;          // for reductions, which end by themselves
+constexpr double kHalf = 0.5;          // for a method on fewer variables
 constexpr std::size_t kFewInputs = 3;  // with which waves and differences are tried at once
 
 // What can be left out, to see what it is worth; the members besides, by their names.
@@ -59,6 +65,7 @@ constexpr std::string_view kWideSums = "wide_sums";
 
 constexpr std::string_view kByProduct = "a product of powers";
 constexpr std::string_view kBySum = "a sum of products";
+constexpr std::string_view kByRoot = "a root of a quadratic equation";
 constexpr std::string_view kByReduction = "fewer variables";
 
 enum class Width { narrow, wide };  // wide: with factors (factors.hpp)
@@ -99,7 +106,7 @@ class Run {
   void search_structure(const Regressor& solver, int round) {
     const LogRows rows(rows_, kSearchedRows);
     if (rows.rows() == 0 || round > 3) return;
-    Budget part = context_.budget.share(context_.budget.remaining() / 4);
+    Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
     auto simpler = find_structure(rows, round, part);
     context_.budget.settle(part);
     if (has(kReductions)) {
@@ -120,10 +127,15 @@ class Run {
   void search_wide_sums(int round) {
     const LogRows rows(rows_, kSearchedRows);
     if (rows.rows() == 0 || round > 3 || !has(kWideSums)) return;
-    Budget part = context_.budget.share(context_.budget.remaining() / 4);
+    Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
     offer(relay::find_relation(rows, context_.operators, Columns::with_factors,
                                3 * kColumns << round, part),
           kBySum);
+    if (!is_done()) {
+      offer(relay::find_root(rows, context_.operators, Columns::with_factors, 2 * kColumns << round,
+                             part),
+            kByRoot);
+    }
     context_.budget.settle(part);
   }
 
@@ -159,6 +171,7 @@ class Run {
  private:
   // What is exact is offered; the return is a problem of fewer variables that was not solved.
   std::optional<ReducedProblem> find_structure(const LogRows& rows, int round, Budget& budget);
+  void search_waves(Budget& budget);
   // The reduced problem with the fewest inputs that was not solved.
   std::optional<ReducedProblem> reduce(int round, relay::Guesses guesses);
   // What is exact is offered.
@@ -180,6 +193,15 @@ class Run {
   std::string explained_by_;
 };
 
+// Sums and roots with waves: many columns, of fewer rows.
+void Run::search_waves(Budget& budget) {
+  const LogRows rows(rows_, kFewRows);
+  const OperatorSet& operators = context_.operators;
+  offer(relay::find_root(rows, operators, Columns::with_factors, kColumns, budget), kByRoot);
+  if (is_done()) return;
+  offer(relay::find_relation(rows, operators, Columns::with_factors, kMoreColumns, budget), kBySum);
+}
+
 std::optional<ReducedProblem> Run::find_structure(const LogRows& rows, int round, Budget& budget) {
   const std::size_t width = std::size_t{1} << round;
   const OperatorSet& operators = context_.operators;
@@ -195,6 +217,9 @@ std::optional<ReducedProblem> Run::find_structure(const LogRows& rows, int round
     if (sum && sum->size() > kLongSum) {
       offer(relay::find_relation(rows, operators, Columns::with_factors, kColumns, budget), kBySum);
     }
+    if (is_done()) return std::nullopt;
+    if (has(kSums)) search_waves(budget);
+    if (!is_done() && context_.data.inputs.size() == 1) solve(whole(), Width::narrow, budget);
     if (is_done()) return std::nullopt;
   }
   if (!has(kCollapses)) return std::nullopt;
@@ -220,7 +245,10 @@ void Run::solve(const ReducedProblem& problem, Width width, Budget& budget) {
   try_g(relay::find_product(rows, operators, budget));
   // All: the front's choice takes the shortest, and tells tanh x from x - x^3/3 where x is small.
   try_g(relay::find_relation(rows, operators, Columns::powers_alone, kColumns, budget));
-  if (problem.inputs() == 1) try_g(relay::find_function(rows, operators, budget));
+  if (problem.inputs() == 1) {
+    try_g(relay::find_function(rows, operators, budget));
+    if (!is_done()) try_g(relay::find_scaled_function(rows, operators, budget));
+  }
   if (width == Width::narrow || problem.inputs() > kFewInputs || is_done()) return;
   const std::size_t columns = problem.inputs() == 1 ? kColumns / 5 : 2 * kColumns;
   try_g(relay::find_relation(rows, operators, Columns::with_factors, columns, budget));
@@ -229,7 +257,7 @@ void Run::solve(const ReducedProblem& problem, Width width, Budget& budget) {
 // g by another method.
 void Run::search(const ReducedProblem& problem, const Regressor& solver) {
   const TrainingData data = problem.data();
-  Budget part = context_.budget.share(context_.budget.remaining() / 4);
+  Budget part = context_.budget.share(context_.budget.remaining() / 4, kHalf);
   FitContext turn{
       data, context_.operators, part, context_.random.split("reduced"), context_.threads, nullptr};
   const FitResult found = solver.fit(turn);
@@ -245,7 +273,7 @@ std::optional<ReducedProblem> Run::reduce(int round, relay::Guesses guesses) {
   if ((is_done() && is_short()) || round > 0 || !is_possible || rows_.rows() == 0)
     return std::nullopt;
   const std::uint64_t most = guesses == relay::Guesses::yes ? 3 * kReduced : kReduced;
-  Budget budget = context_.budget.share(std::min(context_.budget.remaining() / 4, most));
+  Budget budget = context_.budget.share(std::min(context_.budget.remaining() / 4, most), kMost);
   std::vector<ReducedProblem> open;
   open.push_back(whole());
   std::vector<ReducedProblem> seen;

@@ -66,7 +66,7 @@ std::vector<SparseSum> SubsetFits::best_pairs() const {
   return best.taken();
 }
 
-std::vector<SparseSum> SubsetFits::best_with_one_marked(std::size_t most) const {
+std::vector<SparseSum> SubsetFits::best_with_one_marked(std::size_t most, Budget& budget) const {
   Best best;
   std::vector<std::size_t> others;
   for (std::size_t k = 0; k < columns_; ++k) {
@@ -78,6 +78,7 @@ std::vector<SparseSum> SubsetFits::best_with_one_marked(std::size_t most) const 
   std::size_t spent = 0;
   for (std::size_t k = 0; k < columns_ && spent + each <= most; ++k) {
     if (once_[k] == 0) continue;
+    if (!budget.in_time()) break;
     spent += each;
     fill_without(k, others, gram);
     add_pairs(others, gram, {k}, 1 - with_target(k) * with_target(k), best);
@@ -103,9 +104,12 @@ void SubsetFits::fill_without(std::size_t k, std::span<const std::size_t> others
   }
 }
 
-std::vector<SparseSum> SubsetFits::grown(const std::vector<SparseSum>& sums) const {
+std::vector<SparseSum> SubsetFits::grown(const std::vector<SparseSum>& sums, Budget& budget) const {
   Best best;
-  for (const SparseSum& sum : sums) add_grown(sum, best);
+  for (const SparseSum& sum : sums) {
+    if (!budget.in_time()) break;
+    add_grown(sum, best);
+  }
   return best.taken();
 }
 

@@ -15,6 +15,8 @@
 #include <span>
 #include <vector>
 
+#include "algorithms/budget.hpp"
+
 namespace tribench::relay {
 
 struct SparseSum {
@@ -30,12 +32,12 @@ class SubsetFits {
   SubsetFits(std::vector<double> gram, std::vector<char> once);
 
   // Each returns at most 300, those that leave least, the best first. Cost: a few flops a sum
-  // looked at.
+  // looked at. The longer ones end where the seconds run out, with what they have.
   std::vector<SparseSum> best_pairs() const;
   // Of one marked column and two others; with the first marked ones, as many as take `most` steps.
-  std::vector<SparseSum> best_with_one_marked(std::size_t most) const;
+  std::vector<SparseSum> best_with_one_marked(std::size_t most, Budget& budget) const;
   // Of each of `sums` and one further column.
-  std::vector<SparseSum> grown(const std::vector<SparseSum>& sums) const;
+  std::vector<SparseSum> grown(const std::vector<SparseSum>& sums, Budget& budget) const;
 
  private:
   class Best;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "algorithms/finite_rows.hpp"
@@ -10,6 +11,7 @@
 #include "algorithms/relay/index_fit.hpp"
 #include "algorithms/relay/product_search.hpp"
 #include "algorithms/relay/relation_search.hpp"
+#include "algorithms/relay/scaled_function.hpp"
 #include "tests/algorithms/relay/drawn_law.hpp"
 
 namespace tribench {
@@ -115,6 +117,27 @@ TEST(RelationSearch, FindsSumsOfProductsOfWaves) {
   EXPECT_LT(law.error_of(*found), 1e-9) << print(*found, law.names);
 }
 
+TEST(RelationSearch, FindsTheRootOfAQuadraticEquation) {
+  const std::vector<DrawnInput> throws = {{"v", 5, 40}, {"a", 0.2, 1.3}, {"h", 1, 50}};
+  const std::vector<DrawnInput> crank = {{"r", 0.02, 0.1}, {"a", 0, 6.2}, {"l", 0.15, 0.4}};
+  const std::pair<std::string, std::vector<DrawnInput>> laws[] = {
+      {"(v*sin(a) + sqrt(v^2*sin(a)^2 + 19.62*h))/9.81", throws},
+      {"r*cos(a) + sqrt(l^2 - r^2*sin(a)^2)", crank},
+      {"-(0.5*h) + sqrt(0.25*h^2 + v*h)", throws},
+      {"2*h - sqrt(h^2 - 0.5*h*a)", throws}};
+  for (const auto& [text, inputs] : laws) {
+    const DrawnLaw law(text, inputs, 300);
+    Budget budget({});
+    const auto found =
+        relay::find_root(*Rows(law), full(), relay::Columns::with_factors, 500, budget);
+    ASSERT_TRUE(found) << text;
+    EXPECT_LT(law.error_of(*found), 1e-7) << text << ": " << print(*found, law.names);
+  }
+  const DrawnLaw other("v + exp(-(a*h))", throws, 300);
+  Budget budget({});
+  EXPECT_FALSE(relay::find_root(*Rows(other), full(), relay::Columns::with_factors, 500, budget));
+}
+
 TEST(RelationSearch, KeepsItsBudgetAndFindsNothingUnderNoise) {
   const DrawnLaw law("2*c^2 - 3*e + a*c", kFive, 300);
   Budget little({.evaluations = 1000});
@@ -154,6 +177,20 @@ TEST(IndexFit, FindsExponentialsWavesAndTheirReciprocals) {
     ASSERT_TRUE(found) << text;
     EXPECT_LT(law.error_of(*found), 1e-6) << text << ": " << print(*found, law.names);
   }
+}
+
+TEST(ScaledFunction, FindsWhatIsLeftOfPlanckFinsAndRates) {
+  for (const std::string text : {"3*x^3/(exp(2.5*x) - 1)", "2*sqrt(x)*tanh(1.7/sqrt(x))",
+                                 "0.4*x^2*exp(-1.3/x)", "x*(sqrt(1 + 0.3*x^2) - 1)"}) {
+    const DrawnLaw law(text, {{"x", 0.3, 5}}, 200);
+    Budget budget({});
+    const auto found = relay::find_scaled_function(*Rows(law), full(), budget);
+    ASSERT_TRUE(found) << text;
+    EXPECT_LT(law.error_of(*found), 1e-8) << text << ": " << print(*found, law.names);
+  }
+  const DrawnLaw other("sin(3*x) + x", {{"x", 0.3, 5}}, 200);
+  Budget budget({});
+  EXPECT_FALSE(relay::find_scaled_function(*Rows(other), full(), budget));
 }
 
 }  // namespace
