@@ -54,6 +54,7 @@ std::string card_line(const LoopCard& card) {
   std::string text = fmt::format("- **{}**: {}", card.title, card.amount);
   if (!card.share.empty()) text += ", " + card.share;
   text += fmt::format("; {}. {}", card.grade, card.sure);
+  if (!card.bristles.empty()) text += ' ' + card.bristles;
   for (const std::string& doubt : card.doubts) text += ' ' + doubt;
   if (!card.rivals.empty()) text += ' ' + card.rivals;
   if (!card.settle.empty()) text += ' ' + card.settle;

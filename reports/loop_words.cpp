@@ -176,6 +176,23 @@ std::string period_words(const LoopRecord& record, const std::string& family) {
   return {};
 }
 
+std::string bristles_of(const LoopRecord& record, const LoopEffect& effect) {
+  const LoopBristles& b = effect.bristles;
+  if (b.law.empty()) return {};
+  std::string text =
+      fmt::format("As bristles: stiffness {} {}", figure(b.stiffness, kDigits), b.stiffness_unit);
+  if (std::isfinite(b.stiffness_high)) {
+    text += fmt::format(" ({} .. {})", figure(b.stiffness_low), figure(b.stiffness_high));
+  }
+  text += fmt::format(", sliding from {} {} on", figure(b.sliding), b.sliding_unit);
+  if (known(b.mae_after) && b.mae_after < record.error.mae_after) {
+    text += fmt::format("; with them as a state the error is {}, not {}",
+                        amount(torque_unit(record), b.mae_after),
+                        amount(torque_unit(record), record.error.mae_after));
+  }
+  return text + '.';
+}
+
 LoopCard card_of(const LoopRecord& record, const LoopEffect& effect) {
   LoopCard card;
   card.family = effect.family;
@@ -191,6 +208,7 @@ LoopCard card_of(const LoopRecord& record, const LoopEffect& effect) {
   card.sure = known(effect.chosen_share)
                   ? fmt::format("Found again in {} of the repeats.", percent(effect.chosen_share))
                   : "It passes the test against chance.";
+  card.bristles = bristles_of(record, effect);
   card.doubts = doubts_of(record, effect);
   add_rivals(card, record, effect);
   return card;

@@ -26,12 +26,13 @@ LoopUnit length_unit(std::string_view unit, double size);
 // One effect for someone who decides. Texts are sentences; those that do not apply are empty.
 struct LoopCard {
   std::string family;
-  std::string title;   // "Friction falls with speed near standstill"
-  std::string noun;    // "Stribeck effect"
-  std::string amount;  // "0.755 N"
-  std::string share;   // "4 % of the friction"
-  std::string grade;   // "very sure", "doubtful", "provisional"
-  std::string sure;    // "Found again in 40 % of the searches with movements left out."
+  std::string title;     // "Friction falls with speed near standstill"
+  std::string noun;      // "Stribeck effect"
+  std::string amount;    // "0.755 N"
+  std::string share;     // "4 % of the friction"
+  std::string grade;     // "very sure", "doubtful", "provisional"
+  std::string sure;      // "Found again in 40 % of the searches with movements left out."
+  std::string bristles;  // of presliding: how stiff, and from where on it slides
   std::vector<std::string> doubts;
   std::string rivals;  // "It could also be ... ."
   std::string settle;  // "To settle it: ... ."

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,6 +15,7 @@
 
 #include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/parallel_for.hpp"
+#include "harness/loop/bristles_of.hpp"
 #include "harness/loop/noise_bounds.hpp"
 #include "problems/preparation/canonical.hpp"
 #include "problems/preparation/test_movements.hpp"
@@ -83,11 +86,13 @@ Observations cut_in_pieces(const Observations& data) {
 struct LeftOut {
   Eigen::VectorXd before;
   Eigen::VectorXd after;
-  Eigen::VectorXd corrected;  // as `after` where no bounds are asked for
+  Eigen::VectorXd with_state;  // as `after` where there are no bristles
+  Eigen::VectorXd corrected;   // as `after` where no bounds are asked for
 
   explicit LeftOut(std::size_t rows)
       : before(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows))),
         after(before),
+        with_state(before),
         corrected(before) {}
 };
 
@@ -126,7 +131,9 @@ class LoopJudge {
  private:
   std::vector<Diagnosis> searches_without(const std::vector<std::vector<int>>& sets) const;
   void search_again(JudgedDiagnosis& whole) const;
-  void add_predictions(LeftOut& all, const Diagnosis& fitted, const RandomStream& random) const;
+  // bristles: of `fitted`.
+  void add_predictions(LeftOut& all, const Diagnosis& fitted,
+                       const std::optional<Bristles>& bristles, const RandomStream& random) const;
   ErrorFinding judged(const std::vector<char>& rows, const LeftOut& models,
                       std::span<const int> unit) const;
 
@@ -171,9 +178,11 @@ void LoopJudge::search_again(JudgedDiagnosis& whole) const {
 
 // Of the rows that a diagnosis has not seen.
 void LoopJudge::add_predictions(LeftOut& all, const Diagnosis& fitted,
+                                const std::optional<Bristles>& bristles,
                                 const RandomStream& random) const {
   const Eigen::VectorXd before = predict(fitted.before, data_);
   const Eigen::VectorXd after = predict(fitted.after, data_);
+  const Eigen::VectorXd with_state = bristles ? predict(*bristles, data_) : after;
   Eigen::VectorXd corrected = after;
   if (judging_.bounds) {
     corrected += smooth_correction(data_, usable_rows(data_, fitted.held_out, false, fitted.masked),
@@ -184,6 +193,7 @@ void LoopJudge::add_predictions(LeftOut& all, const Diagnosis& fitted,
     const auto at = static_cast<Eigen::Index>(i);
     all.before[at] = before[at];
     all.after[at] = after[at];
+    all.with_state[at] = with_state[at];
     all.corrected[at] = corrected[at];
   }
 }
@@ -199,6 +209,9 @@ ErrorFinding LoopJudge::judged(const std::vector<char>& rows, const LeftOut& mod
   const Eigen::VectorXd before = models.before(kept);
   const Eigen::VectorXd after = models.after(kept);
   ErrorFinding error = judge(part, before, after, unit, random_.split("bootstrap"));
+  if (!kept.empty()) {
+    error.mae_state = (target_vector(part) - models.with_state(kept)).cwiseAbs().mean();
+  }
   if (judging_.bounds) {
     const auto y = target_vector(part);
     bound_noise(error, part, y - before, y - after, y - models.corrected(kept), unit,
@@ -210,14 +223,15 @@ ErrorFinding LoopJudge::judged(const std::vector<char>& rows, const LeftOut& mod
 // Few movements: the whole procedure again for each, without it, and all of them judged together.
 // Says of each effect how many of them choose it too.
 JudgedDiagnosis LoopJudge::in_turn() const {
-  JudgedDiagnosis whole{diagnose(data_, base_, options_), {}};
+  JudgedDiagnosis whole{diagnose(data_, base_, options_), {}, {}};
+  whole.bristles = bristles_of(whole, data_);
   const std::vector<std::vector<int>> sets = left_out_together(data_);
   const std::vector<Diagnosis> parts = searches_without(sets);
   ChosenShares shares;
   LeftOut all(data_.rows());
   for (std::size_t k = 0; k < parts.size(); ++k) {
     shares.count(parts[k]);
-    add_predictions(all, parts[k], random_.split(k));
+    add_predictions(all, parts[k], bristles_of(parts[k], data_), random_.split(k));
   }
   shares.write(whole);
   const std::vector<char> usable = usable_rows(data_, {}, false, whole.masked);
@@ -230,13 +244,14 @@ JudgedDiagnosis LoopJudge::in_turn() const {
 }
 
 JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) const {
-  JudgedDiagnosis whole{diagnose(data_, base_, options_, test), {}};
+  JudgedDiagnosis whole{diagnose(data_, base_, options_, test), {}, {}};
+  whole.bristles = bristles_of(whole, data_);
   whole.error.judged_on = JudgedOn::rows_of_the_fit;
   whole.error.how = "none held out";
   const std::vector<char> rows = usable_rows(data_, test, true, whole.masked);
   if (std::ranges::count(rows, 1) == 0) return whole;
   LeftOut models(data_.rows());
-  add_predictions(models, whole, random_);
+  add_predictions(models, whole, whole.bristles, random_);
   whole.error = judged(rows, models, data_.select(rows).movement);
   whole.error.how = "held out";
   if (judging_.resample) search_again(whole);
@@ -282,6 +297,7 @@ JudgedDiagnosis diagnose_and_judge(const Observations& data, const BaseMaker& ba
   const Canonical told = canonical(data);
   JudgedDiagnosis out = judge_canonical(told.data, base, options, judging);
   out.masked = told.as_told(out.masked);
+  if (!out.bristles) out.error.mae_state = std::numeric_limits<double>::quiet_NaN();
   // Without a row to judge by there is nothing against them.
   const bool judged = out.error.judged_on != JudgedOn::rows_of_the_fit;
   out.error.confirmed = !judged || out.effects.empty() || out.error.difference_low > 0;

@@ -6,9 +6,11 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "algorithms/diagnosis/diagnosis.hpp"
+#include "algorithms/loop_model/bristles.hpp"
 #include "harness/loop/loop_judge.hpp"
 
 namespace tribench::loop {
@@ -31,6 +33,8 @@ std::vector<int> held_out_movements(const Observations& data, double share);
 
 struct JudgedDiagnosis : Diagnosis {
   ErrorFinding error;
+  // Of presliding that was found, fitted to the same rows as `after`; empty where there is none.
+  std::optional<Bristles> bristles;
 };
 
 // Judges by held_out_movements. Where there are none, all take part in the verdict and the whole

@@ -34,6 +34,8 @@ struct ErrorFinding {
   std::string how;  // in words: "held out", "each movement left out in turn"
   double mae_before = std::numeric_limits<double>::quiet_NaN();
   double mae_after = std::numeric_limits<double>::quiet_NaN();
+  // As mae_after, found presliding as bristles with a state; NaN where none was found.
+  double mae_state = std::numeric_limits<double>::quiet_NaN();
   double rmse_before = std::numeric_limits<double>::quiet_NaN();
   double rmse_after = std::numeric_limits<double>::quiet_NaN();
   double max_before = std::numeric_limits<double>::quiet_NaN();

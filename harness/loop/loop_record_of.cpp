@@ -118,6 +118,25 @@ void add_lists(LoopRecord& record, const JudgedDiagnosis& diagnosis) {
   record.needed = diagnosis.needed;
 }
 
+void add_bristles(LoopRecord& record, const JudgedDiagnosis& diagnosis, const Observations& data) {
+  if (!diagnosis.bristles) return;
+  const Bristles& from = *diagnosis.bristles;
+  for (LoopEffect& effect : record.effects) {
+    if (effect.family != diagnosis.families[from.family].name) continue;
+    LoopBristles& to = effect.bristles;
+    to.law = bristle_law_name(from.law);
+    to.sliding_unit = data.find("d")->unit;
+    to.stiffness_unit = fmt::format("{}/{}", data.target_unit, to.sliding_unit);
+    to.stiffness = from.stiffness;
+    to.stiffness_low = from.low;
+    to.stiffness_high = from.high;
+    to.sliding = from.sliding;
+    if (from.law == BristleLaw::lugre) to.damping = from.damping;
+    to.mae_after = diagnosis.error.mae_state;
+    to.formula = print_stateful(formula_of(from, data), data.names());
+  }
+}
+
 void add_extras(LoopRecord& record, const LoopExtras& extras) {
   for (const LearnedEffect& one : extras.learned) {
     record.learned.push_back(
@@ -237,6 +256,7 @@ LoopRecord loop_record_of(const JudgedDiagnosis& diagnosis, const Observations& 
                   diagnosis.movements,           diagnosis.stretches,
                   diagnosis.noise.effective_rows};
   add_lists(record, diagnosis);
+  add_bristles(record, diagnosis, data);
   record.error = error_of(diagnosis.error);
   record.motion = extras.motion;
   record.base = diagnosis.before.base.name;

@@ -128,6 +128,7 @@ std::vector<LoopAnswer::Effect> effects_in(const json& object) {
   std::vector<LoopAnswer::Effect> effects;
   for (const json& effect : object.value("effects", json::array())) {
     effects.push_back({effect.at("family").get<std::string>(), {}});
+    effects.back().stiffness = effect.value("bristles", json::object()).value("stiffness", 0.0);
     for (const json& alias : effect.value("alias", json::array())) {
       effects.back().aliases.push_back(alias.at("family").get<std::string>());
     }

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "algorithms/diagnosis/rules.hpp"
+#include "harness/loop/bristles_of.hpp"
 #include "harness/loop/judged_diagnosis.hpp"
 
 namespace tribench {
@@ -21,9 +23,13 @@ LoopAnswer diagnose(const LoopCase& one, const PlantedData& planted,
   options.without = without;
   const std::vector<int> test = loop::held_out_movements(data, loop::JudgingOptions().test_share);
   const loop::Diagnosis diagnosis = loop::diagnose(data, loop::coulomb_viscous_base, options, test);
+  const std::optional<loop::Bristles> bristles = loop::bristles_of(diagnosis, data);
   LoopAnswer answer;
   for (const loop::EffectFinding& effect : diagnosis.effects) {
-    answer.effects.push_back({effect.family, {}, effect.another_shape});
+    answer.effects.push_back({effect.family, {}, effect.another_shape, 0});
+    if (bristles && effect.family == diagnosis.families[bristles->family].name) {
+      answer.effects.back().stiffness = bristles->stiffness;
+    }
     for (const loop::AliasFinding& alias : effect.aliases) {
       answer.effects.back().aliases.push_back(alias.family);
     }
@@ -37,11 +43,14 @@ LoopAnswer diagnose(const LoopCase& one, const PlantedData& planted,
   const Eigen::VectorXd after = loop::predict(diagnosis.after, data);
   answer.before.assign(data.rows(), std::numeric_limits<double>::quiet_NaN());
   answer.after = answer.before;
+  answer.with_state = answer.before;
+  const Eigen::VectorXd with_state = bristles ? loop::predict(*bristles, data) : after;
   for (std::size_t i = 0; i < data.rows(); ++i) {
     if (!std::ranges::binary_search(test, data.movement[i])) continue;
     if (diagnosis.masked[i] != 0) continue;
     answer.before[i] = before[static_cast<Eigen::Index>(i)];
     answer.after[i] = after[static_cast<Eigen::Index>(i)];
+    answer.with_state[i] = with_state[static_cast<Eigen::Index>(i)];
   }
   return answer;
 }

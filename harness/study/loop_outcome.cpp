@@ -61,10 +61,13 @@ void judge_errors(LoopOutcome& out, const LoopAnswer& answer, const PlantedData&
     if (!std::isfinite(answer.before[i]) || !std::isfinite(answer.after[i])) continue;
     out.mae_before += std::abs(target[i] - answer.before[i]);
     out.mae_after += std::abs(target[i] - answer.after[i]);
+    out.mae_state +=
+        std::abs(target[i] - (answer.with_state.empty() ? answer.after : answer.with_state)[i]);
     out.mae_noise += std::abs(planted.truth.noise[i]);
     rows += 1;
   }
-  for (double* sum : {&out.mae_before, &out.mae_after, &out.mae_noise}) *sum /= std::max(1.0, rows);
+  for (double* sum : {&out.mae_before, &out.mae_after, &out.mae_state, &out.mae_noise})
+    *sum /= std::max(1.0, rows);
 }
 
 std::vector<std::string> split_list(std::string_view text) {
@@ -149,9 +152,11 @@ LoopOutcome judge_answer(const LoopCase& one, const LoopAnswer& answer,
   out.seed = one.seed;
   for (const PlantedEffect& effect : planted.truth.effects) {
     out.planted.push_back(effect.family);
+    out.stiffness += effect.stiffness;
   }
   for (const LoopAnswer::Effect& effect : answer.effects) {
     out.claimed.push_back(effect.family);
+    out.said_stiffness += effect.stiffness;
     out.aliases.insert(out.aliases.end(), effect.aliases.begin(), effect.aliases.end());
   }
   out.unknown = answer.unknown;
@@ -194,7 +199,10 @@ std::string outcome_row(const LoopOutcome& o) {
                                            flag(o.naive.bic),
                                            std::string(says_name(o.says)),
                                            flag(o.located),
-                                           csv_number(o.cpu_s)};
+                                           csv_number(o.cpu_s),
+                                           csv_number(o.mae_state),
+                                           csv_number(o.stiffness),
+                                           csv_number(o.said_stiffness)};
   std::string row;
   append_csv_row(row, fields);
   return row;
@@ -227,6 +235,9 @@ LoopOutcome read_outcome(std::span<const std::string_view> fields) {
   o.says = find_says(fields[19]);
   o.located = fields[20] == "1";
   o.cpu_s = number_in(fields[21]);
+  o.mae_state = number_in(fields[22]);
+  o.stiffness = number_in(fields[23]);
+  o.said_stiffness = number_in(fields[24]);
   return o;
 }
 

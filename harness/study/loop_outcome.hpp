@@ -25,6 +25,7 @@ struct LoopAnswer {
     std::string family;
     std::vector<std::string> aliases;  // what else it could be
     bool another_shape = false;        // this cause, but no shape of the library is its own
+    double stiffness = 0;              // of bristles, where it says one; the data's unit
   };
   struct Burst {
     int movement = 0;
@@ -38,6 +39,7 @@ struct LoopAnswer {
   // Predictions of the target, per row of the data; NaN where the row is not to be judged.
   std::vector<double> before;
   std::vector<double> after;
+  std::vector<double> with_state;  // with bristles as a state; as `after` where there are none
 };
 
 // What an answer is worth against the truth.
@@ -76,10 +78,13 @@ struct LoopOutcome {
   std::size_t bursts_found = 0;
   double mae_before = 0;
   double mae_after = 0;
+  double mae_state = 0;  // as mae_after, bristles as a state
   double mae_noise = 0;  // the ceiling: of the noise on the rows that were judged
   NaiveFindings naive;   // of the null runs
   Says says = Says::exact;
-  bool located = false;  // UNKNOWN in the inputs in which the one effect lives
+  double stiffness = 0;       // of planted bristles; 0: none planted
+  double said_stiffness = 0;  // 0: none said
+  bool located = false;       // UNKNOWN in the inputs in which the one effect lives
   double cpu_s = 0;
 
   // The one effect that was planted; empty where it was none or two.
@@ -100,11 +105,11 @@ Says judge_story(const LoopAnswer& answer, const std::vector<PlantedEffect>& eff
 LoopOutcome judge_answer(const LoopCase& one, const LoopAnswer& answer, const PlantedData& planted);
 
 // One line of CSV an outcome.
-inline constexpr std::array<std::string_view, 22> kOutcomeColumns = {
-    "case",      "group",        "noise",      "design",    "scale",     "seed",
-    "planted",   "claimed",      "aliases",    "unknown",   "inputs",    "events",
-    "bursts",    "bursts_found", "mae_before", "mae_after", "mae_noise", "naive_f_test",
-    "naive_bic", "says",         "located",    "cpu_s"};
+inline constexpr std::array<std::string_view, 25> kOutcomeColumns = {
+    "case",       "group",     "noise",     "design",        "scale",     "seed",   "planted",
+    "claimed",    "aliases",   "unknown",   "inputs",        "events",    "bursts", "bursts_found",
+    "mae_before", "mae_after", "mae_noise", "naive_f_test",  "naive_bic", "says",   "located",
+    "cpu_s",      "mae_state", "stiffness", "said_stiffness"};
 std::string outcome_row(const LoopOutcome& outcome);
 // Throws Error (bad_input) where a field is no number.
 LoopOutcome read_outcome(std::span<const std::string_view> fields);

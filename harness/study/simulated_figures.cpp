@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "harness/study/figure_table.hpp"
 #include "problems/joint_simulation/motion.hpp"
@@ -15,6 +16,16 @@ namespace {
 bool is_null(const LoopOutcome& one) { return one.planted.empty(); }
 
 bool is_strong(const LoopOutcome& one) { return !is_null(one) && one.scale >= 1; }
+
+bool has_memory(const LoopOutcome& one) {
+  return one.cause().starts_with("presliding") || one.cause().starts_with("lag");
+}
+
+bool has_bristles(const LoopOutcome& one) { return one.stiffness > 0; }
+
+bool is_stiffness_right(const LoopOutcome& one) {
+  return std::abs(one.said_stiffness / one.stiffness - 1) <= 0.1;
+}
 
 bool is_named(const LoopOutcome& one) {
   return one.says == Says::exact || one.says == Says::another_shape;
@@ -35,6 +46,23 @@ void add_noise_figures(FigureTable& table) {
         "false burst, noise " + noise, [noise](const LoopOutcome& o) { return o.noise == noise; },
         [](const LoopOutcome& o) { return o.events > 0; }, {1, false});
   }
+}
+
+void add_memory_figures(FigureTable& table) {
+  table.rate("presliding and lag named, k >= 1",
+             [](const LoopOutcome& o) { return has_memory(o) && is_strong(o); }, is_named,
+             {95, true});
+  table.rate("stiffness within 10 %, k >= 1",
+             [](const LoopOutcome& o) { return has_bristles(o) && is_strong(o); },
+             is_stiffness_right, {95, true});
+  table.rate(
+      "a memory where none is", [](const LoopOutcome& o) { return !has_memory(o); },
+      [](const LoopOutcome& o) {
+        return std::ranges::any_of(o.claimed, [](const std::string& family) {
+          return family == "hysteresis" || family == "lag";
+        });
+      },
+      {1, false});
 }
 
 void add_design_figures(FigureTable& table) {
@@ -58,6 +86,7 @@ std::vector<LoopFigure> simulated_figures(const std::vector<LoopOutcome>& outcom
   table.rate(
       "confidently wrong", [](const LoopOutcome& o) { return !is_null(o); },
       [](const LoopOutcome& o) { return o.says == Says::wrong; }, {0.5, false});
+  add_memory_figures(table);
   add_noise_figures(table);
   add_design_figures(table);
   return std::move(table.figures);

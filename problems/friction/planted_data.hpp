@@ -19,6 +19,8 @@ struct PlantedEffect {
   std::vector<std::string> beside;  // that may be named beside one of these and are not wrong
   std::vector<Role> lives_in;
   std::vector<double> values;  // [N m], per row
+  // Of bristles, relaxed: N m/rad; 0 where there are none.
+  double stiffness = 0;
 
   bool in_library() const { return !names.empty(); }
 };

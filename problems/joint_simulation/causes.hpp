@@ -46,7 +46,12 @@ struct Cause {
   std::vector<Role> lives_in;
   bool needs_reversals = false;  // cannot be seen in movements one way
   Response (*start)(RandomStream random) = nullptr;
+  bool has_bristles = false;  // friction that builds up with the way: presliding
 };
+
+// What a small way from rest adds to a response with bristles that starts anew, per rad: their
+// stiffness, in the response's own unit.
+double relaxed_stiffness(Response response);
 
 const std::vector<Cause>& causes();
 // Throws Error (bad_input) with the nearest name.

@@ -108,6 +108,10 @@ PlantedData simulate(const SimulatedCase& wanted, std::uint64_t seed) {
     const double size = root_mean_square(effect.values);
     effect.coefficient = size > 0 ? wanted.scale * run.truth.noise_sd / size : 0;
     for (double& value : effect.values) value *= effect.coefficient;
+    if (cause->has_bristles) {
+      const RandomStream own = random.split("cause").split(wanted.cause);
+      effect.stiffness = effect.coefficient * relaxed_stiffness(cause->start(own));
+    }
     run.truth.effects.push_back(std::move(effect));
   }
   const double step = quantisation_step(wanted.noise) * run.truth.noise_sd;

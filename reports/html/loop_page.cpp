@@ -286,6 +286,7 @@ Json words_json(const LoopWords& words) {
                      {"sure", card.sure},
                      {"doubts", card.doubts},
                      {"rivals", card.rivals},
+                     {"bristles", card.bristles},
                      {"settle", card.settle}});
   }
   return {{"headline", words.headline},

@@ -14,6 +14,19 @@ using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
+Json bristles_json(const LoopBristles& bristles) {
+  return {{"law", bristles.law},
+          {"stiffness", number(bristles.stiffness)},
+          {"lo", number(bristles.stiffness_low)},
+          {"hi", number(bristles.stiffness_high)},
+          {"unit", bristles.stiffness_unit},
+          {"sliding", number(bristles.sliding)},
+          {"sliding_unit", bristles.sliding_unit},
+          {"damping", number(bristles.damping)},
+          {"mae_after", number(bristles.mae_after)},
+          {"formula", bristles.formula}};
+}
+
 Json effect_json(const LoopEffect& effect) {
   Json json = {{"family", effect.family},
                {"atom", effect.atom},
@@ -46,6 +59,7 @@ Json effect_json(const LoopEffect& effect) {
                              {"exact", alias.exact},
                              {"separate_by", alias.separate_by}});
   }
+  if (!effect.bristles.law.empty()) json["bristles"] = bristles_json(effect.bristles);
   return json;
 }
 

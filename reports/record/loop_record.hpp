@@ -60,6 +60,20 @@ struct LoopAlias {
 // Stability selection takes 0.6 to 0.9 (Meinshausen, Buehlmann 2010).
 inline constexpr double kStableShare = 0.6;
 
+// Presliding as bristles whose deflection is a state: what has units of its own.
+struct LoopBristles {
+  std::string law;                   // "dahl", "lugre", "maxwell_slip"; empty: none were fitted
+  double stiffness = kNoFigure;      // of relaxed bristles
+  double stiffness_low = kNoFigure;  // 95 %
+  double stiffness_high = kNoFigure;
+  std::string stiffness_unit;  // "N m/rad"
+  double sliding = kNoFigure;  // deflection from which on they slide: break-away
+  std::string sliding_unit;
+  double damping = kNoFigure;    // of lugre, in the target's unit over the velocity's
+  double mae_after = kNoFigure;  // as LoopError::mae_after, with the state in the effect's place
+  std::string formula;           // of the whole model, its states declared before it
+};
+
 struct LoopEffect {
   std::string family;
   std::string atom;  // its columns as the library writes them
@@ -78,6 +92,7 @@ struct LoopEffect {
   bool another_shape = false;
   double chosen_share = kNoFigure;  // of the searches with movements left out
   std::vector<std::string> notes;
+  LoopBristles bristles;
 };
 
 struct LoopLeftover {

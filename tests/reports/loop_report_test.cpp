@@ -60,6 +60,24 @@ TEST(LoopWords, AnswerWhatHowMuchHowSureAndWhatNext) {
   EXPECT_THAT(words.next, HasSubstr("use two postures or a known payload"));
 }
 
+TEST(LoopWords, SayHowStiffBristlesAre) {
+  LoopRecord record = sample_loop();
+  EXPECT_EQ(loop_words(record).cards[0].bristles, "");
+  LoopBristles& bristles = record.effects[0].bristles;
+  bristles = {.law = "dahl",
+              .stiffness = 40.25,
+              .stiffness_low = 37,
+              .stiffness_high = 44,
+              .stiffness_unit = "N m/rad",
+              .sliding = 0.025,
+              .sliding_unit = "rad"};
+  EXPECT_EQ(loop_words(record).cards[0].bristles,
+            "As bristles: stiffness 40.25 N m/rad (37.0 .. 44.0), sliding from 0.0250 rad on.");
+  bristles.mae_after = 0.5 * record.error.mae_after;
+  EXPECT_NE(loop_words(record).cards[0].bristles.find("with them as a state the error is"),
+            std::string::npos);
+}
+
 TEST(LoopWords, HaveAFaceForEveryVerdict) {
   EXPECT_EQ(loop_words(with(LoopVerdict::none)).headline,
             "Nothing is missing that these data can show.");

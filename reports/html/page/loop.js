@@ -43,7 +43,7 @@ function effectCard(one, i) {
     el("div", {class: "effect-head"}, badge(one.grade, kGradeClass[one.grade] || "fair"),
        picture ? el("a", {href: "#" + picture.id, "aria-label": "picture of: " + one.noun}, "picture") : ""),
     el("h3", {}, one.title), el("p", {class: "amount"}, el("b", {}, one.amount), one.share ? " · " + one.share : ""),
-    ...line(one.sure), ...one.doubts.flatMap((d) => line(d, "doubt")), ...line(one.rivals), ...line(one.settle));
+    ...line(one.sure), ...line(one.bristles), ...one.doubts.flatMap((d) => line(d, "doubt")), ...line(one.rivals), ...line(one.settle));
 }
 
 function copyButton(label, text) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "problems/joint_simulation/simulated_campaign.hpp"
 #include "problems/kuka/planted.hpp"
 #include "problems/reading/csv.hpp"
 #include "reports/record/loop_record.hpp"
@@ -48,6 +49,22 @@ INSTANTIATE_TEST_SUITE_P(Families, PlantedEffect,
                                            "power_quadrant_step", "payload", "output_ripple",
                                            "gear_ripple", "temperature", "drift", "hysteresis",
                                            "lag", "inertia", "coupling"));
+
+// Bristles that short strokes do not bend all the way: as a state they have the right stiffness,
+// and leave less on movements nobody touched than the distance since the reversal does.
+TEST(JudgedDiagnosis, FoundPreslidingHasAStiffnessAndIsWorthMoreAsAState) {
+  const PlantedData run = simulation::simulate(
+      {"presliding_dahl", 2, simulation::NoiseKind::gaussian, simulation::Design::mixed}, 230219);
+  const JudgedDiagnosis diagnosis =
+      diagnose_and_judge(observe(run.data), coulomb_viscous_base, {.gear_ratios = {100}});
+  EXPECT_EQ(families(diagnosis), std::vector<std::string>{"hysteresis"});
+  ASSERT_TRUE(diagnosis.bristles);
+  const double truth = run.truth.effects[0].stiffness;
+  EXPECT_NEAR(diagnosis.bristles->stiffness, truth, 0.1 * truth);
+  EXPECT_LT(diagnosis.bristles->low, truth);
+  EXPECT_GT(diagnosis.bristles->high, truth);
+  EXPECT_LT(diagnosis.error.mae_state, 0.95 * diagnosis.error.mae_after);
+}
 
 // Mean magnitude of the planted noise in the movements that a diagnosis has held out.
 double noise_held_out(const std::vector<kuka::Plant>& effects, const Diagnosis& diagnosis,

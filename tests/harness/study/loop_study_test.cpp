@@ -42,7 +42,7 @@ LoopAnswer knows_all(const LoopCase& /*one*/, const PlantedData& planted) {
   answer.after = planted.truth.noise_free();
   for (const PlantedEffect& effect : planted.truth.effects) {
     if (effect.in_library()) {
-      answer.effects.push_back({effect.names.front(), {}});
+      answer.effects.push_back({effect.names.front(), {}, false, effect.stiffness});
       continue;
     }
     answer.unknown = true;
@@ -116,10 +116,12 @@ LoopStudyOptions small_simulated_study() {
 TEST(LoopStudy, OnSimulatedCampaignsTheTruthMeetsEveryTargetAndSilenceIsNeverWrong) {
   const LoopStudy best = run_loop_study(small_simulated_study(), knows_all);
   for (const LoopFigure& one : best.figures) EXPECT_TRUE(one.met) << one.name;
-  EXPECT_EQ(figure(best, "named, k >= 1").trials, 76U);
+  EXPECT_EQ(figure(best, "named, k >= 1").trials, 80U);
   EXPECT_EQ(figure(best, "false alarm, noise skewed").trials, 2U);
   for (const CauseAnswers& one : best.answers) EXPECT_EQ(one.counts[0], one.runs) << one.cause;
+  EXPECT_EQ(figure(best, "stiffness within 10 %, k >= 1").trials, 12U);
   const LoopStudy silent = run_loop_study(small_simulated_study(), says_nothing);
+  EXPECT_EQ(figure(silent, "stiffness within 10 %, k >= 1").hits, 0U);
   EXPECT_EQ(figure(silent, "named, k >= 1").hits, 0U);
   EXPECT_EQ(figure(silent, "confidently wrong").hits, 0U);
   EXPECT_EQ(figure(silent, "false alarm, noise bursty").hits, 0U);

@@ -99,6 +99,18 @@ TEST(Causes, DahlsBristlesRelaxOverAPathWhateverTheSpeed) {
   EXPECT_NEAR(after(0.4, 0.1), after(0.1, 0.1), 1e-9);
 }
 
+// Four elements whose shares and limits only they know: what a small way from rest adds is what a
+// small way back adds after a long stroke, since every element sticks again.
+TEST(Causes, StiffnessIsThatOfEveryElementSticking) {
+  const auto response = [] { return find_cause("presliding_gms").start(RandomStream(9)); };
+  const Response friction = response();
+  for (int i = 0; i < 1000; ++i) friction(moving(0.5), 1e-3);
+  const double bent = friction(moving(-1e-6), 1);
+  const double slope = (bent - friction(moving(-1e-6), 1)) / 1e-6;
+  EXPECT_NEAR(relaxed_stiffness(response()), slope, 1e-3 * slope);
+  EXPECT_GT(slope, 5);
+}
+
 // A step of the velocity: friction follows with one time constant, whatever the steps.
 TEST(Causes, FrictionLagsItsVelocityByOneTimeConstant) {
   const auto after = [](double seconds, double dt) {

@@ -26,6 +26,16 @@ TEST(LoopJson, SpeaksOfMotionOnlyWhereItWasSimulated) {
   EXPECT_EQ(loop_json(record)["motion"]["after"], 0.1);
 }
 
+TEST(LoopJson, HasAStiffnessWhereBristlesWereFitted) {
+  LoopRecord record = sample_loop();
+  EXPECT_FALSE(loop_json(record)["effects"][0].contains("bristles"));
+  record.effects[0].bristles = {.law = "dahl", .stiffness = 40, .stiffness_unit = "N m/rad"};
+  const auto json = loop_json(record)["effects"][0]["bristles"];
+  EXPECT_EQ(json["stiffness"], 40);
+  EXPECT_EQ(json["unit"], "N m/rad");
+  EXPECT_TRUE(json["hi"].is_null());
+}
+
 // Five digits of the largest: more than a picture shows.
 TEST(LoopJson, RoundsTheSeriesOfPictures) {
   LoopRecord record = sample_loop();
