@@ -117,6 +117,15 @@ BurstNoise::Level BurstNoise::shrunk_level(double own, double rows) const {
           kept * sampling};
 }
 
+void BurstNoise::divide_by_levels() {
+  for (std::size_t m = 0; m < movements_.size(); ++m) {
+    for (std::size_t i = movements_[m].begin; i < movements_[m].end; ++i) {
+      innovation_[i] /= level_[m];
+      unit_[i] *= level_[m];
+    }
+  }
+}
+
 void BurstNoise::scale_by_movement() {
   const auto count = static_cast<double>(movements_.size());
   std::vector<double> own;
@@ -137,13 +146,9 @@ void BurstNoise::scale_by_movement() {
   }
   spread_ = std::max(0.0, spread - sampling);
   for (std::size_t m = 0; m < movements_.size(); ++m) {
-    const RowRange& range = movements_[m];
-    level_[m] = shrunk_level(own[m], static_cast<double>(range.size())).factor;
-    for (std::size_t i = range.begin; i < range.end; ++i) {
-      innovation_[i] /= level_[m];
-      unit_[i] *= level_[m];
-    }
+    level_[m] = shrunk_level(own[m], static_cast<double>(movements_[m].size())).factor;
   }
+  divide_by_levels();
   const double before = law_.scale;
   law_ = fit_student(innovation_);
   mean_log_level_ += elementary::log(before / law_.scale);

@@ -46,6 +46,7 @@ class BurstNoise {
   void centre(const Eigen::VectorXd& residual);
   void innovate();
   void scale_by_movement();
+  void divide_by_levels();
   struct Level {
     double factor;
     double variance;  // of the logarithm

@@ -37,6 +37,17 @@ constexpr std::size_t kSumRows = 4;
 constexpr std::size_t kDraws = 512;
 constexpr std::size_t kDrawnHeights = 2;
 
+// x to the power -(freedom + 1) / 2, of which twice is an integer.
+double student_power(double x, double freedom) {
+  const auto twice = static_cast<int>(freedom) + 1;
+  double base = 1 / x;
+  double result = twice % 2 == 0 ? 1 : std::sqrt(base);
+  for (int n = twice / 2; n > 0; n /= 2, base *= base) {
+    if (n % 2 == 1) result *= base;
+  }
+  return result;
+}
+
 class BurstScan {
  public:
   BurstScan(std::span<const int> movement, std::span<const double> speed,
@@ -169,20 +180,9 @@ class BurstScan {
         product *= (1 + x * x / noise_.law().freedom) * kernels[k];
         scales *= inverse * noise_.law().scale;
       }
-      sum += Levels::kWeights[q] * scales * power(product);
+      sum += Levels::kWeights[q] * scales * student_power(product, noise_.law().freedom);
     }
     return sum;
-  }
-
-  // x to the power -(freedom + 1) / 2, of which twice is an integer.
-  double power(double x) const {
-    const auto twice = static_cast<int>(noise_.law().freedom) + 1;
-    double base = 1 / x;
-    double result = twice % 2 == 0 ? 1 : std::sqrt(base);
-    for (int n = twice / 2; n > 0; n /= 2, base *= base) {
-      if (n % 2 == 1) result *= base;
-    }
-    return result;
   }
 
   // How much likelier pulses make the innovations z, as if they stood from row `first` on.
@@ -191,6 +191,37 @@ class BurstScan {
     double drawn = 0;           // ... over the heights that are drawn for the threshold
     std::size_t likeliest = 0;  // pulse
   };
+  // Ratios of likelihoods, summed over pulses and heights; the largest, and whose it is.
+  struct RatioSums {
+    double all = 0;
+    double drawn = 0;
+    double largest = -1;
+    std::size_t likeliest = 0;  // pulse
+  };
+
+  // Pulse p, its heights in units of `side`, on `rows` rows from `first` on.
+  void add_ratios(std::size_t p, std::size_t first, std::size_t rows, double side, const double* z,
+                  const Levels& levels, RatioSums& sums) const {
+    std::array<double, kLongestPulse> unit{};
+    std::array<double, kLongestPulse> kernels{};
+    for (std::size_t k = 0; k < rows; ++k) {
+      unit[k] = side * added(pulses_[p], first, k);
+      kernels[k] = 1 / noise_.law().kernel(z[k]);
+    }
+    const auto of_height = [&](double height) {
+      return likelihood(z, unit.data(), height, rows, levels, kernels.data());
+    };
+    const double null = of_height(0);
+    for (std::size_t h = 0; h < kHeights.size(); ++h) {
+      const double ratio = std::min(of_height(kHeights[h]) / null, 1e250);
+      sums.all += ratio;
+      if (h < kDrawnHeights) sums.drawn += ratio;
+      if (ratio <= sums.largest) continue;
+      sums.largest = ratio;
+      sums.likeliest = p;
+    }
+  }
+
   // Rows from `end` on are another movement's; levels: the noise, a pulse, with its rows left out.
   Ratios ratios_at(std::size_t first, const double* z, std::size_t end,
                    std::span<const Levels> levels) const {
@@ -198,37 +229,15 @@ class BurstScan {
     double towards = 0;
     for (std::size_t k = 0; k < std::min(reach, kSumRows); ++k) towards += z[k];
     const double side = towards > 0 ? noise_.robust_sd() : -noise_.robust_sd();
-    Ratios out;
-    double best = -1;
-    double sum = 0;
-    double drawn = 0;
+    RatioSums sums;
     for (std::size_t p = 0; p < pulses_.size(); ++p) {
-      const std::size_t rows = std::min(pulses_[p].size(), reach);
-      std::array<double, kLongestPulse> unit{};
-      std::array<double, kLongestPulse> kernels{};
-      for (std::size_t k = 0; k < rows; ++k) {
-        unit[k] = side * added(pulses_[p], first, k);
-        kernels[k] = 1 / noise_.law().kernel(z[k]);
-      }
-      const auto of_height = [&](double height) {
-        return likelihood(z, unit.data(), height, rows, levels[p], kernels.data());
-      };
-      const double null = of_height(0);
-      for (std::size_t h = 0; h < kHeights.size(); ++h) {
-        const double ratio = std::min(of_height(kHeights[h]) / null, 1e250);
-        sum += ratio;
-        if (h < kDrawnHeights) drawn += ratio;
-        if (ratio > best) {
-          best = ratio;
-          out.likeliest = p;
-        }
-      }
+      add_ratios(p, first, std::min(pulses_[p].size(), reach), side, z, levels[p], sums);
     }
     // Half the weight is the other side's, whose ratios are next to nothing.
     const auto pulses = static_cast<double>(pulses_.size());
-    out.all = elementary::log(sum / (2 * pulses * static_cast<double>(kHeights.size())));
-    out.drawn = elementary::log(drawn / (2 * pulses * static_cast<double>(kDrawnHeights)));
-    return out;
+    return {elementary::log(sums.all / (2 * pulses * static_cast<double>(kHeights.size()))),
+            elementary::log(sums.drawn / (2 * pulses * static_cast<double>(kDrawnHeights))),
+            sums.likeliest};
   }
 
   Burst burst_at(std::size_t movement, std::size_t first) const {

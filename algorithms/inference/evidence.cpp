@@ -116,7 +116,8 @@ std::vector<EvidenceTable::Places> EvidenceTable::places_of(
   return places;
 }
 
-EvidenceTable::Solved EvidenceTable::solve(std::span<const EffectBlock* const> blocks) const {
+// The blocks' columns, then their misfits', each with the spread that its factor has beforehand.
+EvidenceTable::Solved EvidenceTable::columns_of(std::span<const EffectBlock* const> blocks) {
   Solved solved;
   ColumnBlock& columns = solved.columns;
   std::vector<double> scale;
@@ -128,8 +129,14 @@ EvidenceTable::Solved EvidenceTable::solve(std::span<const EffectBlock* const> b
     columns.insert(columns.end(), block->misfit.begin(), block->misfit.end());
     scale.resize(columns.size(), block->size);
   }
-  Eigen::MatrixXd gram = gram_(columns, columns);
-  Eigen::VectorXd cross = cross_(columns);
+  solved.scale =
+      Eigen::Map<const Eigen::VectorXd>(scale.data(), static_cast<Eigen::Index>(scale.size()));
+  return solved;
+}
+
+// What a misfit shares with its block's own columns is theirs.
+void EvidenceTable::take_shared_out(std::span<const EffectBlock* const> blocks,
+                                    Eigen::MatrixXd& gram, Eigen::VectorXd& cross) {
   const std::vector<Places> places = places_of(blocks);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const Eigen::MatrixXd& shared = blocks[b]->shared;
@@ -140,7 +147,13 @@ EvidenceTable::Solved EvidenceTable::solve(std::span<const EffectBlock* const> b
         shared.transpose() * gram.middleRows(own, shared.rows());
     cross.segment(misfit, shared.cols()) -= shared.transpose() * cross.segment(own, shared.rows());
   }
-  solved.scale = Eigen::Map<const Eigen::VectorXd>(scale.data(), gram.cols());
+}
+
+EvidenceTable::Solved EvidenceTable::solve(std::span<const EffectBlock* const> blocks) const {
+  Solved solved = columns_of(blocks);
+  Eigen::MatrixXd gram = gram_(solved.columns, solved.columns);
+  Eigen::VectorXd cross = cross_(solved.columns);
+  take_shared_out(blocks, gram, cross);
   gram = (solved.scale.asDiagonal() * gram * solved.scale.asDiagonal()).eval();
   gram.diagonal().array() += 1;
   cross = solved.scale.cwiseProduct(cross);
@@ -151,19 +164,29 @@ EvidenceTable::Solved EvidenceTable::solve(std::span<const EffectBlock* const> b
   return solved;
 }
 
-double EvidenceTable::log_factor(std::span<const EffectBlock* const> blocks) const {
-  if (blocks.empty() || squares_ <= 0) return 0;
-  const Solved solved = solve(blocks);
-  double nats = -0.5 * dof_ * elementary::log(solved.squares / squares_);
-  const auto& lower = solved.factor.matrixLLT();
+namespace {
+
+// Log of the product of a triangle's diagonal is taken from nats.
+double less_log_determinant(double nats, const Eigen::MatrixXd& lower) {
   double determinant = 1;
   for (Eigen::Index i = 0; i < lower.rows(); ++i) {
     determinant *= lower(i, i);
-    if (determinant > 1e100 || i + 1 == lower.rows()) {
+    if (determinant > 1e100 || i + 1 == lower.rows()) {  // before it overflows
       nats -= elementary::log(determinant);
       determinant = 1;
     }
   }
+  return nats;
+}
+
+}  // namespace
+
+double EvidenceTable::log_factor(std::span<const EffectBlock* const> blocks) const {
+  if (blocks.empty() || squares_ <= 0) return 0;
+  const Solved solved = solve(blocks);
+  const auto& lower = solved.factor.matrixLLT();
+  double nats =
+      less_log_determinant(-0.5 * dof_ * elementary::log(solved.squares / squares_), lower);
   Eigen::Index own = 0;
   for (const EffectBlock* block : blocks) own += static_cast<Eigen::Index>(block->columns.size());
   // A block of the inverse is the product of the columns of L^-1.

@@ -94,6 +94,9 @@ class EvidenceTable {
   struct Solved;
   struct Places;
   static std::vector<Places> places_of(std::span<const EffectBlock* const> blocks);
+  static Solved columns_of(std::span<const EffectBlock* const> blocks);
+  static void take_shared_out(std::span<const EffectBlock* const> blocks, Eigen::MatrixXd& gram,
+                              Eigen::VectorXd& cross);
   Solved solve(std::span<const EffectBlock* const> blocks) const;
 
   Eigen::MatrixXd gram_;

@@ -232,21 +232,23 @@ void FeatureScorer::take_offset_out(const Movement& movement, Sums& sums) const 
   sums.offset.setZero();
 }
 
+void FeatureScorer::add_movement(const FloatRows& features, std::size_t m, Sums& sums) const {
+  const auto weight = static_cast<float>(clusters_.weight_of(m));
+  for (const Run& run : movements_[m].runs) {
+    if (run.mixed) {
+      add_mixed_row(features, movements_[m], run, weight, sums);
+    } else {
+      add_run(features, movements_[m], run, weight, sums);
+    }
+  }
+  take_offset_out(movements_[m], sums);
+}
+
 BlockScores FeatureScorer::score(const FloatRows& features, double ridge) const {
   const std::size_t halves = direction_.size() == 0 ? 1 : 2;
   Sums sums(static_cast<std::size_t>(features.cols()), halves, left_.cols(),
             clusters_.stretches.size());
-  for (std::size_t m = 0; m < movements_.size(); ++m) {
-    const auto weight = static_cast<float>(clusters_.weight_of(m));
-    for (const Run& run : movements_[m].runs) {
-      if (run.mixed) {
-        add_mixed_row(features, movements_[m], run, weight, sums);
-      } else {
-        add_run(features, movements_[m], run, weight, sums);
-      }
-    }
-    take_offset_out(movements_[m], sums);
-  }
+  for (std::size_t m = 0; m < movements_.size(); ++m) add_movement(features, m, sums);
   const auto width = static_cast<Eigen::Index>(sums.width);
   Eigen::MatrixXd gram = sums.rest.cast<double>();
   std::vector<Eigen::Index> columns;

@@ -52,6 +52,7 @@ class FeatureScorer {
   void add_mixed_row(const FloatRows& features, const Movement& movement, const Run& run,
                      float weight, Sums& sums) const;
   void take_offset_out(const Movement& movement, Sums& sums) const;
+  void add_movement(const FloatRows& features, std::size_t m, Sums& sums) const;
 
   const Clusters& clusters_;
   float share_;  // of the row before that is taken off each row
