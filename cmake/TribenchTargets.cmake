@@ -16,8 +16,10 @@ target_compile_options(tribench_warnings INTERFACE
   $<$<BOOL:${TRIBENCH_WARNINGS_AS_ERRORS}>:-Werror>)
 
 if(TRIBENCH_SANITIZE)
-  add_compile_options(-fsanitize=${TRIBENCH_SANITIZE} -fno-omit-frame-pointer -g)
+  add_compile_options(-fsanitize=${TRIBENCH_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${TRIBENCH_SANITIZE})
+  # What lies inside an allocation (a vector's spare room) or has no address yet (an empty one).
+  add_compile_definitions(_GLIBCXX_ASSERTIONS)
   if(TRIBENCH_SANITIZE MATCHES "undefined")
     # A finding ends the program: one that is only printed lets its test pass.
     add_compile_options(-fno-sanitize-recover=undefined)

@@ -154,7 +154,8 @@ std::vector<LoopInputPicture> input_pictures(const LoopRows& all) {
     }
     if (!picture.series.empty()) pictures.push_back(std::move(picture));
   }
-  std::ranges::stable_partition(pictures, &LoopInputPicture::leftover);
+  std::stable_partition(pictures.begin(), pictures.end(),
+                        [](const LoopInputPicture& picture) { return picture.leftover; });
   return pictures;
 }
 
