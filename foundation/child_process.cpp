@@ -27,8 +27,12 @@ namespace {
 
 [[noreturn]] void throw_failed(const std::string& what, int error) {
   const bool no_room = error == EAGAIN || error == ENOMEM || error == EMFILE || error == ENFILE;
+  const bool no_descriptor = error == EMFILE || error == ENFILE;
   throw Error(no_room ? ErrorKind::environment : ErrorKind::failed,
-              fmt::format("{}: {}", what, std::strerror(error)));
+              fmt::format("{}: {}", what, std::strerror(error)), {},
+              no_descriptor ? "allow more open files (ulimit -n)"
+              : no_room     ? "allow more processes or memory (ulimit -u, -v), or fewer --jobs"
+                            : "");
 }
 
 struct Pipe {

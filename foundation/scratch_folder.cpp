@@ -14,16 +14,24 @@
 
 namespace tribench {
 
+namespace {
+
+// An empty $TMPDIR is none, as for every shell.
+std::filesystem::path temporary_files() {
+  const char* folder = std::getenv("TMPDIR");  // NOLINT(concurrency-mt-unsafe): nothing sets it
+  return folder != nullptr && *folder != '\0' ? folder : "/tmp";
+}
+
+}  // namespace
+
 ScratchFolder::ScratchFolder() {
-  std::error_code error;
-  const std::filesystem::path parent = std::filesystem::temp_directory_path(error);
+  const std::filesystem::path parent = temporary_files();
   std::string name = (parent / "tribench-XXXXXX").string();
   // mkdtemp gives it to its owner alone (0700).
-  if (error || ::mkdtemp(name.data()) == nullptr) {
+  if (::mkdtemp(name.data()) == nullptr) {
     throw Error(ErrorKind::environment,
-                fmt::format("cannot make a temporary folder: {}",
-                            error ? error.message() : std::strerror(errno)),
-                name, "set TMPDIR to a folder that can be written");
+                fmt::format("cannot make a temporary folder: {}", std::strerror(errno)),
+                parent.string(), "set TMPDIR to a folder that can be written");
   }
   path_ = name;
 }

@@ -43,7 +43,13 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
       best = candidate;
     }
   }
-  return best;
+  if (!best.empty()) return best;
+  // Of a name in parts the last is what people remember.
+  const auto ends_in_it = std::ranges::find_if(candidates, [&](const std::string& candidate) {
+    return !word.empty() && candidate.size() > word.size() && candidate.ends_with(word) &&
+           candidate[candidate.size() - word.size() - 1] == '/';
+  });
+  return ends_in_it == candidates.end() ? std::string() : *ends_in_it;
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates,

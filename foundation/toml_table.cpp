@@ -71,6 +71,9 @@ TomlValue plain_value(const toml::node& node, const std::string& place) {
   throw_bad_input("the value must be true or false, a number or a text", place);
 }
 
+// What messages call a table.
+std::string named(const std::string& where) { return where.empty() ? "the file" : where; }
+
 }  // namespace
 
 toml::table parse_toml(std::string_view text, std::string_view file_name) {
@@ -88,9 +91,8 @@ TomlTable::TomlTable(const toml::table& table, std::string file_name, std::strin
   for (const auto& [key, node] : *table_) {
     const std::string name(key.str());
     if (std::ranges::count(known_keys, name) > 0) continue;
-    throw_bad_input(
-        fmt::format("unknown key '{}' in {}", name, where_.empty() ? "the file" : where_),
-        place_of(file_name_, key.source()), did_you_mean(name, known_keys));
+    throw_bad_input(fmt::format("unknown key '{}' in {}", name, named(where_)),
+                    place_of(file_name_, key.source()), did_you_mean(name, known_keys));
   }
 }
 
@@ -102,7 +104,7 @@ std::string TomlTable::place(std::string_view key) const {
 std::string TomlTable::place() const { return place_of(file_name_, table_->source()); }
 
 void TomlTable::refuse(std::string_view key, std::string_view wanted) const {
-  throw_bad_input(fmt::format("'{}' in {} must be {}", key, where_, wanted), place(key));
+  throw_bad_input(fmt::format("'{}' in {} must be {}", key, named(where_), wanted), place(key));
 }
 
 void TomlTable::read(std::string_view key, std::string& value) const {
@@ -209,8 +211,7 @@ std::vector<std::string> TomlTable::keys(std::string_view key) const {
 
 void TomlTable::require(std::string_view key) const {
   if (has(key)) return;
-  throw_bad_input(fmt::format("'{}' is missing in {}", key, where_.empty() ? "the file" : where_),
-                  place());
+  throw_bad_input(fmt::format("'{}' is missing in {}", key, named(where_)), place());
 }
 
 std::map<std::string, TomlValue> TomlTable::values(std::string_view key) const {

@@ -139,6 +139,14 @@ Method read_method(const TomlTable& table, const Registry& registry) {
   const std::string place = table.has("parameters") ? table.place("parameters") : table.place();
   at_place(place, [&] { return registry.make(method.algorithm, method.parameters); });
   method.fixed_form = registry.find(method.algorithm).fixed_form;
+  const bool takes_a_name =
+      method.name != method.algorithm &&
+      std::ranges::count(registry.entries(), method.name, &AlgorithmEntry::name) > 0;
+  if (takes_a_name) {
+    throw_bad_input(fmt::format("'{}' is the name of another algorithm than '{}'", method.name,
+                                method.algorithm),
+                    table.place("name"), "a leaderboard would show one for the other: rename it");
+  }
   return method;
 }
 
@@ -355,6 +363,10 @@ Grid parse_grid(std::string_view toml, const std::string& file_name, const Regis
       file.table("retry", {"crashed", "timeout", "cpu_limit", "out_of_memory", "error"}));
   grid.prior = read_prior(file.table("prior", {"max_degree"}));
   read_axes(file, table, registry, catalogue, file_name, grid);
+  if (grid.cell_count() == 0) {
+    throw_bad_input("the grid has no cell: no problem, no method or no operator set is named",
+                    table.place(), "name some; '*' names all");
+  }
   if (const std::size_t cells = grid.cell_count(); cells > kMaxCells) {
     throw_bad_input(fmt::format("the grid has {} cells", cells), table.place(),
                     fmt::format("use at most {}: split it into several grids", kMaxCells));

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -144,6 +145,7 @@ JournalContents read_journal(const std::filesystem::path& file) {
     ++number;
     const bool has_end = !stream.eof();
     offset += line.size() + (has_end ? 1 : 0);
+    contents.bytes = offset;
     const std::string_view body = has_end ? body_of(line) : std::string_view();
     if (number == 1) {
       contents.identity = parse_identity(body, file);
@@ -190,6 +192,13 @@ Journal Journal::create(const std::filesystem::path& file, const RunIdentity& id
 
 Journal Journal::resume(const std::filesystem::path& file, const JournalContents& contents) {
   const int descriptor = open_locked(file, O_WRONLY);
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0 ||
+      static_cast<std::uintmax_t>(status.st_size) != contents.bytes) {
+    ::close(descriptor);
+    throw_bad_input("another run wrote to this journal just now", file.string(),
+                    "wait for it to end, and go on by --resume again");
+  }
   // A torn last line goes; a damaged line in the middle stays where it is.
   const std::uintmax_t size = contents.good_bytes;
   if (::ftruncate(descriptor, static_cast<off_t>(size)) != 0) {
@@ -223,6 +232,15 @@ void Journal::write_line(const std::string& body) {
   size_ += line.size();
 }
 
+// What is written to a file without a name is lost when the run ends, hours later perhaps.
+void Journal::refuse_if_removed() {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0 || status.st_nlink > 0) return;
+  failed_ = true;
+  throw Error(ErrorKind::failed, "the journal was removed while the run went on", file_.string(),
+              "run again, and leave the folder alone until the run has ended");
+}
+
 void Journal::sync_if_due() {
   if (now_s() - last_sync_s_ < kSecondsBetweenSyncs) return;
   ::fdatasync(descriptor_);
@@ -233,6 +251,7 @@ void Journal::append(const CellResult& result) {
   const std::string body = print_result(result);
   const std::lock_guard lock(mutex_);
   if (failed_) return;
+  refuse_if_removed();
   write_line(body);
   sync_if_due();
 }

@@ -39,6 +39,7 @@ struct JournalContents {
   std::vector<CellResult> results;  // the last one of each cell, in order of first appearance
   std::vector<std::string> damage;  // what was left out, for people
   std::uintmax_t good_bytes = 0;    // up to the end of the last good line
+  std::uintmax_t bytes = 0;         // of the whole file when it was read
 };
 
 // Throws Error (bad_input) where the file is missing or is no journal.
@@ -49,19 +50,21 @@ class Journal {
   // Starts a new file; throws Error (bad_input) where there is one already, (failed) where the
   // folder cannot be written to.
   static Journal create(const std::filesystem::path& file, const RunIdentity& identity);
-  // Goes on with an existing one, of which `contents` was read: cuts off a torn last line.
+  // Goes on with an existing one, of which `contents` was read: cuts off a torn last line. Throws
+  // Error (bad_input) where somebody else writes to it, or has since it was read.
   static Journal resume(const std::filesystem::path& file, const JournalContents& contents);
 
   Journal(Journal&&) noexcept;
   ~Journal();
 
-  // Safe from several threads. Throws Error (failed) where the disk is full; what was written
-  // before stays good, and nothing more is written after that.
+  // Safe from several threads. Throws Error (failed) where the disk is full (what was written
+  // before stays good) or the file was removed; nothing more is written after that.
   void append(const CellResult& result);
 
  private:
   Journal(std::filesystem::path file, int descriptor, std::uintmax_t size);
   void write_line(const std::string& body);
+  void refuse_if_removed();
   void sync_if_due();
 
   std::filesystem::path file_;

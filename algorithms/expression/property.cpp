@@ -252,12 +252,14 @@ PropertyResult prove_odd(const Expression& formula, const InputBox& box, std::si
 }
 
 void check_question(const InputBox& box, const PropertyQuestion& question) {
+  if (!(question.from >= 0) || !(question.limit >= 0)) {
+    throw_bad_input("the start of a range and a limit are not negative", "property");
+  }
+  // Asks nothing of a velocity, which a constant has not.
+  if (question.property == Property::finite) return;
   if (question.velocity >= box.size() || box[question.velocity].sign_of) {
     throw_bad_input(fmt::format("input {} is no velocity with a range", question.velocity),
                     "velocity", "name an input of the box");
-  }
-  if (!(question.from >= 0) || !(question.limit >= 0)) {
-    throw_bad_input("the start of a range and a limit are not negative", "property");
   }
   const InputRange& v = box[question.velocity];
   if (question.property == Property::monotone && !(question.from < std::max(v.high, -v.low))) {

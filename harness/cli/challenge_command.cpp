@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <csignal>
 #include <memory>
 #include <string>
 #include <vector>
@@ -70,7 +69,7 @@ ExitStatus run_challenge_command(ChallengeArguments arguments) {
                     "letters, digits, - and _");
   }
   const ChallengeScore score = run_challenge(arguments.plan, arguments.name, arguments.command,
-                                             arguments.out, stop_requested_by({SIGINT, SIGTERM}));
+                                             arguments.out, stop_requested_by_signal());
   if (arguments.json) {
     print_score_json(score);
   } else {

@@ -155,6 +155,10 @@ void save_certificate(const Expression& formula, const NamedBox& box, const Cert
 }
 
 ExitStatus verify(const CheckOptions& options) {
+  if (!options.formula.empty() || !options.box.empty()) {
+    throw_bad_input("a certificate is of its own formula on its own box", "--verify",
+                    "give no formula and no --box: the answer says which they are");
+  }
   const CertificateCheck check = check_certificate(read_file(options.verify));
   if (options.json) {
     const Json json = {{"accepted", check.accepted}, {"reason", check.reason},

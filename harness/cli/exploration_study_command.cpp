@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -87,7 +86,7 @@ void add_exploration_study(CLI::App& study) {
     options->quiet = false;
     options->level = choice->level;
     options->kind = choice->kind;
-    if (!options->out.empty()) options->stop = &stop_requested_by({SIGINT, SIGTERM});
+    if (!options->out.empty()) options->stop = &stop_requested_by_signal();
     const ExplorationStudy done = run_exploration_study(*options);
     if (*json) {
       print_exploration_json(done);

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -95,7 +94,7 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
     execute = executing_program(arguments.command, arguments.command_seconds);
   }
   options.budget_s = std::min(arguments.budget_s, limits.seconds);
-  options.stop = &stop_requested_by({SIGINT, SIGTERM});
+  options.stop = &stop_requested_by_signal();
   if (!arguments.json) {
     options.told = [](const loop::ExplorationStep& step) {
       if (step.looked) fmt::print("  {}\n", step_line(step));

@@ -167,16 +167,22 @@ ChosenMethod choose_method(const FitArguments& arguments, const Registry& regist
   return {registry.make(arguments.method, parameters), entry.fixed_form, std::move(widened)};
 }
 
+// A problem's name is part of the seed: the same rows in a file of another name are the same
+// question.
+constexpr const char* kProblemName = "data";
+
 // Nothing is held out unless it is asked for; then, as in a grid, by groups or single rows.
 Problem make_problem(const FitArguments& arguments, const std::vector<std::string>& inputs) {
   if (!arguments.held_out && arguments.group.empty()) {
     const Dataset train = read_columns(arguments.data, arguments);
     std::optional<Dataset> test;
     if (!arguments.test.empty()) test = read_columns(arguments.test, arguments);
-    return make_data_problem(train, test ? &*test : nullptr, arguments.target, inputs);
+    Problem problem = make_data_problem(train, test ? &*test : nullptr, arguments.target, inputs);
+    problem.name = kProblemName;
+    return problem;
   }
   user::UserProblem own;
-  own.name = user::name_of_file(arguments.data);
+  own.name = kProblemName;
   const std::vector<std::filesystem::path> files = {arguments.data};
   own.files = user::hashed(files);
   own.target = arguments.target;
@@ -359,7 +365,7 @@ BudgetOptions add_budget_options(CLI::App& command, FitArguments& arguments) {
   BudgetOptions budget;
   budget.evaluations =
       command.add_option("--evaluations", arguments.evaluations, "budget in node-rows")
-          ->transform(whole_number(0))
+          ->transform(whole_number(1))
           ->capture_default_str();
   budget.seconds =
       command

@@ -16,8 +16,9 @@ extern "C" void request_stop(int signal) {
 
 }  // namespace
 
-const std::atomic<bool>& stop_requested_by(std::initializer_list<int> signals) {
-  for (const int signal : signals) std::signal(signal, request_stop);
+const std::atomic<bool>& stop_requested_by_signal() {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, request_stop);
+  if (std::signal(SIGHUP, request_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   return stop_requested;
 }
 

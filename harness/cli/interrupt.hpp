@@ -4,12 +4,12 @@
 #pragma once
 
 #include <atomic>
-#include <initializer_list>
 
 namespace tribench {
 
-// True once one of these signals has come; it is looked at by whoever can stop in good order. The
-// same signal again ends the program at once.
-const std::atomic<bool>& stop_requested_by(std::initializer_list<int> signals);
+// True once the user (SIGINT), the machine (SIGTERM) or the loss of the terminal (SIGHUP, unless
+// nohup has it ignored) asked for an end; looked at by whoever can stop in good order. The same
+// signal again ends the program at once.
+const std::atomic<bool>& stop_requested_by_signal();
 
 }  // namespace tribench

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -120,7 +119,7 @@ bool run_streams(const NightStudyArguments& arguments, const Registry& registry)
   run.worker_command = {"/proc/self/exe", kWorkerCommand};
   const Grid grid = grid_of_streams(load_named_grid(arguments.grid, registry, full_catalogue(data)),
                                     arguments.streams);
-  return !run_whole(grid, run, stop_requested_by({SIGINT, SIGTERM})).tally.stopped;
+  return !run_whole(grid, run, stop_requested_by_signal()).tally.stopped;
 }
 
 void study_nights(const NightStudyArguments& arguments, const Registry& registry,

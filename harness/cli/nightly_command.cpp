@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -68,8 +67,7 @@ void run_nightly(NightlyArguments arguments, const Registry& registry, ExitStatu
   const Grid grid = load_named_grid(arguments.grid, registry, full_catalogue(data));
   std::string summary;
   try {
-    const NightlyResult night =
-        run_night(grid, arguments.options, stop_requested_by({SIGINT, SIGTERM}));
+    const NightlyResult night = run_night(grid, arguments.options, stop_requested_by_signal());
     summary = night.summary;
     status = status_of(night.end);
   } catch (const Error& error) {

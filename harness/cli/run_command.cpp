@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
-#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -143,7 +142,7 @@ void print_end(const RunArguments& arguments, const RunTally& tally,
 void run_to_the_end(const Grid& grid, const RunArguments& arguments, const RunOptions& options,
                     ExitStatus& status) {
   // The first signal lets the run close its files.
-  const WholeRun run = run_whole(grid, options, stop_requested_by({SIGINT, SIGTERM}));
+  const WholeRun run = run_whole(grid, options, stop_requested_by_signal());
   print_end(arguments, run.tally, options.out, run.board);
   if (run.all_failed()) {
     print_message(fmt::format("every cell failed, the first one by: {}\n",

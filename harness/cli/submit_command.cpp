@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -60,7 +59,7 @@ void submit(const SubmitArguments& arguments, const Registry& registry, ExitStat
   fmt::print("array {}, merge {}; logs in {}\n", jobs.array, jobs.merge,
              (options.out / "log").string());
   if (arguments.detach) return;
-  if (!follow_slurm(jobs, stop_requested_by({SIGINT}))) {
+  if (!follow_slurm(jobs, stop_requested_by_signal())) {
     print_message("no longer following; the jobs go on\n");
     status = ExitStatus::undecided;
     return;

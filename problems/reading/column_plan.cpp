@@ -16,7 +16,8 @@
 namespace tribench {
 namespace {
 
-void check_named(std::string_view column, std::string_view what, const CsvLayout& layout,
+// `purpose`: what it was named for, where a reader would wonder.
+void check_named(std::string_view column, std::string_view purpose, const CsvLayout& layout,
                  std::string_view file) {
   if (std::ranges::find(layout.header, column) != layout.header.end()) return;
   constexpr std::string_view kSign = "sgn_";
@@ -27,7 +28,7 @@ void check_named(std::string_view column, std::string_view what, const CsvLayout
   const std::size_t shown = std::min<std::size_t>(layout.header.size(), 40);
   const auto end = layout.header.begin() + static_cast<std::ptrdiff_t>(shown);
   throw_bad_input(
-      fmt::format("{} '{}', which is not there", what, column), file,
+      fmt::format("there is no column '{}'{}", column, purpose), file,
       did_you_mean(column, layout.header,
                    fmt::format("columns: {}{}", fmt::join(layout.header.begin(), end, ", "),
                                shown < layout.header.size() ? ", ..." : "")));
@@ -324,12 +325,12 @@ void take_roles_by_unit(std::vector<ColumnPlan>& plans, DataFile& out) {
 std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& options,
                                      std::string_view file, DataFile& out) {
   for (const auto& [column, role] : options.roles) {
-    check_named(column, "a role is given for column", layout, file);
+    check_named(column, ", to which a role is given", layout, file);
   }
   std::set<std::string, std::less<>> used;
   if (options.used) {
     for (const std::string& column : *options.used) {
-      check_named(column, "there is no column", layout, file);
+      check_named(column, "", layout, file);
       used.insert(column);
       if (column.starts_with("sgn_")) used.insert(column.substr(4));
     }

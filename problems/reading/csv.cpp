@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "foundation/error.hpp"
 #include "problems/reading/column_plan.hpp"
@@ -208,6 +209,22 @@ void add_to_time(const Reading& in, DataFile& out) {
   out.data.channels.erase(rest);
 }
 
+// Columns that no name tells are not even read: they may well hold numbers.
+[[noreturn]] void refuse_no_channel(const Reading& in) {
+  if (std::ranges::count(in.plans, ColumnKind::unused, &ColumnPlan::kind) == 0) {
+    throw_bad_input("no column holds numbers", in.file, "give at least one column of numbers");
+  }
+  constexpr std::size_t kShown = 40;
+  const std::span shown =
+      std::span(in.layout.header).first(std::min(kShown, in.layout.header.size()));
+  throw_bad_input(fmt::format("no column's name is known: {}{}", fmt::join(shown, ", "),
+                              shown.size() < in.layout.header.size() ? ", ..." : ""),
+                  in.file,
+                  fmt::format("say what they are, with --roles '{}=time[s],COLUMN=position[UNIT],"
+                              "COLUMN=motor_current[A]'",
+                              in.layout.header.front()));
+}
+
 void fill_channels(Reading& in, DataFile& out) {
   for (std::size_t j = 0; j < in.plans.size(); ++j) {
     ColumnPlan& plan = in.plans[j];
@@ -223,17 +240,7 @@ void fill_channels(Reading& in, DataFile& out) {
     }
     out.readings.push_back(plan.reading);
   }
-  const auto is_unused = [](const ColumnPlan& plan) { return plan.kind == ColumnKind::unused; };
-  if (out.data.channels.empty() && std::ranges::any_of(in.plans, is_unused)) {
-    throw_bad_input(fmt::format("no column's name is known: {}", fmt::join(in.layout.header, ", ")),
-                    in.file,
-                    fmt::format("say what they are, with --roles '{}=time[s],COLUMN=position[UNIT],"
-                                "COLUMN=motor_current[A]'",
-                                in.layout.header.front()));
-  }
-  if (out.data.channels.empty()) {
-    throw_bad_input("no column holds numbers", in.file, "give at least one column of numbers");
-  }
+  if (out.data.channels.empty()) refuse_no_channel(in);
   add_to_time(in, out);
 }
 

@@ -279,5 +279,23 @@ TEST_F(UnequalRowsTest, TheCommandItNamesGivesTheSameAgain) {
   EXPECT_EQ(json::parse(again.output).at("formula"), once.at("formula"));
 }
 
+TEST_F(UnequalRowsTest, AFileOfAnotherNameGivesTheSameAnswer) {
+  const auto formula_of = [&](const char* file, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {
+        "fit",  (folder_ / file).string(), "--target", "y",     "--inputs", "v", "--method",
+        "pysr", "--evaluations",           "300000",   "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramRun run = run_tribench(words);
+    EXPECT_EQ(run.status, 0) << run.errors;
+    const json answer = json::parse(run.output);
+    return answer.at("formula").dump() + answer.at("mae_test").dump() +
+           answer.at("evaluations").dump();
+  };
+  std::filesystem::copy_file(folder_ / "train.csv", folder_ / "Monday's run.csv");
+  EXPECT_EQ(formula_of("train.csv", {}), formula_of("Monday's run.csv", {}));
+  EXPECT_EQ(formula_of("train.csv", {"--split", "0.25"}),
+            formula_of("Monday's run.csv", {"--split", "0.25"}));
+}
+
 }  // namespace
 }  // namespace tribench::testing

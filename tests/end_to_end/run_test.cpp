@@ -125,14 +125,19 @@ TEST_F(RunTest, KilledHalfWayAndResumedGivesTheSameResults) {
   EXPECT_EQ(timeless_results(folder_ / "killed"), timeless_results(folder_ / "whole"));
 }
 
-TEST_F(RunTest, InterruptedItLeavesARunThatResumes) {
+class InterruptedRunTest : public RunTest, public ::testing::WithParamInterface<int> {};
+
+// By Ctrl-C, by the machine, by the end of the terminal.
+INSTANTIATE_TEST_SUITE_P(Signals, InterruptedRunTest, ::testing::Values(SIGINT, SIGTERM, SIGHUP));
+
+TEST_P(InterruptedRunTest, LeavesARunThatResumes) {
   ChildProcess program(
       ChildOptions{{test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
                     (folder_ / "stopped").string(), "--jobs", "1"}});
   while (read_text(folder_ / "stopped" / "cells.jsonl").size() < 3000) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  ::kill(program.pid(), SIGINT);
+  ::kill(program.pid(), GetParam());
   std::string errors;
   for (bool ended = false; !ended;) {
     const ChildOutput output = program.read(1.0);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -120,6 +121,22 @@ TEST(ProcessTreeUse, CountsWhatHasLeftItsParent) {
     cpu_s = process_tree_use(::getpid()).cpu_s - process_tree_use(0).cpu_s;
   }
   EXPECT_GE(cpu_s, 0.05);
+}
+
+TEST(RunChild, WhereNoFileMayBeOpenedTheLimitIsNamed) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit none{3, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  std::string mend;
+  try {
+    shell("true");
+  } catch (const Error& error) {
+    mend = error.mend();
+    EXPECT_EQ(error.kind(), ErrorKind::environment);
+  }
+  ::setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_EQ(mend, "allow more open files (ulimit -n)");
 }
 
 }  // namespace

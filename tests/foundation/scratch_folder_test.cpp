@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <optional>
+#include <string>
+
+#include "foundation/error.hpp"
 
 namespace tribench {
 namespace {
@@ -25,6 +29,36 @@ TEST(ScratchFolder, TwoHaveDifferentNames) {
   const ScratchFolder one;
   const ScratchFolder other;
   EXPECT_NE(one.path(), other.path());
+}
+
+class TemporaryFilesTest : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    before_ ? ::setenv("TMPDIR", before_->c_str(), 1) : ::unsetenv("TMPDIR");
+  }
+
+ private:
+  static std::optional<std::string> now() {
+    const char* value = std::getenv("TMPDIR");
+    return value == nullptr ? std::nullopt : std::optional<std::string>(value);
+  }
+  std::optional<std::string> before_ = now();
+};
+
+TEST_F(TemporaryFilesTest, AFolderThatIsNotThereIsNamed) {
+  ::setenv("TMPDIR", "/tribench/not/there", 1);
+  try {
+    const ScratchFolder folder;
+    ADD_FAILURE() << folder.path();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::environment);
+    EXPECT_EQ(error.place(), "/tribench/not/there");
+  }
+}
+
+TEST_F(TemporaryFilesTest, AnEmptyNameIsNone) {
+  ::setenv("TMPDIR", "", 1);
+  EXPECT_EQ(ScratchFolder().path().parent_path(), "/tmp");
 }
 
 }  // namespace

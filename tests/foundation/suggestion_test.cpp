@@ -14,6 +14,13 @@ TEST(NearestName, FindsATypoAndNothingWhenNothingIsNear) {
   EXPECT_EQ(nearest_name("zzzzzzzz", names), "");
 }
 
+TEST(NearestName, OfANameInPartsTheLastIsEnough) {
+  const std::vector<std::string> names = {"A/j2/load", "peer/friction1d", "peer/friction2d"};
+  EXPECT_EQ(nearest_name("friction2d", names), "peer/friction2d");
+  EXPECT_EQ(nearest_name("riction2dx", names), "");
+  EXPECT_EQ(nearest_name("", names), "");
+}
+
 TEST(Suggestion, OffersANearNameElseWhatIsKnown) {
   EXPECT_EQ(did_you_mean("velocty", {"position", "velocity"}), "did you mean velocity?");
   EXPECT_EQ(did_you_mean("x", {"position", "velocity"}), "known: position, velocity");

@@ -124,6 +124,19 @@ TEST(Grid, RefusesUnknownNamesAndValuesOfAnotherKind) {
               HasSubstr("must be a number"));
   EXPECT_THAT(refusal("[grid\n"), HasSubstr("g.toml:1"));
   EXPECT_THAT(refusal("[grid]\nmethods = [\"*\"]\n"), HasSubstr("'problems' is missing"));
+  EXPECT_THAT(refusal(std::string(kAxes) + "[problem]\nname = \"x\"\n"),
+              HasSubstr("'problem' in the file must be written as [[problem]]"));
+}
+
+TEST(Grid, RefusesToRunNothing) {
+  EXPECT_THAT(refusal("[grid]\nproblems = []\nmethods = [\"*\"]\n"), HasSubstr("no cell"));
+  EXPECT_THAT(refusal("[grid]\nproblems = [\"A/*\"]\nmethods = []\n"), HasSubstr("no cell"));
+}
+
+TEST(Grid, RefusesToShowOneAlgorithmUnderTheNameOfAnother) {
+  const std::string text = std::string(kAxes) + "[[method]]\nname = \"grid_fixed\"\n";
+  EXPECT_THAT(refusal(text + "algorithm = \"grid_alpha\"\n"),
+              AllOf(HasSubstr("g.toml:5"), HasSubstr("another algorithm than 'grid_alpha'")));
 }
 
 TEST(Grid, ChecksParametersAgainstTheAlgorithm) {

@@ -82,6 +82,22 @@ TEST_F(JournalTest, RefusesASecondWriterAndAFileThatIsThere) {
   EXPECT_THROW(Journal::resume(file_, read_journal(file_)), Error);
 }
 
+TEST_F(JournalTest, RefusesToGoOnWithoutWhatAnotherRunWroteMeanwhile) {
+  written(1);
+  const JournalContents contents = read_journal(file_);
+  Journal::resume(file_, contents).append(result(1));
+  const std::string both = read_text(file_);
+  EXPECT_THROW(Journal::resume(file_, contents), Error);
+  EXPECT_EQ(read_text(file_), both);
+}
+
+TEST_F(JournalTest, SaysAtTheNextCellThatItsFileWasRemoved) {
+  Journal journal = Journal::create(file_, kIdentity);
+  journal.append(result(0));
+  std::filesystem::remove(file_);
+  EXPECT_THROW(journal.append(result(1)), Error);
+}
+
 TEST_F(JournalTest, RefusesAFileThatIsNoJournal) {
   write_text(file_, "{\"cells\": 3}\n");
   EXPECT_THROW(read_journal(file_), Error);

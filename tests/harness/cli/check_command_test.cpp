@@ -89,6 +89,21 @@ TEST(CheckCommand, WritesACertificateThatItVerifiesAndRejectsOnceTamperedWith) {
   EXPECT_EQ(run_check("--verify " + path.string()).status, 2);
 }
 
+TEST(CheckCommand, DoesNotVerifyAnotherFormulaThanTheCertificates) {
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("tribench_other_" + std::to_string(getpid()) + ".json");
+  EXPECT_EQ(run_check("'1/(v^2 + 1)' --box v=-3:3 --certificate " + path.string()).status, 0);
+  EXPECT_EQ(run_check("'1/v' --verify " + path.string()).status, 2);
+  EXPECT_EQ(run_check("--box v=-9:9 --verify " + path.string()).status, 2);
+  EXPECT_EQ(run_check("--verify " + path.string()).status, 0);
+  std::filesystem::remove(path);
+}
+
+TEST(CheckCommand, AConstantNeedsNoBox) {
+  EXPECT_EQ(run_check("'2^0.5'").status, 0);
+  EXPECT_EQ(run_check("'1/0'").status, 1);
+}
+
 TEST(CheckCommand, CertifiesThePropertyAskedForOrSaysThatItCannot) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("tribench_claim_" + std::to_string(getpid()) + ".json");

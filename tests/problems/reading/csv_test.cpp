@@ -325,6 +325,17 @@ TEST(Csv, NamesTellNothingWhereTheyAreNotAsked) {
   EXPECT_EQ(file.data.at("movement").values, (std::vector<double>{1, 2, 1}));
 }
 
+TEST(Csv, ColumnsThatNoNameTellsAreNotSaidToHoldNoNumbers) {
+  CsvOptions options;
+  options.used = std::vector<std::string>();
+  EXPECT_THAT(complaint("c0,c1\n1,2\n2,4\n", options),
+              AllOf(HasSubstr("no column's name is known: c0, c1;"), HasSubstr("--roles 'c0=")));
+  EXPECT_THAT(complaint("c0,c1\nup,down\nleft,right\n"), HasSubstr("no column holds numbers"));
+  std::string wide = "c0";
+  for (int i = 1; i < 1000; ++i) wide += ",c" + std::to_string(i);
+  EXPECT_LT(complaint(wide + "\n" + wide, options).size(), 600U);
+}
+
 TEST(Csv, AUnitThatNobodyKnowsIsRefused) {
   EXPECT_THAT(complaint("time_s,q [furlong]\n0,1\n"),
               HasSubstr("'furlong' is no unit of a position"));
