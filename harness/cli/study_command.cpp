@@ -12,6 +12,7 @@
 #include "harness/cli/number_options.hpp"
 #include "harness/cli/study_logs.hpp"
 #include "harness/cli/study_loop.hpp"
+#include "harness/cli/study_memory.hpp"
 #include "harness/cli/study_retellings.hpp"
 #include "harness/cli/study_smoothers.hpp"
 #include "harness/study/external_torque_study.hpp"
@@ -162,6 +163,7 @@ void add_study_command(CLI::App& app, ExitStatus& status, const Registry& regist
   add_external_torque_study(*study);
   add_log_study(*study, status);
   add_loop_study(*study, status);
+  add_memory_study(*study, registry);
   add_night_study(*study, status, registry);
   add_recovery_study(*study);
   add_retelling_study(*study, status);
