@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -39,23 +41,53 @@ Input input_of(const Problem& problem, const StateDeclaration& state) {
   return input;
 }
 
-void add_column(const Problem& problem, const StateDeclaration& state, Table& table) {
-  if (table.rows() == 0) {
-    table.columns.emplace_back();
-    return;
+// The trails of a problem's tables with the states' columns behind those of the inputs: a method
+// that knows friction with memory reads every input along them. Tables of one trail share one.
+class StateTrails {
+ public:
+  explicit StateTrails(const Problem& problem) : problem_(problem) {}
+
+  void add(const StateDeclaration& state) { states_.push_back(&state); }
+
+  // Gives the table the states' columns; rows of a problem without time have none.
+  void extend(Table& table) {
+    if (table.rows() == 0) {
+      table.columns.resize(table.columns.size() + states_.size());
+      return;
+    }
+    if (table.trail == nullptr) {
+      throw_bad_input("a formula with memory needs time", problem_.name,
+                      "say which column is time (--roles COLUMN=time)");
+    }
+    table.trail = extended(table.trail);
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+      const std::vector<double>& whole = table.trail->columns[problem_.inputs.size() + k];
+      std::vector<double>& taken = table.columns.emplace_back();
+      taken.reserve(table.rows());
+      for (const std::size_t row : table.trail_row) taken.push_back(whole[row]);
+    }
   }
-  if (table.trail == nullptr) {
-    throw_bad_input("a formula with memory needs time", problem.name,
-                    "say which column is time (--roles COLUMN=time)");
+
+ private:
+  std::shared_ptr<const Trail> extended(const std::shared_ptr<const Trail>& trail) {
+    std::shared_ptr<const Trail>& known = extended_[trail.get()];
+    if (known != nullptr) return known;
+    auto made = std::make_shared<Trail>(*trail);
+    made->columns.resize(problem_.inputs.size());  // states that it had then go
+    std::vector<const double*> columns;
+    for (const std::vector<double>& column : made->columns) columns.push_back(column.data());
+    for (const StateDeclaration* state : states_) {
+      std::vector<double> whole(made->time.size());
+      state_column(*state, {columns, made->time, made->starts}, whole);
+      made->columns.push_back(std::move(whole));
+    }
+    return known = std::move(made);
   }
-  std::vector<const double*> columns;
-  for (const std::vector<double>& column : table.trail->columns) columns.push_back(column.data());
-  std::vector<double> whole(table.trail->time.size());
-  state_column(state, {columns, table.trail->time, table.trail->starts}, whole);
-  std::vector<double>& taken = table.columns.emplace_back();
-  taken.reserve(table.rows());
-  for (const std::size_t row : table.trail_row) taken.push_back(whole[row]);
-}
+
+  const Problem& problem_;
+  std::vector<const StateDeclaration*> states_;
+  std::map<const Trail*, std::shared_ptr<const Trail>> extended_;
+};
 
 // States stand behind all other inputs.
 Problem without_states(Problem problem) {
@@ -78,12 +110,15 @@ Problem without_states(Problem problem) {
 
 Problem with_states(const Problem& problem, std::span<const StateDeclaration> states) {
   Problem extended = problem;
+  StateTrails trails(problem);
   for (const StateDeclaration& state : states) {
     check_state(state, problem.inputs.size());
     extended.inputs.push_back(input_of(extended, state));
-    for (Stage& stage : extended.stages) add_column(problem, state, stage.train);
-    add_column(problem, state, extended.test);
+    trails.add(state);
   }
+  if (states.empty()) return extended;
+  for (Stage& stage : extended.stages) trails.extend(stage.train);
+  trails.extend(extended.test);
   return extended;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Formulas with states in a problem: each state becomes an input more, with its column in every
-// table, its range as its box and its law (Input::law), so that whatever evaluates, judges and
-// proves formulas of one row goes on doing so.
+// table and along every trail, its range as its box and its law (Input::law), so that whatever
+// evaluates, judges and proves formulas of one row goes on doing so.
 #pragma once
 
 #include <optional>

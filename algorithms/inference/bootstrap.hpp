@@ -2,6 +2,9 @@
 //
 // A percentile interval by drawing units (movements, or pieces of them) with replacement.
 //
+// Not for rows of one movement, which are not independent, nor for fewer than some ten units, whose
+// percentiles say little. Cost: 2000 times the statistic.
+//
 // Source: Efron 1979.
 #pragma once
 

@@ -2,7 +2,7 @@
 //
 // The noise in which bursts are looked for: what is left of each row when its movement's offset and
 // what the row before foretells are taken off, in units of the noise at its level and in its
-// movement, and the law of that. Internal to the room.
+// movement, and the law of that. Internal to the room. Residuals are finite, in any unit.
 //
 // Levels are of Student's law by maximum likelihood: a burst hardly counts in them, and the level
 // of its movement can be had without its rows.

@@ -49,8 +49,9 @@ void MatchedGamma::tabulate(double largest) {
 double MatchedGamma::fast_score(double statistic) const {
   if (table_.empty()) return score(statistic);
   const double place = std::sqrt(statistic) * inverse_step_;
+  // Also of NaN, which is no place in a table.
+  if (!(place < static_cast<double>(table_.size() - 1))) return score(statistic);
   const auto knot = static_cast<std::size_t>(place);
-  if (knot + 1 >= table_.size()) return score(statistic);
   const double part = place - static_cast<double>(knot);
   return table_[knot] + part * (table_[knot + 1] - table_[knot]);
 }

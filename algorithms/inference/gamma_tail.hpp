@@ -2,7 +2,8 @@
 //
 // The upper tail of a Gamma distribution in log space: the common currency in which candidates
 // with different numbers of columns are compared. Scores beyond 15 are ordinary, far below what a
-// tail probability in double precision can hold.
+// tail probability in double precision can hold. Not for the shape of a null distribution, which is
+// taken to be a Gamma's. A statistic that is NaN says nothing: its score is 0.
 #pragma once
 
 #include <vector>

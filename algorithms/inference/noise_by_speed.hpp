@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // How wide the noise is at each speed: the logarithm of its level in groups of rows of like speed,
-// straight between their middles. Internal to the room.
+// straight between their middles. Internal to the room. Speeds in any unit, finite; not for noise
+// that depends on the load or the place.
 #pragma once
 
 #include <cstddef>

@@ -25,6 +25,7 @@
 #include "foundation/number_text.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
+#include "harness/cli/choice_option.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/data_options.hpp"
 #include "harness/cli/number_options.hpp"
@@ -354,12 +355,11 @@ void add_base_options(CLI::App& command, LoopArguments& arguments) {
   CLI::Option* gear_ratio = add_data_options(command, arguments.reading);
   gear_ratio->description(
       "motor turns per turn of the joint; without it the usual ones are scanned for ripples");
-  command
-      .add_option("--gravity", arguments.gravity,
-                  "gravity that no column declares: fit sin and cos of the position with the base, "
-                  "none, or auto: where that explains much")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Gravity>{
-          {"auto", Gravity::automatic}, {"fit", Gravity::fit}, {"none", Gravity::none}}));
+  take_one_of<Gravity>(
+      command.add_option("--gravity", arguments.gravity,
+                         "gravity that no column declares: fit sin and cos of the position with "
+                         "the base, none, or auto: where that explains much"),
+      {{"auto", Gravity::automatic}, {"fit", Gravity::fit}, {"none", Gravity::none}});
   command
       .add_option("--urdf", arguments.reading->urdf,
                   "URDF of the arm, beside --joint N and columns of all joints: gravity from it")

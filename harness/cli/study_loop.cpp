@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/diagnosis/rules.hpp"
+#include "harness/cli/choice_option.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/study/external_diagnosis.hpp"
 #include "harness/study/loop_methods.hpp"
@@ -83,13 +84,11 @@ void print_json(const LoopStudy& study) {
 }  // namespace
 
 void add_generator_option(CLI::App& command, LoopGenerator& generator) {
-  static const std::map<std::string, LoopGenerator> kGenerators = {
-      {"planted", LoopGenerator::planted}, {"simulated", LoopGenerator::simulated}};
-  command
-      .add_option("--generator", generator,
-                  "planted: effects as columns; simulated: physics integrated in time, other "
-                  "motions and kinds of noise")
-      ->transform(CLI::CheckedTransformer(kGenerators))
+  take_one_of<LoopGenerator>(
+      command.add_option("--generator", generator,
+                         "planted: effects as columns; simulated: physics integrated in time, "
+                         "other motions and kinds of noise"),
+      {{"planted", LoopGenerator::planted}, {"simulated", LoopGenerator::simulated}})
       ->default_str("planted");
 }
 

@@ -80,7 +80,9 @@ class ChaosTest : public ::testing::Test {
   void run_disturbed(int kills) {
     RandomStream random(key_of("chaos"));
     for (int i = 0; i < kills; ++i) {
-      ChildProcess program(ChildOptions{command("disturbed", i > 0)});
+      // Killed with the keepers of its workers, it leaves temporary files.
+      ChildProcess program(
+          ChildOptions{command("disturbed", i > 0), {"TMPDIR=" + (folder_ / ".").string()}});
       std::this_thread::sleep_for(std::chrono::duration<double>(random.uniform(0.1, 1.5)));
       ::kill(program.pid(), SIGKILL);
       program.wait();

@@ -48,7 +48,8 @@ class NightlyTest : public ::testing::Test {
     write_grid("2_000_000");
     RandomStream random(key_of("nightly"));
     for (int kill = 0; kill < kills; ++kill) {
-      ChildProcess program(ChildOptions{command()});
+      // Killed with the keepers of its workers, it leaves temporary files.
+      ChildProcess program(ChildOptions{command(), {"TMPDIR=" + (folder_ / ".").string()}});
       std::this_thread::sleep_for(std::chrono::duration<double>(random.uniform(0.02, 0.6)));
       ::kill(program.pid(), SIGKILL);
       program.wait();
@@ -141,7 +142,7 @@ TEST_F(NightlyTest, ASecondOneAtATimeAndAFullDiskAreRefused) {
   EXPECT_THAT(full.errors, HasSubstr("MiB are free"));
   // A method that takes its time holds the store.
   write_text(folder_ / "method.sh", "sleep 30\n");
-  ChildProcess slow(ChildOptions{command()});
+  ChildProcess slow(ChildOptions{command(), {"TMPDIR=" + (folder_ / ".").string()}});
   for (int i = 0; i < 500 && !std::filesystem::exists(store() / "runs" / "pending"); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

@@ -106,7 +106,9 @@ TEST_F(RunTest, KilledHalfWayAndResumedGivesTheSameResults) {
   {
     ChildProcess program(
         ChildOptions{{test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
-                      (folder_ / "killed").string(), "--jobs", "2"}});
+                      (folder_ / "killed").string(), "--jobs", "2"},
+                     // with the keepers of its workers, which remove their temporary files
+                     {"TMPDIR=" + (folder_ / ".").string()}});
     // Half the lines of the whole run's journal.
     const std::string whole = read_text(folder_ / "whole" / "cells.jsonl");
     while (read_text(journal).size() < whole.size() / 2) {

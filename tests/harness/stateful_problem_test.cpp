@@ -112,6 +112,27 @@ TEST(StatefulProblem, ACellWithMemoryIsJudgedProvedAndReadBack) {
   EXPECT_NEAR(error, record.mae_test, 1e-15);
 }
 
+// Methods with memory read every input along the trail.
+TEST(StatefulProblem, AStateStandsAlongTheTrailAsInTheTables) {
+  const Problem problem = problem_of(recording(true));
+  const Problem seen =
+      with_declared_states(problem, {"z = dahl(v, sliding=0.002)", "w = dahl(v, sliding=0.01)"});
+  const Problem other = *read_problem_formula("u = dahl(v, sliding=0.01); u", seen).extended;
+  for (const Problem* extended : {&seen, &other}) {
+    const Table& train = extended->stages.front().train;
+    ASSERT_EQ(train.trail->columns.size(), extended->inputs.size());
+    for (std::size_t j = 0; j < extended->inputs.size(); ++j) {
+      for (std::size_t r = 0; r < train.rows(); ++r) {
+        ASSERT_EQ(train.columns[j][r], train.trail->columns[j][train.trail_row[r]]);
+      }
+    }
+  }
+  EXPECT_EQ(problem.stages.front().train.trail->columns.size(), problem.inputs.size());
+  const Registry registry;
+  const CellResult result = fit_and_judge(seen, *registry.make("dahl"), task_of("dahl"), {});
+  EXPECT_TRUE(is_ok(result.record)) << reason_text(result.record.reason);
+}
+
 // A user's guess of a state beside a method that knows nothing of states.
 TEST(StatefulProblem, ADeclaredStateIsAnInputWhoseParametersAreFittedAfterwards) {
   const Problem problem = problem_of(recording(true));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numbers>
 
 namespace tribench::loop {
@@ -19,6 +20,15 @@ TEST(MatchedGamma, TheTableAgreesWithTheExactScore) {
 TEST(MatchedGamma, SaysNothingWhereTheStatisticCannotVary) {
   EXPECT_EQ(MatchedGamma(0, 0).score(5), 0);
   EXPECT_EQ(MatchedGamma(1, 0).score(5), 0);
+}
+
+TEST(MatchedGamma, TheTableIsAskedForNoPlaceThatItHasNot) {
+  MatchedGamma gamma(3.0, 7.0);
+  gamma.tabulate(60);
+  EXPECT_EQ(gamma.fast_score(std::numeric_limits<double>::quiet_NaN()), 0);
+  EXPECT_EQ(gamma.fast_score(-1e-17), 0);  // rounding
+  EXPECT_EQ(gamma.fast_score(std::numeric_limits<double>::infinity()),
+            std::numeric_limits<double>::infinity());
 }
 
 // Mean 2 and variance 4 are an exponential law: P(Q >= q) = exp(-q / 2).

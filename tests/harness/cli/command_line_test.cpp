@@ -95,6 +95,19 @@ TEST(CommandLine, UnknownWordsAreAnsweredWithTheNearest) {
   expect({}, "A subcommand is required");
 }
 
+TEST(CommandLine, WhereOneOfAFewWordsIsWantedTheyAreSaid) {
+  const auto expect = [](const Words& words, const char* said) {
+    const ProgramRun run = run_tribench(words);
+    EXPECT_EQ(run.status, 2) << words.back();
+    EXPECT_THAT(run.errors, HasSubstr(std::string("cannot be used; use ") + said));
+  };
+  expect({"world", "3", "--level", "hrad"}, "easy, medium, hard");
+  expect({"world", "3", "--level", "2"}, "easy, medium, hard");  // not an enumerator's number
+  expect({"world", "3", "--kind", ""}, "none, single, pair, unknown");
+  expect({"loop", "log.csv", "--gravity", "on"}, "auto, fit, none");
+  expect({"study", "loop", "--generator", "real"}, "planted, simulated");
+}
+
 // The program with these words and redirections, below what bash does first.
 ProgramRun run_redirected(const std::string& words, const std::string& first = "true") {
   return run_to_end({"bash", "-c", first + "; exec \"$0\" " + words, program().string()});
