@@ -316,6 +316,11 @@ bool names_joint(std::string_view name) {
   });
 }
 
+bool names_date(std::string_view name) {
+  const std::string plain = lower(name);
+  return plain == "date" || plain == "datum";
+}
+
 bool is_torque_like(Role role) {
   return role == Role::gravity_torque || role == Role::motor_torque ||
          role == Role::friction_torque || role == Role::external_torque ||

@@ -43,6 +43,9 @@ bool names_motor(std::string_view name);
 // Whether a word of the name says that it tells joints apart.
 bool names_joint(std::string_view name);
 
+// Whether the name is no more than a date's.
+bool names_date(std::string_view name);
+
 // Torques and what stands for them (a force, a current, a voltage).
 bool is_torque_like(Role role);
 

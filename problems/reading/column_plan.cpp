@@ -293,9 +293,22 @@ bool is_plainly_written(const ColumnPlan& plan) {
   return !plan.reading.unit_assumed && (!letter || plan.reading.unit_from == "row of units");
 }
 
+// A date that holds the clock ("2025-03-07T14:58:21.25") is the time where nothing else is.
+void take_date(const CsvLayout& layout, std::vector<ColumnPlan>& plans, bool has_time) {
+  for (std::size_t j = 0; j < plans.size() && !has_time; ++j) {
+    ColumnReading& reading = plans[j].reading;
+    if (reading.role != Role::none || plans[j].role_given || !names_date(reading.column)) continue;
+    const std::vector<std::string>& row = layout.first_rows.front();
+    if (j >= row.size() || row[j].find(':') == std::string::npos) continue;
+    reading.role = Role::time;
+    reading.role_from = "name";
+    has_time = true;
+  }
+}
+
 // The one column in a unit of time, angle, current, torque or temperature ("tick_ms",
 // "shoulder [deg]") is what its unit says, where no name says what is.
-void take_roles_by_unit(std::vector<ColumnPlan>& plans, DataFile& out) {
+void take_roles_by_unit(const CsvLayout& layout, std::vector<ColumnPlan>& plans, DataFile& out) {
   std::map<Role, std::vector<std::size_t>> candidates;
   std::set<Role> owned;
   for (std::size_t j = 0; j < plans.size(); ++j) {
@@ -308,6 +321,7 @@ void take_roles_by_unit(std::vector<ColumnPlan>& plans, DataFile& out) {
     if (names_something_else(plan.reading.column)) continue;
     candidates[kind_of(may_be)].push_back(j);
   }
+  take_date(layout, plans, owned.contains(Role::time) || candidates.contains(Role::time));
   for (const auto& [role, columns] : candidates) {
     if (owned.contains(role) || columns.size() != 1) continue;
     ColumnPlan& plan = plans[columns.front()];
@@ -341,7 +355,7 @@ std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& 
   }
   if (options.names_tell) choose_joint(options, plans, out);
   settle_roles(plans, out);
-  if (options.names_tell && out.joints.empty()) take_roles_by_unit(plans, out);
+  if (options.names_tell && out.joints.empty()) take_roles_by_unit(layout, plans, out);
   for (ColumnPlan& plan : plans) {
     const Role role = plan.reading.role;
     plan.used =

@@ -248,7 +248,8 @@ void fill_channels(Reading& in, DataFile& out) {
 
 DataFile parse_csv(std::string_view text, std::string_view file, const CsvOptions& options) {
   DataFile out;
-  Reading in{text, file, options, find_layout(text, file), {}, {}, {}};
+  const bool nameless = options.roles.contains("column_1") || options.roles.contains("column_2");
+  Reading in{text, file, options, find_layout(text, file, nameless), {}, {}, {}};
   in.plans = plan_columns(in.layout, options, file, out);
   std::vector<ColumnKind> kinds;
   for (const ColumnPlan& plan : in.plans) kinds.push_back(plan.kind);

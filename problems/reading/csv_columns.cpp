@@ -66,7 +66,8 @@ class ColumnReader {
   // The line of names stands here again.
   bool begins_anew() {
     const std::size_t place = scanner_.place();
-    if (text_[place] != layout_.head.front() || !text_.substr(place).starts_with(layout_.head)) {
+    if (layout_.head.empty() || text_[place] != layout_.head.front() ||
+        !text_.substr(place).starts_with(layout_.head)) {
       return false;
     }
     if (out_.rows() > 0) out_.parts.push_back(out_.rows());

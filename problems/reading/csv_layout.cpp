@@ -218,6 +218,23 @@ void name_repeated(std::vector<std::string>& header, const std::vector<Cells>& r
   }
 }
 
+// Numbers from the first line on that is no comment.
+std::optional<Found> nameless_layout(const std::vector<HeadLine>& lines) {
+  std::size_t first = 0;
+  while (first < lines.size() && lines[first].comment) ++first;
+  if (first == lines.size()) return {};
+  std::optional<Found> best;
+  for (const char delimiter : {',', ';', '\t', '|', ' '}) {
+    Cells cells = cells_of(lines[first], delimiter);
+    if (cells.size() > 1 && cells.back().empty()) cells.pop_back();
+    if (!std::ranges::all_of(cells, is_number)) continue;
+    if (!best || cells.size() > best->width) {
+      best = {delimiter, {}, {}, first, cells.size()};
+    }
+  }
+  return best;
+}
+
 void check_header(std::vector<std::string>& header, std::string_view file, std::size_t line) {
   std::set<std::string_view> seen;
   const auto holds_numbers = [](std::string_view cell) {
@@ -226,7 +243,8 @@ void check_header(std::vector<std::string>& header, std::string_view file, std::
   };
   if (std::ranges::all_of(header, holds_numbers)) {
     throw_bad_input("the first line holds numbers, not names", csv_place(file, line),
-                    "add a line with the columns' names before it");
+                    "add a line with the columns' names before it, or say what each is: --roles "
+                    "'column_1=time[s],column_2=position[deg],column_3=motor_current[A]'");
   }
   if (header.size() > 1 && header.front().empty()) header.front() = "index";  // as pandas writes it
   for (std::size_t j = 0; j < header.size(); ++j) {
@@ -288,6 +306,18 @@ void take_off_single_quotes(std::vector<std::string>& header) {
   for (std::string& name : header) name = name.substr(1, name.size() - 2);
 }
 
+CsvLayout layout_without_names(const std::vector<HeadLine>& lines, const Found& found) {
+  CsvLayout layout;
+  layout.delimiter = found.delimiter;
+  for (std::size_t j = 1; j <= found.width; ++j)
+    layout.header.push_back(fmt::format("column_{}", j));
+  layout.begin = lines[found.row].begin;
+  layout.line = lines[found.row].number;
+  layout.decimal_comma = uses_decimal_commas(lines, found);
+  layout.first_rows = rows_of(lines, found);
+  return layout;
+}
+
 std::string without_brackets(std::string_view cell) {
   if (cell.size() > 2 && (cell.front() == '[' || cell.front() == '(')) {
     cell = cell.substr(1, cell.size() - 2);
@@ -305,7 +335,7 @@ std::string csv_place(std::string_view file, std::size_t line, std::string_view 
   return fmt::format("{}:{}:{}", file, line, column);
 }
 
-CsvLayout find_layout(std::string_view text, std::string_view file) {
+CsvLayout find_layout(std::string_view text, std::string_view file, bool nameless) {
   check_bytes(text, file);
   const std::vector<HeadLine> lines = head_of(text);
   if (lines.empty()) {
@@ -315,6 +345,11 @@ CsvLayout find_layout(std::string_view text, std::string_view file) {
     throw_bad_input("these are JSON objects, no table", csv_place(file, lines.front().number),
                     "write a line of names and then the numbers (in pandas: "
                     "read_json(FILE, lines=True).to_csv(OTHER))");
+  }
+  if (nameless) {
+    if (const std::optional<Found> found = nameless_layout(lines)) {
+      return layout_without_names(lines, *found);
+    }
   }
   const Found found = best_layout(lines);
   const HeadLine& header = lines[*found.header];

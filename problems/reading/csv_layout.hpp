@@ -28,8 +28,9 @@ struct CsvLayout {
 };
 
 // Throws Error (bad_input) where the text is empty, binary, has no row, or no line that names every
-// column once.
-CsvLayout find_layout(std::string_view text, std::string_view file);
+// column once; `nameless`: a first line of numbers is a row, and the columns are column_1, column_2
+// and so on.
+CsvLayout find_layout(std::string_view text, std::string_view file, bool nameless = false);
 
 // Walks over the cells of a text from `place`. One record may take several lines where a quoted
 // cell holds a line end.

@@ -290,6 +290,25 @@ TEST(VendorLogs, JointsThatTakeTurnsRowByRowAreToldApartByWhere) {
   EXPECT_NEAR(elbow.data.find(Role::position)->values[1], 49 * kDegree, 1e-12);
 }
 
+TEST(VendorLogs, ColumnsWithoutNamesAreNumbered) {
+  const std::string roles = "column_1=time[ms],column_2=position[deg],column_4=motor_torque[N m]";
+  for (const char* text : {"0 90 5 1\n2 91 5 2\n", "# t q x tau\n0;90;5;1;\n2;91;5;2;\n",
+                           "0\t90\t5\t1\n2\t91\t5\t2\n"}) {
+    expect_read(text, told(roles), {0.002, 91 * kDegree, 2});
+  }
+  EXPECT_THAT(complaint("0 90 5 1\n2 91 5 2\n", told("")), HasSubstr("'column_1=time[s]"));
+  EXPECT_THAT(complaint("0 90 5\n2 91\n3 1 2\n", told(roles)), HasSubstr("column 'column_4'"));
+}
+
+TEST(VendorLogs, ADateThatHoldsTheClockIsTheTime) {
+  const std::string text =
+      "Date,q_deg,tau_Nm\n2025-03-07T14:58:21.25,90,1\n2025-03-07T14:58:21.27,91,2\n";
+  expect_sample(parse_csv(text, "log.csv", told("")), 1, {0.02, 91 * kDegree, 2});
+  const DataFile two =
+      parse_csv("Date,Time,q_deg\n2025-03-07,14:58:21.25,90\n", "log.csv", told(""));
+  EXPECT_EQ(roles_line(two), "Time=time[s],q_deg=position[deg]");
+}
+
 TEST(VendorLogs, NamesThatSayNothingAreListedWithTheMend) {
   EXPECT_THAT(complaint("c1,c2\n0,1\n", told("")),
               ::testing::AllOf(HasSubstr("no column's name is known: c1, c2"),
