@@ -8,14 +8,27 @@
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/evidence.hpp"
+#include "algorithms/fitting/evidence_pruning.hpp"
 #include "algorithms/fitting/exact_choice.hpp"
 #include "algorithms/fitting/posterior_choice.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 namespace {
 
 // Of the target's size: a good approximation of a smooth law of one or two inputs leaves more.
 constexpr double kToRounding = 1e-11;
+constexpr double kWorthIt = 0.03;  // less error, held out, for a longer formula beyond the rows
+
+// The first whose held-out error is within kWorthIt of the least, of candidates by increasing
+// complexity: with many rows every term is significant, and what it is beyond them nobody has seen.
+std::size_t simplest_as_good(std::span<const double> mean_square) {
+  if (mean_square.empty()) return 0;
+  const double enough = (1 + kWorthIt) * (1 + kWorthIt) * std::ranges::min(mean_square);
+  const auto first =
+      std::ranges::find_if(mean_square, [enough](double square) { return square <= enough; });
+  return first == mean_square.end() ? 0 : static_cast<std::size_t>(first - mean_square.begin());
+}
 
 }  // namespace
 
@@ -36,8 +49,11 @@ void JointFront::add(std::span<const Expression> front, std::optional<std::size_
     const double error = sum.status == ErrorSumStatus::complete
                              ? sum.sum / static_cast<double>(target_.size())
                              : HUGE_VAL;
+    // An exponent that was fitted is a number as any other; searches price it as part of a form.
+    const double exponents = 0.5 * static_cast<double>(free_exponents(front[k])) *
+                             elementary::log(static_cast<double>(target_.size()));
     members_.push_back({front[k], paper_complexity(front[k]), error,
-                        evidence_against(front[k], error, zero_loss_, target_.size()),
+                        evidence_against(front[k], error, zero_loss_, target_.size()) + exponents,
                         chosen == k});
   }
   std::ranges::stable_sort(members_, [](const Member& a, const Member& b) {
@@ -81,8 +97,16 @@ std::size_t JointFront::choose() const {
   }
   if (candidates.empty()) return 0;
   if (candidates.size() == 1) return places[0];
+  // Of equal complexity the one with fewer numbers that were fitted comes first.
+  std::ranges::stable_sort(places, {}, [&](std::size_t k) {
+    return std::pair(members_[k].complexity, members_[k].against);
+  });
+  candidates.clear();
+  for (const std::size_t k : places) candidates.push_back(members_[k].formula);
   if (reaches_beyond(inputs_, box_)) {
-    return places[cross_validate(candidates, inputs_, target_, movement_, box_).chosen];
+    const CrossValidation validation =
+        cross_validate(candidates, inputs_, target_, movement_, box_);
+    return places[std::min(validation.chosen, simplest_as_good(validation.mean_square))];
   }
   std::vector<WeighedFormula> pool;
   for (const Member& member : members_) {
@@ -114,6 +138,18 @@ void JointFront::list(const std::function<bool(std::size_t)>& is_taken) {
     places_.push_back(k);
     formulas_.push_back(members_[k].formula);
   }
+}
+
+std::vector<Expression> JointFront::likeliest(std::size_t most) const {
+  std::vector<const Member*> order;
+  for (const Member& member : members_) order.push_back(&member);
+  std::ranges::stable_sort(order, {}, [](const Member* member) { return member->against; });
+  std::vector<Expression> formulas;
+  for (const Member* member : order) {
+    if (formulas.size() == most) break;
+    formulas.push_back(member->formula);
+  }
+  return formulas;
 }
 
 const std::vector<Expression>& JointFront::formulas() {

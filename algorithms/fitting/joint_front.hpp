@@ -4,7 +4,8 @@
 // where there is one (exact_choice.hpp), else of the formulas that the searches stood for the
 // simplest that is typical of what all their fronts say together (posterior_choice.hpp), every
 // form priced alike (evidence.hpp). Where the formula will be used beyond the rows no evidence
-// speaks, and cross-validation with held-out edges decides among them.
+// speaks, and cross-validation with held-out edges decides among them: the simplest within 3 % of
+// the best.
 //
 // The one with the most evidence is no good choice here: of several searches it is the one that
 // fits the noise best.
@@ -39,6 +40,9 @@ class JointFront {
   // By increasing paper complexity, each with less error than all before it; the chosen one stays.
   const std::vector<Expression>& formulas();
   std::size_t chosen();
+
+  // Those with the most evidence, the best first, at most `most`.
+  std::vector<Expression> likeliest(std::size_t most) const;
 
   // Whether a formula explains the rows to rounding: more search is in vain.
   bool is_explained() const { return is_explained_; }

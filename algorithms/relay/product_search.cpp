@@ -24,6 +24,8 @@ constexpr double kExact = 1e-8;
 
 constexpr double kNoPart = 1e-6;  // of log |y| that a column explains
 constexpr double kOffRational = 1e-5;
+constexpr double kOffRationalInNoise = 0.1;
+constexpr std::size_t kLikelyOfASize = 3;
 constexpr double kPromising = 1e-5;  // in the Gram matrix, whose rounding is larger
 constexpr std::size_t kMostFactors = 7;
 
@@ -147,7 +149,8 @@ std::optional<Regression> grown(const std::vector<Column>& columns,
   return std::nullopt;
 }
 
-Expression formula_of(const std::vector<Column>& columns, const Regression& found, double sign) {
+Expression formula_of(const std::vector<Column>& columns, const Regression& found, double sign,
+                      double off_rational = kOffRational) {
   std::vector<Expression> factors;
   std::vector<double> exponents;
   Expression exponent;
@@ -159,7 +162,7 @@ Expression formula_of(const std::vector<Column>& columns, const Regression& foun
       continue;
     }
     factors.push_back(column.formula);
-    exponents.push_back(std::abs(c - nearest_half(c)) <= kOffRational ? nearest_half(c) : c);
+    exponents.push_back(std::abs(c - nearest_half(c)) <= off_rational ? nearest_half(c) : c);
   }
   if (!exponent.empty()) {
     factors.push_back(function(Op::exp, exponent));
@@ -168,7 +171,64 @@ Expression formula_of(const std::vector<Column>& columns, const Regression& foun
   return product_of(sign * elementary::exp(found.offset), factors, exponents);
 }
 
+// The signs of the target are the formula's or the opposite, whichever most rows have.
+Expression with_likely_sign(const std::vector<Column>& columns, const Regression& found,
+                            const LogRows& rows) {
+  Expression formula = formula_of(columns, found, 1, kOffRationalInNoise);
+  const Factor values = factor_of(formula, rows);
+  std::size_t opposite = 0;
+  for (std::size_t r = 0; r < rows.rows(); ++r) {
+    if (values.values[r] * rows.target().values[r] < 0) ++opposite;
+  }
+  return 2 * opposite > rows.rows() ? formula_of(columns, found, -1, kOffRationalInNoise) : formula;
+}
+
 }  // namespace
+
+std::vector<Expression> likely_products(const LogRows& rows, const OperatorSet& operators,
+                                        Budget& budget) {
+  std::vector<Expression> likely;
+  if (!rows.target().has_logs() || !operators.allows(Op::mul) || rows.rows() < 20) return likely;
+  const std::vector<Column> columns = columns_of(rows, operators, 1);
+  const std::size_t n = rows.rows();
+  std::vector<std::vector<double>> weighted;
+  const auto add_weighted = [&](const std::vector<double>& values) {
+    weighted.push_back(values);
+    for (std::size_t r = 0; r < n; ++r) weighted.back()[r] *= std::abs(rows.target().values[r]);
+  };
+  add_weighted(std::vector<double>(n, 1.0));
+  for (const Column& column : columns) add_weighted(column.values);
+  add_weighted(rows.target().logs);
+  const std::size_t count = weighted.size();
+  std::vector<const double*> pointers;
+  for (const auto& column : weighted) pointers.push_back(column.data());
+  if (!budget.spend(count * count / 16 * n)) return likely;
+  std::vector<double> gram(count * count);
+  columns::gram(pointers.data(), count, n, gram.data());
+  const SubsetFits fits(std::move(gram), std::vector<char>(count - 1, 0));
+  std::vector<SparseSum> sums = fits.best_pairs();
+  for (std::size_t terms = 2; !sums.empty(); ++terms) {
+    for (std::size_t s = 0; s < std::min(kLikelyOfASize, sums.size()); ++s) {
+      Regression found;
+      std::vector<const double*> chosen;
+      for (const std::size_t term : sums[s].terms) chosen.push_back(pointers[term]);
+      const LinearFit fit = solve_least_squares(chosen, weighted.back());
+      for (std::size_t k = 0; k < chosen.size(); ++k) {
+        if (sums[s].terms[k] == 0) {
+          found.offset = fit.coefficients[k];
+          continue;
+        }
+        found.places.push_back(sums[s].terms[k] - 1);
+        found.coefficients.push_back(fit.coefficients[k]);
+      }
+      Expression formula = with_likely_sign(columns, found, rows);
+      if (operators.admits(formula)) likely.push_back(std::move(formula));
+    }
+    if (terms == kMostFactors || !budget.spend(sums.size() * count * terms * terms)) break;
+    sums = fits.grown(sums, budget);
+  }
+  return likely;
+}
 
 std::optional<Expression> find_product(const LogRows& rows, const OperatorSet& operators,
                                        Budget& budget) {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "algorithms/budget.hpp"
 #include "algorithms/relay/log_rows.hpp"
@@ -18,5 +19,10 @@ namespace tribench::relay {
 // Exact to rounding on the rows; none where no product is, or the budget does not allow to look.
 std::optional<Expression> find_product(const LogRows& rows, const OperatorSet& operators,
                                        Budget& budget);
+
+// Under noise, all the same to every row: the best products of every number of factors, to be
+// fitted and weighed by the caller. Exponents near a multiple of a half are that.
+std::vector<Expression> likely_products(const LogRows& rows, const OperatorSet& operators,
+                                        Budget& budget);
 
 }  // namespace tribench::relay

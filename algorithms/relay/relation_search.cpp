@@ -26,7 +26,9 @@ constexpr double kNoPart = 1e-10;    // of a row's target, that a term explains
 constexpr double kPromising = 1e-5;  // in the Gram matrix, whose rounding is larger
 constexpr std::size_t kMostTerms = 6;
 constexpr std::size_t kMostColumns = 2000;  // 0.2 s and 50 MB for their products
-constexpr std::size_t kSums = 300;          // that are grown (subset_fits.hpp)
+constexpr std::size_t kLikelyOfASize = 3;
+constexpr std::size_t kMostLikelyTerms = 3;
+constexpr std::size_t kSums = 300;  // that are grown (subset_fits.hpp)
 // Of a product, by the number of inputs: one, two, more.
 int most_degree(std::size_t inputs) { return inputs == 1 ? 14 : inputs == 2 ? 7 : 4; }
 constexpr std::size_t kFewInputs = 2;  // of which every kind of factor is tried, below the bar too
@@ -77,6 +79,18 @@ std::optional<std::vector<std::size_t>> signs_of_target(const LogRows& rows) {
 // What the columns marked as beside are: none are taken, multiples of T(y), or of y beside y^2.
 enum class Shape { sum, ratio, quadratic };
 
+// Whether a formula's values are nearer to the target than another's, in most rows.
+bool is_nearer(const Expression& formula, const Expression& other, const LogRows& rows) {
+  const Factor a = factor_of(formula, rows);
+  const Factor b = factor_of(other, rows);
+  std::size_t nearer = 0;
+  for (std::size_t r = 0; r < rows.rows(); ++r) {
+    const double y = rows.target().values[r];
+    if (std::abs(a.values[r] - y) <= std::abs(b.values[r] - y)) ++nearer;
+  }
+  return 2 * nearer >= rows.rows();
+}
+
 class Search {
  public:
   Search(const LogRows& rows, const OperatorSet& operators, Columns columns, std::size_t most,
@@ -107,16 +121,22 @@ class Search {
 
   // A ratio has one multiple of T(y) on the right, for the plain form and the logarithm.
   std::optional<Expression> run(TargetForm form, Shape shape, Budget& budget) const;
+  // The sums of every size that leave least where every row's target is as uncertain as any
+  // other's.
+  void add_likely(TargetForm form, Shape shape, Budget& budget,
+                  std::vector<Expression>& likely) const;
 
  private:
   struct Regression;
 
-  Regression regression(TargetForm form, Shape shape) const;
+  Regression regression(TargetForm form, Shape shape, const std::vector<double>& scale) const;
   void list_products(std::size_t most, std::size_t most_beside);
   std::vector<double> values_of(const Product& product) const;
   Expression formula_of(const Product& product, double coefficient, TargetForm form) const;
   std::optional<Expression> exact(TargetForm form, Shape shape, SparseSum sum,
                                   const Regression& all) const;
+  Expression with_coefficients(TargetForm form, Shape shape, SparseSum sum,
+                               const Regression& all) const;
   Expression root_of_quadratic(const SparseSum& sum, std::span<const double> coefficients) const;
   Expression assembled(TargetForm form, const SparseSum& sum,
                        std::span<const double> coefficients) const;
@@ -214,12 +234,13 @@ struct Search::Regression {
   std::vector<char> once;           // multiples of the target
 };
 
-Search::Regression Search::regression(TargetForm form, Shape shape) const {
+Search::Regression Search::regression(TargetForm form, Shape shape,
+                                      const std::vector<double>& scale) const {
   Regression all;
   const std::size_t n = rows_.rows();
   const std::vector<double> formed = formed_target(rows_.target().values, form);
   all.target = formed;
-  all.scale = relative_scale(formed, form);
+  all.scale = scale;
   for (std::size_t k = 0; k < products_.size(); ++k) {
     const Product& product = products_[k];
     // A constant share of T(y) says nothing; of y beside y^2 it does.
@@ -245,7 +266,8 @@ Search::Regression Search::regression(TargetForm form, Shape shape) const {
 
 std::optional<Expression> Search::run(TargetForm form, Shape shape, Budget& budget) const {
   if (!keeps_sign(form) && shape != Shape::quadratic && !signs_) return std::nullopt;
-  const Regression all = regression(form, shape);
+  const std::vector<double> formed = formed_target(rows_.target().values, form);
+  const Regression all = regression(form, shape, relative_scale(formed, form));
   const std::size_t count = all.columns.size();
   const std::size_t n = rows_.rows();
   // A product in the Gram matrix costs an eighth of what a node of a formula does.
@@ -272,6 +294,48 @@ std::optional<Expression> Search::run(TargetForm form, Shape shape, Budget& budg
     std::ranges::stable_sort(sums, {}, &SparseSum::left);
   }
   return std::nullopt;
+}
+
+void Search::add_likely(TargetForm form, Shape shape, Budget& budget,
+                        std::vector<Expression>& likely) const {
+  if (!keeps_sign(form) && shape != Shape::quadratic && !signs_) return;
+  const Regression all = regression(form, shape, noise_scale(rows_.target().values, form));
+  const std::size_t count = all.columns.size();
+  const std::size_t n = rows_.rows();
+  if (count < 2 || !budget.spend(count * count / 16 * n)) return;
+  if (!std::ranges::all_of(all.target, [](double x) { return std::isfinite(x); })) return;
+  std::vector<const double*> pointers;
+  for (const auto& column : all.columns) pointers.push_back(column.data());
+  pointers.push_back(all.target.data());
+  std::vector<double> gram((count + 1) * (count + 1));
+  columns::gram(pointers.data(), count + 1, n, gram.data());
+  const SubsetFits fits(std::move(gram), all.once);
+  std::vector<SparseSum> sums = fits.best_pairs();
+  for (std::size_t terms = 2; !sums.empty(); ++terms) {
+    std::size_t taken = 0;
+    for (const SparseSum& sum : sums) {
+      if (taken == kLikelyOfASize) break;
+      Expression formula = with_coefficients(form, shape, sum, all);
+      if (formula.empty() || !operators_.admits(formula)) continue;
+      likely.push_back(std::move(formula));
+      ++taken;
+    }
+    if (terms == kMostLikelyTerms || !budget.spend(kSums * count * terms * terms)) break;
+    sums = fits.grown(sums, budget);
+    if (terms > 2 || shape == Shape::sum || !budget.spend(most_steps_ / 4)) continue;
+    std::ranges::copy(fits.best_with_one_marked(most_steps_, budget), std::back_inserter(sums));
+    std::ranges::stable_sort(sums, {}, &SparseSum::left);
+  }
+}
+
+Expression Search::with_coefficients(TargetForm form, Shape shape, SparseSum sum,
+                                     const Regression& all) const {
+  std::vector<const double*> pointers;
+  for (const std::size_t term : sum.terms) pointers.push_back(all.columns[term].data());
+  const std::vector<double> coefficients = solve_least_squares(pointers, all.target).coefficients;
+  for (std::size_t& term : sum.terms) term = all.places[term];
+  return shape == Shape::quadratic ? root_of_quadratic(sum, coefficients)
+                                   : assembled(form, sum, coefficients);
 }
 
 // Without the terms that explain less than what may be left over.
@@ -333,7 +397,8 @@ Expression Search::root_of_quadratic(const SparseSum& sum,
   if (half.empty() || rest.empty()) return {};
   const Expression root = function(Op::sqrt, power(half, 2) + rest);
   Expression above = half + root;
-  return explains(above, rows_) ? above : half - root;
+  Expression below = half - root;
+  return is_nearer(above, below, rows_) ? above : below;
 }
 
 Expression Search::assembled(TargetForm form, const SparseSum& sum,
@@ -411,6 +476,21 @@ std::optional<Expression> find_root(const LogRows& rows, const OperatorSet& oper
   most = std::min(most, kMostColumns);
   const Search search(rows, operators, columns, most, most / 2);
   return search.run(TargetForm::square, Shape::quadratic, budget);
+}
+
+std::vector<Expression> likely_relations(const LogRows& rows, const OperatorSet& operators,
+                                         Columns columns, std::size_t most, Budget& budget) {
+  std::vector<Expression> likely;
+  if (rows.rows() < 20 || !operators.allows(Op::mul) || !operators.allows(Op::div)) return likely;
+  const Search search(rows, operators, columns, most, most / 4);
+  for (const TargetForm form : kTargetForms) {
+    if (!budget.exhausted()) search.add_likely(form, Shape::sum, budget, likely);
+  }
+  if (!budget.exhausted()) search.add_likely(TargetForm::plain, Shape::ratio, budget, likely);
+  if (!budget.exhausted() && operators.allows(Op::sqrt)) {
+    search.add_likely(TargetForm::square, Shape::quadratic, budget, likely);
+  }
+  return likely;
 }
 
 }  // namespace tribench::relay

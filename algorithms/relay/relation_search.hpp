@@ -29,6 +29,12 @@ enum class Columns { powers_alone, with_factors };  // factors.hpp: waves, sums 
 std::optional<Expression> find_relation(const LogRows& rows, const OperatorSet& operators,
                                         Columns columns, std::size_t most, Budget& budget);
 
+// Under noise, all the same to every row: the best sums and ratios of two and three terms for every
+// T, to be fitted and weighed by the caller. Fewer columns are more here, as the best of many sums
+// fits noise.
+std::vector<Expression> likely_relations(const LogRows& rows, const OperatorSet& operators,
+                                         Columns columns, std::size_t most, Budget& budget);
+
 // One root of a quadratic equation, y^2 = d y Q(x) + sum_k c_k P_k(x): what is left of a balance
 // where y stands in two places (a height of fall, a crank, an equilibrium). The columns as above,
 // at the cost of one T.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,8 +15,10 @@
 #include <vector>
 
 #include "algorithms/admission.hpp"
+#include "algorithms/expression/singularity.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
+#include "algorithms/fitting/evidence_pruning.hpp"
 #include "algorithms/fitting/joint_front.hpp"
 #include "algorithms/relay/collapse.hpp"
 #include "algorithms/relay/index_fit.hpp"
@@ -38,7 +41,10 @@ constexpr std::array kMembers = {"pysr", "udsr", "parfam"};
 // Rows that the searches for structure look at.
 constexpr std::size_t kSearchedRows = 512;
 constexpr std::size_t kMostCollapses = 3;
-constexpr std::size_t kFewRows = 300;            // that tell a sum of six among 700 columns
+constexpr std::size_t kFewRows = 300;        // that tell a sum of six among 700 columns
+constexpr std::size_t kLikelyColumns = 150;  // under noise, where the best of many fits it
+constexpr std::size_t kLikelyWaves = 400;
+constexpr std::size_t kLikelyTaken = 5;          // of these
 constexpr std::size_t kColumns = 500;            // of the search for relations, a round
 constexpr std::size_t kMoreColumns = 700;        // with waves
 constexpr std::size_t kLongSum = 16;             // nodes
@@ -51,6 +57,7 @@ constexpr std::size_t kProblems = 16;  // in fewer variables that are looked at
 constexpr std::size_t kMostDepth = 3;  // of reductions
 constexpr double kQuarter = 0.25;      // of the seconds that are left, for a search for structure
 constexpr double kMost = 0.6;          // for reductions, which end by themselves
+constexpr double kOfAMember = 0.85;    // the rest is for what is done with its choice
 constexpr double kHalf = 0.5;          // for a method on fewer variables
 constexpr std::size_t kFewInputs = 3;  // with which waves and differences are tried at once
 
@@ -62,6 +69,8 @@ constexpr std::string_view kCollapses = "collapses";
 constexpr std::string_view kReductions = "reductions";
 constexpr std::string_view kGuesses = "guesses";
 constexpr std::string_view kWideSums = "wide_sums";
+constexpr std::string_view kLikely = "likely";
+constexpr std::string_view kPruning = "pruning";
 
 constexpr std::string_view kByProduct = "a product of powers";
 constexpr std::string_view kBySum = "a sum of products";
@@ -102,6 +111,56 @@ class Run {
     if (joint_.is_explained() && explained_by_.empty()) explained_by_ = found_by;
   }
 
+  // What structure is likely under noise: weighed beside the members' choices.
+  void search_likely(int round) {
+    const LogRows rows(rows_, kFewRows);
+    if (round > 0 || is_done() || rows.rows() == 0 || !has(kLikely)) return;
+    Budget part = context_.budget.share(context_.budget.remaining() / 4, kHalf);
+    std::vector<Expression> likely = relay::likely_products(rows, context_.operators, part);
+    for (const auto& [columns, most] : {std::pair(Columns::powers_alone, kLikelyColumns),
+                                        std::pair(Columns::with_factors, kLikelyWaves)}) {
+      std::ranges::move(relay::likely_relations(rows, context_.operators, columns, most, part),
+                        std::back_inserter(likely));
+    }
+    offer_likeliest(std::move(likely), part);
+    context_.budget.settle(part);
+  }
+
+  // Of formulas whose constants are still to be fitted those with the most evidence; a pole in the
+  // ranges of the inputs is noise that was fitted.
+  void offer_likeliest(std::vector<Expression> formulas, Budget& budget) {
+    JointFront likely(rows_.table(), rows_.target, rows_.movement, {});
+    ConstantFitter fitter;
+    for (Expression& formula : formulas) {
+      if (!budget.in_time()) break;
+      if (!admission_.admits(formula)) continue;
+      const ConstantFitResult fit = fitter.fit(formula, rows_.table(), rows_.target);
+      budget.spend(fit.node_rows);
+      if (fit.status != FitStatus::not_finite) likely.add(std::array{std::move(formula)}, 0);
+    }
+    const InputBox box = input_box(context_.data.inputs);
+    for (const Expression& formula : likely.likeliest(kLikelyTaken)) {
+      if (!budget.in_time()) break;
+      if (prove_free(formula, box).verdict == Verdict::refuted) continue;
+      joint_.add(std::array{formula}, 0);
+    }
+  }
+
+  // The same formula with fewer numbers, where the rows do not mind.
+  void prune(const Expression& formula) {
+    if (joint_.is_explained() || !has(kPruning)) return;
+    Budget part = context_.budget.share(context_.budget.remaining() / 4, kHalf);
+    Expression pruned = pruned_by_evidence(
+        formula, rows_.table(), rows_.target, input_box(context_.data.inputs),
+        [&part](std::uint64_t node_rows) { return part.spend(node_rows) && part.in_time(); });
+    context_.budget.settle(part);
+    if (pruned == formula || !admission_.admits(pruned)) return;
+    joint_.add(std::array{std::move(pruned)}, 0);
+  }
+  void prune_likeliest() {
+    if (has_formula()) prune(joint_.likeliest(1)[0]);
+  }
+
   // Each round looks at more than the one before, up to eight times as much.
   void search_structure(const Regressor& solver, int round) {
     const LogRows rows(rows_, kSearchedRows);
@@ -113,6 +172,7 @@ class Run {
       auto reduced = reduce(round, relay::Guesses::no);
       if (reduced && !simpler) simpler = std::move(reduced);
     }
+    if (round == 0 && has(kSums) && !is_done()) search_waves();
     if (simpler && !is_done()) search(*simpler, solver);
   }
 
@@ -140,7 +200,7 @@ class Run {
   }
 
   void run_member(const std::string& name, const Regressor& method, std::uint64_t evaluations) {
-    Budget part = context_.budget.share(evaluations);
+    Budget part = context_.budget.share(evaluations, kOfAMember);
     FitContext turn{context_.data,    context_.operators, part, context_.random.split(name),
                     context_.threads, context_.progress};
     const FitResult result = method.fit(turn);
@@ -152,6 +212,7 @@ class Run {
     }
     joint_.add(result.front, result.chosen);
     if (joint_.is_explained() && explained_by_.empty()) explained_by_ = name;
+    prune(result.front[result.chosen]);
   }
 
   std::uint64_t remaining() const { return context_.budget.remaining(); }
@@ -171,7 +232,7 @@ class Run {
  private:
   // What is exact is offered; the return is a problem of fewer variables that was not solved.
   std::optional<ReducedProblem> find_structure(const LogRows& rows, int round, Budget& budget);
-  void search_waves(Budget& budget);
+  void search_waves();
   // The reduced problem with the fewest inputs that was not solved.
   std::optional<ReducedProblem> reduce(int round, relay::Guesses guesses);
   // What is exact is offered.
@@ -194,12 +255,16 @@ class Run {
 };
 
 // Sums and roots with waves: many columns, of fewer rows.
-void Run::search_waves(Budget& budget) {
+void Run::search_waves() {
   const LogRows rows(rows_, kFewRows);
+  Budget budget = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
   const OperatorSet& operators = context_.operators;
   offer(relay::find_root(rows, operators, Columns::with_factors, kColumns, budget), kByRoot);
-  if (is_done()) return;
-  offer(relay::find_relation(rows, operators, Columns::with_factors, kMoreColumns, budget), kBySum);
+  if (!is_done()) {
+    offer(relay::find_relation(rows, operators, Columns::with_factors, kMoreColumns, budget),
+          kBySum);
+  }
+  context_.budget.settle(budget);
 }
 
 std::optional<ReducedProblem> Run::find_structure(const LogRows& rows, int round, Budget& budget) {
@@ -218,7 +283,6 @@ std::optional<ReducedProblem> Run::find_structure(const LogRows& rows, int round
       offer(relay::find_relation(rows, operators, Columns::with_factors, kColumns, budget), kBySum);
     }
     if (is_done()) return std::nullopt;
-    if (has(kSums)) search_waves(budget);
     if (!is_done() && context_.data.inputs.size() == 1) solve(whole(), Width::narrow, budget);
     if (is_done()) return std::nullopt;
   }
@@ -329,9 +393,11 @@ class Relay : public Regressor {
       run.run_member(members_[k].name, *members_[k].method,
                      run.remaining() / (members_.size() - k));
       if (k > 0 || run.is_done()) continue;
+      run.search_likely(round_);
       run.search_wide_sums(round_);
       run.search_guesses(*solver_, round_);
     }
+    run.prune_likeliest();
     return std::move(run).result();
   }
 
@@ -354,8 +420,8 @@ AlgorithmEntry relay_entry() {
   entry.summary =
       "structure (products, sums, fewer variables), then pysr, udsr and parfam, on one front";
   std::vector<std::string> choices;
-  for (const std::string_view part :
-       {kNothing, kProducts, kSums, kCollapses, kReductions, kGuesses, kWideSums}) {
+  for (const std::string_view part : {kNothing, kProducts, kSums, kCollapses, kReductions, kGuesses,
+                                      kWideSums, kLikely, kPruning}) {
     choices.emplace_back(part);
   }
   choices.insert(choices.end(), kMembers.begin(), kMembers.end());

@@ -208,6 +208,7 @@ class ScaledFunctionSearch {
     const double* column = x_.data();
     ConstantFitOptions options;
     options.function_tolerance = 1e-15;
+    options.max_iterations = 40;
     const ConstantFitResult fit =
         ConstantFitter().fit(formed, {{&column, 1}, x_.size()}, z, weights, options);
     budget.spend(fit.node_rows);

@@ -50,6 +50,21 @@ std::vector<double> relative_scale(const std::vector<double>& formed, TargetForm
   return scale;
 }
 
+std::vector<double> noise_scale(std::span<const double> target, TargetForm form) {
+  constexpr double kSmall = 0.1;  // of the median
+  const double small = kSmall * median_size({target.begin(), target.end()});
+  std::vector<double> scale;
+  for (const double y : target) {
+    const double size = std::abs(y);
+    scale.push_back(form == TargetForm::plain       ? 1.0
+                    : form == TargetForm::square    ? 1 / std::max(size, small)
+                    : form == TargetForm::inverse   ? size * size
+                    : form == TargetForm::logarithm ? size
+                                                    : size * size * size);
+  }
+  return scale;
+}
+
 bool explains(const Expression& formula, const LogRows& rows) {
   const Factor found = factor_of(formula, rows);
   double worst = 0;

@@ -34,6 +34,9 @@ Expression solved_for_target(TargetForm form, const Expression& formed, double s
 // Rows of all decades alike: 1 / (|z| + a thousandth of the median |z|); ones for the logarithm.
 std::vector<double> relative_scale(const std::vector<double>& formed, TargetForm form);
 
+// Where the noise of y is the same in all rows: 1 / |dT / dy|, bounded where the target is small.
+std::vector<double> noise_scale(std::span<const double> target, TargetForm form);
+
 // Whether a formula gives the target to a millionth of the largest.
 bool explains(const Expression& formula, const LogRows& rows);
 
