@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -80,6 +81,23 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
   return exit_code(is_usage ? ExitStatus::bad_input : ExitStatus::done);
 }
 
+// Where something is written. An empty one is a shell's variable that was not set, and what is
+// written there would lie anywhere.
+void refuse_empty_places(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    const bool is_place = std::ranges::any_of(option->get_lnames(), [](const std::string& name) {
+      return name == "out" || name == "save" || name == "certificate" || name == "store" ||
+             name == "page" || name == "pictures";
+    });
+    if (!is_place || option->get_items_expected_max() == 0) continue;
+    option->check([](const std::string& text) {
+      return text.empty() ? std::string("'' cannot be used; use the name of a file or folder")
+                          : std::string();
+    });
+  }
+  for (CLI::App* command : app.get_subcommands(nullptr)) refuse_empty_places(*command);
+}
+
 int run_command_line(int argc, char** argv, const Registry& registry) {
   CLI::App app("Benchmarks symbolic regression of joint friction, and closes the loop with data.",
                "tribench");
@@ -113,6 +131,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_study_command(app, status, registry);
   add_submit_command(app, status, registry);
   add_describe_command(app);
+  refuse_empty_places(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -159,7 +159,7 @@ TEST_F(NightlyTest, DISABLED_KilledFiftyTimesItComesToItsEnd) { kill_and_go_on(5
 // whatever the machine does meanwhile.
 TEST_F(NightlyTest, ALoopOfOnePerCentMoreWorkIsFoundByItsCount) {
   if (run_to_end({"sh", "-c", "command -v valgrind"}).status != 0) GTEST_SKIP() << "no valgrind";
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef TRIBENCH_SANITIZED
   GTEST_SKIP() << "valgrind runs no program of a sanitizer";
 #endif
   if (!std::filesystem::exists(TRIBENCH_PLANTED_BENCHES "/planted_bench_as_it_was")) {

@@ -20,7 +20,7 @@ namespace {
 class BenchesTest : public ::testing::Test {
  protected:
   void SetUp() override {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef TRIBENCH_SANITIZED
     GTEST_SKIP() << "valgrind runs no program of a sanitizer";
 #endif
     if (!std::filesystem::exists(TRIBENCH_PLANTED_BENCHES "/planted_bench_as_it_was")) {

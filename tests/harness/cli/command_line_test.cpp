@@ -95,6 +95,19 @@ TEST(CommandLine, UnknownWordsAreAnsweredWithTheNearest) {
   expect({}, "A subcommand is required");
 }
 
+TEST(CommandLine, NothingIsWrittenToAPlaceWithoutAName) {
+  for (const Words& words :
+       {Words{"run", "quick", "--out", ""}, Words{"loop", "log.csv", "--out", ""},
+        Words{"generate", "A/j2/load", "--out", ""},
+        Words{"submit", "quick", "--slurm", "--dry-run", "--out", ""},
+        Words{"nightly", "--store", ""},
+        Words{"check", "v", "--box", "v=0:1", "--certificate", ""}}) {
+    const ProgramRun run = run_tribench(words);
+    EXPECT_EQ(run.status, 2) << words.front();
+    EXPECT_THAT(run.errors, HasSubstr("use the name of a file or folder")) << words.front();
+  }
+}
+
 TEST(CommandLine, WhereOneOfAFewWordsIsWantedTheyAreSaid) {
   const auto expect = [](const Words& words, const char* said) {
     const ProgramRun run = run_tribench(words);
