@@ -69,7 +69,7 @@ std::optional<Candidate> rescue(std::size_t family, const Round& round, const Fi
     if (!(carriers(round, k, model, campaign) < kFewClusters)) continue;
     Eigen::VectorXd losses = losses_with_own_offsets(k, model, campaign);
     const Gain gain = paired_gain(model.losses + offsets, losses);
-    if (!(gain.nats > kRescueGain && gain.nats > 2 * gain.error)) continue;
+    if (!(gain.nats > kRescueGain && gain.nats > kRescueErrors * gain.error)) continue;
     if (!best || gain.nats > best->gain.nats) {
       losses -= offsets;
       best = {family, k, gain, std::move(losses), true};
@@ -144,22 +144,24 @@ std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
 
 namespace {
 
-// Atoms whose columns are as they stand, so that two of them can be compared with two others.
+// Atoms whose columns are as they stand, so that some of them can be compared with others.
 bool is_rigid(const Atom& atom) { return atom.shapes.empty(); }
 
-// Pairs of a family's atoms, a first one that may stand alone and any second, by what they explain
-// of the residual more than by chance.
-class Pairs {
+using AtomSet = std::vector<std::size_t>;  // of the library
+
+// A family's rigid atoms, one or two together, by what they explain of the target beside the rest.
+class AtomSets {
  public:
-  Pairs(std::size_t family, const Eigen::MatrixXd& x, const Eigen::VectorXd& y, const Round& round,
-        const Campaign& campaign)
+  AtomSets(std::size_t family, const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
+           const Round& round, const Campaign& campaign)
       : campaign_(campaign) {
     const std::vector<Atom>& atoms = campaign.library.atoms;
     std::vector<Eigen::Index> columns;
     for (std::size_t k = 0; k < atoms.size(); ++k) {
-      if (atoms[k].family != family || campaign.library.usable[k] == 0) continue;
+      const bool is_one = atoms[k].family == family && campaign.library.usable[k] != 0;
+      if (!is_one || !is_rigid(atoms[k])) continue;
       const Block& block = campaign.library.blocks[k];
-      atoms_.push_back(
+      places_.push_back(
           {k, static_cast<Eigen::Index>(columns.size()), static_cast<Eigen::Index>(block.count)});
       for (std::size_t j = 0; j < block.count; ++j) {
         columns.push_back(static_cast<Eigen::Index>(block.first + j));
@@ -171,22 +173,23 @@ class Pairs {
     cross_ = z.transpose() * project_off(y, basis);
   }
 
-  // Best first.
-  std::vector<std::pair<std::size_t, std::size_t>> ranked(double unit) const {
-    std::vector<std::pair<double, std::pair<std::size_t, std::size_t>>> all;
-    for (const Place& first : atoms_) {
-      const Atom& atom = campaign_.library.atoms[first.atom];
-      if (atom.beside_another || !is_rigid(atom)) continue;
-      for (const Place& second : atoms_) {
-        if (second.atom == first.atom || !is_rigid(campaign_.library.atoms[second.atom])) continue;
-        const auto columns = static_cast<double>(first.count + second.count);
-        all.push_back({explained(first, second) / unit - columns, {first.atom, second.atom}});
+  // The first few sets of `size` atoms, a first one that may stand alone and any second: those that
+  // explain most more than by chance (unit: the square of the noise).
+  std::vector<AtomSet> best(std::size_t size, double unit) const {
+    std::vector<std::pair<double, AtomSet>> all;
+    for (const Place& first : places_) {
+      if (campaign_.library.atoms[first.atom].beside_another) continue;
+      if (size == 1) all.push_back({surplus({first}, unit), {first.atom}});
+      for (const Place& second : places_) {
+        if (size != 2 || second.atom == first.atom) continue;
+        all.push_back({surplus({first, second}, unit), {first.atom, second.atom}});
       }
     }
     std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.first > b.first; });
-    std::vector<std::pair<std::size_t, std::size_t>> pairs;
-    for (const auto& one : all) pairs.push_back(one.second);
-    return pairs;
+    if (all.size() > kAtomsTried) all.resize(kAtomsTried);
+    std::vector<AtomSet> sets;
+    for (auto& one : all) sets.push_back(std::move(one.second));
+    return sets;
   }
 
  private:
@@ -196,48 +199,59 @@ class Pairs {
     Eigen::Index count;
   };
 
-  double explained(const Place& a, const Place& b) const {
+  double surplus(std::initializer_list<Place> places, double unit) const {
     constexpr double kRidge = 1e-6;
     std::vector<Eigen::Index> columns;
-    for (const Place& one : {a, b}) {
+    for (const Place& one : places) {
       for (Eigen::Index j = 0; j < one.count; ++j) columns.push_back(one.first + j);
     }
     Eigen::MatrixXd gram = gram_(columns, columns);
     gram.diagonal() *= 1 + kRidge;
     const Eigen::VectorXd cross = cross_(columns);
-    return cross.dot(solve_symmetric(gram, cross));
+    return cross.dot(solve_symmetric(gram, cross)) / unit - static_cast<double>(columns.size());
   }
 
   const Campaign& campaign_;
-  std::vector<Place> atoms_;
+  std::vector<Place> places_;
   Eigen::MatrixXd gram_;
   Eigen::VectorXd cross_;
 };
 
 }  // namespace
 
-std::vector<std::size_t> best_pair(const Candidate& second, const Round& round,
-                                   const FittedModel& model, const Campaign& campaign) {
-  const std::vector<Atom>& own = model.model.atoms;
-  const auto first = std::ranges::find(own, second.family, &Atom::family);
-  if (first == own.end() || !is_rigid(*first)) return {};
-  const LoopModel rest = model.model.without(second.family);
+std::vector<std::size_t> better_atoms(std::size_t family, const Round& round,
+                                      const FittedModel& model, const Campaign& campaign) {
+  std::vector<std::string> own;
+  for (const Atom& atom : model.model.atoms) {
+    if (atom.family != family) continue;
+    if (!is_rigid(atom)) return {};
+    own.push_back(atom.label);
+  }
+  const auto is_own = [&](std::size_t atom) {
+    return std::ranges::count(own, campaign.library.atoms[atom].label) > 0;
+  };
+  const LoopModel rest = model.model.without(family);
   const Eigen::MatrixXd x = whitened(tangent(rest, campaign.data), campaign.clusters, model.noise);
   const Eigen::VectorXd y = whitened(target_vector(campaign.data) - predict(rest, campaign.data),
                                      campaign.clusters, model.noise);
-  std::vector<std::pair<std::size_t, std::size_t>> pairs =
-      Pairs(second.family, x, y, round, campaign).ranked(model.noise.unit());
-  if (pairs.size() > kAtomsTried) pairs.resize(kAtomsTried);
-  std::vector<std::size_t> best;
-  Eigen::VectorXd best_losses = second.losses;
-  for (const auto& [a, b] : pairs) {
-    const Eigen::MatrixXd both = beside(beside(x, campaign.library.block_of(round.columns, a)),
-                                        campaign.library.block_of(round.columns, b));
-    Eigen::VectorXd losses = held_out_losses(both, y, campaign.clusters, model.noise);
-    const Gain lead = paired_gain(best_losses, losses);
-    if (!(lead.nats > lead.error)) continue;
-    best = {a, b};
-    best_losses = std::move(losses);
+  const AtomSets sets(family, x, y, round, campaign);
+  AtomSet best;
+  Eigen::VectorXd best_losses = model.losses;
+  for (std::size_t size = own.size(); size > 0; --size) {
+    for (AtomSet& set : sets.best(size, model.noise.unit())) {
+      if (size == own.size() && std::ranges::all_of(set, is_own)) continue;
+      Eigen::MatrixXd columns = x;
+      for (const std::size_t atom : set) {
+        columns = beside(columns, campaign.library.block_of(round.columns, atom));
+      }
+      Eigen::VectorXd losses = held_out_losses(columns, y, campaign.clusters, model.noise);
+      const Gain lead = paired_gain(best_losses, losses);
+      // One that says as much as two is the simpler story.
+      const bool simpler = size < (best.empty() ? own.size() : best.size());
+      if (!(lead.nats > (simpler ? -lead.error : lead.error))) continue;
+      best = std::move(set);
+      best_losses = std::move(losses);
+    }
   }
   return best;
 }
@@ -261,7 +275,9 @@ std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round
   const double largest_p = winner.rescued ? kRescueP : kNearAliasP;
   for (std::size_t f = 0; f < campaign.families.size(); ++f) {
     if (f == winner.family || round.family_p[f] > largest_p) continue;
-    const std::optional<Candidate> rival = best_atom(f, round, model, campaign);
+    std::optional<Candidate> rival;
+    if (winner.rescued) rival = rescue(f, round, model, campaign);
+    if (!rival) rival = best_atom(f, round, model, campaign);
     if (!rival) continue;
     const double r = canonical_correlation(columns(winner.atom), columns(rival->atom));
     const Gain lead = paired_gain(rival->losses, winner.losses);

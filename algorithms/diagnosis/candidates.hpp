@@ -15,6 +15,8 @@ namespace tribench::loop {
 
 // Up to this p a family carried by few clusters may be rescued by its gain (specification, 6.4).
 inline constexpr double kRescueP = 0.15;
+// So many standard errors its gain has to be.
+inline constexpr double kRescueErrors = 2;
 // Up to this p a family is a rival of the one that was taken.
 inline constexpr double kNearAliasP = 0.05;
 inline constexpr double kExactCorrelation = 0.995;
@@ -36,11 +38,12 @@ std::optional<Candidate> best_atom(std::size_t family, const Round& round, const
 std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
                                 const Campaign& campaign);
 
-// Which of several waves is the first is told beside its second alone, where the joint does not
-// turn far enough: two atoms of the family of `second` that predict better together than the one in
-// the model and `second`. Empty: none do, or the one in the model has a shape of its own.
-std::vector<std::size_t> best_pair(const Candidate& second, const Round& round,
-                                   const FittedModel& model, const Campaign& campaign);
+// Which of a family's atoms is the first is told while others are missing that come later, and
+// where the joint does not turn far enough many waves look alike: as many atoms of the family that
+// predict better beside the rest as it stands, or fewer that predict no worse. Empty: none do, or
+// one that it has has a shape of its own.
+std::vector<std::size_t> better_atoms(std::size_t family, const Round& round,
+                                      const FittedModel& model, const Campaign& campaign);
 
 // The families that explain nearly the same, and the causes that always do.
 std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round,

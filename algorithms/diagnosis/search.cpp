@@ -19,6 +19,10 @@ constexpr std::size_t kMostAtoms = 2;  // of a family: more is a sign of somethi
 // Of the target: what the base leaves is rounding.
 constexpr double kNothingLeft = 1e-9;
 
+bool was_given_up(const Atom& atom, const SearchState& state) {
+  return std::ranges::count(state.given_up, atom.label) > 0;
+}
+
 // Adds the candidate and fits everything anew. False where the family has had its share already, or
 // cannot be what it is called: the next best may still be needed.
 bool add(SearchState& state, const Candidate& winner, const Round& round,
@@ -31,17 +35,16 @@ bool add(SearchState& state, const Candidate& winner, const Round& round,
         kMostAtoms, campaign.families[winner.family].name));
     return false;
   }
-  std::vector<std::size_t> atoms;
-  if (known == 1) atoms = best_pair(winner, round, state.model, campaign);
-  LoopModel model = atoms.empty() ? state.model.model : state.model.model.without(winner.family);
-  if (atoms.empty()) atoms = {winner.atom};
-  for (const std::size_t atom : atoms) model.add(campaign.library.atoms[atom]);
+  if (was_given_up(campaign.library.atoms[winner.atom], state)) return false;
+  LoopModel model = state.model.model;
+  model.add(campaign.library.atoms[winner.atom]);
   FittedModel extended = fit_in_its_noise(std::move(model), campaign, FitScope::everything);
   // One fold alone can tell of it: that it holds elsewhere too is beyond these data.
   if (!extended.losses.allFinite()) return false;
-  if (!(winner.gain.nats > winner.gain.error)) {
+  // What its gain alone admits has to have it still once its shapes are fitted.
+  if (winner.rescued || !(winner.gain.nats > winner.gain.error)) {
     const Gain fitted = gain_of({winner.family}, extended, campaign);
-    if (!(fitted.nats > fitted.error)) return false;
+    if (!(fitted.nats > (winner.rescued ? kRescueErrors : 1) * fitted.error)) return false;
   }
   if (stands_for_another_cause(extended.model, campaign)) return false;
   if (known == 0) {
@@ -63,6 +66,30 @@ bool add_best(SearchState& state, const Round& round, const Campaign& campaign) 
         campaign.library.block_of(campaign.library.columns, winner.atom);
     if (worth_of(columns, state.model.model, campaign) < least / 2) continue;
     if (add(state, winner, round, campaign)) return true;
+  }
+  return false;
+}
+
+// Gives a family that was taken other atoms in place of its own, where they tell it better. What
+// has been given up does not come back. False where none changes.
+bool choose_anew(SearchState& state, const Round& round, const Campaign& campaign) {
+  for (const Found& one : state.found) {
+    const std::vector<std::size_t> atoms = better_atoms(one.family, round, state.model, campaign);
+    const bool is_old = std::ranges::any_of(atoms, [&](std::size_t atom) {
+      return std::ranges::count(state.given_up, campaign.library.atoms[atom].label) > 0;
+    });
+    if (atoms.empty() || is_old) continue;
+    LoopModel model = state.model.model.without(one.family);
+    for (const std::size_t atom : atoms) model.add(campaign.library.atoms[atom]);
+    FittedModel chosen = fit_in_its_noise(std::move(model), campaign, FitScope::everything);
+    if (!chosen.losses.allFinite() || stands_for_another_cause(chosen.model, campaign)) continue;
+    for (const Atom& atom : state.model.model.atoms) {
+      if (atom.family != one.family) continue;
+      const bool stays = std::ranges::count(chosen.model.atoms, atom.label, &Atom::label) > 0;
+      if (!stays) state.given_up.push_back(atom.label);
+    }
+    state.model = std::move(chosen);
+    return true;
   }
   return false;
 }
@@ -98,7 +125,8 @@ bool leave_out_slight(SearchState& state, const Campaign& campaign) {
 // family is no addition.
 SearchResult take_effects(SearchResult out, Round round, const Campaign& campaign,
                           RandomStream random) {
-  while (add_best(out.state, round, campaign) || leave_out_slight(out.state, campaign)) {
+  while (choose_anew(out.state, round, campaign) || add_best(out.state, round, campaign) ||
+         leave_out_slight(out.state, campaign)) {
     round = test_library(out.state.model, campaign);
   }
   out.taken = out.state.families();
