@@ -169,7 +169,8 @@ std::string meaning_of(const Observations& data, const Signal& signal) {
 void add_symbols(LoopRecord& record, const JudgedDiagnosis& diagnosis, const Observations& data) {
   std::vector<char> used(data.signals.size(), 0);
   for (const LoopModel* model : {&diagnosis.before, &diagnosis.after}) {
-    for (const Node& node : formula_of(*model).nodes()) {
+    const Expression formula = formula_of(*model);
+    for (const Node& node : formula.nodes()) {
       if (node.is_variable()) used[node.variable] = 1;
     }
   }
