@@ -321,6 +321,8 @@ void take_roles_by_unit(const CsvLayout& layout, std::vector<ColumnPlan>& plans,
     if (names_something_else(plan.reading.column)) continue;
     candidates[kind_of(may_be)].push_back(j);
   }
+  // A joint whose speed is known is told already: its way may be counted in any manner.
+  if (owned.contains(Role::velocity)) candidates.erase(Role::position);
   take_date(layout, plans, owned.contains(Role::time) || candidates.contains(Role::time));
   for (const auto& [role, columns] : candidates) {
     if (owned.contains(role) || columns.size() != 1) continue;

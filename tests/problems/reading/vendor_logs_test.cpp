@@ -240,6 +240,9 @@ TEST(VendorLogs, AColumnAloneInItsUnitIsWhatTheUnitSays) {
             "\"housing (degC)\"=temperature[degC]");
   EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("'shoulder [deg]' is taken for the "
                                                            "position: it is the only one in deg")));
+  // Beside a velocity an angle may be anything that was travelled.
+  EXPECT_EQ(roles_line(parse_csv("t,dq,travel_rad\n0,1,2\n", "log.csv", told(""))),
+            "t=time[s],dq=velocity[rad/s]");
   // Two of a kind are for the user to tell apart; one letter behind a line is no unit.
   const DataFile two =
       parse_csv("t,elbow [deg],wrist [deg],line_A\n0,1,2,3\n", "log.csv", told(""));
