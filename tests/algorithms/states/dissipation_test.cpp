@@ -62,6 +62,17 @@ TEST(Dissipation, LuGreIsRefutedByACycleWhereItIsBroken) {
   EXPECT_NEAR(work, result.work, 0.05 * std::abs(result.work));
 }
 
+// Where the box reaches far beyond the Stribeck velocity, the bristles are still bent at creep.
+TEST(Dissipation, LuGreIsRefutedInAWideBoxToo) {
+  const char* law =
+      "z = lugre(v, sliding=0.0004, breakaway=0.0006, stribeck_velocity=0.02); 12000*z + "
+      "20*(v - abs(v)*z/(0.0004 + 0.0002*exp(-(v/0.02)^2))) + ";
+  EXPECT_EQ(Claim(law + std::string("3.1*v"), "v=-50:50").decide().verdict, Verdict::refuted);
+  EXPECT_EQ(Claim(law + std::string("3.1*v"), "v=-10:10").decide().verdict, Verdict::refuted);
+  EXPECT_EQ(Claim(law + std::string("6*v"), "v=-50:50").decide().verdict, Verdict::refuted);
+  EXPECT_EQ(Claim(law + std::string("10.1*v"), "v=-50:50").decide().verdict, Verdict::proved_free);
+}
+
 // The box decides: where the joint stays slow, the same damping takes nothing back.
 TEST(Dissipation, ASmallBoxNeedsLess) {
   EXPECT_EQ(Claim(lugre(2000, 600), "v=-2:2").decide().verdict, Verdict::refuted);
