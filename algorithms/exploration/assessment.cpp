@@ -98,7 +98,7 @@ Noise Assessor::noise_left_by(const Explanation& one, std::vector<double>& weigh
   for (const SeenMovement& movement : seen_) {
     const Eigen::Index count = movement.base.rows();
     base.middleRows(next, count) = movement.base;
-    own.middleRows(next, count) = own_columns(one, movement.columns);
+    if (own_count > 0) own.middleRows(next, count) = own_columns(one, movement.columns);
     rest.segment(next, count) = movement.target;
     next += count;
   }

@@ -22,7 +22,8 @@ namespace {
 
 Eigen::MatrixXd products(const Eigen::MatrixXd& x) {
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(x.cols(), x.cols());
-  gram.selfadjointView<Eigen::Lower>().rankUpdate(x.transpose());
+  // Eigen takes a reference to the first number, which an empty matrix has not.
+  if (x.size() > 0) gram.selfadjointView<Eigen::Lower>().rankUpdate(x.transpose());
   return gram;
 }
 
