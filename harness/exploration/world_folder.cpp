@@ -181,6 +181,7 @@ WorldFolder WorldFolder::create(const std::filesystem::path& folder,
 
 WorldFolder::WorldFolder(const std::filesystem::path& folder)
     : WorldFolder(folder, read_plan(folder / "sealed.json")) {
+  check_seal();
   const std::filesystem::path file = folder / "executed.csv";
   if (!std::filesystem::exists(file)) return;
   executed_ = read_movements(text_of(file), file.string());
@@ -214,14 +215,24 @@ void WorldFolder::append(const std::vector<PlannedMovement>& movements) {
   std::filesystem::rename(part, folder_ / "executed.csv");
 }
 
-std::string WorldFolder::reveal() {
+// The truth is drawn anew from the plan each time: by another version it may be another.
+void WorldFolder::check_seal() const {
   const std::filesystem::path file = folder_ / "world.json";
   const Json known = read_json_or_throw<Json>(text_of(file), file.string());
-  const std::string seal = seal_of(world_.truth());
-  if (!known.is_object() || !known.contains("truth_sha256") || known["truth_sha256"] != seal) {
-    throw_bad_input("the seal does not fit the truth: sealed.json or world.json was changed",
-                    folder_.string(), "make the world again");
+  if (known.is_object() && known.contains("truth_sha256") &&
+      known["truth_sha256"] == seal_of(world_.truth())) {
+    return;
   }
+  throw_bad_input(
+      "the seal does not fit the truth: sealed.json or world.json was changed, or another version "
+      "of "
+      "tribench made this world",
+      folder_.string(), "make the world again");
+}
+
+std::string WorldFolder::reveal() {
+  check_seal();
+  const std::string seal = seal_of(world_.truth());
   const Json revealed = {{"key", seal_key(world_.truth().plan)},
                          {"truth_sha256", seal},
                          {"sealed_text", sealed_text(world_.truth())},

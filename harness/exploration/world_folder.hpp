@@ -38,7 +38,8 @@ class WorldFolder {
  public:
   // Throws Error (bad_input) where the folder holds a world already.
   static WorldFolder create(const std::filesystem::path& folder, const simulation::WorldPlan& plan);
-  // Repeats what was executed. Throws Error (bad_input) where there is no world.
+  // Repeats what was executed. Throws Error (bad_input) where there is no world, or its seal does
+  // not fit the truth that its plan gives: a file was changed, or another version drew it.
   explicit WorldFolder(const std::filesystem::path& folder);
 
   const simulation::World& world() const { return world_; }
@@ -48,13 +49,13 @@ class WorldFolder {
   // 3") and the mend, and nothing has happened. The answer is one dataset.
   Dataset execute(const std::vector<PlannedMovement>& movements, const std::string& file);
 
-  // Checks the seal, writes revealed.json and returns it. Throws Error (bad_input) where the seal
-  // does not fit the truth.
+  // Checks the seal, writes revealed.json and returns it.
   std::string reveal();
 
  private:
   WorldFolder(std::filesystem::path folder, const simulation::WorldPlan& plan);
   void append(const std::vector<PlannedMovement>& movements);
+  void check_seal() const;
 
   std::filesystem::path folder_;
   simulation::World world_;

@@ -98,6 +98,22 @@ TEST(WorldCommand, RevealsWhatTheSealSaidAndNothingIsAskedAfterwards) {
   EXPECT_THAT(late.errors, HasSubstr("revealed"));
 }
 
+// As a version that draws other worlds from the same seed would leave it.
+TEST(WorldCommand, AWorldWhoseSealDoesNotFitIsNotGoneOnWith) {
+  const TemporaryFolder folder;
+  const std::string world = (folder / "w").string();
+  ASSERT_EQ(run_tribench({"world", "11", "--out", world}).status, 0);
+  json known = json::parse(read_text(folder / "w/world.json"));
+  known["truth_sha256"] = std::string(64, '0');
+  write_text(folder / "w/world.json", known.dump());
+  write_text(folder / "m.csv", std::string(kHeader) + kThere);
+  const ProgramRun refused = run_tribench({"world", world, "execute", (folder / "m.csv").string(),
+                                           "--out", (folder / "d.csv").string()});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("another version"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "d.csv"));
+}
+
 // What was recorded is given as it was recorded, the nearest that is left first, each once.
 TEST(WorldCommand, RecordingsAreAWorldOfTheirOwn) {
   const TemporaryFolder folder;
