@@ -55,9 +55,11 @@ constexpr std::size_t kTried = 60;     // of reductions, most of them not true
 constexpr std::size_t kMoreWays = 5;   // that are looked at when one has explained the rows
 constexpr std::size_t kProblems = 16;  // in fewer variables that are looked at
 constexpr std::size_t kMostDepth = 3;  // of reductions
+// A surrogate's error, of the target's spread, below which noise is no matter.
+constexpr double kSurelyExact = 3e-3;
 constexpr double kQuarter = 0.25;      // of the seconds that are left, for a search for structure
 constexpr double kMost = 0.6;          // for reductions, which end by themselves
-constexpr double kOfAMember = 0.85;    // the rest is for what is done with its choice
+constexpr double kOfAMember = 0.9;     // the rest is for what is done with its choice
 constexpr double kHalf = 0.5;          // for a method on fewer variables
 constexpr std::size_t kFewInputs = 3;  // with which waves and differences are tried at once
 
@@ -115,7 +117,8 @@ class Run {
   void search_likely(int round) {
     const LogRows rows(rows_, kFewRows);
     if (round > 0 || is_done() || rows.rows() == 0 || !has(kLikely)) return;
-    Budget part = context_.budget.share(context_.budget.remaining() / 4, kHalf);
+    if (roughness_ < kSurelyExact) return;
+    Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
     std::vector<Expression> likely = relay::likely_products(rows, context_.operators, part);
     for (const auto& [columns, most] : {std::pair(Columns::powers_alone, kLikelyColumns),
                                         std::pair(Columns::with_factors, kLikelyWaves)}) {
@@ -252,6 +255,7 @@ class Run {
   JointFront joint_;
   std::string note_;
   std::string explained_by_;
+  double roughness_ = HUGE_VAL;  // of the whole problem's surrogates: no more noise than this
 };
 
 // Sums and roots with waves: many columns, of fewer rows.
@@ -358,6 +362,7 @@ std::optional<ReducedProblem> Run::reduce(int round, relay::Guesses guesses) {
     relay::Reductions further = relay::find_reductions(rows, guesses, budget);
     if (!(further.roughness <= problem.most_roughness())) continue;
     problem.set_roughness(further.roughness);
+    if (problem.depth() == 0) roughness_ = further.roughness;
     if (problem.depth() > 0) solve(problem, Width::wide, budget);
     for (Reduction& each : further.list) {
       if (problem.depth() < kMostDepth) open.emplace_back(problem, std::move(each));
@@ -384,6 +389,7 @@ class Relay : public Regressor {
     Run run(context, without_);
     if (!run.has_rows()) return FitResult::unsupported("no row has a finite target and inputs");
     run.search_structure(*solver_, round_);
+    run.search_likely(round_);
     if (run.is_done() && run.has_formula() && !run.is_short()) {
       run.search_guesses(*solver_, round_);
     }
@@ -393,7 +399,6 @@ class Relay : public Regressor {
       run.run_member(members_[k].name, *members_[k].method,
                      run.remaining() / (members_.size() - k));
       if (k > 0 || run.is_done()) continue;
-      run.search_likely(round_);
       run.search_wide_sums(round_);
       run.search_guesses(*solver_, round_);
     }
