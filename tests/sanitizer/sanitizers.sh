@@ -30,7 +30,10 @@ check() {
 status=0
 for sanitizer in "$@"; do
     case $sanitizer in
-    address) check "address, undefined" asan || status=1 ;;
+    address)
+        export LSAN_OPTIONS=suppressions=$PWD/tests/sanitizer/foreign_leaks.txt
+        check "address, undefined" asan || status=1
+        ;;
     thread)
         export TSAN_OPTIONS=ignore_noninstrumented_modules=1
         check thread tsan -R 'sanitizer|pysr' || status=1
