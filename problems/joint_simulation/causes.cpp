@@ -361,7 +361,7 @@ const std::vector<Cause>& causes() {
   return kCauses;
 }
 
-double relaxed_stiffness(Response response) {
+double relaxed_stiffness(const Response& response) {
   constexpr double kSpeed_rad_s = 1e-6;  // so slow that only the way counts
   constexpr double kStep_s = 1;
   Instant now;

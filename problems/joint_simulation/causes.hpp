@@ -51,7 +51,7 @@ struct Cause {
 
 // What a small way from rest adds to a response with bristles that starts anew, per rad: their
 // stiffness, in the response's own unit.
-double relaxed_stiffness(Response response);
+double relaxed_stiffness(const Response& response);
 
 const std::vector<Cause>& causes();
 // Throws Error (bad_input) with the nearest name.
