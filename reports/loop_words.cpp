@@ -119,15 +119,13 @@ std::string error_sentence(const LoopRecord& record) {
   return text + '.' + motion_sentence(record);
 }
 
-bool is_unstable(const LoopEffect& effect) { return effect.chosen_share < kStableShare; }
-
 std::string grade_of(const LoopEffect& effect) {
   if (!effect.objection.empty()) return "not physical";
   if (effect.provisional) return "provisional";
   if (!known(effect.chosen_share)) return "passes the test";
   if (effect.chosen_share >= kVerySure) return "very sure";
   if (effect.chosen_share >= kSure) return "sure";
-  return is_unstable(effect) ? "doubtful" : "likely";
+  return "likely";
 }
 
 std::vector<std::string> doubts_of(const LoopRecord& record, const LoopEffect& effect) {
@@ -135,8 +133,6 @@ std::vector<std::string> doubts_of(const LoopRecord& record, const LoopEffect& e
   if (!effect.objection.empty()) {
     all.push_back(fmt::format("Not physical ({}): it stands for something else.",
                               plain_text(record, effect.objection)));
-  } else if (is_unstable(effect)) {
-    all.push_back("The search does not find it again where some movements are left out.");
   } else if (effect.provisional) {
     all.push_back("It shares an input with what is still unexplained.");
   }

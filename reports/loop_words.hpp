@@ -30,7 +30,7 @@ struct LoopCard {
   std::string noun;      // "Stribeck effect"
   std::string amount;    // "0.755 N"
   std::string share;     // "4 % of the friction"
-  std::string grade;     // "very sure", "doubtful", "provisional"
+  std::string grade;     // "very sure", "likely", "provisional"
   std::string sure;      // "Found again in 40 % of the searches with movements left out."
   std::string bristles;  // of presliding: how stiff, and from where on it slides
   std::vector<std::string> doubts;

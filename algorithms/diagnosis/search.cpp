@@ -173,6 +173,10 @@ SearchResult search(const BaseModel& base, const Campaign& campaign, RandomStrea
     out.leftover_tested = true;
     return out;
   }
+  for (std::size_t f = 0; f < campaign.families.size(); ++f) {
+    if (std::ranges::count(campaign.options.unnamed, campaign.families[f].name) == 0) continue;
+    out.state.left_out.push_back(f);
+  }
   const Round round = test_library(out.base, campaign);
   out.first = first_look(round, out.base, campaign);
   out = begin_otherwise(take_effects(out, round, campaign, random), out, round, campaign, random);

@@ -105,12 +105,19 @@ class ChosenShares {
   }
   void write(Diagnosis& whole) const {
     if (searches_ == 0) return;
-    for (EffectFinding& effect : whole.effects) {
-      const auto found = times_.find(effect.family);
-      effect.chosen_share = found == times_.end() ? 0 : found->second / searches_;
-      if (effect.chosen_share >= kStableShare) continue;
-      effect.provisional = true;
+    for (EffectFinding& effect : whole.effects) effect.chosen_share = of(effect.family);
+  }
+  // What the diagnosis names and too few of the searches do.
+  std::vector<std::string> unstable(const Diagnosis& whole) const {
+    std::vector<std::string> families;
+    for (const EffectFinding& effect : whole.effects) {
+      if (searches_ > 0 && of(effect.family) < kStableShare) families.push_back(effect.family);
     }
+    return families;
+  }
+  double of(const std::string& family) const {
+    const auto found = times_.find(family);
+    return found == times_.end() ? 0 : found->second / searches_;
   }
 
  private:
@@ -131,6 +138,7 @@ class LoopJudge {
  private:
   std::vector<Diagnosis> searches_without(const std::vector<std::vector<int>>& sets) const;
   void search_again(JudgedDiagnosis& whole) const;
+  void name_the_stable(JudgedDiagnosis& whole, const ChosenShares& shares) const;
   // bristles: of `fitted`.
   void add_predictions(LeftOut& all, const Diagnosis& fitted,
                        const std::optional<Bristles>& bristles, const RandomStream& random) const;
@@ -173,6 +181,25 @@ void LoopJudge::search_again(JudgedDiagnosis& whole) const {
   }
   ChosenShares shares;
   for (const Diagnosis& part : searches_without(sets)) shares.count(part);
+  name_the_stable(whole, shares);
+}
+
+// Stability selection (Meinshausen and Buehlmann 2010): what too few of the searches choose hangs
+// on a movement or two. It is not named; whether something else stands for it, or is left over, is
+// asked anew.
+void LoopJudge::name_the_stable(JudgedDiagnosis& whole, const ChosenShares& shares) const {
+  DiagnosisOptions options = options_;
+  std::vector<std::string> unstable = shares.unstable(whole);
+  while (!unstable.empty()) {
+    options.unnamed.insert(options.unnamed.end(), unstable.begin(), unstable.end());
+    static_cast<Diagnosis&>(whole) = diagnose(data_, base_, options, whole.held_out);
+    unstable = shares.unstable(whole);
+  }
+  for (const std::string& family : options.unnamed) {
+    whole.notes.push_back(fmt::format(
+        "'{}' is chosen by {:.0f} % of the searches without some of the movements: not named",
+        family, 100 * shares.of(family)));
+  }
   shares.write(whole);
 }
 
@@ -224,7 +251,6 @@ ErrorFinding LoopJudge::judged(const std::vector<char>& rows, const LeftOut& mod
 // Says of each effect how many of them choose it too.
 JudgedDiagnosis LoopJudge::in_turn() const {
   JudgedDiagnosis whole{diagnose(data_, base_, options_), {}, {}};
-  whole.bristles = bristles_of(whole, data_);
   const std::vector<std::vector<int>> sets = left_out_together(data_);
   const std::vector<Diagnosis> parts = searches_without(sets);
   ChosenShares shares;
@@ -233,7 +259,8 @@ JudgedDiagnosis LoopJudge::in_turn() const {
     shares.count(parts[k]);
     add_predictions(all, parts[k], bristles_of(parts[k], data_), random_.split(k));
   }
-  shares.write(whole);
+  name_the_stable(whole, shares);
+  whole.bristles = bristles_of(whole, data_);
   const std::vector<char> usable = usable_rows(data_, {}, false, whole.masked);
   whole.error = judged(usable, all, pieces(data_.select(usable), whole.correlation_rows));
   whole.error.how =
@@ -245,6 +272,7 @@ JudgedDiagnosis LoopJudge::in_turn() const {
 
 JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) const {
   JudgedDiagnosis whole{diagnose(data_, base_, options_, test), {}, {}};
+  if (judging_.resample) search_again(whole);
   whole.bristles = bristles_of(whole, data_);
   whole.error.judged_on = JudgedOn::rows_of_the_fit;
   whole.error.how = "none held out";
@@ -254,7 +282,6 @@ JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) const {
   add_predictions(models, whole, whole.bristles, random_);
   whole.error = judged(rows, models, data_.select(rows).movement);
   whole.error.how = "held out";
-  if (judging_.resample) search_again(whole);
   return whole;
 }
 

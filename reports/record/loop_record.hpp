@@ -56,7 +56,7 @@ struct LoopAlias {
   std::string separate_by;
 };
 
-// Of the searches on parts of the data: an effect that fewer of them choose is provisional.
+// Of the searches on parts of the data: what fewer of them choose is not named.
 // Stability selection takes 0.6 to 0.9 (Meinshausen, Buehlmann 2010).
 inline constexpr double kStableShare = 0.6;
 

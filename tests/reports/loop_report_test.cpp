@@ -96,14 +96,14 @@ TEST(LoopWords, HaveAFaceForEveryVerdict) {
 TEST(LoopWords, SayWhatSpeaksAgainstAFinding) {
   LoopRecord record = sample_loop();
   record.error.confirmed = false;
-  record.effects[0].chosen_share = 0.4;
+  record.effects[0].chosen_share = 0.7;
   record.effects[0].few_movements = true;
   record.effects[1].objection = "a share of the load above 20 %";
   record.effects[1].aliases[0] = {"sensor_offset", 1, 0, 0, true, "read the torque unpowered (R8)"};
   record.leftover.p = 0.7;
   const LoopWords words = loop_words(record);
   EXPECT_THAT(words.error, HasSubstr("do not confirm"));
-  EXPECT_EQ(words.cards[0].grade, "doubtful");
+  EXPECT_EQ(words.cards[0].grade, "likely");
   EXPECT_THAT(words.cards[0].doubts, ::testing::Contains(HasSubstr("Few movements")));
   EXPECT_EQ(words.cards[1].grade, "not physical");
   EXPECT_THAT(words.cards[1].doubts, ::testing::Contains(HasSubstr("above 20 %")));

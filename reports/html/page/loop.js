@@ -8,7 +8,7 @@ const words = data.words;
 const picturesOf = (test) => data.pictures.filter(test);
 const kFaces = {EFFECTS: ["Effects found", "found"], NONE: ["Nothing missing", "none"], UNKNOWN: ["Something unknown", "unknown"],
                 CANNOT_TELL: ["Cannot tell", "mute"]};
-const kGradeClass = {"very sure": "good", sure: "good", likely: "fair", doubtful: "poor", provisional: "poor", "not physical": "poor",
+const kGradeClass = {"very sure": "good", sure: "good", likely: "fair", provisional: "poor", "not physical": "poor",
                      "passes the test": "fair"};
 
 const lookAt = (id) => ({...inkOf(), dark: darkTheme(), width: widthOf(id)});

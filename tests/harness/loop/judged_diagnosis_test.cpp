@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/loop/judged_diagnosis.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -132,11 +133,13 @@ TEST(JudgedDiagnosis, IsTheSameAgain) {
 }
 
 // One movement of many carries it: the search does not find it without that one.
-TEST(JudgedDiagnosis, WhatTheSearchesOnPartsDoNotFindAgainIsProvisional) {
-  for (const EffectFinding& effect :
-       diagnose_planted({.effects = {{"coupling", 2.0}}}, 954432, {.resample = true}).effects) {
-    EXPECT_EQ(effect.provisional, effect.chosen_share < kStableShare);
-  }
+TEST(JudgedDiagnosis, WhatTheSearchesOnPartsDoNotFindAgainIsNotNamed) {
+  const kuka::PlantedCase planted{.effects = {{"coupling", 2.0}}};
+  const JudgedDiagnosis once = diagnose_planted(planted, 954432);
+  const JudgedDiagnosis again = diagnose_planted(planted, 954432, {.resample = true});
+  EXPECT_EQ(families(once), std::vector<std::string>{"coupling"});
+  EXPECT_EQ(families(again), std::vector<std::string>{});
+  EXPECT_THAT(again.notes, ::testing::Contains(::testing::HasSubstr("not named")));
 }
 
 // Searches side by side and one after the other: the same, bit for bit.
