@@ -73,7 +73,7 @@ struct EffectFinding {
   std::vector<AliasFinding> aliases;
   std::vector<std::string> separate_by;
   bool few_movements = false;  // carried by few movements: ask for more of them
-  // Shares an input with the leftover, is not physical, or is not found again in parts of the data.
+  // Shares an input with the leftover, or is not physical.
   bool provisional = false;
   std::string objection;  // why it is not physical; empty where it is
   // This cause, but a curve that the library does not have: more is left over in its own inputs.

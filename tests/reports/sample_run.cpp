@@ -225,7 +225,7 @@ std::vector<LoopEffect> sample_effects() {
   gain.gain = 80;
   gain.gain_error = 12;
   gain.rms = 0.9;
-  gain.chosen_share = 0.4;
+  gain.chosen_share = 0.7;
   gain.provisional = true;
   gain.parameters = {{"gain", 0.08, 0.07, 0.09}};
   gain.aliases = {{"payload", 0.95, 1, 2, false, ""}};
