@@ -136,9 +136,10 @@ class LoopJudge {
   JudgedDiagnosis in_turn() const;
 
  private:
-  std::vector<Diagnosis> searches_without(const std::vector<std::vector<int>>& sets) const;
+  std::vector<Diagnosis> searches_without(const std::vector<std::vector<int>>& sets,
+                                          const DiagnosisOptions& options) const;
   void search_again(JudgedDiagnosis& whole) const;
-  void name_the_stable(JudgedDiagnosis& whole, const ChosenShares& shares) const;
+  DiagnosisOptions name_the_stable(JudgedDiagnosis& whole, const ChosenShares& shares) const;
   // bristles: of `fitted`.
   void add_predictions(LeftOut& all, const Diagnosis& fitted,
                        const std::optional<Bristles>& bristles, const RandomStream& random) const;
@@ -153,8 +154,8 @@ class LoopJudge {
 };
 
 // The searches without the movements of each set, in their order.
-std::vector<Diagnosis> LoopJudge::searches_without(
-    const std::vector<std::vector<int>>& sets) const {
+std::vector<Diagnosis> LoopJudge::searches_without(const std::vector<std::vector<int>>& sets,
+                                                   const DiagnosisOptions& options) const {
   std::vector<Diagnosis> all(sets.size());
   std::size_t ended = 1;  // the search with all of them
   std::mutex mutex;
@@ -164,7 +165,7 @@ std::vector<Diagnosis> LoopJudge::searches_without(
   };
   tell();
   parallel_for(sets.size(), judging_.threads, [&](std::size_t k) {
-    all[k] = diagnose(data_, base_, options_, sets[k]);
+    all[k] = diagnose(data_, base_, options, sets[k]);
     tell();
   });
   return all;
@@ -180,14 +181,15 @@ void LoopJudge::search_again(JudgedDiagnosis& whole) const {
     std::ranges::sort(left);
   }
   ChosenShares shares;
-  for (const Diagnosis& part : searches_without(sets)) shares.count(part);
+  for (const Diagnosis& part : searches_without(sets, options_)) shares.count(part);
   name_the_stable(whole, shares);
 }
 
 // Stability selection (Meinshausen and Buehlmann 2010): what too few of the searches choose hangs
 // on a movement or two. It is not named; whether something else stands for it, or is left over, is
-// asked anew.
-void LoopJudge::name_the_stable(JudgedDiagnosis& whole, const ChosenShares& shares) const {
+// asked anew. Returns the options that leave it unnamed.
+DiagnosisOptions LoopJudge::name_the_stable(JudgedDiagnosis& whole,
+                                            const ChosenShares& shares) const {
   DiagnosisOptions options = options_;
   std::vector<std::string> unstable = shares.unstable(whole);
   while (!unstable.empty()) {
@@ -201,6 +203,7 @@ void LoopJudge::name_the_stable(JudgedDiagnosis& whole, const ChosenShares& shar
         family, 100 * shares.of(family)));
   }
   shares.write(whole);
+  return options;
 }
 
 // Of the rows that a diagnosis has not seen.
@@ -252,14 +255,16 @@ ErrorFinding LoopJudge::judged(const std::vector<char>& rows, const LeftOut& mod
 JudgedDiagnosis LoopJudge::in_turn() const {
   JudgedDiagnosis whole{diagnose(data_, base_, options_), {}, {}};
   const std::vector<std::vector<int>> sets = left_out_together(data_);
-  const std::vector<Diagnosis> parts = searches_without(sets);
+  std::vector<Diagnosis> parts = searches_without(sets, options_);
   ChosenShares shares;
+  for (const Diagnosis& part : parts) shares.count(part);
+  const DiagnosisOptions options = name_the_stable(whole, shares);
+  // The error is that of what is named.
+  if (!options.unnamed.empty()) parts = searches_without(sets, options);
   LeftOut all(data_.rows());
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    shares.count(parts[k]);
     add_predictions(all, parts[k], bristles_of(parts[k], data_), random_.split(k));
   }
-  name_the_stable(whole, shares);
   whole.bristles = bristles_of(whole, data_);
   const std::vector<char> usable = usable_rows(data_, {}, false, whole.masked);
   whole.error = judged(usable, all, pieces(data_.select(usable), whole.correlation_rows));

@@ -342,10 +342,15 @@ std::vector<Cause> causes_of_position_and_temperature() {
 
 // Told after the others were: the seeds of their runs in a study stay.
 Cause four_elements() {
-  return {"presliding_gms", "four Maxwell-slip elements less Coulomb friction",
-          {"hysteresis"},   {"lag"},
-          {Role::position}, true,
-          maxwell_slip,     true};
+  return {"presliding_gms",
+          "four Maxwell-slip elements less Coulomb friction",
+          {"hysteresis"},
+          {"lag"},
+          {Role::position},
+          true,
+          maxwell_slip,
+          true,
+          false};
 }
 
 }  // namespace

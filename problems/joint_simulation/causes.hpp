@@ -47,6 +47,9 @@ struct Cause {
   bool needs_reversals = false;  // cannot be seen in movements one way
   Response (*start)(RandomStream random) = nullptr;
   bool has_bristles = false;  // friction that builds up with the way: presliding
+  // A world draws its truth from its seed: one cause more to draw from and every sealed world would
+  // hide something else.
+  bool in_worlds = true;
 };
 
 // What a small way from rest adds to a response with bristles that starts anew, per rad: their

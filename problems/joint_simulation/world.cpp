@@ -45,7 +45,7 @@ Response response_of(const PlantedShape& shape) {
 std::vector<Hidden> hidden_of(bool in_library) {
   std::vector<Hidden> all;
   for (const Cause& cause : causes()) {
-    if (cause.names.empty() == in_library) continue;
+    if (cause.names.empty() == in_library || !cause.in_worlds) continue;
     all.push_back({std::string(cause.name), cause.names, cause.beside, cause.lives_in});
   }
   if (in_library) return all;
