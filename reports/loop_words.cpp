@@ -133,7 +133,7 @@ std::vector<std::string> doubts_of(const LoopRecord& record, const LoopEffect& e
   if (!effect.objection.empty()) {
     all.push_back(fmt::format("Not physical ({}): it stands for something else.",
                               plain_text(record, effect.objection)));
-  } else if (effect.provisional) {
+  } else if (effect.provisional && !record.leftover.inputs.empty()) {
     all.push_back("It shares an input with what is still unexplained.");
   }
   if (effect.another_shape) all.push_back("This cause, but another curve than those known.");

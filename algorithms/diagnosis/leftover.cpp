@@ -43,7 +43,8 @@ std::vector<std::string> inputs_of(std::size_t family, const LoopModel& model,
     for (const char* name : {"v", "a", "d"}) {
       if (signal->has_memory() && data.find(name) != nullptr) names.insert(name);
     }
-    if (!signal->name.starts_with("sgn_")) names.insert(signal->name);
+    const bool is_told = signal->has_memory() || signal->name.starts_with("sgn_");
+    if (!is_told) names.insert(signal->name);
   }
   return {names.begin(), names.end()};
 }

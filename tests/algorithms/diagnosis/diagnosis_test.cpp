@@ -175,9 +175,9 @@ TEST(Diagnosis, PreslidingOfAThousandthOfTheStrokeIsNoLagAndNoFallWithSpeed) {
   }
 }
 
-// Bristles that were bent before the recording began. With distances that start at 0 in each of its
-// movements this was told as presliding and a lag.
-TEST(Diagnosis, PreslidingOfMovementsCutOutOfMotionIsNoLag) {
+// Sines cut out of motion, with bristles that were bent before each began, and friction that
+// follows the velocity by 0.12 s late: `late` times as large.
+Observations bristles_cut_out_of_motion(double late) {
   RandomStream random(5);
   std::string text = "movement,time_s,q,v,a,friction_torque_Nm\n";
   for (int m = 0; m < 45; ++m) {
@@ -185,18 +185,35 @@ TEST(Diagnosis, PreslidingOfMovementsCutOutOfMotionIsNoLag) {
     const double size = random.uniform(0.3, 1.0);
     const double begin = random.uniform(0, 6);
     double bristles = 0;
+    double follower = 0;
     for (int i = 0; i < 300; ++i) {
       const double angle = begin + 0.02 * w * i;
       const double v = size * w * std::cos(angle);
       const double s = v > 0 ? 1 : -1;
       bristles = i == 0 ? s : s + (bristles - s) * std::exp(-0.02 * std::abs(v) / 0.03);
-      const double y = 3 * s + 6 * v + 2 * (bristles - s) + 0.2 * random.normal();
+      follower = i == 0 ? v : v + (follower - v) * std::exp(-0.02 / 0.12);
+      const double y = 3 * s + 6 * v + 2 * (bristles - s) +
+                       late * (std::tanh(follower / 0.1) - std::tanh(v / 0.1)) +
+                       0.2 * random.normal();
       text += fmt::format("{},{},{},{},{},{}\n", m, 10 * m + 0.02 * i, size * std::sin(angle), v,
                           -size * w * w * std::sin(angle), y);
     }
   }
-  EXPECT_EQ(families(diagnose_most(observe(parse_csv(text, "cut.csv").data), {})),
+  return observe(parse_csv(text, "cut.csv").data);
+}
+
+// With distances that start at 0 in each of its movements this was told as presliding and a lag.
+TEST(Diagnosis, PreslidingOfMovementsCutOutOfMotionIsNoLag) {
+  EXPECT_EQ(families(diagnose_most(bristles_cut_out_of_motion(0), {})),
             std::vector<std::string>{"hysteresis"});
+}
+
+// What adds far less to presliding near the same reversals is its shape, whatever memory it has.
+TEST(Diagnosis, ASmallLagBesidePreslidingIsItsShape) {
+  const Diagnosis diagnosis = diagnose_most(bristles_cut_out_of_motion(0.4), {});
+  ASSERT_EQ(families(diagnosis), std::vector<std::string>{"hysteresis"});
+  EXPECT_TRUE(diagnosis.effects[0].another_shape);
+  EXPECT_THAT(diagnosis.notes, ::testing::Contains(::testing::HasSubstr("'lag' only shapes")));
 }
 
 // The same curve up to its sign, at a third of the top speed: whether friction falls tells whose it
