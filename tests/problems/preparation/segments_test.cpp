@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace tribench {
 namespace {
@@ -57,6 +58,18 @@ TEST(Segments, ARepeatedMessageIsToldFromACoarseEncoder) {
   std::size_t found = 0;
   for (const char one : repeated_rows(position, current)) found += one != 0 ? 1 : 0;
   EXPECT_EQ(found, 20U);
+}
+
+// Ten rows a second are at the bound: they are regular wherever the clock begins.
+TEST(Segments, AStepOfATenthOfASecondIsRegularWhateverTheClocksOrigin) {
+  for (const double origin : {0.0, 3.0, 1e3, 1672531200.0}) {
+    std::vector<double> time;
+    for (int i = 0; i < 200; ++i) time.push_back(origin + 0.1 * i);
+    EXPECT_TRUE(is_regular(time, std::vector<int>(time.size(), 0))) << origin;
+  }
+  std::vector<double> slow;
+  for (int i = 0; i < 200; ++i) slow.push_back(0.11 * i);
+  EXPECT_FALSE(is_regular(slow, std::vector<int>(slow.size(), 0)));
 }
 
 }  // namespace
