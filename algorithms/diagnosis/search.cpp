@@ -75,9 +75,8 @@ bool add_best(SearchState& state, const Round& round, const Campaign& campaign) 
 bool choose_anew(SearchState& state, const Round& round, const Campaign& campaign) {
   for (const Found& one : state.found) {
     const std::vector<std::size_t> atoms = better_atoms(one.family, round, state.model, campaign);
-    const bool is_old = std::ranges::any_of(atoms, [&](std::size_t atom) {
-      return std::ranges::count(state.given_up, campaign.library.atoms[atom].label) > 0;
-    });
+    const bool is_old = std::ranges::any_of(
+        atoms, [&](std::size_t atom) { return was_given_up(campaign.library.atoms[atom], state); });
     if (atoms.empty() || is_old) continue;
     LoopModel model = state.model.model.without(one.family);
     for (const std::size_t atom : atoms) model.add(campaign.library.atoms[atom]);

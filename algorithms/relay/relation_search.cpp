@@ -130,6 +130,11 @@ class Search {
   struct Regression;
 
   Regression regression(TargetForm form, Shape shape, const std::vector<double>& scale) const;
+  // None where there is nothing to choose from, or no budget.
+  std::optional<SubsetFits> subset_fits(const Regression& all, Budget& budget) const;
+  // From sums of `terms` terms to those of one more. False: no budget.
+  bool grow(std::vector<SparseSum>& sums, std::size_t terms, Shape shape, const SubsetFits& fits,
+            const Regression& all, Budget& budget) const;
   void list_products(std::size_t most, std::size_t most_beside);
   std::vector<double> values_of(const Product& product) const;
   Expression formula_of(const Product& product, double coefficient, TargetForm form) const;
@@ -264,10 +269,7 @@ Search::Regression Search::regression(TargetForm form, Shape shape,
   return all;
 }
 
-std::optional<Expression> Search::run(TargetForm form, Shape shape, Budget& budget) const {
-  if (!keeps_sign(form) && shape != Shape::quadratic && !signs_) return std::nullopt;
-  const std::vector<double> formed = formed_target(rows_.target().values, form);
-  const Regression all = regression(form, shape, relative_scale(formed, form));
+std::optional<SubsetFits> Search::subset_fits(const Regression& all, Budget& budget) const {
   const std::size_t count = all.columns.size();
   const std::size_t n = rows_.rows();
   // A product in the Gram matrix costs an eighth of what a node of a formula does.
@@ -280,18 +282,32 @@ std::optional<Expression> Search::run(TargetForm form, Shape shape, Budget& budg
   pointers.push_back(all.target.data());
   std::vector<double> gram((count + 1) * (count + 1));
   columns::gram(pointers.data(), count + 1, n, gram.data());
-  const SubsetFits fits(std::move(gram), all.once);
-  std::vector<SparseSum> sums = fits.best_pairs();
+  return SubsetFits(std::move(gram), all.once);
+}
+
+bool Search::grow(std::vector<SparseSum>& sums, std::size_t terms, Shape shape,
+                  const SubsetFits& fits, const Regression& all, Budget& budget) const {
+  if (!budget.spend(kSums * all.columns.size() * terms * terms)) return false;
+  sums = fits.grown(sums, budget);
+  if (terms > 2 || shape == Shape::sum || !budget.spend(most_steps_ / 4)) return true;
+  std::ranges::copy(fits.best_with_one_marked(most_steps_, budget), std::back_inserter(sums));
+  std::ranges::stable_sort(sums, {}, &SparseSum::left);
+  return true;
+}
+
+std::optional<Expression> Search::run(TargetForm form, Shape shape, Budget& budget) const {
+  if (!keeps_sign(form) && shape != Shape::quadratic && !signs_) return std::nullopt;
+  const std::vector<double> formed = formed_target(rows_.target().values, form);
+  const Regression all = regression(form, shape, relative_scale(formed, form));
+  const std::optional<SubsetFits> fits = subset_fits(all, budget);
+  if (!fits) return std::nullopt;
+  std::vector<SparseSum> sums = fits->best_pairs();
   for (std::size_t terms = 2; !sums.empty(); ++terms) {
     for (const SparseSum& sum : sums) {
       if (sum.left > kPromising * kPromising) break;
       if (auto found = exact(form, shape, sum, all)) return found;
     }
-    if (terms == kMostTerms || !budget.spend(kSums * count * terms * terms)) break;
-    sums = fits.grown(sums, budget);
-    if (terms > 2 || shape == Shape::sum || !budget.spend(most_steps_ / 4)) continue;
-    std::ranges::copy(fits.best_with_one_marked(most_steps_, budget), std::back_inserter(sums));
-    std::ranges::stable_sort(sums, {}, &SparseSum::left);
+    if (terms == kMostTerms || !grow(sums, terms, shape, *fits, all, budget)) break;
   }
   return std::nullopt;
 }
@@ -300,17 +316,9 @@ void Search::add_likely(TargetForm form, Shape shape, Budget& budget,
                         std::vector<Expression>& likely) const {
   if (!keeps_sign(form) && shape != Shape::quadratic && !signs_) return;
   const Regression all = regression(form, shape, noise_scale(rows_.target().values, form));
-  const std::size_t count = all.columns.size();
-  const std::size_t n = rows_.rows();
-  if (count < 2 || !budget.spend(count * count / 16 * n)) return;
-  if (!std::ranges::all_of(all.target, [](double x) { return std::isfinite(x); })) return;
-  std::vector<const double*> pointers;
-  for (const auto& column : all.columns) pointers.push_back(column.data());
-  pointers.push_back(all.target.data());
-  std::vector<double> gram((count + 1) * (count + 1));
-  columns::gram(pointers.data(), count + 1, n, gram.data());
-  const SubsetFits fits(std::move(gram), all.once);
-  std::vector<SparseSum> sums = fits.best_pairs();
+  const std::optional<SubsetFits> fits = subset_fits(all, budget);
+  if (!fits) return;
+  std::vector<SparseSum> sums = fits->best_pairs();
   for (std::size_t terms = 2; !sums.empty(); ++terms) {
     std::size_t taken = 0;
     for (const SparseSum& sum : sums) {
@@ -320,11 +328,7 @@ void Search::add_likely(TargetForm form, Shape shape, Budget& budget,
       likely.push_back(std::move(formula));
       ++taken;
     }
-    if (terms == kMostLikelyTerms || !budget.spend(kSums * count * terms * terms)) break;
-    sums = fits.grown(sums, budget);
-    if (terms > 2 || shape == Shape::sum || !budget.spend(most_steps_ / 4)) continue;
-    std::ranges::copy(fits.best_with_one_marked(most_steps_, budget), std::back_inserter(sums));
-    std::ranges::stable_sort(sums, {}, &SparseSum::left);
+    if (terms == kMostLikelyTerms || !grow(sums, terms, shape, *fits, all, budget)) break;
   }
 }
 

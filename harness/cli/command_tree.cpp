@@ -20,7 +20,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 // CLI11 writes an option's type and checks as "TEXT:{c,python}" or "INT:INT in [1 - 9]".
 void read_type(const std::string& type, CommandOption& option) {
   const std::size_t colon = type.find(':');
-  option.placeholder = type.substr(0, colon);
+  option.value_name = type.substr(0, colon);
   if (colon == std::string::npos) return;
   const std::string check = type.substr(colon + 1);
   if (check.starts_with('{') && check.ends_with('}')) {
@@ -48,7 +48,7 @@ CommandOption described(const CLI::Option& option) {
   result.required = option.get_required();
   result.list = list_named_in(result.description);
   if (option.get_items_expected_max() > 0) read_type(option.get_type_name(), result);
-  if (!option.nonpositional()) result.placeholder = option.get_name(true);
+  if (!option.nonpositional()) result.value_name = option.get_name(true);
   if (!option.get_default_str().empty()) {
     result.description += " [default: " + option.get_default_str() + "]";
   }
@@ -80,7 +80,7 @@ void collect(const Command& command, std::vector<const Command*>& all) {
 }  // namespace
 
 std::string value_of(const CommandOption& option) {
-  if (option.choices.empty()) return option.placeholder;
+  if (option.choices.empty()) return option.value_name;
   return fmt::format("{}", fmt::join(option.choices, "|"));
 }
 

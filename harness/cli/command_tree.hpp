@@ -13,7 +13,7 @@ namespace tribench {
 
 struct CommandOption {
   std::vector<std::string> names;    // "--out", "-h"; empty for a positional
-  std::string placeholder;           // what stands for its value: "DATA", "FLOAT"; empty for a flag
+  std::string value_name;            // what stands for its value: "DATA", "FLOAT"; empty for a flag
   std::string description;           // with its range and default, as --help has them
   std::vector<std::string> choices;  // the only values there are, where there is such a list
   std::string list;                  // "methods": its values are those of `tribench list methods`
@@ -32,7 +32,7 @@ struct Command {
 
 Command command_tree(const CLI::App& app);
 
-// What stands for an option's value: its choices ("c|python"), or the placeholder.
+// What stands for an option's value: its choices ("c|python"), or its value's name.
 std::string value_of(const CommandOption& option);
 
 // A command and all below it, from the top down.

@@ -42,7 +42,7 @@ std::string value_cases(const Command& program) {
   std::map<std::string, std::string> patterns;
   for (const Command* command : all_commands(program)) {
     for (const CommandOption& option : command->options) {
-      if (option.placeholder.empty()) continue;
+      if (option.value_name.empty()) continue;
       for (const std::string& name : option.names) {
         std::string& pattern = patterns[words_of(option)];
         if (!pattern.empty()) pattern += " | ";
@@ -119,7 +119,7 @@ std::string fish_values(const CommandOption& option) {
     return fmt::format(" -xa {}", shell_word(fmt::format("{}", fmt::join(option.choices, " "))));
   }
   if (!option.list.empty()) return fmt::format(" -xa '(__tribench_names {})'", option.list);
-  return option.placeholder.empty() ? "" : " -rF";
+  return option.value_name.empty() ? "" : " -rF";
 }
 
 void add_fish_lines(std::string& script, const Command& command) {

@@ -43,7 +43,7 @@ std::string term(const CommandOption& option) {
   for (const std::string& name : option.names) {
     result += fmt::format("{}\\fB{}\\fR", result.empty() ? "" : ", ", roff(name));
   }
-  if (option.placeholder.empty()) return result;
+  if (option.value_name.empty()) return result;
   return result + fmt::format("{}\\fI{}\\fR", result.empty() ? "" : " ", roff(value_of(option)));
 }
 
@@ -58,7 +58,7 @@ std::string synopsis(const Command& command) {
   std::string line = fmt::format("\\fB{}\\fR", roff(command.path));
   if (!command.options.empty()) line += " [\\fIOPTIONS\\fR]";
   for (const CommandOption& positional : command.positionals) {
-    const std::string name = fmt::format("\\fI{}\\fR", roff(positional.placeholder));
+    const std::string name = fmt::format("\\fI{}\\fR", roff(positional.value_name));
     line += positional.required ? " " + name : " [" + name + "]";
   }
   if (!command.subcommands.empty()) line += " \\fISUBCOMMAND\\fR";

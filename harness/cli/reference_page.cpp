@@ -24,12 +24,12 @@ std::string markdown_cell(std::string_view text) {
 
 // "`--jobs`, `-j` INT", "`DATA`"
 std::string option_cell(const CommandOption& option) {
-  if (option.names.empty()) return fmt::format("`{}`", option.placeholder);
+  if (option.names.empty()) return fmt::format("`{}`", option.value_name);
   std::string result;
   for (const std::string& name : option.names) {
     result += fmt::format("{}`{}`", result.empty() ? "" : ", ", name);
   }
-  return option.placeholder.empty() ? result : result + " " + markdown_cell(value_of(option));
+  return option.value_name.empty() ? result : result + " " + markdown_cell(value_of(option));
 }
 
 // --help stands on every command and is said once, above.
