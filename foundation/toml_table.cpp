@@ -2,6 +2,7 @@
 #include "foundation/toml_table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -231,7 +232,10 @@ TomlTable TomlTable::table(std::string_view key, const std::vector<std::string>&
   static const toml::table kEmpty;
   if (!has(key)) return {kEmpty, file_name_, name, known_keys};
   const toml::table* inner = table_->get(key)->as_table();
-  if (inner == nullptr) refuse(key, "a table");
+  if (inner == nullptr) {
+    refuse(key,
+           fmt::format("a table: {} = {{ {} = ... }}", key, fmt::join(known_keys, " = ..., ")));
+  }
   return {*inner, file_name_, name, known_keys};
 }
 

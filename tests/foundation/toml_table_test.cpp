@@ -45,5 +45,17 @@ TEST(Toml, DotsInTextsCommentsAndNumbersPartNothing) {
   EXPECT_EQ(parse_toml(text, "dots.toml").size(), 4U);
 }
 
+TEST(Toml, WhereATableIsWantedItsKeysAreSaid) {
+  const toml::table file = parse_toml("seeds = [1, 2]\n", "grid.toml");
+  const TomlTable table(file, "grid.toml", "grid", {"seeds"});
+  try {
+    table.table("seeds", {"first", "count"});
+    FAIL() << "read";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("seeds = { first = ..., count = ... }"));
+    EXPECT_EQ(error.place(), "grid.toml:1:9");
+  }
+}
+
 }  // namespace
 }  // namespace tribench
