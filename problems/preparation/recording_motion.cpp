@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "problems/preparation/effort_delay.hpp"
 #include "problems/preparation/motion_check.hpp"
 #include "problems/preparation/rigid_body.hpp"
 #include "problems/preparation/segments.hpp"
@@ -245,6 +246,32 @@ void adjust_acceleration(PreparedRecording& out) {
                     100 * std::abs(share), share < 0 ? "towards" : "away from"));
   }
   erase_channel(out.data, kChangeChannel);
+}
+
+void settle_effort(PreparedRecording& out) {
+  constexpr double kSurelyLate = 5;  // standard errors
+  const Channel* t = find_channel(out.data, Role::time);
+  if (t == nullptr || !is_regular(t->values, out.data.movement)) return;
+  const std::vector<RowRange> pieces = pieces_of(t->values, out.data.movement, {});
+  const std::optional<EffortDelay> delay = effort_delay(out.data, pieces);
+  if (!delay) return;
+  const double step = median_step(t->values, out.data.movement);
+  // No filter and no bus brings a torque before its motion.
+  if (delay->value < std::max(kLeastDelay * step, kSurelyLate * delay->error)) return;
+  std::vector<char> lost(out.data.rows(), 0);
+  std::string names;
+  for (const Role role : {Role::motor_torque, Role::motor_current}) {
+    Channel* effort = find_channel(out.data, role);
+    if (effort == nullptr) continue;
+    Shifted shifted = shifted_by(t->values, effort->values, pieces, delay->value);
+    effort->values = std::move(shifted.values);
+    lost = std::move(shifted.lost);
+    names += (names.empty() ? "'" : " and '") + effort->name + "'";
+  }
+  out.notes.push_back(fmt::format(
+      "{} comes {:.3g} ms after the motion that it belongs to (+/- {:.2g} ms): taken from there",
+      names, 1e3 * delay->value, 1e3 * delay->error));
+  leave_out(out, lost, "have no torque of their own instant");
 }
 
 // Rows of no piece have no derived motion, and the ends of a piece a poor one.

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+//
+// By how much a motor's torque or current comes later than the motion that it belongs to: through a
+// filter, or a bus on which it is sent after the position. Left as it is, the gravity and the
+// inertia that it is late with would pass for friction with the load, or with the acceleration.
+//
+// Told by the shift under which friction, inertia and gravity explain most, on rows well away from
+// rests and reversals: there friction that lags, as bristles do, goes with the motion's own terms.
+// NaN policy: values and times are finite, times increase within a piece. Cost: about 0.1 s.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "problems/dataset.hpp"
+#include "problems/preparation/motion_smoother.hpp"
+
+namespace tribench {
+
+struct EffortDelay {
+  double value = 0;  // s; negative: the torque comes first
+  double error = 0;  // standard error, the recording's eighths left out in turn
+};
+
+// Needs a time, an angle or a length, velocity, acceleration and motor_torque or motor_current;
+// nothing where one of them is missing or where the rows do not tell.
+std::optional<EffortDelay> effort_delay(const Dataset& data, std::span<const RowRange> pieces);
+
+// A channel as it is `delay` later, by straight lines between neighbours of a piece; rows whose
+// time lies outside of their piece then are marked in `lost`.
+struct Shifted {
+  std::vector<double> values;
+  std::vector<char> lost;
+};
+Shifted shifted_by(std::span<const double> time, std::span<const double> values,
+                   std::span<const RowRange> pieces, double delay);
+
+}  // namespace tribench

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "problems/preparation/effort_delay.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "problems/preparation/recording.hpp"
+#include "problems/preparation/segments.hpp"
+#include "problems/reading/csv.hpp"
+#include "tests/problems/preparation/raw_log.hpp"
+
+namespace tribench {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::RawLogPlan;
+using testing::RawSample;
+
+// The torque of `rows` before (later where negative) in each row.
+std::vector<RawSample> late(std::vector<RawSample> samples, int rows) {
+  const std::vector<RawSample> truth = samples;
+  const auto last = static_cast<int>(truth.size()) - 1;
+  for (int i = 0; i <= last; ++i) {
+    samples[static_cast<std::size_t>(i)].torque =
+        truth[static_cast<std::size_t>(std::clamp(i - rows, 0, last))].torque;
+  }
+  return samples;
+}
+
+Dataset table_of(const std::vector<RawSample>& samples) {
+  Dataset data;
+  data.movement_names = {"run"};
+  data.channels = {{"t", "s", Role::time, {}},
+                   {"q", "rad", Role::position, {}},
+                   {"v", "rad/s", Role::velocity, {}},
+                   {"a", "rad/s^2", Role::acceleration, {}},
+                   {"tau", "N m", Role::motor_torque, {}}};
+  for (const RawSample& sample : samples) {
+    const double row[] = {sample.time, sample.position, sample.velocity, sample.acceleration,
+                          sample.torque};
+    for (std::size_t k = 0; k < 5; ++k) data.channels[k].values.push_back(row[k]);
+    data.movement.push_back(0);
+  }
+  return data;
+}
+
+std::optional<EffortDelay> delay_in(const std::vector<RawSample>& samples) {
+  const Dataset data = table_of(samples);
+  return effort_delay(data, pieces_of(data.channels[0].values, data.movement, {}));
+}
+
+TEST(EffortDelay, IsFoundWhereTheTorqueComesLate) {
+  RawLogPlan plan;
+  plan.load = 0.08;
+  plan.seconds = 400;
+  for (const int rows : {10, 3, -4}) {
+    const std::optional<EffortDelay> delay = delay_in(late(simulate(plan), rows));
+    ASSERT_TRUE(delay) << rows;
+    EXPECT_NEAR(delay->value, rows * plan.step, std::max(4 * delay->error, 5e-4)) << rows;
+    EXPECT_LT(delay->error, 1e-3);
+  }
+}
+
+// Bristles of 0.004 rad that lag behind each reversal are no delay of the torque.
+TEST(EffortDelay, IsNoneWhereFrictionAloneLags) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    RawLogPlan plan;
+    plan.seed = seed;
+    plan.stribeck = 1;
+    const std::optional<EffortDelay> delay = delay_in(simulate(plan));
+    if (delay) {
+      EXPECT_LT(delay->value, std::max(5 * delay->error, 0.5 * plan.step)) << seed;
+    }
+  }
+}
+
+TEST(EffortDelay, NothingWithoutAnAcceleration) {
+  Dataset data = table_of(simulate(RawLogPlan()));
+  std::erase_if(data.channels, [](const Channel& one) { return one.role == Role::acceleration; });
+  EXPECT_FALSE(effort_delay(data, pieces_of(data.channels[0].values, data.movement, {})));
+}
+
+TEST(EffortDelay, AChannelIsTakenFromBetweenItsRows) {
+  const std::vector<double> time = {0, 1, 2, 3, 10, 11};
+  const std::vector<double> values = {0, 10, 20, 40, 7, 9};
+  const std::vector<RowRange> pieces = {{0, 4}, {4, 6}};
+  const Shifted late = shifted_by(time, values, pieces, 0.5);
+  EXPECT_THAT(late.lost, ::testing::ElementsAre(0, 0, 0, 1, 0, 1));
+  EXPECT_DOUBLE_EQ(late.values[2], 30);
+  EXPECT_DOUBLE_EQ(late.values[4], 8);
+  const Shifted early = shifted_by(time, values, pieces, -0.5);
+  EXPECT_THAT(early.lost, ::testing::ElementsAre(1, 0, 0, 0, 1, 0));
+  EXPECT_DOUBLE_EQ(early.values[3], 30);
+}
+
+PreparedRecording prepared(const std::vector<RawSample>& samples, const RawLogPlan& plan) {
+  DataOptions options;
+  options.torque_constant = TorqueConstant{plan.torque_constant, false};
+  return prepare(parse_csv(raw_table(samples, plan, {}), "log.csv", {}), options);
+}
+
+// The log of an encoder whose current comes 20 ms late says so and is mended.
+TEST(EffortDelay, ARawLogsLateCurrentIsTakenFromItsInstant) {
+  RawLogPlan plan;
+  plan.seconds = 400;
+  const std::vector<RawSample> samples = simulate(plan);
+  const PreparedRecording fine = prepared(samples, plan);
+  EXPECT_THAT(fine.notes, Not(Contains(HasSubstr("the motion that it belongs to"))));
+  const PreparedRecording mended = prepared(late(samples, 10), plan);
+  EXPECT_THAT(mended.notes, Contains(HasSubstr("ms after the motion that it belongs to")));
+}
+
+}  // namespace
+}  // namespace tribench
