@@ -21,6 +21,8 @@ constexpr double kRounding = 1e-12;
 // Constants are named where the rows are explained to this part of the target's size: beyond it
 // noise says nothing about their last digits.
 constexpr double kWorthNaming = 1e-5;
+// Nodes from which on rewriting costs tenths of a second, and a form is no law's.
+constexpr std::size_t kTooLong = 150;
 constexpr double kNearTogether = 1e-6;  // of the value
 constexpr double kNearNothing = 1e-9;
 
@@ -144,6 +146,7 @@ bool FormulaFinisher::name_a_constant(Expression& formula) {
 }
 
 Expression FormulaFinisher::finish(const Expression& formula) {
+  if (formula.size() > kTooLong) return formula;
   const RowErrors before = errors_of(formula);
   if (!std::isfinite(before.square)) return formula;
   Expression finished = shortest(formula);

@@ -10,7 +10,8 @@
 // Under noise that leaves the constants alone: at a least-squares optimum every other value errs
 // more.
 //
-// Cost: a few milliseconds for 30 nodes and 1000 rows (bench/fitting_bench).
+// Cost: a few milliseconds for 30 nodes and 1000 rows (bench/fitting_bench). Formulas of more than
+// 150 nodes, which are sums of a table's many terms, are left as they are.
 #pragma once
 
 #include <functional>

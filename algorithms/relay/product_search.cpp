@@ -189,7 +189,7 @@ std::vector<Expression> likely_products(const LogRows& rows, const OperatorSet& 
                                         Budget& budget) {
   std::vector<Expression> likely;
   if (!rows.target().has_logs() || !operators.allows(Op::mul) || rows.rows() < 20) return likely;
-  const std::vector<Column> columns = columns_of(rows, operators, 1);
+  const std::vector<Column> columns = columns_of(rows, operators, 2);
   const std::size_t n = rows.rows();
   std::vector<std::vector<double>> weighted;
   const auto add_weighted = [&](const std::vector<double>& values) {

@@ -64,6 +64,32 @@ TEST(Relay, AnswersWhenTheClockHasRunOutBeforeItsMembers) {
   }
 }
 
+// Listing what is likely under noise once took the whole of its part of the seconds, and nothing
+// of it was looked at.
+TEST(Relay, TellsALawUnderNoiseWithinASecond) {
+  const DrawnLaw law("a*b*c/(b + c)", {{"a", 1, 5}, {"b", 1, 100}, {"c", 1, 100}}, 256, 0.01);
+  FitOptions options = with_evaluations(4'000'000'000);
+  options.limits.cpu_seconds = 1;
+  const FitResult result = run_fit(law.data(), "relay", options);
+  EXPECT_LT(result.front[result.chosen].size(), 16U)
+      << print(result.front[result.chosen], law.names);
+  const DrawnLaw exact("a*b*c/(b + c)", {{"a", 1, 5}, {"b", 1, 100}, {"c", 1, 100}}, 256, 0, 2);
+  EXPECT_LT(exact.error_of(result.front[result.chosen]), 3e-3);
+}
+
+// A method is not begun when it could hardly prepare its rows: udsr took a seventh of a second
+// more.
+TEST(Relay, HoldsItsSeconds) {
+  const DrawnLaw law("n*t/(v - n*b) - a*n^2/v^2 + 0.1*sin(t*v)",
+                     {{"n", 1, 3}, {"t", 1, 3}, {"v", 4, 9}, {"b", 0.1, 1}, {"a", 1, 3}}, 256,
+                     0.01);
+  FitOptions options = with_evaluations(4'000'000'000);
+  options.limits.cpu_seconds = 0.5;
+  const double begin = process_cpu_seconds();
+  run_fit(law.data(), "relay", options);
+  EXPECT_LT(process_cpu_seconds() - begin, 1.2 * options.limits.cpu_seconds);
+}
+
 // Hundreds of pairs are left alone: what is looked for is still found, within memory and time.
 TEST(Relay, TakesDozensOfInputs) {
   std::vector<testing::DrawnInput> inputs;

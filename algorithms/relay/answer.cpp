@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/relay/answer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "algorithms/expression/complexity.hpp"
+#include "algorithms/expression/singularity.hpp"
+#include "algorithms/fitting/constant_fit.hpp"
+#include "algorithms/fitting/evidence_pruning.hpp"
+#include "algorithms/relay/long_sum.hpp"
+
+namespace tribench::relay {
+namespace {
+
+constexpr std::size_t kShort = 14;         // nodes of an exact formula
+constexpr std::size_t kLikelyFitted = 25;  // of those that structure proposes under noise
+constexpr std::size_t kLikelyTaken = 5;    // of these
+constexpr double kLate = 0.1;              // of all seconds
+constexpr double kOfPruning = 0.5;         // of the seconds that are left
+
+// Inserts a formula where it belongs; its place.
+std::size_t place_by_complexity(const Expression& formula, std::vector<Expression>& front) {
+  const int size = paper_complexity(formula);
+  const auto next = std::ranges::find_if(
+      front, [size](const Expression& other) { return paper_complexity(other) >= size; });
+  const auto place = static_cast<std::size_t>(next - front.begin());
+  front.insert(next, formula);
+  return place;
+}
+
+}  // namespace
+
+Answer::Answer(FitContext& context)
+    : context_(context),
+      rows_(context.data),
+      admission_(context),
+      joint_(rows_.table(), rows_.target, rows_.movement, input_box(context.data.inputs)),
+      seconds_(context.budget.remaining_seconds()) {}
+
+bool Answer::is_short() {
+  return has_formula() && joint_.formulas()[joint_.chosen()].size() <= kShort;
+}
+
+bool Answer::is_done() const {
+  return joint_.is_explained() || context_.budget.remaining() == 0 ||
+         context_.budget.out_of_time() || context_.budget.exhausted();
+}
+
+bool Answer::is_late() const { return context_.budget.remaining_seconds() < kLate * seconds_; }
+
+void Answer::offer(std::optional<Expression> found, std::string_view found_by) {
+  if (!found || !admission_.admits(*found)) return;
+  Expression formula = std::move(*found);
+  ConstantFitOptions options;
+  options.function_tolerance = 1e-14;
+  const ConstantFitResult fit =
+      ConstantFitter().fit(formula, rows_.table(), rows_.target, {}, options);
+  context_.budget.spend(fit.node_rows);
+  if (fit.status == FitStatus::not_finite) return;
+  joint_.add(std::array{std::move(formula)}, std::nullopt);
+  if (joint_.is_explained() && explained_by_.empty()) explained_by_ = found_by;
+}
+
+void Answer::offer_likeliest(std::span<const Expression> formulas, Budget& budget) {
+  JointFront proposed(rows_.table(), rows_.target, rows_.movement, {});
+  for (const Expression& formula : formulas) {
+    if (admission_.admits(formula)) proposed.add(std::array{formula}, 0);
+  }
+  JointFront likely(rows_.table(), rows_.target, rows_.movement, {});
+  ConstantFitter fitter;
+  for (Expression& formula : proposed.likeliest(kLikelyFitted)) {
+    if (!budget.in_time()) break;
+    const ConstantFitResult fit = fitter.fit(formula, rows_.table(), rows_.target);
+    budget.spend(fit.node_rows);
+    if (fit.status != FitStatus::not_finite) likely.add(std::array{std::move(formula)}, 0);
+  }
+  const InputBox box = input_box(context_.data.inputs);
+  for (const Expression& formula : likely.likeliest(kLikelyTaken)) {
+    if (!budget.in_time()) break;
+    if (prove_free(formula, box).verdict == Verdict::refuted) continue;
+    joint_.add(std::array{formula}, 0);
+  }
+}
+
+void Answer::add(const FitResult& result, std::string_view found_by) {
+  if (result.front.empty()) {
+    if (!result.note.empty()) say(fmt::format("{}: {}", found_by, result.note));
+    return;
+  }
+  joint_.add(result.front, result.chosen);
+  if (joint_.is_explained() && explained_by_.empty()) explained_by_ = found_by;
+}
+
+void Answer::prune(const Expression& formula) {
+  if (joint_.is_explained()) return;
+  Budget part = context_.budget.share(context_.budget.remaining() / 4, kOfPruning);
+  Expression pruned = pruned_by_evidence(
+      formula, rows_.table(), rows_.target, input_box(context_.data.inputs),
+      [&part](std::uint64_t node_rows) { return part.spend(node_rows) && part.in_time(); });
+  context_.budget.settle(part);
+  if (pruned == formula || !admission_.admits(pruned)) return;
+  joint_.add(std::array{std::move(pruned)}, 0);
+}
+
+void Answer::prune_likeliest() {
+  if (has_formula()) prune(joint_.likeliest(1)[0]);
+}
+
+FitResult Answer::result() && {
+  if (joint_.empty()) return FitResult::unsupported(std::move(note_));
+  if (!explained_by_.empty()) say(fmt::format("explained by {}", explained_by_));
+  FitResult result{joint_.formulas(), joint_.chosen(),
+                   context_.budget.exhausted() ? StopReason::budget : StopReason::converged,
+                   std::move(note_)};
+  if (yields_to_rival(result.front[result.chosen])) {
+    result.chosen = place_by_complexity(rival_->formula, result.front);
+  } else {
+    result.yields_to_plain_sum = true;
+  }
+  return result;
+}
+
+void Answer::set_rival(LinearSum sum, std::size_t rows) {
+  rival_ = std::move(sum);
+  rival_rows_ = rows;
+}
+
+// The chosen form was found with all rows, the rival's terms without those held out: nothing is
+// asked of it but to be nearer to them.
+bool Answer::yields_to_rival(const Expression& chosen) const {
+  return rival_ && !joint_.is_explained() &&
+         held_out_error(chosen, rows_, rival_rows_) > rival_->held_out;
+}
+
+void Answer::say(std::string_view what) {
+  if (!note_.empty()) note_ += "; ";
+  note_ += what;
+}
+
+}  // namespace tribench::relay

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+//
+// What one fit of relay has found so far: the formulas of all its searches on one front
+// (fitting/joint_front.hpp), which of them explained the rows, and the record's note.
+//
+// Not for looking for formulas: structure_search.hpp and the methods do, and ask here whether more
+// of it is of use.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "algorithms/admission.hpp"
+#include "algorithms/finite_rows.hpp"
+#include "algorithms/fitting/joint_front.hpp"
+#include "algorithms/fitting/linear_sum.hpp"
+#include "algorithms/regressor.hpp"
+
+namespace tribench::relay {
+
+class Answer {
+ public:
+  // The context is kept by reference; what is done here is spent from its budget.
+  explicit Answer(FitContext& context);
+
+  const FiniteRows& rows() const { return rows_; }
+  bool has_formula() const { return !joint_.empty(); }
+  // Whether the chosen formula is so short that another way is hardly shorter.
+  bool is_short();
+  // The rows are explained to rounding, or nothing is left to spend.
+  bool is_done() const;
+  // So little time is left that another method would hardly have prepared its rows.
+  bool is_late() const;
+
+  // Fits the constants of a formula, if there is one, to all rows and adds it. `found_by` is how
+  // the note calls the search.
+  void offer(std::optional<Expression> found, std::string_view found_by);
+  // Of formulas whose constants are still to be fitted those with the most evidence, without a
+  // pole in the ranges of the inputs: that is noise that was fitted.
+  void offer_likeliest(std::span<const Expression> formulas, Budget& budget);
+  // The formula with the most evidence so far; there is one.
+  Expression likeliest() const { return joint_.likeliest(1)[0]; }
+  // A sum of many terms, whose error was held out on so many rows (long_sum.hpp): it stands where
+  // what is chosen in the end is worse on these.
+  void set_rival(LinearSum sum, std::size_t rows);
+  // What another method found, or in the note why it found nothing.
+  void add(const FitResult& result, std::string_view found_by);
+  // The same formula with fewer numbers, where the rows do not mind; nothing once they are
+  // explained.
+  void prune(const Expression& formula);
+  void prune_likeliest();
+
+  FitResult result() &&;
+
+ private:
+  void say(std::string_view what);  // in the note
+  bool yields_to_rival(const Expression& chosen) const;
+
+  FitContext& context_;
+  FiniteRows rows_;
+  Admission admission_;
+  JointFront joint_;
+  double seconds_;  // to spend, in all
+  std::optional<LinearSum> rival_;
+  std::size_t rival_rows_ = 0;
+  std::string note_;
+  std::string explained_by_;
+};
+
+}  // namespace tribench::relay

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/relay/structure_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "algorithms/fitting/cross_validation.hpp"
+#include "algorithms/relay/index_fit.hpp"
+#include "algorithms/relay/long_sum.hpp"
+#include "algorithms/relay/product_search.hpp"
+#include "algorithms/relay/relation_search.hpp"
+#include "algorithms/relay/scaled_function.hpp"
+#include "algorithms/relay/surrogate.hpp"
+
+namespace tribench::relay {
+namespace {
+
+constexpr int kLastRound = 3;  // that looks at more
+// Rows that the searches for structure look at.
+constexpr std::size_t kSearchedRows = 512;
+constexpr std::size_t kMostCollapses = 3;
+constexpr std::size_t kFewRows = 300;        // that tell a sum of six among 700 columns
+constexpr std::size_t kLikelyColumns = 150;  // under noise, where the best of many fits it
+constexpr std::size_t kLikelyWaves = 400;
+constexpr std::size_t kColumns = 500;            // of the search for relations, a round
+constexpr std::size_t kMoreColumns = 700;        // with waves
+constexpr std::size_t kLongSum = 16;             // nodes
+constexpr std::size_t kOrders = 1500;            // of the search for fewer variables, a round
+constexpr std::uint64_t kReduced = 500'000'000;  // node-rows for reductions, half a second
+constexpr std::size_t kTried = 60;               // of reductions, most of them not true
+constexpr std::size_t kMoreWays = 5;   // that are looked at when one has explained the rows
+constexpr std::size_t kProblems = 16;  // in fewer variables that are looked at
+constexpr std::size_t kMostDepth = 3;  // of reductions
+// A surrogate's error, of the target's spread, below which noise is no matter.
+constexpr double kSurelyExact = 3e-3;
+// And of what a formula leaves, of its own spread, from which on it is noise.
+constexpr double kAllNoise = 0.95;
+constexpr std::size_t kRivalRows = 4000;  // of a long sum, a round
+constexpr double kQuarter = 0.25;      // of the seconds that are left, for a search for structure
+constexpr double kMost = 0.6;          // for reductions, which end by themselves
+constexpr double kHalf = 0.5;          // for a method on fewer variables
+constexpr std::size_t kFewInputs = 3;  // with which waves and differences are tried at once
+
+constexpr std::string_view kByProduct = "a product of powers";
+constexpr std::string_view kBySum = "a sum of products";
+constexpr std::string_view kByRoot = "a root of a quadratic equation";
+constexpr std::string_view kByReduction = "fewer variables";
+
+// Takes out of `open` what slopes say before guesses, and of these the problem with the fewest
+// inputs; none where it was seen before, on another way.
+std::optional<ReducedProblem> next_problem(std::vector<ReducedProblem>& open,
+                                           const std::vector<ReducedProblem>& seen) {
+  const auto next = std::ranges::min_element(open, {}, [](const ReducedProblem& problem) {
+    return std::pair(problem.is_guess(), problem.inputs());
+  });
+  ReducedProblem problem = std::move(*next);
+  open.erase(next);
+  const auto is_same = [&](const ReducedProblem& other) { return other.is_same_as(problem); };
+  if (std::ranges::any_of(seen, is_same)) return std::nullopt;
+  return problem;
+}
+
+}  // namespace
+
+StructureSearch::StructureSearch(FitContext& context, Answer& answer, const Regressor& solver,
+                                 int round, std::string_view without)
+    : context_(context), answer_(answer), solver_(solver), round_(round), without_(without) {}
+
+void StructureSearch::search() {
+  const LogRows rows(answer_.rows(), kSearchedRows);
+  if (rows.rows() == 0 || round_ > kLastRound) return;
+  Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
+  auto simpler = find_structure(rows, part);
+  context_.budget.settle(part);
+  search_likely();
+  if (is_noise_left_) return;
+  if (has(kReductions)) {
+    auto reduced = reduce(Guesses::no);
+    if (reduced && !simpler) simpler = std::move(reduced);
+  }
+  if (round_ == 0 && has(kSums) && !answer_.is_done()) search_waves();
+  if (simpler && !answer_.is_done()) search_by_solver(*simpler);
+}
+
+void StructureSearch::search_likely() {
+  const LogRows rows(answer_.rows(), kFewRows);
+  if (round_ > 0 || answer_.is_done() || rows.rows() == 0 || !has(kLikely)) return;
+  if (roughness_of(rows, rows.target().values) < kSurelyExact) return;
+  Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
+  std::vector<Expression> likely = likely_products(rows, context_.operators, part);
+  for (const auto& [columns, most] : {std::pair(Columns::powers_alone, kLikelyColumns),
+                                      std::pair(Columns::with_factors, kLikelyWaves)}) {
+    std::ranges::move(likely_relations(rows, context_.operators, columns, most, part),
+                      std::back_inserter(likely));
+  }
+  context_.budget.settle(part);
+  // A part of its own: listing may have taken all of the other one.
+  Budget fits = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
+  answer_.offer_likeliest(likely, fits);
+  context_.budget.settle(fits);
+  is_noise_left_ = answer_.has_formula() && leaves_noise(answer_.likeliest());
+}
+
+double StructureSearch::roughness_of(const LogRows& rows, std::span<const double> target) {
+  Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
+  const double error = Surrogate(rows, target, part).error();
+  context_.budget.settle(part);
+  return error;
+}
+
+// Whether a polynomial has nothing to say of what a formula leaves, on rows held out.
+bool StructureSearch::leaves_noise(const Expression& formula) {
+  const LogRows rows(answer_.rows(), kSearchedRows);
+  std::vector<double> left = factor_of(formula, rows).values;
+  for (std::size_t r = 0; r < left.size(); ++r) left[r] = rows.target().values[r] - left[r];
+  const double error = roughness_of(rows, left);
+  return std::isfinite(error) && error >= kAllNoise;
+}
+
+void StructureSearch::search_long_sum() {
+  // Beyond the rows products of distances grow as they like.
+  const bool stays_within =
+      !reaches_beyond(answer_.rows().table(), input_box(context_.data.inputs));
+  if (answer_.is_done() || !has(kLongSums) || !stays_within) return;
+  Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
+  const std::size_t most_rows = round_ == 0 ? kRivalRows : 4 * kRivalRows;
+  if (auto sum = fit_long_sum(answer_.rows(), context_.operators, most_rows, part)) {
+    answer_.set_rival(std::move(*sum), most_rows);
+  }
+  context_.budget.settle(part);
+}
+
+void StructureSearch::search_guesses() {
+  if (!has(kGuesses)) return;
+  const auto simpler = reduce(Guesses::yes);
+  if (simpler && !answer_.is_done()) search_by_solver(*simpler);
+}
+
+void StructureSearch::search_wide_sums() {
+  const LogRows rows(answer_.rows(), kSearchedRows);
+  if (rows.rows() == 0 || round_ > kLastRound || !has(kWideSums)) return;
+  Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
+  const OperatorSet& operators = context_.operators;
+  answer_.offer(find_relation(rows, operators, Columns::with_factors, 3 * kColumns << round_, part),
+                kBySum);
+  if (!answer_.is_done()) {
+    answer_.offer(find_root(rows, operators, Columns::with_factors, 2 * kColumns << round_, part),
+                  kByRoot);
+  }
+  context_.budget.settle(part);
+}
+
+// Sums and roots with waves: many columns, of fewer rows.
+void StructureSearch::search_waves() {
+  const LogRows rows(answer_.rows(), kFewRows);
+  Budget budget = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
+  const OperatorSet& operators = context_.operators;
+  answer_.offer(find_root(rows, operators, Columns::with_factors, kColumns, budget), kByRoot);
+  if (!answer_.is_done()) {
+    answer_.offer(find_relation(rows, operators, Columns::with_factors, kMoreColumns, budget),
+                  kBySum);
+  }
+  context_.budget.settle(budget);
+}
+
+void StructureSearch::find_products_and_sums(const LogRows& rows, Budget& budget) {
+  const OperatorSet& operators = context_.operators;
+  if (has(kProducts)) answer_.offer(find_product(rows, operators, budget), kByProduct);
+  if (answer_.is_done()) return;
+  std::optional<Expression> sum;
+  if (has(kSums)) sum = find_relation(rows, operators, Columns::powers_alone, kColumns, budget);
+  answer_.offer(sum, kBySum);
+  // A long sum of powers may be a short one of differences.
+  if (sum && sum->size() > kLongSum) {
+    answer_.offer(find_relation(rows, operators, Columns::with_factors, kColumns, budget), kBySum);
+  }
+  if (answer_.is_done()) return;
+  if (context_.data.inputs.size() == 1) solve(whole(), Width::narrow, budget);
+}
+
+std::optional<ReducedProblem> StructureSearch::find_structure(const LogRows& rows, Budget& budget) {
+  if (round_ == 0) {
+    find_products_and_sums(rows, budget);
+    if (answer_.is_done()) return std::nullopt;
+  }
+  if (!has(kCollapses)) return std::nullopt;
+  const auto collapses =
+      find_collapses(rows, context_.operators, kOrders << round_, kMostCollapses, budget);
+  for (const Collapse& collapse : collapses) {
+    solve(collapsed(collapse), Width::narrow, budget);
+    if (answer_.is_done()) return std::nullopt;
+  }
+  if (collapses.empty() || !collapses[0].is_smooth) return std::nullopt;
+  return collapsed(collapses[0]);
+}
+
+ReducedProblem StructureSearch::collapsed(const Collapse& collapse) const {
+  return {whole(), Reduction{TargetForm::plain, false, collapse.outer, {collapse.inner}}};
+}
+
+// g among products, short sums and known functions.
+void StructureSearch::solve(const ReducedProblem& problem, Width width, Budget& budget) {
+  const FiniteRows all(problem.data());
+  const LogRows rows(all, kSearchedRows);
+  if (rows.rows() == 0) return;
+  const OperatorSet& operators = context_.operators;
+  const auto try_g = [&](const std::optional<Expression>& g) {
+    if (g) answer_.offer(problem.restored(*g), kByReduction);
+  };
+  try_g(find_product(rows, operators, budget));
+  // All: the front's choice takes the shortest, and tells tanh x from x - x^3/3 where x is small.
+  try_g(find_relation(rows, operators, Columns::powers_alone, kColumns, budget));
+  if (problem.inputs() == 1) {
+    try_g(find_function(rows, operators, budget));
+    if (!answer_.is_done()) try_g(find_scaled_function(rows, operators, budget));
+  }
+  if (width == Width::narrow || problem.inputs() > kFewInputs || answer_.is_done()) return;
+  const std::size_t columns = problem.inputs() == 1 ? kColumns / 5 : 2 * kColumns;
+  try_g(find_relation(rows, operators, Columns::with_factors, columns, budget));
+}
+
+// g by another method.
+void StructureSearch::search_by_solver(const ReducedProblem& problem) {
+  const TrainingData data = problem.data();
+  Budget part = context_.budget.share(context_.budget.remaining() / 4, kHalf);
+  FitContext turn{
+      data, context_.operators, part, context_.random.split("reduced"), context_.threads, nullptr};
+  const FitResult found = solver_.fit(turn);
+  context_.budget.settle(part);
+  for (const Expression& g : found.front) answer_.offer(problem.restored(g), kByReduction);
+}
+
+std::optional<ReducedProblem> StructureSearch::reduce(Guesses guesses) {
+  const OperatorSet& operators = context_.operators;
+  const bool is_possible = operators.allows(Op::mul) && operators.allows(Op::div);
+  if ((answer_.is_done() && answer_.is_short()) || round_ > 0 || !is_possible ||
+      answer_.rows().rows() == 0) {
+    return std::nullopt;
+  }
+  const std::uint64_t most = guesses == Guesses::yes ? 3 * kReduced : kReduced;
+  Budget budget = context_.budget.share(std::min(context_.budget.remaining() / 4, most), kMost);
+  std::vector<ReducedProblem> open;
+  open.push_back(whole());
+  std::vector<ReducedProblem> seen;
+  std::size_t tried = 0;
+  std::size_t after = 0;  // looked at since the rows were explained: there may be a shorter way
+  while (!open.empty() && seen.size() < kProblems && tried < kTried && after < kMoreWays &&
+         !budget.exhausted()) {
+    std::optional<ReducedProblem> problem = next_problem(open, seen);
+    if (!problem) continue;
+    ++tried;
+    if (!look_at(*problem, guesses, open, budget)) continue;
+    seen.push_back(std::move(*problem));
+    if (answer_.is_done() && seen.back().depth() > 0) ++after;
+  }
+  context_.budget.settle(budget);
+  const auto fewest = std::ranges::min_element(seen, {}, &ReducedProblem::inputs);
+  if (fewest == seen.end() || fewest->depth() == 0) return std::nullopt;
+  return std::move(*fewest);
+}
+
+bool StructureSearch::look_at(ReducedProblem& problem, Guesses guesses,
+                              std::vector<ReducedProblem>& open, Budget& budget) {
+  const FiniteRows all(problem.data());
+  const LogRows rows(all, kSearchedRows);
+  Reductions further = find_reductions(rows, guesses, budget);
+  if (!(further.roughness <= problem.most_roughness())) return false;
+  problem.set_roughness(further.roughness);
+  if (problem.depth() > 0) solve(problem, Width::wide, budget);
+  for (Reduction& each : further.list) {
+    if (problem.depth() < kMostDepth) open.emplace_back(problem, std::move(each));
+  }
+  return true;
+}
+
+}  // namespace tribench::relay
