@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/fitting/product_blocking.hpp"
 #include "foundation/error.hpp"
 #include "foundation/standard_streams.hpp"
 #include "foundation/suggestion.hpp"
@@ -161,6 +162,7 @@ int run_guarded(int argc, char** argv, const Registry& registry) {
 
 int run_program(int argc, char** argv, const Registry& registry) {
   take_standard_streams();
+  pin_product_blocking();
   const int status = run_guarded(argc, argv, registry);
   if (has_output_arrived()) return status;
   print_message("tribench: the standard output cannot be written; check where it goes\n");
