@@ -2,6 +2,7 @@
 #include "harness/benches.hpp"
 
 #include <fmt/format.h>
+#include <gnu/libc-version.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -49,6 +50,11 @@ std::string counted_level() {
   const bool has_avx2 = std::ranges::count(levels, VectorLevel::avx2) > 0;
   return std::string(vector_level_name(has_avx2 ? VectorLevel::avx2 : VectorLevel::baseline));
 }
+
+// The simulated machine has these caches: valgrind would otherwise take those of the processor it
+// runs on, and misses of two machines would be two different figures.
+constexpr const char* kFirstLevel = "32768,8,64";
+constexpr const char* kLastLevel = "8388608,16,64";
 
 std::string valgrind_version() {
   try {
@@ -114,11 +120,12 @@ NightBench& bench_of(Benches& benches, const fs::path& program, const json& each
 
 std::string count(const fs::path& program, const BenchOptions& options, Benches& benches) {
   const ScratchFolder scratch;
-  const std::string complaint =
-      run_program({"env", "-i", kPath, "TRIBENCH_VECTOR_LEVEL=" + counted_level(),
-                   "TRIBENCH_NIGHT=1", "valgrind", "--tool=callgrind", "--cache-sim=yes",
-                   "--instr-atstart=no", "--callgrind-out-file=counted"},
-                  program, {"--benchmark_min_time=0"}, scratch.path(), options.patience_s);
+  const std::string complaint = run_program(
+      {"env", "-i", kPath, "TRIBENCH_VECTOR_LEVEL=" + counted_level(), "TRIBENCH_NIGHT=1",
+       "valgrind", "--tool=callgrind", "--cache-sim=yes", fmt::format("--I1={}", kFirstLevel),
+       fmt::format("--D1={}", kFirstLevel), fmt::format("--LL={}", kLastLevel),
+       "--instr-atstart=no", "--callgrind-out-file=counted"},
+      program, {"--benchmark_min_time=0"}, scratch.path(), options.patience_s);
   if (!complaint.empty()) return complaint;
   for (const json& each : cases_of(scratch.path())) {
     const int dump = static_cast<int>(each.value("counted", 0.0));
@@ -167,8 +174,10 @@ BenchRun run_benches(const BenchOptions& options, const std::atomic<bool>& stop)
   BenchRun run;
   Benches benches;
   const std::string version = valgrind_version();
-  run.conditions =
-      version.empty() ? "not counted" : fmt::format("{}, {}", version, counted_level());
+  run.conditions = version.empty()
+                       ? "not counted"
+                       : fmt::format("{}, {}, caches {} {}, glibc {}", version, counted_level(),
+                                     kFirstLevel, kLastLevel, gnu_get_libc_version());
   if (version.empty()) {
     run.complaints.emplace_back("valgrind is not installed: nothing was counted");
   }

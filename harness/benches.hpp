@@ -5,8 +5,9 @@
 //
 // Counting: callgrind with cache simulation, the loops' first to last turn, one turn each, so that
 // no clock decides how much is done. The vector level is pinned to one that valgrind knows
-// (it has no AVX-512), the environment is emptied and paths are made alike: what lies on the stack
-// moves addresses, and addresses decide misses.
+// (it has no AVX-512), the caches are pinned, too, the environment is emptied and paths are made
+// alike: what lies on the stack moves addresses, and addresses decide misses. What is counted is
+// the same again and again on one machine; another kind leaves another heap before the loop begins.
 //
 // Timing: Google Benchmark, several repetitions, each case's CPU time divided by that of the
 // reference kernel run before and after it in the same thread.
@@ -30,7 +31,7 @@ struct BenchOptions {
 
 struct BenchRun {
   std::vector<NightBench> benches;  // by program and case
-  std::string conditions;           // "valgrind-3.19.0, avx2"; "not counted" without valgrind
+  std::string conditions;           // valgrind, level, caches, C library; or "not counted"
   std::vector<std::string> complaints;
 };
 

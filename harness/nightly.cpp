@@ -31,7 +31,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPending = "pending";  // a run that has not been recorded yet
+constexpr const char* kPending = "pending";   // a run that has not been recorded yet
+const std::string kAbandoned = "abandoned-";  // one that could not be gone on with
+
+// A time as names of files have it.
+std::string file_time(std::string when) {
+  std::erase(when, ':');
+  return when;
+}
 
 // One night at a time; the kernel lets go of it however this process ends.
 class StoreLock {
@@ -62,6 +69,17 @@ void require_free_disk(const NightlyOptions& options) {
   throw Error(ErrorKind::environment, fmt::format("{:.0f} MiB are free", free_mib),
               options.store.string(),
               fmt::format("make room for {:.0f} MiB (--least-free)", options.least_free_mib));
+}
+
+// Nights are ordered by when they began: one with a clock that was set back would stand before
+// nights that it comes after, and be compared with none of them.
+void require_running_clock(const NightStore& store) {
+  const std::vector<std::string> names = store.names();
+  const std::string now = file_time(utc_now());
+  if (names.empty() || names.back().substr(0, now.size()) <= now) return;
+  throw_bad_input(fmt::format("the clock says {}, which is before the newest night", now),
+                  names.back(),
+                  "set the clock; a night from a wrong clock can be taken out of nights/");
 }
 
 // The first night, recorded and perhaps blessed, but cut short before its run got its name.
@@ -102,8 +120,7 @@ WholeRun run_pending(const Grid& grid, RunOptions options, const std::atomic<boo
                           data_identity(grid, options.data)};
     if (read_journal(options.out / "cells.jsonl").identity.difference(now).empty()) throw;
   }
-  std::string aside = fmt::format("abandoned-{}", utc_now());
-  std::erase(aside, ':');
+  const std::string aside = kAbandoned + file_time(utc_now());
   fs::rename(options.out, options.out.parent_path() / aside);
   return run_whole(grid, options, stop);
 }
@@ -138,7 +155,11 @@ void keep_last_runs(const NightStore& store, const std::string& base, std::size_
     if (entry.is_directory() && entry.path().filename() != kPending)
       folders.push_back(entry.path());
   }
-  std::ranges::sort(folders);
+  // By time, whatever they are called: else what was put aside would count as the newest for ever.
+  std::ranges::sort(folders, {}, [](const fs::path& folder) {
+    const std::string name = folder.filename().string();
+    return name.starts_with(kAbandoned) ? name.substr(kAbandoned.size()) : name;
+  });
   for (std::size_t i = 0; i + keep < folders.size(); ++i) {
     if (folders[i].filename() != base) fs::remove_all(folders[i]);
   }
@@ -245,8 +266,7 @@ NightTestOptions nightly_tests() {
 }
 
 std::string night_name(const RunFolder& run) {
-  std::string when = run.provenance_of("sessions.0.started");
-  std::erase(when, ':');
+  const std::string when = file_time(run.provenance_of("sessions.0.started"));
   if (when.empty()) {
     throw_bad_input("the run does not say when it started", (run.path / "provenance.json").string(),
                     "run 'tribench report' on the folder, or leave the run out");
@@ -261,6 +281,7 @@ NightlyResult run_night(const Grid& grid, const NightlyOptions& options,
   const StoreLock lock(options.store);
   require_free_disk(options);
   if (!options.benches.empty()) require_benches(options.benches);
+  require_running_clock(store);
   const std::optional<Night> base = usable_base(store);
   RunOptions running = options.run;
   running.out = store.runs() / kPending;

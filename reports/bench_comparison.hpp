@@ -4,9 +4,10 @@
 // seconds drown in noise.
 //
 // Instructions and cache misses are counted on a simulated machine: equal code counts equally (to
-// one in a thousand, what addresses and the heap's state leave), so that half a percent more is a
-// fact and no matter of chance. Time is paired with a reference kernel in the same process and
-// still depends on what else the machine does: it raises a doubt, never an alarm.
+// one in a thousand, what addresses and the heap's state leave) on one kind of machine, so that
+// half a percent more is a fact and no matter of chance. Time is paired with a reference kernel in
+// the same process and still depends on what else the machine does: it raises a doubt, never an
+// alarm.
 #pragma once
 
 #include <string>
@@ -34,7 +35,7 @@ struct BenchChange {
 struct BenchComparison {
   bool was_asked = false;           // both nights have benches
   bool is_first = false;            // this night has, the base has none
-  std::string why_not_counted;      // other tool or vector level than the base's; empty: compared
+  std::string why_not_counted;      // other tool, level or library than the base's; empty: compared
   std::size_t cases = 0;            // in both
   std::vector<std::string> gone;    // cases of the base that are missing now
   std::vector<BenchChange> worse;   // instructions and misses; the largest first

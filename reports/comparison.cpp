@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
 
@@ -288,6 +289,40 @@ double sign_test(std::size_t worse, std::size_t better) {
   return std::min(1.0, 2 * tail);
 }
 
+void count_failure(const Record& before, const Record& now, Comparison& comparison) {
+  if (is_ok(before) && !is_ok(now)) {
+    comparison.newly_failed.push_back(now.cell);
+    if (!is_limit(now.reason.kind)) comparison.newly_broken.push_back(now.cell);
+  }
+  if (!is_ok(before) && is_ok(now)) comparison.newly_fine.push_back(now.cell);
+}
+
+void count_proof(const Record& before, const Record& now, Comparison& comparison) {
+  const std::optional<Singularity> then = before.singularity;
+  const std::optional<Singularity> after = now.singularity;
+  if (after == Singularity::refuted && then != Singularity::refuted) {
+    comparison.newly_singular.push_back(now.cell);
+  }
+  if (then == Singularity::refuted && is_ok(now) && after != Singularity::refuted) {
+    comparison.no_longer_singular.push_back(now.cell);
+  }
+  if (then == Singularity::proved_free && after == Singularity::undecided) {
+    comparison.newly_unproved.push_back(now.cell);
+  }
+  if (then == Singularity::undecided && after == Singularity::proved_free) {
+    comparison.newly_proved.push_back(now.cell);
+  }
+}
+
+void test_counts(Comparison& comparison) {
+  comparison.singular_p =
+      sign_test(comparison.newly_singular.size(), comparison.no_longer_singular.size());
+  comparison.unproved_p =
+      sign_test(comparison.newly_unproved.size(), comparison.newly_proved.size());
+  comparison.limits_p = sign_test(comparison.newly_failed.size() - comparison.newly_broken.size(),
+                                  comparison.newly_fine.size());
+}
+
 std::vector<Pair> count_cells(const RunFolder& base, const RunFolder& now, Comparison& comparison) {
   std::unordered_map<std::string_view, const Record*> by_cell;
   for (const Record& record : base.records) by_cell[record.cell] = &record;
@@ -301,27 +336,10 @@ std::vector<Pair> count_cells(const RunFolder& base, const RunFolder& now, Compa
     const Record& before = *found->second;
     pairs.push_back({&before, &record});
     if (timeless(before) == timeless(record)) ++comparison.identical;
-    if (is_ok(before) && !is_ok(record)) {
-      comparison.newly_failed.push_back(record.cell);
-      if (!is_limit(record.reason.kind)) comparison.newly_broken.push_back(record.cell);
-    }
-    if (!is_ok(before) && is_ok(record)) comparison.newly_fine.push_back(record.cell);
-    if (record.singularity == Singularity::refuted && before.singularity != Singularity::refuted) {
-      comparison.newly_singular.push_back(record.cell);
-    }
-    if (before.singularity == Singularity::refuted && is_ok(record) &&
-        record.singularity != Singularity::refuted) {
-      comparison.no_longer_singular.push_back(record.cell);
-    }
-    if (before.singularity == Singularity::proved_free &&
-        record.singularity == Singularity::undecided) {
-      comparison.newly_unproved.push_back(record.cell);
-    }
+    count_failure(before, record, comparison);
+    count_proof(before, record, comparison);
   }
-  comparison.singular_p =
-      sign_test(comparison.newly_singular.size(), comparison.no_longer_singular.size());
-  comparison.limits_p = sign_test(comparison.newly_failed.size() - comparison.newly_broken.size(),
-                                  comparison.newly_fine.size());
+  test_counts(comparison);
   comparison.common = pairs.size();
   comparison.only_base = base.records.size() - pairs.size();
   return pairs;
@@ -398,6 +416,10 @@ std::vector<std::string> Comparison::doubts() const {
       singular_p > level) {
     all.push_back(fmt::format("{} formulas are newly singular, {} no longer", newly_singular.size(),
                               no_longer_singular.size()));
+  }
+  if (newly_unproved.size() > newly_proved.size() && unproved_p <= kSuspicious) {
+    all.push_back(fmt::format("{} formulas are newly without a proof, {} have one again",
+                              newly_unproved.size(), newly_proved.size()));
   }
   return all;
 }

@@ -85,8 +85,10 @@ struct Comparison {
   std::vector<std::string> newly_singular;  // refuted now, not before
   std::vector<std::string> no_longer_singular;
   std::vector<std::string> newly_unproved;  // proved free before, undecided now
-  double singular_p = 1;                    // of the two counts above (exact sign test)
-  std::vector<std::string> conditions;      // in what the two runs were asked differently
+  std::vector<std::string> newly_proved;    // the other way round
+  double singular_p = 1;                // of newly and no longer singular ones (exact sign test)
+  double unproved_p = 1;                // of the two counts of proofs
+  std::vector<std::string> conditions;  // in what the two runs were asked differently
   bool conditions_allowed = false;
   double tolerance = 0.05;
   std::vector<ComparisonRow> quality;  // pooled rows first, then by problem

@@ -105,6 +105,7 @@ std::string outcome_text(const Comparison& comparison) {
   text += cell_list("Newly singular", comparison.newly_singular);
   text += cell_list("No longer singular", comparison.no_longer_singular);
   text += cell_list("Newly without a proof", comparison.newly_unproved);
+  text += cell_list("Newly proved", comparison.newly_proved);
   return text;
 }
 
@@ -152,6 +153,7 @@ ordered_json comparison_json(const Comparison& comparison) {
           {"newly_failed", comparison.newly_failed},
           {"newly_fine", comparison.newly_fine},
           {"newly_singular", comparison.newly_singular},
+          {"newly_unproved", comparison.newly_unproved},
           {"no_longer_singular", comparison.no_longer_singular},
           {"newly_unproved", comparison.newly_unproved},
           {"quality", rows_json(comparison.quality)},

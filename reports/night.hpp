@@ -51,7 +51,7 @@ struct Night {
   std::string grid;     // hash of the grid as it took effect
   std::string data;     // hash of the data
   std::string outcome;  // of the comparison with the base: "No regression", "REGRESSION", ...
-  std::string bench_conditions;  // of the counts: tool and vector level
+  std::string bench_conditions;  // of the counts: tool, vector level, caches, C library
   std::vector<NightSeries> series;
   std::vector<NightBench> benches;
 };

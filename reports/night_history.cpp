@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <unordered_map>
 
 #include "foundation/elementary.hpp"
@@ -141,18 +142,34 @@ std::vector<HistoryChange> changes_of(const StoreHistory& history) {
   return all;
 }
 
-std::string history_text(const StoreHistory& history) {
-  std::string text =
-      fmt::format("{} nights, {} series", history.nights.size(), history.series.size());
-  if (!history.benches.empty()) text += fmt::format(", {} benches", history.benches.size());
-  if (!history.blessings.empty()) {
-    const Blessing& last = history.blessings.back();
-    text += fmt::format("; base {} ({})", last.night, last.reason);
+CountSpread spread_of_counts(const StoreHistory& history) {
+  CountSpread widest;
+  for (const BenchHistory& bench : history.benches) {
+    std::map<std::string, std::vector<double>> by_commit;
+    for (std::size_t k = 0; k < bench.nights.size(); ++k) {
+      by_commit[history.nights[bench.nights[k]].commit].push_back(bench.instructions[k]);
+    }
+    for (const auto& [commit, counts] : by_commit) {
+      if (counts.size() < 2) continue;
+      const auto [least, most] = std::ranges::minmax(counts);
+      const double spread = elementary::expm1(most - least);
+      ++widest.cases;
+      widest.nights = std::max(widest.nights, counts.size());
+      if (widest.name.empty() || spread > widest.spread) {
+        widest.spread = spread;
+        widest.name = bench.name;
+      }
+    }
   }
-  text += "\n";
-  for (const std::string& damage : history.damaged) text += "damaged: " + damage + "\n";
+  return widest;
+}
+
+namespace {
+
+// The changes of level as a table.
+std::string changes_text(const StoreHistory& history) {
   const std::vector<HistoryChange> changes = changes_of(history);
-  if (changes.empty()) return text + "No change of level.\n";
+  if (changes.empty()) return "No change of level.\n";
   MarkdownTable table({{"first night"},
                        {"figure"},
                        {"problem"},
@@ -166,7 +183,27 @@ std::string history_text(const StoreHistory& history) {
     table.add({night.name, each.figure, each.problem, each.method, each.operators,
                figure(each.ratio, 4), night.commit, night.machine});
   }
-  return text + "\n" + table.text();
+  return "\n" + table.text();
+}
+
+}  // namespace
+
+std::string history_text(const StoreHistory& history) {
+  std::string text =
+      fmt::format("{} nights, {} series", history.nights.size(), history.series.size());
+  if (!history.benches.empty()) text += fmt::format(", {} benches", history.benches.size());
+  if (!history.blessings.empty()) {
+    const Blessing& last = history.blessings.back();
+    text += fmt::format("; base {} ({})", last.night, last.reason);
+  }
+  text += "\n";
+  for (const std::string& damage : history.damaged) text += "damaged: " + damage + "\n";
+  if (const CountSpread counts = spread_of_counts(history); counts.cases > 0) {
+    text +=
+        fmt::format("Counts of one commit's nights ({} at most) differ by {:.4f} % at most ({})\n",
+                    counts.nights, 100 * counts.spread, counts.name);
+  }
+  return text + changes_text(history);
 }
 
 }  // namespace tribench

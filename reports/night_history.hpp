@@ -57,6 +57,16 @@ struct HistoryChange {
 // The newest first, in one night the largest.
 std::vector<HistoryChange> changes_of(const StoreHistory& history);
 
+// How far a case's instructions differ between nights of one commit, whatever machine counted them:
+// the widest of all cases. What equal code is said to differ by.
+struct CountSpread {
+  std::size_t cases = 0;   // cases (and commits) that were counted twice or more
+  std::size_t nights = 0;  // the most nights of one commit
+  double spread = 0;       // most / least - 1
+  std::string name;        // of that case
+};
+CountSpread spread_of_counts(const StoreHistory& history);
+
 // Nights, base and changes as Markdown.
 std::string history_text(const StoreHistory& history);
 

@@ -109,6 +109,12 @@ void NightStore::bless(const Blessing& blessing) {
   if (blessing.reason.empty()) {
     throw_bad_input("a blessing needs a reason", "bless", "say why this level is the right one");
   }
+  if (const std::vector<Blessing> before = blessings();
+      !before.empty() && blessing.when < before.back().when) {
+    throw_bad_input(fmt::format("the clock says {}, and the last blessing is of {}", blessing.when,
+                                before.back().when),
+                    "bless", "set the clock: the last blessing by its time is the one that counts");
+  }
   // Two in the same second: the later one has the longer name, and sorts behind.
   std::string name = blessing.when;
   std::erase(name, ':');

@@ -36,7 +36,8 @@ class NightStore {
   // Throws Error (bad_input) where it is missing or damaged.
   Night read(const std::string& name, bool with_seeds = true) const;
 
-  // Throws Error (bad_input) where the store does not have the night.
+  // Throws Error (bad_input) where the store does not have the night, or where `when` lies before
+  // the last blessing: a clock was set back, and this one would change nothing.
   void bless(const Blessing& blessing);
   std::vector<Blessing> blessings() const;  // oldest first; throws where one is damaged
   // The night to compare with: of the last blessing. Nothing in a store without nights. Throws

@@ -8,9 +8,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "foundation/error.hpp"
 #include "foundation/output_file.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/nightly.hpp"
@@ -24,7 +26,7 @@ namespace {
 
 struct HistoryArguments {
   std::string store;
-  std::string run;
+  std::vector<std::string> runs;
   std::string night;
   std::string reason;
   std::string page;
@@ -77,10 +79,12 @@ void show(const HistoryArguments& arguments) {
 
 void record(const HistoryArguments& arguments) {
   NightStore store(arguments.store);
-  const RunFolder run = read_run_folder(arguments.run);
-  const Night night = night_of_run(run, night_name(run));
-  store.record(night);
-  fmt::print("{}\n", night.name);
+  for (const std::string& folder : arguments.runs) {
+    const RunFolder run = read_run_folder(folder);
+    const Night night = night_of_run(run, night_name(run));
+    store.record(night);
+    fmt::print("{}\n", night.name);
+  }
 }
 
 void bless(const HistoryArguments& arguments) {
@@ -90,6 +94,14 @@ void bless(const HistoryArguments& arguments) {
   const std::string night = arguments.night.empty() ? names.back() : arguments.night;
   store.bless({night, arguments.reason, utc_now()});
   fmt::print("base from now on: {}\n", night);
+  // A store of records alone has no runs at all; 'tribench nightly' compares cell by cell.
+  if (std::filesystem::exists(store.runs()) &&
+      !std::filesystem::exists(store.runs() / night / "results.csv")) {
+    print_message(fmt::format(
+        "tribench: {}: the night's run is not kept any more: 'tribench nightly' will refuse this "
+        "base until the folder is brought back\n",
+        (store.runs() / night).string()));
+  }
 }
 
 void prune(const HistoryArguments& arguments) {
@@ -118,7 +130,7 @@ void add_history_command(CLI::App& app, ExitStatus& /*status*/) {
   shown->add_option("--feed", arguments->feed, "write a feed (Atom) of the changes");
   shown->add_flag("--json", arguments->json, "{nights, series, benches, damaged, base, changes}");
   add("record", "Keeps what matters of a run; a night is never changed", record)
-      ->add_option("run", arguments->run, "the run's folder")
+      ->add_option("run", arguments->runs, "folders of runs, in any order")
       ->required();
   CLI::App* blessed = add("bless", "Accepts the level of a night as the base from now on", bless);
   blessed->add_option("reason", arguments->reason, "why, in a line")->required();

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <iterator>
 #include <thread>
 
 #include "foundation/child_process.hpp"
@@ -71,6 +72,9 @@ class NightlyTest : public ::testing::Test {
     return run_tribench(words);
   }
   std::filesystem::path store() const { return folder_ / "store"; }
+  static int count_files(const std::filesystem::path& folder) {
+    return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
+  }
   static void next_second() { std::this_thread::sleep_for(std::chrono::milliseconds(1100)); }
 
   TemporaryFolder folder_;
@@ -101,6 +105,27 @@ TEST_F(NightlyTest, TheFirstIsTheBaseTheSecondIsComparedAndAWorseOneIsFound) {
   EXPECT_EQ(night().status, 0);
   EXPECT_THAT(history("show").output, HasSubstr("5 nights, 2 series; base"));
   EXPECT_TRUE(std::filesystem::exists(store() / "nights.html"));
+}
+
+TEST_F(NightlyTest, FoldersOfRunsBecomeAHistoryAndABaseWithoutItsRunIsSaid) {
+  write_grid("2_000_000");
+  ASSERT_EQ(night().status, 0);
+  next_second();
+  ASSERT_EQ(night().status, 0);
+  std::vector<std::string> words = {"history", "record", (folder_ / "another").string()};
+  for (const auto& entry : std::filesystem::directory_iterator(store() / "runs")) {
+    words.push_back(entry.path().string());
+  }
+  ASSERT_EQ(run_tribench(words).status, 0);
+  const ProgramRun shown = run_tribench({"history", "show", (folder_ / "another").string()});
+  EXPECT_THAT(shown.output, HasSubstr("2 nights, 2 series"));
+  const ProgramRun kept = history("bless", {"its run is here"});
+  EXPECT_EQ(kept.errors, "");
+  std::filesystem::remove_all(words.back());
+  const std::string name = std::filesystem::path(words.back()).filename().string();
+  const ProgramRun gone = history("bless", {"its run is gone", "--night", name});
+  EXPECT_EQ(gone.status, 0);
+  EXPECT_THAT(gone.errors, HasSubstr("the night's run is not kept any more"));
 }
 
 TEST_F(NightlyTest, AnotherBudgetIsUndecidedAndSaidFirst) {
@@ -149,6 +174,32 @@ TEST_F(NightlyTest, ASecondOneAtATimeAndAFullDiskAreRefused) {
   const ProgramRun second = night();
   EXPECT_EQ(second.status, 2);
   EXPECT_THAT(second.errors, HasSubstr("another night is using this store"));
+}
+
+// Of the runs the newest stay, and what was put aside years ago is none of them.
+TEST_F(NightlyTest, ARunThatWasPutAsideIsAsOldAsItIs) {
+  write_grid("2_000_000");
+  const std::filesystem::path aside = store() / "runs" / "abandoned-2020-01-01T000000Z";
+  std::filesystem::create_directories(aside);
+  ASSERT_EQ(night({"--keep-runs", "1"}).status, 0);
+  next_second();
+  ASSERT_EQ(night({"--keep-runs", "1"}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(aside));
+  EXPECT_EQ(count_files(store() / "runs"), 2) << "the base and the newest";
+}
+
+TEST_F(NightlyTest, AClockThatWasSetBackIsRefused) {
+  write_grid("2_000_000");
+  ASSERT_EQ(night().status, 0);
+  for (const auto& entry : std::filesystem::directory_iterator(store() / "nights")) {
+    std::filesystem::copy_file(entry.path(),
+                               store() / "nights" / "2999-01-01T000000Z-abcdef123456.night");
+    break;
+  }
+  const ProgramRun late = night();
+  EXPECT_EQ(late.status, 2);
+  EXPECT_THAT(late.errors, HasSubstr("before the newest night"));
+  EXPECT_FALSE(std::filesystem::exists(store() / "runs" / "pending"));
 }
 
 // A power cut at any moment: the store is whole and the next night goes on.

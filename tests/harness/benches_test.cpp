@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -80,6 +81,20 @@ TEST_F(BenchesTest, TwentyOneRunsCountAlikeAndOnePerCentMoreWorkIsAlwaysFound) {
     ASSERT_EQ(found.worse.size(), 1U);
     EXPECT_NEAR(found.worse.front().ratio, 1.01, 1e-3);
   }
+}
+
+// A night counts one turn of each case: a program whose checks want more is never counted. What of
+// it has been built is asked.
+TEST_F(BenchesTest, EveryProgramEndsWellAfterOneTurnOfEachCase) {
+  int programs = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(TRIBENCH_BENCHES)) {
+    if (!entry.is_regular_file() || ::access(entry.path().c_str(), X_OK) != 0) continue;
+    const testing::ProgramRun run = testing::run_to_end(
+        {"env", "TRIBENCH_NIGHT=1", entry.path().string(), "--benchmark_min_time=0"});
+    EXPECT_EQ(run.status, 0) << entry.path() << run.errors;
+    ++programs;
+  }
+  if (programs == 0) GTEST_SKIP() << "no bench is built";
 }
 
 }  // namespace

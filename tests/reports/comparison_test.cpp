@@ -295,6 +295,21 @@ TEST(Comparison, MissingCellsAndSingularFormulasCount) {
   EXPECT_EQ(compare_runs(base, now).outcome(), ComparisonOutcome::regression);
 }
 
+TEST(Comparison, ProofsThatAreLostLeaveItUndecided) {
+  RunFolder base = noisy_run("x", 20);
+  for (Record& record : base.records) record.singularity = Singularity::proved_free;
+  RunFolder now = base;
+  now.records[0].singularity = Singularity::undecided;
+  EXPECT_EQ(compare_runs(base, now).outcome(), ComparisonOutcome::fine) << "one is chance";
+  for (std::size_t i = 0; i < 12; ++i) now.records[i].singularity = Singularity::undecided;
+  const Comparison lost = compare_runs(base, now);
+  EXPECT_EQ(lost.outcome(), ComparisonOutcome::undecided);
+  EXPECT_THAT(comparison_markdown(lost), HasSubstr("12 formulas are newly without a proof"));
+  EXPECT_EQ(comparison_json(lost)["newly_unproved"].size(), 12U);
+  EXPECT_EQ(compare_runs(now, base).outcome(), ComparisonOutcome::fine)
+      << "more proofs are no loss";
+}
+
 TEST(Comparison, ACrashIsARegressionAndASingleTimeoutIsNot) {
   const RunFolder base = noisy_run("x", 20);
   RunFolder now = base;

@@ -147,6 +147,10 @@ TEST(Benches, SayWhatCannotBeComparedAndWhatIsGone) {
   EXPECT_EQ(cache.worse.front().figure, BenchChange::Figure::first_level_misses);
   EXPECT_EQ(cache.slower.size(), 1U);
   EXPECT_THAT(cache.sentence(), HasSubstr("by the clock alone"));
+  Night elsewhere = now;
+  elsewhere.machine = "another processor";
+  EXPECT_THAT(compare_benches(base, elsewhere).worse, IsEmpty());
+  EXPECT_THAT(compare_benches(base, elsewhere).sentence(), HasSubstr("the CPUs differ"));
   now.bench_conditions = "valgrind-3.22.0, avx2";
   EXPECT_THAT(compare_benches(base, now).worse, IsEmpty());
   EXPECT_THAT(compare_benches(base, now).sentence(), HasSubstr("valgrind-3.22.0"));
@@ -169,6 +173,10 @@ TEST(NightStore, KeepsNightsAsTheyAreAndNeverReplacesABase) {
   EXPECT_EQ(store.base()->name, "2026-000001");
   store.bless({"2026-000003", "faster", "2026-01-02T00:00:00Z"});
   EXPECT_EQ(store.base()->name, "2026-000003");
+  EXPECT_THAT(refusal([&] {
+                store.bless({"2026-000005", "late", "2026-01-01T12:00:00Z"});
+              }),
+              HasSubstr("set the clock"));
   EXPECT_EQ(store.prune(4, false).size(), 3U);  // 2, 4, 5: blessed ones stay
   EXPECT_EQ(store.names().size(), 9U);
   EXPECT_EQ(store.prune(4, true).size(), 3U);
@@ -398,6 +406,27 @@ TEST(NightPage, HoldsTenYears) {
   const std::string feed = history_feed(history);
   EXPECT_THAT(feed, HasSubstr("loop&lt;double, 1&gt;/rows:10: +1.0 % instructions"));
   EXPECT_THAT(feed, HasSubstr("<updated>2027-01-01T02:30:00Z</updated>"));
+}
+
+TEST(NightHistory, SaysHowFarCountsOfEqualCodeDiffer) {
+  const testing::TemporaryFolder folder;
+  NightStore store(folder / "store");
+  for (int k = 0; k < 4; ++k) {
+    Night night = made_night(k, 1, 2, {1, 5});
+    night.commit = k < 3 ? "one" : "another";
+    night.machine = k % 2 == 0 ? "here" : "there";
+    night.benches = made_benches(2, 0, 1);
+    if (k == 2) night.benches[1].instructions *= 1.0004;
+    if (k == 3) night.benches[0].instructions *= 1.5;  // other code: no spread
+    store.record(night);
+  }
+  const CountSpread counts = spread_of_counts(read_history(store));
+  EXPECT_EQ(counts.cases, 2U);
+  EXPECT_EQ(counts.nights, 3U);
+  EXPECT_EQ(counts.name, "some_bench loop<double, 1>/rows:10");
+  EXPECT_NEAR(counts.spread, 0.0004, 1e-5);
+  EXPECT_THAT(history_text(read_history(store)),
+              HasSubstr("(3 at most) differ by 0.0400 % at most"));
 }
 
 // What a reader of feeds takes: well-formed XML whose entries keep their names.

@@ -137,5 +137,23 @@ TEST_F(SlurmTest, AnElementKilledHalfWayIsRequeuedAndResumes) {
   EXPECT_EQ(timeless_results(folder_ / "cluster"), timeless_results(folder_ / "local"));
 }
 
+// What the documents say of nights on a cluster: a job whose status is the night's.
+TEST_F(SlurmTest, ANightIsAJobThatEndsAsTheNightDoes) {
+  const auto night = [&](int seeds) {
+    write_text(folder_ / "night.toml",
+               "[grid]\nname = \"night\"\nproblems = [\"A/j2/no_load\"]\nmethods = [\"linear\"]\n"
+               "seeds = { first = 1, count = " +
+                   std::to_string(seeds) + " }\n");
+    return slurm({"sbatch", "--wait", "-o", (folder_ / "night.log").string(), "--wrap",
+                  "'" + program().string() + "' nightly --store '" + (folder_ / "store").string() +
+                      "' --grid '" + (folder_ / "night.toml").string() +
+                      "' --least-free 0 --jobs 1 --sample 1"});
+  };
+  EXPECT_EQ(night(3).status, 0) << read_text(folder_ / "night.log");
+  EXPECT_THAT(read_text(folder_ / "night.log"), HasSubstr("it is the base from now on"));
+  EXPECT_EQ(night(4).status, 4) << read_text(folder_ / "night.log");
+  EXPECT_THAT(read_text(folder_ / "night.log"), HasSubstr("asked differently: grid.seeds"));
+}
+
 }  // namespace
 }  // namespace tribench::testing

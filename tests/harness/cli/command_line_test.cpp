@@ -45,6 +45,12 @@ std::vector<Words> commands_below(const Words& command) {
   return all;
 }
 
+// A figure in seconds differs from one run to the next.
+std::string without_times(const std::string& text) {
+  return std::regex_replace(
+      text, std::regex("[-0-9.e]+ (CPU seconds|s\\b)|\"[a-z_]*(seconds|_s)\": [-0-9.e]+"), "?");
+}
+
 Words numeric_options(const Words& command) {
   Words options;
   std::istringstream help(run_tribench(with(command, "--help")).output);
@@ -54,6 +60,37 @@ Words numeric_options(const Words& command) {
     if (std::regex_match(line, match, line_of_option)) options.push_back(match[1]);
   }
   return options;
+}
+
+// Languages with a comma in numbers, and one in which "I" is no capital "i".
+TEST(CommandLine, ALocaleChangesNoNumber) {
+  const TemporaryFolder folder;
+  const std::string csv = (folder / "lines.csv").string();
+  std::string rows = "x,y,I_A\n";
+  for (int i = 0; i < 40; ++i) {
+    const double x = 0.1 * i;
+    rows += std::to_string(x) + "," + std::to_string(1.5 * x + 0.25) + ",0.5\n";
+  }
+  write_text(csv, rows);
+  const std::vector<Words> asked = {{"export", "1.5*v + exp(v)", "--as", "c"},
+                                    {"check", "1/(v - 0.5)", "--box", "v=-2.5:2.5", "--json"},
+                                    {"fit", csv, "--target", "y", "--inputs", "x,I_A", "--method",
+                                     "linear", "--save", (folder / "model.json").string()},
+                                    {"predict", (folder / "model.json").string(), csv}};
+  for (const std::string locale : {"de_DE", "tr_TR"}) {
+    const std::string made = (folder / (locale + ".UTF-8")).string();
+    const ProgramRun making = run_to_end({"localedef", "-i", locale, "-f", "UTF-8", made});
+    if (!std::filesystem::exists(made)) GTEST_SKIP() << "no localedef: " << making.errors;
+    for (const Words& words : asked) {
+      Words there = {"env", "LOCPATH=" + (folder / ".").string(), "LC_ALL=" + locale + ".UTF-8",
+                     program().string()};
+      there.insert(there.end(), words.begin(), words.end());
+      const ProgramRun here = run_tribench(words);
+      const ProgramRun abroad = run_to_end(there);
+      EXPECT_EQ(abroad.status, here.status) << locale << " " << words.front();
+      EXPECT_EQ(without_times(abroad.output), without_times(here.output)) << locale;
+    }
+  }
 }
 
 TEST(CommandLine, EveryNumberIsReadStrictly) {
