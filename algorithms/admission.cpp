@@ -28,12 +28,12 @@ int degree_in(const Expression& formula, std::size_t input) {
       degree[i] = node.is_variable() && node.variable == input ? 1 : 0;
       continue;
     }
-    const int right = degree[formula.right_child(i)];
+    const int right = degree[formula.last_child(i)];
     const int left = arguments == 2 ? degree[formula.left_child(i)] : 0;
     if (node.op == Op::mul || node.op == Op::div) {
       degree[i] = bounded(left + right);
     } else if (node.op == Op::pow && (left > 0 || right > 0)) {
-      const Node& exponent = formula.node(formula.right_child(i));
+      const Node& exponent = formula.node(formula.last_child(i));
       const bool whole = exponent.is_constant() && exponent.value >= 1 &&
                          exponent.value <= kUnboundedDegree &&
                          exponent.value == std::floor(exponent.value);

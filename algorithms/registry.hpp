@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The one place that lists every algorithm.
+// The one place that lists every algorithm. Not for methods: what one needs of another it is handed
+// (MakeMethod), and a method that includes this fails the include test.
 #pragma once
 
 #include <map>

@@ -212,7 +212,7 @@ void compiled(benchmark::State& state) {
     auto code = BasicCompiledFormula<T>::compile(formula);
     if (!code) return state.SkipWithError("no code is generated on this machine");
     std::vector<T> values;
-    for (const std::size_t i : formula.constant_positions()) {
+    for (const std::size_t i : constant_positions(formula)) {
       values.push_back(static_cast<T>(formula.node(i).value));
     }
     code->evaluate(values, table.inputs, out);

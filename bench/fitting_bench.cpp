@@ -23,7 +23,7 @@ namespace {
 struct ParFamCurve {
   std::vector<std::string> names = {"v", "s"};
   Expression truth = parse("(3.66*v + 8.52*s - 0.44)*exp(-0.78*v^2 + 1.26*v*s + 0.02*v)", names);
-  std::vector<std::size_t> places = truth.constant_positions();
+  std::vector<std::size_t> places = constant_positions(truth);
   std::vector<double> v;
   std::vector<double> s;
   std::vector<double> y;
@@ -62,7 +62,7 @@ void one_pass(benchmark::State& state) {
   auto code = CompiledFormula::compile(curve.truth);
   if (!code) return state.SkipWithError("no code is generated on this machine");
   std::vector<double> constants;
-  for (const std::size_t place : curve.truth.constant_positions()) {
+  for (const std::size_t place : constant_positions(curve.truth)) {
     constants.push_back(curve.truth.node(place).value);
   }
   evaluator.evaluate(curve.truth, curve.inputs, expected);
@@ -105,7 +105,7 @@ void fit_parfam_formula(benchmark::State& state) {
     Expression formula = curve.truth;
     const std::vector<double> start = curve.start();
     for (std::size_t k = 0; k < start.size(); ++k) {
-      formula.set_constant(curve.places[k], start[k]);
+      set_constant(formula, curve.places[k], start[k]);
     }
     const ConstantFitResult result =
         fitter.fit(formula, curve.inputs, curve.y, {}, {.max_iterations = 100});
@@ -192,7 +192,7 @@ void jacobian_of_random_trees(benchmark::State& state) {
     std::vector<Node> tape;
     grow(random, 1 + random.below(64), operators, tape);
     formulas.emplace_back(tape);
-    places.push_back(formulas.back().constant_positions());
+    places.push_back(constant_positions(formulas.back()));
     nodes += formulas.back().size();
   }
   Differentiator differentiator;

@@ -136,7 +136,7 @@ void compiled(benchmark::State& state) {
   auto code = BasicCompiledFormula<T>::compile(formula);
   if (!code) return state.SkipWithError("no code is generated on this machine");
   std::vector<T> constants;
-  for (const std::size_t i : formula.constant_positions()) {
+  for (const std::size_t i : constant_positions(formula)) {
     constants.push_back(static_cast<T>(formula.node(i).value));
   }
   measure<T>(state, [&](Columns<T>& data) { code->evaluate(constants, data.inputs, data.out); });

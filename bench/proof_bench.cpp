@@ -47,7 +47,7 @@ double cpu_ms() {
 bool is_right(const Expression& formula, const SingularityResult& result, RandomStream& random) {
   Evaluator evaluator;
   if (result.verdict == Verdict::refuted) {
-    const Expression node = formula.subtree(result.witness->node);
+    const Expression node = subtree(formula, result.witness->node);
     const double value = evaluator.evaluate_at(node, result.witness->point);
     if (result.witness->neighbour.empty()) return !std::isfinite(value);
     const double beside = evaluator.evaluate_at(node, result.witness->neighbour);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Patterns over names: of problems, methods, cells.
+// Patterns over names: of problems, methods, cells. Not for paths: '/' is a character like others,
+// and there are no classes ([a-z]) and no escapes.
 #pragma once
 
 #include <string_view>

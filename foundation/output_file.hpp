@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A file that is written whole or not at all.
+// A file that is written whole or not at all. Not for what grows while it is written (a journal,
+// a log): that is appended to where it stands.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The sign function of formulas and of the data's derived channels.
+// The sign function of formulas and of the data's derived channels. Not for the sign bit of a
+// number (std::signbit): -0.0 is as much at rest as 0.0.
 #pragma once
 
 namespace tribench {

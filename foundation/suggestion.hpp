@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What to offer where a name is not known.
+// What to offer where a name is not known. Not for accepting it: a name that is only near is
+// refused all the same.
 #pragma once
 
 #include <string>

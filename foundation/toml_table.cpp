@@ -72,6 +72,54 @@ TomlValue plain_value(const toml::node& node, const std::string& place) {
   throw_bad_input("the value must be true or false, a number or a text", place);
 }
 
+// What a node has to be for a kind of value, and that value; false where it is something else.
+std::string_view wanted(const std::string&) { return "a text"; }
+bool take(const toml::node& node, std::string& value) {
+  const auto* text = node.as_string();
+  if (text != nullptr) value = text->get();
+  return text != nullptr;
+}
+
+std::string_view wanted(bool) { return "true or false"; }
+bool take(const toml::node& node, bool& value) {
+  const auto* flag = node.as_boolean();
+  if (flag != nullptr) value = flag->get();
+  return flag != nullptr;
+}
+
+std::string_view wanted(std::uint64_t) { return "a whole number, not negative"; }
+bool take(const toml::node& node, std::uint64_t& value) {
+  // 1e8 is a whole number too, and how people write budgets.
+  const std::optional<double> number = node.value<double>();
+  const bool whole = number && *number >= 0 && *number < 9.2e18 &&
+                     *number == static_cast<double>(static_cast<std::uint64_t>(*number));
+  if (!whole) return false;
+  value = node.is_integer() ? static_cast<std::uint64_t>(node.as_integer()->get())
+                            : static_cast<std::uint64_t>(*number);
+  return true;
+}
+
+bool take(const toml::node& node, double& value) {
+  const std::optional<double> number = node.value<double>();
+  if (!number || !std::isfinite(*number)) return false;
+  value = *number;
+  return true;
+}
+
+std::string_view wanted(const std::vector<std::string>&) { return "an array of texts"; }
+std::string_view wanted(const std::vector<std::uint64_t>&) {
+  return "an array of whole numbers, not negative";
+}
+std::string_view wanted(const std::vector<double>&) { return "an array of finite numbers"; }
+template <typename Value>
+bool take(const toml::node& node, std::vector<Value>& values) {
+  const toml::array* array = node.as_array();
+  if (array == nullptr) return false;
+  values.clear();
+  return std::ranges::all_of(
+      *array, [&](const toml::node& each) { return take(each, values.emplace_back()); });
+}
+
 // What messages call a table.
 std::string named(const std::string& where) { return where.empty() ? "the file" : where; }
 
@@ -108,87 +156,33 @@ void TomlTable::refuse(std::string_view key, std::string_view wanted) const {
   throw_bad_input(fmt::format("'{}' in {} must be {}", key, named(where_), wanted), place(key));
 }
 
-void TomlTable::read(std::string_view key, std::string& value) const {
+template <typename Value>
+void TomlTable::read(std::string_view key, Value& value) const {
   if (!has(key)) return;
-  const auto* text = table_->get(key)->as_string();
-  if (text == nullptr) refuse(key, "a text");
-  value = text->get();
+  if (!take(*table_->get(key), value)) refuse(key, wanted(value));
 }
+template void TomlTable::read(std::string_view, std::string&) const;
+template void TomlTable::read(std::string_view, bool&) const;
+template void TomlTable::read(std::string_view, std::uint64_t&) const;
+template void TomlTable::read(std::string_view, std::vector<std::string>&) const;
+template void TomlTable::read(std::string_view, std::vector<std::uint64_t>&) const;
+template void TomlTable::read(std::string_view, std::vector<double>&) const;
 
-void TomlTable::read(std::string_view key, bool& value) const {
+template <typename Number>
+void TomlTable::read(std::string_view key, Number& value, std::type_identity_t<Number> low,
+                     std::type_identity_t<Number> high) const {
   if (!has(key)) return;
-  const auto* flag = table_->get(key)->as_boolean();
-  if (flag == nullptr) refuse(key, "true or false");
-  value = flag->get();
-}
-
-void TomlTable::read(std::string_view key, double& value, double low, double high) const {
-  if (!has(key)) return;
-  const std::optional<double> number = table_->get(key)->value<double>();
-  if (!number || !(*number >= low && *number <= high)) {
-    refuse(key, fmt::format("a number from {} to {}", low, high));
-  }
-  value = *number;
-}
-
-void TomlTable::read(std::string_view key, std::uint64_t& value) const {
-  if (!has(key)) return;
+  constexpr bool kIsWhole = std::is_same_v<Number, int>;
   const toml::node& node = *table_->get(key);
-  // 1e8 is a whole number too, and how people write budgets.
-  const std::optional<double> number = node.value<double>();
-  const bool whole = number && *number >= 0 && *number < 9.2e18 &&
-                     *number == static_cast<double>(static_cast<std::uint64_t>(*number));
-  if (!whole) refuse(key, "a whole number, not negative");
-  value = node.is_integer() ? static_cast<std::uint64_t>(node.as_integer()->get())
-                            : static_cast<std::uint64_t>(*number);
-}
-
-void TomlTable::read(std::string_view key, int& value, int low, int high) const {
-  if (!has(key)) return;
-  const auto* number = table_->get(key)->as_integer();
-  if (number == nullptr || number->get() < low || number->get() > high) {
-    refuse(key, fmt::format("a whole number from {} to {}", low, high));
+  const std::optional<double> number =
+      kIsWhole && !node.is_integer() ? std::nullopt : node.value<double>();
+  if (!number || !(*number >= low && *number <= high)) {
+    refuse(key, fmt::format("a {} from {} to {}", kIsWhole ? "whole number" : "number", low, high));
   }
-  value = static_cast<int>(number->get());
+  value = static_cast<Number>(*number);
 }
-
-void TomlTable::read(std::string_view key, std::vector<std::string>& value) const {
-  if (!has(key)) return;
-  const toml::array* array = table_->get(key)->as_array();
-  if (array == nullptr) refuse(key, "an array of texts");
-  value.clear();
-  for (const toml::node& node : *array) {
-    const auto* text = node.as_string();
-    if (text == nullptr) refuse(key, "an array of texts");
-    value.push_back(text->get());
-  }
-}
-
-void TomlTable::read(std::string_view key, std::vector<std::uint64_t>& value) const {
-  if (!has(key)) return;
-  constexpr std::string_view kWanted = "an array of whole numbers, not negative";
-  const toml::array* array = table_->get(key)->as_array();
-  if (array == nullptr) refuse(key, kWanted);
-  value.clear();
-  for (const toml::node& node : *array) {
-    const auto* number = node.as_integer();
-    if (number == nullptr || number->get() < 0) refuse(key, kWanted);
-    value.push_back(static_cast<std::uint64_t>(number->get()));
-  }
-}
-
-void TomlTable::read(std::string_view key, std::vector<double>& value) const {
-  if (!has(key)) return;
-  constexpr std::string_view kWanted = "an array of finite numbers";
-  const toml::array* array = table_->get(key)->as_array();
-  if (array == nullptr) refuse(key, kWanted);
-  value.clear();
-  for (const toml::node& node : *array) {
-    const std::optional<double> number = node.value<double>();
-    if (!number || !std::isfinite(*number)) refuse(key, kWanted);
-    value.push_back(*number);
-  }
-}
+template void TomlTable::read(std::string_view, double&, double, double) const;
+template void TomlTable::read(std::string_view, int&, int, int) const;
 
 std::vector<TomlValue> TomlTable::value_array(std::string_view key) const {
   std::vector<TomlValue> values;

@@ -10,6 +10,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -31,15 +32,14 @@ class TomlTable {
 
   bool has(std::string_view key) const { return table_->contains(key); }
   // Each throws Error (bad_input) for a value of another kind; the reference holds the default.
-  void read(std::string_view key, std::string& value) const;
-  void read(std::string_view key, bool& value) const;
-  void read(std::string_view key, double& value, double low, double high) const;
-  void read(std::string_view key, std::uint64_t& value) const;
-  void read(std::string_view key, int& value, int low, int high) const;
-  void read(std::string_view key, std::vector<std::string>& value) const;
-  void read(std::string_view key, std::vector<std::uint64_t>& value) const;
-  // Finite numbers.
-  void read(std::string_view key, std::vector<double>& value) const;
+  // A text, true or false, a whole number that is not negative (1e8 is one too), or an array of
+  // texts, of such whole numbers or of finite numbers.
+  template <typename Value>
+  void read(std::string_view key, Value& value) const;
+  // A double or an int within [low, high].
+  template <typename Number>
+  void read(std::string_view key, Number& value, std::type_identity_t<Number> low,
+            std::type_identity_t<Number> high) const;
   // Throws where the key is missing.
   void require(std::string_view key) const;
   // Every key with its value, of an inner table that may have any keys.

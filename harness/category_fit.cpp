@@ -166,7 +166,7 @@ class ShapeFits {
 
 std::vector<std::size_t> places_of_own(const Expression& shape) {
   std::vector<std::size_t> places;
-  for (const std::size_t place : shape.constant_positions()) {
+  for (const std::size_t place : constant_positions(shape)) {
     if (!is_exponent(shape, place)) places.push_back(place);
   }
   return places;

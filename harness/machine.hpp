@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The machine as far as times depend on it. Unknown facts are empty or 0.
+// The machine as far as times depend on it. Unknown facts are empty or 0. Not for deciding what is
+// computed: results depend on none of it.
 #pragma once
 
 #include <string>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Which cells a run takes, in which order, and what they are expected to cost.
+// Which cells a run takes, in which order, and what they are expected to cost. Not for running
+// them: neither order nor cost changes a result.
 #pragma once
 
 #include <cstddef>

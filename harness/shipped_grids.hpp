@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The grids that come with the program, held inside it.
+// The grids that come with the program, held inside it. Not for suites, which are data of the
+// catalogue (problems/suite); a suite asked for by its name as a grid is one here.
 #pragma once
 
 #include <string>

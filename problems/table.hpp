@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// From a dataset with channels to the tables that methods and the judge see.
+// From a dataset with channels to the tables that methods and the judge see. Not for recordings
+// that a diagnosis looks at: their rows are chosen by what a motion tells
+// (preparation/recording.hpp).
 #pragma once
 
 #include <span>

@@ -57,7 +57,7 @@ Eigen::VectorXd losses_with_own_offsets(std::size_t atom, const FittedModel& mod
 }
 
 // The rescue rule. What is carried by few movements cannot reach a small p by flipping their signs,
-// but it can explain their offsets: its gain counts what it leaves of their spread.
+// but it can explain their offsets: how far their variance falls is a part of its gain.
 std::optional<Candidate> rescue(std::size_t family, const Round& round, const FittedModel& model,
                                 const Campaign& campaign) {
   std::optional<Candidate> best;

@@ -68,7 +68,7 @@ Expression search_formula(const Observations& data, const Diagnosis& diagnosis,
 }
 
 bool varies(const Expression& formula, const Observations& data) {
-  if (formula.empty() || formula.columns_used() == 0) return false;
+  if (formula.empty() || columns_used(formula) == 0) return false;
   const std::vector<Expression> one = {formula};
   const Eigen::VectorXd values = evaluate_columns(one, data).col(0);
   return values.allFinite() && values.maxCoeff() > values.minCoeff();

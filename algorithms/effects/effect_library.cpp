@@ -174,7 +174,7 @@ double signal_scale(const Observations& data, std::string_view name) {
 void Atom::set_shape(std::size_t shape, double value) {
   shapes[shape].value = value;
   for (const Shape::Place& place : shapes[shape].places) {
-    columns[place.column].set_constant(place.node, value);
+    set_constant(columns[place.column], place.node, value);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include "algorithms/effects/effect_library.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
@@ -127,6 +128,37 @@ std::vector<EffectBlock> blocks_of(const std::vector<Template>& templates) {
   return blocks;
 }
 
+// What remembers the motion lives in all of it.
+std::vector<std::string> signals_of(std::span<const Expression> formulas,
+                                    const Observations& reference) {
+  std::vector<std::string> signals;
+  const auto add = [&](const std::string& signal) {
+    if (std::ranges::count(signals, signal) == 0) signals.push_back(signal);
+  };
+  for (const Expression& formula : formulas) {
+    for (const Node& node : formula.nodes()) {
+      if (!node.is_variable()) continue;
+      const Signal& signal = reference.signals[node.variable];
+      if (signal.role == Role::velocity_sign) continue;
+      if (!signal.has_memory()) {
+        add(signal.role == Role::gravity_sign ? "g" : signal.name);
+        continue;
+      }
+      for (const char* name : {"v", "a", "d"}) {
+        if (reference.find(name) != nullptr) add(name);
+      }
+    }
+  }
+  return signals;
+}
+
+std::vector<std::string> inputs_of(const std::vector<std::string>& signals,
+                                   const Observations& reference) {
+  std::vector<std::string> inputs;
+  for (const std::string& signal : signals) inputs.push_back(input_name(reference, signal));
+  return inputs;
+}
+
 }  // namespace
 
 ExplanationSpace::ExplanationSpace(const Observations& reference,
@@ -156,17 +188,17 @@ void ExplanationSpace::add_library(const std::vector<double>& gear_ratios) {
     family.name = library[f].name;
     family.blocks = blocks_of(templates_of(atoms, formulas_));
     misfit.count = static_cast<Eigen::Index>(formulas_.size()) - misfit.first;
-    const std::vector<std::string> signals =
-        signals_of(std::span(formulas_).subspan(static_cast<std::size_t>(misfit.first)));
-    family.inputs = inputs_of(signals);
+    const std::vector<std::string> signals = signals_of(
+        std::span(formulas_).subspan(static_cast<std::size_t>(misfit.first)), reference_);
+    family.inputs = inputs_of(signals, reference_);
     std::vector<Expression> main;
     for (const Atom& atom : atoms) {
       if (!atom.beside_another) main.insert(main.end(), atom.columns.begin(), atom.columns.end());
     }
-    std::vector<std::string> own = signals_of(main);
+    std::vector<std::string> own = signals_of(main, reference_);
     const bool remembers = std::ranges::count(own, "d") > 0;
     if (own.size() > 1 && !remembers) std::erase(own, "v");
-    family.characteristic = inputs_of(own);
+    family.characteristic = inputs_of(own, reference_);
     for (const std::string& signal : signals) {
       if (SignalAxis axis(reference_, signal); axis.varies()) misfit.axes.push_back(axis);
     }
@@ -182,36 +214,6 @@ Eigen::RowVectorXd ExplanationSpace::late_scale() const {
   const Eigen::RowVectorXd squares = late.colwise().squaredNorm();
   if (!(squares.minCoeff() > 0)) return {};
   return (squares / static_cast<double>(late.rows())).cwiseSqrt().cwiseInverse();
-}
-
-// What remembers the motion lives in all of it.
-std::vector<std::string> ExplanationSpace::signals_of(std::span<const Expression> formulas) const {
-  std::vector<std::string> signals;
-  const auto add = [&](const std::string& signal) {
-    if (std::ranges::count(signals, signal) == 0) signals.push_back(signal);
-  };
-  for (const Expression& formula : formulas) {
-    for (const Node& node : formula.nodes()) {
-      if (!node.is_variable()) continue;
-      const Signal& signal = reference_.signals[node.variable];
-      if (signal.role == Role::velocity_sign) continue;
-      if (!signal.has_memory()) {
-        add(signal.role == Role::gravity_sign ? "g" : signal.name);
-        continue;
-      }
-      for (const char* name : {"v", "a", "d"}) {
-        if (reference_.find(name) != nullptr) add(name);
-      }
-    }
-  }
-  return signals;
-}
-
-std::vector<std::string> ExplanationSpace::inputs_of(
-    const std::vector<std::string>& signals) const {
-  std::vector<std::string> inputs;
-  for (const std::string& signal : signals) inputs.push_back(input_name(reference_, signal));
-  return inputs;
 }
 
 void ExplanationSpace::add_places() {

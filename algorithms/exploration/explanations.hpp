@@ -17,7 +17,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -67,9 +66,7 @@ class ExplanationSpace {
   };
 
   void add_library(const std::vector<double>& gear_ratios);
-  std::vector<std::string> signals_of(std::span<const Expression> formulas) const;
   Eigen::RowVectorXd late_scale() const;
-  std::vector<std::string> inputs_of(const std::vector<std::string>& signals) const;
   void add_places();
   void settle_scale();
   void add_misfits();

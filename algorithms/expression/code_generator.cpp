@@ -176,7 +176,7 @@ class Generator : public RowAssembler {
       used_.push_back(plan_.nodes[i].index);
       return;
     }
-    collect(formula_.right_child(i));
+    collect(formula_.last_child(i));
     if (arity(formula_.node(i).op) == 2) collect(formula_.left_child(i));
   }
 
@@ -211,7 +211,7 @@ class Generator : public RowAssembler {
     const Op op = formula_.node(i).op;
     if (op == Op::pow) return emit_power(i, r);
     if (arity(op) == 2) return emit_binary(op, i, r);
-    emit(formula_.right_child(i), r);
+    emit(formula_.last_child(i), r);
     if (op == Op::sqrt) {
       square_root(vector(r), vector(r));
     } else if (op == Op::neg) {
@@ -223,7 +223,7 @@ class Generator : public RowAssembler {
 
   void emit_binary(Op op, std::size_t i, int r) {
     const std::size_t a = formula_.left_child(i);
-    const std::size_t b = formula_.right_child(i);
+    const std::size_t b = formula_.last_child(i);
     const bool multiplies = op == Op::div && multiplies_;
     if (is_leaf(b) && !multiplies) {
       emit(a, r);
@@ -245,7 +245,7 @@ class Generator : public RowAssembler {
 
   // As the block kernel: squares of the base, multiplied together where the exponent has a bit.
   void emit_power(std::size_t i, int r) {
-    const int exponent = static_cast<int>(formula_.node(formula_.right_child(i)).value);
+    const int exponent = static_cast<int>(formula_.node(formula_.last_child(i)).value);
     const auto size = static_cast<unsigned>(exponent < 0 ? -exponent : exponent);
     if (size == 0) return broadcast(vector(r), extra(kOne));
     emit(formula_.left_child(i), r);

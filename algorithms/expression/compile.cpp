@@ -80,7 +80,7 @@ T BasicCompiledFormula<T>::Code::scalar_of(std::size_t i, std::size_t& next_cons
                                            std::span<const T> constants) const {
   const Node& node = formula.node(i);
   if (node.is_constant()) return constants[next_constant++];
-  const T& b = scalars[plan.nodes[formula.right_child(i)].index];
+  const T& b = scalars[plan.nodes[formula.last_child(i)].index];
   T result = 0;
   if (arity(node.op) == 1) {
     kernels.function[function_index(node.op)](&result, &b, nullptr, nullptr, 1);
@@ -108,7 +108,7 @@ void BasicCompiledFormula<T>::Code::set_scalars(std::span<const T> constants) {
 template <typename T>
 void BasicCompiledFormula<T>::Code::run_power(const Step& step, T* out, std::size_t n) const {
   const std::size_t base = formula.left_child(step.node);
-  const std::size_t exponent = formula.right_child(step.node);
+  const std::size_t exponent = formula.last_child(step.node);
   const bool fixed_base = plan.nodes[base].place == Place::scalar;
   const bool fixed_exponent = plan.nodes[exponent].place == Place::scalar;
   const T* const a = fixed_base ? &scalars[plan.nodes[base].index] : operand(base);
@@ -134,7 +134,7 @@ void BasicCompiledFormula<T>::Code::run(T* out, std::size_t n) const {
       run_power(step, to, n);
     } else {
       const Op op = formula.node(step.node).op;
-      kernels.function[function_index(op)](to, operand(formula.only_child(step.node)), nullptr,
+      kernels.function[function_index(op)](to, operand(formula.last_child(step.node)), nullptr,
                                            nullptr, n);
     }
   }
@@ -230,7 +230,7 @@ void RepeatedEvaluator::set_constants(std::span<const double> constants) {
   for (std::size_t k = 0; k < positions_.size(); ++k) {
     if (is_exponent(formula_, positions_[k])) continue;
     constants_[k] = constants[k];
-    formula_.set_constant(positions_[k], constants[k]);
+    set_constant(formula_, positions_[k], constants[k]);
   }
 }
 

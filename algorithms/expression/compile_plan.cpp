@@ -76,14 +76,14 @@ class Planner {
   bool is_scalar(std::size_t i) const {
     const Node& node = formula_.node(i);
     if (node.is_constant()) return true;
-    if (plan_.nodes[formula_.right_child(i)].place != Place::scalar) return false;
+    if (plan_.nodes[formula_.last_child(i)].place != Place::scalar) return false;
     return arity(node.op) == 1 || plan_.nodes[formula_.left_child(i)].place == Place::scalar;
   }
 
   // The kernel's operands must be columns, buffers or scalars: arithmetic below it is a region.
   void place_kernel(std::size_t i) {
     if (arity(formula_.node(i).op) == 2) settle(formula_.left_child(i));
-    settle(formula_.right_child(i));
+    settle(formula_.last_child(i));
     const bool is_power = formula_.node(i).op == Op::pow;
     add_step(is_power ? Step::Kind::power : Step::Kind::function, i);
   }
@@ -107,7 +107,7 @@ class Planner {
 
   std::uint16_t registers_needed(std::size_t i) const {
     const Node& node = formula_.node(i);
-    const NodePlan& right = plan_.nodes[formula_.right_child(i)];
+    const NodePlan& right = plan_.nodes[formula_.last_child(i)];
     if (arity(node.op) == 1) return right.registers;
     const NodePlan& left = plan_.nodes[formula_.left_child(i)];
     // A power keeps the square beside the product; a leaf needs a register to be brought in.
@@ -126,7 +126,7 @@ class Planner {
 }  // namespace
 
 bool is_whole_power(const Expression& formula, std::size_t i) {
-  const Node& exponent = formula.node(formula.right_child(i));
+  const Node& exponent = formula.node(formula.last_child(i));
   return exponent.is_constant() && is_product_power(exponent.value);
 }
 

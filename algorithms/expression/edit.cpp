@@ -41,9 +41,9 @@ Children children_of(const Expression& formula, std::size_t i) {
     case 0:
       return {};
     case 1:
-      return {{formula.only_child(i), 0}, 1};
+      return {{formula.last_child(i), 0}, 1};
     default:
-      return {{formula.left_child(i), formula.right_child(i)}, 2};
+      return {{formula.left_child(i), formula.last_child(i)}, 2};
   }
 }
 
@@ -60,7 +60,7 @@ void splice(const Expression& base, std::size_t i, std::span<const Node> piece, 
 
 void swap_operands(const Expression& base, std::size_t i, Expression& out) {
   rewrite<2, 1>(base, i,
-                {subtree_nodes(base, base.right_child(i)), subtree_nodes(base, base.left_child(i))},
+                {subtree_nodes(base, base.last_child(i)), subtree_nodes(base, base.left_child(i))},
                 {base.node(i)}, out);
 }
 

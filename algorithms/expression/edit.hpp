@@ -24,7 +24,7 @@ inline std::span<const Node> subtree_nodes(const Expression& formula, std::size_
 
 // Child c (0 or 1) of node i; a function has child 0 alone.
 inline std::size_t child_of(const Expression& formula, std::size_t i, int c) {
-  return c == arity(formula.node(i).op) - 1 ? formula.right_child(i) : formula.left_child(i);
+  return c == arity(formula.node(i).op) - 1 ? formula.last_child(i) : formula.left_child(i);
 }
 
 // Places of the children of node i, left to right; 0, 1 or 2 of them.

@@ -59,13 +59,6 @@ Expression Expression::binary(Op op, const Expression& a, const Expression& b) {
   return result;
 }
 
-Expression Expression::subtree(std::size_t i) const {
-  Expression result;
-  result.nodes_.assign(nodes_.begin() + static_cast<std::ptrdiff_t>(begin(i)),
-                       nodes_.begin() + static_cast<std::ptrdiff_t>(i + 1));
-  return result;
-}
-
 void Expression::replace(std::size_t i, std::span<const Node> postfix) {
   const std::vector<Node> inserted(postfix.begin(), postfix.end());  // may alias nodes_
   const auto first = nodes_.begin() + static_cast<std::ptrdiff_t>(begin(i));
@@ -81,10 +74,18 @@ void Expression::replace(std::size_t i, std::span<const Node> postfix) {
   nodes_.insert(nodes_.erase(first, last), inserted.begin(), inserted.end());
 }
 
-std::size_t Expression::depth() const {
+Expression subtree(const Expression& formula, std::size_t i) {
+  const std::span<const Node> part =
+      formula.nodes().subspan(formula.begin(i), formula.node(i).length);
+  Expression result;
+  std::ranges::copy(part, result.reset(part.size()).begin());
+  return result;
+}
+
+std::size_t depth(const Expression& formula) {
   std::vector<std::size_t> stack;
   std::size_t deepest = 0;
-  for (const Node& node : nodes_) {
+  for (const Node& node : formula.nodes()) {
     std::size_t below = 0;
     for (int c = 0; c < arity(node.op); ++c) {
       below = std::max(below, stack.back());
@@ -96,18 +97,18 @@ std::size_t Expression::depth() const {
   return deepest;
 }
 
-std::size_t Expression::columns_used() const {
+std::size_t columns_used(const Expression& formula) {
   std::size_t used = 0;
-  for (const Node& node : nodes_) {
+  for (const Node& node : formula.nodes()) {
     if (node.is_variable()) used = std::max<std::size_t>(used, node.variable + 1U);
   }
   return used;
 }
 
-std::vector<std::size_t> Expression::constant_positions() const {
+std::vector<std::size_t> constant_positions(const Expression& formula) {
   std::vector<std::size_t> positions;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (nodes_[i].is_constant()) positions.push_back(i);
+  for (std::size_t i = 0; i < formula.size(); ++i) {
+    if (formula.node(i).is_constant()) positions.push_back(i);
   }
   return positions;
 }

@@ -83,7 +83,9 @@ class Expression {
   static Expression unary(Op op, const Expression& a);
   static Expression binary(Op op, const Expression& a, const Expression& b);
 
-  std::span<const Node> nodes() const { return nodes_; }
+  // Refused of a temporary: the nodes would be gone before they are looked at.
+  std::span<const Node> nodes() const& { return nodes_; }
+  std::span<const Node> nodes() const&& = delete;
   std::size_t size() const { return nodes_.size(); }
   bool empty() const { return nodes_.empty(); }
   const Node& node(std::size_t i) const { return nodes_[i]; }
@@ -91,24 +93,12 @@ class Expression {
 
   // First node of the subtree that ends at i; a subtree is [begin(i), i].
   std::size_t begin(std::size_t i) const { return i + 1 - nodes_[i].length; }
-  std::size_t only_child(std::size_t i) const { return i - 1; }
-  std::size_t right_child(std::size_t i) const { return i - 1; }
+  // The argument of a function, the right-hand side of + - * / ^; the left-hand side of these.
+  std::size_t last_child(std::size_t i) const { return i - 1; }
   std::size_t left_child(std::size_t i) const { return i - 1 - nodes_[i - 1].length; }
 
-  Expression subtree(std::size_t i) const;
   // Replaces the subtree that ends at i. O(size), one reallocation at most.
   void replace(std::size_t i, std::span<const Node> postfix);
-
-  // Levels of nesting; 1 for a leaf. O(size).
-  std::size_t depth() const;
-  // One more than the largest column used; 0 without variables.
-  std::size_t columns_used() const;
-
-  // Positions of the constants, in the order of the tape, and access to their values: what a fit
-  // changes. An exponent counts like any other constant here.
-  std::vector<std::size_t> constant_positions() const;
-  void set_constant(std::size_t position, double value) { nodes_[position].value = value; }
-
   // Another leaf in place of the leaf i.
   void set_leaf(std::size_t i, const Node& leaf) { nodes_[i] = leaf; }
   // Makes room for a tape of this size and hands it out to be overwritten, lengths included; the
@@ -124,6 +114,22 @@ class Expression {
  private:
   std::vector<Node> nodes_;
 };
+
+// The formula that ends at node i of another.
+Expression subtree(const Expression& formula, std::size_t i);
+
+// Levels of nesting; 1 for a leaf. O(size).
+std::size_t depth(const Expression& formula);
+
+// One more than the largest column used; 0 without variables.
+std::size_t columns_used(const Expression& formula);
+
+// Positions of the constants, in the order of the tape, and a new value for one of them: what a fit
+// changes. An exponent counts like any other constant here.
+std::vector<std::size_t> constant_positions(const Expression& formula);
+inline void set_constant(Expression& formula, std::size_t position, double value) {
+  formula.set_leaf(position, Node::constant(value));
+}
 
 // Writes the subtree lengths into a postfix tape; false where the tape is malformed.
 bool assign_lengths(std::span<Node> postfix);

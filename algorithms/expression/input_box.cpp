@@ -135,9 +135,9 @@ Expression parse_over(std::string_view formula, NamedBox& box) {
 }
 
 void check_box(const Expression& formula, const InputBox& box) {
-  if (formula.columns_used() > box.size()) {
+  if (columns_used(formula) > box.size()) {
     throw_bad_input(fmt::format("the formula uses input {} but the box has only {}",
-                                formula.columns_used() - 1, box.size()),
+                                columns_used(formula) - 1, box.size()),
                     "box", "give a range for every input");
   }
   for (std::size_t j = 0; j < box.size(); ++j) {

@@ -21,7 +21,7 @@ NaturalExtension::NaturalExtension(const Expression& formula)
     : formula_(formula), same_operands_(formula.size(), false) {
   for (std::size_t i = 0; i < formula.size(); ++i) {
     if (arity(formula.node(i).op) != 2) continue;
-    same_operands_[i] = same_subtree(formula, formula.left_child(i), formula.right_child(i));
+    same_operands_[i] = same_subtree(formula, formula.left_child(i), formula.last_child(i));
   }
 }
 

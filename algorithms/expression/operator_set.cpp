@@ -26,7 +26,7 @@ bool OperatorSet::admits(const Expression& formula) const {
     if (arity(node.op) == 0 || allows(node.op)) continue;
     if (node.op == Op::neg && allows(Op::sub)) continue;
     if (node.op == Op::pow && allows(Op::mul)) {
-      const Node& exponent = formula.node(formula.right_child(i));
+      const Node& exponent = formula.node(formula.last_child(i));
       if (exponent.is_constant() && exponent.value >= 2 && exponent.value <= 64 &&
           exponent.value == std::floor(exponent.value)) {
         continue;

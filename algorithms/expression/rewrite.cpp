@@ -21,7 +21,7 @@ bool is_product(Op op) { return op == Op::mul || op == Op::div; }
 
 bool is_function(const Expression& formula, Op op) { return formula.node(formula.root()).op == op; }
 Expression argument_of(const Expression& formula) {
-  return formula.subtree(formula.only_child(formula.root()));
+  return subtree(formula, formula.last_child(formula.root()));
 }
 
 // For every base on either side of the bar: the terms that have it, divided by the power that all
@@ -384,8 +384,8 @@ void Rewriter::rewrite_log(const Expression& argument, std::vector<Expression>& 
     out.push_back(build::constant(0.5) * Expression::unary(Op::log, argument_of(argument)));
   }
   if (!is_function(argument, Op::pow)) return;
-  const Expression base = argument.subtree(argument.left_child(argument.root()));
-  const Expression exponent = argument.subtree(argument.right_child(argument.root()));
+  const Expression base = subtree(argument, argument.left_child(argument.root()));
+  const Expression exponent = subtree(argument, argument.last_child(argument.root()));
   if (range(base).low > 0) out.push_back(exponent * Expression::unary(Op::log, base));
 }
 
@@ -452,7 +452,7 @@ void Rewriter::rewrite_function(Op op, const Expression& argument,
 // ---- facts
 
 Interval Rewriter::range(const Expression& formula) const {
-  if (formula.columns_used() > box_.size()) return Interval::entire();
+  if (columns_used(formula) > box_.size()) return Interval::entire();
   std::optional<Interval> all;
   FormulaBounds bounds(formula);
   for (const std::vector<Interval>& cell : sign_cells(formula, box_)) {
@@ -477,7 +477,7 @@ std::vector<Expression> Rewriter::rewrites(const Expression& formula) const {
       const bool is_inner = parent < formula.size() && is_product(formula.node(parent).op);
       if (!is_inner) rewrite_product(sum_of_products(formula, i)[0], here);
     } else if (arity(op) == 1 && op != Op::neg) {
-      rewrite_function(op, formula.subtree(formula.only_child(i)), here);
+      rewrite_function(op, subtree(formula, formula.last_child(i)), here);
     }
     for (const Expression& piece : here) {
       if (piece.empty()) continue;

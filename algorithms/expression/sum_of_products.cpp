@@ -15,12 +15,12 @@ void add_factors(const Expression& formula, std::size_t i, int power, SumTerm& t
   const Node& node = formula.node(i);
   if (node.op == Op::mul || node.op == Op::div) {
     add_factors(formula, formula.left_child(i), power, term);
-    add_factors(formula, formula.right_child(i), node.op == Op::mul ? power : -power, term);
+    add_factors(formula, formula.last_child(i), node.op == Op::mul ? power : -power, term);
     return;
   }
   if (node.op == Op::neg) {
     if (power % 2 != 0) term.coefficient = -term.coefficient;
-    add_factors(formula, formula.only_child(i), power, term);
+    add_factors(formula, formula.last_child(i), power, term);
     return;
   }
   if (node.op == Op::pow && formula.node(i - 1).is_constant()) {
@@ -30,17 +30,17 @@ void add_factors(const Expression& formula, std::size_t i, int power, SumTerm& t
       return add_factors(formula, formula.left_child(i), static_cast<int>(exponent), term);
     }
   }
-  multiply_by(term, {formula.subtree(i), power});
+  multiply_by(term, {subtree(formula, i), power});
 }
 
 void add_terms(const Expression& formula, std::size_t i, double sign, SumOfProducts& sum) {
   const Node& node = formula.node(i);
   if (node.op == Op::add || node.op == Op::sub) {
     add_terms(formula, formula.left_child(i), sign, sum);
-    add_terms(formula, formula.right_child(i), node.op == Op::add ? sign : -sign, sum);
+    add_terms(formula, formula.last_child(i), node.op == Op::add ? sign : -sign, sum);
     return;
   }
-  if (node.op == Op::neg) return add_terms(formula, formula.only_child(i), -sign, sum);
+  if (node.op == Op::neg) return add_terms(formula, formula.last_child(i), -sign, sum);
   SumTerm term{sign, {}};
   add_factors(formula, i, 1, term);
   sum.push_back(std::move(term));

@@ -19,10 +19,10 @@ void collect_zero_nodes(const Expression& formula, std::size_t node,
   switch (formula.node(node).op) {
     case Op::mul:
       collect_zero_nodes(formula, formula.left_child(node), nodes);
-      collect_zero_nodes(formula, formula.right_child(node), nodes);
+      collect_zero_nodes(formula, formula.last_child(node), nodes);
       return;
     case Op::pow: {
-      const Node& exponent = formula.node(formula.right_child(node));
+      const Node& exponent = formula.node(formula.last_child(node));
       if (!exponent.is_constant() || exponent.value == 0) return;
       collect_zero_nodes(formula, formula.left_child(node), nodes);
       return;
@@ -36,7 +36,7 @@ void collect_zero_nodes(const Expression& formula, std::size_t node,
     case Op::sgn:
     case Op::sin:
     case Op::tanh:
-      collect_zero_nodes(formula, formula.only_child(node), nodes);
+      collect_zero_nodes(formula, formula.last_child(node), nodes);
       return;
     default:
       return;
@@ -44,7 +44,7 @@ void collect_zero_nodes(const Expression& formula, std::size_t node,
 }
 
 bool has_pole_exponent(const Expression& formula, std::size_t power) {
-  const Node& exponent = formula.node(formula.right_child(power));
+  const Node& exponent = formula.node(formula.last_child(power));
   return exponent.is_constant() && exponent.value < 0;
 }
 
@@ -56,7 +56,7 @@ WitnessSearch::WitnessSearch(const Expression& formula)
     const Node& node = formula.node(i);
     if (node.is_variable()) columns_.push_back(node.variable);
     if (node.op == Op::div || node.op == Op::log) {
-      collect_zero_nodes(formula, formula.right_child(i), zeros_);
+      collect_zero_nodes(formula, formula.last_child(i), zeros_);
     }
     if (node.op == Op::pow && has_pole_exponent(formula, i)) {
       collect_zero_nodes(formula, formula.left_child(i), zeros_);
@@ -100,7 +100,7 @@ std::size_t WitnessSearch::trace(std::span<const double> point) {
 }
 
 double WitnessSearch::computed(std::size_t node, std::span<const double> point) {
-  return evaluator_.evaluate_at(formula_.subtree(node), point);
+  return evaluator_.evaluate_at(subtree(formula_, node), point);
 }
 
 // The trace is the C library's; what counts is the evaluator's.

@@ -197,7 +197,7 @@ ConstantFitResult ConstantFitter::fit(Expression& formula, const Inputs& inputs,
   if (!(reached < given)) return result;
   result.sum_squares = reached;
   for (std::size_t k = 0; k < work.places.size(); ++k) {
-    formula.set_constant(work.places[k], work.constants[k]);
+    set_constant(formula, work.places[k], work.constants[k]);
   }
   return result;
 }

@@ -26,7 +26,7 @@ std::size_t symbols_of(const Expression& formula) {
 double description_length(const Expression& formula, const Inputs& inputs,
                           std::span<const double> target, Differentiator& differentiator) {
   // Whole exponents belong to the structure; all other constants are parameters.
-  std::vector<std::size_t> places = formula.constant_positions();
+  std::vector<std::size_t> places = constant_positions(formula);
   std::erase_if(places, [&](std::size_t i) { return is_exponent(formula, i); });
   differentiator.prepare(formula, places);
   NormalEquations sums;

@@ -31,14 +31,14 @@ class Pruning {
   Pruning(Expression formula, const Inputs& inputs, std::span<const double> target,
           const std::function<bool(std::uint64_t)>& spend)
       : formula_(std::move(formula)), inputs_(inputs), target_(target), spend_(spend) {
-    for (const std::size_t p : formula_.constant_positions()) {
+    for (const std::size_t p : constant_positions(formula_)) {
       if (is_settled(formula_, p)) held_.insert(p);
     }
   }
 
   // False where nothing was to be done.
   bool run() {
-    const std::size_t constants = formula_.constant_positions().size();
+    const std::size_t constants = constant_positions(formula_).size();
     if (constants == held_.size() || constants > kMostConstants) return false;
     square_ = refitted(formula_, held_);
     if (!(square_ > 0) || !std::isfinite(square_)) return false;
@@ -74,7 +74,7 @@ class Pruning {
     for (std::size_t i = place + 1; i < formula_.size(); ++i) {
       const Op op = formula_.node(i).op;
       const int children = arity(op);
-      const bool is_above = (children >= 1 && formula_.right_child(i) == place) ||
+      const bool is_above = (children >= 1 && formula_.last_child(i) == place) ||
                             (children == 2 && formula_.left_child(i) == place);
       if (is_above) return op == Op::mul || op == Op::div;
     }
@@ -92,7 +92,7 @@ class Pruning {
     constexpr double kUnbounded = std::numeric_limits<double>::infinity();
     std::vector<double> low;
     std::vector<double> high;
-    for (const std::size_t p : candidate.constant_positions()) {
+    for (const std::size_t p : constant_positions(candidate)) {
       const double c = candidate.node(p).value;
       low.push_back(held.contains(p) ? c : -kUnbounded);
       high.push_back(held.contains(p) ? c : kUnbounded);
@@ -115,12 +115,12 @@ class Pruning {
     Expression best;
     std::size_t best_place = 0;
     double best_square = 0;
-    for (const std::size_t p : formula_.constant_positions()) {
+    for (const std::size_t p : constant_positions(formula_)) {
       if (held_.contains(p)) continue;
       for (const double value : values_for(p)) {
         if (is_spent_) return false;
         Expression candidate = formula_;
-        candidate.set_constant(p, value);
+        set_constant(candidate, p, value);
         std::set<std::size_t> held = held_;
         held.insert(p);
         const double square = refitted(candidate, held);
@@ -157,7 +157,7 @@ class Pruning {
 
 std::size_t free_exponents(const Expression& formula) {
   std::size_t count = 0;
-  for (const std::size_t p : formula.constant_positions()) {
+  for (const std::size_t p : constant_positions(formula)) {
     if (is_exponent(formula, p) && !is_simple_exponent(formula.node(p).value)) ++count;
   }
   return count;

@@ -86,7 +86,7 @@ Expression FormulaFinisher::shortest(const Expression& formula) {
 bool FormulaFinisher::try_value(Expression& formula, std::size_t place, double value) {
   const RowErrors before = errors_of(formula);
   Expression candidate = formula;
-  candidate.set_constant(place, value);
+  set_constant(candidate, place, value);
   // What the others would have to make good must be small, or every constant is fitted to no end.
   const double moved = errors_of(candidate).square;
   if (!(moved <= kNearNamed * kNearNamed * target_square_)) return false;
@@ -94,7 +94,7 @@ bool FormulaFinisher::try_value(Expression& formula, std::size_t place, double v
   std::vector<double> low;
   std::vector<double> high;
   bool any_free = false;
-  for (const std::size_t p : candidate.constant_positions()) {
+  for (const std::size_t p : constant_positions(candidate)) {
     if (is_exponent(candidate, p)) continue;
     const double c = candidate.node(p).value;
     const bool is_held = p == place || has_a_name(c);
@@ -118,12 +118,12 @@ bool FormulaFinisher::try_value(Expression& formula, std::size_t place, double v
 void FormulaFinisher::name_together(Expression& formula) {
   for (const double nothing : {kNearNothing, 0.0}) {
     Expression named = formula;
-    for (const std::size_t place : named.constant_positions()) {
+    for (const std::size_t place : constant_positions(named)) {
       const double c = named.node(place).value;
-      if (std::abs(c) < nothing && !is_exponent(named, place)) named.set_constant(place, 0);
+      if (std::abs(c) < nothing && !is_exponent(named, place)) set_constant(named, place, 0);
       for (const double value : named_values(c)) {
         if (std::abs(c - value) > kNearTogether * std::abs(value)) continue;
-        named.set_constant(place, value);
+        set_constant(named, place, value);
         break;
       }
     }
@@ -134,7 +134,7 @@ void FormulaFinisher::name_together(Expression& formula) {
 }
 
 bool FormulaFinisher::name_a_constant(Expression& formula) {
-  for (const std::size_t place : formula.constant_positions()) {
+  for (const std::size_t place : constant_positions(formula)) {
     const double c = formula.node(place).value;
     if (has_a_name(c)) continue;
     for (const double value : named_values(c)) {

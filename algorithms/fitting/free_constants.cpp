@@ -11,7 +11,7 @@ std::vector<std::size_t> free_constants(const Expression& formula) {
     return place + 1 < formula.size() && formula.node(place + 1).op == Op::pow &&
            value == std::round(value);
   };
-  std::vector<std::size_t> places = formula.constant_positions();
+  std::vector<std::size_t> places = constant_positions(formula);
   std::erase_if(places, is_form);
   return places;
 }

@@ -12,10 +12,10 @@ std::vector<std::size_t> linear_constants(const Expression& formula,
   for (std::size_t place : places) count[place] = 1;
   for (std::size_t i = 0; i < formula.size(); ++i) {
     const Op op = formula.node(i).op;
-    if (op == Op::neg) count[i] = count[formula.only_child(i)];
+    if (op == Op::neg) count[i] = count[formula.last_child(i)];
     if (arity(op) != 2) continue;
     const int left = count[formula.left_child(i)];
-    const int right = count[formula.right_child(i)];
+    const int right = count[formula.last_child(i)];
     if (op == Op::add || op == Op::sub) count[i] = left + right;
     if (op == Op::mul) count[i] = std::max(left, right);
     if (op == Op::div) count[i] = left;
@@ -25,10 +25,10 @@ std::vector<std::size_t> linear_constants(const Expression& formula,
   for (std::size_t i = formula.size(); i-- > 0;) {
     if (linear[i] == 0) continue;
     const Op op = formula.node(i).op;
-    if (op == Op::neg) linear[formula.only_child(i)] = 1;
+    if (op == Op::neg) linear[formula.last_child(i)] = 1;
     if (arity(op) != 2 || op == Op::pow) continue;
     const std::size_t left = formula.left_child(i);
-    const std::size_t right = formula.right_child(i);
+    const std::size_t right = formula.last_child(i);
     const bool sum = op == Op::add || op == Op::sub;
     const bool to_left = sum || op == Op::div || count[left] >= count[right];
     linear[left] = to_left ? 1 : 0;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Which constants of a formula enter linearly, all of them together: for given values of the
-// others they are the solution of a linear least-squares problem.
+// others they are the solution of a linear least-squares problem. Not for constants that enter
+// linearly one at a time: a and b of a * b do, but not together.
 #pragma once
 
 #include <cstddef>

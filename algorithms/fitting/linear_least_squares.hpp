@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Linear least squares, exactly: rank-aware QR without a ridge, and the same with some
-// coefficients held non-negative.
+// coefficients held non-negative. Not for many columns that nearly depend on one another: nothing
+// is shrunk, and their coefficients are as large as the rows ask for.
 #pragma once
 
 #include <cstddef>

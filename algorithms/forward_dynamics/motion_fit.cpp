@@ -111,7 +111,7 @@ class ParameterList {
       if (list_[k].number) {
         *list_[k].number = values[k];
       } else {
-        list_[k].formula->set_constant(list_[k].place, values[k]);
+        set_constant(*list_[k].formula, list_[k].place, values[k]);
       }
     }
   }

@@ -19,10 +19,10 @@ std::optional<Expression> over_its_factor(const Expression& formula) {
   const std::size_t root = formula.size() - 1;
   const Op op = formula.node(root).op;
   if (formula.node(root).is_constant()) return Expression::constant(1);
-  if (op == Op::neg) return over_its_factor(formula.subtree(root - 1));
+  if (op == Op::neg) return over_its_factor(subtree(formula, root - 1));
   if (op != Op::mul && op != Op::div) return std::nullopt;
-  const Expression right = formula.subtree(root - 1);
-  const Expression left = formula.subtree(formula.begin(root - 1) - 1);
+  const Expression right = subtree(formula, root - 1);
+  const Expression left = subtree(formula, formula.begin(root - 1) - 1);
   const bool in_left = has_free_constants(left);
   if (in_left == has_free_constants(right) || (op == Op::div && !in_left)) return std::nullopt;
   const std::optional<Expression> rest = over_its_factor(in_left ? left : right);
@@ -37,10 +37,10 @@ std::optional<Expression> over_its_factor(const Expression& formula) {
 bool add_linear_terms(const Expression& sum, std::vector<Expression>& terms) {
   const std::size_t root = sum.size() - 1;
   const Op op = sum.node(root).op;
-  if (op == Op::neg) return add_linear_terms(sum.subtree(root - 1), terms);
+  if (op == Op::neg) return add_linear_terms(subtree(sum, root - 1), terms);
   if (op == Op::add || op == Op::sub) {
-    return add_linear_terms(sum.subtree(sum.begin(root - 1) - 1), terms) &&
-           add_linear_terms(sum.subtree(root - 1), terms);
+    return add_linear_terms(subtree(sum, sum.begin(root - 1) - 1), terms) &&
+           add_linear_terms(subtree(sum, root - 1), terms);
   }
   std::optional<Expression> term = over_its_factor(sum);
   if (term) terms.push_back(std::move(*term));

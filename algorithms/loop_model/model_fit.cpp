@@ -48,7 +48,7 @@ double value_of(const LoopModel& model, const Nonlinear& p) {
 
 void set_value(LoopModel& model, const Nonlinear& p, double value) {
   if (p.of_base) {
-    model.base.formula.set_constant(p.place, value);
+    set_constant(model.base.formula, p.place, value);
   } else {
     model.atoms[p.atom].set_shape(p.place, std::clamp(value, p.low, p.high));
   }

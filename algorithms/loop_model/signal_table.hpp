@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The observations of a recording (problems/preparation) as the evaluator and the methods see them.
+// Not a copy: the columns are those of the observations.
 #pragma once
 
 #include <vector>

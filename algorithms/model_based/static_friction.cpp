@@ -37,7 +37,7 @@ StribeckRows make_rows(const FiniteRows& data, const FrictionInputs& inputs, boo
 // How well the data determine the constants of the formula, as one number.
 double condition_of(const Expression& formula, const FiniteRows& data) {
   std::vector<std::size_t> places;
-  for (std::size_t place : formula.constant_positions()) {
+  for (std::size_t place : constant_positions(formula)) {
     // 0.5 s + 0.5 of the asymmetric form is no parameter.
     if (formula.node(place).value != 0.5) places.push_back(place);
   }

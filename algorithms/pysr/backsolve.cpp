@@ -80,9 +80,9 @@ std::vector<Expression> candidates_of(std::span<const Member> population) {
   for (const Member& member : population) {
     for (std::size_t i = 0; i < member.formula.size(); ++i) {
       if (member.formula.node(i).is_constant()) continue;
-      Expression subtree = member.formula.subtree(i);
-      if (!seen.insert(structure_hash(subtree)).second) continue;
-      candidates.push_back(std::move(subtree));
+      Expression part = subtree(member.formula, i);
+      if (!seen.insert(structure_hash(part)).second) continue;
+      candidates.push_back(std::move(part));
       if (candidates.size() == kMostCandidates) return candidates;
     }
   }
@@ -167,10 +167,10 @@ Demand demand_at(const Expression& formula, std::size_t place, const Rows& rows,
     const std::size_t below = path[step + 1];
     const Op op = formula.node(node).op;
     const Children children = children_of(formula, node);
-    evaluator.evaluate(formula.subtree(below), rows.inputs(), current);
+    evaluator.evaluate(subtree(formula, below), rows.inputs(), current);
     const bool on_right = children.count == 2 && children.place[1] == below;
     if (children.count == 2) {
-      evaluator.evaluate(formula.subtree(children.place[on_right ? 0 : 1]), rows.inputs(), other);
+      evaluator.evaluate(subtree(formula, children.place[on_right ? 0 : 1]), rows.inputs(), other);
     }
     for (std::size_t r = 0; r < rows.size(); ++r) {
       demand.values[r] = children.count == 2
@@ -212,7 +212,8 @@ std::optional<Expression> backsolve(const Expression& parent, std::span<const Me
   std::vector<double> target;
   for (const std::size_t row : demand.rows) target.push_back(demand.values[row]);
   const TermChoice choice = select_terms(library, target, max_nodes - kept);
-  Expression child = with_replaced(parent, place, sum_of(library, choice).nodes());
+  const Expression solved = sum_of(library, choice);
+  Expression child = with_replaced(parent, place, solved.nodes());
   if (structure_hash(simplified(child)) == structure_hash(simplified(parent))) return std::nullopt;
   return child;
 }

@@ -152,7 +152,7 @@ bool Validator::admits(const Expression& formula, int max_size) const {
   const int own_size = size(formula);
   if (own_size < 1 || own_size > max_size) return false;
   if (static_cast<int>(formula.size()) > max_depth_ &&
-      static_cast<int>(formula.depth()) > max_depth_) {
+      static_cast<int>(depth(formula)) > max_depth_) {
     return false;
   }
   if (!form_.fits(formula)) return false;
@@ -170,7 +170,7 @@ bool Validator::keeps_limits(const Expression& part) const {
 
 bool Validator::parts_fit(const Expression& formula) const {
   for (std::size_t k = 0; k < form_.parts(); ++k) {
-    const Expression part = formula.subtree(form_.place(formula, k));
+    const Expression part = subtree(formula, form_.place(formula, k));
     if (!part_size_.empty() && size(part) > part_size_[k]) return false;
     if (!keeps_limits(part)) return false;
   }
@@ -186,8 +186,8 @@ bool Validator::arguments_fit(const Expression& formula) const {
       const int limit = limits[static_cast<std::size_t>(k)];
       if (limit < 0) continue;
       const std::size_t child =
-          arguments == 2 && k == 0 ? formula.left_child(i) : formula.right_child(i);
-      if (size(formula.subtree(child)) > limit) return false;
+          arguments == 2 && k == 0 ? formula.left_child(i) : formula.last_child(i);
+      if (size(subtree(formula, child)) > limit) return false;
     }
   }
   return true;
@@ -199,7 +199,7 @@ bool Validator::nesting_fits(const Expression& formula, const NestedLimit& limit
   for (std::size_t i = 0; i < formula.size(); ++i) {
     const Op op = formula.node(i).op;
     int below = 0;
-    if (arity(op) >= 1) below = deepest[formula.right_child(i)];
+    if (arity(op) >= 1) below = deepest[formula.last_child(i)];
     if (arity(op) == 2) below = std::max(below, deepest[formula.left_child(i)]);
     if (op == limit.outer && below > limit.most) return false;
     deepest[i] = below + (op == limit.inner ? 1 : 0);

@@ -55,7 +55,7 @@ Form::Form(std::string_view text, std::span<const std::string> names)
   for (const Hole& hole : holes) {
     Part part{hole.name, {}};
     for (const Expression& argument : hole.arguments) {
-      if (argument.columns_used() == 0) {
+      if (columns_used(argument) == 0) {
         throw_bad_input(fmt::format("an argument of the part '{}' holds no input", hole.name),
                         "template", "name inputs, or nothing for a number to be fitted");
       }
@@ -78,7 +78,7 @@ Form::Form(std::string_view text, std::span<const std::string> names)
 // Appends the outer form of the subtree that ends at `node`: what holds no part becomes a column.
 void Form::build(const Expression& text, std::size_t node, std::vector<Node>& outer) {
   if (std::ranges::none_of(subtree_nodes(text, node), is_part) && !is_exponent(text, node)) {
-    outer.push_back(columns_.leaf_of(text.subtree(node)));
+    outer.push_back(columns_.leaf_of(subtree(text, node)));
     return;
   }
   const Children children = children_of(text, node);
@@ -104,7 +104,7 @@ std::size_t Form::place(const Expression& formula, std::size_t part) const {
 
 Expression Form::part(const Expression& formula, std::size_t part) const {
   if (takes_all_) return formula;
-  Expression own = formula.subtree(place(formula, part));
+  Expression own = subtree(formula, place(formula, part));
   const std::vector<std::size_t>& arguments = parts_[part].arguments;
   for (std::size_t i = 0; i < own.size(); ++i) {
     if (!own.node(i).is_variable()) continue;
@@ -223,7 +223,7 @@ std::string parts_text(const Form& form, std::span<const std::string> names,
   const std::optional<Expression> own = form.read(formula);
   std::string text;
   for (std::size_t k = 0; own && k < form.parts(); ++k) {
-    const Expression part = form.columns().written_out(own->subtree(form.place(*own, k)));
+    const Expression part = form.columns().written_out(subtree(*own, form.place(*own, k)));
     text += fmt::format("{}{} = {}", k == 0 ? "" : "; ", form.name(k), print(part, names));
   }
   return text;

@@ -154,7 +154,7 @@ Grower::Candidate Grower::rate(std::size_t probe, const Term& term, bool multipl
 void Grower::build(const Expression& formula, const Candidate& candidate,
                    std::span<const Probe> probes, std::vector<Proposal>& proposals) const {
   const std::size_t place = probes[candidate.probe].place;
-  const Expression below = formula.subtree(place);
+  const Expression below = subtree(formula, place);
   const Term& term = *candidate.term;
   Expression step = constant_of(candidate.coefficient);
   if (!term.is_one()) step = Expression::binary(Op::mul, step, term.formula);
@@ -274,7 +274,7 @@ std::vector<Proposal> Grower::prune(const Expression& formula, const Rows& rows,
     for (const double value : {0.0, 1.0}) {
       Expression pruned = formula;
       const double change = formula.node(i).value - value;
-      pruned.set_constant(i, value);
+      set_constant(pruned, i, value);
       pruned = simplified(*form_, pruned);
       if (pruned.size() < formula.size()) {
         proposals.push_back({std::move(pruned), -change * change / unit[k]});

@@ -144,7 +144,6 @@ void Island::mutation_event(const EventState& step, RandomStream& random, Budget
     if (budget.exhausted()) return;
     learn(kind, child && child->cost < parent.cost);
     if (!child) continue;
-    accepted_[index_of(kind)] += 1;
     return replace_oldest(std::move(*child));
   }
   if (!options.skip_failures) replace_oldest(parent);
@@ -213,11 +212,12 @@ void Island::optimise(Member& member, RandomStream& random, Budget& budget) {
       offspring_.scorer().fit(best, shared_.rows, options.optimize_iterations, budget);
   for (int restart = 0; restart < options.optimize_restarts; ++restart) {
     Expression trial = member.formula;
-    for (const std::size_t place : trial.constant_positions()) {
+    for (const std::size_t place : constant_positions(trial)) {
       if (is_exponent(trial, place)) continue;
       const double value = trial.node(place).value;
       // A zero would never move under a relative perturbation (SymbolicRegression.jl #637).
-      trial.set_constant(place, value == 0 ? random.normal() : value * (1 + 0.5 * random.normal()));
+      set_constant(trial, place,
+                   value == 0 ? random.normal() : value * (1 + 0.5 * random.normal()));
     }
     const auto loss =
         offspring_.scorer().fit(trial, shared_.rows, options.optimize_iterations, budget);

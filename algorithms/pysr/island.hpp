@@ -34,8 +34,6 @@ class Island {
   const std::vector<Member>& members() const { return members_; }
   const HallOfFame& best_seen() const { return best_seen_; }
   std::uint64_t& clock() { return clock_; }
-  // Mutations tried and accepted, by kind, since the start.
-  const std::array<std::uint64_t, kMutationKinds>& accepted() const { return accepted_; }
 
  private:
   void construct(RandomStream& random, Budget& budget);
@@ -57,7 +55,6 @@ class Island {
   std::vector<Member> members_;
   HallOfFame best_seen_;
   std::uint64_t clock_ = 0;
-  std::array<std::uint64_t, kMutationKinds> accepted_{};
   std::array<double, kMutationKinds> success_;  // smoothed rate, for adaptive weights
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Copies of good members travel into an island.
+// Copies of good members travel into an island. Nothing is fitted or scored anew: what they cost is
+// as their own island knew it.
 #pragma once
 
 #include <span>

@@ -43,7 +43,7 @@ Child mutate_constant(const Expression& parent, const MutationSettings& settings
       random_place(parent, random, [&](std::size_t i) { return parent.node(i).is_constant(); });
   if (!place) return std::nullopt;
   Expression child = parent;
-  child.set_constant(*place, parent.node(*place).value * constant_factor(settings, random));
+  set_constant(child, *place, parent.node(*place).value * constant_factor(settings, random));
   return child;
 }
 

@@ -138,7 +138,7 @@ void Search::refuse_what_cannot_start() const {
   if (validator_.admits(least, options_.max_size)) return;
   throw_bad_input(
       fmt::format("no formula of the template is allowed: alone it has size {} and {} levels",
-                  validator_.size(least), least.depth()),
+                  validator_.size(least), depth(least)),
       "template", "raise max_size or max_depth, or look at units and part_sizes");
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Which formula of a front the method stands for.
+// Which formula of a front the method stands for. Not for fronts of several methods, whose losses
+// may be of different rows (fitting/joint_front.hpp).
 #pragma once
 
 #include <span>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Who becomes a parent, and whether a child may stay.
+// Who becomes a parent, and whether a child may stay. Not for making the child (offspring.hpp).
 #pragma once
 
 #include <span>

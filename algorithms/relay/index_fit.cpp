@@ -138,13 +138,13 @@ class FunctionSearch {
 
   // c_0 + c_1 log(b + a x): b says nothing that c_0 does not.
   static void set_inside_to_one(Expression& formed) {
-    const std::vector<std::size_t> places = formed.constant_positions();
+    const std::vector<std::size_t> places = constant_positions(formed);
     const double c1 = formed.node(places[1]).value;
     const double b = formed.node(places[2]).value;
     if (!(b > 0)) return;
-    formed.set_constant(places[0], formed.node(places[0]).value + c1 * elementary::log(b));
-    formed.set_constant(places[2], 1);
-    formed.set_constant(places[3], formed.node(places[3]).value / b);
+    set_constant(formed, places[0], formed.node(places[0]).value + c1 * elementary::log(b));
+    set_constant(formed, places[2], 1);
+    set_constant(formed, places[3], formed.node(places[3]).value / b);
   }
 
   std::optional<Expression> polished(Op op, double scale, double phase) const {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -65,6 +66,18 @@ std::optional<ReducedProblem> next_problem(std::vector<ReducedProblem>& open,
   return problem;
 }
 
+// A surrogate's error for a target on these rows (surrogate.hpp).
+double roughness_of(const LogRows& rows, std::span<const double> target, Budget& budget) {
+  Budget part = budget.share(budget.remaining() / 4, kQuarter);
+  const double error = Surrogate(rows, target, part).error();
+  budget.settle(part);
+  return error;
+}
+
+ReducedProblem collapsed(const ReducedProblem& problem, const Collapse& collapse) {
+  return {problem, Reduction{TargetForm::plain, false, collapse.outer, {collapse.inner}}};
+}
+
 }  // namespace
 
 StructureSearch::StructureSearch(FitContext& context, Answer& answer, const Regressor& solver,
@@ -90,7 +103,7 @@ void StructureSearch::search() {
 void StructureSearch::search_likely() {
   const LogRows rows(answer_.rows(), kFewRows);
   if (round_ > 0 || answer_.is_done() || rows.rows() == 0 || !has(kLikely)) return;
-  if (roughness_of(rows, rows.target().values) < kSurelyExact) return;
+  if (roughness_of(rows, rows.target().values, context_.budget) < kSurelyExact) return;
   Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
   std::vector<Expression> likely = likely_products(rows, context_.operators, part);
   for (const auto& [columns, most] : {std::pair(Columns::powers_alone, kLikelyColumns),
@@ -106,19 +119,12 @@ void StructureSearch::search_likely() {
   is_noise_left_ = answer_.has_formula() && leaves_noise(answer_.likeliest());
 }
 
-double StructureSearch::roughness_of(const LogRows& rows, std::span<const double> target) {
-  Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
-  const double error = Surrogate(rows, target, part).error();
-  context_.budget.settle(part);
-  return error;
-}
-
 // Whether a polynomial has nothing to say of what a formula leaves, on rows held out.
 bool StructureSearch::leaves_noise(const Expression& formula) {
   const LogRows rows(answer_.rows(), kSearchedRows);
   std::vector<double> left = factor_of(formula, rows).values;
   for (std::size_t r = 0; r < left.size(); ++r) left[r] = rows.target().values[r] - left[r];
-  const double error = roughness_of(rows, left);
+  const double error = roughness_of(rows, left, context_.budget);
   return std::isfinite(error) && error >= kAllNoise;
 }
 
@@ -192,15 +198,11 @@ std::optional<ReducedProblem> StructureSearch::find_structure(const LogRows& row
   const auto collapses =
       find_collapses(rows, context_.operators, kOrders << round_, kMostCollapses, budget);
   for (const Collapse& collapse : collapses) {
-    solve(collapsed(collapse), Width::narrow, budget);
+    solve(collapsed(whole(), collapse), Width::narrow, budget);
     if (answer_.is_done()) return std::nullopt;
   }
   if (collapses.empty() || !collapses[0].is_smooth) return std::nullopt;
-  return collapsed(collapses[0]);
-}
-
-ReducedProblem StructureSearch::collapsed(const Collapse& collapse) const {
-  return {whole(), Reduction{TargetForm::plain, false, collapse.outer, {collapse.inner}}};
+  return collapsed(whole(), collapses[0]);
 }
 
 // g among products, short sums and known functions.

@@ -11,7 +11,6 @@
 
 #include <array>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -44,11 +43,12 @@ class StructureSearch {
                   std::string_view without);
 
   // Cheap structure first; then, where no polynomial says that there is no noise, what structure is
-  // likely under noise; then the dearer searches, unless all that a likely formula leaves is noise.
+  // likely under noise; then the more expensive ones, unless all that a likely formula leaves is
+  // noise.
   void search();
   // A long sum of many products (long_sum.hpp), a rival of whatever is chosen.
   void search_long_sum();
-  // Fewer variables where no slope says so, by trial: dear, and seldom needed.
+  // Fewer variables where no slope says so, by trial: expensive, and seldom needed.
   void search_guesses();
   // Sums of products with waves and differences: many, and seldom what a law is.
   void search_wide_sums();
@@ -58,8 +58,6 @@ class StructureSearch {
 
   // What structure is likely under noise: weighed beside the methods' choices.
   void search_likely();
-  // A surrogate's error for a target on these rows (surrogate.hpp).
-  double roughness_of(const LogRows& rows, std::span<const double> target);
   bool leaves_noise(const Expression& formula);
   // What is exact is offered; the return is a problem of fewer variables that was not solved.
   std::optional<ReducedProblem> find_structure(const LogRows& rows, Budget& budget);
@@ -75,7 +73,6 @@ class StructureSearch {
   void solve(const ReducedProblem& problem, Width width, Budget& budget);
   void search_by_solver(const ReducedProblem& problem);
   ReducedProblem whole() const { return {context_.data.inputs, answer_.rows()}; }
-  ReducedProblem collapsed(const Collapse& collapse) const;
   bool has(std::string_view search) const { return without_ != search; }
 
   FitContext& context_;

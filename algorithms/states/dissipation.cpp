@@ -26,14 +26,14 @@ void add_terms(const Expression& formula, std::size_t node, bool minus,
     case Op::add:
     case Op::sub:
       add_terms(formula, formula.left_child(node), minus, terms);
-      add_terms(formula, formula.right_child(node), minus != (formula.node(node).op == Op::sub),
+      add_terms(formula, formula.last_child(node), minus != (formula.node(node).op == Op::sub),
                 terms);
       return;
     case Op::neg:
-      add_terms(formula, formula.only_child(node), !minus, terms);
+      add_terms(formula, formula.last_child(node), !minus, terms);
       return;
     default:
-      terms.emplace_back(minus, formula.subtree(node));
+      terms.emplace_back(minus, subtree(formula, node));
   }
 }
 
@@ -48,8 +48,8 @@ std::optional<Spring> spring_of(const Expression& term) {
   Spring spring{0, 1, false};
   Expression part = term;
   if (term.node(term.root()).op == Op::mul) {
-    const Expression left = term.subtree(term.left_child(term.root()));
-    const Expression right = term.subtree(term.right_child(term.root()));
+    const Expression left = subtree(term, term.left_child(term.root()));
+    const Expression right = subtree(term, term.last_child(term.root()));
     const bool is_left = left.node(left.root()).is_constant();
     if (!is_left && !right.node(right.root()).is_constant()) return std::nullopt;
     spring.coefficient = (is_left ? left : right).node(0).value;
@@ -57,7 +57,7 @@ std::optional<Spring> spring_of(const Expression& term) {
   }
   if (part.node(part.root()).op == Op::abs) {
     spring.is_absolute = true;
-    part = part.subtree(part.only_child(part.root()));
+    part = subtree(part, part.last_child(part.root()));
   }
   if (!part.node(part.root()).is_variable()) return std::nullopt;
   spring.column = part.node(part.root()).variable;

@@ -49,7 +49,7 @@ class JointProblem : public LeastSquaresProblem {
   // Writes a point into the formula.
   void set(std::span<const double> x) {
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      formula_.formula.set_constant(places_[i], x[i]);
+      set_constant(formula_.formula, places_[i], x[i]);
     }
     by_constants_.set_constants(x.first(places_.size()));
     std::size_t next = places_.size();

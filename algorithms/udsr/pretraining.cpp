@@ -233,9 +233,9 @@ Eigen::MatrixXd imagined_features(const TokenLibrary& library, const Sequence& s
     }
   }
   Expression formula = to_expression(library, sequence, random_polynomial(inputs, random));
-  for (const std::size_t place : formula.constant_positions()) {
+  for (const std::size_t place : constant_positions(formula)) {
     if (!is_exponent(formula, place)) {
-      formula.set_constant(place, formula.node(place).value * random.normal());
+      set_constant(formula, place, formula.node(place).value * random.normal());
     }
   }
   const bool signs = random.chance(0.75);

@@ -17,7 +17,7 @@ std::vector<std::size_t> parents_of(const Expression& formula) {
   std::vector<std::size_t> parents(formula.size(), kNone);
   for (std::size_t i = 0; i < formula.size(); ++i) {
     const int children = arity(formula.node(i).op);
-    if (children >= 1) parents[formula.right_child(i)] = i;
+    if (children >= 1) parents[formula.last_child(i)] = i;
     if (children == 2) parents[formula.left_child(i)] = i;
   }
   return parents;
@@ -27,14 +27,14 @@ std::vector<std::size_t> parents_of(const Expression& formula) {
 bool is_scaled(const Expression& formula, std::size_t place) {
   const Node& node = formula.node(place);
   if (node.is_constant()) return true;
-  if (node.op == Op::neg) return is_scaled(formula, formula.only_child(place));
+  if (node.op == Op::neg) return is_scaled(formula, formula.last_child(place));
   if (is_sum(node.op)) {
     // Every term of a sum is or will be scaled; a factor before the sum would be one too many.
     return true;
   }
   if (node.op == Op::mul) {
     return is_scaled(formula, formula.left_child(place)) ||
-           is_scaled(formula, formula.right_child(place));
+           is_scaled(formula, formula.last_child(place));
   }
   return node.op == Op::div && is_scaled(formula, formula.left_child(place));
 }
@@ -53,7 +53,7 @@ bool has_offset(const Expression& formula, std::size_t place) {
   const Node& node = formula.node(place);
   if (node.is_constant()) return true;
   return is_sum(node.op) && (has_offset(formula, formula.left_child(place)) ||
-                             has_offset(formula, formula.right_child(place)));
+                             has_offset(formula, formula.last_child(place)));
 }
 
 // Where a sum ends, and at the top. Inside exp an offset would be the scale of what stands outside.
@@ -85,10 +85,10 @@ std::size_t term_of(const Expression& formula, const std::vector<std::size_t>& p
 std::vector<std::size_t> movable_constants(const Expression& formula) {
   const std::vector<std::size_t> parents = parents_of(formula);
   std::vector<std::size_t> places;
-  for (const std::size_t place : formula.constant_positions()) {
+  for (const std::size_t place : constant_positions(formula)) {
     const std::size_t parent = parents[place];
     const bool exponent = parent != kNone && formula.node(parent).op == Op::pow &&
-                          formula.right_child(parent) == place;
+                          formula.last_child(parent) == place;
     if (!exponent) places.push_back(place);
   }
   return places;
@@ -115,8 +115,8 @@ Expression without_term(const Expression& formula, std::size_t place) {
   const std::vector<std::size_t> parents = parents_of(formula);
   const std::size_t sum = parents[place];
   const bool is_left = formula.left_child(sum) == place;
-  const std::size_t kept = is_left ? formula.right_child(sum) : formula.left_child(sum);
-  Expression rest = formula.subtree(kept);
+  const std::size_t kept = is_left ? formula.last_child(sum) : formula.left_child(sum);
+  Expression rest = subtree(formula, kept);
   // 0 - b is -1 * b: a factor of its own, that a fit can move.
   if (is_left && formula.node(sum).op == Op::sub) {
     rest = Expression::binary(Op::mul, Expression::constant(-1), rest);

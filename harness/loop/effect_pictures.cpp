@@ -113,7 +113,7 @@ std::vector<Expression> arguments_of(const std::vector<Expression>& columns,
   for (const Expression& column : columns) {
     for (std::size_t i = 0; i < column.size(); ++i) {
       if (std::ranges::count(operations, column.node(i).op) == 0) continue;
-      Expression argument = column.subtree(column.only_child(i));
+      Expression argument = subtree(column, column.last_child(i));
       if (std::ranges::count(all, argument) == 0) all.push_back(std::move(argument));
     }
   }
@@ -153,8 +153,8 @@ void add_signal(std::vector<Coordinate>& all, const Observations& data, std::siz
 }
 
 std::string rounded_text(Expression formula, const Observations& data) {
-  for (const std::size_t i : formula.constant_positions()) {
-    formula.set_constant(i, std::stod(fmt::format("{:.3g}", formula.node(i).value)));
+  for (const std::size_t i : constant_positions(formula)) {
+    set_constant(formula, i, std::stod(fmt::format("{:.3g}", formula.node(i).value)));
   }
   return print(formula, data.names());
 }

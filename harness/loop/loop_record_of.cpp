@@ -187,8 +187,8 @@ std::string short_formula(const Expression& formula, const Observations& data) {
   if (formula.empty()) return {};
   Canonicalizer canonicalizer;
   Expression canonical = canonicalizer.canonical(formula);
-  for (const std::size_t i : canonical.constant_positions()) {
-    canonical.set_constant(i, std::stod(fmt::format("{:.4g}", canonical.node(i).value)));
+  for (const std::size_t i : constant_positions(canonical)) {
+    set_constant(canonical, i, std::stod(fmt::format("{:.4g}", canonical.node(i).value)));
   }
   return print(canonical, data.names());
 }

@@ -195,7 +195,7 @@ void check_varying(const Observations& data) {
 }
 
 void check_moving(const Observations& data) {
-  constexpr double kAgainst = 0.1;  // of what is travelled: less is the position's noise
+  constexpr double kMostBackward = 0.1;  // of what is travelled: less is the position's noise
   const Signal& v = *data.find("v");
   const auto [low, high] = std::ranges::minmax(v.values);
   if (low < high) return;
@@ -223,7 +223,7 @@ void check_moving(const Observations& data) {
     against += back;
     begin = i;
   }
-  if (against <= kAgainst * travelled) return;
+  if (against <= kMostBackward * travelled) return;
   throw_bad_input(
       fmt::format("the velocity is {} in every row, while '{}' moves against it", high, q->channel),
       v.channel, kMend);

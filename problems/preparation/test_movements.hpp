@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Which whole movements of a recording to hold out: spread over directions and speeds.
+// Which whole movements of a recording to hold out: spread over directions and speeds. Not for
+// folds, which leave every movement out once (algorithms/inference/clusters.hpp).
 #pragma once
 
 #include <vector>

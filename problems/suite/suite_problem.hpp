@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A suite's problems in the catalogue, as SUITE/PROBLEM.
+// A suite's problems in the catalogue, as SUITE/PROBLEM. Not for reading its file (suite.hpp), and
+// not for laws with units or movements: rows are drawn one by one.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The few distribution functions that the tests need.
+// The few distribution functions that the tests need. Not for arguments out of the ranges named
+// here, which are not checked, nor for tails below 1e-300 (foundation/incomplete_gamma.hpp).
 #pragma once
 
 namespace tribench {

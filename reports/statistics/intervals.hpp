@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Intervals: how sure a figure is. Every random draw comes from the stream handed in.
+// Intervals: how sure a figure is. Every random draw comes from the stream handed in. Not for
+// whether two things differ: paired tests (rank_tests.hpp) see what two intervals side by side do
+// not.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What a comparison that found nothing could have found.
+// What a comparison that found nothing could have found. Not for planning one before there is data,
+// nor for the power to have found what was found: that says no more than the p-value.
 #pragma once
 
 #include <span>

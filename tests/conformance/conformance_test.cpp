@@ -131,7 +131,7 @@ void expect_legal(const FitResult& result, const Sample& sample) {
     EXPECT_LT(result.chosen, result.front.size());
   }
   for (const Expression& formula : result.front) {
-    EXPECT_LE(formula.columns_used(), sample.inputs.size() + result.states.size());
+    EXPECT_LE(columns_used(formula), sample.inputs.size() + result.states.size());
     const std::vector<std::string> names = sample.names(result);
     EXPECT_EQ(parse(print(formula, names), names), formula);
   }

@@ -4,13 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "foundation/error.hpp"
 
 namespace tribench {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 std::string key_of_parts(int parts) {
@@ -55,6 +58,38 @@ TEST(Toml, WhereATableIsWantedItsKeysAreSaid) {
     EXPECT_THAT(error.what(), HasSubstr("seeds = { first = ..., count = ... }"));
     EXPECT_EQ(error.place(), "grid.toml:1:9");
   }
+}
+
+TEST(Toml, AWholeNumberIsWrittenTheSameAloneAndInAnArray) {
+  const toml::table file = parse_toml("one = 1e3\nsome = [1e3, 7]\nbroken = [1.5]\n", "grid.toml");
+  const TomlTable table(file, "grid.toml", "", {"one", "some", "broken"});
+  std::uint64_t one = 0;
+  std::vector<std::uint64_t> some;
+  table.read("one", one);
+  table.read("some", some);
+  EXPECT_EQ(one, 1000U);
+  EXPECT_THAT(some, ElementsAre(1000U, 7U));
+  EXPECT_THROW(table.read("broken", some), Error);
+}
+
+TEST(Toml, AValueOfAnotherKindIsRefusedWithWhatIsWanted) {
+  const toml::table file = parse_toml("flag = 1\nname = [\"a\", 2]\nshare = 2\n", "grid.toml");
+  const TomlTable table(file, "grid.toml", "[grid]", {"flag", "name", "share"});
+  bool flag = false;
+  std::vector<std::string> name;
+  double share = 0;
+  const auto said = [](auto read) -> std::string {
+    try {
+      read();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  EXPECT_THAT(said([&] { table.read("flag", flag); }), HasSubstr("must be true or false"));
+  EXPECT_THAT(said([&] { table.read("name", name); }), HasSubstr("must be an array of texts"));
+  EXPECT_THAT(said([&] { table.read("share", share, 0, 1); }),
+              HasSubstr("must be a number from 0 to 1"));
 }
 
 }  // namespace

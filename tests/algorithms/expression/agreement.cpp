@@ -36,9 +36,9 @@ Expression draw(RandomStream& random) {
       random.chance(0.5) ? formulas.grown(size, random) : formulas.balanced(size, random);
   for (std::size_t i = 0; i < formula.size(); ++i) {
     if (formula.node(i).op != Op::pow || random.chance(0.3)) continue;
-    const std::size_t exponent = formula.right_child(i);
+    const std::size_t exponent = formula.last_child(i);
     if (formula.node(exponent).is_constant()) {
-      formula.set_constant(exponent, static_cast<double>(random.below(9)) - 3);
+      set_constant(formula, exponent, static_cast<double>(random.below(9)) - 3);
     }
   }
   return formula;

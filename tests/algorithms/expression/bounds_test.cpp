@@ -127,7 +127,8 @@ TEST(Bounds, ContainTheExactValueOfEveryNode) {
       exact.evaluate(formula, {columns[0][s], columns[1][s]});
       for (std::size_t i = 0; i < known; ++i) {
         ASSERT_TRUE(exact.is_inside(i, bounds.at(i).range))
-            << print(formula.subtree(i), kNames) << " at " << columns[0][s] << " " << columns[1][s];
+            << print(subtree(formula, i), kNames) << " at " << columns[0][s] << " "
+            << columns[1][s];
       }
     }
   }
@@ -142,7 +143,7 @@ TEST(Bounds, ContainDifferenceQuotients) {
     const double at = 2 * random.normal();
     const Box box = {{at, at + 0.01}};
     FormulaBounds bounds(formula);
-    if (!bounds.sharpen(box) || formula.columns_used() == 0) continue;
+    if (!bounds.sharpen(box) || columns_used(formula) == 0) continue;
     const double rise = evaluator.evaluate_at(formula, std::vector<double>{box[0].high}) -
                         evaluator.evaluate_at(formula, std::vector<double>{box[0].low});
     const double width = box[0].high - box[0].low;

@@ -161,7 +161,7 @@ TEST(Certificate, NamesEveryInputItClaimsOrIsRefused) {
   std::string sum = "0";
   for (int i = 0; i < 65'536; ++i) sum += " + y" + std::to_string(i);
   std::vector<std::string> names;
-  EXPECT_EQ(parse_collecting_names(sum, names).columns_used(), kMaxInputs);
+  EXPECT_EQ(columns_used(parse_collecting_names(sum, names)), kMaxInputs);
   EXPECT_THROW(parse_collecting_names(sum + " + 1/x", names), Error);
   EXPECT_THROW(Node::input(kMaxInputs), Error);
 }
@@ -242,12 +242,13 @@ TEST(Certificate, CheckerBoundsContainEverySampledValue) {
     for (const Interval& side : box) piece.push_back({side.low, side.high});
     const auto columns = testing::sample_box(random, box);
     for (std::size_t i = 0; i < formula.size(); ++i) {
-      const std::string text = print(formula.subtree(i), std::vector<std::string>{"v", "g", "t"});
+      const std::string text = print(subtree(formula, i), std::vector<std::string>{"v", "g", "t"});
       ClaimedBox claimed = read_claimed_box("v=-1:1,g=-1:1,t=-1:1");  // its names
       const auto bounds = piece_bounds(read_claimed_formula(text, claimed), piece);
       if (!bounds) continue;
       ++bounded;
-      ASSERT_EQ(testing::count_escapes(formula.subtree(i), columns, {bounds->low, bounds->high}), 0)
+      ASSERT_EQ(testing::count_escapes(subtree(formula, i), columns, {bounds->low, bounds->high}),
+                0)
           << text;
     }
   }

@@ -51,7 +51,7 @@ struct Table {
 template <typename T>
 std::vector<T> constants_of(const Expression& formula) {
   std::vector<T> constants;
-  for (const std::size_t i : formula.constant_positions()) {
+  for (const std::size_t i : constant_positions(formula)) {
     constants.push_back(static_cast<T>(formula.node(i).value));
   }
   return constants;
@@ -70,9 +70,9 @@ Expression draw(RandomStream& random) {
       random.chance(0.5) ? formulas.grown(size, random) : formulas.balanced(size, random);
   for (std::size_t i = 0; i < formula.size(); ++i) {
     if (formula.node(i).op != Op::pow) continue;
-    const std::size_t exponent = formula.right_child(i);
+    const std::size_t exponent = formula.last_child(i);
     if (formula.node(exponent).is_constant() && random.chance(0.8)) {
-      formula.set_constant(exponent, static_cast<double>(random.below(20)) - 8);
+      set_constant(formula, exponent, static_cast<double>(random.below(20)) - 8);
     }
   }
   return formula;
@@ -132,12 +132,12 @@ TYPED_TEST(Compile, TakesOtherConstants) {
     Expression formula = draw(random);
     auto code = BasicCompiledFormula<T>::compile(formula);
     if (!code) continue;  // the level in use is pinned to one without code
-    const std::vector<std::size_t> positions = formula.constant_positions();
+    const std::vector<std::size_t> positions = constant_positions(formula);
     ASSERT_EQ(code->constants(), positions.size());
     for (int change = 0; change < 3; ++change) {
       for (const std::size_t i : positions) {
         const bool exponent = i < formula.root() && formula.node(i + 1).op == Op::pow;
-        if (!exponent) formula.set_constant(i, random.normal());
+        if (!exponent) set_constant(formula, i, random.normal());
       }
       evaluator.evaluate(formula, table.inputs(50), expected);
       code->evaluate(constants_of<T>(formula), table.inputs(50), out);
@@ -176,7 +176,7 @@ TEST(Compile, TakesVeryDeepFormulas) {
 TEST(RepeatedEvaluator, CompilesWhenItPaysAndNeverChangesAResult) {
   const Table<double> table(90);
   Expression formula = parse("(x0 + 2)*exp(-0.5*x1^2) - x2/3", kNames);
-  const std::vector<std::size_t> positions = formula.constant_positions();
+  const std::vector<std::size_t> positions = constant_positions(formula);
   RepeatedEvaluator repeated;
   repeated.prepare(formula);
   RandomStream random(9);
@@ -191,7 +191,7 @@ TEST(RepeatedEvaluator, CompilesWhenItPaysAndNeverChangesAResult) {
     if (turn % 100 != 0) continue;
     for (std::size_t k = 0; k < positions.size(); ++k) {
       const bool exponent = formula.node(positions[k] + 1).op == Op::pow;
-      if (!exponent) formula.set_constant(positions[k], constants[k]);
+      if (!exponent) set_constant(formula, positions[k], constants[k]);
     }
     evaluator.evaluate(formula, table.inputs(90), expected);
     for (std::size_t r = 0; r < 90; ++r) ASSERT_TRUE(same(out[r], expected[r]));

@@ -66,8 +66,8 @@ void expect_containment(std::string_view key, int trials) {
       const std::size_t known = all ? formula.size() : bounds.failed_node();
       for (std::size_t i = 0; i < known; ++i) {
         if (arity(formula.node(i).op) == 0) continue;
-        ASSERT_EQ(count_escapes(formula.subtree(i), columns, bounds.at(i).range), 0)
-            << print(formula.subtree(i), kNames) << " sharpened " << sharpened << " on v "
+        ASSERT_EQ(count_escapes(subtree(formula, i), columns, bounds.at(i).range), 0)
+            << print(subtree(formula, i), kNames) << " sharpened " << sharpened << " on v "
             << print_number(box[0].low) << " : " << print_number(box[0].high) << " bounds "
             << print_number(bounds.at(i).range.low) << " : "
             << print_number(bounds.at(i).range.high);

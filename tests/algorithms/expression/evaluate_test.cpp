@@ -63,9 +63,9 @@ Expression with_whole_exponents(const Expression& formula, RandomStream& random)
   Expression result = formula;
   for (std::size_t i = 0; i < formula.size(); ++i) {
     if (formula.node(i).op != Op::pow || random.chance(0.3)) continue;
-    const std::size_t exponent = formula.right_child(i);
+    const std::size_t exponent = formula.last_child(i);
     if (formula.node(exponent).is_constant()) {
-      result.set_constant(exponent, static_cast<double>(random.below(9)) - 3);
+      set_constant(result, exponent, static_cast<double>(random.below(9)) - 3);
     }
   }
   return result;

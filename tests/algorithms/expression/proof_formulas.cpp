@@ -43,14 +43,14 @@ Expression random_formula(RandomStream& random, const FormulaKind& kind) {
 bool is_finite_throughout(Evaluator& evaluator, const Expression& formula,
                           std::span<const double> point) {
   for (std::size_t i = 0; i < formula.size(); ++i) {
-    if (!std::isfinite(evaluator.evaluate_at(formula.subtree(i), point))) return false;
+    if (!std::isfinite(evaluator.evaluate_at(subtree(formula, i), point))) return false;
   }
   return true;
 }
 
 bool overflows(Evaluator& evaluator, const Expression& formula, std::span<const double> point) {
   for (std::size_t i = 0; i < formula.size(); ++i) {
-    const double value = evaluator.evaluate_at(formula.subtree(i), point);
+    const double value = evaluator.evaluate_at(subtree(formula, i), point);
     if (std::isfinite(value) && (std::abs(value) > 1e60 || (value != 0 && std::abs(value) < 1e-60)))
       return true;
   }

@@ -42,7 +42,7 @@ T evaluate(const Expression& formula, std::size_t i, std::span<const T> point) {
   if (node.op == Op::variable) return point[node.variable];
   const KernelTable<T>& kernels = kernel_table<T>(VectorLevel::baseline);
   T a =
-      evaluate(formula, arity(node.op) == 1 ? formula.only_child(i) : formula.left_child(i), point);
+      evaluate(formula, arity(node.op) == 1 ? formula.last_child(i) : formula.left_child(i), point);
   T result = 0;
   if (arity(node.op) == 1) {
     if (node.op == Op::neg) return -a;
@@ -52,7 +52,7 @@ T evaluate(const Expression& formula, std::size_t i, std::span<const T> point) {
                                                                             nullptr, 1);
     return result;
   }
-  const std::size_t right = formula.right_child(i);
+  const std::size_t right = formula.last_child(i);
   T b = evaluate(formula, right, point);
   switch (node.op) {
     case Op::add:
@@ -168,12 +168,12 @@ inline Bounded evaluate_bounded(const Expression& formula, std::size_t i,
   Bounded result;
   bool exact = false;
   if (arity(node.op) == 1) {
-    const Bounded a = evaluate_bounded(formula, formula.only_child(i), point);
+    const Bounded a = evaluate_bounded(formula, formula.last_child(i), point);
     exact = a.slack == 0;
     result.value = apply_function(node.op, a.value);
     result.slack = function_slack(node.op, a.value, a.slack, result.value);
   } else {
-    const std::size_t right = formula.right_child(i);
+    const std::size_t right = formula.last_child(i);
     const Bounded a = evaluate_bounded(formula, formula.left_child(i), point);
     const Bounded b = evaluate_bounded(formula, right, point);
     exact = a.slack == 0 && b.slack == 0;

@@ -30,7 +30,7 @@ struct Known {
 // A witness is checked by hand: with the evaluator alone.
 void expect_singular_at(const Expression& formula, const Witness& witness, const InputBox& box) {
   Evaluator evaluator;
-  const Expression node = formula.subtree(witness.node);
+  const Expression node = subtree(formula, witness.node);
   for (std::size_t j = 0; j < box.size(); ++j) {
     for (const auto& point : {witness.point, witness.neighbour}) {
       if (point.empty()) continue;

@@ -91,8 +91,8 @@ void add_adversarial(RandomStream& random, const Expression& formula, const Inpu
   for (std::size_t i = 0; i < formula.size(); ++i) {
     const Op op = formula.node(i).op;
     if (op == Op::div || op == Op::log || op == Op::sqrt)
-      critical.push_back(formula.subtree(i - 1));
-    if (op == Op::pow) critical.push_back(formula.subtree(formula.left_child(i)));
+      critical.push_back(subtree(formula, i - 1));
+    if (op == Op::pow) critical.push_back(subtree(formula, formula.left_child(i)));
   }
   constexpr int kNeighbours = 8;
   for (int i = 0; i < count / kNeighbours; ++i) {
@@ -120,11 +120,11 @@ void expect_finite(const Expression& formula, const Points& points) {
   Evaluator evaluator;
   for (std::size_t i = 0; i < formula.size(); ++i) {
     if (arity(formula.node(i).op) == 0) continue;
-    evaluator.evaluate(formula.subtree(i), {columns, points.size()}, values);
+    evaluator.evaluate(subtree(formula, i), {columns, points.size()}, values);
     const auto bad =
         std::find_if(values.begin(), values.end(), [](double y) { return !std::isfinite(y); });
     ASSERT_EQ(bad, values.end()) << print(formula, kNames) << " is proved free, but "
-                                 << print(formula.subtree(i), kNames) << " is " << *bad
+                                 << print(subtree(formula, i), kNames) << " is " << *bad
                                  << " at v = "
                                  << print_number(points.point(bad - values.begin())[0])
                                  << ", g = " << print_number(points.point(bad - values.begin())[2]);
@@ -133,7 +133,7 @@ void expect_finite(const Expression& formula, const Points& points) {
 
 void expect_witness(const Expression& formula, const Witness& witness) {
   Evaluator evaluator;
-  const Expression node = formula.subtree(witness.node);
+  const Expression node = subtree(formula, witness.node);
   const double value = evaluator.evaluate_at(node, witness.point);
   if (witness.neighbour.empty()) {
     ASSERT_FALSE(std::isfinite(value)) << print(formula, kNames);

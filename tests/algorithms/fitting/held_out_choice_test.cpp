@@ -60,7 +60,7 @@ TEST(PlainSumInstead, TakesThePlaceOfWhatASearchFoundInFewNoisyRows) {
   const Inputs table{{&rows.column, 1}, rows.v.size()};
   const auto sum = plain_sum_instead(parse(kWild, kNames), table, rows.target, {});
   ASSERT_TRUE(sum);
-  EXPECT_EQ(sum->columns_used(), 1U) << print(*sum, kNames);
+  EXPECT_EQ(columns_used(*sum), 1U) << print(*sum, kNames);
   const std::vector<double> noise = [] {
     std::vector<double> values;
     RandomStream random(3);

@@ -63,7 +63,7 @@ TEST(Backsolve, AsksOfEverySubtreeWhatItIsWhereTheFormulaMeetsItsTarget) {
     const std::size_t place = random.below(f.size());
     if (is_exponent(f, place)) continue;
     std::vector<double> actual(rows.size());
-    evaluator.evaluate(f.subtree(place), rows.inputs(), actual);
+    evaluator.evaluate(subtree(f, place), rows.inputs(), actual);
     const Demand demand = demand_at(f, place, rows, evaluator);
     for (const std::size_t r : demand.rows) {
       if (!std::isfinite(rows.target[r])) continue;  // rows with such a target are in no search
@@ -71,10 +71,10 @@ TEST(Backsolve, AsksOfEverySubtreeWhatItIsWhereTheFormulaMeetsItsTarget) {
       // What a step on the way rounds away does not come back: compare what the formula makes of
       // it.
       const double here[] = {rows.columns[0][r], rows.columns[1][r]};
-      const double there =
-          evaluator.evaluate_at(with_replaced(f, place, Expression::constant(back).nodes()), here);
+      const Expression solved = Expression::constant(back);
+      const double there = evaluator.evaluate_at(with_replaced(f, place, solved.nodes()), here);
       EXPECT_NEAR(there, rows.target[r], 1e-6 * (1 + std::abs(rows.target[r])))
-          << print(f, kNames) << " at " << print(f.subtree(place), kNames);
+          << print(f, kNames) << " at " << print(subtree(f, place), kNames);
       compared += std::abs(back - actual[r]) < 1e-6 * (1 + std::abs(back)) ? 1 : 0;
     }
   }

@@ -82,10 +82,10 @@ TEST(Constraints, RejectEveryViolationAmongAMillionMutants) {
     ++admitted;
     // Counted once more, the slow way.
     ASSERT_LE(child->size(), 20u);
-    ASSERT_LE(child->depth(), 6u);
+    ASSERT_LE(depth(*child), 6u);
     ASSERT_TRUE(operators.admits(*child));
     for (std::size_t node = 0; node < child->size(); ++node) {
-      const Expression below = child->subtree(node);
+      const Expression below = subtree(*child, node);
       if (child->node(node).op == Op::exp) {
         const auto nodes = below.nodes().first(below.size() - 1);
         ASSERT_EQ(std::ranges::count(nodes, Op::exp, &Node::op), 0);

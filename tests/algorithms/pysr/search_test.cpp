@@ -172,7 +172,7 @@ TEST(Search, KeepsConstraintsInEveryFormulaOfTheFront) {
     EXPECT_LE(formula.size(), 15u);
     for (std::size_t i = 0; i < formula.size(); ++i) {
       if (formula.node(i).op != Op::exp) continue;
-      const Expression argument = formula.subtree(i - 1);
+      const Expression argument = subtree(formula, i - 1);
       for (const Node& node : argument.nodes()) {
         EXPECT_NE(node.op, Op::exp);
         EXPECT_NE(node.op, Op::sqrt);

@@ -94,7 +94,7 @@ TEST(RelationSearch, LeavesOutTermsThatExplainNothing) {
       relay::find_relation(*Rows(law), full(), relay::Columns::powers_alone, 500, budget);
   ASSERT_TRUE(found);
   EXPECT_LT(law.error_of(*found), 1e-9);
-  EXPECT_LE(found->constant_positions().size(), 4U) << print(*found, law.names);
+  EXPECT_LE(constant_positions(*found).size(), 4U) << print(*found, law.names);
 }
 
 TEST(RelationSearch, FindsSumsWithCosinesOnlyWhereTheyAreAskedFor) {

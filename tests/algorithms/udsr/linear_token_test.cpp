@@ -114,7 +114,7 @@ TEST_F(LinearTokenTest, PruningEndsAtTheTermsThatMadeTheData) {
   EXPECT_LT(two.nrmse, 1e-9);
   EXPECT_GT(path.back().nrmse, 0.1);
   const std::vector<std::string> names = {"v", "w"};
-  EXPECT_EQ(two.formula.constant_positions().size(), 2U) << print(two.formula, names);
+  EXPECT_EQ(constant_positions(two.formula).size(), 2U) << print(two.formula, names);
   EXPECT_GT(budget.spent(), 0U);
 }
 
@@ -128,7 +128,7 @@ TEST_F(LinearTokenTest, PruningMovesTheScalesInsideFunctions) {
   double best = 1;
   for (const Pruner::Step& step :
        Pruner(*problem).path(with_constants(scored.formula), 4, budget, budget)) {
-    if (step.formula.constant_positions().size() <= 6) best = std::min(best, step.nrmse);
+    if (constant_positions(step.formula).size() <= 6) best = std::min(best, step.nrmse);
   }
   EXPECT_LT(best, 1e-6);
 }

@@ -49,7 +49,7 @@ void compare(const Expression& formula, const fuzz::Decisions& decisions, std::s
   for (const std::vector<T>& column : columns) starts.push_back(column.data());
   const BasicInputs<T> inputs{starts, rows};
   std::vector<T> constants;
-  for (const std::size_t position : formula.constant_positions()) {
+  for (const std::size_t position : constant_positions(formula)) {
     constants.push_back(static_cast<T>(formula.node(position).value));
   }
   std::vector<T> reference(rows);

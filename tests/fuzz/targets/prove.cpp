@@ -49,7 +49,7 @@ bool expect_bounds_hold(const Case& one, FormulaBounds& bounds, bool sharp) {
   const std::size_t valid = all ? one.formula.size() : bounds.failed_node();
   Evaluator evaluator;
   for (std::size_t i = 0; i < valid; ++i) {
-    const Expression node = one.formula.subtree(i);
+    const Expression node = subtree(one.formula, i);
     for (const std::vector<double>& point : one.points) {
       const double value = evaluator.evaluate_at(node, point);
       fuzz::expect(bounds.at(i).range.contains(value), [&] {
@@ -85,7 +85,7 @@ void expect_verdict_is_true(const Case& one) {
                    [&] { return "a witness outside the box: " + one.text(); });
     }
     if (result.witness->neighbour.empty()) {
-      const Expression node = one.formula.subtree(result.witness->node);
+      const Expression node = subtree(one.formula, result.witness->node);
       fuzz::expect(!std::isfinite(Evaluator().evaluate_at(node, point)),
                    [&] { return "a witness at which nothing is wrong: " + one.text(); });
     }
