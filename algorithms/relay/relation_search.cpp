@@ -97,8 +97,9 @@ class Search {
          std::size_t most_beside)
       : rows_(rows), operators_(operators), signs_(signs_of_target(rows)) {
     if (columns == Columns::with_factors) {
-      factors_ = known_factors(rows, operators,
-                               {FactorKind::wave, FactorKind::angle_sum, FactorKind::difference});
+      factors_ = known_factors(
+          rows, operators,
+          {FactorKind::wave, FactorKind::angle_sum, FactorKind::difference, FactorKind::logarithm});
       const std::size_t n = rows.inputs().size();
       if (n == kFewInputs + 1) {
         factors_ =

@@ -149,6 +149,17 @@ TEST(RelationSearch, KeepsItsBudgetAndFindsNothingUnderNoise) {
       relay::find_relation(*Rows(noisy), full(), relay::Columns::powers_alone, 400, budget));
 }
 
+// Nernst's law.
+TEST(RelationSearch, FindsALogarithmAmongFourInputs) {
+  const DrawnLaw law("e - 8.617e-5*t/n*log(q)",
+                     {{"e", -1, 2}, {"t", 280, 350}, {"n", 1, 3}, {"q", 1e-3, 1e3, true}}, 256);
+  Budget budget({});
+  const auto found =
+      relay::find_relation(*Rows(law), full(), relay::Columns::with_factors, 700, budget);
+  ASSERT_TRUE(found);
+  EXPECT_LT(law.error_of(*found), 1e-9) << print(*found, law.names);
+}
+
 TEST(Collapse, FindsWhatALawDependsOn) {
   const DrawnLaw law("a*c^2*tanh(3e8*b*e/c)", kFive, 400);
   Budget budget({});
