@@ -82,6 +82,15 @@ std::size_t rows_at_next(std::span<const double> values, double limit) {
   return static_cast<std::size_t>(std::ranges::count(values, next));
 }
 
+// After each row the next change of a channel; 0 where there is none.
+std::vector<double> next_changes(std::span<const double> values) {
+  std::vector<double> next(values.size(), 0.0);
+  for (std::size_t i = values.size(); i-- > 1;) {
+    next[i - 1] = values[i] != values[i - 1] ? values[i] - values[i - 1] : next[i];
+  }
+  return next;
+}
+
 }  // namespace
 
 double top_speed(std::span<const double> velocity) {
@@ -136,18 +145,23 @@ std::vector<char> repeated_rows(std::span<const double> position, std::span<cons
   for (std::size_t i = 1; i < position.size(); ++i) {
     if (position[i] != position[i - 1]) steps.push_back(std::abs(position[i] - position[i - 1]));
   }
-  // What comes after the repeats has gone on in the meantime; an axis at rest has not.
+  // What comes after the repeats has gone on in the meantime; an axis at rest has not, though its
+  // last count may flicker.
   const double jump = kJump * upper_median(std::move(steps));
+  const std::vector<double> next = next_changes(position);
+  double before = 0;  // the last change
   for (std::size_t begin = 0; begin < noisy.size();) {
     std::size_t end = begin + 1;
     while (end < noisy.size() && noisy[end] == noisy[begin] && position[end] == position[begin]) {
       ++end;
     }
-    if (end - begin >= kRepeats && end < noisy.size() &&
-        std::abs(position[end] - position[begin]) > jump) {
+    const double change = end < noisy.size() ? position[end] - position[begin] : 0;
+    const bool goes_on = change * before > 0 && change * next[end] > 0;
+    if (end - begin >= kRepeats && (std::abs(change) > jump || goes_on)) {
       std::fill(repeated.begin() + static_cast<std::ptrdiff_t>(begin + 1),
                 repeated.begin() + static_cast<std::ptrdiff_t>(end), 1);
     }
+    if (change != 0) before = change;
     begin = end;
   }
   return repeated;

@@ -60,6 +60,26 @@ TEST(Segments, ARepeatedMessageIsToldFromACoarseEncoder) {
   EXPECT_EQ(found, 20U);
 }
 
+// At a count every 20 rows a lost message of 30 hides a count or two: no jump, and yet the motion
+// has gone on. An axis at rest whose drive is off repeats its current as well, and its last count
+// flickers.
+TEST(Segments, ARepeatedMessageIsToldWhereTheAxisCreeps) {
+  std::vector<double> position;
+  std::vector<double> current;
+  for (int i = 0; i < 2000; ++i) {
+    position.push_back(i < 1000 ? std::floor(i / 20.0) : 50 + (i / 40) % 2);
+    current.push_back(i < 1700 ? std::sin(12.3 * i) : 0);
+  }
+  for (int i = 401; i < 431; ++i) {
+    position[static_cast<std::size_t>(i)] = position[400];
+    current[static_cast<std::size_t>(i)] = current[400];
+  }
+  const std::vector<char> repeated = repeated_rows(position, current);
+  for (std::size_t i = 0; i < repeated.size(); ++i) {
+    ASSERT_EQ(repeated[i], i > 400 && i < 431 ? 1 : 0) << i;
+  }
+}
+
 // Ten rows a second are at the bound: they are regular wherever the clock begins.
 TEST(Segments, AStepOfATenthOfASecondIsRegularWhateverTheClocksOrigin) {
   for (const double origin : {0.0, 3.0, 1e3, 1672531200.0}) {
