@@ -37,8 +37,8 @@ Form::Form(std::size_t inputs) : Form(inputs, first_columns(inputs)) {}
 
 Form::Form(std::size_t inputs, std::vector<std::size_t> arguments)
     : inputs_(inputs),
-      columns_(inputs),
       outer_(Expression::variable(kFirstPart)),
+      columns_(inputs),
       drawn_{0},
       takes_all_(arguments == first_columns(inputs)) {
   parts_.push_back({"f", std::move(arguments)});

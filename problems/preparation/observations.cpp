@@ -338,10 +338,10 @@ Shortened Observations::averaged(std::size_t most) const {
   std::size_t step = 1;
   if (rows() >= 2 * blocks) {
     step = (blocks + most - 1) / most;
-    for (std::size_t i = 0, place = 0; i < rows(); ++i) {
+    for (std::size_t i = 0, number = 0; i < rows(); ++i) {
       if (i > 0 && block[i] == block[i - 1]) continue;
-      if (i > 0 && movement[i] != movement[i - 1]) place = 0;
-      if (place++ % step != 0) continue;
+      if (i > 0 && movement[i] != movement[i - 1]) number = 0;
+      if (number++ % step != 0) continue;
       for (end[i] = i; end[i] < rows() && block[end[i]] == block[i];) ++end[i];
     }
   } else {
