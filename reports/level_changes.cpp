@@ -57,7 +57,7 @@ std::vector<double> scaled(std::span<const double> weights, double variance) {
   return result;
 }
 
-// Where a level may end: everywhere in a series of a few years, at every k-th place from the end of
+// Where a level may end: everywhere in a series of a year, at every k-th place from the end of
 // a longer one.
 std::vector<std::size_t> places_of(std::size_t n, std::size_t step) {
   std::vector<std::size_t> places;
@@ -123,7 +123,7 @@ std::vector<LevelChange> find_level_changes(std::span<const double> values,
   for (double& value : centred) value -= values.front();
   const Segments segments(centred, scaled(weights, noise_variance(values, least_noise)));
   const double penalty = 3 * elementary::log(static_cast<double>(n)) + 4;
-  constexpr std::size_t kPlaces = 1000;
+  constexpr std::size_t kPlaces = 500;
   const std::size_t step = (n + kPlaces - 1) / kPlaces;
   std::vector<std::size_t> ends = partition(segments, places_of(n, step), penalty);
   if (step > 1) ends = partition(segments, places_near(ends, step), penalty);
