@@ -31,17 +31,14 @@ Eigen::VectorXd noise_of(RandomStream random, double louder) {
     const double scale = m % 2 == 1 ? louder : 1.0;
     double x = random.normal();
     for (std::size_t i = 0; i < kRows; ++i) {
-      if (i > 0)
-        x = kRho * x + std::sqrt(1 - kRho * kRho) * random.normal();
+      if (i > 0) x = kRho * x + std::sqrt(1 - kRho * kRho) * random.normal();
       out[static_cast<Eigen::Index>(m * kRows + i)] = offset + scale * x;
     }
   }
   return out;
 }
 
-TEST(
-    Whitening,
-    LeavesRowsOfOneVarianceThatKnowNothingOfTheirNeighboursNorOfTheirMovement) {
+TEST(Whitening, LeavesRowsOfOneVarianceThatKnowNothingOfTheirNeighboursNorOfTheirMovement) {
   const Clusters clusters = many_movements();
   Noise noise;
   noise.within_sd = 1;
@@ -54,12 +51,11 @@ TEST(
   constexpr int kRuns = 40;
   for (int run = 0; run < kRuns; ++run) {
     const Eigen::VectorXd white = whitened(
-        noise_of(RandomStream(2).split(static_cast<std::uint64_t>(run)), 1.0),
-        clusters, noise);
+        noise_of(RandomStream(2).split(static_cast<std::uint64_t>(run)), 1.0), clusters, noise);
     squares += white.squaredNorm();
-    for (const RowRange &m : clusters.movements) {
-      const auto part = white.segment(static_cast<Eigen::Index>(m.begin),
-                                      static_cast<Eigen::Index>(m.size()));
+    for (const RowRange& m : clusters.movements) {
+      const auto part =
+          white.segment(static_cast<Eigen::Index>(m.begin), static_cast<Eigen::Index>(m.size()));
       neighbours += part.head(part.size() - 1).dot(part.tail(part.size() - 1));
       sums += part.sum() * part.sum();
     }
@@ -74,16 +70,13 @@ TEST(
 
 TEST(MovementWeights, AreOneWhereAllAreAlikeAndFollowTheNoiseWhereTheyDiffer) {
   const Clusters clusters = many_movements();
-  for (const double weight :
-       movement_weights(noise_of(RandomStream(3), 1.0), clusters)) {
+  for (const double weight : movement_weights(noise_of(RandomStream(3), 1.0), clusters)) {
     EXPECT_NEAR(weight, 1, 0.15);
   }
-  const std::vector<double> weights =
-      movement_weights(noise_of(RandomStream(4), 3.0), clusters);
+  const std::vector<double> weights = movement_weights(noise_of(RandomStream(4), 3.0), clusters);
   double quiet = 0;
   double loud = 0;
-  for (std::size_t m = 0; m < kMovements; ++m)
-    (m % 2 == 1 ? loud : quiet) += weights[m];
+  for (std::size_t m = 0; m < kMovements; ++m) (m % 2 == 1 ? loud : quiet) += weights[m];
   EXPECT_NEAR(quiet / loud, 3, 0.6);
 }
 
@@ -96,10 +89,9 @@ std::vector<int> movements_of(std::initializer_list<int> rows) {
   return movement;
 }
 
-std::vector<std::size_t> stretch_sizes(const Clusters &clusters) {
+std::vector<std::size_t> stretch_sizes(const Clusters& clusters) {
   std::vector<std::size_t> sizes;
-  for (const RowRange &stretch : clusters.stretches)
-    sizes.push_back(stretch.size());
+  for (const RowRange& stretch : clusters.stretches) sizes.push_back(stretch.size());
   return sizes;
 }
 
@@ -108,20 +100,15 @@ TEST(MakeClusters, CutsMovementsIntoStretchesThatAreLongEnough) {
   EXPECT_EQ(stretch_sizes(make_clusters(movements_of({45, 59, 60, 100}), 1)),
             (Sizes{45, 59, 30, 30, 33, 33, 34}));
   // Ten correlation times where that is more than 30 rows.
-  EXPECT_EQ(stretch_sizes(make_clusters(movements_of({100}), 3)),
-            (Sizes{33, 33, 34}));
-  EXPECT_EQ(stretch_sizes(make_clusters(movements_of({100}), 5)),
-            (Sizes{50, 50}));
-  EXPECT_EQ(stretch_sizes(make_clusters(movements_of({100}), 80)),
-            (Sizes{100}));
+  EXPECT_EQ(stretch_sizes(make_clusters(movements_of({100}), 3)), (Sizes{33, 33, 34}));
+  EXPECT_EQ(stretch_sizes(make_clusters(movements_of({100}), 5)), (Sizes{50, 50}));
+  EXPECT_EQ(stretch_sizes(make_clusters(movements_of({100}), 80)), (Sizes{100}));
 }
 
 TEST(MakeClusters, FoldsNeverCutAMovementUnlessThereIsOneAlone) {
-  const Clusters many =
-      make_clusters(movements_of({5, 5, 60, 5, 5, 5, 5, 5, 5, 5, 5, 5}), 1);
+  const Clusters many = make_clusters(movements_of({5, 5, 60, 5, 5, 5, 5, 5, 5, 5, 5, 5}), 1);
   EXPECT_EQ(many.folds, 10);
-  EXPECT_EQ(many.fold_of,
-            (std::vector<int>{0, 1, 2, 2, 3, 4, 5, 6, 7, 8, 9, 0, 1}));
+  EXPECT_EQ(many.fold_of, (std::vector<int>{0, 1, 2, 2, 3, 4, 5, 6, 7, 8, 9, 0, 1}));
   EXPECT_EQ(make_clusters(movements_of({5, 5, 5}), 1).folds, 3);
   const Clusters one = make_clusters(movements_of({300}), 1);
   EXPECT_EQ(one.folds, 5);
@@ -129,11 +116,10 @@ TEST(MakeClusters, FoldsNeverCutAMovementUnlessThereIsOneAlone) {
 }
 
 TEST(EstimateNoise, FindsWhatTheRowsWereMadeWith) {
-  const Clusters clusters =
-      make_clusters(movements_of({4000, 4000, 4000, 4000, 4000, 4000}), 1);
+  const Clusters clusters = make_clusters(movements_of({4000, 4000, 4000, 4000, 4000, 4000}), 1);
   RandomStream random(5);
   Eigen::VectorXd residual(24000);
-  const double offsets[] = {1, -1, 2, -2, 1, -1}; // rms sqrt(2)
+  const double offsets[] = {1, -1, 2, -2, 1, -1};  // rms sqrt(2)
   double x = random.normal();
   for (Eigen::Index i = 0; i < residual.size(); ++i) {
     x = kRho * x + std::sqrt(1 - kRho * kRho) * random.normal();
@@ -147,8 +133,7 @@ TEST(EstimateNoise, FindsWhatTheRowsWereMadeWith) {
   EXPECT_NEAR(noise.effective_rows, 24000 / noise.inflation, 1e-6);
   // Each fitted parameter costs a degree of freedom, each movement's mean one
   // already.
-  EXPECT_NEAR(estimate_noise(residual, clusters, 12000, 0).within_sd /
-                  noise.within_sd,
+  EXPECT_NEAR(estimate_noise(residual, clusters, 12000, 0).within_sd / noise.within_sd,
               std::sqrt((24000.0 - 6) / (24000 - 6 - 12000)), 1e-12);
 }
 
@@ -158,8 +143,7 @@ TEST(EstimateNoise, CountsEachMovementByItsWeight) {
   Clusters clusters = make_clusters(movements_of({40, 40, 40, 40}), 1);
   RandomStream random(6);
   Eigen::VectorXd residual(160);
-  for (double &x : residual)
-    x = random.normal();
+  for (double& x : residual) x = random.normal();
   const Noise alike = estimate_noise(residual, clusters, 0, 0);
   clusters.weight = {0.25, 1, 2, 0.1};
   for (Eigen::Index i = 0; i < 160; ++i) {
@@ -188,17 +172,15 @@ TEST(EstimateNoise, OffsetsAreWhatMeansDifferByBeyondTheNoise) {
   constexpr int kRuns = 40;
   double variance = 0;
   for (std::uint64_t run = 0; run < kRuns; ++run) {
-    const Noise noise =
-        estimate_noise(noise_of(RandomStream(9).split(run), 1), clusters, 0, 0);
+    const Noise noise = estimate_noise(noise_of(RandomStream(9).split(run), 1), clusters, 0, 0);
     variance += noise.between_sd * noise.between_sd / kRuns;
   }
-  EXPECT_NEAR(variance, kBetween * kBetween, 0.025); // the means' own is 0.08
+  EXPECT_NEAR(variance, kBetween * kBetween, 0.025);  // the means' own is 0.08
 }
 
 TEST(EstimateNoise, OfAPerfectFitIsTheFloor) {
   const Clusters clusters = make_clusters(movements_of({10, 10, 10}), 1);
-  const Noise noise =
-      estimate_noise(Eigen::VectorXd::Zero(30), clusters, 2, 0.25);
+  const Noise noise = estimate_noise(Eigen::VectorXd::Zero(30), clusters, 2, 0.25);
   EXPECT_EQ(noise.within_sd, 0.25);
   EXPECT_EQ(noise.rho, 0);
   EXPECT_EQ(noise.between_sd, 0);
@@ -207,12 +189,8 @@ TEST(EstimateNoise, OfAPerfectFitIsTheFloor) {
 
 TEST(EstimateNoise, TwoMovementsSayNothingOfOffsets) {
   Eigen::VectorXd residual(40);
-  for (Eigen::Index i = 0; i < 40; ++i)
-    residual[i] = (i < 20 ? 5 : -5) + (i % 2 == 0 ? 1 : -1);
-  EXPECT_EQ(
-      estimate_noise(residual, make_clusters(movements_of({20, 20}), 1), 0, 0)
-          .between_sd,
-      0);
+  for (Eigen::Index i = 0; i < 40; ++i) residual[i] = (i < 20 ? 5 : -5) + (i % 2 == 0 ? 1 : -1);
+  EXPECT_EQ(estimate_noise(residual, make_clusters(movements_of({20, 20}), 1), 0, 0).between_sd, 0);
 }
 
 TEST(CorrelationTime, FollowsTheCorrelationOfNeighbours) {
@@ -221,15 +199,12 @@ TEST(CorrelationTime, FollowsTheCorrelationOfNeighbours) {
     RandomStream random(6);
     Eigen::VectorXd rows(60000);
     double x = random.normal();
-    for (double &row : rows)
-      row = x = rho * x + random.normal();
+    for (double& row : rows) row = x = rho * x + random.normal();
     // The sum of rho^k down to 0.05 is below the decay's -1 / log(rho).
     const double expected = rho == 0 ? 1 : -1 / std::log(rho);
     EXPECT_NEAR(correlation_time(rows, one), expected, 0.06 * expected) << rho;
   }
-  EXPECT_EQ(correlation_time(Eigen::VectorXd::Ones(100),
-                             std::vector<RowRange>{{0, 100}}),
-            1);
+  EXPECT_EQ(correlation_time(Eigen::VectorXd::Ones(100), std::vector<RowRange>{{0, 100}}), 1);
 }
 
 // Correlation that lasts longer than neighbours show is in the sum: a slow wave
@@ -263,8 +238,7 @@ TEST(Whitening, CountsAMovementAsItsWeightSays) {
   clusters.weight = {1, 0.5};
   Noise noise;
   noise.within_sd = 1;
-  const Eigen::MatrixXd rows =
-      whitened(Eigen::MatrixXd::Ones(6, 1), clusters, noise);
+  const Eigen::MatrixXd rows = whitened(Eigen::MatrixXd::Ones(6, 1), clusters, noise);
   EXPECT_NEAR(rows(0, 0), 1, 1e-12);
   EXPECT_NEAR(rows(5, 0), 0.5, 1e-12);
 }
@@ -272,13 +246,10 @@ TEST(Whitening, CountsAMovementAsItsWeightSays) {
 TEST(MovementWeights, AreNotTriedWithFewMovements) {
   RandomStream random(8);
   Eigen::VectorXd residual(270);
-  for (Eigen::Index i = 0; i < 270; ++i)
-    residual[i] = (i < 30 ? 20 : 1) * random.normal();
-  const Clusters nine =
-      make_clusters(movements_of({30, 30, 30, 30, 30, 30, 30, 30, 30}), 1);
-  for (const double weight : movement_weights(residual, nine))
-    EXPECT_EQ(weight, 1);
+  for (Eigen::Index i = 0; i < 270; ++i) residual[i] = (i < 30 ? 20 : 1) * random.normal();
+  const Clusters nine = make_clusters(movements_of({30, 30, 30, 30, 30, 30, 30, 30, 30}), 1);
+  for (const double weight : movement_weights(residual, nine)) EXPECT_EQ(weight, 1);
 }
 
-} // namespace
-} // namespace tribench::loop
+}  // namespace
+}  // namespace tribench::loop

@@ -16,8 +16,8 @@ constexpr std::size_t kRows = 30;
 
 struct Example {
   Clusters clusters;
-  Eigen::MatrixXd x;          // an intercept and a slope
-  Eigen::MatrixXd candidates; // six columns, constant within movements
+  Eigen::MatrixXd x;           // an intercept and a slope
+  Eigen::MatrixXd candidates;  // six columns, constant within movements
   Eigen::VectorXd y;
 };
 
@@ -34,15 +34,13 @@ Example clustered_example(std::uint64_t seed, double planted) {
   for (std::size_t m = 0; m < kMovements; ++m) {
     const double offset = random.normal();
     Eigen::RowVectorXd levels(6);
-    for (double &level : levels)
-      level = random.normal();
+    for (double& level : levels) level = random.normal();
     for (std::size_t i = 0; i < kRows; ++i) {
       const auto row = static_cast<Eigen::Index>(m * kRows + i);
       movement.push_back(static_cast<int>(m));
       e.x.row(row) << 1, random.normal();
       e.candidates.row(row) = levels;
-      e.y[row] = 2 + 0.5 * e.x(row, 1) + planted * levels[2] + offset +
-                 random.normal();
+      e.y[row] = 2 + 0.5 * e.x(row, 1) + planted * levels[2] + offset + random.normal();
     }
   }
   e.clusters = make_clusters(movement, 1);
@@ -50,31 +48,26 @@ Example clustered_example(std::uint64_t seed, double planted) {
 }
 
 // Smallest adjusted p over the candidates.
-std::vector<double> adjusted_ps(const Example &e, const Flips &flips) {
+std::vector<double> adjusted_ps(const Example& e, const Flips& flips) {
   const Eigen::MatrixXd basis = orthonormal_basis(e.x);
   const Eigen::VectorXd residual = project_off(e.y, basis);
   std::vector<BlockScores> blocks;
   for (Eigen::Index j = 0; j < e.candidates.cols(); ++j) {
-    blocks.push_back(
-        score_block(e.candidates.col(j), basis, residual, e.clusters));
+    blocks.push_back(score_block(e.candidates.col(j), basis, residual, e.clusters));
   }
   const std::vector<double> maxima = flip_maxima(blocks, flips);
   std::vector<double> ps;
-  for (const BlockScores &block : blocks)
-    ps.push_back(adjusted_p(block.test.score, maxima));
+  for (const BlockScores& block : blocks) ps.push_back(adjusted_p(block.test.score, maxima));
   return ps;
 }
 
-TEST(ScoreTest,
-     RejectsTrueNullsAtTheNominalRateDespiteCorrelationWithinMovements) {
+TEST(ScoreTest, RejectsTrueNullsAtTheNominalRateDespiteCorrelationWithinMovements) {
   constexpr int kRuns = 300;
   int rejected = 0;
   for (int run = 0; run < kRuns; ++run) {
     const Flips flips(399, kMovements, RandomStream(1000 + run));
-    const std::vector<double> ps =
-        adjusted_ps(clustered_example(run, 0), flips);
-    if (*std::min_element(ps.begin(), ps.end()) <= 0.05)
-      ++rejected;
+    const std::vector<double> ps = adjusted_ps(clustered_example(run, 0), flips);
+    if (*std::min_element(ps.begin(), ps.end()) <= 0.05) ++rejected;
   }
   // 5 % of 300 are 15; three binomial standard errors are 11.
   EXPECT_LE(rejected, 26);
@@ -85,16 +78,14 @@ TEST(ScoreTest, FindsAPlantedColumnAndNoOther) {
   const Flips flips(1999, kMovements, RandomStream(1));
   const std::vector<double> ps = adjusted_ps(clustered_example(7, 1.0), flips);
   EXPECT_LE(ps[2], 0.003);
-  for (const std::size_t other : {0U, 1U, 3U, 4U, 5U})
-    EXPECT_GT(ps[other], 0.05) << other;
+  for (const std::size_t other : {0U, 1U, 3U, 4U, 5U}) EXPECT_GT(ps[other], 0.05) << other;
 }
 
 TEST(ScoreTest, AColumnInsideTheModelIsNotTestable) {
   const Example e = clustered_example(3, 0);
   const Eigen::MatrixXd basis = orthonormal_basis(e.x);
   const Eigen::VectorXd z = e.x * Eigen::Vector2d(3, -2);
-  const BlockScores block =
-      score_block(z, basis, project_off(e.y, basis), e.clusters);
+  const BlockScores block = score_block(z, basis, project_off(e.y, basis), e.clusters);
   EXPECT_FALSE(block.test.testable);
   EXPECT_LT(block.test.share, 1e-6);
 }
@@ -127,8 +118,7 @@ TEST(HeldOutLosses, FavourTheColumnThatIsThereAndNotOneThatIsNot) {
       held_out_losses(beside(e.x, e.candidates.col(4)), e.y, e.clusters, noise);
   const Gain gain = paired_gain(without, right);
   EXPECT_GT(gain.nats, 3 * gain.error);
-  EXPECT_LT(paired_gain(without, wrong).nats,
-            2 * paired_gain(without, wrong).error + 5);
+  EXPECT_LT(paired_gain(without, wrong).nats, 2 * paired_gain(without, wrong).error + 5);
 }
 
 TEST(AdjustedP, CountsTheObservedAmongTheFlips) {
@@ -139,10 +129,9 @@ TEST(AdjustedP, CountsTheObservedAmongTheFlips) {
 
 TEST(CriticalScore, IsTheOneThatSoManyFlipsReach) {
   std::vector<double> maxima(99);
-  for (std::size_t i = 0; i < maxima.size(); ++i)
-    maxima[i] = static_cast<double>(i * 37 % 99);
+  for (std::size_t i = 0; i < maxima.size(); ++i) maxima[i] = static_cast<double>(i * 37 % 99);
   EXPECT_EQ(critical_score(maxima, 0.05), 94);
-  EXPECT_DOUBLE_EQ(adjusted_p(94.5, maxima), 0.05); // of whatever is above it
+  EXPECT_DOUBLE_EQ(adjusted_p(94.5, maxima), 0.05);  // of whatever is above it
   EXPECT_EQ(critical_score(maxima, 0.001), 98);
 }
 
@@ -150,21 +139,18 @@ TEST(ScoreSums, OfOneColumnIsItsSquareOverItsOwn) {
   const double gram = 4;
   const Eigen::MatrixXd sums = Eigen::Vector3d(1, 3, -2);
   constexpr double kRidge = 0.25;
-  const BlockScores block =
-      score_sums(Eigen::MatrixXd::Constant(1, 1, gram), sums, kRidge);
+  const BlockScores block = score_sums(Eigen::MatrixXd::Constant(1, 1, gram), sums, kRidge);
   EXPECT_NEAR(block.test.statistic, 4 / (gram * (1 + kRidge)), 1e-6);
   // Over all signs: the mean is the sum of squares, the variance 4 sum over
   // pairs of their products.
   const double scale = gram * (1 + kRidge);
-  const MatchedGamma gamma(14 / scale,
-                           4 * (1 * 9 + 1 * 4 + 9 * 4) / (scale * scale));
+  const MatchedGamma gamma(14 / scale, 4 * (1 * 9 + 1 * 4 + 9 * 4) / (scale * scale));
   EXPECT_NEAR(block.test.score, gamma.score(4 / scale), 1e-6);
 }
 
 TEST(ScoreBlock, SaysHowManyClustersCarryIt) {
   std::vector<int> movement;
-  for (int m = 0; m < 8; ++m)
-    movement.insert(movement.end(), 10, m);
+  for (int m = 0; m < 8; ++m) movement.insert(movement.end(), 10, m);
   const Clusters clusters = make_clusters(movement, 1);
   Eigen::MatrixXd column = Eigen::MatrixXd::Zero(80, 1);
   column.topRows(40).setOnes();
@@ -178,8 +164,8 @@ TEST(ScoreBlock, SaysHowManyClustersCarryIt) {
   // Half of a column that the model has most of can be tested; a fortieth is as
   // good as nothing.
   const auto beside_model = [&](double times) {
-    return score_block(column + std::sqrt(40 * (times * times - 1)) * basis,
-                       basis, column.col(0), clusters);
+    return score_block(column + std::sqrt(40 * (times * times - 1)) * basis, basis, column.col(0),
+                       clusters);
   };
   EXPECT_NEAR(beside_model(2).test.share, 0.5, 1e-9);
   EXPECT_TRUE(beside_model(2).test.testable);
@@ -195,15 +181,12 @@ TEST(ScoreTest, WhatTheModelExplainsIsNoPartOfABlock) {
   leaning.col(0) += 2 * e.x.col(0);
   leaning.col(1) -= 3 * e.x.col(1);
   leaning.col(2) += e.x.rowwise().sum();
-  const BlockTest upright =
-      score_block(e.candidates.leftCols(3), basis, residual, e.clusters).test;
-  const BlockTest leaned =
-      score_block(leaning, basis, residual, e.clusters).test;
+  const BlockTest upright = score_block(e.candidates.leftCols(3), basis, residual, e.clusters).test;
+  const BlockTest leaned = score_block(leaning, basis, residual, e.clusters).test;
   EXPECT_NEAR(leaned.statistic, upright.statistic, 1e-8 * upright.statistic);
   EXPECT_NEAR(leaned.score, upright.score, 1e-6 * upright.score);
-  EXPECT_NEAR(leaned.information, upright.information,
-              1e-8 * upright.information);
+  EXPECT_NEAR(leaned.information, upright.information, 1e-8 * upright.information);
 }
 
-} // namespace
-} // namespace tribench::loop
+}  // namespace
+}  // namespace tribench::loop
