@@ -196,6 +196,8 @@ TEST(LoopPage, WritesItsPicturesAsFiles) {
       EXPECT_THAT(text, Not(HasSubstr("NaN"))) << name;
     }
   }
+  // Coordinates are cut to two decimals, figures are not.
+  EXPECT_THAT(text_of(folder / "error.svg"), HasSubstr(">0.8100<"));
 }
 
 }  // namespace

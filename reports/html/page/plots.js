@@ -100,10 +100,10 @@ function curvePlot(points, look, axes, description) {
 
 // A picture as a file, in node; prints its name.
 async function writeSvg(spec, folder, name, fs, path) {
-  // Without a label a mark and with two decimals a file has a third of the size.
+  // Without a label a mark and with two decimals in its coordinates a file has a third of the size.
   const still = {...spec, background: "white", config: {...spec.config, aria: false}};
   const view = new vega.View(vega.parse(still), {renderer: "none", logLevel: vega.Error});
-  const svg = (await view.toSVG()).replace(/(\.[0-9]{2})[0-9]+/g, "$1")
+  const svg = (await view.toSVG()).replace(/<[^>]*>/g, (tag) => tag.replace(/(\.[0-9]{2})[0-9]+/g, "$1"))
     .replace("<g ", `<title>${spec.description.replace(/[<&]/g, "")}</title><g `);
   fs.writeFileSync(path.join(folder, name), svg);
   console.log(name);
