@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/whitening.hpp"
 
 namespace tribench::loop {
 namespace {

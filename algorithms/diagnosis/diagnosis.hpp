@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "algorithms/inference/noise.hpp"
 #include "algorithms/loop_model/loop_model.hpp"
 #include "foundation/random.hpp"
 

@@ -157,7 +157,7 @@ std::vector<CurvePoint> leftover_curve(const SearchResult& result, const Observa
     bin.count += 1;
   }
   std::vector<CurvePoint> curve;
-  const double inflation = result.state.model.noise.inflation;
+  const double inflation = result.state.model.noise.inflation();
   for (std::size_t b = 0; b < kBins; ++b) {
     const Bin& bin = bins[b];
     if (bin.count < 2) continue;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/fitted_model.hpp"
 
+#include "algorithms/inference/whitening.hpp"
+
 namespace tribench::loop {
 namespace {
 
@@ -28,7 +30,7 @@ bool whitening_is_safe(const LoopModel& model, const Observations& data, const C
       least_squares(whitened(x, clusters, noise), whitened(y, clusters, noise));
   const double rows =
       static_cast<double>(data.rows()) / static_cast<double>(clusters.movements.size());
-  const double most = noise.within_sd * noise.within_sd * noise.inflation +
+  const double most = noise.within_sd * noise.within_sd * noise.inflation() +
                       rows * noise.between_sd * noise.between_sd;
   return (weighted * (one - other)).squaredNorm() < most * static_cast<double>(x.cols());
 }
@@ -58,9 +60,9 @@ FittedModel fit_in_its_noise(LoopModel model, const Campaign& campaign, FitScope
     noise = estimate_noise(residual, clusters, fitted, campaign.noise_floor);
     plainly = false;
     if (pass == 0 || !campaign.options.has("whitening")) continue;
-    noise.whitening = noise.rho;
+    noise.whitened = true;
     if (whitening_is_safe(model, data, clusters, noise)) continue;
-    noise.whitening = 0;
+    noise.whitened = false;
     // A model that is wrong predicts best as plain least squares has it.
     safe = whitening_is_safe(model, data, clusters, noise);
     plainly = !safe;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "algorithms/inference/whitening.hpp"
+
 namespace tribench::loop {
 namespace {
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "algorithms/inference/whitening.hpp"
 #include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/elementary.hpp"
 
@@ -132,7 +133,7 @@ Noise Assessor::noise_left_by(const Explanation& one, std::vector<double>& weigh
   const double floor = 1e-9 * std::sqrt(squares / static_cast<double>(rows));
   Noise noise =
       estimate_noise(rest, clusters, static_cast<std::size_t>(base_count + own_count), floor);
-  noise.whitening = noise.rho;
+  noise.whitened = true;
   noise.between_sd = std::max(noise.between_sd, kLeastOffset * noise.within_sd);
   return noise;
 }
@@ -140,7 +141,8 @@ Noise Assessor::noise_left_by(const Explanation& one, std::vector<double>& weigh
 bool Assessor::noise_is_as_it_was(const Noise& noise, const std::vector<double>& weights) const {
   if (last_.sums.rows() == 0) return false;
   const Noise& before = last_.noise;
-  if (std::abs(noise.rho - before.rho) > kOtherCorrelation) return false;
+  if (std::abs(noise.rho() - before.rho()) > kOtherCorrelation) return false;
+  if (!alike(noise.inflation(), before.inflation())) return false;
   // As they shrink a movement's offset.
   const auto offsets = [](const Noise& one) {
     return 1 + one.between_sd * one.between_sd / (one.within_sd * one.within_sd);

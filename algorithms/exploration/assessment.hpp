@@ -24,8 +24,8 @@
 #include "algorithms/exploration/explanation_search.hpp"
 #include "algorithms/exploration/explanations.hpp"
 #include "algorithms/exploration/forecasts.hpp"
-#include "algorithms/inference/clusters.hpp"
 #include "algorithms/inference/evidence.hpp"
+#include "algorithms/inference/noise.hpp"
 
 namespace tribench::loop {
 

@@ -219,14 +219,17 @@ Rivals rivals_of(const Assessment& now, const std::string& disputed) {
 // The share of a movement's mean that its offset hides, as whitening takes it away.
 double hidden_share(const Noise& noise, double rows) {
   const double ratio = noise.between_sd / noise.within_sd;
-  const double effective = rows * (1 - noise.rho) / (1 + noise.rho) * ratio * ratio;
+  const double effective = rows / noise.inflation() * ratio * ratio;
   return effective / (1 + effective);
 }
 
 // What whitened rows like these would add to the products, each as often as it counts.
 void add_rows(Eigen::MatrixXd& gram, const Eigen::MatrixXd& rows, double counts, const Noise& noise,
               double variance) {
-  const double shrink = counts * (1 - noise.whitening) * (1 - noise.whitening) / variance;
+  // The share of a column's square that is left of it once rows are whitened, where it changes
+  // slowly.
+  const double left = noise.unit() / (2 * noise.within_sd * noise.within_sd * noise.inflation());
+  const double shrink = counts * left / variance;
   const auto count = static_cast<double>(rows.rows());
   auto lower = gram.selfadjointView<Eigen::Lower>();
   lower.rankUpdate(rows.transpose(), shrink);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "algorithms/inference/clusters.hpp"
+#include "algorithms/inference/noise.hpp"
 
 namespace tribench::loop {
 

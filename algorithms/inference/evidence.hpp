@@ -20,7 +20,7 @@
 // rows would rule it out.
 //
 // Columns are scaled by the caller so that 1 is a coefficient one expects, in units of the noise.
-// Rows are whitened (clusters.hpp). Not for models in which columns enter non-linearly.
+// Rows are whitened (whitening.hpp). Not for models in which columns enter non-linearly.
 //
 // Source: Johnson and Rossell 2012 (moment priors); Perez-Ortiz, Lardy, de Heide and Grunwald 2022
 // and Lindon, Ham, Tingley and Bojinov 2022 (anytime-valid linear models).

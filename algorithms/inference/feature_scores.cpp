@@ -2,6 +2,7 @@
 #include "algorithms/inference/feature_scores.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "algorithms/expression/vector/each_level.hpp"
@@ -12,6 +13,8 @@ namespace {
 constexpr std::size_t kRowsAtOnce = 64;
 constexpr std::size_t kLanes = 8;
 constexpr std::size_t kLeftAtOnce = 4;
+// What a memory has left so little of counts no more.
+constexpr float kFaded = 1e-20F;
 using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
 
 std::size_t padded(std::size_t n, std::size_t to) { return (n + to - 1) / to * to; }
@@ -64,6 +67,7 @@ struct FeatureScorer::Sums {
         width(padded(features, kLanes)),
         difference(kRowsAtOnce * width, 0.0F),
         products(FloatRows::Zero(left_width, static_cast<Eigen::Index>(width))),
+        missed(halves * width, 0.0F),
         model(FloatRows::Zero(left_width, static_cast<Eigen::Index>(halves * width))),
         scores(FloatRows::Zero(static_cast<Eigen::Index>(stretches),
                                static_cast<Eigen::Index>(halves * width))),
@@ -79,18 +83,20 @@ struct FeatureScorer::Sums {
   std::size_t width;
   std::vector<float> difference;  // scratch: whitened rows of a run, but for the offset
   FloatRows products;             // scratch: left' difference
-  FloatRows model;                // left' features; the last rows are not used
-  FloatRows scores;               // per stretch
-  std::vector<FloatRows> gram;    // of either half, lower blocks
-  FloatRows rest;                 // of the Gram matrix, both halves
-  Eigen::RowVectorXf offset;      // of the present movement: the offset's direction' features
+  // Scratch: what the last row's forecast missed, both halves.
+  std::vector<float> missed;
+  FloatRows model;              // left' features; the last rows are not used
+  FloatRows scores;             // per stretch
+  std::vector<FloatRows> gram;  // of either half, lower blocks
+  FloatRows rest;               // of the Gram matrix, both halves
+  Eigen::RowVectorXf offset;    // of the present movement: the offset's direction' features
 };
 
 FeatureScorer::FeatureScorer(const Eigen::MatrixXd& basis, const Eigen::VectorXd& residual,
                              const Clusters& clusters, const Noise& noise,
                              const Eigen::VectorXf& direction)
     : clusters_(clusters),
-      share_(static_cast<float>(noise.whitening)),
+      filter_(Whitening(clusters, noise).filter()),
       direction_(direction),
       basis_columns_(basis.cols()) {
   const auto rows = static_cast<Eigen::Index>(clusters.rows);
@@ -98,17 +104,8 @@ FeatureScorer::FeatureScorer(const Eigen::MatrixXd& basis, const Eigen::VectorXd
   left_ = FloatRows::Zero(rows, static_cast<Eigen::Index>(width));
   left_.leftCols(basis_columns_) = basis.cast<float>();
   left_.col(basis_columns_ + 1) = residual.cast<float>();
-  for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
-    const RowRange& range = clusters.movements[m];
-    Movement movement;
-    movement.offset = offset_direction(clusters, m, noise);
-    left_.col(basis_columns_)
-        .segment(static_cast<Eigen::Index>(range.begin), static_cast<Eigen::Index>(range.size()))
-        .setConstant(static_cast<float>(movement.offset.next));
-    left_(static_cast<Eigen::Index>(range.begin), basis_columns_) =
-        static_cast<float>(movement.offset.first);
-    movements_.push_back(std::move(movement));
-  }
+  const Whitening whitening(clusters, noise);
+  for (std::size_t m = 0; m < clusters.movements.size(); ++m) add_movement_of(m, whitening);
   const auto count = static_cast<Eigen::Index>(clusters.stretches.size());
   along_offset_.resize(count, left_.cols());
   along_residual_.resize(count, basis_columns_);
@@ -123,53 +120,76 @@ FeatureScorer::FeatureScorer(const Eigen::MatrixXd& basis, const Eigen::VectorXd
   cut_into_runs();
 }
 
+void FeatureScorer::add_movement_of(std::size_t m, const Whitening& whitening) {
+  const RowRange& range = clusters_.movements[m];
+  movements_.push_back({range.begin, {}, whitening.offset_of(m)});
+  for (std::size_t k = 0; k < range.size(); ++k) {
+    left_(static_cast<Eigen::Index>(range.begin + k), basis_columns_) =
+        static_cast<float>(filter_.offset(k));
+  }
+}
+
 void FeatureScorer::cut_into_runs() {
   const auto sign = [&](std::size_t row) {
     return direction_.size() == 0 ? 1.0F : direction_[static_cast<Eigen::Index>(row)];
   };
   for (std::size_t c = 0; c < clusters_.stretches.size(); ++c) {
-    const std::size_t m = clusters_.movement_of[c];
-    std::vector<Run>& runs = movements_[m].runs;
+    std::vector<Run>& runs = movements_[clusters_.movement_of[c]].runs;
     const std::size_t stretch_begin = clusters_.stretches[c].begin;
     for (std::size_t i = stretch_begin; i < clusters_.stretches[c].end; ++i) {
-      const bool turns = i > clusters_.movements[m].begin && share_ != 0 && sign(i) != sign(i - 1);
-      const bool mixed = turns || sign(i) == 0;
+      const bool both = sign(i) == 0;
       const int half = sign(i) < 0 ? 1 : 0;
-      const bool goes_on = i > stretch_begin && !mixed && !runs.back().mixed &&
+      const bool goes_on = i > stretch_begin && !both && !runs.back().both &&
                            runs.back().half == half &&
                            runs.back().end - runs.back().begin < kRowsAtOnce;
       if (goes_on) {
         ++runs.back().end;
       } else {
-        runs.push_back({i, i + 1, c, half, mixed});
+        runs.push_back({i, i + 1, c, half, both});
       }
     }
   }
 }
 
-// The row less its share of the one before, in the movement's weight.
-void FeatureScorer::write_difference(const FloatRows& features, const Movement& movement,
-                                     std::size_t row, float weight, float* out) const {
+// Of the row's features that which stands in this half.
+float FeatureScorer::part_of(std::size_t row, std::size_t half) const {
+  if (direction_.size() == 0) return 1;
+  const float s = direction_[static_cast<Eigen::Index>(row)];
+  return (half == 0 ? 1 + s : 1 - s) / 2;
+}
+
+// missed: of the row before and this half; becomes this row's. Features in the half or not.
+void FeatureScorer::begin_row(const FloatRows& features, const Movement& movement, std::size_t row,
+                              std::size_t half, float* missed) const {
   const auto count = static_cast<std::size_t>(features.cols());
   const float* now = features.data() + row * count;
-  if (row == movement.runs.front().begin) {
-    const auto scale = weight * static_cast<float>(movement.offset.first);
-    for (std::size_t j = 0; j < count; ++j) out[j] = scale * now[j];
+  const float part = part_of(row, half);
+  if (row == movement.begin) {
+    for (std::size_t j = 0; j < count; ++j) missed[j] = part * now[j];
     return;
   }
   const float* before = now - count;
-  for (std::size_t j = 0; j < count; ++j) out[j] = weight * (now[j] - share_ * before[j]);
+  const auto carried = static_cast<float>(filter_.carried()) * part_of(row - 1, half);
+  const auto returned = static_cast<float>(filter_.returned(row - movement.begin));
+  for (std::size_t j = 0; j < count; ++j) {
+    const float faded = returned * missed[j];
+    missed[j] = part * now[j] - carried * before[j] + (std::abs(faded) < kFaded ? 0.0F : faded);
+  }
 }
 
 void FeatureScorer::add_run(const FloatRows& features, const Movement& movement, const Run& run,
                             float weight, Sums& sums) const {
   const std::size_t rows = run.end - run.begin;
+  const auto half = static_cast<std::size_t>(run.half);
+  float* missed = sums.missed.data() + half * sums.width;
   for (std::size_t i = 0; i < rows; ++i) {
-    write_difference(features, movement, run.begin + i, weight,
-                     sums.difference.data() + i * sums.width);
+    const std::size_t row = run.begin + i;
+    begin_row(features, movement, row, half, missed);
+    const float scale = weight * static_cast<float>(filter_.scale(row - movement.begin));
+    float* out = sums.difference.data() + i * sums.width;
+    for (std::size_t j = 0; j < sums.count; ++j) out[j] = scale * missed[j];
   }
   const float* difference = sums.difference.data();
-  const auto half = static_cast<std::size_t>(run.half);
   add_product(difference, sums.width, difference, sums.width, rows, true, sums.gram[half].data());
   sums.products.setZero();
   add_product(left_.data() + run.begin * static_cast<std::size_t>(left_.cols()),
@@ -183,24 +203,55 @@ void FeatureScorer::add_run(const FloatRows& features, const Movement& movement,
       sums.products.row(basis_columns_ + 1);
 }
 
-// A row at a reversal: its own features in one half, those of the row before in the other.
-void FeatureScorer::add_mixed_row(const FloatRows& features, const Movement& movement,
-                                  const Run& run, float weight, Sums& sums) const {
+// What the half without features still has of the rows before the run: one row of columns, fading.
+void FeatureScorer::add_other_half(const FloatRows& features, const Movement& movement,
+                                   const Run& run, float weight, Sums& sums) const {
+  const std::size_t other = 1 - static_cast<std::size_t>(run.half);
   const auto width = static_cast<Eigen::Index>(sums.width);
-  const auto count = static_cast<Eigen::Index>(sums.count);
-  Eigen::RowVectorXf z = Eigen::RowVectorXf::Zero(sums.scores.cols());
-  const auto add = [&](std::size_t row, double factor) {
-    const float s = direction_[static_cast<Eigen::Index>(row)];
-    const auto own = features.row(static_cast<Eigen::Index>(row));
-    z.head(count) += static_cast<float>(factor) * weight * (1 + s) / 2 * own;
-    z.segment(width, count) += static_cast<float>(factor) * weight * (1 - s) / 2 * own;
-  };
-  if (run.begin == movement.runs.front().begin) {
-    add(run.begin, movement.offset.first);
-  } else {
-    add(run.begin, 1);
-    add(run.begin - 1, -static_cast<double>(share_));
+  Eigen::Map<Eigen::RowVectorXf> missed(sums.missed.data() + other * sums.width, width);
+  begin_row(features, movement, run.begin, other, missed.data());
+  if (missed.isZero(0)) return;
+  const std::size_t rows = run.end - run.begin;
+  Eigen::VectorXf fading(static_cast<Eigen::Index>(rows));
+  float left = 1;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const std::size_t k = run.begin + i - movement.begin;
+    if (i > 0) left *= static_cast<float>(filter_.returned(k));
+    if (left < kFaded) left = 0;
+    fading[static_cast<Eigen::Index>(i)] = weight * static_cast<float>(filter_.scale(k)) * left;
   }
+  const Eigen::Map<const FloatRows> difference(sums.difference.data(),
+                                               static_cast<Eigen::Index>(rows), width);
+  const Eigen::RowVectorXf own = fading.transpose() * difference;
+  const Eigen::RowVectorXf models =
+      fading.transpose() *
+      left_.middleRows(static_cast<Eigen::Index>(run.begin), static_cast<Eigen::Index>(rows));
+  const Eigen::Index first = static_cast<Eigen::Index>(other) * width;
+  // The lower blocks are read.
+  auto across = sums.rest.block(width, 0, width, width);
+  if (other == 1) {
+    across.noalias() += missed.transpose() * own;
+  } else {
+    across.noalias() += own.transpose() * missed;
+  }
+  sums.rest.block(first, first, width, width).noalias() +=
+      (fading.squaredNorm() * missed).transpose() * missed;
+  sums.model.middleCols(first, width).noalias() += models.transpose() * missed;
+  sums.offset.segment(first, width) += models[basis_columns_] * missed;
+  sums.scores.row(static_cast<Eigen::Index>(run.stretch)).segment(first, width) +=
+      models[basis_columns_ + 1] * missed;
+  missed *= left;
+}
+
+// A row without a direction has half of its features in either half.
+void FeatureScorer::add_row_of_both(const FloatRows& features, const Movement& movement,
+                                    const Run& run, float weight, Sums& sums) const {
+  for (std::size_t half = 0; half < 2; ++half) {
+    begin_row(features, movement, run.begin, half, sums.missed.data() + half * sums.width);
+  }
+  const float scale = weight * static_cast<float>(filter_.scale(run.begin - movement.begin));
+  const Eigen::RowVectorXf z =
+      scale * Eigen::Map<const Eigen::RowVectorXf>(sums.missed.data(), sums.scores.cols());
   const auto left = left_.row(static_cast<Eigen::Index>(run.begin));
   sums.rest.noalias() += z.transpose() * z;
   sums.model.noalias() += left.transpose() * z;
@@ -234,12 +285,14 @@ void FeatureScorer::take_offset_out(const Movement& movement, Sums& sums) const 
 
 void FeatureScorer::add_movement(const FloatRows& features, std::size_t m, Sums& sums) const {
   const auto weight = static_cast<float>(clusters_.weight_of(m));
+  std::ranges::fill(sums.missed, 0.0F);
   for (const Run& run : movements_[m].runs) {
-    if (run.mixed) {
-      add_mixed_row(features, movements_[m], run, weight, sums);
-    } else {
-      add_run(features, movements_[m], run, weight, sums);
+    if (run.both) {
+      add_row_of_both(features, movements_[m], run, weight, sums);
+      continue;
     }
+    add_run(features, movements_[m], run, weight, sums);
+    if (direction_.size() > 0) add_other_half(features, movements_[m], run, weight, sums);
   }
   take_offset_out(movements_[m], sums);
 }

@@ -5,8 +5,9 @@
 // forgives) and in a fraction of the time. Internal to the room.
 //
 // [F, s F] spans what the features of either direction span, [F (1 + s)/2, F (1 - s)/2], and the
-// statistic with its ridge is the same in both. There a row has but half of the columns. The
-// movements' offsets and the model's basis are taken out of the products, not out of the rows.
+// statistic with its ridge is the same in both. There a row has but half of the columns; what the
+// other half still foretells after a reversal is one row of columns that fades. The movements'
+// offsets and the model's basis are taken out of the products, not out of the rows.
 // Sums run in the order of the rows on every machine.
 #pragma once
 
@@ -15,7 +16,9 @@
 
 #include "algorithms/inference/clusters.hpp"
 #include "algorithms/inference/flips.hpp"
+#include "algorithms/inference/noise.hpp"
 #include "algorithms/inference/score_test.hpp"
+#include "algorithms/inference/whitening.hpp"
 
 namespace tribench::loop {
 
@@ -30,32 +33,37 @@ class FeatureScorer {
   BlockScores score(const FloatRows& features, double ridge) const;
 
  private:
-  // Neighbouring rows of one stretch whose differences belong to one direction, or to both.
+  // Neighbouring rows of one stretch and one direction; a row without a direction stands alone.
   struct Run {
     std::size_t begin;
     std::size_t end;
     std::size_t stretch;
     int half;  // 0 forwards, 1 backwards
-    bool mixed;
+    bool both;
   };
   struct Movement {
+    std::size_t begin;
     std::vector<Run> runs;
-    OffsetDirection offset;
+    OffsetShrinkage offset;
   };
   struct Sums;
 
+  void add_movement_of(std::size_t m, const Whitening& whitening);
   void cut_into_runs();
-  void write_difference(const FloatRows& features, const Movement& movement, std::size_t row,
-                        float weight, float* out) const;
+  float part_of(std::size_t row, std::size_t half) const;
+  void begin_row(const FloatRows& features, const Movement& movement, std::size_t row,
+                 std::size_t half, float* missed) const;
   void add_run(const FloatRows& features, const Movement& movement, const Run& run, float weight,
                Sums& sums) const;
-  void add_mixed_row(const FloatRows& features, const Movement& movement, const Run& run,
-                     float weight, Sums& sums) const;
+  void add_other_half(const FloatRows& features, const Movement& movement, const Run& run,
+                      float weight, Sums& sums) const;
+  void add_row_of_both(const FloatRows& features, const Movement& movement, const Run& run,
+                       float weight, Sums& sums) const;
   void take_offset_out(const Movement& movement, Sums& sums) const;
   void add_movement(const FloatRows& features, std::size_t m, Sums& sums) const;
 
   const Clusters& clusters_;
-  float share_;  // of the row before that is taken off each row
+  RowFilter filter_;
   Eigen::VectorXf direction_;
   Eigen::Index basis_columns_;
   std::vector<Movement> movements_;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "algorithms/expression/build.hpp"
+#include "algorithms/inference/whitening.hpp"
 #include "algorithms/loop_model/bristle_path.hpp"
 #include "foundation/elementary.hpp"
 
@@ -114,7 +115,7 @@ class Fit {
     residual -= more * at.coefficients.tail(more.cols());
     Noise noise = estimate_noise(residual, clusters_, static_cast<std::size_t>(fixed()) + 2,
                                  1e-9 * target_.cwiseAbs().maxCoeff());
-    noise.whitening = correlated ? noise.rho : 0;
+    noise.whitened = correlated;
     return noise;
   }
 

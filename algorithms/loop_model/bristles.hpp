@@ -57,7 +57,7 @@ std::optional<std::size_t> presliding_family(const LoopModel& model, const Obser
 
 // Replaces the family's columns by bristles and fits them with all linear coefficients to the rows
 // with rows[i] != 0; shapes of other effects stay. correlated: the noise lasts from row to row, and
-// the fit may trust that (Noise::whitening). Empty where there is no distance since a reversal,
+// the fit may trust that (Noise::whitened). Empty where there is no distance since a reversal,
 // where the rows do not hold the deflection between two bounds, where the stiffness is not above 0,
 // or where the closed form explains the rows decidedly better. Deterministic; some 100 evaluations
 // of the columns.

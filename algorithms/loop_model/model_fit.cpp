@@ -7,6 +7,7 @@
 
 #include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/whitening.hpp"
 
 namespace tribench::loop {
 namespace {

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "algorithms/inference/noise.hpp"
 #include "algorithms/loop_model/loop_model.hpp"
 
 namespace tribench::loop {

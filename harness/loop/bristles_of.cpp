@@ -8,7 +8,7 @@ std::optional<Bristles> bristles_of(const Diagnosis& diagnosis, const Observatio
   if (!family) return std::nullopt;
   return fit_bristles(diagnosis.after, *family, data,
                       usable_rows(data, diagnosis.held_out, false, diagnosis.masked),
-                      diagnosis.noise.whitening > 0);
+                      diagnosis.noise.whitened);
 }
 
 }  // namespace tribench::loop

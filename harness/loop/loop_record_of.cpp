@@ -253,7 +253,7 @@ LoopRecord loop_record_of(const JudgedDiagnosis& diagnosis, const Observations& 
   record.flips = diagnosis.options.flips;
   record.seed = extras.seed;
   record.noise = {diagnosis.noise.within_sd,     diagnosis.noise.between_sd,
-                  diagnosis.noise.rho,           diagnosis.rows,
+                  diagnosis.noise.rho(),         diagnosis.rows,
                   diagnosis.movements,           diagnosis.stretches,
                   diagnosis.noise.effective_rows};
   add_lists(record, diagnosis);

@@ -40,12 +40,18 @@ void add_bursts(std::vector<double>& noise, RandomStream random) {
   }
 }
 
-void correlate(std::vector<double>& noise) {
-  constexpr double kCorrelation = 0.9;
-  const double fresh = std::sqrt(1 - kCorrelation * kCorrelation);
+void correlate(std::vector<double>& noise, double correlation) {
+  const double fresh = std::sqrt(1 - correlation * correlation);
   for (std::size_t i = 1; i < noise.size(); ++i) {
-    noise[i] = kCorrelation * noise[i - 1] + fresh * noise[i];
+    noise[i] = correlation * noise[i - 1] + fresh * noise[i];
   }
+}
+
+void add_slow_half(std::vector<double>& noise, RandomStream random) {
+  std::vector<double> slow(noise.size());
+  for (double& value : slow) value = random.normal();
+  correlate(slow, 0.95);
+  for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = (noise[i] + slow[i]) / std::sqrt(2.0);
 }
 
 void grow_with_speed(std::vector<double>& noise, std::span<const double> velocity, double level) {
@@ -58,7 +64,8 @@ void grow_with_speed(std::vector<double>& noise, std::span<const double> velocit
 
 std::string_view noise_name(NoiseKind kind) {
   constexpr std::array<std::string_view, kNoiseKinds.size()> kNames = {
-      "gaussian", "skewed", "quantised", "heteroscedastic", "heavy_tailed", "bursty", "correlated"};
+      "gaussian",     "skewed", "quantised",  "heteroscedastic",
+      "heavy_tailed", "bursty", "correlated", "half_slow"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -73,7 +80,8 @@ std::vector<double> movement_noise(NoiseKind kind, std::span<const double> veloc
   }
   RandomStream level = random.split("level");
   if (kind == NoiseKind::bursty) add_bursts(noise, level);
-  if (kind == NoiseKind::correlated) correlate(noise);
+  if (kind == NoiseKind::correlated) correlate(noise, 0.9);
+  if (kind == NoiseKind::half_slow) add_slow_half(noise, level);
   if (kind == NoiseKind::heteroscedastic) {
     grow_with_speed(noise, velocity, elementary::exp(0.4 * level.normal()));
   }

@@ -20,11 +20,12 @@ enum class NoiseKind {
   heavy_tailed,     // Student t with 3 degrees of freedom
   bursty,           // stretches of some twenty rows four times as loud, 8 % of the time
   correlated,       // 0.9 between neighbouring rows
+  half_slow,        // half of the variance 0.95 between neighbouring rows, the other half white
 };
 std::string_view noise_name(NoiseKind kind);
 inline constexpr std::array kNoiseKinds = {
-    NoiseKind::gaussian,     NoiseKind::skewed, NoiseKind::quantised, NoiseKind::heteroscedastic,
-    NoiseKind::heavy_tailed, NoiseKind::bursty, NoiseKind::correlated};
+    NoiseKind::gaussian,     NoiseKind::skewed, NoiseKind::quantised,  NoiseKind::heteroscedastic,
+    NoiseKind::heavy_tailed, NoiseKind::bursty, NoiseKind::correlated, NoiseKind::half_slow};
 
 // Of the rows of one movement: variance about 1, mean 0. Of quantised noise it is what comes before
 // the rounding. velocity in rad/s.

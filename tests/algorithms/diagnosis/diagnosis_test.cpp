@@ -268,8 +268,8 @@ TEST(Diagnosis, DoesWithoutTheRulesThatItIsToldToLeaveOut) {
   EXPECT_EQ(without.masked, std::vector<char>(collided.rows(), 0));
   EXPECT_GT(without.noise.within_sd, with.noise.within_sd);
   options.without = {"whitening"};
-  EXPECT_EQ(diagnose_most(collided, options).noise.whitening, 0);
-  EXPECT_GT(with.noise.whitening, 0);
+  EXPECT_FALSE(diagnose_most(collided, options).noise.whitened);
+  EXPECT_TRUE(with.noise.whitened);
 }
 
 TEST(Rules, AreKnownByTheirNamesAndOthersAreRefusedWithTheNearest) {

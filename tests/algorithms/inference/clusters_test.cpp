@@ -6,6 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "algorithms/inference/noise.hpp"
+#include "algorithms/inference/whitening.hpp"
+
 namespace tribench::loop {
 namespace {
 
@@ -43,8 +46,9 @@ TEST(Whitening, LeavesRowsOfOneVarianceThatKnowNothingOfTheirNeighboursNorOfThei
   Noise noise;
   noise.within_sd = 1;
   noise.between_sd = kBetween;
-  noise.rho = noise.whitening = kRho;
-  noise.inflation = (1 + kRho) / (1 - kRho);
+  noise.slow_share = 1;
+  noise.slow_rho = kRho;
+  noise.whitened = true;
   double squares = 0;
   double neighbours = 0;
   double sums = 0;
@@ -127,10 +131,11 @@ TEST(EstimateNoise, FindsWhatTheRowsWereMadeWith) {
   }
   const Noise noise = estimate_noise(residual, clusters, 0, 0);
   EXPECT_NEAR(noise.within_sd, 0.5, 0.01);
-  EXPECT_NEAR(noise.rho, kRho, 0.02);
+  EXPECT_NEAR(noise.rho(), kRho, 0.02);
   EXPECT_NEAR(noise.between_sd, std::sqrt(2.0), 0.03);
-  EXPECT_DOUBLE_EQ(noise.inflation, (1 + noise.rho) / (1 - noise.rho));
-  EXPECT_NEAR(noise.effective_rows, 24000 / noise.inflation, 1e-6);
+  EXPECT_EQ(noise.slow_share, 1);
+  EXPECT_DOUBLE_EQ(noise.inflation(), (1 + noise.rho()) / (1 - noise.rho()));
+  EXPECT_NEAR(noise.effective_rows, 24000 / noise.inflation(), 1e-6);
   // Each fitted parameter costs a degree of freedom, each movement's mean one
   // already.
   EXPECT_NEAR(estimate_noise(residual, clusters, 12000, 0).within_sd / noise.within_sd,
@@ -151,7 +156,7 @@ TEST(EstimateNoise, CountsEachMovementByItsWeight) {
   }
   const Noise weighted = estimate_noise(residual, clusters, 0, 0);
   EXPECT_NEAR(weighted.within_sd, alike.within_sd, 1e-12);
-  EXPECT_NEAR(weighted.rho, alike.rho, 1e-12);
+  EXPECT_NEAR(weighted.rho(), alike.rho(), 1e-12);
 }
 
 // N m or kN m: what is correlated stays so.
@@ -160,8 +165,8 @@ TEST(EstimateNoise, SaysTheSameInAnyUnit) {
   const Eigen::VectorXd residual = noise_of(RandomStream(11), 1);
   const Noise whole = estimate_noise(residual, clusters, 3, 0);
   const Noise scaled = estimate_noise(1e-6 * residual, clusters, 3, 0);
-  ASSERT_GT(whole.rho, 0);
-  EXPECT_NEAR(scaled.rho, whole.rho, 1e-12);
+  ASSERT_GT(whole.rho(), 0);
+  EXPECT_NEAR(scaled.rho(), whole.rho(), 1e-12);
   EXPECT_NEAR(scaled.within_sd, 1e-6 * whole.within_sd, 1e-18);
   EXPECT_NEAR(scaled.between_sd, 1e-6 * whole.between_sd, 1e-18);
 }
@@ -182,7 +187,7 @@ TEST(EstimateNoise, OfAPerfectFitIsTheFloor) {
   const Clusters clusters = make_clusters(movements_of({10, 10, 10}), 1);
   const Noise noise = estimate_noise(Eigen::VectorXd::Zero(30), clusters, 2, 0.25);
   EXPECT_EQ(noise.within_sd, 0.25);
-  EXPECT_EQ(noise.rho, 0);
+  EXPECT_EQ(noise.rho(), 0);
   EXPECT_EQ(noise.between_sd, 0);
   EXPECT_EQ(noise.effective_rows, 30);
 }

@@ -21,7 +21,8 @@ struct Example {
   Eigen::VectorXd target;
 };
 
-Example example(double whitening, bool with_direction) {
+// slow_share: of the noise; 0: rows are looked at as they are.
+Example example(double slow_share, bool with_direction) {
   RandomStream random(5);
   Example e;
   std::vector<int> movement;
@@ -47,10 +48,10 @@ Example example(double whitening, bool with_direction) {
   e.clusters = make_clusters(movement, 1);
   e.clusters.weight = movement_weights(e.target, e.clusters);
   e.noise = estimate_noise(e.target, e.clusters, 3, 0);
-  e.noise.rho = 0.4;
-  e.noise.inflation = 1.4 / 0.6;
+  e.noise.slow_share = slow_share;
+  e.noise.slow_rho = 0.8;
   e.noise.between_sd = 0.3;
-  e.noise.whitening = whitening;
+  e.noise.whitened = slow_share > 0;
   return e;
 }
 
@@ -75,8 +76,8 @@ BlockScores by_columns(const Example& e, const Eigen::MatrixXd& basis,
 
 TEST(FeatureScorer, SaysWhatTheColumnsSayOneByOne) {
   for (const bool with_direction : {true, false}) {
-    for (const double whitening : {0.0, 0.4}) {
-      const Example e = example(whitening, with_direction);
+    for (const double slow_share : {0.0, 0.3, 1.0}) {
+      const Example e = example(slow_share, with_direction);
       const Eigen::MatrixXd basis = orthonormal_basis(whitened(e.model, e.clusters, e.noise));
       const Eigen::VectorXd residual = project_off(whitened(e.target, e.clusters, e.noise), basis);
       const BlockScores slow = by_columns(e, basis, residual);

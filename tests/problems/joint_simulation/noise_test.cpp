@@ -63,6 +63,8 @@ TEST(Noise, EachKindHasTheMomentsOfItsLaw) {
               3 * (0.92 + 0.08 * 256) / std::pow(0.92 + 0.08 * 16, 2), 1.2);
   EXPECT_GT(moments_of(NoiseKind::heavy_tailed, 0.2).kurtosis, 10);
   EXPECT_NEAR(moments_of(NoiseKind::correlated, 0.2).neighbours, 0.9, 0.01);
+  EXPECT_NEAR(moments_of(NoiseKind::half_slow, 0.2).neighbours, 0.475, 0.02);
+  EXPECT_NEAR(moments_of(NoiseKind::half_slow, 0.2).variance, 1, 0.06);
   EXPECT_GT(moments_of(NoiseKind::bursty, 0.2).levels, 0.3);
   EXPECT_LT(moments_of(NoiseKind::gaussian, 0.2).levels, 0.02);
 }

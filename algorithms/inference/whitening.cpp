@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/inference/whitening.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "foundation/elementary.hpp"
+
+namespace tribench::loop {
+namespace {
+
+constexpr double kSteady = 1e-15;
+
+std::size_t longest_movement(const Clusters& clusters) {
+  std::size_t longest = 1;
+  for (const RowRange& m : clusters.movements) longest = std::max(longest, m.size());
+  return longest;
+}
+
+}  // namespace
+
+RowFilter::RowFilter(const Noise& noise, std::size_t longest) {
+  if (!noise.whitened || !(noise.within_sd > 0)) {
+    returned_ = {0};
+    scale_ = {1};
+    offset_ = {1};
+    return;
+  }
+  const double variance = noise.within_sd * noise.within_sd;
+  const double steady = noise.row_variance() / variance;
+  const double white = 1 - noise.slow_share;
+  const double rho = noise.slow_rho;
+  carried_ = rho;
+  double slow = noise.slow_share;  // variance of the slow part, foretold
+  double returned = 0;
+  double missed = 0;  // of rows that are all 1
+  for (std::size_t k = 0; k < longest; ++k) {
+    const double total = slow + white;
+    missed = k == 0 ? 1 : 1 - rho + returned * missed;
+    returned_.push_back(returned);
+    scale_.push_back(std::sqrt(steady / total));
+    offset_.push_back(scale_.back() * missed);
+    const bool settled = k > 0 && std::abs(total - steady) <= kSteady * steady &&
+                         std::abs(offset_[k] - offset_[k - 1]) <= kSteady;
+    if (settled) break;
+    const double unknown = white / total;  // share of the slow part that a row does not tell
+    returned = rho * unknown;
+    slow = rho * rho * slow * unknown + noise.slow_share * (1 - rho * rho);
+  }
+}
+
+Whitening::Whitening(const Clusters& clusters, const Noise& noise)
+    : clusters_(clusters), noise_(noise), filter_(noise, longest_movement(clusters)) {}
+
+OffsetShrinkage Whitening::offset_of(std::size_t movement) const {
+  const std::size_t rows = clusters_.movements[movement].size();
+  OffsetShrinkage u{};
+  const std::size_t changing = std::min(rows, filter_.steady_from());
+  for (std::size_t k = 0; k < changing; ++k) u.length += filter_.offset(k) * filter_.offset(k);
+  const double last = filter_.offset(filter_.steady_from());
+  u.length += static_cast<double>(rows - changing) * last * last;
+  u.noise = noise_.row_variance() * std::min(noise_.row_inflation(), static_cast<double>(rows));
+  const double between = noise_.between_sd * clusters_.weight_of(movement);
+  u.offset = between * between * u.length;
+  u.kept = std::sqrt(noise_.row_variance() / (u.noise + u.offset));
+  return u;
+}
+
+void Whitening::filter_column(double* column, std::size_t rows) const {
+  if (filter_.carried() == 0) return;
+  const double carried = filter_.carried();
+  double before = column[0];
+  double missed = column[0];
+  column[0] *= filter_.scale(0);
+  const std::size_t changing = std::min(rows, filter_.steady_from());
+  const auto next = [&](std::size_t k, double returned, double scale) {
+    const double now = column[k];
+    missed = now - carried * before + returned * missed;
+    before = now;
+    column[k] = scale * missed;
+  };
+  for (std::size_t k = 1; k < changing; ++k) next(k, filter_.returned(k), filter_.scale(k));
+  const double returned = filter_.returned(filter_.steady_from());
+  const double scale = filter_.scale(filter_.steady_from());
+  for (std::size_t k = std::max<std::size_t>(1, changing); k < rows; ++k) next(k, returned, scale);
+}
+
+Eigen::MatrixXd Whitening::of(Eigen::MatrixXd columns) const {
+  Eigen::VectorXd direction;
+  for (std::size_t m = 0; m < clusters_.movements.size(); ++m) {
+    const RowRange& range = clusters_.movements[m];
+    auto block = columns.middleRows(static_cast<Eigen::Index>(range.begin),
+                                    static_cast<Eigen::Index>(range.size()));
+    direction.resize(block.rows());
+    for (std::size_t k = 0; k < range.size(); ++k) {
+      direction[static_cast<Eigen::Index>(k)] = filter_.offset(k);
+    }
+    const OffsetShrinkage u = offset_of(m);
+    for (Eigen::Index j = 0; j < block.cols(); ++j) {
+      filter_column(block.col(j).data(), range.size());
+      const double shift = (1 - u.kept) * direction.dot(block.col(j)) / u.length;
+      block.col(j) -= shift * direction;
+    }
+    const double weight = clusters_.weight_of(m);
+    if (weight != 1) block *= weight;
+  }
+  return columns;
+}
+
+Eigen::VectorXd Whitening::offset_nats() const {
+  std::vector<double> stretches(clusters_.movements.size(), 0.0);
+  for (const std::size_t m : clusters_.movement_of) ++stretches[m];
+  Eigen::VectorXd nats(static_cast<Eigen::Index>(clusters_.stretches.size()));
+  for (std::size_t c = 0; c < clusters_.stretches.size(); ++c) {
+    const std::size_t m = clusters_.movement_of[c];
+    const OffsetShrinkage u = offset_of(m);
+    nats[static_cast<Eigen::Index>(c)] = 0.5 * elementary::log1p(u.offset / u.noise) / stretches[m];
+  }
+  return nats;
+}
+
+Eigen::MatrixXd whitened(Eigen::MatrixXd columns, const Clusters& clusters, const Noise& noise) {
+  return Whitening(clusters, noise).of(std::move(columns));
+}
+
+Eigen::VectorXd offset_nats(const Clusters& clusters, const Noise& noise) {
+  return Whitening(clusters, noise).offset_nats();
+}
+
+}  // namespace tribench::loop
