@@ -60,20 +60,37 @@ bool falls_with_speed(const Eigen::VectorXd& friction, const std::vector<double>
   return false;
 }
 
-// Whether the one column of a family has the sign that its cause cannot have.
-bool has_impossible_sign(const LoopModel& model, const std::vector<EffectFamily>& families) {
+// Whether this coefficient's sign says what the family does: its columns share one name. Beside a
+// column of another kind (the other direction, a square) none of them has a sign of its own.
+bool is_alone(const std::string& coefficient, const LoopModel& model, std::size_t family) {
+  return std::ranges::all_of(model.atoms, [&](const Atom& atom) {
+    return atom.family != family || std::ranges::all_of(atom.coefficients, [&](const auto& name) {
+             return name == coefficient;
+           });
+  });
+}
+
+// Of the family's columns together.
+double sum_of(const std::string& coefficient, const LoopModel& model, std::size_t family) {
+  double sum = 0;
   for (std::size_t k = 0; k < model.atoms.size(); ++k) {
-    const Atom& atom = model.atoms[k];
-    if (model.atoms_of(atom.family) > 1) continue;
-    for (const Sanity& sanity : families[atom.family].sanity) {
-      const auto at = std::ranges::find(atom.coefficients, sanity.coefficient);
-      if (at == atom.coefficients.end()) continue;
-      const auto column =
-          model.first_column(k) + static_cast<std::size_t>(at - atom.coefficients.begin());
-      if (sanity.sign * model.coefficients[static_cast<Eigen::Index>(column)] < 0) return true;
+    if (model.atoms[k].family != family) continue;
+    for (std::size_t j = 0; j < model.atoms[k].coefficients.size(); ++j) {
+      if (model.atoms[k].coefficients[j] != coefficient) continue;
+      sum += model.coefficients[static_cast<Eigen::Index>(model.first_column(k) + j)];
     }
   }
-  return false;
+  return sum;
+}
+
+// Whether a family has the sign that its cause cannot have.
+bool has_impossible_sign(const LoopModel& model, const std::vector<EffectFamily>& families) {
+  return std::ranges::any_of(model.atoms, [&](const Atom& atom) {
+    return std::ranges::any_of(families[atom.family].sanity, [&](const Sanity& sanity) {
+      return is_alone(sanity.coefficient, model, atom.family) &&
+             sanity.sign * sum_of(sanity.coefficient, model, atom.family) < 0;
+    });
+  });
 }
 
 }  // namespace
@@ -91,18 +108,23 @@ bool stands_for_another_cause(const LoopModel& model, const Campaign& campaign) 
   });
 }
 
-std::string physical_objection(const EffectFinding& finding, const EffectFamily& family) {
-  for (const Sanity& sanity : family.sanity) {
+std::string physical_objection(const EffectFinding& finding, const LoopModel& model,
+                               std::size_t family, const EffectFamily& known) {
+  for (const Sanity& sanity : known.sanity) {
+    // Against the whole interval: a value that is only perhaps unphysical stands.
+    double low = 0;
+    double high = 0;
     for (const ParameterFinding& p : finding.parameters) {
       if (p.name != sanity.coefficient) continue;
-      // Against the whole interval: a value that is only perhaps unphysical stands.
-      const bool wrong_sign =
-          sanity.sign != 0 && sanity.sign * p.low < 0 && sanity.sign * p.high < 0;
-      const bool too_large = sanity.largest > 0 &&
-                             std::min(std::abs(p.low), std::abs(p.high)) > sanity.largest &&
-                             p.low * p.high > 0;
-      if (wrong_sign || too_large) return sanity.why;
+      low += p.low;
+      high += p.high;
     }
+    const bool wrong_sign = sanity.sign * low < 0 && sanity.sign * high < 0 &&
+                            is_alone(sanity.coefficient, model, family);
+    const bool too_large = sanity.largest > 0 &&
+                           std::min(std::abs(low), std::abs(high)) > sanity.largest &&
+                           low * high > 0;
+    if (wrong_sign || too_large) return sanity.why;
   }
   return {};
 }

@@ -12,7 +12,9 @@ namespace tribench::loop {
 // by whether friction falls. Nothing where the options ask for no physics.
 bool stands_for_another_cause(const LoopModel& model, const Campaign& campaign);
 
-// What an effect's parameters say against its being physical; empty where nothing.
-std::string physical_objection(const EffectFinding& finding, const EffectFamily& family);
+// What an effect's parameters say against its being physical; empty where nothing. model: in which
+// the effect is that of `family`, whose description is `known`.
+std::string physical_objection(const EffectFinding& finding, const LoopModel& model,
+                               std::size_t family, const EffectFamily& known);
 
 }  // namespace tribench::loop

@@ -294,6 +294,7 @@ EffectFamily hysteresis() {
                        .shapes = {lambda},
                        .by_direction = true});
   }
+  f.sanity = {{"presliding", -1, 0, "friction that falls with the distance after a reversal"}};
   // Both are transients over the path since the torque on the gear turned.
   f.known_aliases = {{"backlash", "load the joint so that its gear stays on one flank (R3)"}};
   f.separate_by = {"R4"};
@@ -314,6 +315,9 @@ EffectFamily lag() {
     const std::string late = lagged_velocity_name(lag_ms);
     f.atoms.push_back(
         {{"tanh(" + late + "/vw) - tanh(v/vw)"}, {"late"}, {{"vw", "v", {0.07, 0.2}, 0.02, 0.6}}});
+  }
+  for (const std::string_view name : {"lag", "late"}) {
+    f.sanity.push_back({std::string(name), 1, 0, "friction that runs ahead of the velocity"});
   }
   f.separate_by = {"R4"};
   return f;

@@ -175,6 +175,16 @@ TEST(Diagnosis, PreslidingOfAThousandthOfTheStrokeIsNoLagAndNoFallWithSpeed) {
   }
 }
 
+// Bristles let friction build up. What falls with the distance is something else, and lives there.
+TEST(Diagnosis, FrictionThatFallsAfterAReversalIsNoPresliding) {
+  const Observations data =
+      campaign_with([](double v, double d) { return 2 * std::copysign(std::exp(-d / 0.01), v); });
+  const Diagnosis diagnosis = diagnose_most(data, {});
+  EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
+  EXPECT_EQ(diagnosis.leftover.inputs, (std::vector<std::string>{"distance_since_reversal"}));
+  EXPECT_THAT(families(diagnosis), ::testing::Not(::testing::Contains("hysteresis")));
+}
+
 // Sines cut out of motion, with bristles that were bent before each began, and friction that
 // follows the velocity by 0.12 s late: `late` times as large.
 Observations bristles_cut_out_of_motion(double late) {
