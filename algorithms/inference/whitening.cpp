@@ -2,6 +2,7 @@
 #include "algorithms/inference/whitening.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -67,23 +68,42 @@ OffsetShrinkage Whitening::offset_of(std::size_t movement) const {
   return u;
 }
 
-void Whitening::filter_column(double* column, std::size_t rows) const {
-  if (filter_.carried() == 0) return;
+template <int kColumns>
+void Whitening::filter_columns(double* first, Eigen::Index stride, std::size_t rows) const {
   const double carried = filter_.carried();
-  double before = column[0];
-  double missed = column[0];
-  column[0] *= filter_.scale(0);
-  const std::size_t changing = std::min(rows, filter_.steady_from());
+  std::array<double*, kColumns> column;
+  std::array<double, kColumns> before;
+  std::array<double, kColumns> missed;
+  for (int j = 0; j < kColumns; ++j) {
+    column[j] = first + j * stride;
+    before[j] = missed[j] = column[j][0];
+    column[j][0] *= filter_.scale(0);
+  }
   const auto next = [&](std::size_t k, double returned, double scale) {
-    const double now = column[k];
-    missed = now - carried * before + returned * missed;
-    before = now;
-    column[k] = scale * missed;
+    for (int j = 0; j < kColumns; ++j) {
+      const double now = column[j][k];
+      missed[j] = now - carried * before[j] + returned * missed[j];
+      before[j] = now;
+      column[j][k] = scale * missed[j];
+    }
   };
+  const std::size_t changing = std::clamp<std::size_t>(filter_.steady_from(), 1, rows);
   for (std::size_t k = 1; k < changing; ++k) next(k, filter_.returned(k), filter_.scale(k));
   const double returned = filter_.returned(filter_.steady_from());
   const double scale = filter_.scale(filter_.steady_from());
-  for (std::size_t k = std::max<std::size_t>(1, changing); k < rows; ++k) next(k, returned, scale);
+  for (std::size_t k = changing; k < rows; ++k) next(k, returned, scale);
+}
+
+void Whitening::filter_rows(Eigen::Ref<Eigen::MatrixXd> rows) const {
+  if (filter_.carried() == 0) return;
+  // Each row waits for the one before; columns do not wait for each other.
+  constexpr Eigen::Index kAtOnce = 4;
+  const auto count = static_cast<std::size_t>(rows.rows());
+  Eigen::Index j = 0;
+  for (; j + kAtOnce <= rows.cols(); j += kAtOnce) {
+    filter_columns<kAtOnce>(rows.col(j).data(), rows.outerStride(), count);
+  }
+  for (; j < rows.cols(); ++j) filter_columns<1>(rows.col(j).data(), rows.outerStride(), count);
 }
 
 Eigen::MatrixXd Whitening::of(Eigen::MatrixXd columns) const {
@@ -97,8 +117,8 @@ Eigen::MatrixXd Whitening::of(Eigen::MatrixXd columns) const {
       direction[static_cast<Eigen::Index>(k)] = filter_.offset(k);
     }
     const OffsetShrinkage u = offset_of(m);
+    filter_rows(block);
     for (Eigen::Index j = 0; j < block.cols(); ++j) {
-      filter_column(block.col(j).data(), range.size());
       const double shift = (1 - u.kept) * direction.dot(block.col(j)) / u.length;
       block.col(j) -= shift * direction;
     }

@@ -71,7 +71,10 @@ class Whitening {
   Eigen::VectorXd offset_nats() const;
 
  private:
-  void filter_column(double* column, std::size_t rows) const;
+  template <int kColumns>
+  void filter_columns(double* first, Eigen::Index stride, std::size_t rows) const;
+  // Of one movement.
+  void filter_rows(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
   const Clusters& clusters_;
   const Noise& noise_;
