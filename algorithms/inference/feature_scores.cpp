@@ -203,6 +203,28 @@ void FeatureScorer::add_run(const FloatRows& features, const Movement& movement,
       sums.products.row(basis_columns_ + 1);
 }
 
+// What each row of the run still has of the row before it, and as it comes out in the movement's
+// weight.
+struct FeatureScorer::Fading {
+  Eigen::VectorXf left;
+  Eigen::VectorXf out;
+};
+
+FeatureScorer::Fading FeatureScorer::fading_of(const Movement& movement, const Run& run,
+                                               float weight) const {
+  const auto rows = static_cast<Eigen::Index>(run.end - run.begin);
+  Fading fading{Eigen::VectorXf(rows), Eigen::VectorXf(rows)};
+  float left = 1;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const std::size_t k = run.begin + static_cast<std::size_t>(i) - movement.begin;
+    if (i > 0) left *= static_cast<float>(filter_.returned(k));
+    if (left < kFaded) left = 0;
+    fading.left[i] = left;
+    fading.out[i] = weight * static_cast<float>(filter_.scale(k)) * left;
+  }
+  return fading;
+}
+
 // What the half without features still has of the rows before the run: one row of columns, fading.
 void FeatureScorer::add_other_half(const FloatRows& features, const Movement& movement,
                                    const Run& run, float weight, Sums& sums) const {
@@ -211,23 +233,14 @@ void FeatureScorer::add_other_half(const FloatRows& features, const Movement& mo
   Eigen::Map<Eigen::RowVectorXf> missed(sums.missed.data() + other * sums.width, width);
   begin_row(features, movement, run.begin, other, missed.data());
   if (missed.isZero(0)) return;
-  const std::size_t rows = run.end - run.begin;
-  Eigen::VectorXf fading(static_cast<Eigen::Index>(rows));
-  float left = 1;
-  for (std::size_t i = 0; i < rows; ++i) {
-    const std::size_t k = run.begin + i - movement.begin;
-    if (i > 0) left *= static_cast<float>(filter_.returned(k));
-    if (left < kFaded) left = 0;
-    fading[static_cast<Eigen::Index>(i)] = weight * static_cast<float>(filter_.scale(k)) * left;
-  }
-  const Eigen::Map<const FloatRows> difference(sums.difference.data(),
-                                               static_cast<Eigen::Index>(rows), width);
-  const Eigen::RowVectorXf own = fading.transpose() * difference;
-  const Eigen::RowVectorXf models =
-      fading.transpose() *
-      left_.middleRows(static_cast<Eigen::Index>(run.begin), static_cast<Eigen::Index>(rows));
+  const Fading fading = fading_of(movement, run, weight);
+  const Eigen::Index rows = fading.out.size();
+  const Eigen::Map<const FloatRows> difference(sums.difference.data(), rows, width);
+  const Eigen::RowVectorXf own = fading.out.transpose() * difference;
+  const Eigen::RowVectorXf left =
+      fading.out.transpose() * left_.middleRows(static_cast<Eigen::Index>(run.begin), rows);
   const Eigen::Index first = static_cast<Eigen::Index>(other) * width;
-  // The lower blocks are read.
+  // The lower blocks are read: the backward half's rows, the forward half's columns.
   auto across = sums.rest.block(width, 0, width, width);
   if (other == 1) {
     across.noalias() += missed.transpose() * own;
@@ -235,12 +248,12 @@ void FeatureScorer::add_other_half(const FloatRows& features, const Movement& mo
     across.noalias() += own.transpose() * missed;
   }
   sums.rest.block(first, first, width, width).noalias() +=
-      (fading.squaredNorm() * missed).transpose() * missed;
-  sums.model.middleCols(first, width).noalias() += models.transpose() * missed;
-  sums.offset.segment(first, width) += models[basis_columns_] * missed;
+      (fading.out.squaredNorm() * missed).transpose() * missed;
+  sums.model.middleCols(first, width).noalias() += left.transpose() * missed;
+  sums.offset.segment(first, width) += left[basis_columns_] * missed;
   sums.scores.row(static_cast<Eigen::Index>(run.stretch)).segment(first, width) +=
-      models[basis_columns_ + 1] * missed;
-  missed *= left;
+      left[basis_columns_ + 1] * missed;
+  missed *= fading.left[rows - 1];
 }
 
 // A row without a direction has half of its features in either half.

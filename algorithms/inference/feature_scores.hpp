@@ -47,6 +47,7 @@ class FeatureScorer {
     OffsetShrinkage offset;
   };
   struct Sums;
+  struct Fading;
 
   void add_movement_of(std::size_t m, const Whitening& whitening);
   void cut_into_runs();
@@ -55,6 +56,7 @@ class FeatureScorer {
                  std::size_t half, float* missed) const;
   void add_run(const FloatRows& features, const Movement& movement, const Run& run, float weight,
                Sums& sums) const;
+  Fading fading_of(const Movement& movement, const Run& run, float weight) const;
   void add_other_half(const FloatRows& features, const Movement& movement, const Run& run,
                       float weight, Sums& sums) const;
   void add_row_of_both(const FloatRows& features, const Movement& movement, const Run& run,
