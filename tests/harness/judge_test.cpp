@@ -186,6 +186,19 @@ TEST(JudgeFormula, TakesTheStribeckRangeOfTheFasterDirection) {
   EXPECT_EQ(record.monotone, PhysicsProof::proved);
 }
 
+// Without a test row there is nothing to take the time of.
+TEST(JudgeFormula, TakesTheTimeOfTestRowsAlone) {
+  Problem problem = two_stage_problem();
+  Record record;
+  const StagedFormula line{parse("2 * v + 1", problem.input_names()), {}};
+  judge_formula(problem, line, record);
+  EXPECT_GT(record.eval_ns_per_row, 0);
+  problem.test = {};
+  problem.test.columns.resize(2);
+  judge_formula(problem, line, record);
+  EXPECT_TRUE(std::isnan(record.eval_ns_per_row));
+}
+
 TEST(JudgeFront, KeepsNoFormulaWithoutAnErrorBesideOneThatHasIt) {
   const Problem problem = two_stage_problem();
   const std::vector<std::string> names = problem.input_names();

@@ -192,6 +192,16 @@ TEST(EstimateNoise, OfAPerfectFitIsTheFloor) {
   EXPECT_EQ(noise.effective_rows, 30);
 }
 
+// As many parameters as rows, or more: the noise is what is left, with one degree of freedom.
+TEST(EstimateNoise, KeepsOneDegreeOfFreedomWhereTheModelHasThemAll) {
+  const Clusters clusters = make_clusters(movements_of({2, 2, 2}), 1);
+  Eigen::VectorXd residual(6);
+  residual << 1, -1, 1, -1, 1, -1;
+  EXPECT_DOUBLE_EQ(estimate_noise(residual, clusters, 2, 0).within_sd, std::sqrt(6.0));
+  EXPECT_DOUBLE_EQ(estimate_noise(residual, clusters, 20, 0).within_sd, std::sqrt(6.0));
+  EXPECT_DOUBLE_EQ(estimate_noise(residual, clusters, 1, 0).within_sd, std::sqrt(3.0));
+}
+
 TEST(EstimateNoise, TwoMovementsSayNothingOfOffsets) {
   Eigen::VectorXd residual(40);
   for (Eigen::Index i = 0; i < 40; ++i) residual[i] = (i < 20 ? 5 : -5) + (i % 2 == 0 ? 1 : -1);
@@ -248,12 +258,77 @@ TEST(Whitening, CountsAMovementAsItsWeightSays) {
   EXPECT_NEAR(rows(5, 0), 0.5, 1e-12);
 }
 
-TEST(MovementWeights, AreNotTriedWithFewMovements) {
+// One movement twenty times as loud as the others, each of 30 rows.
+std::vector<double> weights_with_a_loud_movement(std::size_t movements) {
   RandomStream random(8);
-  Eigen::VectorXd residual(270);
-  for (Eigen::Index i = 0; i < 270; ++i) residual[i] = (i < 30 ? 20 : 1) * random.normal();
-  const Clusters nine = make_clusters(movements_of({30, 30, 30, 30, 30, 30, 30, 30, 30}), 1);
-  for (const double weight : movement_weights(residual, nine)) EXPECT_EQ(weight, 1);
+  std::vector<int> movement;
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(30 * movements));
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    residual[i] = (i < 30 ? 20 : 1) * random.normal();
+    movement.push_back(static_cast<int>(i / 30));
+  }
+  return movement_weights(residual, make_clusters(movement, 1));
+}
+
+TEST(MovementWeights, AreNotTriedWithFewMovements) {
+  for (const double weight : weights_with_a_loud_movement(9)) EXPECT_EQ(weight, 1);
+  const std::vector<double> ten = weights_with_a_loud_movement(10);
+  EXPECT_GT(ten[1] / ten[0], 5);
+}
+
+// What sampling alone makes the logarithms of variances differ by (the kurtosis and the correlation
+// of the rows say how much) is shrunk away; the mean square is 1.
+TEST(MovementWeights, KeepWhatSamplingDoesNotExplain) {
+  constexpr std::size_t kCount = 14;
+  constexpr Eigen::Index kEach = 25;
+  RandomStream random(12);
+  std::vector<int> movement;
+  Eigen::VectorXd residual(kCount * kEach);
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    const auto m = static_cast<int>(i / kEach);
+    const double before = i % kEach == 0 ? 0 : residual[i - 1];
+    residual[i] = 0.4 * before + (1 + 0.15 * (m % 4)) * random.normal();
+    movement.push_back(m);
+  }
+  const Clusters clusters = make_clusters(movement, 1);
+  const Noise noise = estimate_noise(residual, clusters, 0, 0);
+  Eigen::MatrixXd rows = residual.reshaped(kEach, kCount);
+  rows.rowwise() -= rows.colwise().mean().eval();
+  const double variance = noise.within_sd * noise.within_sd;
+  const double kurtosis = rows.array().pow(4).mean() / (variance * variance);
+  const double squares = noise.rho * noise.rho;
+  const double sampling = (kurtosis - 1) * (1 + squares) / (1 - squares) / kEach;
+  const Eigen::ArrayXd logs =
+      (rows.colwise().squaredNorm().transpose() / (kEach - 1) / variance).array().log();
+  const Eigen::ArrayXd apart = logs - logs.mean();
+  const double kept = 1 - sampling / (apart.square().sum() / (kCount - 1));
+  ASSERT_GT(kept, 0.1);
+  ASSERT_LT(kept, 0.9);
+  Eigen::ArrayXd expected = (-0.5 * kept * apart).exp();
+  expected /= std::sqrt(expected.square().mean());
+  const std::vector<double> weights = movement_weights(residual, clusters);
+  for (std::size_t m = 0; m < kCount; ++m) {
+    EXPECT_NEAR(weights[m], expected[static_cast<Eigen::Index>(m)], 1e-9);
+  }
+}
+
+// A movement in which the drive stood still has no noise of its own: it may not outweigh all
+// others.
+TEST(MovementWeights, OfAMovementWithoutNoiseAreFinite) {
+  RandomStream random(13);
+  std::vector<int> movement;
+  Eigen::VectorXd residual(300);
+  for (Eigen::Index i = 0; i < 300; ++i) {
+    residual[i] = i < 30 ? 0.5 : random.normal();
+    movement.push_back(static_cast<int>(i / 30));
+  }
+  const std::vector<double> weights = movement_weights(residual, make_clusters(movement, 1));
+  EXPECT_GT(weights[0], weights[1]);
+  EXPECT_LE(weights[0] / weights[1], 1500);  // a variance of a millionth is the least
+  for (const double one :
+       movement_weights(Eigen::VectorXd::Zero(300), make_clusters(movement, 1))) {
+    EXPECT_EQ(one, 1);
+  }
 }
 
 }  // namespace

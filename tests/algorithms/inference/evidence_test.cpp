@@ -145,5 +145,24 @@ TEST(EvidenceTable, PosteriorIsThatOfTheNormalPrior) {
   EXPECT_LT((left - columns.transpose() * (target - columns * mean)).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+// Which units the base is written in, and whether it says a thing twice, changes nothing.
+TEST(EvidenceTable, DependsOnWhatTheBaseSpansAlone) {
+  RandomStream random(21);
+  const Eigen::MatrixXd base = normals(60, 2, random);
+  const Eigen::MatrixXd columns = normals(60, 2, random);
+  const Eigen::VectorXd target = columns.col(0) + normals(60, 1, random);
+  const EffectBlock block{{0, 1}};
+  const EvidenceTable plain = table_of(base, columns, target);
+  Eigen::MatrixXd scaled = base;
+  scaled.col(0) *= 1e-9;
+  scaled.col(1) *= 1e7;
+  EXPECT_NEAR(log_factor(table_of(scaled, columns, target), block), log_factor(plain, block), 1e-6);
+  Eigen::MatrixXd twice(60, 4);
+  twice << base, base.col(0) + base.col(1), Eigen::VectorXd::Zero(60);
+  const EvidenceTable again = table_of(twice, columns, target);
+  EXPECT_EQ(again.degrees_of_freedom(), plain.degrees_of_freedom());
+  EXPECT_NEAR(log_factor(again, block), log_factor(plain, block), 1e-6);
+}
+
 }  // namespace
 }  // namespace tribench::loop

@@ -40,5 +40,20 @@ TEST(MatchedGamma, HasTheTailOfTheLawItMatches) {
   }
 }
 
+// A statistic in other units is as unlikely as before, in the table as well.
+TEST(MatchedGamma, SaysTheSameInAnyUnit) {
+  MatchedGamma plain(3.0, 7.0);
+  plain.tabulate(60);
+  for (const double unit : {1e-9, 0.1, 1e6}) {
+    MatchedGamma scaled(3.0 * unit, 7.0 * unit * unit);
+    for (const double q : {0.5, 4.0, 40.0}) {
+      EXPECT_NEAR(scaled.score(q * unit), plain.score(q), 1e-9);
+      EXPECT_NEAR(scaled.statistic_of(2) / unit, plain.statistic_of(2), 1e-6);
+    }
+    scaled.tabulate(60 * unit);
+    EXPECT_NEAR(scaled.fast_score(33 * unit), plain.fast_score(33), 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace tribench::loop

@@ -154,5 +154,130 @@ TEST(JudgedDiagnosis, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(one.error.difference_low, two.error.difference_low);
 }
 
+// Strokes at constant speeds, half of them backwards, with Coulomb and viscous friction and noise.
+Observations strokes(int movements, int rows = 40) {
+  RandomStream random(5);
+  Dataset data;
+  data.channels = {{"v", "rad/s", Role::velocity, {}}, {"tau", "N m", Role::friction_torque, {}}};
+  for (int m = 0; m < movements; ++m) {
+    data.movement_names.push_back("m" + std::to_string(m));
+    const double v = (m % 2 == 0 ? 1 : -1) * (0.1 + 0.01 * m);
+    for (int i = 0; i < rows; ++i) {
+      const double speed = v * (1 + 0.4 * i / rows);
+      data.channels[0].values.push_back(speed);
+      data.channels[1].values.push_back((v > 0 ? 5 : -5) + 3 * speed + 0.3 * random.normal());
+      data.movement.push_back(m);
+    }
+  }
+  return observe(data);
+}
+
+JudgedDiagnosis diagnose_strokes(const Observations& data, const JudgingOptions& judging = {}) {
+  DiagnosisOptions options;
+  options.families = {"stribeck"};
+  return diagnose_and_judge(data, coulomb_viscous_base, options, judging);
+}
+
+JudgedDiagnosis diagnose_strokes(int movements, const JudgingOptions& judging = {}) {
+  return diagnose_strokes(strokes(movements), judging);
+}
+
+// Forty movements are enough to hold some out, thirty to tell what differs between them.
+TEST(JudgedDiagnosis, JudgesFewMovementsInTurnAndSaysWhereTheyAreTooFew) {
+  const auto wanted = ::testing::Contains(::testing::AllOf(::testing::HasSubstr("there are 29"),
+                                                           ::testing::HasSubstr("30 are wanted")));
+  const JudgedDiagnosis few = diagnose_strokes(29);
+  EXPECT_THAT(few.notes, wanted);
+  EXPECT_EQ(few.error.how, "each movement left out in turn");
+  EXPECT_EQ(few.error.test_movements, 29U);
+  EXPECT_THAT(diagnose_strokes(30).notes,
+              ::testing::Not(::testing::Contains(::testing::HasSubstr("are wanted"))));
+  EXPECT_EQ(diagnose_strokes(37).error.how, "each movement left out in turn");
+  const JudgedDiagnosis many = diagnose_strokes(40);
+  EXPECT_EQ(many.error.how, "held out");
+  EXPECT_EQ(many.error.test_movements, 8U);
+  EXPECT_THAT(many.held_out, ::testing::SizeIs(8));
+}
+
+TEST(JudgedDiagnosis, JudgesOneMovementByFivePiecesOfIt) {
+  const JudgedDiagnosis one = diagnose_strokes(1);
+  EXPECT_EQ(one.error.judged_on, JudgedOn::pieces_of_one_movement);
+  EXPECT_EQ(one.error.how, "pieces of the one movement left out in turn");
+  ASSERT_THAT(one.error.movements, ::testing::SizeIs(5));
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_EQ(one.error.movements[static_cast<std::size_t>(k)].movement, k);
+    EXPECT_EQ(one.error.movements[static_cast<std::size_t>(k)].rows, 8U);
+  }
+  EXPECT_THAT(one.notes, ::testing::Contains(::testing::HasSubstr("there is one movement")));
+}
+
+TEST(JudgedDiagnosis, TellsItsProgressSearchBySearch) {
+  std::vector<std::size_t> ended;
+  const auto progress = [&](std::size_t now, std::size_t searches) {
+    ended.push_back(now);
+    EXPECT_EQ(searches, 7U);  // one with all movements, six without one
+  };
+  diagnose_strokes(6, {.progress = progress});
+  EXPECT_EQ(ended, (std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7}));
+}
+
+// Of many rows a tenth of the movements at a time.
+TEST(JudgedDiagnosis, LeavesOutSeveralMovementsTogetherWhereRowsAreMany) {
+  std::size_t searches = 0;
+  const auto progress = [&](std::size_t, std::size_t all) { searches = all; };
+  const JudgedDiagnosis many = diagnose_strokes(strokes(12, 600), {.progress = progress});
+  EXPECT_EQ(many.error.how, "a tenth of the movements left out in turn");
+  EXPECT_EQ(searches, 1U + 10);
+  EXPECT_EQ(many.error.test_movements, 12U);
+}
+
+// Movements of one group say little of each other: each group is judged by models of the others.
+TEST(JudgedDiagnosis, LeavesOutTheMovementsOfAGroupTogether) {
+  Observations data = strokes(48);
+  for (int m = 0; m < 48; ++m) data.group.push_back(m / 8);
+  data.group_name = "payload";
+  EXPECT_TRUE(held_out_movements(data, 0.2).empty());
+  std::size_t searches = 0;
+  const auto progress = [&](std::size_t, std::size_t all) { searches = all; };
+  const JudgedDiagnosis judged = diagnose_strokes(data, {.progress = progress});
+  EXPECT_EQ(judged.error.how, "movements of one 'payload' left out in turn");
+  EXPECT_EQ(searches, 1U + 6);
+  EXPECT_EQ(judged.error.test_movements, 48U);
+}
+
+// One movement lies 20 N m above the others. A model that has seen it is wrong everywhere by the
+// share that it gives to it; of the model that judges it nothing has.
+TEST(JudgedDiagnosis, JudgesAMovementByModelsThatHaveNotSeenIt) {
+  Observations data = strokes(4);
+  for (std::size_t i = 0; i < data.rows(); ++i) data.target[i] += data.movement[i] == 2 ? 20 : 0;
+  const JudgedDiagnosis judged = diagnose_strokes(data);
+  ASSERT_EQ(judged.error.movements.size(), 4U);
+  EXPECT_NEAR(judged.error.movements[2].before, 20, 0.5);
+}
+
+// Presliding, and bounds of the noise, are judged where they are; NaN says that they are not.
+TEST(JudgedDiagnosis, HasNoFiguresOfWhatWasNotFoundOrNotAskedFor) {
+  const JudgedDiagnosis judged = diagnose_strokes(40);
+  EXPECT_FALSE(judged.bristles);
+  EXPECT_TRUE(std::isnan(judged.error.mae_state));
+  EXPECT_TRUE(std::isnan(judged.error.ceiling));
+  EXPECT_TRUE(judged.effects.empty());
+  EXPECT_TRUE(judged.error.confirmed);
+  EXPECT_EQ(judged.error.judged_on, JudgedOn::other_movements);
+  EXPECT_NEAR(judged.error.mae_after, 0.3 * std::sqrt(2 / 3.14159265), 0.03);
+  const JudgedDiagnosis bounded = diagnose_strokes(40, {.bounds = true});
+  EXPECT_FALSE(std::isnan(bounded.error.ceiling));
+  EXPECT_EQ(bounded.error.mae_after, judged.error.mae_after);
+}
+
+TEST(HeldOutMovements, AreTheShareThatIsAskedForInAscendingOrder) {
+  const std::vector<int> fifth = held_out_movements(strokes(50), 0.2);
+  EXPECT_THAT(fifth, ::testing::SizeIs(10));
+  EXPECT_TRUE(std::ranges::is_sorted(fifth));
+  EXPECT_THAT(held_out_movements(strokes(50), 0.5), ::testing::SizeIs(25));
+  EXPECT_THAT(held_out_movements(strokes(39), 0.2), ::testing::IsEmpty());
+  EXPECT_THAT(held_out_movements(strokes(40), 0.2), ::testing::SizeIs(8));
+}
+
 }  // namespace
 }  // namespace tribench::loop

@@ -10,6 +10,21 @@
 namespace tribench {
 namespace {
 
+// Programs read it: every name and every figure, its pictures' too.
+TEST(LoopJson, IsByteForByteWhatWasAgreed) {
+  expect_golden(loop_json(sample_loop()).dump(2) + "\n", "reports/loop.json");
+  LoopRecord record = sample_loop();
+  LoopPictures& pictures = record.pictures;
+  pictures.friction.series.resize(1);
+  pictures.traces.resize(1);
+  pictures.movements.resize(2);
+  for (std::vector<double>* values : {&pictures.traces[0].x, &pictures.traces[0].measured,
+                                      &pictures.traces[0].before, &pictures.traces[0].after}) {
+    values->resize(3);
+  }
+  expect_golden(loop_pictures_json(record).dump(1) + "\n", "reports/loop_pictures.json");
+}
+
 TEST(LoopJson, HasNullForWhatIsNotKnown) {
   LoopRecord record = sample_loop();
   EXPECT_EQ(loop_json(record)["error"]["attainable"], 0.2);
