@@ -61,8 +61,8 @@ Forecast best_forecast(std::span<const double> correlation, double returned) {
   return {weight + returned, returned, 1 - weight * (2 * shared - weight * square)};
 }
 
-// Sets the noise's slow part to what foretells the rows best; a white part has to be worth the
-// price of a parameter.
+// Sets the noise's slow part to what foretells the rows best. A white part beside it has to be
+// worth the price of a parameter more than a slow part alone has, and of two more than none.
 void estimate_memory(const Eigen::VectorXd& deviation, const Clusters& clusters, Noise& noise) {
   const double squares = deviation.squaredNorm();
   if (!(squares > 0)) return;
@@ -78,7 +78,9 @@ void estimate_memory(const Eigen::VectorXd& deviation, const Clusters& clusters,
     if (one.variance < best.variance) best = one;
   }
   const auto n = static_cast<double>(deviation.size());
-  if (n * elementary::log(slow.variance / best.variance) < elementary::log(n)) best = slow;
+  const double price = elementary::log(n) / n;
+  const double without = std::min(0.0, elementary::log(slow.variance) + price);
+  if (elementary::log(best.variance) + 2 * price > without) best = slow;
   const double phi = best.carried;
   const double theta = best.returned;
   noise.slow_rho = phi;
