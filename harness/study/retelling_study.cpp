@@ -128,6 +128,8 @@ RetellingFigure figure_of(const Retelling& way, const std::vector<RetellingOutco
   figure.ratio_high = elementary::exp(ratio.high);
   figure.ratio_largest = elementary::exp(
       *std::ranges::max_element(logs, {}, [](double log_ratio) { return std::abs(log_ratio); }));
+  const bool is_near = std::abs(figure.ratio_largest - 1) <= way.error_within;
+  figure.met = figure.met && (way.error_within == 0 || is_near);
   return figure;
 }
 

@@ -60,7 +60,9 @@ std::vector<std::size_t> rows_where(const DataFile& file, const Condition& condi
 
 template <typename Values>
 void keep(Values& values, const std::vector<std::size_t>& rows) {
-  for (std::size_t i = 0; i < rows.size(); ++i) values[i] = std::move(values[rows[i]]);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i] != i) values[i] = std::move(values[rows[i]]);  // a text moved to itself is empty
+  }
   values.resize(rows.size());
 }
 

@@ -103,6 +103,7 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
   for (const RowRange& stroke : strokes) {
     const std::size_t middle = stroke.begin + (stroke.end - stroke.begin) / 2;
     const bool follows = before != nullptr && before->end == stroke.begin &&
+                         out.data.movement[stroke.begin] == out.data.movement[stroke.begin - 1] &&
                          t[stroke.begin] - t[stroke.begin - 1] < kForgotten;
     const bool goes_on =
         follows && v[middle] * v[before->begin + (before->end - before->begin) / 2] > 0;

@@ -21,6 +21,8 @@ constexpr double kRestWindow = 0.05;      // s over which a speed is averaged
 constexpr std::size_t kRestWindows = 3;   // in a row: shorter ones are reversals
 constexpr double kRestSpeed = 0.002;      // of the top speed
 constexpr double kNoises = 3;
+// Of a time: to the last digit it hangs on where the clock begins.
+constexpr double kRounding = 1e-3;
 
 double quantile(std::vector<double> values, double part) {
   if (values.empty()) return 0;
@@ -48,7 +50,9 @@ std::vector<char> resting_rows(std::span<const double> time, std::span<const dou
     for (std::size_t begin = piece.begin; begin < piece.end;) {
       std::size_t end = begin;
       double sum = 0;
-      while (end < piece.end && time[end] - time[begin] < kRestWindow) sum += velocity[end++];
+      while (end < piece.end && time[end] - time[begin] < (1 - kRounding) * kRestWindow) {
+        sum += velocity[end++];
+      }
       if (end == begin) sum = velocity[end++];
       const bool rest = std::abs(sum) < slowest * static_cast<double>(end - begin);
       if (rest) still.push_back({begin, end});
@@ -107,8 +111,6 @@ double median_step(std::span<const double> time, std::span<const int> movement) 
 bool is_regular(std::span<const double> time, std::span<const int> movement) {
   const std::vector<double> steps = steps_of(time, movement);
   const double middle = quantile(steps, 0.5);
-  // To the last digit the step hangs on where the clock begins.
-  constexpr double kRounding = 1e-3;
   if (middle <= 0 || middle > kLongestStep * (1 + kRounding)) return false;
   const auto even =
       std::ranges::count_if(steps, [middle](double step) { return step < kUneven * middle; });

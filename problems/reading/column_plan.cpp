@@ -386,6 +386,20 @@ double step_of(const std::vector<double>& time) {
 // fiftieth of a millisecond at most, if they are milliseconds).
 bool steps_in_seconds(double step) { return step >= 1e-4 && step < 0.02; }
 
+// Counts from the first stamp on. Stamps since 1970 are so large that a double holds them to a
+// fraction of a microsecond: what is left of that is taken off, so that steps are as they were
+// written.
+void start_at_zero(std::vector<double>& stamps) {
+  const double first = stamps.front();
+  const double spacing = std::nextafter(first, 2 * first) - first;
+  double per_unit = 1;  // steps that are told apart
+  while (per_unit * 20 * spacing <= 1) per_unit *= 10;
+  double unit = 1;
+  while (unit < 2 * spacing) unit *= 10;
+  for (double& stamp : stamps)
+    stamp = std::round((stamp - first) / unit * per_unit) / per_unit * unit;
+}
+
 // Settles the unit of time by what the values say; time since 1970 starts at 0.
 void settle_time(ColumnPlan& plan, std::vector<double>& values, std::string_view place) {
   ColumnReading& reading = plan.reading;
@@ -410,8 +424,7 @@ void settle_time(ColumnPlan& plan, std::vector<double>& values, std::string_view
                                        epoch->symbol, reading.column, epoch->symbol));
   }
   if (epoch != nullptr && plan.unit.unit == epoch && plan.unit.scale == 1) {
-    const double first = values.front();
-    for (double& value : values) value -= first;
+    start_at_zero(values);
     reading.remark = "since 1970; starts at 0 here";
   }
 }

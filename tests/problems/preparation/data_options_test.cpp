@@ -62,6 +62,20 @@ TEST(DataOptions, AnEmptyTableLeavesTheColumnsAsTheyAre) {
   EXPECT_EQ(read.data.at("phi").values[0], 90);
 }
 
+// Rows before the first that is left out stay where they are.
+TEST(DataOptions, WhereKeepsTheTextsOfTheRowsThatAreLeft) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "log.csv";
+  std::ofstream(file)
+      << "run,place,tau\n1,here,2\n1,there,3\n2,here,4\n1,a place far from here,5\n";
+  DataOptions options;
+  options.where = "run=1";
+  const DataFile data = read_data(std::vector{file}, options);
+  ASSERT_EQ(data.texts.size(), 1U);
+  EXPECT_THAT(data.texts[0].values,
+              ::testing::ElementsAre("here", "there", "a place far from here"));
+}
+
 TEST(DataOptions, ARefusalNamesTheKeyAndItsLine) {
   EXPECT_THAT(refusal("joint = 1\nroles = 'q=positon'"), HasSubstr("grid.toml:2"));
   EXPECT_THAT(refusal("gear_ratio = 0.0"), HasSubstr("gear_ratio"));

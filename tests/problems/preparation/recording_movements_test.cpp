@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "problems/preparation/derived_channels.hpp"
 #include "problems/preparation/recording_steps.hpp"
 
 namespace tribench {
@@ -42,6 +43,47 @@ TEST(RecordingMovements, WhatLiesBetweenRestsIsOneMovementWhereThoseAreEnough) {
   PreparedRecording four = swings_with_rests(4);
   cut_strokes(four, 0, 0);
   EXPECT_EQ(four.data.movement_names.size(), 8U);
+}
+
+// Movements that begin and end in motion, each with a clock of its own; in this order.
+PreparedRecording cut_out_of_motion(const std::vector<int>& order) {
+  PreparedRecording out;
+  Channel time{"t", "s", Role::time, {}};
+  Channel position{"q", "rad", Role::position, {}};
+  Channel velocity{"v", "rad/s", Role::velocity, {}};
+  for (const int m : order) {
+    double q = 0.1 * m;
+    for (int i = 0; i < 600; ++i) {
+      const double v = i < 200 ? 0.3 + 0.1 * m : i < 300 ? 0 : i < 400 ? -0.004 * (i - 300) : 0.5;
+      q += kStep * v;
+      time.values.push_back(kStep * i);
+      position.values.push_back(q);
+      velocity.values.push_back(v);
+      out.data.movement.push_back(m);
+    }
+  }
+  out.data.channels = {time, position, velocity};
+  out.data.movement_names = {"a", "b", "c"};
+  return out;
+}
+
+// Of one movement, in the order of its rows.
+std::vector<double> distances_in(const PreparedRecording& recording, int movement) {
+  std::vector<double> values;
+  const Channel& distance = recording.data.at(loop::derived_channel_name("d"));
+  for (std::size_t i = 0; i < recording.data.rows(); ++i) {
+    if (recording.data.movement[i] == movement) values.push_back(distance.values[i]);
+  }
+  return values;
+}
+
+TEST(RecordingMovements, AMovementDoesNotGoOnWhereAnotherHasEnded) {
+  PreparedRecording one = cut_out_of_motion({0, 1, 2});
+  PreparedRecording other = cut_out_of_motion({2, 0, 1});
+  settle_strokes(one, 0);
+  settle_strokes(other, 0);
+  ASSERT_LT(one.data.rows(), 1800U);
+  for (const int m : {0, 1, 2}) EXPECT_EQ(distances_in(one, m), distances_in(other, m)) << m;
 }
 
 // Six movements; the fourth alone has more than a touch of acceleration, in 40 of its rows.

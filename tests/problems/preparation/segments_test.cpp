@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "foundation/random.hpp"
+
 namespace tribench {
 namespace {
 
@@ -90,6 +92,26 @@ TEST(Segments, AStepOfATenthOfASecondIsRegularWhateverTheClocksOrigin) {
   std::vector<double> slow;
   for (int i = 0; i < 200; ++i) slow.push_back(0.11 * i);
   EXPECT_FALSE(is_regular(slow, std::vector<int>(slow.size(), 0)));
+}
+
+// Windows of 0.05 s over rows of 5 ms: whether they hold ten or eleven is not for rounding to say.
+TEST(Segments, ARestIsTheSameWhateverTheClocksOrigin) {
+  RandomStream random(3);
+  std::vector<double> v;
+  for (int i = 0; i < 4000; ++i) {
+    v.push_back((i / 200 % 2 == 0 ? 0.5 : 0.0) + 0.002 * random.normal());
+  }
+  const std::vector<int> movement(v.size(), 0);
+  std::vector<std::size_t> resting;
+  for (const double origin : {0.0, 0.1, 3.0, 1e3, 1e6}) {
+    std::vector<double> time;
+    for (std::size_t i = 0; i < v.size(); ++i)
+      time.push_back(origin + 0.005 * static_cast<double>(i));
+    const Strokes strokes = strokes_of(time, v, pieces_of(time, movement, {}), 0, 8);
+    resting.push_back(strokes.resting);
+  }
+  EXPECT_GT(resting.front(), 1000U);
+  for (const std::size_t rows : resting) EXPECT_EQ(rows, resting.front());
 }
 
 }  // namespace

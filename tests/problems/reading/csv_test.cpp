@@ -272,6 +272,22 @@ TEST(Csv, ConvertsChannelsWithARoleAndSaysSo) {
   EXPECT_EQ(file.readings[2].unit, "rpm@motor");
 }
 
+// A double holds a second since 1970 to a quarter of a microsecond, a nanosecond to 256.
+TEST(Csv, StepsSince1970AreAsTheyWereWritten) {
+  std::string seconds = "time_s,position_rad\n";
+  std::string nanoseconds = "time_ns,position_rad\n";
+  for (int i = 0; i < 400; ++i) {
+    seconds += fmt::format("17000000{:02}.{:03},0.1\n", (5 * i + 100) / 1000, (5 * i + 100) % 1000);
+    nanoseconds += fmt::format("{},0.1\n", 1'700'000'000'100'000'000 + 5'000'000LL * i);
+  }
+  for (const std::string& text : {seconds, nanoseconds}) {
+    const DataFile file = parse_csv(text, "log.csv");
+    const std::vector<double>& time = file.data.channels[0].values;
+    for (int i = 0; i < 400; ++i)
+      EXPECT_DOUBLE_EQ(time[static_cast<std::size_t>(i)], 5 * i / 1000.0);
+  }
+}
+
 TEST(Csv, SecondsAndNanosecondsOfAStampAreOneTime) {
   const DataFile file = parse_csv(
       "header.stamp.sec,header.stamp.nanosec,position\n"
