@@ -40,20 +40,32 @@ class Segments {
   std::vector<double> second_;
 };
 
-double noise_variance(std::span<const double> values, double least_noise) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    steps.push_back(std::abs(values[i] - values[i - 1]));
-  }
-  const double deviation = std::max(kMadToSd * median(steps) / std::sqrt(2.0), least_noise);
-  return deviation * deviation;
-}
-
-std::vector<double> scaled(std::span<const double> weights, double variance) {
+std::vector<double> about_one(std::span<const double> weights) {
   double mean = 0;
   for (const double weight : weights) mean += weight / static_cast<double>(weights.size());
   std::vector<double> result;
-  for (const double weight : weights) result.push_back(weight / mean / variance);
+  for (const double weight : weights) result.push_back(weight / mean);
+  return result;
+}
+
+// Of a value of weight 1: neighbours differ by what both are unsure of.
+double noise_variance(std::span<const double> values, std::span<const double> weights,
+                      double least_noise) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    steps.push_back(std::abs(values[i] - values[i - 1]) /
+                    std::sqrt(1 / weights[i] + 1 / weights[i - 1]));
+  }
+  const double deviation = std::max(kMadToSd * median(steps), least_noise);
+  return deviation * deviation;
+}
+
+// One over each value's variance.
+std::vector<double> precisions(std::span<const double> values, std::span<const double> weights,
+                               double least_noise) {
+  std::vector<double> result = about_one(weights);
+  const double variance = noise_variance(values, result, least_noise);
+  for (double& weight : result) weight /= variance;
   return result;
 }
 
@@ -121,7 +133,7 @@ std::vector<LevelChange> find_level_changes(std::span<const double> values,
   // About the first value: sums of squares lose no digits to a common level.
   std::vector<double> centred(values.begin(), values.end());
   for (double& value : centred) value -= values.front();
-  const Segments segments(centred, scaled(weights, noise_variance(values, least_noise)));
+  const Segments segments(centred, precisions(values, weights, least_noise));
   const double penalty = 3 * elementary::log(static_cast<double>(n)) + 4;
   constexpr std::size_t kPlaces = 500;
   const std::size_t step = (n + kPlaces - 1) / kPlaces;

@@ -23,6 +23,15 @@ using nlohmann::ordered_json;
 constexpr std::string_view kMagic = "tribench-night 1 ";
 constexpr std::size_t kCheckDigits = 16;
 
+double spread_of(const NightSeries& series) {
+  std::vector<double> errors;
+  for (const auto& [seed, value] : series.log_errors) errors.push_back(value);
+  if (errors.size() < 3) return kMissing;
+  const double middle = median(errors);
+  for (double& error : errors) error -= middle;
+  return kMadToSd * upper_median_magnitude(errors);
+}
+
 NightSeries series_of(const std::vector<const Record*>& records) {
   NightSeries series;
   series.problem = records.front()->problem;
@@ -49,6 +58,7 @@ NightSeries series_of(const std::vector<const Record*>& records) {
   series.median_error = median(errors);
   series.cpu_s = median(cpu);
   series.evaluations = median(evaluations);
+  series.spread = spread_of(series);
   return series;
 }
 
@@ -91,8 +101,10 @@ NightSeries read_series(std::string_view line, const std::string& place, bool wi
   series.median_error = number_in<double>(next_field(line, ','), place);
   series.cpu_s = number_in<double>(next_field(line, ','), place);
   series.evaluations = number_in<double>(next_field(line, ','), place);
-  while (with_seeds && !line.empty()) {
-    std::string_view pair = next_field(line, ' ');
+  std::string_view seeds = next_field(line, ',');
+  if (!line.empty()) series.spread = number_in<double>(line, place);  // older nights have none
+  while (with_seeds && !seeds.empty()) {
+    std::string_view pair = next_field(seeds, ' ');
     const auto seed = number_in<std::uint64_t>(next_field(pair, ':'), place);
     series.log_errors.emplace_back(seed, number_in<float>(pair, place));
   }
@@ -178,6 +190,7 @@ std::string print_night(const Night& night) {
       const auto& [seed, value] = series.log_errors[i];
       body += fmt::format("{}{}:{:.6g}", i == 0 ? "" : " ", seed, value);
     }
+    if (std::isfinite(series.spread)) body += "," + printed(series.spread);
     body += "\n";
   }
   for (const NightBench& bench : night.benches) body += print_bench(bench);

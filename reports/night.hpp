@@ -26,6 +26,7 @@ struct NightSeries {
   double median_error = kMissing;  // on test movements, of the cells that gave a formula
   double cpu_s = kMissing;         // median of a fit
   double evaluations = kMissing;   // median of a fit
+  double spread = kMissing;  // of the seeds' log errors, robust standard deviation; three at least
   // Seed and log of the error, six digits; without failed cells and errors of 0.
   std::vector<std::pair<std::uint64_t, float>> log_errors;
 

@@ -10,6 +10,7 @@
 
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
+#include "foundation/order_statistics.hpp"
 #include "reports/figures.hpp"
 #include "reports/markdown.hpp"
 
@@ -54,8 +55,27 @@ class Lines {
 
 struct WeightedSeries {
   SeriesHistory history;
-  std::vector<double> weights;
+  std::vector<double> seeds;    // a night's, those that gave a formula
+  std::vector<double> spreads;  // of their log errors; NaN where the night does not tell
 };
+
+// How sure each night's median is: the more so the more seeds it has and the closer they lie. The
+// spread of a few seeds is uncertain itself and is taken with the usual one of the line, half and
+// half.
+std::vector<double> weights_of(const WeightedSeries& series) {
+  std::vector<double> told;
+  for (const double spread : series.spreads) {
+    if (spread > 0) told.push_back(spread);
+  }
+  if (told.empty()) return series.seeds;
+  const double usual = median(told);
+  std::vector<double> weights;
+  for (std::size_t k = 0; k < series.seeds.size(); ++k) {
+    const double own = std::isnan(series.spreads[k]) ? usual : series.spreads[k];
+    weights.push_back(series.seeds[k] / (usual * usual + own * own));
+  }
+  return weights;
+}
 
 void add_series(const NightSeries& series, std::size_t night, Lines<WeightedSeries>& all) {
   if (!(series.median_error > 0) || std::isinf(series.median_error)) return;
@@ -68,8 +88,8 @@ void add_series(const NightSeries& series, std::size_t night, Lines<WeightedSeri
   });
   one.history.nights.push_back(night);
   one.history.log_errors.push_back(elementary::log(series.median_error));
-  // The median of fewer seeds is less sure.
-  one.weights.push_back(static_cast<double>(series.cells - series.failed));
+  one.seeds.push_back(static_cast<double>(series.cells - series.failed));
+  one.spreads.push_back(series.spread);
 }
 
 void add_bench(const NightBench& bench, std::size_t night, Lines<BenchHistory>& all) {
@@ -109,7 +129,7 @@ StoreHistory read_history(const NightStore& store) {
     night.benches = {};
   }
   for (WeightedSeries& each : series.take_sorted()) {
-    each.history.changes = find_level_changes(each.history.log_errors, each.weights);
+    each.history.changes = find_level_changes(each.history.log_errors, weights_of(each));
     history.series.push_back(std::move(each.history));
   }
   constexpr double kCountNoise = 1e-3;  // what addresses may change in a count

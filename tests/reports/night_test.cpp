@@ -99,6 +99,13 @@ TEST(Night, ReadsBackAsItWasPrintedAndIsRefusedWhereDamaged) {
   const std::string text = print_night(night);
   EXPECT_EQ(print_night(read_night(text, "here")), text);
   EXPECT_TRUE(read_night(text, "here", false).series.at(0).log_errors.empty());
+  Night with_spread = night;
+  with_spread.series.at(1).spread = 0.125;  // of nights before it was kept there is none
+  for (const bool with_seeds : {false, true}) {
+    const Night read = read_night(print_night(with_spread), "here", with_seeds);
+    EXPECT_TRUE(std::isnan(read.series.at(0).spread));
+    EXPECT_EQ(read.series.at(1).spread, 0.125);
+  }
   Night with_benches = night;
   with_benches.benches = made_benches(3, 1, 1);
   with_benches.bench_conditions = "valgrind-3.19.0, avx2";
@@ -359,6 +366,22 @@ TEST(LevelChanges, AreNotSeenInNoiseNorInASingleOddNight) {
   EXPECT_THAT(find_level_changes(spike, std::vector<double>(50, 1.0), 0.1), IsEmpty());
 }
 
+TEST(LevelChanges, AreNotSeenInNoiseThatTheWeightsTell) {
+  int found = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    RandomStream random(key_of(fmt::format("unequal {}", trial)));
+    std::vector<double> values;
+    std::vector<double> weights;
+    for (int i = 0; i < 365; ++i) {
+      const double spread = std::exp(1.5 * random.normal());
+      values.push_back(spread * random.normal());
+      weights.push_back(1 / (spread * spread));
+    }
+    found += find_level_changes(values, weights).empty() ? 0 : 1;
+  }
+  EXPECT_LE(found, 2);
+}
+
 // Ten years of nights of 2 000 cells: within seconds and megabytes.
 TEST(NightPage, HoldsTenYears) {
   const testing::TemporaryFolder folder;
@@ -406,6 +429,26 @@ TEST(NightPage, HoldsTenYears) {
   const std::string feed = history_feed(history);
   EXPECT_THAT(feed, HasSubstr("loop&lt;double, 1&gt;/rows:10: +1.0 % instructions"));
   EXPECT_THAT(feed, HasSubstr("<updated>2027-01-01T02:30:00Z</updated>"));
+}
+
+// Every third night is loud: its seeds lie 25 times as far apart, and its median is as unsure. What
+// the quiet nights show is seen where the nights tell their spread, and is not where they do not.
+TEST(NightHistory, BelievesANightTheLessTheFurtherItsSeedsLieApart) {
+  const auto first_of_new_level = [](bool tells_spread) {
+    const testing::TemporaryFolder folder;
+    NightStore store(folder / "store");
+    for (int k = 0; k < 120; ++k) {
+      const double spread = k % 3 == 1 ? 7.5 : 0.3;
+      Night night = made_night(k, k < 60 ? 1 : 1.05, 11, {1, 5, 0.3, spread / 15});
+      for (NightSeries& series : night.series) series.spread = tells_spread ? spread : kMissing;
+      std::ofstream(folder / "store" / "nights" / (night.name + ".night")) << print_night(night);
+    }
+    std::vector<std::size_t> nights;
+    for (const HistoryChange& each : changes_of(read_history(store))) nights.push_back(each.night);
+    return nights;
+  };
+  EXPECT_THAT(first_of_new_level(true), ::testing::ElementsAre(60));
+  EXPECT_THAT(first_of_new_level(false), ::testing::Not(::testing::Contains(60)));
 }
 
 TEST(NightHistory, SaysHowFarCountsOfEqualCodeDiffer) {
