@@ -8,8 +8,12 @@
 // right before and after each loop, in the same thread: its counter "reference_us" takes the
 // machine's pace out of the case's time.
 //
-// measured_loop.cpp does it by wrapping State::StartKeepRunning and State::FinishKeepRunning when
-// the bench is linked (ld --wrap).
+// What is counted hangs on the program alone: before each case all that is free on the heap is
+// taken and its end is moved to a round address, because Google Benchmark has read and printed the
+// machine (number of processors, host name) by then and left other pieces on every machine.
+//
+// measured_loop.cpp does it by wrapping the functions that register a case and that begin and end
+// its loop when the bench is linked (ld --wrap).
 #pragma once
 
 #include <benchmark/benchmark.h>

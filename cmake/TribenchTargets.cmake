@@ -79,9 +79,9 @@ function(tribench_test name)
   set_tests_properties(${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
 endfunction()
 
-# tribench_bench(NAME SOURCES ... LINKS ...): one Google Benchmark program. The two functions that
-# begin and end a case's loop are wrapped by bench/measured_loop.cpp, so that no bench needs to
-# mark what is counted.
+# tribench_bench(NAME SOURCES ... LINKS ...): one Google Benchmark program. The functions that register
+# a case and that begin and end its loop are wrapped by bench/measured_loop.cpp, so that no bench needs
+# to mark what is counted.
 function(tribench_bench name)
   cmake_parse_arguments(BENCH "" "" "SOURCES;LINKS" ${ARGN})
   add_executable(${name} ${BENCH_SOURCES} ${PROJECT_SOURCE_DIR}/bench/measured_loop.cpp)
@@ -90,6 +90,7 @@ function(tribench_bench name)
   target_link_libraries(${name} PRIVATE
     ${BENCH_LINKS} tribench::foundation benchmark::benchmark benchmark::benchmark_main)
   target_link_options(${name} PRIVATE
+    -Wl,--wrap=_ZN9benchmark8internal25RegisterBenchmarkInternalEPNS0_9BenchmarkE
     -Wl,--wrap=_ZN9benchmark5State16StartKeepRunningEv
     -Wl,--wrap=_ZN9benchmark5State17FinishKeepRunningEv)
 endfunction()

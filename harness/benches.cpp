@@ -65,11 +65,14 @@ std::string valgrind_version() {
   }
 }
 
-// A bench run in a folder of its own, where its answer is "answer.json". Empty where it went well.
+// A bench run in a folder of its own, where its answer is "answer.json". It is called by the same
+// name wherever it is installed: a program's name lies on its stack. Empty where it went well.
 std::string run_program(std::vector<std::string> command, const fs::path& program,
                         const std::vector<std::string>& arguments, const fs::path& folder,
                         double patience_s) {
-  command.push_back(program.string());
+  const fs::path name = program.filename();
+  fs::create_symlink(program, folder / name);
+  command.push_back("./" + name.string());
   command.insert(command.end(), arguments.begin(), arguments.end());
   command.insert(command.end(), {"--benchmark_out=answer.json", "--benchmark_out_format=json"});
   const ChildRun run =
@@ -122,9 +125,9 @@ std::string count(const fs::path& program, const BenchOptions& options, Benches&
   const ScratchFolder scratch;
   const std::string complaint = run_program(
       {"env", "-i", kPath, "TRIBENCH_VECTOR_LEVEL=" + counted_level(), "TRIBENCH_NIGHT=1",
-       "valgrind", "--tool=callgrind", "--cache-sim=yes", fmt::format("--I1={}", kFirstLevel),
-       fmt::format("--D1={}", kFirstLevel), fmt::format("--LL={}", kLastLevel),
-       "--instr-atstart=no", "--callgrind-out-file=counted"},
+       "LD_BIND_NOW=1", "valgrind", "--tool=callgrind", "--cache-sim=yes",
+       fmt::format("--I1={}", kFirstLevel), fmt::format("--D1={}", kFirstLevel),
+       fmt::format("--LL={}", kLastLevel), "--instr-atstart=no", "--callgrind-out-file=counted"},
       program, {"--benchmark_min_time=0"}, scratch.path(), options.patience_s);
   if (!complaint.empty()) return complaint;
   for (const json& each : cases_of(scratch.path())) {
@@ -174,10 +177,10 @@ BenchRun run_benches(const BenchOptions& options, const std::atomic<bool>& stop)
   BenchRun run;
   Benches benches;
   const std::string version = valgrind_version();
-  run.conditions = version.empty()
-                       ? "not counted"
-                       : fmt::format("{}, {}, caches {} {}, glibc {}", version, counted_level(),
-                                     kFirstLevel, kLastLevel, gnu_get_libc_version());
+  run.conditions = version.empty() ? "not counted"
+                                   : fmt::format("{}, {}, caches {} {}, heap settled, glibc {}",
+                                                 version, counted_level(), kFirstLevel, kLastLevel,
+                                                 gnu_get_libc_version());
   if (version.empty()) {
     run.complaints.emplace_back("valgrind is not installed: nothing was counted");
   }

@@ -5,9 +5,11 @@
 //
 // Counting: callgrind with cache simulation, the loops' first to last turn, one turn each, so that
 // no clock decides how much is done. The vector level is pinned to one that valgrind knows
-// (it has no AVX-512), the caches are pinned, too, the environment is emptied and paths are made
-// alike: what lies on the stack moves addresses, and addresses decide misses. What is counted is
-// the same again and again on one machine; another kind leaves another heap before the loop begins.
+// (it has no AVX-512), the caches are pinned, too, the environment is emptied and the program is
+// called by its bare name: what lies on the stack moves addresses, and addresses decide misses.
+// Functions of libraries are looked up before the first loop, not in the first that calls them, and
+// each case begins with a settled heap (bench/measured_loop.hpp), so that the number of processors,
+// a machine's name and where the benches lie change nothing.
 //
 // Timing: Google Benchmark, several repetitions, each case's CPU time divided by that of the
 // reference kernel run before and after it in the same thread.
@@ -31,7 +33,7 @@ struct BenchOptions {
 
 struct BenchRun {
   std::vector<NightBench> benches;  // by program and case
-  std::string conditions;           // valgrind, level, caches, C library; or "not counted"
+  std::string conditions;           // valgrind, level, caches, heap, C library; or "not counted"
   std::vector<std::string> complaints;
 };
 
