@@ -3,11 +3,10 @@
 // Micro-benchmarks of a night against those of the base: what became dearer in a loop that a fit's
 // seconds drown in noise.
 //
-// Instructions and cache misses are counted on a simulated machine: equal code counts equally (to
-// one in a thousand, what addresses and the heap's state leave) on one kind of machine, so that
-// half a percent more is a fact and no matter of chance. Time is paired with a reference kernel in
-// the same process and still depends on what else the machine does: it raises a doubt, never an
-// alarm.
+// Instructions and cache misses are counted on a simulated machine: equal code counts equally on
+// one kind of machine, so that half a percent more is a fact and no matter of chance. Time is
+// paired with a reference kernel in the same process and still depends on what else the machine
+// does: it raises a doubt, never an alarm.
 #pragma once
 
 #include <string>
@@ -18,7 +17,7 @@
 namespace tribench {
 
 struct BenchThresholds {
-  double instructions = 0.005;  // larger losses are found; counts of equal code differ by 0.001
+  double instructions = 0.005;  // larger losses are found; equal code counts equally
   double misses = 0.10;         // of either cache, where it is also ...
   double least_misses = 5000;   // ... so many more: below it an address makes the difference
   double time = 0.25;           // of the paired time, where it is also ...
