@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The adapters: scikit-learn and DEAP live where they are installed; of the others the conversation,
-with the library's side played by what its documentation shows."""
+"""The adapters: live where the library is installed; else the conversation, the library's side played by
+what was recorded from the real one (conversations/), of PySR and Operon by what their documentation shows."""
 import json
+import math
+import os
 import pathlib
 import subprocess
 import sys
@@ -15,25 +17,56 @@ except ImportError:
 
 ADAPTERS = pathlib.Path(__file__).resolve().parents[2] / "adapters"
 
-# What each library's side says, as a module of its name.
-PLAYED = {
-    "gplearn": {
-        "gplearn/__init__.py": "__version__ = '0.4.2'\n",
-        "gplearn/genetic.py": """
+CONVERSATIONS = pathlib.Path(__file__).resolve().parent / "conversations"
+
+# Recorded from the real library (record_conversation.py), with these parameters.
+RECORDED = {"gplearn": {"population_size": 400, "generations": 6, "init_depth": "(2, 4)"}, "ffx": {},
+            "earth": {"degree": 2}}
+
+# The library's side, from a recording: it insists on being asked what it was asked then.
+REPLAY = """
+import json, pathlib
+heard = json.loads(pathlib.Path(__file__).with_name("heard.json").read_text())["library"]
+def plain(asked): return json.loads(json.dumps(asked))
+"""
+PLAYERS = {
+    "gplearn": {"gplearn/__init__.py": "", "gplearn/genetic.py": REPLAY + """
 class Function:
     def __init__(self, name, arity): self.name, self.arity = name, arity
 class SymbolicRegressor:
-    def __init__(self, function_set, random_state, n_jobs, **more):
-        assert function_set == ['add', 'sub', 'mul', 'abs', 'sin', 'cos'], function_set
-        assert random_state == 5 and more == {'generations': 7}, more
+    def __init__(self, **settings):
+        assert plain(settings) == heard["asked"], settings
+        self.__dict__.update(heard["answered"])
+        self._generations = self.generations
+        self._program = Function("program", 0)
+        self._program.program = [Function(*node) if isinstance(node, list) else node for node in self.program]
+    def set_params(self, generations, warm_start):
+        assert warm_start and generations <= self._generations
+        self.generations = generations
+        return self
     def fit(self, X, y):
-        class Program:
-            program = [Function('add', 2), Function('mul', 2), 0, 0.123456789, Function('neg', 1), 1]
-        self._program = Program()
+        self.run_details_ = {name: values[:self.generations]
+                             for name, values in heard["answered"]["run_details_"].items()}
 """},
+    "ffx": {"ffx/__init__.py": REPLAY + """
+class Model:
+    def __init__(self, text, size): self.text, self.size = text, size
+    def complexity(self): return self.size
+    def __str__(self): return self.text
+def run(X, y, test_X, test_y, names):
+    assert {"shape": list(X.shape), "names": names} == heard["asked"]
+    return [Model(*model) for model in heard["answered"]]
+"""},
+    "earth": {"earth/Rscript": "#!/usr/bin/python3\nimport sys\n" + REPLAY + """
+assert [pathlib.Path(word).name for word in sys.argv] == heard["asked"], sys.argv
+print(heard["answered"], end="")
+"""},
+}
+
+# What the documentation of the others shows of each library's side, as a module of its name.
+PLAYED = {
     "pysr": {
         "pysr/__init__.py": """
-__version__ = '1.5.9'
 class PySRRegressor:
     def __init__(self, **settings):
         assert settings['binary_operators'] == ['+', '-', '*', '/', '^'], settings
@@ -44,7 +77,7 @@ class PySRRegressor:
     def get_best(self): return {'equation': '(qd ** 2.0) - g'}
 """},
     "pyoperon": {
-        "pyoperon/__init__.py": "__version__ = '0.5.0'\n",
+        "pyoperon/__init__.py": "",
         "pyoperon/sklearn.py": """
 class SymbolicRegressor:
     def __init__(self, allowed_symbols, random_state, n_threads, objectives):
@@ -55,41 +88,54 @@ class SymbolicRegressor:
     def get_model_string(self, tree, precision, names):
         return {'a': '1.5', 'b': '((3.0 * (qd ^ 2)) - g)'}[tree]
 """},
-    "ffx": {
-        "ffx/__init__.py": """
-__version__ = '2.0.2'
-class Model:
-    def __init__(self, text, size): self.text, self.size = text, size
-    def complexity(self): return self.size
-    def __str__(self): return self.text
-def run(train_X, train_y, test_X, test_y, names):
-    return [Model('0.5 + 2.1*max(0,0.3-qd) - 0.1*log10(g) + 1.2*qd**2', 5), Model('1.5', 0)]
-"""},
 }
 HEARD = {
-    "gplearn": ["((qd*(0.123456789)) + (-g))"],
     "pysr": ["1.5", "qd", "(qd ^ 2.0) - g"],
     "pyoperon": ["1.5", "((3.0 * (qd ^ 2)) - g)"],
-    "ffx": ["1.5", "0.5 + 2.1*((0.3-qd + abs(0.3-qd))/2) - 0.1*(log(g)/2.302585092994046) + 1.2*qd^2"],
 }
 
 
-def ask(adapter, folder, parameters=None):
-    """The adapter's answer to a request about 3 qd^2 - g + 0.5."""
+def parabola(qd, g):
+    return 3 * qd * qd - g + 0.5
+
+
+def hinge(qd, g):  # what FFX has functions for
+    return (2 * max(0.0, qd - 1.1) + 0.5 * math.log10(g)) / (1 + 0.3 * g)
+
+
+LAWS = {"ffx": hinge}
+
+
+def write_request(folder, adapter, parameters=None, seconds=20.0):
+    """A request about the adapter's law, in a folder of its own."""
     random = np.random.default_rng(2)
     X = random.uniform(0.1, 2, (120, 2))
-    rows = "\n".join(f"{a!r},{b!r},{3 * a * a - b + 0.5!r},{i // 10}"
+    rows = "\n".join(f"{a!r},{b!r},{LAWS.get(adapter, parabola)(a, b)!r},{i // 10}"
                      for i, (a, b) in enumerate(X.tolist()))
     (folder / "train.csv").write_text("qd,g,target,movement\n" + rows + "\n")
     request = {"protocol": 1, "train": "train.csv", "target": "target",
                "inputs": [{"name": "qd"}, {"name": "g"}], "operator_set": "full",
                "operators": ["+", "-", "*", "/", "exp", "log", "sqrt", "abs", "sin", "cos", "tanh", "^"],
-               "proved_free_only": False, "evaluations": 100000000, "seconds": 20.0, "seed": 5,
+               "proved_free_only": False, "evaluations": 100000000, "seconds": seconds, "seed": 5,
                "threads": 1, "parameters": parameters or {}}
     (folder / "request.json").write_text(json.dumps(request))
+    return request
+
+
+def install(modules, folder):
+    for name, text in modules.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text)
+        (folder / name).chmod(0o755)
+
+
+def ask(adapter, folder, parameters=None, libraries=None, seconds=20.0):
+    """The adapter's answer to the request."""
+    write_request(folder, adapter, parameters, seconds)
     ended = subprocess.run([sys.executable, str(ADAPTERS / f"{adapter}.py"), str(folder / "request.json")],
                            capture_output=True, text=True, check=False,
-                           env={"PYTHONPATH": str(folder), "PATH": "/usr/bin:/bin",
+                           env={"PYTHONPATH": libraries or str(folder),
+                                "PATH": f"{folder / adapter}:/usr/bin:/bin",
                                 "PYTHONDONTWRITEBYTECODE": "1", "OMP_NUM_THREADS": "1"})
     assert ended.returncode == 0, ended.stderr
     return json.loads(ended.stdout.strip().split("\n")[-1])
@@ -107,21 +153,70 @@ class Adapters(unittest.TestCase):
         self.folder = pathlib.Path(self._scratch.name)
 
     def test_are_short_and_say_whose_settings_they_use(self):
-        for adapter in ("pysr", "gplearn", "pyoperon", "deap", "sklearn", "ffx"):
+        for adapter in ("pysr", "gplearn", "pyoperon", "deap", "sklearn", "ffx", "earth"):
             lines = (ADAPTERS / f"{adapter}.py").read_text().splitlines()
             self.assertLessEqual(sum(1 for line in lines if line.strip()), 60, adapter)
 
+    def recorded(self, adapter):
+        return json.loads((CONVERSATIONS / f"{adapter}.json").read_text())
+
+    def expect_the_librarys_values(self, conversation, front):
+        """Each formula says what its model predicts: FFX prints three digits of its thresholds."""
+        rows = np.array(conversation["judged_rows"]).T
+        for formula, predicted in zip(front, conversation["library"].get("predicted", [])):
+            np.testing.assert_allclose(values(formula, *rows), predicted, rtol=1e-10,
+                                       atol=0.02 if conversation["peer"] == "ffx" else 1e-10)
+
     def test_recorded_conversations(self):
-        for adapter, modules in PLAYED.items():
-            for name, text in modules.items():
-                (self.folder / name).parent.mkdir(exist_ok=True)
-                (self.folder / name).write_text(text)
+        for adapter, parameters in RECORDED.items():
             with self.subTest(adapter):
-                reply = ask(adapter, self.folder, {"generations": 7} if adapter == "gplearn" else {})
+                conversation = self.recorded(adapter)
+                install(PLAYERS[adapter], self.folder)
+                (self.folder / adapter / "heard.json").write_text(json.dumps(conversation))
+                reply = ask(adapter, self.folder, parameters)
+                told = json.loads(conversation["reply"])
+                self.assertEqual(json.loads((self.folder / "request.json").read_text()),
+                                 conversation["request"])
+                self.assertEqual([reply["front"], reply.get("chosen")],
+                                 [told["front"], told.get("chosen")])
+                self.assertIn("config_provenance: its defaults", reply["note"])
+                self.expect_the_librarys_values(conversation, reply["front"])
+
+    def test_recorded_libraries_say_the_same_today(self):
+        """Where the real library of the recorded version is there (PYTHONPATH, or installed)."""
+        met = 0
+        for adapter, parameters in RECORDED.items():
+            reply = ask(adapter, self.folder, parameters, os.environ.get("PYTHONPATH", "/nowhere"))
+            told = json.loads(self.recorded(adapter)["reply"])
+            if "install it" in reply.get("unsupported", "") or reply["note"] != told["note"]:
+                continue  # not there, or another version
+            met += 1
+            self.assertEqual(reply, told)
+        if met == 0:
+            self.skipTest("no recorded library is installed (Debian: r-cran-earth; 13: python3-gplearn)")
+
+    def test_documented_conversations(self):
+        for adapter, modules in PLAYED.items():
+            install(modules, self.folder)
+            with self.subTest(adapter):
+                reply = ask(adapter, self.folder)
                 self.assertEqual(reply["front"], HEARD[adapter])
                 self.assertIn("config_provenance: its defaults", reply["note"])
                 for formula in reply["front"]:
                     self.assertTrue(np.isfinite(values(formula, 0.7, 1.2)))
+
+    def test_a_search_ends_with_the_last_generation_that_the_seconds_allow(self):
+        conversation = self.recorded("gplearn")
+        slow = {**PLAYERS["gplearn"]}
+        slow["gplearn/genetic.py"] += """
+        import time
+        until = time.process_time() + 0.3
+        while time.process_time() < until: pass
+"""
+        install(slow, self.folder)
+        (self.folder / "gplearn" / "heard.json").write_text(json.dumps(conversation))
+        reply = ask("gplearn", self.folder, RECORDED["gplearn"], seconds=1.2)
+        self.assertRegex(reply["note"], "[1-4] of 6 generations")  # of 0.3 seconds each
 
     def test_a_library_that_is_not_there_is_asked_for(self):
         reply = ask("gplearn", self.folder)
