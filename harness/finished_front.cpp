@@ -26,7 +26,8 @@ void choose(Expression formula, FitResult& fit) {
 
 }  // namespace
 
-void finish_front(const TrainingData& data, const OperatorSet& operators, FitResult& fit) {
+void finish_front(const TrainingData& data, const OperatorSet& operators, Budget& budget,
+                  FitResult& fit) {
   // With states, a formula's numbers stand in the laws too: it is left as it is.
   if (fit.keeps_form || fit.front.empty() || !fit.states.empty()) return;
   const FiniteRows rows(data);
@@ -46,9 +47,12 @@ void finish_front(const TrainingData& data, const OperatorSet& operators, FitRes
     fit.chosen = *exact;
     return;
   }
-  fit.chosen = held_out_choice(fit.front, chosen, rows.table(), rows.target, rows.movement);
+  const auto in_time = [&budget] { return budget.in_time(); };
+  fit.chosen =
+      held_out_choice(fit.front, chosen, rows.table(), rows.target, rows.movement, in_time);
   if (!fit.yields_to_plain_sum) return;
-  if (auto sum = plain_sum_instead(fit.front[fit.chosen], rows.table(), rows.target, rows.movement);
+  if (auto sum = plain_sum_instead(fit.front[fit.chosen], rows.table(), rows.target, rows.movement,
+                                   in_time);
       sum && operators.admits(*sum)) {
     choose(std::move(*sum), fit);
   }

@@ -12,7 +12,12 @@
 
 namespace tribench {
 
+// Of the seconds of a fit on few rows, what its search may take; the rest is for the look at its
+// choice, which leaves the choice as it is once the seconds have run out.
+inline constexpr double kSearchShareOfFewRows = 0.9;
+
 // Changes `fit.front` and `fit.chosen`. Formulas are finished on the finite rows of `data`.
-void finish_front(const TrainingData& data, const OperatorSet& operators, FitResult& fit);
+void finish_front(const TrainingData& data, const OperatorSet& operators, Budget& budget,
+                  FitResult& fit);
 
 }  // namespace tribench

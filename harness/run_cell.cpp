@@ -15,6 +15,7 @@
 
 #include "algorithms/admission.hpp"
 #include "algorithms/external/external_method.hpp"
+#include "algorithms/fitting/held_out_choice.hpp"
 #include "algorithms/scaled_data.hpp"
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
@@ -247,13 +248,21 @@ class StageFits {
  private:
   FitResult once(const Regressor& method, RandomStream stream, Progress* progress) {
     const TrainingData seen = scaled_.data();
-    FitContext context{seen, task_.operators, budget_, stream, task_.threads, progress};
+    Budget part = budget_.share(budget_.remaining(), search_share());
+    FitContext context{seen, task_.operators, part, stream, task_.threads, progress};
     FitResult result = fit_or_refuse(method, context);
+    settle(part);
     for (Expression& formula : result.front) formula = scaled_.unscaled(formula);
     keep_usable_formulas(result, data_.inputs);
-    finish_front(data_, task_.operators, result);
+    finish_front(data_, task_.operators, budget_, result);
     return result;
   }
+  // A search that was refused evaluations ends all rounds, as if it had asked the whole budget.
+  void settle(const Budget& part) {
+    budget_.settle(part);
+    if (part.exhausted() && !part.out_of_time()) budget_.spend(budget_.remaining() + 1);
+  }
+  double search_share() const { return data_.target.size() > kFewRows ? 1 : kSearchShareOfFewRows; }
 
   const TrainingData& data_;
   ScaledData scaled_;

@@ -8,6 +8,7 @@
 
 #include "algorithms/expression/text.hpp"
 #include "algorithms/loop_model/model_fit.hpp"
+#include "algorithms/missing_role.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench::loop {
@@ -104,7 +105,7 @@ class ClosedLoop : public Regressor {
  private:
   FitResult fit_observed(FitContext& context, const Observations& data) const {
     if (data.find("v") == nullptr) {
-      return FitResult::unsupported("the closed loop needs an input with role velocity");
+      return unsupported_without_role("the closed loop needs an input", "velocity");
     }
     if (data.rows() < kFewestRows) {
       return FitResult::unsupported(fmt::format(

@@ -254,7 +254,8 @@ bool reaches_beyond(const Inputs& inputs, const InputBox& box) {
 
 CrossValidation cross_validate(std::span<const Expression> formulas, const Inputs& inputs,
                                std::span<const double> target, std::span<const int> movement,
-                               const InputBox& box, int folds) {
+                               const InputBox& box, int folds,
+                               const std::function<bool()>& in_time) {
   CrossValidation result;
   result.chosen = formulas.size() - 1;
   std::vector<Marks> holdouts = movement_holdouts(movement, folds);
@@ -268,6 +269,7 @@ CrossValidation cross_validate(std::span<const Expression> formulas, const Input
     const Rows train = select_rows(inputs, target, marks, 0);
     const Rows held_out = select_rows(inputs, target, marks, 1);
     for (std::size_t k = 0; k < formulas.size(); ++k) {
+      if (in_time && !in_time()) return result;
       Expression formula = formulas[k];
       result.node_rows += fitter.fit(formula, train.inputs(), train.target).node_rows;
       errors[k].push_back(std::max(rounding, mean_square(evaluator, formula, held_out)));

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -47,9 +48,11 @@ std::vector<int> held_out_folds(std::span<const int> movement, std::size_t rows,
 // a single movement are held out by stretches, in their order; with fewer than 20 of them the last
 // formula is chosen. box: the ranges the formula will be used over; none given means those of the
 // rows. A formula that leaves the band of a straight continuation somewhere in a wider box counts
-// as infinite.
+// as infinite. in_time: asked before each fit of a formula to a fold; once it says no, no error is
+// known (mean_square is empty) and the last formula is chosen.
 CrossValidation cross_validate(std::span<const Expression> formulas, const Inputs& inputs,
                                std::span<const double> target, std::span<const int> movement,
-                               const InputBox& box = {}, int folds = 5);
+                               const InputBox& box = {}, int folds = 5,
+                               const std::function<bool()>& in_time = {});
 
 }  // namespace tribench

@@ -13,6 +13,7 @@
 namespace tribench {
 namespace {
 
+constexpr int kChoiceFolds = 5;
 constexpr int kFolds = 10;
 constexpr std::size_t kFewestRows = 12;
 constexpr double kPlainly = 2;  // times the smallest held-out error
@@ -39,7 +40,7 @@ double optimism(const Expression& formula, const Inputs& inputs) {
 
 std::size_t held_out_choice(std::span<const Expression> front, std::size_t chosen,
                             const Inputs& inputs, std::span<const double> target,
-                            std::span<const int> movement) {
+                            std::span<const int> movement, const std::function<bool()>& in_time) {
   if (front.size() < 2 || target.size() > kFewRows) return chosen;
   std::vector<int> rows;
   if (movement.empty()) {
@@ -47,7 +48,8 @@ std::size_t held_out_choice(std::span<const Expression> front, std::size_t chose
     std::iota(rows.begin(), rows.end(), 0);
     movement = rows;
   }
-  const CrossValidation validation = cross_validate(front, inputs, target, movement);
+  const CrossValidation validation =
+      cross_validate(front, inputs, target, movement, {}, kChoiceFolds, in_time);
   if (validation.mean_square.size() != front.size()) return chosen;
   const double own = validation.mean_square[chosen];
   const double least = std::ranges::min(validation.mean_square);
@@ -57,12 +59,15 @@ std::size_t held_out_choice(std::span<const Expression> front, std::size_t chose
 
 std::optional<Expression> plain_sum_instead(const Expression& chosen, const Inputs& inputs,
                                             std::span<const double> target,
-                                            std::span<const int> movement) {
+                                            std::span<const int> movement,
+                                            const std::function<bool()>& in_time) {
   if (target.size() > kFewRows || target.size() < kFewestRows) return std::nullopt;
   const std::vector<int> fold = held_out_folds(movement, target.size(), kFolds);
-  const double own = cross_validate({&chosen, 1}, inputs, target, fold, {}, kFolds).mean_square[0];
+  const CrossValidation own =
+      cross_validate({&chosen, 1}, inputs, target, fold, {}, kFolds, in_time);
+  if (own.mean_square.empty()) return std::nullopt;
   const LinearSum sum = fit_linear_sum(inputs, target, movement);
-  if (own * optimism(chosen, inputs) <= sum.held_out) return std::nullopt;
+  if (own.mean_square[0] * optimism(chosen, inputs) <= sum.held_out) return std::nullopt;
   return sum.formula;
 }
 

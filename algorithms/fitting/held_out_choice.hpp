@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -24,17 +25,21 @@ inline constexpr std::size_t kFewRows = 400;
 // `chosen`, or the place of cross-validation's choice where the chosen formula's held-out error is
 // more than twice the smallest, or above the target's variance. `front` by increasing complexity;
 // movement[r] names the movement of row r, or is empty: each row is its own. Cost: a fit a formula
-// and fold, some 20 ms for 20 formulas and 100 rows.
+// and fold, some 20 ms for 20 formulas and 100 rows, seconds for long sums on 400; in_time is asked
+// before each, and once it says no the choice stands.
 std::size_t held_out_choice(std::span<const Expression> front, std::size_t chosen,
                             const Inputs& inputs, std::span<const double> target,
-                            std::span<const int> movement);
+                            std::span<const int> movement,
+                            const std::function<bool()>& in_time = {});
 
 // A sum of few inputs, or the mean, where it stands better than `chosen` on rows held out from
 // both (linear_sum.hpp): what the form of `chosen` gained by being searched on all rows is charged
 // as the evidence charges nodes, and by the number of inputs that each of its leaves could be. None
-// where `chosen` stands, on more than kFewRows rows and on fewer than 12. Cost: some ms.
+// where `chosen` stands, on more than kFewRows rows, on fewer than 12 and out of time. Cost: ten
+// fits of the formula.
 std::optional<Expression> plain_sum_instead(const Expression& chosen, const Inputs& inputs,
                                             std::span<const double> target,
-                                            std::span<const int> movement);
+                                            std::span<const int> movement,
+                                            const std::function<bool()>& in_time = {});
 
 }  // namespace tribench

@@ -14,6 +14,7 @@
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/levenberg_marquardt.hpp"
+#include "algorithms/missing_role.hpp"
 #include "algorithms/model_based/friction_inputs.hpp"
 
 namespace tribench {
@@ -264,13 +265,13 @@ class BamModel : public Regressor {
 
   FitResult fit(FitContext& context) const override {
     const auto inputs = find_friction_inputs(context.data.inputs);
-    if (!inputs) return FitResult::unsupported("needs an input with role velocity");
+    if (!inputs) return unsupported_without_role("needs an input", "velocity");
     BamShape shape{model_, inputs->velocity, inputs->sign(), inputs->acceleration, {}, offset_};
     for (std::size_t j = 0; j < context.data.inputs.size() && !shape.gravity; ++j) {
       if (context.data.inputs[j].role == Role::gravity_torque) shape.gravity = j;
     }
     if (shape.has_load() && !shape.gravity) {
-      return FitResult::unsupported("friction from load needs an input with role gravity_torque");
+      return unsupported_without_role("friction from load needs an input", "gravity_torque");
     }
     const FiniteRows data(context.data);
     if (data.rows() == 0) return FitResult::unsupported("there is no row without missing values");

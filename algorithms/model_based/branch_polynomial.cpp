@@ -6,6 +6,7 @@
 #include "algorithms/expression/build.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/linear_least_squares.hpp"
+#include "algorithms/missing_role.hpp"
 #include "algorithms/model_based/friction_inputs.hpp"
 
 namespace tribench {
@@ -55,7 +56,7 @@ class BranchPolynomial : public Regressor {
   FitResult fit(FitContext& context) const override {
     const auto inputs = find_friction_inputs(context.data.inputs);
     if (!inputs) {
-      return FitResult::unsupported("the branch polynomial needs an input with role velocity");
+      return unsupported_without_role("the branch polynomial needs an input", "velocity");
     }
     const FiniteRows data(context.data);
     if (data.rows() == 0) return FitResult::unsupported("there is no row without missing values");

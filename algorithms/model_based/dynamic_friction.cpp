@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/missing_role.hpp"
 #include "algorithms/model_based/dynamic_models.hpp"
 
 namespace tribench {
@@ -67,11 +68,10 @@ FitResult DynamicFriction::fit(FitContext& context) const {
   const TrainingData& data = context.data;
   const auto inputs = find_friction_inputs(data.inputs);
   if (!inputs) {
-    return FitResult::unsupported("friction with memory needs an input with role velocity");
+    return unsupported_without_role("friction with memory needs an input", "velocity");
   }
   if (!data.has_time()) {
-    return FitResult::unsupported(
-        "friction with memory needs rows in time: a channel with role time");
+    return unsupported_without_role("friction with memory needs rows in time: a column", "time");
   }
   if (!is_finite_along(data.motion, inputs->velocity)) {
     return FitResult::unsupported("the velocity has missing values along the recording");

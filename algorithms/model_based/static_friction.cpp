@@ -9,6 +9,7 @@
 #include "algorithms/expression/differentiate.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/linear_least_squares.hpp"
+#include "algorithms/missing_role.hpp"
 #include "algorithms/model_based/bounded_stribeck.hpp"
 #include "algorithms/model_based/coulomb_viscous.hpp"
 #include "algorithms/model_based/printed_stribeck.hpp"
@@ -84,7 +85,7 @@ StribeckFit StaticFriction::fit_form(const StribeckRows& rows, StribeckModel& mo
 FitResult StaticFriction::fit(FitContext& context) const {
   const auto inputs = find_friction_inputs(context.data.inputs);
   if (!inputs) {
-    return FitResult::unsupported("the static friction model needs an input with role velocity");
+    return unsupported_without_role("the static friction model needs an input", "velocity");
   }
   const FiniteRows data(context.data);
   if (data.rows() == 0) return FitResult::unsupported("there is no row without missing values");

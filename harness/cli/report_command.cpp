@@ -14,11 +14,10 @@
 #include "foundation/standard_streams.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/run_pictures.hpp"
 #include "harness/curves.hpp"
 #include "harness/run_files.hpp"
 #include "harness/study/external_torque_study.hpp"
-#include "reports/picture_files.hpp"
-#include "reports/pictures.hpp"
 #include "reports/run_reports.hpp"
 #include "reports/study_page.hpp"
 
@@ -57,11 +56,7 @@ void report(const ReportArguments& arguments) {
     return;
   }
   fmt::print("{}\n", write_run_reports(folder, arguments.base));
-  if (!arguments.pictures.empty()) {
-    const std::vector<std::string> files = write_pictures(folder, arguments.pictures);
-    write_png_beside(arguments.pictures, files);
-    fmt::print("{} pictures in {}\n", files.size(), arguments.pictures);
-  }
+  write_run_pictures(folder, arguments.pictures);
   if (!arguments.page.empty()) {
     write_study_page(folder, arguments.page, external_torque_section(folder));
     fmt::print("the page is {}\n", arguments.page);
@@ -80,10 +75,7 @@ void add_report_command(CLI::App& app, ExitStatus& /*status*/) {
   command->add_option("folder", arguments->folder, "a run's folder")->required();
   command->add_option("--base", arguments->base,
                       "an earlier run: the first screen says what changed since then");
-  command->add_option(
-      "--pictures", arguments->pictures,
-      "write every picture of the page as SVG and PNG into this folder (needs nodejs and "
-      "librsvg2-bin)");
+  add_pictures_option(*command, arguments->pictures);
   command->add_option("--page", arguments->page,
                       "write a page to cite (Markdown): settings, machine, published figures "
                       "beside ours, proofs, pictures (needs nodejs)");

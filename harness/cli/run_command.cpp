@@ -24,6 +24,7 @@
 #include "harness/cli/data_grid_options.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
+#include "harness/cli/run_pictures.hpp"
 #include "harness/grid.hpp"
 #include "harness/machine.hpp"
 #include "harness/plan.hpp"
@@ -53,6 +54,7 @@ struct RunArguments {
   std::string quarantine;
   std::string verify;
   std::string like;
+  std::string pictures;
   std::size_t sample = 10;
   std::shared_ptr<DataGridRequest> own = std::make_shared<DataGridRequest>();
   // In place of the grid's.
@@ -144,6 +146,7 @@ void run_to_the_end(const Grid& grid, const RunArguments& arguments, const RunOp
   // The first signal lets the run close its files.
   const WholeRun run = run_whole(grid, options, stop_requested_by_signal());
   print_end(arguments, run.tally, options.out, run.board);
+  if (!run.tally.stopped) write_run_pictures(options.out, arguments.pictures);
   if (run.all_failed()) {
     print_message(fmt::format("every cell failed, the first one by: {}\n",
                               reason_text(run.journal.results.front().record.reason)));
@@ -258,6 +261,7 @@ void add_run_command(CLI::App& app, ExitStatus& status, const Registry& registry
   command->add_option("--sample", arguments->sample, "with --verify: how many cells")
       ->transform(whole_number(1))
       ->capture_default_str();
+  add_pictures_option(*command, arguments->pictures);
   command->add_flag("--quiet", arguments->quiet, "no progress line");
   command->add_flag("--json", arguments->json, "with --dry-run: as JSON");
   command->callback([arguments, &registry, &status] { run(*arguments, registry, status); });

@@ -89,6 +89,62 @@ TEST_F(OwnDataTest, AFolderOfFilesBecomesALeaderboardInOneCommand) {
   EXPECT_EQ(column_of(folder_ / "one", "status").size(), 3U);
 }
 
+// What a method says it lacks can be given by doing what the message says.
+TEST_F(OwnDataTest, AMissingRoleIsToldWithItsMend) {
+  const auto run_with = [this](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"run",
+                                      "--data-file",
+                                      (folder_ / "here/logs/joint 0.csv").string(),
+                                      "--target",
+                                      "tau",
+                                      "--inputs",
+                                      "v,load",
+                                      "--methods",
+                                      "symmetric,lugre",
+                                      "--out",
+                                      (folder_ / name).string(),
+                                      "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  };
+  run_with("without", {});
+  const auto reasons = column_of(folder_ / "without", "reason");
+  ASSERT_EQ(reasons.size(), 2U);
+  for (const auto& [cell, reason] : reasons) {
+    EXPECT_THAT(reason, AllOf(HasSubstr("with role velocity"),
+                              HasSubstr("roles = \"COLUMN=velocity\" in its [[problem]]"),
+                              HasSubstr("--roles COLUMN=velocity")));
+  }
+  run_with("with", {"--roles", "v=velocity"});
+  for (const auto& [cell, reason] : column_of(folder_ / "with", "reason")) {
+    if (cell.find("|symmetric|") != std::string::npos) EXPECT_EQ(reason, "");
+    if (cell.find("|lugre|") != std::string::npos) {
+      EXPECT_THAT(reason, HasSubstr("roles = \"COLUMN=time\" in its [[problem]]"));
+    }
+  }
+}
+
+// The pictures of the page, as `report --pictures` writes them.
+TEST_F(OwnDataTest, ARunWritesItsPictures) {
+  if (std::system("command -v node >/dev/null 2>&1 && command -v rsvg-convert >/dev/null 2>&1") !=
+      0) {
+    GTEST_SKIP() << "no node or no rsvg-convert";
+  }
+  const fs::path pictures = folder_ / "my pictures";
+  const ProgramRun done = run_grid("here", "out", {"--pictures", pictures.string()});
+  ASSERT_EQ(done.status, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("pictures in " + pictures.string()));
+  const fs::path again = folder_ / "again";
+  ASSERT_EQ(run({"report", (folder_ / "here/out").string(), "--pictures", again.string()}).status,
+            0);
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(again)) {
+    EXPECT_EQ(read_text(pictures / entry.path().filename()), read_text(entry.path()));
+    ++count;
+  }
+  EXPECT_GE(count, 2U);
+}
+
 TEST_F(OwnDataTest, AnotherMachineGivesTheSameBytes) {
   ASSERT_EQ(run_grid("here", "out", {"--jobs", "2"}).status, 0);
   fill(folder_ / "elsewhere/deeper");

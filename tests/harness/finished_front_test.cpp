@@ -13,7 +13,7 @@ namespace tribench {
 namespace {
 
 // Two thirds of a line's rows are noise, and the front holds one formula that follows the noise.
-FitResult finished_on_few_rows(bool yields) {
+FitResult finished_on_few_rows(bool yields, double seconds = 1e6) {
   const std::vector<std::string> names = {"v"};
   std::vector<double> v;
   std::vector<double> target;
@@ -28,7 +28,8 @@ FitResult finished_on_few_rows(bool yields) {
   FitResult fit;
   fit.front = {parse("0.3 + 2*v + 3*v^3 + 5*v^5 + 7*v^7 + 9*v^9 + 11*v^11 + 4*sin(9*v)", names)};
   fit.yields_to_plain_sum = yields;
-  finish_front(data, find_operator_set("full"), fit);
+  Budget budget({1'000'000, seconds});
+  finish_front(data, find_operator_set("full"), budget, fit);
   return fit;
 }
 
@@ -41,6 +42,11 @@ TEST(FinishedFront, TakesAPlainSumOnFewRowsWhereTheMethodYieldsToIt) {
   ASSERT_EQ(fit.front.size(), 2U);
   EXPECT_EQ(fit.chosen, 0U);
   EXPECT_LT(fit.front[0].size(), 8U) << print(fit.front[0], std::vector<std::string>{"v"});
+}
+
+// Seconds of folds were spent beyond those that a fit was given.
+TEST(FinishedFront, LeavesTheChoiceOnceTheSecondsHaveRunOut) {
+  EXPECT_EQ(finished_on_few_rows(true, 0).front.size(), 1U);
 }
 
 }  // namespace

@@ -45,6 +45,18 @@ TEST(HeldOutChoice, TakesThePlaceOfAFormulaThatFoldsSpeakPlainlyAgainst) {
   EXPECT_EQ(Rows(22).choice_of({"0.5", "2*v", kWild}, 2), 1U);
 }
 
+TEST(HeldOutChoice, StandsOnceThereIsNoTimeForAnotherFold) {
+  const Rows rows(22);
+  const Inputs table{{&rows.column, 1}, rows.v.size()};
+  const std::vector<Expression> front = {parse("0.5", kNames), parse("2*v", kNames),
+                                         parse(kWild, kNames)};
+  int asked = 0;
+  const auto nine_times = [&asked] { return ++asked < 10; };
+  EXPECT_EQ(held_out_choice(front, 2, table, rows.target, {}, nine_times), 2U);
+  EXPECT_EQ(asked, 10);  // of 15 fits: 3 formulas, 5 folds
+  EXPECT_FALSE(plain_sum_instead(front[2], table, rows.target, {}, [] { return false; }));
+}
+
 TEST(HeldOutChoice, LeavesAChoiceThatIsHardlyWorse) {
   EXPECT_EQ(Rows(60).choice_of({"0.5", "2*v", "2*v + 0.1*v^2"}, 2), 2U);
   EXPECT_EQ(Rows(60).choice_of({"2*v"}, 0), 0U);
