@@ -229,7 +229,8 @@ std::vector<double> take_weights(const FitArguments& arguments, Problem& problem
 // What gives the same formula again: seconds depend on the machine, evaluations do not.
 std::string reproducing(const FitArguments& arguments, const Record& record, bool by_clock) {
   std::vector<std::string> words = arguments.words;
-  if (by_clock || arguments.spends_all) {
+  // A program need not say what it has spent: with no evaluations it would be asked for nothing.
+  if ((by_clock || arguments.spends_all) && record.evaluations > 0) {
     constexpr const char* kAmple = "1e6";
     for (const char* option : {"--seconds", "--evaluations"}) {
       const auto found = std::ranges::find(words, option);
@@ -297,10 +298,7 @@ void fit(const FitArguments& arguments, const Registry& registry) {
     const bool is_unsupported = record.reason.kind == FailureKind::unsupported;
     throw Error(is_unsupported ? ErrorKind::bad_input : ErrorKind::failed,
                 reason_text(record.reason), arguments.method,
-                is_unsupported
-                    ? "say what the columns are (--roles COLUMN=ROLE), or choose another "
-                      "method"
-                    : "");
+                is_unsupported ? "do as it says, or choose another method" : "");
   }
   const bool by_clock = was_ended_by_clock(record);
   // A search stops before the step that would overdraw its budget.

@@ -16,6 +16,7 @@ namespace {
 using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // tau = 3 sgn(v) + 2 v in two movements, exactly.
 std::string line_data(double offset) {
@@ -190,6 +191,15 @@ TEST_F(UnequalRowsTest, AProgramIsAMethod) {
   EXPECT_EQ(told.at("formula"), "1.5*v + 0.25");
   EXPECT_EQ(told.at("ended"), "finished");
   EXPECT_THAT(refusal({"--external", "bash 'open"}), HasSubstr("--external"));
+  // What would give the same again asks it for as much, and what it lacks is not a column's role.
+  EXPECT_THAT(
+      answer({"--external", "bash '" + (folder_ / "mine.sh").string() + "'", "--seconds", "5"})
+          .at("reproduce")
+          .get<std::string>(),
+      AllOf(HasSubstr("--seconds 5"), Not(HasSubstr("--evaluations"))));
+  write_text(folder_ / "none.sh", "echo '{\"unsupported\": \"no mylib; install it\"}'\n");
+  EXPECT_THAT(refusal({"--external", "bash '" + (folder_ / "none.sh").string() + "'"}),
+              AllOf(HasSubstr("no mylib; install it"), Not(HasSubstr("--roles"))));
 }
 
 // tau = a sgn(v) + b v + c v^3 in three machines, of sizes that differ a thousandfold.
