@@ -16,6 +16,7 @@
 #include "algorithms/admission.hpp"
 #include "algorithms/external/external_method.hpp"
 #include "algorithms/fitting/held_out_choice.hpp"
+#include "algorithms/missing_role.hpp"
 #include "algorithms/scaled_data.hpp"
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
@@ -182,7 +183,9 @@ struct StagesResult {
 };
 
 FailureReason why_no_formula(const FitResult& result) {
-  if (result.reason == StopReason::unsupported) return {FailureKind::unsupported, result.note};
+  if (result.reason == StopReason::unsupported) {
+    return {FailureKind::unsupported, with_mend_of_role(result.note)};
+  }
   return {
       FailureKind::error,
       "no formula: " + (result.note.empty() ? "the method returned an empty front" : result.note)};
@@ -248,7 +251,7 @@ class StageFits {
  private:
   FitResult once(const Regressor& method, RandomStream stream, Progress* progress) {
     const TrainingData seen = scaled_.data();
-    Budget part = budget_.share(budget_.remaining(), search_share());
+    Budget part = search_part();
     FitContext context{seen, task_.operators, part, stream, task_.threads, progress};
     FitResult result = fit_or_refuse(method, context);
     settle(part);
@@ -257,12 +260,17 @@ class StageFits {
     finish_front(data_, task_.operators, budget_, result);
     return result;
   }
-  // A search that was refused evaluations ends all rounds, as if it had asked the whole budget.
+  // The whole budget but for its seconds: what has been refused to one is refused to the other.
+  Budget search_part() const {
+    const bool few = data_.target.size() <= kFewRows;
+    Budget part = budget_.share(budget_.remaining(), few ? kSearchShareOfFewRows : 1);
+    if (budget_.exhausted()) part.spend(part.remaining() + 1);
+    return part;
+  }
   void settle(const Budget& part) {
     budget_.settle(part);
     if (part.exhausted() && !part.out_of_time()) budget_.spend(budget_.remaining() + 1);
   }
-  double search_share() const { return data_.target.size() > kFewRows ? 1 : kSearchShareOfFewRows; }
 
   const TrainingData& data_;
   ScaledData scaled_;
