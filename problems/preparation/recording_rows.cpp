@@ -302,7 +302,7 @@ void drop_repeated_messages(PreparedRecording& out) {
   const Channel* noisy = find_channel(out.data, Role::motor_torque);
   if (noisy == nullptr) noisy = find_channel(out.data, Role::motor_current);
   if (q == nullptr || noisy == nullptr) return;
-  leave_out(out, repeated_rows(q->values, noisy->values),
+  leave_out(out, repeated_rows(q->values, noisy->values, out.data.movement),
             "repeat the row before in position and torque, as a bus does that lost its messages");
 }
 

@@ -76,6 +76,16 @@ std::vector<char> resting_rows(std::span<const double> time, std::span<const dou
   return rests;
 }
 
+// Of a channel from row to row, where it changes.
+double usual_change(std::span<const double> values, std::span<const int> movement) {
+  std::vector<double> changes;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (movement[i] != movement[i - 1] || values[i] == values[i - 1]) continue;
+    changes.push_back(std::abs(values[i] - values[i - 1]));
+  }
+  return upper_median(std::move(changes));
+}
+
 // How many rows stand on the value next to `limit`: of a coarse channel its neighbour.
 std::size_t rows_at_next(std::span<const double> values, double limit) {
   double next = limit;
@@ -86,10 +96,11 @@ std::size_t rows_at_next(std::span<const double> values, double limit) {
   return static_cast<std::size_t>(std::ranges::count(values, next));
 }
 
-// After each row the next change of a channel; 0 where there is none.
-std::vector<double> next_changes(std::span<const double> values) {
+// After each row the next change of a channel in its movement; 0 where there is none.
+std::vector<double> next_changes(std::span<const double> values, std::span<const int> movement) {
   std::vector<double> next(values.size(), 0.0);
   for (std::size_t i = values.size(); i-- > 1;) {
+    if (movement[i] != movement[i - 1]) continue;
     next[i - 1] = values[i] != values[i - 1] ? values[i] - values[i - 1] : next[i];
   }
   return next;
@@ -137,27 +148,28 @@ std::vector<RowRange> pieces_of(std::span<const double> time, std::span<const in
   return pieces;
 }
 
-std::vector<char> repeated_rows(std::span<const double> position, std::span<const double> noisy) {
+std::vector<char> repeated_rows(std::span<const double> position, std::span<const double> noisy,
+                                std::span<const int> movement) {
   std::vector<char> repeated(position.size(), 0);
   // A channel that often repeats itself is coarse: its repeats say nothing.
   std::size_t same = 0;
   for (std::size_t i = 1; i < noisy.size(); ++i) same += noisy[i] == noisy[i - 1] ? 1 : 0;
   if (same * 4 > noisy.size()) return repeated;
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < position.size(); ++i) {
-    if (position[i] != position[i - 1]) steps.push_back(std::abs(position[i] - position[i - 1]));
-  }
   // What comes after the repeats has gone on in the meantime; an axis at rest has not, though its
   // last count may flicker.
-  const double jump = kJump * upper_median(std::move(steps));
-  const std::vector<double> next = next_changes(position);
-  double before = 0;  // the last change
+  const double jump = kJump * usual_change(position, movement);
+  const std::vector<double> next = next_changes(position, movement);
+  double before = 0;  // the movement's last change
   for (std::size_t begin = 0; begin < noisy.size();) {
+    if (begin > 0 && movement[begin] != movement[begin - 1]) before = 0;
+    const auto in_movement = [&](std::size_t i) {
+      return i < noisy.size() && movement[i] == movement[begin];
+    };
     std::size_t end = begin + 1;
-    while (end < noisy.size() && noisy[end] == noisy[begin] && position[end] == position[begin]) {
+    while (in_movement(end) && noisy[end] == noisy[begin] && position[end] == position[begin]) {
       ++end;
     }
-    const double change = end < noisy.size() ? position[end] - position[begin] : 0;
+    const double change = in_movement(end) ? position[end] - position[begin] : 0;
     const bool goes_on = change * before > 0 && change * next[end] > 0;
     if (end - begin >= kRepeats && (std::abs(change) > jump || goes_on)) {
       std::fill(repeated.begin() + static_cast<std::ptrdiff_t>(begin + 1),

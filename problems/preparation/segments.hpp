@@ -32,7 +32,8 @@ std::vector<RowRange> pieces_of(std::span<const double> time, std::span<const in
 // Rows in which a channel that is noisy (`noisy`) repeats its value for five rows and more while
 // `position` does so too and moved before and after, by far or on the same way: the bus repeated
 // its last message.
-std::vector<char> repeated_rows(std::span<const double> position, std::span<const double> noisy);
+std::vector<char> repeated_rows(std::span<const double> position, std::span<const double> noisy,
+                                std::span<const int> movement);
 
 // Rows at the largest or the smallest value, where more rows stand on it than in the whole band of
 // 2 % of the range beside it: the amplifier's limit. All 0 where there is none.

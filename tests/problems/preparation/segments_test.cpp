@@ -11,6 +11,10 @@
 namespace tribench {
 namespace {
 
+std::vector<int> one_movement(const std::vector<double>& rows) {
+  return std::vector<int>(rows.size(), 0);
+}
+
 TEST(Segments, AGapCutsAndAPauseBetweenStrokesDoesToo) {
   std::vector<double> time;
   std::vector<double> v;
@@ -52,13 +56,14 @@ TEST(Segments, ARepeatedMessageIsToldFromACoarseEncoder) {
     position.push_back(std::floor(i / 2.0));
     current.push_back(std::sin(12.3 * i));
   }
-  for (const char one : repeated_rows(position, current)) ASSERT_EQ(one, 0);
+  for (const char one : repeated_rows(position, current, one_movement(position))) ASSERT_EQ(one, 0);
   for (int i = 400; i < 420; ++i) {
     position[static_cast<std::size_t>(i)] = position[399];
     current[static_cast<std::size_t>(i)] = current[399];
   }
   std::size_t found = 0;
-  for (const char one : repeated_rows(position, current)) found += one != 0 ? 1 : 0;
+  for (const char one : repeated_rows(position, current, one_movement(position)))
+    found += one != 0 ? 1 : 0;
   EXPECT_EQ(found, 20U);
 }
 
@@ -76,10 +81,26 @@ TEST(Segments, ARepeatedMessageIsToldWhereTheAxisCreeps) {
     position[static_cast<std::size_t>(i)] = position[400];
     current[static_cast<std::size_t>(i)] = current[400];
   }
-  const std::vector<char> repeated = repeated_rows(position, current);
+  const std::vector<char> repeated = repeated_rows(position, current, one_movement(position));
   for (std::size_t i = 0; i < repeated.size(); ++i) {
     ASSERT_EQ(repeated[i], i > 400 && i < 431 ? 1 : 0) << i;
   }
+}
+
+// A drive that is switched off before a movement ends repeats itself; where the next one in the
+// file begins says nothing of that.
+TEST(Segments, AMessageIsRepeatedWithinItsMovementAlone) {
+  std::vector<double> position;
+  std::vector<double> current;
+  std::vector<int> movement;
+  for (int m = 0; m < 4; ++m) {
+    for (int i = 0; i < 300; ++i) {
+      position.push_back(10 * m + std::min(i, 280) / 100.0);
+      current.push_back(i < 280 ? std::sin(12.3 * (i + m)) : 0);
+      movement.push_back(m);
+    }
+  }
+  for (const char one : repeated_rows(position, current, movement)) ASSERT_EQ(one, 0);
 }
 
 // Ten rows a second are at the bound: they are regular wherever the clock begins.
