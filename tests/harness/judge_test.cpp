@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <string>
 
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
@@ -184,6 +186,30 @@ TEST(JudgeFormula, TakesTheStribeckRangeOfTheFasterDirection) {
   Record record;
   judge_formula(problem, {parse("v^3 - 3 * v", problem.input_names()), {}}, record);
   EXPECT_EQ(record.monotone, PhysicsProof::proved);
+}
+
+// The shortest of five rounds: five times as long is less than judging took, whatever else ran.
+// Many rows, so that a round is one evaluation of them and the rest takes little.
+TEST(JudgeFormula, SaysATimePerRowInNanoseconds) {
+  Problem problem = two_stage_problem();
+  for (Input& input : problem.inputs) input.role = Role::none;
+  problem.test = {};
+  problem.test.columns.resize(2);
+  for (int i = 0; i < 200'000; ++i) {
+    problem.test.columns[0].push_back(1e-5 * i);
+    problem.test.columns[1].push_back(0.5);
+    problem.test.target.push_back(1);
+    problem.test.movement.push_back(0);
+  }
+  std::string text = "sin(v)";
+  for (int k = 2; k < 12; ++k) text += " + sin(" + std::to_string(k) + " * v)";
+  const StagedFormula waves{parse(text, problem.input_names()), {}};
+  Record record;
+  const auto start = std::chrono::steady_clock::now();
+  judge_formula(problem, waves, record);
+  const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
+  EXPECT_GT(record.eval_ns_per_row, 0);
+  EXPECT_LT(5 * record.eval_ns_per_row * 200'000, taken.count());
 }
 
 // Without a test row there is nothing to take the time of.

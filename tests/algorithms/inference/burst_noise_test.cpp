@@ -103,5 +103,23 @@ TEST(BurstNoise, ABurstDoesNotHideInTheNoiseThatItMakes) {
   EXPECT_NEAR(left_out, 1, 0.02);
 }
 
+// A residual that is zero nearly everywhere has no noise by which a row could stand out.
+TEST(BurstNoise, WithoutNoiseThereIsNothingElse) {
+  const std::vector<int> movement(100, 0);
+  Eigen::VectorXd residual = Eigen::VectorXd::Zero(100);
+  residual[50] = 3;
+  const BurstNoise noise(movement, {}, residual);
+  EXPECT_EQ(noise.robust_sd(), 0);
+  EXPECT_TRUE(noise.innovation().empty());
+  EXPECT_EQ(noise.rho(), 0);
+}
+
+TEST(BurstNoise, KnowsWhichMovementARowIsOf) {
+  const std::vector<int> movement = {7, 7, 7, 2, 2, 9};
+  const BurstNoise noise(movement, {}, Eigen::VectorXd::Zero(6));
+  const std::vector<std::size_t> expected = {0, 0, 0, 1, 1, 2};
+  for (std::size_t i = 0; i < movement.size(); ++i) EXPECT_EQ(noise.movement_at(i), expected[i]);
+}
+
 }  // namespace
 }  // namespace tribench::loop

@@ -74,5 +74,11 @@ TEST(PairedGain, IsASumWithItsStandardError) {
   EXPECT_DOUBLE_EQ(gain.error, 2);
 }
 
+TEST(PairedGain, OfOneStretchHasNoErrorToKnow) {
+  const Gain gain = paired_gain(Eigen::VectorXd::Constant(1, 3.5), Eigen::VectorXd::Constant(1, 2));
+  EXPECT_EQ(gain.nats, 1.5);
+  EXPECT_EQ(gain.error, 0);
+}
+
 }  // namespace
 }  // namespace tribench::loop

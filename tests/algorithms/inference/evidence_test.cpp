@@ -164,5 +164,22 @@ TEST(EvidenceTable, DependsOnWhatTheBaseSpansAlone) {
   EXPECT_NEAR(log_factor(again, block), log_factor(plain, block), 1e-6);
 }
 
+TEST(EvidenceTable, SaysNothingWithoutBlocksOrOfATargetThatIsWhollyExplained) {
+  RandomStream random(22);
+  const Eigen::MatrixXd base = Eigen::MatrixXd::Ones(30, 1);
+  const Eigen::MatrixXd columns = normals(30, 2, random);
+  const EffectBlock block{{0, 1}};
+  EXPECT_EQ(log_factor(table_of(base, columns, Eigen::VectorXd::Zero(30)), block), 0);
+  const Eigen::VectorXd target = normals(30, 1, random);
+  const EvidenceTable table = table_of(base, columns, target);
+  EXPECT_EQ(table.log_factor({}), 0);
+  EXPECT_EQ(table.degrees_of_freedom(), 29);
+  const Eigen::VectorXd left = target.array() - target.mean();
+  EXPECT_NEAR(table.posterior({}).variance, left.squaredNorm() / 29, 1e-9);
+  const Eigen::VectorXd products = table.left_of_products({});
+  EXPECT_NEAR(products[0], columns.col(0).dot(left), 1e-9);
+  EXPECT_NEAR(products[1], columns.col(1).dot(left), 1e-9);
+}
+
 }  // namespace
 }  // namespace tribench::loop

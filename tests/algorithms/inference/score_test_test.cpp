@@ -90,6 +90,24 @@ TEST(ScoreTest, AColumnInsideTheModelIsNotTestable) {
   EXPECT_LT(block.test.share, 1e-6);
 }
 
+// A channel that never moved: nothing is said of it, and what is said of others stays.
+TEST(ScoreTest, AColumnOfZerosIsNotTestableAndSpoilsNoOther) {
+  const Example e = clustered_example(3, 0);
+  const Eigen::MatrixXd basis = orthonormal_basis(e.x);
+  const Eigen::VectorXd residual = project_off(e.y, basis);
+  const Eigen::MatrixXd one = e.candidates.leftCols(1);
+  const Eigen::MatrixXd zeros = Eigen::MatrixXd::Zero(e.x.rows(), 1);
+  const BlockScores nothing = score_block(zeros, basis, residual, e.clusters);
+  EXPECT_FALSE(nothing.test.testable);
+  EXPECT_EQ(nothing.test.share, 0);
+  const BlockScores alone = score_block(one, basis, residual, e.clusters);
+  const BlockScores both = score_block(beside(one, zeros), basis, residual, e.clusters);
+  ASSERT_TRUE(alone.test.testable);
+  EXPECT_NEAR(both.test.statistic, alone.test.statistic, 1e-9 * alone.test.statistic);
+  EXPECT_NEAR(both.test.score, alone.test.score, 1e-9);
+  EXPECT_NEAR(both.test.share, alone.test.share, 1e-9);
+}
+
 TEST(ScoreTest, DependentColumnsOfAModelAreLeftOutOfItsBasis) {
   Eigen::MatrixXd x = clustered_example(3, 0).x;
   x.conservativeResize(Eigen::NoChange, 3);

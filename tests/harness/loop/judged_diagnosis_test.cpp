@@ -155,7 +155,7 @@ TEST(JudgedDiagnosis, IsTheSameOnAnyNumberOfThreads) {
 }
 
 // Strokes at constant speeds, half of them backwards, with Coulomb and viscous friction and noise.
-Observations strokes(int movements, int rows = 40) {
+Observations strokes(int movements, int rows = 40, double noise = 0.3) {
   RandomStream random(5);
   Dataset data;
   data.channels = {{"v", "rad/s", Role::velocity, {}}, {"tau", "N m", Role::friction_torque, {}}};
@@ -165,7 +165,7 @@ Observations strokes(int movements, int rows = 40) {
     for (int i = 0; i < rows; ++i) {
       const double speed = v * (1 + 0.4 * i / rows);
       data.channels[0].values.push_back(speed);
-      data.channels[1].values.push_back((v > 0 ? 5 : -5) + 3 * speed + 0.3 * random.normal());
+      data.channels[1].values.push_back((v > 0 ? 5 : -5) + 3 * speed + noise * random.normal());
       data.movement.push_back(m);
     }
   }
@@ -253,6 +253,18 @@ TEST(JudgedDiagnosis, JudgesAMovementByModelsThatHaveNotSeenIt) {
   const JudgedDiagnosis judged = diagnose_strokes(data);
   ASSERT_EQ(judged.error.movements.size(), 4U);
   EXPECT_NEAR(judged.error.movements[2].before, 20, 0.5);
+}
+
+// Hardly any noise: each row's error is that of its own prediction, in the first row of the data
+// and beside a reversal too.
+TEST(JudgedDiagnosis, ComparesEachRowWithItsOwnPrediction) {
+  const JudgedDiagnosis in_turn = diagnose_strokes(strokes(8, 40, 1e-3));
+  EXPECT_LT(in_turn.error.max_before, 0.01);
+  EXPECT_NEAR(in_turn.error.mae_before, 1e-3 * std::sqrt(2 / 3.14159265), 1e-4);
+  EXPECT_EQ(in_turn.error.movements.at(0).rows, 40U);
+  const JudgedDiagnosis held_out = diagnose_strokes(strokes(44, 40, 1e-3), {.bounds = true});
+  EXPECT_LT(held_out.error.max_before, 0.01);
+  EXPECT_LT(held_out.error.attainable, 1.1e-3);
 }
 
 // Presliding, and bounds of the noise, are judged where they are; NaN says that they are not.
