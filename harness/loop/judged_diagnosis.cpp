@@ -270,8 +270,9 @@ JudgedDiagnosis LoopJudge::in_turn() const {
   whole.error = judged(usable, all, pieces(data_.select(usable), whole.correlation_rows));
   whole.error.how =
       !data_.group.empty() ? fmt::format("movements of one '{}' left out in turn", data_.group_name)
-      : data_.movements().size() > turns_for(data_) ? "a tenth of the movements left out in turn"
-                                                    : "each movement left out in turn";
+      : data_.movements().size() > sets.size()
+          ? fmt::format("the movements left out in {} turns", sets.size())
+          : "each movement left out in turn";
   return whole;
 }
 

@@ -229,6 +229,17 @@ TEST(CorrelationTime, FollowsTheCorrelationOfNeighbours) {
   EXPECT_EQ(correlation_time(Eigen::VectorXd::Ones(100), std::vector<RowRange>{{0, 100}}), 1);
 }
 
+TEST(CorrelationTime, SaysTheSameInAnyUnit) {
+  const std::vector<RowRange> one = {{0, 2000}};
+  RandomStream random(14);
+  Eigen::VectorXd rows(2000);
+  double x = 0;
+  for (double& row : rows) row = x = 0.8 * x + random.normal();
+  const double whole = correlation_time(rows, one);
+  ASSERT_GT(whole, 2);
+  EXPECT_NEAR(correlation_time(1e-6 * rows, one), whole, 1e-9);
+}
+
 // Correlation that lasts longer than neighbours show is in the sum: a slow wave
 // under white noise.
 TEST(CorrelationTime, SeesAWaveUnderNoise) {

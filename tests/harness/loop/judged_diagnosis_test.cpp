@@ -226,7 +226,7 @@ TEST(JudgedDiagnosis, LeavesOutSeveralMovementsTogetherWhereRowsAreMany) {
   std::size_t searches = 0;
   const auto progress = [&](std::size_t, std::size_t all) { searches = all; };
   const JudgedDiagnosis many = diagnose_strokes(strokes(12, 600), {.progress = progress});
-  EXPECT_EQ(many.error.how, "a tenth of the movements left out in turn");
+  EXPECT_EQ(many.error.how, "the movements left out in 10 turns");
   EXPECT_EQ(searches, 1U + 10);
   EXPECT_EQ(many.error.test_movements, 12U);
 }
