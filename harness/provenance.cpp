@@ -131,11 +131,6 @@ std::string hash_of_file(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::string_view version() {
-  static const std::string kVersion = build_info().version;
-  return kVersion;
-}
-
 std::string version_with_commit() {
   const BuildInfo build = build_info();
   return fmt::format("{} ({}{})", build.version, build.commit, build.is_dirty ? ", dirty" : "");

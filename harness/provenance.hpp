@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "harness/cell_task.hpp"
@@ -15,7 +14,6 @@
 
 namespace tribench {
 
-std::string_view version();
 // "0.1.0 (9b8c3ea1f2d4, dirty)"
 std::string version_with_commit();
 

@@ -92,8 +92,6 @@ void NightStore::record(const Night& night) {
 
 std::vector<std::string> NightStore::names() const { return stems(folder_ / kNights, kNightEnd); }
 
-bool NightStore::has(const std::string& name) const { return fs::exists(file_of(name)); }
-
 Night NightStore::read(const std::string& name, bool with_seeds) const {
   const fs::path file = file_of(name);
   const auto text = read_file_if_there(file);

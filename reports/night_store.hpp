@@ -32,7 +32,6 @@ class NightStore {
   // Throws Error (bad_input) where a night of that name is there with other contents.
   void record(const Night& night);
   std::vector<std::string> names() const;  // oldest first
-  bool has(const std::string& name) const;
   // Throws Error (bad_input) where it is missing or damaged.
   Night read(const std::string& name, bool with_seeds = true) const;
 

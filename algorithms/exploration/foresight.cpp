@@ -205,21 +205,4 @@ Observations with_signals_of(const Observations& model, const Observations& data
   return out;
 }
 
-Observations joined(std::span<const Observations* const> parts) {
-  Observations out = *parts.front();
-  for (const Observations* part : parts.subspan(1)) {
-    const int first = static_cast<int>(out.movement_names.size());
-    for (std::size_t j = 0; j < out.signals.size(); ++j) {
-      std::vector<double>& values = out.signals[j].values;
-      values.insert(values.end(), part->signals[j].values.begin(), part->signals[j].values.end());
-    }
-    out.target.insert(out.target.end(), part->target.begin(), part->target.end());
-    out.time.insert(out.time.end(), part->time.begin(), part->time.end());
-    for (const int m : part->movement) out.movement.push_back(first + m);
-    out.movement_names.insert(out.movement_names.end(), part->movement_names.begin(),
-                              part->movement_names.end());
-  }
-  return out;
-}
-
 }  // namespace tribench::loop

@@ -47,7 +47,4 @@ Observations observe_plan(const Dataset& rows);
 Observations with_signals_of(const Observations& model, const Observations& data,
                              const Dataset& channels);
 
-// One after the other; the same signals in the same order.
-Observations joined(std::span<const Observations* const> parts);
-
 }  // namespace tribench::loop

@@ -55,7 +55,6 @@ class BasicCompiledFormula {
 extern template class BasicCompiledFormula<double>;
 extern template class BasicCompiledFormula<float>;
 using CompiledFormula = BasicCompiledFormula<double>;
-using FloatCompiledFormula = BasicCompiledFormula<float>;
 
 // Evaluates one formula again and again, and compiles it once that pays: when interpreting it has
 // cost as much as compiling would (so that the choice never costs more than twice the better one).

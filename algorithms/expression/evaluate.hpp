@@ -35,7 +35,6 @@ struct BasicInputs {
   std::size_t rows = 0;
 };
 using Inputs = BasicInputs<double>;
-using FloatInputs = BasicInputs<float>;
 
 enum class ErrorSumStatus {
   complete,

@@ -35,16 +35,6 @@ void StribeckModel::set_parameters(std::span<const double> values) {
   if (has_inertia) inertia = values[next];
 }
 
-double StribeckModel::value_at(const StribeckRows& rows, std::size_t row) const {
-  const StribeckBranch& b = branches[rows.branch[row]];
-  const double v = rows.velocity[row];
-  const double decay = stribeck_decay(v, b.stribeck_velocity, b.exponent);
-  double value = rows.sign[row] * (b.coulomb + b.breakaway_excess * decay) + b.viscous * v;
-  if (has_offset) value += offset;
-  if (has_inertia) value += inertia * rows.acceleration[row];
-  return value;
-}
-
 double StribeckModel::sum_squares(const StribeckRows& rows, std::span<double> gradient) const {
   std::ranges::fill(gradient, 0.0);
   double sum = 0;

@@ -50,7 +50,6 @@ struct StribeckModel {
     return kBranchParameters * branches.size() + (has_offset ? 1U : 0U) + (has_inertia ? 1U : 0U);
   }
 
-  double value_at(const StribeckRows& rows, std::size_t row) const;
   // sum of squared errors; gradient with respect to the parameters where asked for.
   double sum_squares(const StribeckRows& rows, std::span<double> gradient) const;
   // As a formula over the problem's inputs; terms that are exactly 0 are left out.

@@ -2,7 +2,6 @@
 #include "algorithms/parfam/monomials.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "algorithms/expression/build.hpp"
 #include "algorithms/expression/complexity.hpp"
@@ -97,10 +96,6 @@ Expression factored(std::vector<Term> terms, std::span<const Expression> variabl
 }
 
 }  // namespace
-
-int degree_of(const Monomial& monomial) {
-  return std::accumulate(monomial.begin(), monomial.end(), 0);
-}
 
 std::vector<Monomial> monomials_up_to(int degree, std::span<const int> caps) {
   std::vector<Monomial> result;

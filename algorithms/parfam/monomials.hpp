@@ -18,8 +18,6 @@ namespace tribench::parfam {
 // One exponent per variable.
 using Monomial = std::vector<int>;
 
-int degree_of(const Monomial& monomial);
-
 // All monomials of total degree <= degree with exponent j <= caps[j], by degree and then in
 // reverse lexicographic order: 1, x0, x1, x0^2, x0 x1, x1^2, ...
 std::vector<Monomial> monomials_up_to(int degree, std::span<const int> caps);

@@ -13,7 +13,6 @@ namespace {
 // small), steps of a fit.
 constexpr std::size_t kSamples = 64;
 constexpr std::size_t kChildren = 4;
-constexpr std::size_t kFitNodes = 100;
 constexpr int kSteps = 8;
 constexpr int kMostGrowths = 16;
 // The chance to pass on from a growth to the next best.
