@@ -268,11 +268,11 @@ JudgedDiagnosis LoopJudge::in_turn() const {
   whole.bristles = bristles_of(whole, data_);
   const std::vector<char> usable = usable_rows(data_, {}, false, whole.masked);
   whole.error = judged(usable, all, pieces(data_.select(usable), whole.correlation_rows));
-  whole.error.how =
-      !data_.group.empty() ? fmt::format("movements of one '{}' left out in turn", data_.group_name)
-      : data_.movements().size() > sets.size()
-          ? fmt::format("the movements left out in {} turns", sets.size())
-          : "each movement left out in turn";
+  whole.error.how = !data_.group.empty()
+                        ? fmt::format("movements of one '{}' left out in turn", data_.group_name)
+                    : data_.movements().size() > sets.size()
+                        ? fmt::format("the movements left out in {} turns", sets.size())
+                        : "each movement left out in turn";
   return whole;
 }
 
