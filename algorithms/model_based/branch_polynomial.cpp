@@ -43,7 +43,8 @@ Expression coefficient(double c0, double c1, const Expression& sign) {
 // Horner's scheme.
 Expression formula_of(std::span<const double> c, const FrictionInputs& inputs) {
   const Expression sign = inputs.sign();
-  Expression result = coefficient(c[2 * kDegree], c[2 * kDegree + 1], sign);
+  constexpr std::size_t kLast = 2 * std::size_t{kDegree};
+  Expression result = coefficient(c[kLast], c[kLast + 1], sign);
   for (std::size_t k = kDegree; k-- > 0;) {
     result = coefficient(c[2 * k], c[2 * k + 1], sign) + input(inputs.velocity) * result;
   }
