@@ -39,6 +39,12 @@ void ProgressLine::cell_ended(double predicted_s, bool failed) {
   show(false);
 }
 
+void ProgressLine::expect_more(std::size_t cells, double predicted_s) {
+  const std::lock_guard lock(mutex_);
+  cells_ += cells;
+  predicted_s_ += predicted_s;
+}
+
 void ProgressLine::show(bool last) {
   if (quiet_ || cells_ == 0) return;
   const double elapsed_s =

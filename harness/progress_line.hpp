@@ -26,8 +26,9 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // Safe from several threads.
+  // Safe from several threads, both.
   void cell_ended(double predicted_s, bool failed);
+  void expect_more(std::size_t cells, double predicted_s);
 
  private:
   void show(bool last);

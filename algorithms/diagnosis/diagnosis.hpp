@@ -148,6 +148,7 @@ struct Diagnosis {
   std::size_t movements = 0;
   double correlation_rows = 1;  // how many rows the noise lasts
   std::vector<EffectFinding> effects;
+  std::vector<std::string> tried;  // families that stood in the model at some time of the search
   LeftoverFinding leftover;
   std::vector<UntestableFinding> untestable;
   std::vector<CoincidingFamilies> aliased;

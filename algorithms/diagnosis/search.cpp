@@ -51,6 +51,7 @@ bool add(SearchState& state, const Candidate& winner, const Round& round,
     state.found.push_back({winner.family, round.family_p[winner.family], winner.gain,
                            winner.rescued, aliases_of(winner, round, state.model, campaign)});
   }
+  state.tried.insert(winner.family);
   state.model = std::move(extended);
   return true;
 }
@@ -142,9 +143,12 @@ SearchResult begin_otherwise(SearchResult one, SearchResult start, const Round& 
   if (one.leftover.inputs.empty() || one.taken.empty()) return one;
   start.state.left_out.push_back(one.taken.front());
   SearchResult other = take_effects(std::move(start), round, campaign, random);
+  one.state.tried.insert(other.state.tried.begin(), other.state.tried.end());
   if (!other.leftover.inputs.empty() || other.state.found.empty()) return one;
   const Gain lead = lead_over(one.whole, other.state.model, campaign);
-  return lead.nats > 0 ? other : one;
+  if (!(lead.nats > 0)) return one;
+  other.state.tried = one.state.tried;
+  return other;
 }
 
 }  // namespace

@@ -278,13 +278,12 @@ loop::JudgedDiagnosis diagnosed(const LoopArguments& arguments, const loop::Obse
   loop::JudgingOptions judging = judging_options();
   const int jobs = arguments.jobs > 0 ? arguments.jobs : usable_processors();
   judging.threads = base_is_a_method ? 1 : jobs;
-  std::optional<ProgressLine> line;
+  std::size_t expected = 0;
+  ProgressLine line(0, 0, false, ProgressUnit{"searches", false, kShownFrom_s});
   judging.progress = [&](std::size_t, std::size_t searches) {
-    if (!line) {
-      line.emplace(searches, static_cast<double>(searches), false,
-                   ProgressUnit{"searches", false, kShownFrom_s});
-    }
-    line->cell_ended(1, false);
+    line.expect_more(searches - expected, static_cast<double>(searches - expected));
+    expected = searches;
+    line.cell_ended(1, false);
   };
   return loop::diagnose_and_judge(data, base, diagnosis_options(arguments), judging);
 }

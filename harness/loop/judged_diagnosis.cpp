@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -82,6 +83,12 @@ Observations cut_in_pieces(const Observations& data) {
   return out;
 }
 
+std::vector<std::size_t> numbers(std::size_t from, std::size_t to) {
+  std::vector<std::size_t> all(to - from);
+  std::iota(all.begin(), all.end(), from);
+  return all;
+}
+
 // What the models fitted without them make of the movements left out, in rows of all data.
 struct LeftOut {
   Eigen::VectorXd before;
@@ -107,13 +114,9 @@ class ChosenShares {
     if (searches_ == 0) return;
     for (EffectFinding& effect : whole.effects) effect.chosen_share = of(effect.family);
   }
-  // What the diagnosis names and too few of the searches do.
-  std::vector<std::string> unstable(const Diagnosis& whole) const {
-    std::vector<std::string> families;
-    for (const EffectFinding& effect : whole.effects) {
-      if (searches_ > 0 && of(effect.family) < kStableShare) families.push_back(effect.family);
-    }
-    return families;
+  // Whether so few of the searches choose it that it is not named.
+  bool is_unstable(const std::string& family) const {
+    return searches_ > 0 && of(family) < kStableShare;
   }
   double of(const std::string& family) const {
     const auto found = times_.find(family);
@@ -132,14 +135,19 @@ class LoopJudge {
             const JudgingOptions& judging)
       : data_(data), base_(base), options_(options), judging_(judging) {}
 
-  JudgedDiagnosis with_held_out(const std::vector<int>& test) const;
-  JudgedDiagnosis in_turn() const;
+  JudgedDiagnosis with_held_out(const std::vector<int>& test);
+  JudgedDiagnosis in_turn();
 
  private:
-  std::vector<Diagnosis> searches_without(const std::vector<std::vector<int>>& sets,
-                                          const DiagnosisOptions& options) const;
-  void search_again(JudgedDiagnosis& whole) const;
-  DiagnosisOptions name_the_stable(JudgedDiagnosis& whole, const ChosenShares& shares) const;
+  // Searches without some movements, the first of them the one that is reported.
+  struct Searches {
+    std::vector<std::vector<int>> without;
+    std::vector<Diagnosis> found;
+    Diagnosis& whole() { return found.front(); }
+  };
+  void search(Searches& all, const std::vector<std::size_t>& which,
+              const DiagnosisOptions& options);
+  void name_the_stable(Searches& all);
   // bristles: of `fitted`.
   void add_predictions(LeftOut& all, const Diagnosis& fitted,
                        const std::optional<Bristles>& bristles, const RandomStream& random) const;
@@ -151,59 +159,53 @@ class LoopJudge {
   const DiagnosisOptions& options_;
   const JudgingOptions& judging_;
   RandomStream random_{key_of("judge")};
+  std::size_t ended_ = 0;  // searches, of those asked for
+  std::size_t asked_ = 0;
 };
 
-// The searches without the movements of each set, in their order.
-std::vector<Diagnosis> LoopJudge::searches_without(const std::vector<std::vector<int>>& sets,
-                                                   const DiagnosisOptions& options) const {
-  std::vector<Diagnosis> all(sets.size());
-  std::size_t ended = 1;  // the search with all of them
+void LoopJudge::search(Searches& all, const std::vector<std::size_t>& which,
+                       const DiagnosisOptions& options) {
   std::mutex mutex;
-  const auto tell = [&] {
+  all.found.resize(all.without.size());
+  asked_ += which.size();
+  parallel_for(which.size(), judging_.threads, [&](std::size_t k) {
+    all.found[which[k]] = diagnose(data_, base_, options, all.without[which[k]]);
     const std::lock_guard lock(mutex);
-    if (judging_.progress) judging_.progress(ended++, sets.size() + 1);
-  };
-  tell();
-  parallel_for(sets.size(), judging_.threads, [&](std::size_t k) {
-    all[k] = diagnose(data_, base_, options, sets[k]);
-    tell();
+    if (judging_.progress) judging_.progress(++ended_, asked_);
   });
-  return all;
 }
 
-// Many movements: the search again without a tenth of the training movements in turn.
-void LoopJudge::search_again(JudgedDiagnosis& whole) const {
-  if (whole.effects.empty()) return;
-  const std::vector<char> training = usable_rows(data_, whole.held_out, false, {});
-  std::vector<std::vector<int>> sets = left_out_together(data_.select(training));
-  for (std::vector<int>& left : sets) {
-    left.insert(left.end(), whole.held_out.begin(), whole.held_out.end());
-    std::ranges::sort(left);
-  }
+// Stability selection (Meinshausen and Buehlmann 2010): what too few of the searches on parts
+// choose hangs on a movement or two. Where the whole names such an effect, all are asked anew for
+// what most of them choose, but those that never took anything else: whether something else stands
+// for it, or is left over.
+void LoopJudge::name_the_stable(Searches& all) {
   ChosenShares shares;
-  for (const Diagnosis& part : searches_without(sets, options_)) shares.count(part);
-  name_the_stable(whole, shares);
-}
-
-// Stability selection (Meinshausen and Buehlmann 2010): what too few of the searches choose hangs
-// on a movement or two. It is not named; whether something else stands for it, or is left over, is
-// asked anew. Returns the options that leave it unnamed.
-DiagnosisOptions LoopJudge::name_the_stable(JudgedDiagnosis& whole,
-                                            const ChosenShares& shares) const {
+  for (std::size_t k = 1; k < all.found.size(); ++k) shares.count(all.found[k]);
   DiagnosisOptions options = options_;
-  std::vector<std::string> unstable = shares.unstable(whole);
-  while (!unstable.empty()) {
-    options.unnamed.insert(options.unnamed.end(), unstable.begin(), unstable.end());
-    static_cast<Diagnosis&>(whole) = diagnose(data_, base_, options, whole.held_out);
-    unstable = shares.unstable(whole);
+  for (const EffectFamily& family : all.whole().families) {
+    if (shares.is_unstable(family.name)) options.unnamed.push_back(family.name);
   }
-  for (const std::string& family : options.unnamed) {
-    whole.notes.push_back(fmt::format(
+  const auto is_unnamed = [&](const std::string& family) {
+    return std::ranges::count(options.unnamed, family) > 0;
+  };
+  std::vector<std::string> notes;
+  for (const EffectFinding& effect : all.whole().effects) {
+    if (!is_unnamed(effect.family)) continue;
+    notes.push_back(fmt::format(
         "'{}' is chosen by {:.0f} % of the searches without some of the movements: not named",
-        family, 100 * shares.of(family)));
+        effect.family, 100 * shares.of(effect.family)));
   }
-  shares.write(whole);
-  return options;
+  if (!notes.empty()) {
+    std::vector<std::size_t> again;
+    for (std::size_t k = 0; k < all.found.size(); ++k) {
+      if (std::ranges::any_of(all.found[k].tried, is_unnamed)) again.push_back(k);
+    }
+    search(all, again, options);
+  }
+  std::vector<std::string>& said = all.whole().notes;
+  said.insert(said.end(), notes.begin(), notes.end());
+  shares.write(all.whole());
 }
 
 // Of the rows that a diagnosis has not seen.
@@ -252,33 +254,43 @@ ErrorFinding LoopJudge::judged(const std::vector<char>& rows, const LeftOut& mod
 
 // Few movements: the whole procedure again for each, without it, and all of them judged together.
 // Says of each effect how many of them choose it too.
-JudgedDiagnosis LoopJudge::in_turn() const {
-  JudgedDiagnosis whole{diagnose(data_, base_, options_), {}, {}};
-  const std::vector<std::vector<int>> sets = left_out_together(data_);
-  std::vector<Diagnosis> parts = searches_without(sets, options_);
-  ChosenShares shares;
-  for (const Diagnosis& part : parts) shares.count(part);
-  const DiagnosisOptions options = name_the_stable(whole, shares);
+JudgedDiagnosis LoopJudge::in_turn() {
+  Searches searches{left_out_together(data_), {}};
+  const std::size_t turns = searches.without.size();
+  searches.without.insert(searches.without.begin(), std::vector<int>());
+  search(searches, numbers(0, turns + 1), options_);
+  name_the_stable(searches);
   // The error is that of what is named.
-  if (!options.unnamed.empty()) parts = searches_without(sets, options);
   LeftOut all(data_.rows());
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    add_predictions(all, parts[k], bristles_of(parts[k], data_), random_.split(k));
+  for (std::size_t k = 1; k <= turns; ++k) {
+    const Diagnosis& part = searches.found[k];
+    add_predictions(all, part, bristles_of(part, data_), random_.split(k - 1));
   }
+  JudgedDiagnosis whole{std::move(searches.whole()), {}, {}};
   whole.bristles = bristles_of(whole, data_);
   const std::vector<char> usable = usable_rows(data_, {}, false, whole.masked);
   whole.error = judged(usable, all, pieces(data_.select(usable), whole.correlation_rows));
-  whole.error.how = !data_.group.empty()
-                        ? fmt::format("movements of one '{}' left out in turn", data_.group_name)
-                    : data_.movements().size() > sets.size()
-                        ? fmt::format("the movements left out in {} turns", sets.size())
-                        : "each movement left out in turn";
+  whole.error.how =
+      !data_.group.empty() ? fmt::format("movements of one '{}' left out in turn", data_.group_name)
+      : data_.movements().size() > turns ? fmt::format("the movements left out in {} turns", turns)
+                                         : "each movement left out in turn";
   return whole;
 }
 
-JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) const {
-  JudgedDiagnosis whole{diagnose(data_, base_, options_, test), {}, {}};
-  if (judging_.resample) search_again(whole);
+JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
+  Searches searches{{test}, {}};
+  search(searches, {0}, options_);
+  if (judging_.resample && !searches.whole().effects.empty()) {
+    for (std::vector<int>& left :
+         left_out_together(data_.select(usable_rows(data_, test, false, {})))) {
+      left.insert(left.end(), test.begin(), test.end());
+      std::ranges::sort(left);
+      searches.without.push_back(std::move(left));
+    }
+    search(searches, numbers(1, searches.without.size()), options_);
+    name_the_stable(searches);
+  }
+  JudgedDiagnosis whole{std::move(searches.whole()), {}, {}};
   whole.bristles = bristles_of(whole, data_);
   whole.error.judged_on = JudgedOn::rows_of_the_fit;
   whole.error.how = "none held out";

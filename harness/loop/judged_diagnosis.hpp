@@ -22,8 +22,8 @@ struct JudgingOptions {
   // The searches without some movements run side by side, with the same answer; a base that is a
   // method takes one thread (its budget is one).
   int threads = 1;
-  // Told after each search: how many have ended, of how many. Empty: nobody. From any thread, one
-  // at a time.
+  // Told after each search: how many have ended, of how many; these may become more on the way.
+  // Empty: nobody. From any thread, one at a time.
   std::function<void(std::size_t ended, std::size_t searches)> progress;
 };
 

@@ -143,6 +143,26 @@ TEST(JudgedDiagnosis, WhatTheSearchesOnPartsDoNotFindAgainIsNotNamed) {
   }
 }
 
+// The same found without the searches on parts that had it at no time: these would say what they
+// said.
+TEST(JudgedDiagnosis, OnlySearchesThatHadWhatIsNotNamedAreRunAgain) {
+  std::size_t ended = 0;
+  std::size_t asked = 0;
+  const auto progress = [&](std::size_t now, std::size_t searches) {
+    ended = now;
+    asked = searches;
+  };
+  const kuka::PlantedCase planted{.effects = {{"stribeck", 0.08}}};
+  const JudgedDiagnosis once = diagnose_planted(planted, 4);
+  const JudgedDiagnosis again =
+      diagnose_planted(planted, 4, {.resample = true, .progress = progress});
+  EXPECT_EQ(once.tried, std::vector<std::string>{"stribeck"});
+  EXPECT_THAT(again.tried, ::testing::IsEmpty());
+  EXPECT_EQ(ended, asked);
+  EXPECT_GT(asked, 1U + 10 + 1);  // the whole, ten parts, the whole again, and some of the parts
+  EXPECT_LT(asked, 2U * (1 + 10));
+}
+
 // Searches side by side and one after the other: the same, bit for bit.
 TEST(JudgedDiagnosis, IsTheSameOnAnyNumberOfThreads) {
   const kuka::PlantedCase planted{.effects = {{"stribeck", 1.0}}};
