@@ -227,9 +227,7 @@ bool LeftoverSearch::drop_if_superfluous(const Smoother& smoother, std::size_t f
       whitened(with_direction(smoother, campaign_.data), campaign_.clusters, rest.noise);
   rest.basis = orthonormal_basis(beside(rest.x, features));
   rest.residual = project_off(rest.residual, rest.basis);
-  if (p_beside(rest, family, this->model(), campaign_) <= campaign_.options.alpha_library) {
-    return false;
-  }
+  if (tells_beside(rest, family, this->model(), campaign_)) return false;
   result_.leftover.proxies_removed.push_back(campaign_.families[family].name);
   std::erase_if(state().found, [&](const Found& one) { return one.family == family; });
   model = model.without(family);

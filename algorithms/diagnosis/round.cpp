@@ -2,6 +2,8 @@
 #include "algorithms/diagnosis/round.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 #include "algorithms/inference/whitening.hpp"
 
@@ -64,18 +66,27 @@ Round test_library(const FittedModel& model, const Campaign& campaign) {
   return round;
 }
 
-double p_beside(const FittedModel& rest, std::size_t family, const FittedModel& with,
-                const Campaign& campaign) {
+bool tells_beside(const FittedModel& rest, std::size_t family, const FittedModel& with,
+                  const Campaign& campaign) {
   std::vector<Expression> formulas;
   for (const Atom& atom : with.model.atoms) {
     if (atom.family != family) continue;
     formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
   }
+  const double alpha = campaign.options.alpha_library;
   const Eigen::MatrixXd z =
       whitened(evaluate_columns(formulas, campaign.data), campaign.clusters, rest.noise);
-  const BlockScores block = score_block(z, rest.basis, rest.residual, campaign.clusters);
-  if (!block.test.testable) return 1;
-  return adjusted_p(block.test.score, test_library(rest, campaign).maxima);
+  BlockScores block = score_block(z, rest.basis, rest.residual, campaign.clusters);
+  if (!block.test.testable) return false;
+  // What is not told by itself is not told among the whole library, which costs a hundred times as
+  // much to look at.
+  const double score = block.test.score;
+  const auto stop =
+      static_cast<std::size_t>(std::ceil(alpha * static_cast<double>(campaign.flips.count() + 1)));
+  if (adjusted_p(score, flip_maxima(std::span(&block, 1), campaign.flips, score, stop)) > alpha) {
+    return false;
+  }
+  return adjusted_p(score, test_library(rest, campaign).maxima) <= alpha;
 }
 
 }  // namespace tribench::loop

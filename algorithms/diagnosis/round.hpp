@@ -25,8 +25,9 @@ struct Round {
 
 Round test_library(const FittedModel& model, const Campaign& campaign);
 
-// The p of a family as it stands in `with`, beside a model without it.
-double p_beside(const FittedModel& rest, std::size_t family, const FittedModel& with,
-                const Campaign& campaign);
+// Whether a family as it stands in `with` is told beside a model without it: its p, adjusted for
+// the whole library, is at most alpha_library.
+bool tells_beside(const FittedModel& rest, std::size_t family, const FittedModel& with,
+                  const Campaign& campaign);
 
 }  // namespace tribench::loop
