@@ -128,7 +128,13 @@ std::vector<LoopAnswer::Effect> effects_in(const json& object) {
   std::vector<LoopAnswer::Effect> effects;
   for (const json& effect : object.value("effects", json::array())) {
     effects.push_back({effect.at("family").get<std::string>(), {}});
-    effects.back().stiffness = effect.value("bristles", json::object()).value("stiffness", 0.0);
+    const json bristles = effect.value("bristles", json::object());
+    effects.back().stiffness = bristles.value("stiffness", 0.0);
+    effects.back().stiffness_low = bristles.value("lo", 0.0);
+    // Without an upper end it is null.
+    const bool ends = bristles.contains("hi") && bristles["hi"].is_number();
+    effects.back().stiffness_high =
+        ends ? bristles["hi"].get<double>() : std::numeric_limits<double>::infinity();
     for (const json& alias : effect.value("alias", json::array())) {
       effects.back().aliases.push_back(alias.at("family").get<std::string>());
     }

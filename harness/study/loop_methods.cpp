@@ -29,6 +29,8 @@ LoopAnswer diagnose(const LoopCase& one, const PlantedData& planted,
     answer.effects.push_back({effect.family, {}, effect.another_shape, 0});
     if (bristles && effect.family == diagnosis.families[bristles->family].name) {
       answer.effects.back().stiffness = bristles->stiffness;
+      answer.effects.back().stiffness_low = bristles->low;
+      answer.effects.back().stiffness_high = bristles->high;
     }
     for (const loop::AliasFinding& alias : effect.aliases) {
       answer.effects.back().aliases.push_back(alias.family);

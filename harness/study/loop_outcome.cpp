@@ -156,7 +156,11 @@ LoopOutcome judge_answer(const LoopCase& one, const LoopAnswer& answer,
   }
   for (const LoopAnswer::Effect& effect : answer.effects) {
     out.claimed.push_back(effect.family);
-    out.said_stiffness += effect.stiffness;
+    if (effect.stiffness > 0) {
+      out.said_stiffness = effect.stiffness;
+      out.said_low = effect.stiffness_low;
+      out.said_high = effect.stiffness_high;
+    }
     out.aliases.insert(out.aliases.end(), effect.aliases.begin(), effect.aliases.end());
   }
   out.unknown = answer.unknown;
@@ -202,7 +206,9 @@ std::string outcome_row(const LoopOutcome& o) {
                                            csv_number(o.cpu_s),
                                            csv_number(o.mae_state),
                                            csv_number(o.stiffness),
-                                           csv_number(o.said_stiffness)};
+                                           csv_number(o.said_stiffness),
+                                           csv_number(o.said_low),
+                                           csv_number(o.said_high)};
   std::string row;
   append_csv_row(row, fields);
   return row;
@@ -238,6 +244,8 @@ LoopOutcome read_outcome(std::span<const std::string_view> fields) {
   o.mae_state = number_in(fields[22]);
   o.stiffness = number_in(fields[23]);
   o.said_stiffness = number_in(fields[24]);
+  o.said_low = number_in(fields[25]);
+  o.said_high = number_in(fields[26]);
   return o;
 }
 

@@ -26,6 +26,8 @@ struct LoopAnswer {
     std::vector<std::string> aliases;  // what else it could be
     bool another_shape = false;        // this cause, but no shape of the library is its own
     double stiffness = 0;              // of bristles, where it says one; the data's unit
+    double stiffness_low = 0;          // its 95 % interval
+    double stiffness_high = 0;
   };
   struct Burst {
     int movement = 0;
@@ -84,7 +86,9 @@ struct LoopOutcome {
   Says says = Says::exact;
   double stiffness = 0;       // of planted bristles; 0: none planted
   double said_stiffness = 0;  // 0: none said
-  bool located = false;       // UNKNOWN in the inputs in which the one effect lives
+  double said_low = 0;        // the interval said with it
+  double said_high = 0;
+  bool located = false;  // UNKNOWN in the inputs in which the one effect lives
   double cpu_s = 0;
 
   // The one effect that was planted; empty where it was none or two.
@@ -105,11 +109,12 @@ Says judge_story(const LoopAnswer& answer, const std::vector<PlantedEffect>& eff
 LoopOutcome judge_answer(const LoopCase& one, const LoopAnswer& answer, const PlantedData& planted);
 
 // One line of CSV an outcome.
-inline constexpr std::array<std::string_view, 25> kOutcomeColumns = {
-    "case",       "group",     "noise",     "design",        "scale",     "seed",   "planted",
-    "claimed",    "aliases",   "unknown",   "inputs",        "events",    "bursts", "bursts_found",
-    "mae_before", "mae_after", "mae_noise", "naive_f_test",  "naive_bic", "says",   "located",
-    "cpu_s",      "mae_state", "stiffness", "said_stiffness"};
+inline constexpr std::array<std::string_view, 27> kOutcomeColumns = {
+    "case",           "group",        "noise",      "design",    "scale",     "seed",
+    "planted",        "claimed",      "aliases",    "unknown",   "inputs",    "events",
+    "bursts",         "bursts_found", "mae_before", "mae_after", "mae_noise", "naive_f_test",
+    "naive_bic",      "says",         "located",    "cpu_s",     "mae_state", "stiffness",
+    "said_stiffness", "said_low",     "said_high"};
 std::string outcome_row(const LoopOutcome& outcome);
 // Throws Error (bad_input) where a field is no number.
 LoopOutcome read_outcome(std::span<const std::string_view> fields);

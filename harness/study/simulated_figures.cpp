@@ -27,6 +27,10 @@ bool is_stiffness_right(const LoopOutcome& one) {
   return std::abs(one.said_stiffness / one.stiffness - 1) <= 0.1;
 }
 
+bool is_stiffness_in_interval(const LoopOutcome& one) {
+  return one.said_low <= one.stiffness && one.stiffness <= one.said_high;
+}
+
 bool is_named(const LoopOutcome& one) {
   return one.says == Says::exact || one.says == Says::another_shape;
 }
@@ -55,6 +59,10 @@ void add_memory_figures(FigureTable& table) {
   table.rate("stiffness within 10 %, k >= 1",
              [](const LoopOutcome& o) { return has_bristles(o) && is_strong(o); },
              is_stiffness_right, {95, true});
+  table.rate(
+      "stiffness in its 95 % interval, k >= 1",
+      [](const LoopOutcome& o) { return has_bristles(o) && is_strong(o) && o.said_stiffness > 0; },
+      is_stiffness_in_interval, {90, true});
   table.rate(
       "a memory where none is", [](const LoopOutcome& o) { return !has_memory(o); },
       [](const LoopOutcome& o) {

@@ -42,7 +42,12 @@ LoopAnswer knows_all(const LoopCase& /*one*/, const PlantedData& planted) {
   answer.after = planted.truth.noise_free();
   for (const PlantedEffect& effect : planted.truth.effects) {
     if (effect.in_library()) {
-      answer.effects.push_back({effect.names.front(), {}, false, effect.stiffness});
+      answer.effects.push_back({effect.names.front(),
+                                {},
+                                false,
+                                effect.stiffness,
+                                0.9 * effect.stiffness,
+                                1.1 * effect.stiffness});
       continue;
     }
     answer.unknown = true;
@@ -120,6 +125,16 @@ TEST(LoopStudy, OnSimulatedCampaignsTheTruthMeetsEveryTargetAndSilenceIsNeverWro
   EXPECT_EQ(figure(best, "false alarm, noise skewed").trials, 2U);
   for (const CauseAnswers& one : best.answers) EXPECT_EQ(one.counts[0], one.runs) << one.cause;
   EXPECT_EQ(figure(best, "stiffness within 10 %, k >= 1").trials, 12U);
+  EXPECT_EQ(figure(best, "stiffness in its 95 % interval, k >= 1").hits, 12U);
+  const auto too_sure = [](const LoopCase& one, const PlantedData& planted) {
+    LoopAnswer answer = knows_all(one, planted);
+    for (LoopAnswer::Effect& effect : answer.effects) effect.stiffness_low *= 1.2;
+    return answer;
+  };
+  EXPECT_EQ(figure(run_loop_study(small_simulated_study(), too_sure),
+                   "stiffness in its 95 % interval, k >= 1")
+                .hits,
+            0U);
   const LoopStudy silent = run_loop_study(small_simulated_study(), says_nothing);
   EXPECT_EQ(figure(silent, "stiffness within 10 %, k >= 1").hits, 0U);
   EXPECT_EQ(figure(silent, "named, k >= 1").hits, 0U);
