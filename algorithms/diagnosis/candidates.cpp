@@ -146,7 +146,7 @@ std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
 namespace {
 
 // Atoms whose columns are as they stand, so that some of them can be compared with others.
-bool is_rigid(const Atom& atom) { return atom.shapes.empty(); }
+bool is_rigid(const Atom& atom) { return std::ranges::none_of(atom.shapes, &Shape::refined); }
 
 using AtomSet = std::vector<std::size_t>;  // of the library
 
@@ -225,7 +225,7 @@ std::vector<std::size_t> better_atoms(std::size_t family, const Round& round,
   std::vector<std::string> own;
   for (const Atom& atom : model.model.atoms) {
     if (atom.family != family) continue;
-    if (!is_rigid(atom)) return {};
+    if (!is_rigid(atom) && !atom.beside_another) return {};
     own.push_back(atom.label);
   }
   const auto is_own = [&](std::size_t atom) {

@@ -41,7 +41,7 @@ std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
 // Which of a family's atoms is the first is told while others are missing that come later, and
 // where the joint does not turn far enough many waves look alike: as many atoms of the family that
 // predict better beside the rest as it stands, or fewer that predict no worse. Empty: none do, or
-// one that it has has a shape of its own.
+// one that it has, and that may stand alone, has a shape of its own.
 std::vector<std::size_t> better_atoms(std::size_t family, const Round& round,
                                       const FittedModel& model, const Campaign& campaign);
 

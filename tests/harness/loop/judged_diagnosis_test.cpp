@@ -163,6 +163,20 @@ TEST(JudgedDiagnosis, OnlySearchesThatHadWhatIsNotNamedAreRunAgain) {
   EXPECT_LT(asked, 2U * (1 + 10));
 }
 
+// Three waves in the joint's angle, of which a search takes the first and then one that drifts:
+// both give way to the wave and its harmonics, and nothing is left to ask for a third column.
+TEST(JudgedDiagnosis, AWaveThatSeemedToDriftGivesWayToTheHarmonicsOfTheFirst) {
+  const PlantedData run =
+      simulation::simulate({"output_ripple_harmonics", 2, simulation::NoiseKind::heteroscedastic,
+                            simulation::Design::mixed},
+                           7140085);
+  const JudgedDiagnosis diagnosis = diagnose_and_judge(observe(run.data), coulomb_viscous_base,
+                                                       {.gear_ratios = {100}}, {.resample = true});
+  EXPECT_EQ(families(diagnosis), std::vector<std::string>{"output_ripple"});
+  EXPECT_EQ(diagnosis.verdict, Verdict::effects);
+  EXPECT_LT(diagnosis.error.mae_after, 0.4 * diagnosis.error.mae_before);
+}
+
 // Searches side by side and one after the other: the same, bit for bit.
 TEST(JudgedDiagnosis, IsTheSameOnAnyNumberOfThreads) {
   const kuka::PlantedCase planted{.effects = {{"stribeck", 1.0}}};
