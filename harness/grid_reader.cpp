@@ -338,7 +338,7 @@ Grid parse_grid(std::string_view toml, const std::string& file_name, const Regis
   std::vector<std::string> keys = {"grid",   "budget",   "retry",        "prior",
                                    "method", "external", "operator_set", "problem"};
   if (root.contains("suite")) {
-    keys.insert(keys.end(), {"suite", "reference"});
+    keys.insert(keys.end(), {"suite", "reference", "published"});
     check_suite(toml, file_name, catalogue);
   }
   const TomlTable file(root, file_name, "", keys);

@@ -31,7 +31,11 @@ int nodes_of(const std::string& law) {
 std::string suite_text(const Grid& grid) {
   std::vector<SuiteInfo> suites;
   for (const suite::Suite& suite : grid.suites) {
-    SuiteInfo info{suite.name, suite.summary, suite.recovered_below, suite.reference_note, {}, {}};
+    SuiteInfo info;
+    info.name = suite.name;
+    info.summary = suite.summary;
+    info.recovered_below = suite.recovered_below;
+    info.reference_note = suite.reference_note;
     for (const suite::SuiteProblem& problem : suite.problems) {
       const std::string name = fmt::format("{}/{}", suite.name, problem.name);
       const int nodes = problem.law.empty() ? 0 : nodes_of(problem.law);
@@ -44,6 +48,15 @@ std::string suite_text(const Grid& grid) {
     }
     for (const suite::SuiteReference& one : suite.references) {
       info.references.push_back({one.method, one.seconds, one.recovered, one.low, one.high});
+    }
+    for (const suite::PublishedResult& one : suite.results) {
+      info.results.push_back({fmt::format("{}/{}", suite.name, one.dataset), one.method,
+                              one.symbolic, one.r2, one.seconds});
+    }
+    info.results_note = suite.published.note;
+    if (suite.results.empty() && !suite.published.file.empty()) {
+      info.results_note = fmt::format(
+          "Published results would stand here if the folder of data had {}.", suite.published.file);
     }
     suites.push_back(std::move(info));
   }

@@ -228,7 +228,9 @@ SuiteInfo suite_in(const nlohmann::json& json) {
                   json.at("recovered_below"),
                   json.at("reference_note"),
                   {},
-                  {}};
+                  {},
+                  suite_results_in(json.value("results", nlohmann::json::array())),
+                  json.value("results_note", "")};
   for (const nlohmann::json& one : json.at("problems")) {
     suite.problems.push_back({one.at("problem"), one.at("law"), one.at("nodes")});
   }
@@ -257,7 +259,9 @@ std::string suites_json(const std::vector<SuiteInfo>& suites) {
                      {"recovered_below", suite.recovered_below},
                      {"reference_note", suite.reference_note},
                      {"problems", problems},
-                     {"references", references}});
+                     {"references", references},
+                     {"results", suite_results_json(suite.results)},
+                     {"results_note", suite.results_note}});
   }
   return array.dump(1) + "\n";
 }
@@ -283,7 +287,7 @@ std::vector<SuiteView> view_suites(const std::vector<SuiteInfo>& suites,
                                    const std::vector<Record>& records) {
   std::vector<SuiteView> views;
   for (const SuiteInfo& suite : suites) {
-    SuiteView view{suite, {}, size_bounds_of(suite), {}};
+    SuiteView view{suite, {}, size_bounds_of(suite), {}, {}};
     std::map<std::pair<std::string, std::string>, ByProblem> methods;
     std::set<std::string> solved;
     for (const Record& record : records) {
@@ -303,6 +307,7 @@ std::vector<SuiteView> view_suites(const std::vector<SuiteInfo>& suites,
         view.never_solved.push_back(one.problem);
       }
     }
+    view.ranks = rank_among_published(suite.results, records);
     views.push_back(std::move(view));
   }
   return views;
@@ -324,6 +329,8 @@ std::string suites_markdown(const std::vector<SuiteView>& views, std::string_vie
     if (!view.suite.references.empty()) {
       text += "\n" + view.suite.reference_note + "\n\n" + reference_table(view.suite);
     }
+    if (!view.suite.results_note.empty()) text += "\n" + view.suite.results_note + "\n";
+    text += suite_ranks_markdown(view.ranks);
     text += "\n" + never_solved_text(view);
   }
   return text;
@@ -344,6 +351,8 @@ ordered_json suite_views_json(const std::vector<SuiteView>& views) {
                      {"reference_note", view.suite.reference_note},
                      {"rows", rows},
                      {"references", references},
+                     {"results_note", view.suite.results_note},
+                     {"ranks", suite_ranks_json(view.ranks)},
                      {"never_solved", view.never_solved}});
   }
   return array;

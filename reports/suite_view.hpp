@@ -18,6 +18,7 @@
 #include "reports/record/record.hpp"
 #include "reports/run_folder.hpp"
 #include "reports/statistics/intervals.hpp"
+#include "reports/suite_ranks.hpp"
 
 namespace tribench {
 
@@ -45,6 +46,8 @@ struct SuiteInfo {
   std::string reference_note;
   std::vector<SuiteProblemInfo> problems;
   std::vector<SuiteReferencePoint> references;
+  std::vector<SuiteResult> results;
+  std::string results_note;
 };
 
 std::string suites_json(const std::vector<SuiteInfo>& suites);
@@ -76,6 +79,7 @@ struct SuiteView {
   std::vector<SuiteMethodRow> rows;       // the most recovered first
   std::array<int, 2> size_bounds{};       // the largest law of the first and the second third
   std::vector<std::string> never_solved;  // problems with cells, recovered by no method
+  SuiteRanks ranks;
 };
 
 // Suites that the run has no record of are left out.

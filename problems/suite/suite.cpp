@@ -149,6 +149,24 @@ SuiteReference read_reference(const TomlTable& table) {
   return reference;
 }
 
+PublishedTable read_published(const TomlTable& file) {
+  const TomlTable table =
+      file.table("published", {"file", "r2", "seconds", "symbolic", "where", "note"});
+  PublishedTable published;
+  table.require("file");
+  table.read("file", published.file);
+  table.read("r2", published.r2);
+  table.read("seconds", published.seconds);
+  table.read("symbolic", published.symbolic);
+  table.read("where", published.where);
+  table.read("note", published.note);
+  if (!published.where.empty() && published.where.find('=') == std::string::npos) {
+    throw_bad_input(fmt::format("'{}' says no value", published.where), table.place("where"),
+                    "where = \"COLUMN=VALUE\"");
+  }
+  return published;
+}
+
 }  // namespace
 
 double lattice_points(const Draw& draw) {
@@ -177,8 +195,8 @@ const std::vector<std::string>& suite_keys() {
 Suite read_suite(std::string_view toml, const std::string& file_name) {
   const toml::table root = parse_toml(toml, file_name);
   const TomlTable file(root, file_name, "",
-                       {"suite", "problem", "reference", "grid", "budget", "retry", "method",
-                        "external", "operator_set"});
+                       {"suite", "problem", "reference", "published", "grid", "budget", "retry",
+                        "method", "external", "operator_set"});
   file.require("suite");
   const TomlTable head = file.table("suite", suite_keys());
   head.require("name");
@@ -214,6 +232,7 @@ Suite read_suite(std::string_view toml, const std::string& file_name) {
        file.array_of_tables("reference", {"method", "seconds", "recovered", "low", "high"})) {
     suite.references.push_back(read_reference(table));
   }
+  if (file.has("published")) suite.published = read_published(file);
   return suite;
 }
 

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "problems/suite/published_results.hpp"
+
 namespace tribench::suite {
 
 // How one input is drawn.
@@ -75,7 +77,9 @@ struct Suite {
   std::vector<SuiteProblem> problems;
   std::vector<SuiteReference> references;
   std::string reference_note;  // how to read them
-  std::uint64_t identity = 0;  // of the text it was read from
+  PublishedTable published;
+  std::vector<PublishedResult> results;  // those of `published`, where the folder of data is known
+  std::uint64_t identity = 0;            // of the text it was read from
 
   // Throws Error (bad_input) with the nearest name.
   const SuiteProblem& find(std::string_view problem) const;

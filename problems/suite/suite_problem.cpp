@@ -319,6 +319,11 @@ std::vector<Suite> known_suites(const std::optional<std::filesystem::path>& data
       *same = std::move(own);
     }
   }
+  for (Suite& suite : suites) {
+    const std::string& file = suite.published.file;
+    if (file.empty() || !data || !std::filesystem::exists(*data / file)) continue;
+    suite.results = read_published_results(suite.published, *data);
+  }
   return suites;
 }
 

@@ -29,7 +29,8 @@ Problem make_suite_problem(const Suite& suite, const SuiteProblem& wanted, const
                            const std::optional<std::filesystem::path>& data, std::uint64_t seed);
 
 // The shipped suites, and those of <data>/suites/*.toml in the order of their names; one of these
-// with a shipped one's name takes its place. Throws Error (bad_input) where one cannot be read.
+// with a shipped one's name takes its place; with what is published beside them, where the folder
+// has it. Throws Error (bad_input) where one cannot be read.
 std::vector<Suite> known_suites(const std::optional<std::filesystem::path>& data);
 
 void add_entries(std::vector<ProblemEntry>& entries, const Suite& suite, const LawReader& laws,

@@ -192,6 +192,26 @@ function referencePart() {
 
 const percent = (share) => share === null ? "-" : `${(100 * share).toFixed(1)} %`;
 
+// Ours among published results on the same tables.
+function rankParts(suite) {
+  if (!suite.ranks.tables.length) return suite.results_note ? [el("p", {class: "soft"}, suite.results_note)] : [];
+  const parts = [el("h4", {}, "Among published results"), el("p", {class: "soft"}, suite.results_note)];
+  if (suite.ranks.methods.length) {
+    parts.push(dataTable([{name: "method", key: "method"},
+      {name: "operators", key: "operators", show: (r) => r.operators || "published"},
+      {name: "median rank", key: "rank_median", number: true}, {name: "mean", key: "rank_mean", number: true},
+      {name: "median among formulas", key: "symbolic_rank_median", number: true},
+      {name: "seconds a fit", key: "seconds", number: true}],
+      suite.ranks.methods, {label: `ranks on ${suite.name}`}));
+  }
+  parts.push(dataTable([{name: "table", key: "problem"}, {name: "method", key: "method"},
+    {name: "operators", key: "operators"}, {name: "R2 on unseen rows", key: "r2", number: true},
+    {name: "rank among formulas", key: "symbolic_rank", count: true}, {name: "among all", key: "rank", count: true},
+    {name: "best published formula", key: "best_formula"}, {name: "best published", key: "best"}],
+    suite.ranks.tables, {label: `published results of ${suite.name}`}));
+  return parts;
+}
+
 function suitePart() {
   if (!data.suites.length) return [];
   const shareColumn = (name, of) => ({name, key: name, show: (r) => percent(of(r))});
@@ -207,7 +227,7 @@ function suitePart() {
       {name: "evaluations", key: "evaluations", number: true},
       shareColumn("small laws", (r) => r.recovered_by_size[0]), shareColumn("middle", (r) => r.recovered_by_size[1]),
       shareColumn("large", (r) => r.recovered_by_size[2])], suite.rows, {label: `recovered of ${suite.name}`}),
-    el("p", {class: "soft"}, suite.reference_note),
+    el("p", {class: "soft"}, suite.reference_note), ...rankParts(suite),
     el("details", {}, el("summary", {}, `Recovered by no method: ${suite.never_solved.length}`),
       el("p", {}, el("code", {}, suite.never_solved.join("  "))))]);
   return [el("h2", {id: "suites"}, "Suites"),

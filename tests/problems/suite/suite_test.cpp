@@ -54,6 +54,58 @@ std::string with_input(const std::string& input) {
          " }]\n";
 }
 
+// A file of results as others publish them, in a folder of its own.
+std::filesystem::path published_folder(const std::string& text) {
+  const std::filesystem::path folder =
+      std::filesystem::path(::testing::TempDir()) / "tribench published results";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "published.csv") << text;
+  return folder;
+}
+
+const PublishedTable kPublished = {"published.csv", "r2_median",    "seconds",
+                                   "formula",       "edition=2021", ""};
+
+TEST(Suite, PublishedResultsAreReadFromTheLinesThatItSays) {
+  const auto folder = published_folder(
+      "edition,dataset,method,formula,r2_median,seconds\n"
+      "2021,cloud,GP,1,0.5,7\n2025,cloud,GP,1,0.6,8\n2021,cloud,XGB,0,0.7,9\n2021,cloud,DSR,1,,"
+      "9\n");
+  const std::vector<PublishedResult> read = read_published_results(kPublished, folder);
+  ASSERT_EQ(read.size(), 2U);  // of DSR there is no figure
+  EXPECT_EQ(read[0].dataset, "cloud");
+  EXPECT_EQ(read[0].method, "GP");
+  EXPECT_EQ(read[0].r2, 0.5);
+  EXPECT_EQ(read[0].seconds, 7);
+  EXPECT_TRUE(read[0].symbolic);
+  EXPECT_FALSE(read[1].symbolic);
+}
+
+TEST(Suite, AMistakeInPublishedResultsIsNamedWithItsLine) {
+  const auto refusal = [](const std::string& lines) {
+    const auto folder =
+        published_folder("edition,dataset,method,formula,r2_median,seconds\n" + lines);
+    try {
+      read_published_results(kPublished, folder);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refusal("2021,cloud,GP,1,0.5,7\n"), "accepted");
+  EXPECT_NE(refusal("2021,cloud,GP,1,good,7\n").find("published.csv:2"), std::string::npos);
+  EXPECT_NE(refusal("2021,cloud,GP,1,0.5,7\n2021,cloud,GP,1,0.6,7\n").find("stands twice"),
+            std::string::npos);
+  PublishedTable other = kPublished;
+  other.r2 = "r2_mediam";
+  EXPECT_THROW(read_published_results(other, published_folder("edition,dataset,method,r2_median\n"
+                                                              "2021,a,b,1\n")),
+               Error);
+  EXPECT_NE(complaint("[suite]\nname = \"s\"\n[published]\nfile = \"a.csv\"\nwhere = \"2021\"\n")
+                .find("COLUMN=VALUE"),
+            std::string::npos);
+}
+
 TEST(Suite, AMistakeIsNamedWithItsPlaceAndMend) {
   EXPECT_EQ(complaint(with_input("name = \"x\", low = 1, high = 2")), "accepted");
   EXPECT_NE(complaint(with_input("name = \"x\", low = 2, high = 1")).find("s.toml:6"),
