@@ -34,7 +34,7 @@ struct DiagnosisOptions {
   bool physical_vetoes = true;
   std::vector<EffectFamily> learned;  // families beside the built-in ones
   std::vector<std::string> families;  // to be tested; empty: all
-  std::vector<std::string> unnamed;   // tested, but not added to the model
+  std::vector<std::string> unnamed;   // looked for like others, but taken out in the end
   std::vector<std::string> without;   // rules left out, to see what they are worth (rules.hpp)
   bool has(std::string_view rule) const { return std::ranges::count(without, rule) == 0; }
 };

@@ -121,6 +121,20 @@ bool leave_out_slight(SearchState& state, const Campaign& campaign) {
   return false;
 }
 
+// What is not to be named takes part in the search, where others stand beside it, and goes then.
+void take_out_unnamed(SearchState& state, const Campaign& campaign) {
+  LoopModel model = state.model.model;
+  const auto is_unnamed = [&](const Found& one) {
+    const std::string& name = campaign.families[one.family].name;
+    return std::ranges::count(campaign.options.unnamed, name) > 0;
+  };
+  for (const Found& one : state.found) {
+    if (is_unnamed(one)) model = model.without(one.family);
+  }
+  if (std::erase_if(state.found, is_unnamed) == 0) return;
+  state.model = fit_in_its_noise(std::move(model), campaign, FitScope::everything);
+}
+
 // In and out until neither changes anything, and what is left over then. A second column of a
 // family is no addition.
 SearchResult take_effects(SearchResult out, Round round, const Campaign& campaign,
@@ -129,6 +143,7 @@ SearchResult take_effects(SearchResult out, Round round, const Campaign& campaig
          leave_out_slight(out.state, campaign)) {
     round = test_library(out.state.model, campaign);
   }
+  take_out_unnamed(out.state, campaign);
   out.taken = out.state.families();
   out.whole = out.state.model;
   find_leftover(out, campaign, random.split("smoothers"));
@@ -175,10 +190,6 @@ SearchResult search(const BaseModel& base, const Campaign& campaign, RandomStrea
     out.first.untestable = campaign.library.missing;
     out.leftover_tested = true;
     return out;
-  }
-  for (std::size_t f = 0; f < campaign.families.size(); ++f) {
-    if (std::ranges::count(campaign.options.unnamed, campaign.families[f].name) == 0) continue;
-    out.state.left_out.push_back(f);
   }
   const Round round = test_library(out.base, campaign);
   out.first = first_look(round, out.base, campaign);

@@ -27,7 +27,7 @@ struct Found {
 struct SearchState {
   FittedModel model;
   std::vector<Found> found;
-  std::vector<std::size_t> left_out;    // next to nothing, or not to be named: not tried again
+  std::vector<std::size_t> left_out;    // next to nothing: not tried again
   std::set<std::size_t> tried;          // families that were in the model at some time
   std::vector<std::string> given_up;    // atoms that others of their family took the place of
   std::vector<std::size_t> asked_more;  // families that would have taken a third column
