@@ -42,6 +42,33 @@ Expression solved_for_target(TargetForm form, const Expression& formed, double s
   return sign < 0 ? -size : size;
 }
 
+std::optional<std::vector<std::size_t>> signs_of_target(const LogRows& rows) {
+  std::vector<std::size_t> turning;
+  for (std::size_t j = 0; j < rows.inputs().size(); ++j) {
+    if (rows.inputs()[j].changes_sign) turning.push_back(j);
+  }
+  if (turning.size() > 8) return std::nullopt;
+  for (unsigned subset = 0; subset < (1U << turning.size()); ++subset) {
+    std::vector<std::size_t> chosen;
+    for (std::size_t i = 0; i < turning.size(); ++i) {
+      if ((subset >> i & 1U) != 0) chosen.push_back(turning[i]);
+    }
+    const auto is_negative = [&](std::size_t r) {
+      bool negative = rows.target().values[r] < 0;
+      for (const std::size_t j : chosen) {
+        negative = negative != (rows.inputs()[j].values[r] < 0);
+      }
+      return negative;
+    };
+    bool is_constant = true;
+    for (std::size_t r = 1; r < rows.rows() && is_constant; ++r) {
+      is_constant = is_negative(r) == is_negative(0);
+    }
+    if (is_constant) return chosen;
+  }
+  return std::nullopt;
+}
+
 std::vector<double> relative_scale(const std::vector<double>& formed, TargetForm form) {
   std::vector<double> scale(formed.size(), 1.0);
   if (form == TargetForm::logarithm) return scale;

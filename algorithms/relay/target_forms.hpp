@@ -4,6 +4,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,6 +32,10 @@ std::vector<double> formed_target(std::span<const double> target, TargetForm for
 
 // y of what T(y) is; times `sign` where T does not keep it.
 Expression solved_for_target(TargetForm form, const Expression& formed, double sign);
+
+// The inputs whose signs make the target's, for T that do not keep it; none where no choice of
+// those that change their sign does, or where there are more than 8 of them. Cost: rows x 2^inputs.
+std::optional<std::vector<std::size_t>> signs_of_target(const LogRows& rows);
 
 // Rows of all decades alike: 1 / (|z| + a thousandth of the median |z|); ones for the logarithm.
 std::vector<double> relative_scale(const std::vector<double>& formed, TargetForm form);
