@@ -103,6 +103,41 @@ TEST(BurstNoise, ABurstDoesNotHideInTheNoiseThatItMakes) {
   EXPECT_NEAR(left_out, 1, 0.02);
 }
 
+// A burst of a fiftieth of a movement's rows hardly moves its level: the rest is not looked at.
+TEST(BurstNoise, FewRowsOfManyChangeNoLevel) {
+  RandomStream random(5);
+  std::vector<int> movement(300, 0);
+  movement.resize(601, 1);
+  const StudentLaw law{5, 1};
+  Eigen::VectorXd residual(601);
+  for (double& row : residual) row = law.draw(random);
+  const BurstNoise noise(movement, {}, residual);
+  EXPECT_EQ(noise.level_without(0, 10, 5), 1);
+  EXPECT_NE(noise.level_without(0, 10, 6), 1);
+  EXPECT_EQ(noise.level_without(1, 310, 6), 1);
+  EXPECT_NE(noise.level_without(1, 310, 7), 1);
+}
+
+// Of a movement of which two rows are left nothing more is known than of one left out whole; three
+// say something.
+TEST(BurstNoise, ThreeRowsThatAreLeftSaySomething) {
+  const Example e = example(RandomStream(6));
+  const BurstNoise noise(e.movement, e.speed, e.residual);
+  const std::size_t first = 3 * kRows;
+  EXPECT_EQ(noise.level_error(3, kRows - 2), noise.level_error(3, kRows));
+  EXPECT_LT(noise.level_error(3, kRows - 3), noise.level_error(3, kRows));
+  EXPECT_EQ(noise.level_without(3, first, kRows - 2), noise.level_without(3, first, kRows));
+  EXPECT_NE(noise.level_without(3, first, kRows - 3), noise.level_without(3, first, kRows));
+}
+
+// However smooth: neighbours are taken to agree by 0.998 at most.
+TEST(BurstNoise, LeavesInnovationsInADrift) {
+  const std::vector<int> movement(3000, 0);
+  const Eigen::VectorXd drift = Eigen::VectorXd::NullaryExpr(
+      3000, [](Eigen::Index i) { return std::sin(6.283185307 * static_cast<double>(i) / 3000); });
+  EXPECT_EQ(BurstNoise(movement, {}, drift).rho(), 0.998);
+}
+
 // A residual that is zero nearly everywhere has no noise by which a row could stand out.
 TEST(BurstNoise, WithoutNoiseThereIsNothingElse) {
   const std::vector<int> movement(100, 0);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "algorithms/inference/burst_noise.hpp"
@@ -104,6 +105,36 @@ TEST(Bursts, OneWildRowThatFadesAwayIsNoBurst) {
     residual[1230 + k] += 14 * std::pow(0.6, static_cast<double>(k));
   }
   EXPECT_TRUE(bursts_of(residual, 7).empty());
+}
+
+// How many are found of so many pulses that are alike, in noise that itself makes none.
+std::size_t found_of_alike(std::size_t pulses, std::size_t rows, std::size_t among) {
+  RandomStream random(8);
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(among * kRows));
+  for (double& row : residual) row = random.uniform(-1, 1);
+  for (std::size_t p = 0; p < pulses; ++p) {
+    const std::size_t first = kRows * (2 + 4 * p) + 30;
+    for (std::size_t k = 0; k < rows; ++k) {
+      residual[static_cast<Eigen::Index>(first + k)] +=
+          12 * std::sin(3.14159265 * (static_cast<double>(k) + 0.5) / static_cast<double>(rows));
+    }
+  }
+  const std::vector<int> movement = movements();
+  return find_bursts(std::span(movement).first(among * kRows), {}, residual, RandomStream(1))
+      .size();
+}
+
+// Seven pulses that are alike stand out of noise that makes none; of eight it is the noise itself
+// that comes in pulses, and each would have to stand out of the others.
+TEST(Bursts, AFewThatAreAlikeAreBurstsAndMoreAreTheNoise) {
+  EXPECT_EQ(found_of_alike(7, 6, kMovements), 7U);
+  EXPECT_EQ(found_of_alike(8, 6, kMovements), 0U);
+}
+
+// Seven of fourteen rows each: of 60 rows a movement 98 are more than a twentieth up to 32 of them.
+TEST(Bursts, RowsOfWhichMoreThanATwentiethWouldBeOneHaveAnotherModelsNoise) {
+  EXPECT_EQ(found_of_alike(7, 14, 32), 0U);
+  EXPECT_EQ(found_of_alike(7, 14, 34), 7U);
 }
 
 TEST(Bursts, ARecordingWithoutNoiseHasNone) {

@@ -40,6 +40,12 @@ TEST(CrossValidation, WhatTheOthersHaveOfAColumnMustBeMoreThanRounding) {
   Case c = make_case();
   c.x.col(1).tail(180).setConstant(1e-8);
   EXPECT_TRUE(std::isnan(held_out_losses(c.x, c.y, c.clusters, c.noise)[0]));
+  const auto with_share = [&](double share) {  // of the column's squares, that the others have
+    c.x.col(1).tail(180).setConstant(std::sqrt(share * 20 / 180));
+    return held_out_losses(c.x, c.y, c.clusters, c.noise)[0];
+  };
+  EXPECT_TRUE(std::isnan(with_share(0.8e-12)));
+  EXPECT_TRUE(std::isfinite(with_share(1.3e-12)));
 }
 
 TEST(CrossValidation, APenalisedColumnHasNoWeightThere) {

@@ -79,6 +79,86 @@ TEST(EvidenceTable, AnAbsentColumnCostsAsItsRowsDo) {
   EXPECT_NEAR(log_factor(table, {{0}, 2}), -2.5 * std::log(201), 1e-10);
 }
 
+// One column: a normal prior of a variance, a noise of unknown size, and the fourth power of the
+// coefficient, its mean over the posterior against that over the prior.
+TEST(EvidenceTable, OfOneColumnIsWhatIntegrationGives) {
+  constexpr Eigen::Index kMany = 64;
+  Eigen::VectorXd column(kMany);
+  Eigen::VectorXd target(kMany);
+  for (Eigen::Index i = 0; i < kMany; ++i) {
+    column[i] = i % 2 == 0 ? 1 : -1;
+    target[i] = 0.4 * column[i] + (i % 4 < 2 ? 1 : -1);
+  }
+  const EvidenceTable table = table_of(Eigen::MatrixXd::Ones(kMany, 1), column, target);
+  for (const double size : {0.5, 1.0, 3.0}) {
+    const double prior = size * size / 2;
+    const double dof = kMany - 1;
+    const double before = target.squaredNorm();
+    const double covariance = 1 / (1 + kMany * prior);  // in units of the prior's
+    const double product = column.dot(target) * std::sqrt(prior);
+    const double after = before - product * product * covariance;
+    const double length = product * covariance * product * covariance * dof / after;
+    const double fourth =
+        length * length * (1 + 2 / dof) + 6 * length * covariance + 3 * covariance * covariance;
+    const double expected =
+        0.5 * std::log(covariance) - dof / 2 * std::log(after / before) + std::log(fourth / 3);
+    EXPECT_NEAR(log_factor(table, {{0}, size}), expected, 1e-9) << size;
+  }
+}
+
+// Nothing is left of a target that a column is, but rounding; that is told from nothing.
+TEST(EvidenceTable, OfAPerfectFitIsFinite) {
+  RandomStream random(23);
+  const Eigen::MatrixXd column = 1e12 * normals(40, 1, random);
+  const EvidenceTable table = table_of(Eigen::MatrixXd::Zero(40, 1), column, column.col(0));
+  const EffectBlock block = {{0}};
+  const double variance = table.posterior(std::array<const EffectBlock*, 1>{&block}).variance;
+  EXPECT_NEAR(variance / (column.squaredNorm() / 40), 1e-12, 1e-16);
+  EXPECT_TRUE(std::isfinite(log_factor(table, block)));
+}
+
+// As many columns in the base as rows: one degree of freedom is left.
+TEST(EvidenceTable, KeepsOneDegreeOfFreedom) {
+  RandomStream random(24);
+  const Eigen::VectorXd target = normals(3, 1, random);
+  EXPECT_EQ(table_of(normals(3, 3, random), normals(3, 1, random), target).degrees_of_freedom(), 1);
+  EXPECT_EQ(table_of(normals(3, 1, random), normals(3, 1, random), target).degrees_of_freedom(), 2);
+}
+
+// Two columns of the base are two where what is across is more than rounding of their products.
+TEST(EvidenceTable, BaseColumnsAreOneWhereTheyDifferByRounding) {
+  const auto degrees = [](double apart) {
+    Eigen::MatrixXd base = Eigen::MatrixXd::Ones(64, 2);
+    for (Eigen::Index i = 0; i < 64; ++i) base(i, 1) += i % 2 == 0 ? apart : -apart;
+    RandomStream random(25);
+    return table_of(base, normals(64, 1, random), normals(64, 1, random)).degrees_of_freedom();
+  };
+  // Of unit columns with a cosine c the eigenvalues are 1 - c and 1 + c: a share of apart^2 / 4.
+  EXPECT_EQ(degrees(std::sqrt(4 * 0.8e-10)), 63);
+  EXPECT_EQ(degrees(std::sqrt(4 * 1.3e-10)), 62);
+}
+
+// Columns at right angles are ruled out each by itself, in units too in which the product of what
+// they cost is no number.
+TEST(EvidenceTable, AbsentColumnsCostWhatEachOfThemDoesInAnyUnit) {
+  constexpr Eigen::Index kMany = 256;
+  constexpr Eigen::Index kBlocks = 7;
+  const auto walsh = [](Eigen::Index row, Eigen::Index j) { return (row >> j) % 2 == 0 ? 1 : -1; };
+  for (const double unit : {1.0, 1e30}) {
+    const Eigen::MatrixXd columns = Eigen::MatrixXd::NullaryExpr(
+        kMany, kBlocks, [&](Eigen::Index i, Eigen::Index j) { return unit * walsh(i, j); });
+    const Eigen::VectorXd target =
+        Eigen::VectorXd::NullaryExpr(kMany, [&](Eigen::Index i) { return walsh(i, kBlocks); });
+    std::vector<EffectBlock> blocks;
+    for (Eigen::Index j = 0; j < kBlocks; ++j) blocks.push_back({{j}});
+    std::vector<const EffectBlock*> all;
+    for (const EffectBlock& block : blocks) all.push_back(&block);
+    const double each = -2.5 * std::log1p(0.5 * kMany * unit * unit);
+    const EvidenceTable table = table_of(Eigen::MatrixXd::Ones(kMany, 1), columns, target);
+    EXPECT_NEAR(table.log_factor(all), kBlocks * each, 1e-9 * std::abs(each));
+  }
+}
+
 // Two columns that are nearly one make no effect where they cancel: what is absent is ruled out as
 // if they were one.
 TEST(EvidenceTable, ColumnsThatCancelAreNoEffect) {

@@ -38,6 +38,18 @@ TEST(Flips, SumsAreThoseOfTheSigns) {
   }
 }
 
+// All 64 bits of each number drawn, one a sign.
+TEST(Flips, AreTheBitsOfTheirStream) {
+  constexpr std::size_t kClusters = 7;
+  const Flips flips(40, kClusters, RandomStream(4));
+  RandomStream random(4);
+  std::uint64_t word = 0;
+  for (std::size_t k = 0; k < 40 * kClusters; ++k) {
+    if (k % 64 == 0) word = random.next();
+    EXPECT_EQ(flips.sign(k / kClusters, k % kClusters), (word >> (k % 64) & 1) != 0 ? 1 : -1) << k;
+  }
+}
+
 TEST(Flips, AreFairAndDifferFromFlipToFlipAndFromClusterToCluster) {
   constexpr std::size_t kFlips = 400;
   constexpr std::size_t kClusters = 50;

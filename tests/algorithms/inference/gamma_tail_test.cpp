@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -17,9 +18,29 @@ TEST(MatchedGamma, TheTableAgreesWithTheExactScore) {
   }
 }
 
+// 96 places at even steps of the square root, straight between them; exact beyond.
+TEST(MatchedGamma, TheTableIsExactInItsPlacesAndReadBetweenThem) {
+  MatchedGamma gamma(3.0, 7.0);
+  gamma.tabulate(60);
+  const double step = std::sqrt(60.0) / 95;
+  for (int k = 0; k < 95; ++k) {
+    const double place = step * k * step * k;
+    const double next = step * (k + 1) * step * (k + 1);
+    EXPECT_NEAR(gamma.fast_score(place * (1 + 1e-14)), gamma.score(place), 1e-9) << k;
+    const double middle = step * (k + 0.5) * step * (k + 0.5);
+    EXPECT_NEAR(gamma.fast_score(middle), 0.5 * (gamma.score(place) + gamma.score(next)), 1e-9);
+  }
+  EXPECT_EQ(gamma.fast_score(61), gamma.score(61));
+}
+
 TEST(MatchedGamma, SaysNothingWhereTheStatisticCannotVary) {
   EXPECT_EQ(MatchedGamma(0, 0).score(5), 0);
   EXPECT_EQ(MatchedGamma(1, 0).score(5), 0);
+  EXPECT_EQ(MatchedGamma(0, 1).score(5), 0);
+  EXPECT_EQ(MatchedGamma(1, 0).statistic_of(2), 0);
+  MatchedGamma none(0, 1);
+  none.tabulate(60);
+  EXPECT_EQ(none.fast_score(5), 0);
 }
 
 TEST(MatchedGamma, TheTableIsAskedForNoPlaceThatItHasNot) {

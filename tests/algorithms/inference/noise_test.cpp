@@ -98,6 +98,17 @@ TEST(EstimateNoise, OfAPerfectFitIsTheFloor) {
   EXPECT_EQ(noise.effective_rows, 30);
 }
 
+// A drift that hardly moves from row to row: one row in a thousand counts, not none.
+TEST(EstimateNoise, LeavesSomethingToLearnFromHoweverSmoothItIs) {
+  constexpr Eigen::Index kMany = 6000;
+  const Eigen::VectorXd drift = Eigen::VectorXd::NullaryExpr(
+      kMany, [](Eigen::Index i) { return std::sin(6.283185307 * static_cast<double>(i) / kMany); });
+  const Clusters clusters = make_clusters(movements_of({kMany}), 1);
+  const Noise noise = estimate_noise(drift, clusters, 0, 0);
+  EXPECT_NEAR(noise.slow_rho, 0.998, 1e-12);
+  EXPECT_NEAR(noise.inflation(), 999, 1e-6);
+}
+
 // As many parameters as rows, or more: the noise is what is left, with one degree of freedom.
 TEST(EstimateNoise, KeepsOneDegreeOfFreedomWhereTheModelHasThemAll) {
   const Clusters clusters = make_clusters(movements_of({2, 2, 2}), 1);
@@ -112,6 +123,12 @@ TEST(EstimateNoise, TwoMovementsSayNothingOfOffsets) {
   Eigen::VectorXd residual(40);
   for (Eigen::Index i = 0; i < 40; ++i) residual[i] = (i < 20 ? 5 : -5) + (i % 2 == 0 ? 1 : -1);
   EXPECT_EQ(estimate_noise(residual, make_clusters(movements_of({20, 20}), 1), 0, 0).between_sd, 0);
+  // Three do: the mean square of theirs (5, -5 and 0) less what the noise within makes of it.
+  residual.conservativeResize(60);
+  for (Eigen::Index i = 40; i < 60; ++i) residual[i] = i % 2 == 0 ? 1 : -1;
+  const Noise noise = estimate_noise(residual, make_clusters(movements_of({20, 20, 20}), 1), 0, 0);
+  const double within = 60.0 / 57;
+  EXPECT_NEAR(noise.between_sd, std::sqrt((50 - 3 * within / 20) / 3), 1e-12);
 }
 
 // Every second row of slow noise under white one is such noise too, half as long in rows.
@@ -229,6 +246,13 @@ TEST(CorrelationTime, FollowsTheCorrelationOfNeighbours) {
   EXPECT_EQ(correlation_time(Eigen::VectorXd::Ones(100), std::vector<RowRange>{{0, 100}}), 1);
 }
 
+// However smooth: neighbours are taken to agree by 0.998 at most.
+TEST(CorrelationTime, OfADriftIsFiniteAndKnown) {
+  const Eigen::VectorXd drift = Eigen::VectorXd::NullaryExpr(
+      300, [](Eigen::Index i) { return std::sin(6.283185307 * static_cast<double>(i) / 300); });
+  EXPECT_NEAR(correlation_time(drift, std::vector<RowRange>{{0, 300}}), -1 / std::log(0.998), 1e-9);
+}
+
 TEST(CorrelationTime, SaysTheSameInAnyUnit) {
   const std::vector<RowRange> one = {{0, 2000}};
   RandomStream random(14);
@@ -238,6 +262,37 @@ TEST(CorrelationTime, SaysTheSameInAnyUnit) {
   const double whole = correlation_time(rows, one);
   ASSERT_GT(whole, 2);
   EXPECT_NEAR(correlation_time(1e-6 * rows, one), whole, 1e-9);
+}
+
+// Over all lags that two rows of a movement have, up to the first that has faded.
+TEST(CorrelationTime, IsThatOfItsDefinition) {
+  const std::vector<RowRange> movements = {{0, 7}, {7, 50}, {50, 120}};
+  for (std::uint64_t run = 0; run < 20; ++run) {
+    Eigen::VectorXd rows = slow_under_white(0.5 + 0.02 * static_cast<double>(run), 0.95, 120,
+                                            RandomStream(15).split(run));
+    const double whole = correlation_time(rows, movements);
+    for (const RowRange& m : movements) {
+      auto part =
+          rows.segment(static_cast<Eigen::Index>(m.begin), static_cast<Eigen::Index>(m.size()));
+      part.array() -= part.mean();
+    }
+    double sum = 0;
+    double first = 0;
+    for (std::size_t lag = 1; lag < 70; ++lag) {
+      double rho = 0;
+      for (const RowRange& m : movements) {
+        for (std::size_t i = m.begin + lag; i < m.end; ++i) {
+          rho += rows[static_cast<Eigen::Index>(i)] * rows[static_cast<Eigen::Index>(i - lag)];
+        }
+      }
+      rho /= rows.squaredNorm();
+      if (lag == 1) first = rho;
+      if (rho < 0.05) break;
+      sum += rho;
+    }
+    ASSERT_GT(first, 0);
+    EXPECT_NEAR(whole, std::max({1.0, -1 / std::log(first), sum}), 1e-9) << run;
+  }
 }
 
 // Correlation that lasts longer than neighbours show is in the sum: a slow wave

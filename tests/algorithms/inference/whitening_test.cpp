@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
 #include <cstdint>
 
@@ -42,6 +44,61 @@ TEST(Whitening, LeavesRowsOfOneVarianceThatKnowNothingOfTheirNeighboursNorOfThei
   EXPECT_DOUBLE_EQ(noise.row_inflation(), 1);
 }
 
+// The covariance of a movement's rows: the noise's two parts, and its offset.
+Eigen::MatrixXd covariance_of(const Noise& noise, double weight, Eigen::Index rows) {
+  Eigen::MatrixXd out(rows, rows);
+  const double variance = noise.within_sd * noise.within_sd / (weight * weight);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (Eigen::Index j = 0; j < rows; ++j) {
+      const double white = i == j ? 1 - noise.slow_share : 0;
+      const double slow = noise.slow_share * std::pow(noise.slow_rho, std::abs(i - j));
+      out(i, j) = variance * (white + slow) + noise.between_sd * noise.between_sd;
+    }
+  }
+  return out;
+}
+
+// Rows come out uncorrelated and of one variance, the first ones of a movement too, whatever part
+// of the noise is slow, however long a movement is and whatever it weighs.
+TEST(Whitening, MakesOfItsOwnNoiseRowsOfOneVariance) {
+  Clusters clusters = make_clusters(movements_of({1, 2, 3, 40}), 1);
+  clusters.weight = {1, 2, 0.5, 1.5};
+  for (const double share : {1.0, 0.6, 0.05}) {
+    for (const double between : {0.0, 0.7}) {
+      Noise noise;
+      noise.within_sd = 1.3;
+      noise.between_sd = between;
+      noise.slow_share = share;
+      noise.slow_rho = 0.9;
+      noise.whitened = true;
+      const Eigen::MatrixXd filter = whitened(Eigen::MatrixXd::Identity(46, 46), clusters, noise);
+      Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(46, 46);
+      for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
+        const auto begin = static_cast<Eigen::Index>(clusters.movements[m].begin);
+        const auto rows = static_cast<Eigen::Index>(clusters.movements[m].size());
+        covariance.block(begin, begin, rows, rows) = covariance_of(noise, clusters.weight[m], rows);
+      }
+      const Eigen::MatrixXd out = filter * covariance * filter.transpose();
+      const Eigen::MatrixXd expected = noise.row_variance() * Eigen::MatrixXd::Identity(46, 46);
+      EXPECT_LT((out - expected).cwiseAbs().maxCoeff(), 1e-9) << share << ' ' << between;
+    }
+  }
+}
+
+// Variance of the last of many rows when all before it are known.
+TEST(RowVariance, IsWhatTheRowsBeforeLeaveOpen) {
+  for (const double share : {1.0, 0.6, 0.05}) {
+    Noise noise;
+    noise.within_sd = 1.3;
+    noise.slow_share = share;
+    noise.slow_rho = 0.9;
+    EXPECT_DOUBLE_EQ(noise.row_variance(), 1.3 * 1.3);  // rows as they are
+    noise.whitened = true;
+    const Eigen::MatrixXd root = covariance_of(noise, 1, 300).llt().matrixL();
+    EXPECT_NEAR(noise.row_variance(), root(299, 299) * root(299, 299), 1e-9) << share;
+  }
+}
+
 // The first rows of a movement know nothing yet of the slow part: they are foretold as well as
 // they can be, and no better.
 TEST(Whitening, LeavesRowsOfOneVarianceWhereNoiseIsSlowUnderWhite) {
@@ -74,6 +131,13 @@ TEST(OffsetNats, AreHalfTheLogOfWhatOffsetsAddToTheDeterminant) {
   EXPECT_NEAR(nats[0], 0.5 * std::log(1 + 20 * 2.25 / 4), 1e-12);
   EXPECT_NEAR(nats.tail(3).sum(), 0.5 * std::log(1 + 100 * 2.25 / 4), 1e-12);
   EXPECT_DOUBLE_EQ(nats[1], nats[3]);
+  noise.slow_share = 0.6;
+  noise.slow_rho = 0.9;
+  noise.whitened = true;
+  const Eigen::MatrixXd with = covariance_of(noise, 1, 20);
+  const Eigen::MatrixXd without = with.array() - 1.5 * 1.5;
+  EXPECT_NEAR(offset_nats(clusters, noise)[0],
+              0.5 * std::log(with.determinant() / without.determinant()), 1e-9);
 }
 
 TEST(Whitening, CountsAMovementAsItsWeightSays) {
