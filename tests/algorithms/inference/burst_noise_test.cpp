@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
+#include "foundation/order_statistics.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench::loop {
@@ -84,6 +87,8 @@ TEST(BurstNoise, AMovementLeftOutWholeIsAsLoudAsTheOthersAreApart) {
     const double typical =
         noise.unit()[m * kLong] * noise.law().scale * noise.level_without(m, m * kLong, kLong);
     EXPECT_NEAR(typical, law.scale, 0.06);
+    const double own = noise.unit()[m * kLong] * noise.law().scale;
+    EXPECT_NEAR(std::log(own / law.scale), static_cast<double>(m) - 1, 0.1);
   }
 }
 
@@ -147,6 +152,57 @@ TEST(BurstNoise, WithoutNoiseThereIsNothingElse) {
   EXPECT_EQ(noise.robust_sd(), 0);
   EXPECT_TRUE(noise.innovation().empty());
   EXPECT_EQ(noise.rho(), 0);
+  EXPECT_EQ(BurstNoise({}, {}, Eigen::VectorXd()).robust_sd(), 0);
+}
+
+// Of neighbours in one movement; what lies beyond three standard deviations counts as three.
+double correlation(const std::vector<double>& rows, double sd) {
+  double product = 0;
+  double square = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double now = std::clamp(rows[i], -3 * sd, 3 * sd);
+    square += now * now;
+    if (i % kRows > 0) product += now * std::clamp(rows[i - 1], -3 * sd, 3 * sd);
+  }
+  return product / square;
+}
+
+double robust_sd_of(std::vector<double> rows) {
+  for (double& row : rows) row = std::abs(row);
+  return kMadToSd * median(rows);
+}
+
+// Offsets are the movements' medians, less the share that the noise makes of them: of a median of n
+// normal rows the variance is pi / 2 of the mean's.
+TEST(BurstNoise, OffsetsAndCorrelationAreThoseOfTheirDefinition) {
+  Example e = example(RandomStream(7));
+  RandomStream random(8);
+  for (std::size_t m = 0; m < kMovements; ++m) {
+    const double offset = 0.4 * random.normal();
+    for (std::size_t i = 0; i < kRows; ++i) {
+      e.residual[static_cast<Eigen::Index>(m * kRows + i)] += offset;
+    }
+  }
+  std::vector<double> left(e.residual.data(), e.residual.data() + e.residual.size());
+  std::vector<double> middles;
+  double spread = 0;
+  for (std::size_t m = 0; m < kMovements; ++m) {
+    const auto rows = std::span(left).subspan(m * kRows, kRows);
+    middles.push_back(median(rows));
+    for (double& row : rows) row -= middles.back();
+    spread += middles.back() * middles.back() / kMovements;
+  }
+  const double sd = robust_sd_of(left);
+  const double rho = correlation(left, sd);
+  const double shrunk = 3.14159265358979 / 2 * sd * sd * (1 + rho) / (1 - rho) / kRows / spread;
+  ASSERT_LT(shrunk, 0.9);
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] += shrunk * middles[i / kRows];
+  const BurstNoise noise(e.movement, {}, e.residual);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    ASSERT_NEAR(noise.deviation()[i], left[i], 1e-9) << i;
+  }
+  EXPECT_NEAR(noise.robust_sd(), robust_sd_of(left), 1e-9);
+  EXPECT_NEAR(noise.rho(), correlation(left, noise.robust_sd()), 1e-9);
 }
 
 TEST(BurstNoise, KnowsWhichMovementARowIsOf) {

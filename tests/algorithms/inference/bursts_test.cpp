@@ -157,10 +157,19 @@ struct Reference {
   std::size_t rows = 0;  // of the likeliest pulse
 };
 
+// From row to row and from movement to movement another.
+std::vector<double> speeds() {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < kMovements * kRows; ++i) {
+    all.push_back(static_cast<double>(i * 37 % kRows) / kRows);
+  }
+  return all;
+}
+
 class BurstReference {
  public:
   BurstReference(const Eigen::VectorXd& residual, std::size_t first)
-      : noise_(movements(), {}, residual),
+      : noise_(movements(), speeds(), residual),
         first_(first),
         movement_(noise_.movement_at(first)),
         left_(noise_.movements()[movement_].end - first) {
@@ -233,7 +242,11 @@ TEST(Bursts, TheLogRatioIsThatOfItsDefinition) {
     int rows;
     double height;
   };
-  Eigen::VectorXd residual = noise(RandomStream(17));
+  const std::vector<double> speed = speeds();
+  Eigen::VectorXd residual = noise(RandomStream(17));  // wider the faster
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    residual[i] *= 0.6 + 0.8 * speed[static_cast<std::size_t>(i)];
+  }
   for (const Planted& p : {Planted{130, 4, 11}, Planted{625, 6, -14}, Planted{1220, 9, 12},
                            Planted{1830, 14, -20}, Planted{2452, 6, 30}, Planted{3056, 6, 16}}) {
     for (Eigen::Index k = 0; k < std::min<Eigen::Index>(p.rows, 60 - p.first % 60); ++k) {
@@ -241,9 +254,9 @@ TEST(Bursts, TheLogRatioIsThatOfItsDefinition) {
           p.height * std::sin(3.14159265 * (static_cast<double>(k) + 0.5) / p.rows);
     }
   }
-  const std::vector<Burst> bursts = bursts_of(residual, 1);
+  const std::vector<Burst> bursts = find_bursts(movements(), speed, residual, RandomStream(1));
   ASSERT_GE(bursts.size(), 5U);
-  const BurstNoise noise(movements(), {}, residual);
+  const BurstNoise noise(movements(), speed, residual);
   for (const Burst& burst : bursts) {
     const Reference reference = BurstReference(residual, burst.begin).best();
     EXPECT_NEAR(burst.log_ratio, reference.log_ratio, 0.02 * reference.log_ratio) << burst.begin;

@@ -67,11 +67,11 @@ TEST(CrossValidation, AColumnOfZerosIsHarmless) {
 // Each movement's mean is predicted from the others': with ten the loss is 100/81 of the variance.
 TEST(CrossValidation, LossesAreThoseOfTheFitToTheOtherFolds) {
   Case c = make_case();
-  for (Eigen::Index i = 0; i < 200; ++i) c.y[i] = i < 20 ? 9 : 0;
+  for (Eigen::Index i = 0; i < 200; ++i) c.y[i] = i < 20 ? 10 : 1;
   c.noise.within_sd = 3;
   const Eigen::VectorXd losses = held_out_losses(c.x.leftCols(1), c.y, c.clusters, c.noise);
-  EXPECT_NEAR(losses[0], 20 * 81 / (2 * 9.0), 1e-6);  // the others' mean is 0
-  EXPECT_NEAR(losses[1], 20 / (2 * 9.0), 1e-6);       // theirs is 1
+  EXPECT_NEAR(losses[0], 20 * 81 / (2 * 9.0), 1e-6);  // the others' mean is 1
+  EXPECT_NEAR(losses[1], 20 / (2 * 9.0), 1e-6);       // theirs is 2
 }
 
 TEST(PairedGain, IsASumWithItsStandardError) {

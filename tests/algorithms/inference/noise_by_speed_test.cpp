@@ -73,6 +73,13 @@ TEST(NoiseBySpeed, OfOneSpeedIsAsWideAsItsRows) {
   const std::vector<double> speed(80, 3.0);
   const std::vector<double> noise(80, 2 / kMadToSd);
   for (const double unit : NoiseBySpeed(speed, noise, 1).units()) EXPECT_NEAR(unit, 2, 1e-9);
+  // Where rows of it differ, it is as wide as some of them.
+  std::vector<double> mixed = noise;
+  std::fill(mixed.begin(), mixed.begin() + 10, 1 / kMadToSd);
+  for (const double unit : NoiseBySpeed(speed, mixed, 1).units()) {
+    EXPECT_GE(unit, 1 - 1e-9);
+    EXPECT_LE(unit, 2 + 1e-9);
+  }
 }
 
 TEST(NoiseBySpeed, IsRefinedByWhatInnovationsSay) {

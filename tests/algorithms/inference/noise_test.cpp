@@ -181,26 +181,39 @@ TEST(MovementWeights, AreNotTriedWithFewMovements) {
 // of the rows say how much) is shrunk away; the mean square is 1.
 TEST(MovementWeights, KeepWhatSamplingDoesNotExplain) {
   constexpr std::size_t kCount = 14;
-  constexpr Eigen::Index kEach = 25;
   RandomStream random(12);
   std::vector<int> movement;
-  Eigen::VectorXd residual(kCount * kEach);
-  for (Eigen::Index i = 0; i < residual.size(); ++i) {
-    const auto m = static_cast<int>(i / kEach);
-    const double before = i % kEach == 0 ? 0 : residual[i - 1];
-    residual[i] = 0.4 * before + (1 + 0.15 * (m % 4)) * random.normal();
-    movement.push_back(m);
+  std::vector<double> values;
+  for (std::size_t m = 0; m < kCount; ++m) {
+    const std::size_t rows = m == 5 ? 2 : 15 + 5 * (m % 5);
+    for (std::size_t i = 0; i < rows; ++i) {
+      const double before = i == 0 ? 0 : values.back();
+      values.push_back(0.4 * before + (1 + 0.3 * static_cast<double>(m % 4)) * random.normal());
+      movement.push_back(static_cast<int>(m));
+    }
   }
+  const auto count = static_cast<Eigen::Index>(values.size());
+  const Eigen::VectorXd residual = Eigen::Map<const Eigen::VectorXd>(values.data(), count);
   const Clusters clusters = make_clusters(movement, 1);
   const Noise noise = estimate_noise(residual, clusters, 0, 0);
-  Eigen::MatrixXd rows = residual.reshaped(kEach, kCount);
-  rows.rowwise() -= rows.colwise().mean().eval();
   const double variance = noise.within_sd * noise.within_sd;
-  const double kurtosis = rows.array().pow(4).mean() / (variance * variance);
-  const double squares = noise.rho() * noise.rho();
-  const double sampling = (kurtosis - 1) * (1 + squares) / (1 - squares) / kEach;
-  const Eigen::ArrayXd logs =
-      (rows.colwise().squaredNorm().transpose() / (kEach - 1) / variance).array().log();
+  const double squares = noise.rho() * noise.rho() / (1 - noise.slow_rho * noise.slow_rho);
+  Eigen::ArrayXd logs(kCount);
+  double fourth = 0;
+  double each = 0;  // mean of 1 / rows
+  for (std::size_t m = 0; m < kCount; ++m) {
+    const RowRange& range = clusters.movements[m];
+    const auto rows = static_cast<Eigen::Index>(range.size());
+    const Eigen::ArrayXd own =
+        residual.segment(static_cast<Eigen::Index>(range.begin), rows).array();
+    const Eigen::ArrayXd deviation = own - own.mean();
+    logs[static_cast<Eigen::Index>(m)] =
+        std::log(deviation.square().sum() / static_cast<double>(rows - 1) / variance);
+    fourth += deviation.pow(4).sum() / static_cast<double>(count);
+    each += 1 / static_cast<double>(rows) / kCount;
+  }
+  const double kurtosis = fourth / (variance * variance);
+  const double sampling = (kurtosis - 1) * (1 + 2 * squares) * each;
   const Eigen::ArrayXd apart = logs - logs.mean();
   const double kept = 1 - sampling / (apart.square().sum() / (kCount - 1));
   ASSERT_GT(kept, 0.1);

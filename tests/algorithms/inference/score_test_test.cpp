@@ -122,6 +122,7 @@ TEST(FlipMaxima, StopsOnceTheAnswerCannotBeSignificantAnyMore) {
       score_block(e.candidates, basis, project_off(e.y, basis), e.clusters)};
   const Flips flips(1999, kMovements, RandomStream(2));
   EXPECT_LT(flip_maxima(blocks, flips, 0.0, 4).size(), 500U);
+  EXPECT_EQ(flip_maxima(blocks, flips, 1e9, 4).size(), 1999U);  // which no flip reaches
   EXPECT_EQ(flip_maxima(blocks, flips).size(), 1999U);
 }
 
