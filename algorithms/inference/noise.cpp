@@ -56,8 +56,7 @@ Forecast best_forecast(std::span<const double> correlation, double returned) {
     power *= returned;
   }
   const double square = (1 + 2 * returned * shared) / (1 - returned * returned);
-  if (!(square > 0)) return {returned, returned, 1};
-  const double weight = std::clamp(shared / square, 0.0, kLargestRho - returned);
+  const double weight = square > 0 ? std::clamp(shared / square, 0.0, kLargestRho - returned) : 0;
   return {weight + returned, returned, 1 - weight * (2 * shared - weight * square)};
 }
 

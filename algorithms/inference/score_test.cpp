@@ -196,7 +196,6 @@ std::vector<double> flip_maxima(std::span<BlockScores> blocks, const Flips& flip
   maxima.reserve(flips.count());
   std::size_t exceeding = 0;
   for (BlockScores& block : blocks) {
-    if (!block.test.testable) continue;
     const double mean = block.whitened_sums.cast<double>().squaredNorm();
     block.gamma.tabulate(std::max(block.test.statistic, 12 * mean));
   }

@@ -35,10 +35,10 @@ RowFilter::RowFilter(const Noise& noise, std::size_t longest) {
   carried_ = rho;
   double slow = noise.slow_share;  // variance of the slow part, foretold
   double returned = 0;
-  double missed = 0;  // of rows that are all 1
+  double missed = 1;  // of rows that are all 1
   for (std::size_t k = 0; k < longest; ++k) {
     const double total = slow + white;
-    missed = k == 0 ? 1 : 1 - rho + returned * missed;
+    if (k > 0) missed = 1 - rho + returned * missed;
     returned_.push_back(returned);
     scale_.push_back(std::sqrt(steady / total));
     offset_.push_back(scale_.back() * missed);
