@@ -3,20 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "algorithms/expression/build.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
+#include "algorithms/fitting/subset_average.hpp"
 
 namespace tribench {
 namespace {
 
 constexpr int kFolds = 10;
-constexpr std::size_t kMostTerms = 20;
-constexpr std::size_t kRowsATerm = 4;
 constexpr double kNew = 1e-8;  // of a column's square, for it to add anything
+// A slope that changes less than this share of what one fitted number costs is not written.
+constexpr double kNotWorthIt = 0.1;
 
-// A straight line through the chosen columns, least squares.
 struct Line {
   std::vector<std::size_t> inputs;
   std::vector<double> slopes;
@@ -31,129 +32,129 @@ struct Line {
   }
 };
 
-// Forward selection by modified Gram-Schmidt: one orthogonal direction a term, and how it is
-// written in the inputs.
-class Selection {
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t r = 0; r < a.size(); ++r) sum += a[r] * b[r];
+  return sum;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double mean = 0;
+  for (const double x : values) mean += x / static_cast<double>(values.size());
+  return mean;
+}
+
+// Some rows of the inputs and of the target, less their means, the inputs of unit length.
+class Centred {
  public:
-  Selection(const Inputs& table, std::span<const double> target, std::vector<std::size_t> rows)
-      : table_(table), rows_(std::move(rows)) {
+  Centred(const Inputs& table, std::span<const double> target,
+          const std::vector<std::size_t>& rows) {
     for (const double* column : table.columns) {
       std::vector<double> values;
-      for (const std::size_t r : rows_) values.push_back(column[r]);
+      for (const std::size_t r : rows) values.push_back(column[r]);
       means_.push_back(centre(values));
-      squares_.push_back(dot(values, values));
+      sizes_.push_back(std::sqrt(dot(values, values)));
+      for (double& x : values) x = sizes_.back() > 0 ? x / sizes_.back() : 0;
       columns_.push_back(std::move(values));
     }
-    for (const std::size_t r : rows_) left_.push_back(target[r]);
-    mean_ = centre(left_);
+    for (const std::size_t r : rows) target_.push_back(target[r]);
+    mean_ = centre(target_);
   }
 
-  std::size_t most_terms() const {
-    return std::min({kMostTerms, columns_.size(), rows_.size() / kRowsATerm});
-  }
-
-  // The line with one input more; false where none adds anything.
-  bool extend() {
-    std::size_t best = columns_.size();
-    double most = 0;
-    for (std::size_t j = 0; j < columns_.size(); ++j) {
-      const double square = dot(columns_[j], columns_[j]);
-      if (!(square > kNew * squares_[j])) continue;
-      const double along = dot(columns_[j], left_);
-      if (along * along / square > most) {
-        most = along * along / square;
-        best = j;
-      }
+  // The mean of the lines through all subsets of the inputs that say most.
+  Line average() const {
+    const std::vector<std::size_t> inputs = foremost();
+    std::vector<const std::vector<double>*> columns;
+    for (const std::size_t j : inputs) columns.push_back(&columns_[j]);
+    columns.push_back(&target_);
+    std::vector<double> products;
+    for (const auto* a : columns) {
+      for (const auto* b : columns) products.push_back(dot(*a, *b));
     }
-    if (best == columns_.size()) return false;
-    take(best);
-    return true;
-  }
-
-  Line line() const {
-    // Back substitution: x_k = q_k + sum_i<k parts_[k][i] q_i.
-    Line line{chosen_, weights_, mean_};
-    for (std::size_t k = chosen_.size(); k-- > 0;) {
-      for (std::size_t i = 0; i < k; ++i) line.slopes[i] -= line.slopes[k] * parts_[k][i];
-    }
-    for (std::size_t k = 0; k < chosen_.size(); ++k) {
-      line.offset -= line.slopes[k] * means_[chosen_[k]];
+    Line line{inputs, average_over_subsets(products, target_.size(), columns_.size()), mean_};
+    for (std::size_t k = 0; k < inputs.size(); ++k) {
+      line.slopes[k] /= sizes_[inputs[k]];
+      line.offset -= line.slopes[k] * means_[inputs[k]];
     }
     return line;
   }
 
+  // Without the inputs whose slopes change the rows by less than `square` in the mean.
+  Line without_idle(const Line& line, double square) const {
+    const auto rows = static_cast<double>(target_.size());
+    Line kept{{}, {}, mean_};
+    for (std::size_t k = 0; k < line.inputs.size(); ++k) {
+      const std::size_t j = line.inputs[k];
+      const double change = line.slopes[k] * sizes_[j];
+      if (!(change * change / rows > square)) continue;
+      kept.inputs.push_back(j);
+      kept.slopes.push_back(line.slopes[k]);
+      kept.offset -= line.slopes[k] * means_[j];
+    }
+    return kept;
+  }
+
  private:
   static double centre(std::vector<double>& values) {
-    double mean = 0;
-    for (const double x : values) mean += x / static_cast<double>(values.size());
+    const double mean = mean_of(values);
     for (double& x : values) x -= mean;
     return mean;
   }
-  static double dot(const std::vector<double>& a, const std::vector<double>& b) {
-    double sum = 0;
-    for (std::size_t r = 0; r < a.size(); ++r) sum += a[r] * b[r];
-    return sum;
-  }
 
-  void take(std::size_t j) {
-    const std::vector<double> q = columns_[j];
-    const double square = dot(q, q);
-    parts_.emplace_back();
-    for (const auto& [direction, length] : directions_) {
-      std::vector<double> whole;
-      for (const std::size_t r : rows_) whole.push_back(table_.columns[j][r]);
-      centre(whole);
-      parts_.back().push_back(dot(whole, direction) / length);
+  // Forward selection by modified Gram-Schmidt.
+  std::vector<std::size_t> foremost() const {
+    std::vector<std::vector<double>> left = columns_;
+    std::vector<double> target = target_;
+    std::vector<std::size_t> chosen;
+    while (chosen.size() < kMostAveraged) {
+      std::size_t best = left.size();
+      double most = 0;
+      for (std::size_t j = 0; j < left.size(); ++j) {
+        const double square = dot(left[j], left[j]);
+        const double along = dot(left[j], target);
+        if (!(square > kNew) || !(along * along > most * square)) continue;
+        most = along * along / square;
+        best = j;
+      }
+      if (best == left.size()) break;
+      chosen.push_back(best);
+      const std::vector<double> direction = left[best];
+      remove(direction, target);
+      for (auto& column : left) remove(direction, column);
+      std::ranges::fill(left[best], 0.0);
     }
-    const auto remove = [&](std::vector<double>& values) {
-      const double share = dot(values, q) / square;
-      for (std::size_t r = 0; r < q.size(); ++r) values[r] -= share * q[r];
-      return share;
-    };
-    weights_.push_back(remove(left_));
-    for (auto& column : columns_) remove(column);
-    std::ranges::fill(columns_[j], 0.0);
-    directions_.emplace_back(q, square);
-    chosen_.push_back(j);
+    return chosen;
+  }
+  static void remove(const std::vector<double>& direction, std::vector<double>& values) {
+    const double share = dot(values, direction) / dot(direction, direction);
+    for (std::size_t r = 0; r < values.size(); ++r) values[r] -= share * direction[r];
   }
 
-  const Inputs& table_;
-  std::vector<std::size_t> rows_;
-  std::vector<std::vector<double>> columns_;  // what is left of them
+  std::vector<std::vector<double>> columns_;
   std::vector<double> means_;
-  std::vector<double> squares_;
-  std::vector<double> left_;
+  std::vector<double> sizes_;
+  std::vector<double> target_;
   double mean_ = 0;
-  std::vector<std::size_t> chosen_;
-  std::vector<double> weights_;
-  std::vector<std::vector<double>> parts_;
-  std::vector<std::pair<std::vector<double>, double>> directions_;
 };
 
-// Held-out squared error of a line of 0, 1, 2 ... inputs, summed over the rows.
-std::vector<double> held_out_errors(const Inputs& inputs, std::span<const double> target,
-                                    const std::vector<int>& fold) {
-  std::vector<double> errors;
+// Mean square on rows that the line did not see.
+double held_out_error(const Inputs& inputs, std::span<const double> target,
+                      const std::vector<int>& fold) {
+  double sum = 0;
   const int folds = 1 + *std::ranges::max_element(fold);
   for (int f = 0; f < folds; ++f) {
     std::vector<std::size_t> trained;
     for (std::size_t r = 0; r < target.size(); ++r) {
       if (fold[r] != f) trained.push_back(r);
     }
-    Selection selection(inputs, target, std::move(trained));
-    const std::size_t most = selection.most_terms();
-    errors.resize(f == 0 ? most + 1 : std::min(errors.size(), most + 1), 0.0);
-    for (std::size_t terms = 0; terms < errors.size(); ++terms) {
-      if (terms > 0) selection.extend();
-      const Line line = selection.line();
-      for (std::size_t r = 0; r < target.size(); ++r) {
-        if (fold[r] != f) continue;
-        const double error = line.at(inputs, r) - target[r];
-        errors[terms] += error * error;
-      }
+    const Line line = Centred(inputs, target, trained).average();
+    for (std::size_t r = 0; r < target.size(); ++r) {
+      if (fold[r] != f) continue;
+      const double error = line.at(inputs, r) - target[r];
+      sum += error * error;
     }
   }
-  return errors;
+  return sum / static_cast<double>(target.size());
 }
 
 Expression written(const Line& line) {
@@ -169,15 +170,13 @@ Expression written(const Line& line) {
 
 LinearSum fit_linear_sum(const Inputs& inputs, std::span<const double> target,
                          std::span<const int> movement) {
-  const std::vector<double> errors =
-      held_out_errors(inputs, target, held_out_folds(movement, target.size(), kFolds));
-  const auto least = std::ranges::min_element(errors);
-  std::vector<std::size_t> all;
-  for (std::size_t r = 0; r < target.size(); ++r) all.push_back(r);
-  Selection selection(inputs, target, std::move(all));
-  for (auto terms = least - errors.begin(); terms > 0 && selection.extend(); --terms) {
-  }
-  return {written(selection.line()), *least / static_cast<double>(target.size())};
+  const double held_out =
+      held_out_error(inputs, target, held_out_folds(movement, target.size(), kFolds));
+  std::vector<std::size_t> all(target.size());
+  std::iota(all.begin(), all.end(), 0);
+  const Centred rows(inputs, target, all);
+  const double square = kNotWorthIt * held_out / static_cast<double>(target.size());
+  return {written(rows.without_idle(rows.average(), square)), held_out};
 }
 
 }  // namespace tribench
