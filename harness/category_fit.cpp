@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -15,8 +16,10 @@
 #include "algorithms/expression/text.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/fitting/evidence.hpp"
+#include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "harness/judge.hpp"
+#include "harness/metrics.hpp"
 #include "harness/stateful_problem.hpp"
 #include "harness/table_evaluator.hpp"
 
@@ -47,6 +50,8 @@ Table rows_of(const Table& table, const std::vector<std::size_t>& rows) {
   taken.target = at_rows(table.target, rows);
   taken.movement = at_rows(table.movement, rows);
   taken.truth = at_rows(table.truth, rows);
+  taken.trail = table.trail;
+  taken.trail_row = at_rows(table.trail_row, rows);
   return taken;
 }
 
@@ -86,13 +91,32 @@ struct Candidate {
 // Fits the constants of shapes to each category.
 class ShapeFits {
  public:
-  ShapeFits(const std::vector<Problem>& parts) : parts_(parts) {
+  explicit ShapeFits(const std::vector<Problem>& parts) : parts_(parts) {
     for (const Problem& part : parts) {
       const double size = root_mean_square(part.stages[0].train.target);
       zero_losses_.push_back(size * size);
     }
   }
 
+  // The shape with the most evidence, first by all rows, then by as many as count; none where none
+  // is finite in every category.
+  std::optional<Candidate> best_of(const std::vector<Expression>& shapes) {
+    std::vector<Candidate> candidates;
+    for (const Expression& shape : shapes) {
+      Candidate candidate = fit(shape);
+      if (!candidate.formulas.empty()) candidates.push_back(std::move(candidate));
+    }
+    if (candidates.empty()) return std::nullopt;
+    const auto with_most_evidence = [&](const std::vector<double>& counts) {
+      return *std::ranges::min_element(
+          candidates, {}, [&](const Candidate& each) { return against(each, counts); });
+    };
+    std::vector<double> counts;
+    for (std::size_t k = 0; k < parts_.size(); ++k) counts.push_back(static_cast<double>(rows(k)));
+    return with_most_evidence(rows_that_count(with_most_evidence(counts)));
+  }
+
+ private:
   // Constants start from those given, and from those of the category before. Without formulas where
   // the shape is not finite in one.
   Candidate fit(const Expression& shape) {
@@ -146,7 +170,6 @@ class ShapeFits {
     return nats;
   }
 
- private:
   std::size_t rows(std::size_t k) const { return parts_[k].stages[0].train.rows(); }
 
   double fit_to(Expression& formula, std::size_t k) {
@@ -189,17 +212,23 @@ std::string shape_text(const Expression& shape, const Problem& problem) {
   return text;
 }
 
+// The values of the column in the training rows, which test rows share.
 std::vector<double> distinct(const CategoryColumn& column) {
   const std::set<double> values(column.train.begin(), column.train.end());
   if (values.size() < 2) {
-    throw_bad_input("the column of categories has one value alone", "--category",
+    throw_bad_input("the column of categories has one value alone", column.name,
                     "without it the fit is of one category");
   }
   for (const double value : values) {
     const std::size_t rows = rows_in(column.train, value).size();
     if (rows >= kFewestRows) continue;
-    throw_bad_input(fmt::format("category {} has {} training rows", value, rows), "--category",
+    throw_bad_input(fmt::format("category {} has {} training rows", value, rows), column.name,
                     fmt::format("give each at least {}, or leave it out", kFewestRows));
+  }
+  for (const double value : column.test) {
+    if (values.contains(value)) continue;
+    throw_bad_input(fmt::format("category {} has test rows and no others", value), column.name,
+                    "its constants are unknown: split each category's own rows");
   }
   return {values.begin(), values.end()};
 }
@@ -218,13 +247,24 @@ class Searches {
     CellResult result = fit_and_judge(problem, method_, task_, widened_);
     all.evaluations += result.record.evaluations;
     all.was_ended_by_clock = all.was_ended_by_clock || was_ended_by_clock(result.record);
+    if (failure_.kind == FailureKind::none) failure_ = result.record.reason;
     for (const FrontRecord& entry : result.front) {
+      if (declares_states(entry.formula)) {
+        failure_ = {FailureKind::unsupported,
+                    "a formula with a memory has one set of constants; leave out 'category'"};
+        continue;
+      }
       const Expression shape = read_problem_formula(entry.formula, problem).formula;
       if (seen_.insert(canonicalizer_.hash(shape).shape).second) shapes_.push_back(shape);
     }
     return std::move(result.record);
   }
   const std::vector<Expression>& shapes() const { return shapes_; }
+  // Why there may be none.
+  FailureReason failure() const {
+    if (shapes_.empty() && failure_.kind != FailureKind::none) return failure_;
+    return {FailureKind::error, "no formula is finite in all categories"};
+  }
 
  private:
   const Regressor& method_;
@@ -233,9 +273,112 @@ class Searches {
   Canonicalizer canonicalizer_;
   std::unordered_set<std::uint64_t> seen_;  // never iterated
   std::vector<Expression> shapes_;
+  FailureReason failure_;
 };
 
+// "p1()*v; joint=1: p1()=14.2; joint=2: p1()=0.3".
+std::string text_with_constants(const CategoryFit& fit, const std::string& column) {
+  std::string text = fit.shape;
+  for (const CategoryResult& each : fit.categories) {
+    text += fmt::format("; {}={}:", column, each.category);
+    for (std::size_t k = 0; k < each.constants.size(); ++k) {
+      text += fmt::format("{} p{}()={}", k == 0 ? "" : ",", k + 1, each.constants[k]);
+    }
+  }
+  return text;
+}
+
+// Each row by its category's formula.
+std::vector<double> values_of(const CategoryFit& fit, const Problem& problem, const Table& table,
+                              const std::vector<double>& column) {
+  std::vector<double> values(table.rows());
+  TableEvaluator evaluator;
+  for (const CategoryResult& each : fit.categories) {
+    const Expression formula = read_problem_formula(each.record.formula, problem).formula;
+    const std::span<const double> all = evaluator.evaluate(formula, table);
+    for (const std::size_t r : rows_in(column, each.category)) values[r] = all[r];
+  }
+  return values;
+}
+
+// Refuted where any is, else undecided where any is; none where one was not asked.
+template <typename Judgement>
+std::optional<Judgement> worst(const CategoryFit& fit,
+                               std::optional<Judgement> Record::*judgement) {
+  std::optional<Judgement> all = fit.categories.front().record.*judgement;
+  for (const CategoryResult& each : fit.categories) {
+    const std::optional<Judgement> one = each.record.*judgement;
+    if (!one) return std::nullopt;
+    if (*one == Judgement::refuted ||
+        (*all != Judgement::refuted && *one == Judgement::undecided)) {
+      all = one;
+    }
+  }
+  return all;
+}
+
+void judge_errors(const CategoryFit& fit, const Problem& problem, const CategoryColumn& column,
+                  Record& record) {
+  const Table& train = problem.stages[0].train;
+  const ErrorFigures on_train =
+      compute_errors(values_of(fit, problem, train, column.train), train.target);
+  record.mae_train = on_train.mae;
+  record.relative_error_train = on_train.relative;
+  const std::vector<double> values = values_of(fit, problem, problem.test, column.test);
+  const ErrorFigures on_test = compute_errors(values, problem.test.target);
+  record.mae_test = on_test.mae;
+  record.rmse_test = on_test.rmse;
+  record.max_error_test = on_test.max_error;
+  record.r2_test = on_test.r2;
+  record.relative_error_test = on_test.relative;
+  if (!problem.test.truth.empty()) {
+    record.mae_truth = compute_errors(values, problem.test.truth).mae;
+  }
+  record.status = CellStatus::ok;
+  if (on_test.not_finite > 0) {
+    mark_failed(record, FailureKind::error,
+                fmt::format("the formula has no finite value at {} of {} test rows",
+                            on_test.not_finite, on_test.rows));
+  }
+}
+
+void judge_shape(const CategoryFit& fit, const CategoryColumn& column, Record& record) {
+  record.complexity = fit.complexity;
+  record.nodes = fit.categories.front().record.nodes;
+  record.singularity = worst(fit, &Record::singularity);
+  record.dissipative = worst(fit, &Record::dissipative);
+  record.monotone = worst(fit, &Record::monotone);
+  record.odd = worst(fit, &Record::odd);
+  for (const CategoryResult& each : fit.categories) {
+    // The slowest: all are of one shape.
+    if (!(each.record.eval_ns_per_row <= record.eval_ns_per_row)) {
+      record.eval_ns_per_row = each.record.eval_ns_per_row;
+    }
+    if (each.record.singularity != Singularity::refuted || record.grid_check) continue;
+    record.witness = each.record.witness;
+    record.grid_check = each.record.grid_check;
+    record.note = fmt::format("witness: {}={}", column.name, each.category);
+  }
+  record.formula = text_with_constants(fit, column.name);
+}
+
 }  // namespace
+
+CategoryColumn take_last_input(Problem& problem) {
+  Stage& stage = problem.stages.front();
+  CategoryColumn column = {problem.inputs.back().name, std::move(stage.train.columns.back()),
+                           std::move(problem.test.columns.back())};
+  problem.inputs.pop_back();
+  stage.inputs.pop_back();
+  stage.train.columns.pop_back();
+  problem.test.columns.pop_back();
+  return column;
+}
+
+bool has_categories(std::string_view formula) {
+  return formula.find("; ") != std::string_view::npos &&
+         formula.find(": p1()=") != std::string_view::npos;
+}
 
 CategoryFit fit_by_category(const Problem& problem, const CategoryColumn& column,
                             const Regressor& method, const CellTask& task,
@@ -251,33 +394,52 @@ CategoryFit fit_by_category(const Problem& problem, const CategoryColumn& column
     result.categories.push_back({category, {}, empty_record(task.cell), {}});
     result.categories.back().own = searches.search(parts.back(), result);
   }
-  ShapeFits fits(parts);
-  std::vector<Candidate> candidates;
-  for (const Expression& shape : searches.shapes()) {
-    Candidate candidate = fits.fit(shape);
-    if (!candidate.formulas.empty()) candidates.push_back(std::move(candidate));
-  }
-  if (candidates.empty()) {
-    throw Error(ErrorKind::failed, "no formula is finite in all categories", task.cell.method, "");
-  }
-  const auto with_most_evidence = [&](const std::vector<double>& counts) {
-    return *std::ranges::min_element(
-        candidates, {}, [&](const Candidate& each) { return fits.against(each, counts); });
-  };
-  std::vector<double> counts;
-  for (const Problem& part : parts) {
-    counts.push_back(static_cast<double>(part.stages[0].train.rows()));
-  }
-  const Candidate best = with_most_evidence(fits.rows_that_count(with_most_evidence(counts)));
-  result.shape = shape_text(best.formulas[0], problem);
-  result.complexity = paper_complexity(best.formulas[0]);
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    for (const std::size_t place : places_of_own(best.formulas[k])) {
-      result.categories[k].constants.push_back(best.formulas[k].node(place).value);
-    }
-    judge_formula(parts[k], {best.formulas[k], {}}, result.categories[k].record);
-  }
+  const std::optional<Candidate> best = ShapeFits(parts).best_of(searches.shapes());
   result.fit_cpu_s = process_cpu_seconds() - cpu_start;
+  if (!best) {
+    result.failure = searches.failure();
+    return result;
+  }
+  result.shape = shape_text(best->formulas[0], problem);
+  result.complexity = paper_complexity(best->formulas[0]);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    for (const std::size_t place : places_of_own(best->formulas[k])) {
+      result.categories[k].constants.push_back(best->formulas[k].node(place).value);
+    }
+    judge_formula(parts[k], {best->formulas[k], {}}, result.categories[k].record);
+  }
+  return result;
+}
+
+CellResult fit_and_judge_by_category(const Problem& problem, const CategoryColumn& column,
+                                     const Regressor& method, const CellTask& task,
+                                     const WidenedMethod& widened) {
+  CellResult result;
+  Record& record = result.record;
+  record = empty_record(task.cell);
+  record.dataset = problem.dataset;
+  const auto start = std::chrono::steady_clock::now();
+  CategoryFit fit;
+  try {
+    fit = fit_by_category(problem, column, method, task, widened);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::environment) throw;
+    fit.failure = {FailureKind::error, error.what()};
+  }
+  record.fit_cpu_s = fit.fit_cpu_s;
+  record.fit_wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record.peak_memory_mib = peak_memory_mib();
+  record.evaluations = fit.evaluations;
+  if (fit.failure.kind != FailureKind::none) {
+    mark_failed(record, fit.failure.kind, std::move(fit.failure.detail));
+    return result;
+  }
+  judge_shape(fit, column, record);
+  judge_errors(fit, problem, column, record);
+  result.front = {{record.cell, record.complexity, record.nodes, record.mae_train, record.mae_test,
+                   record.singularity, true, record.formula}};
+  if (fit.was_ended_by_clock) note_end_by_clock(record);
   return result;
 }
 

@@ -8,7 +8,7 @@
 // nodes are paid for once, numbers in each, and of rows whose errors are alike fewer count.
 //
 // Not for categories with laws of different shape: what each one's own formula is beside the shared
-// one says whether they are. Not for grids.
+// one says whether they are. Not for formulas with a memory.
 //
 // Source: parametric expressions of PySR (Cranmer 2023), there inside the search.
 #pragma once
@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/run_cell.hpp"
@@ -30,6 +31,7 @@ struct CategoryResult {
 };
 
 struct CategoryFit {
+  FailureReason failure;                   // none where there is a shape
   std::string shape;                       // p1(), p2() ... : constants of each category's own
   int complexity = 0;                      // of the shape
   std::vector<CategoryResult> categories;  // by increasing value
@@ -40,15 +42,30 @@ struct CategoryFit {
 
 // Which category each row of the training and the test table belongs to: any numbers.
 struct CategoryColumn {
+  std::string name;
   std::vector<double> train;
   std::vector<double> test;
 };
 
+// What travels with the rows as the last input, and no method sees, taken out again.
+CategoryColumn take_last_input(Problem& problem);
+
 // `problem` has one stage and no states. Each search may spend an equal share of the task's limits.
-// Throws Error (bad_input) with fewer than two categories or fewer than ten rows in one, and Error
-// (failed) where no formula is found.
+// Throws Error (bad_input) with fewer than two categories, fewer than ten rows in one, and test
+// rows of one that has no others.
 CategoryFit fit_by_category(const Problem& problem, const CategoryColumn& column,
                             const Regressor& method, const CellTask& task,
                             const WidenedMethod& widened = {});
+
+// The same as a cell of a grid. Errors are those over the rows of all categories, complexity is the
+// shape's, and of the judgements the worst of any category stands. The formula is the shape with
+// the constants behind it, "p1()*v; joint=1: p1()=14.2; joint=2: p1()=0.3", and the front has that
+// one alone. Where the fit throws, or no shape is found, the record has failed.
+CellResult fit_and_judge_by_category(const Problem& problem, const CategoryColumn& column,
+                                     const Regressor& method, const CellTask& task,
+                                     const WidenedMethod& widened = {});
+
+// Whether a record's formula is a shape with constants behind it.
+bool has_categories(std::string_view formula);
 
 }  // namespace tribench

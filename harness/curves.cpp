@@ -15,6 +15,7 @@
 #include "foundation/order_statistics.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/sign.hpp"
+#include "harness/category_fit.hpp"
 #include "problems/kuka/trials.hpp"
 #include "reports/record/record_csv.hpp"
 
@@ -189,7 +190,8 @@ void sample_problem(const ProblemEntry& entry, const std::vector<const Record*>&
     sample(first, {{}, {}, {}, parse(law, first.input_names())});
   }
   for (const Record* record : records) {
-    if (declares_states(record->formula)) continue;  // no function of one row's inputs
+    // No function of one row's inputs.
+    if (declares_states(record->formula) || has_categories(record->formula)) continue;
     const Problem& problem = problem_of(record->seed);
     sample(problem, {record->cell, record->method, record->operators,
                      parse(record->formula, problem.input_names())});

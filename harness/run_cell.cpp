@@ -21,6 +21,7 @@
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "harness/category_fit.hpp"
 #include "harness/finished_front.hpp"
 #include "harness/instruction_counter.hpp"
 #include "harness/judge.hpp"
@@ -80,14 +81,6 @@ double cpu_seconds_with_children() {
 
 // Linux: writing 5 resets the high-water mark of the resident set (proc(5)).
 void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
-
-double peak_memory_mib() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmHWM:")) return std::strtod(line.c_str() + 6, nullptr) / 1024.0;
-  }
-  return kMissing;
-}
 
 // The inputs that the stage may use and that vary in its rows. One that does not (the sign of a
 // load that never changed) has nothing to tell, and a coefficient fitted to it would be anything:
@@ -338,6 +331,14 @@ void set_yardsticks(const Yardsticks& yardsticks, Record& record) {
 
 }  // namespace
 
+double peak_memory_mib() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return std::strtod(line.c_str() + 6, nullptr) / 1024.0;
+  }
+  return kMissing;
+}
+
 CellResult fit_and_judge(const Problem& problem, const Regressor& method, const CellTask& task,
                          const WidenedMethod& widened) {
   CellResult result;
@@ -396,6 +397,18 @@ Problem make_problem(const CellTask& task) {
 
 }  // namespace
 
+namespace {
+
+bool has_category(const CellTask& task) { return task.own && !task.own->category.empty(); }
+
+CellResult run_by_category(Problem problem, const Regressor& method, const CellTask& task,
+                           const WidenedMethod& widened) {
+  const CategoryColumn column = take_last_input(problem);
+  return fit_and_judge_by_category(problem, column, method, task, widened);
+}
+
+}  // namespace
+
 const CellRunner::Measured& CellRunner::problem(const CellTask& task) {
   constexpr std::size_t kKept = 16;
   // A worker runs one grid, whose prior is the same in all its tasks.
@@ -430,8 +443,10 @@ CellResult CellRunner::run(const CellTask& task,
     };
     const bool widens =
         !task.method.is_external() && registry_.find(task.method.algorithm).widened != nullptr;
-    CellResult result =
-        fit_and_judge(data.problem, *in_round(0), task, widens ? in_round : WidenedMethod());
+    const WidenedMethod wider = widens ? in_round : WidenedMethod();
+    CellResult result = has_category(task)
+                            ? run_by_category(data.problem, *in_round(0), task, wider)
+                            : fit_and_judge(data.problem, *in_round(0), task, wider);
     set_yardsticks(data.yardsticks, result.record);
     return result;
   } catch (const Error& error) {

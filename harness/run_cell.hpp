@@ -28,6 +28,9 @@ using WidenedMethod = std::function<std::unique_ptr<Regressor>(int round)>;
 CellResult fit_and_judge(const Problem& problem, const Regressor& method, const CellTask& task,
                          const WidenedMethod& widened = {});
 
+// Of this process, since fit_and_judge last began; NaN where the kernel does not say.
+double peak_memory_mib();
+
 // Keeps the last problems made: cells that follow each other often share one, and making it (20 ms
 // for A without load) can cost more than a baseline's fit.
 class CellRunner {

@@ -28,6 +28,9 @@ CLI::Option* add_data_grid_options(CLI::App& command, std::shared_ptr<DataGridRe
       ->capture_default_str();
   goes_with(command.add_option("--group", problem.group,
                                "the column whose equal values are kept whole in the split"));
+  goes_with(command.add_option("--category", problem.category,
+                               "the column of numbers that tells categories apart: one shape for "
+                               "all, constants of each one's own"));
   CLI::Option* split = goes_with(command.add_option_function<std::string>(
       "--split",
       [&problem](const std::string& text) {

@@ -199,19 +199,6 @@ Problem make_problem(const FitArguments& arguments, const std::vector<std::strin
   return user::make_user_problem(own, {}, arguments.seed);
 }
 
-// Weights and categories travel with the rows as an input that no method sees; taken out again
-// here.
-CategoryColumn take_last_input(Problem& problem) {
-  Stage& stage = problem.stages.front();
-  CategoryColumn column = {std::move(stage.train.columns.back()),
-                           std::move(problem.test.columns.back())};
-  problem.inputs.pop_back();
-  stage.inputs.pop_back();
-  stage.train.columns.pop_back();
-  problem.test.columns.pop_back();
-  return column;
-}
-
 std::vector<double> take_weights(const FitArguments& arguments, Problem& problem) {
   if (arguments.weights.empty() && arguments.sigma.empty()) return {};
   std::vector<double> weights = take_last_input(problem).train;
@@ -274,6 +261,11 @@ void fit_shared_shape(const FitArguments& arguments, Problem& problem, const Cho
   const CategoryFit shared =
       fit_by_category(problem, categories, *chosen.method,
                       task_of(arguments, problem, chosen.fixed_form), chosen.widened);
+  if (shared.failure.kind != FailureKind::none) {
+    const bool is_unsupported = shared.failure.kind == FailureKind::unsupported;
+    throw Error(is_unsupported ? ErrorKind::bad_input : ErrorKind::failed,
+                reason_text(shared.failure), arguments.method, "");
+  }
   if (arguments.json) {
     fmt::print("{}\n", category_json(shared).dump(2));
   } else {

@@ -92,7 +92,7 @@ std::optional<std::vector<std::string>> used_columns(const UserProblem& own) {
   if (own.inputs.empty()) return std::nullopt;
   std::vector<std::string> used = own.inputs;
   used.push_back(own.target);
-  for (const std::string* more : {&own.group, &own.held_out.column}) {
+  for (const std::string* more : {&own.group, &own.category, &own.held_out.column}) {
     if (!more->empty()) used.push_back(*more);
   }
   return used;
@@ -125,7 +125,7 @@ DataFile read_rows(const UserProblem& own, std::span<const DataSource> sources) 
 
 std::vector<std::string> inputs_of(const UserProblem& own, const Dataset& data) {
   if (!own.inputs.empty()) return own.inputs;
-  std::set<std::string> others = {own.target, own.group, own.held_out.column};
+  std::set<std::string> others = {own.target, own.group, own.category, own.held_out.column};
   const std::string& where = own.reading.where;
   others.insert(where.substr(0, where.rfind('=')));
   std::vector<std::string> inputs;
@@ -278,6 +278,17 @@ void set_motion(const UserProblem& own, const Dataset& data, const std::vector<c
   problem.motion = [rows] { return *rows; };
 }
 
+// The category travels with the rows as the last input, which its unit tells from the others.
+void add_category(const UserProblem& own, const DataFile& rows, std::vector<std::string>& names) {
+  if (own.category.empty()) return;
+  for (const TextColumn& text : rows.texts) {
+    if (text.name != own.category) continue;
+    throw_bad_input(fmt::format("the category '{}' holds text", own.category), rows.data.name,
+                    "give each category a number in a column of its own");
+  }
+  names.push_back(own.category);
+}
+
 void widen_box(std::vector<Input>& inputs, const std::vector<Input>& others) {
   for (std::size_t j = 0; j < inputs.size(); ++j) {
     inputs[j].low = std::min(inputs[j].low, others[j].low);
@@ -307,7 +318,8 @@ Problem make_user_problem(const UserProblem& own, const suite::LawReader& laws,
                           std::uint64_t seed) {
   require_unchanged(own);
   const DataFile rows = read_user_rows(own);
-  const std::vector<std::string> names = inputs_of(own, rows.data);
+  std::vector<std::string> names = inputs_of(own, rows.data);
+  add_category(own, rows, names);
   const KnownDataset known{rows.data, truth_of(own, laws, names, rows.data)};
   Problem problem = make_data_problem(rows.data, nullptr, own.target, names);
   problem.name = own.name;
@@ -331,6 +343,7 @@ Problem make_user_problem(const UserProblem& own, const suite::LawReader& laws,
     set_motion(own, rows.data, test, laws, problem);
   }
   set_units_and_box(own, problem);
+  if (!own.category.empty()) problem.inputs.back().unit = kCategoryUnit;
   return problem;
 }
 

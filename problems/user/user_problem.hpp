@@ -22,6 +22,9 @@
 
 namespace tribench::user {
 
+// The unit of the last input of a problem with categories: no method sees it.
+inline constexpr const char* kCategoryUnit = "category";
+
 struct DataSource {
   std::filesystem::path file;  // absolute, or from the working directory
   std::string sha256;          // of its bytes
@@ -52,6 +55,9 @@ struct UserProblem {
   // Rows with the same text in this column are one movement; without it a movement is what the
   // roles say, of several files each one, of a single file each row.
   std::string group;
+  // The column of numbers that tells categories (joints, machines) apart: one shape for all, with
+  // constants of each one's own.
+  std::string category;
   HeldOut held_out;
   std::string law;                           // over the inputs, where it is known
   std::map<std::string, std::string> units;  // what figures are labelled with; converts nothing

@@ -20,7 +20,7 @@ const std::vector<std::string>& problem_keys() {
   static const std::vector<std::string> kKeys = [] {
     std::vector<std::string> keys = {"name",   "file",   "files",  "folder", "glob",
                                      "sha256", "target", "inputs", "group",  "split",
-                                     "law",    "units",  "box",    "motion"};
+                                     "law",    "units",  "box",    "motion", "category"};
     keys.insert(keys.end(), data_option_keys().begin(), data_option_keys().end());
     return keys;
   }();
@@ -146,6 +146,28 @@ toml::table motion_table(const MotionTerms& terms) {
   return table;
 }
 
+// What is known of one formula with one set of constants is not known of a shape.
+std::string read_category(const TomlTable& table, const std::vector<std::string>& inputs) {
+  std::string category;
+  table.read("category", category);
+  if (!table.has("category")) return category;
+  if (category.empty()) {
+    throw_bad_input("'category' is empty", table.place("category"),
+                    "name the column, or leave 'category' out");
+  }
+  if (std::ranges::count(inputs, category) > 0) {
+    throw_bad_input(fmt::format("'{}' is an input and the category", category),
+                    table.place("category"), "leave it out of 'inputs'");
+  }
+  for (const char* key : {"law", "motion"}) {
+    if (!table.has(key)) continue;
+    throw_bad_input(
+        fmt::format("'{}' is of one formula, and with 'category' there are several", key),
+        table.place(key), "leave one of the two out");
+  }
+  return category;
+}
+
 UserProblem read_one(const TomlTable& table, const fs::path& folder) {
   UserProblem own;
   table.require("target");
@@ -160,6 +182,7 @@ UserProblem read_one(const TomlTable& table, const fs::path& folder) {
   table.read("inputs", own.inputs);
   own.reading = read_data_options(table);
   table.read("group", own.group);
+  own.category = read_category(table, own.inputs);
   own.held_out = read_held_out(table.table("split", {"share", "seeds", "column", "values", "file",
                                                      "files", "folder", "glob", "sha256"}),
                                folder);
@@ -258,6 +281,7 @@ toml::table problem_table(const UserProblem& own, FileNames names, const fs::pat
   if (!own.inputs.empty()) table.insert("inputs", texts_array(own.inputs));
   insert_options(table, own.reading);
   if (!own.group.empty()) table.insert("group", own.group);
+  if (!own.category.empty()) table.insert("category", own.category);
   table.insert("split", split_table(own.held_out, names, folder));
   if (!own.law.empty()) table.insert("law", own.law);
   toml::table units;

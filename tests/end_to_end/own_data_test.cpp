@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // A user's own files from the command line to a leaderboard, by an option and by a grid.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -243,6 +244,79 @@ TEST_F(OwnDataTest, RefusalsNameOptionAndMend) {
               AllOf(HasSubstr("tau"), HasSubstr("joint 0.csv")));
   EXPECT_THAT(refused({"--data-file", logs, "--target", "tau", "--split", "1.5"}),
               HasSubstr("--split"));
+}
+
+// tau = a sgn(v) + b v, with a and b of each axis's own; every third row tests.
+class CategoryGridTest : public OwnDataTest {
+ protected:
+  void SetUp() override {
+    fs::create_directories(folder_ / "here");
+    const double constants[3][2] = {{3, 2}, {0.02, 0.5}, {40, 10}};
+    std::string text = "t,v,axis,fold,tau\n";
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < 60; ++i) {
+        const double v = -1.97 + 0.0667 * i;
+        const double tau = (v > 0 ? 1 : -1) * constants[k][0] + constants[k][1] * v;
+        text += fmt::format("{},{},{},{},{}\n", 100 * k + i, v, k + 4, i % 3,
+                            tau + 1e-3 * std::sin(9.7 * i + k));
+      }
+    }
+    write_text(folder_ / "here/axes.csv", text);
+  }
+  void write_grid(const std::string& methods, const std::string& more) const {
+    write_text(folder_ / "here/grid.toml", "[grid]\nmethods = [" + methods +
+                                               "]\n[budget]\nevaluations = 3e7\n"
+                                               "[[problem]]\nname = \"axes\"\nfile = \"axes.csv\"\n"
+                                               "target = \"tau\"\ninputs = [\"v\", \"sgn_v\"]\n" +
+                                               more);
+  }
+};
+
+TEST_F(CategoryGridTest, OneShapeIsJudgedOnTheRowsOfAllCategories) {
+  const std::string split = "split = { column = \"fold\", values = [\"2\"] }\n";
+  write_grid("\"linear\", \"pysr\"", split + "category = \"axis\"\n");
+  const ProgramRun done = run_grid("here", "out");
+  ASSERT_EQ(done.status, 0) << done.errors;
+  for (const auto& [cell, formula] : column_of(folder_ / "here/out", "formula")) {
+    EXPECT_THAT(formula, AllOf(HasSubstr("p1()"), HasSubstr("; axis=4: p1()="),
+                               HasSubstr("; axis=5: p1()="), HasSubstr("; axis=6: p1()=")))
+        << cell;
+  }
+  for (const auto& [cell, error] : column_of(folder_ / "here/out", "mae_test")) {
+    EXPECT_LT(std::stod(error), 2e-3) << cell;
+  }
+  for (const auto& [cell, verdict] : column_of(folder_ / "here/out", "singularity")) {
+    EXPECT_EQ(verdict, "proved_free") << cell;
+  }
+  // The same again, and of the grid that the run wrote; without categories no formula will do.
+  ASSERT_EQ(run_grid("here", "again", {"--jobs", "2"}).status, 0);
+  EXPECT_EQ(column_of(folder_ / "here/again", "formula"),
+            column_of(folder_ / "here/out", "formula"));
+  EXPECT_THAT(read_text(folder_ / "here/out/grid.toml"), HasSubstr("category = 'axis'"));
+  write_grid("\"pysr\"", split);
+  run_grid("here", "together");
+  for (const auto& [cell, error] : column_of(folder_ / "here/together", "mae_test")) {
+    EXPECT_GT(std::stod(error), 1) << cell;
+  }
+}
+
+TEST_F(CategoryGridTest, WhatHasNoShapeOfItsOwnSaysSo) {
+  write_grid("\"linear\", \"dahl\"", "category = \"axis\"\nroles = \"v=velocity,t=time\"\n");
+  run_grid("here", "out");
+  for (const auto& [cell, reason] : column_of(folder_ / "here/out", "reason")) {
+    const bool has_memory = cell.find("|dahl|") != std::string::npos;
+    EXPECT_THAT(reason, has_memory ? HasSubstr("leave out 'category'") : HasSubstr(""));
+    EXPECT_EQ(reason.empty(), !has_memory) << reason;
+    EXPECT_EQ(reason.starts_with("unsupported"), has_memory) << reason;
+  }
+  // A category whose rows all test has no constants.
+  write_grid("\"linear\"",
+             "category = \"axis\"\nsplit = { column = \"axis\", values = [\"5\"] }\n");
+  run_grid("here", "none");
+  for (const auto& [cell, reason] : column_of(folder_ / "here/none", "reason")) {
+    EXPECT_THAT(reason,
+                AllOf(HasSubstr("category 5"), HasSubstr("split each category's own rows")));
+  }
 }
 
 }  // namespace

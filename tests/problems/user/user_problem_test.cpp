@@ -340,5 +340,42 @@ TEST(DataFiles, AreFoundInTheOrderOfTheirNames) {
   fs::remove_all(folder);
 }
 
+// What tells categories apart stays with its row through split and variants, behind the inputs.
+TEST_F(UserProblems, ACategoryIsTheLastInputAndToldByItsUnit) {
+  const Problem problem = make("category = \"fold\"\ngroup = \"subject\"\n");
+  EXPECT_THAT(problem.input_names(), ElementsAre("v", "load", "fold"));
+  EXPECT_EQ(problem.inputs.back().unit, kCategoryUnit);
+  for (const Table* table : {&problem.stages.front().train, &problem.test}) {
+    ASSERT_GT(table->rows(), 0U);
+    // Row r of the file has v = r - 30 and fold = r % 3.
+    for (std::size_t r = 0; r < table->rows(); ++r) {
+      EXPECT_EQ(table->columns[2][r], static_cast<int>(table->columns[0][r] + 30) % 3);
+    }
+  }
+  const Problem named = make("inputs = [\"load\"]\ncategory = \"fold\"\n");
+  EXPECT_THAT(named.input_names(), ElementsAre("load", "fold"));
+  EXPECT_NE(make("inputs = [\"v\", \"fold\"]\n").inputs.back().unit, kCategoryUnit);
+}
+
+TEST_F(UserProblems, ACategoryIsReadBackAsItIsWritten) {
+  const std::string text =
+      "[[problem]]\nname = \"mine\"\nfile = \"logs/one.csv\"\ntarget = \"tau\"\n"
+      "category = \"fold\"\n";
+  const UserProblem own = parse(text).front();
+  EXPECT_EQ(own.category, "fold");
+  EXPECT_EQ(parse(print_user_problem(own)).front().category, "fold");
+  EXPECT_THAT(print_user_problem(own), HasSubstr("category"));
+}
+
+TEST_F(UserProblems, ACategoryThatIsNoneIsRefusedWithItsMend) {
+  EXPECT_THAT(refusal("category = \"fild\"\n"), HasSubstr("fold"));
+  EXPECT_THAT(refusal("category = \"subject\"\n"), AllOf(HasSubstr("text"), HasSubstr("number")));
+  EXPECT_THAT(refusal("category = \"\"\n"), HasSubstr("empty"));
+  EXPECT_THAT(refusal("category = \"v\"\ninputs = [\"v\"]\n"),
+              HasSubstr("leave it out of 'inputs'"));
+  EXPECT_THAT(refusal("category = \"fold\"\nlaw = \"2*v\"\n"), HasSubstr("'law'"));
+  EXPECT_THAT(refusal("category = \"fold\"\nmotion = {}\n"), HasSubstr("'motion'"));
+}
+
 }  // namespace
 }  // namespace tribench::user
