@@ -14,7 +14,6 @@ constexpr double kLongestStep = 0.1;  // s: slower rows do not follow a motion
 constexpr double kUneven = 3.5;       // usual steps: two rows in a row are lost at most
 constexpr double kJump = 2.5;         // usual steps of the position
 constexpr std::size_t kRepeats = 5;   // rows
-constexpr double kLimitBand = 0.02;   // of the range
 constexpr std::size_t kFewestAtLimit = 5;
 constexpr std::size_t kMoreThanNext = 3;  // times the rows on the value beside it
 constexpr double kRestWindow = 0.05;      // s over which a speed is averaged
@@ -186,16 +185,8 @@ std::vector<char> clipped_rows(std::span<const double> values) {
   if (values.empty()) return clipped;
   const auto [low, high] = std::ranges::minmax(values);
   for (const double limit : {low, high}) {
-    std::size_t at = 0;
-    std::size_t beside = 0;
-    for (const double value : values) {
-      if (value == limit) {
-        ++at;
-      } else if (std::abs(value - limit) < kLimitBand * (high - low)) {
-        ++beside;
-      }
-    }
-    if (at < kFewestAtLimit || at <= beside || 2 * at > values.size()) continue;
+    const auto at = static_cast<std::size_t>(std::ranges::count(values, limit));
+    if (at < kFewestAtLimit || 2 * at > values.size()) continue;
     if (at <= kMoreThanNext * rows_at_next(values, limit)) continue;
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (values[i] == limit) clipped[i] = 1;

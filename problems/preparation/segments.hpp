@@ -35,8 +35,8 @@ std::vector<RowRange> pieces_of(std::span<const double> time, std::span<const in
 std::vector<char> repeated_rows(std::span<const double> position, std::span<const double> noisy,
                                 std::span<const int> movement);
 
-// Rows at the largest or the smallest value, where more rows stand on it than in the whole band of
-// 2 % of the range beside it: the amplifier's limit. All 0 where there is none.
+// Rows at the largest or the smallest value, where far more rows stand on it than on the value next
+// to it: the amplifier's limit. All 0 where there is none.
 std::vector<char> clipped_rows(std::span<const double> values);
 
 // Motion without a rest: from standstill or a reversal to the next. `noise`: of the velocity.

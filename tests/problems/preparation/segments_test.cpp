@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -47,6 +48,22 @@ TEST(Segments, ALimitIsToldFromAPeak) {
   std::size_t found = 0;
   for (const char one : clipped_rows(clipped)) found += one != 0 ? 1 : 0;
   EXPECT_GT(found, 1500U);
+}
+
+// Of a noisy torque as many rows are close to its limit as stand on it.
+TEST(Segments, ALimitIsFoundThoughFewRowsReachIt) {
+  RandomStream random(key_of("limit"));
+  std::vector<double> noisy;
+  for (int i = 0; i < 12000; ++i) {
+    noisy.push_back(std::round(1000 * (20 * std::sin(0.01 * i) + 3 * random.normal())) / 1000);
+  }
+  for (const char one : clipped_rows(noisy)) ASSERT_EQ(one, 0);
+  std::vector<double> clipped;
+  for (const double torque : noisy) clipped.push_back(std::clamp(torque, -24.5, 24.5));
+  const auto at = std::ranges::count_if(clipped, [](double x) { return std::abs(x) == 24.5; });
+  const auto close = std::ranges::count_if(clipped, [](double x) { return std::abs(x) > 23.5; });
+  ASSERT_LT(2 * at, close);
+  EXPECT_EQ(std::ranges::count(clipped_rows(clipped), 1), at);
 }
 
 TEST(Segments, ARepeatedMessageIsToldFromACoarseEncoder) {
