@@ -53,9 +53,11 @@ Thinned steady_rows(const Dataset& data, std::span<const RowRange> pieces, std::
   return some;
 }
 
-// What friction, inertia and gravity may be made of, with friction that grows with the load.
+// What friction, inertia and gravity may be made of, with friction that grows with the load, and
+// what repeats with the motor's turn.
 struct Terms {
   const Dataset& data;
+  std::optional<double> gear_ratio;
   std::optional<RigidBody> body;  // gravity that no column declares
 
   std::vector<double> at(std::size_t i) const {
@@ -73,14 +75,22 @@ struct Terms {
     const double cosine = elementary::cos(q.values[i]);
     if (body) add_load(body->sine * sine + body->cosine * cosine);
     terms.insert(terms.end(), {sine, cosine, sine * cosine, sine * sine});
+    if (gear_ratio) add_ripple(terms, *gear_ratio * q.values[i], sign);
     return terms;
+  }
+
+  static void add_ripple(std::vector<double>& terms, double motor_rad, double sign) {
+    for (const double k : {1.0, 2.0, 4.0}) {
+      const double sine = elementary::sin(k * motor_rad);
+      const double cosine = elementary::cos(k * motor_rad);
+      terms.insert(terms.end(), {sine, cosine, sign * sine, sign * cosine});
+    }
   }
 };
 
 // An orthonormal base of the terms.
-Eigen::MatrixXd base_of(const Dataset& data, const std::vector<std::size_t>& rows) {
+Eigen::MatrixXd base_of(const Terms& all, const std::vector<std::size_t>& rows) {
   const auto n = static_cast<Eigen::Index>(rows.size());
-  const Terms all{data, fit_rigid_body(data)};
   Eigen::MatrixXd x(n, static_cast<Eigen::Index>(all.at(rows[0]).size()));
   for (Eigen::Index r = 0; r < n; ++r) {
     const std::vector<double> terms = all.at(rows[static_cast<std::size_t>(r)]);
@@ -135,7 +145,8 @@ std::optional<double> place_of_least(const Eigen::VectorXd& squares) {
 
 }  // namespace
 
-std::optional<EffortDelay> effort_delay(const Dataset& data, std::span<const RowRange> pieces) {
+std::optional<EffortDelay> effort_delay(const Dataset& data, std::span<const RowRange> pieces,
+                                        std::optional<double> gear_ratio) {
   const Channel* torque = torque_of(data);
   const Channel* t = data.find(Role::time);
   const Channel* v = data.find(Role::velocity);
@@ -148,8 +159,9 @@ std::optional<EffortDelay> effort_delay(const Dataset& data, std::span<const Row
   const auto reach = std::max<std::size_t>(2, static_cast<std::size_t>(kLongest / step));
   const Thinned thinned = steady_rows(data, pieces, reach);
   if (thinned.rows.size() < kFewest) return {};
+  const Terms terms{data, gear_ratio, fit_rigid_body(data)};
   const Eigen::MatrixXd squares = left_over(
-      base_of(data, thinned.rows), means_of(torque->values, thinned.stride), thinned.rows, reach);
+      base_of(terms, thinned.rows), means_of(torque->values, thinned.stride), thinned.rows, reach);
   const Eigen::VectorXd all = squares.rowwise().sum();
   const std::optional<double> best = place_of_least(all);
   if (!best) return {};

@@ -2,9 +2,11 @@
 //
 // By how much a motor's torque or current comes later than the motion that it belongs to: through a
 // filter, or a bus on which it is sent after the position. Left as it is, the gravity and the
-// inertia that it is late with would pass for friction with the load, or with the acceleration.
+// inertia that it is late with would pass for friction with the load, or with the acceleration, and
+// a ripple of the gear would go with the speed.
 //
-// Told by the shift under which friction, inertia and gravity explain most, on rows well away from
+// Told by the shift under which friction, inertia, gravity and, where the gear ratio is known, what
+// repeats with the motor's turn explain most, on rows well away from
 // rests and reversals: there friction that lags, as bristles do, goes with the motion's own terms.
 // NaN policy: values and times are finite, times increase within a piece. Cost: about 0.1 s.
 #pragma once
@@ -25,7 +27,9 @@ struct EffortDelay {
 
 // Needs a time, an angle or a length, velocity, acceleration and motor_torque or motor_current;
 // nothing where one of them is missing or where the rows do not tell.
-std::optional<EffortDelay> effort_delay(const Dataset& data, std::span<const RowRange> pieces);
+// gear_ratio: motor turns per turn of the joint, where it is known; only for an angle.
+std::optional<EffortDelay> effort_delay(const Dataset& data, std::span<const RowRange> pieces,
+                                        std::optional<double> gear_ratio = {});
 
 // A channel as it is `delay` later, by straight lines between neighbours of a piece; rows whose
 // time lies outside of their piece then are marked in `lost`.

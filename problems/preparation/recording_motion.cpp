@@ -248,30 +248,48 @@ void adjust_acceleration(PreparedRecording& out) {
   erase_channel(out.data, kChangeChannel);
 }
 
-void settle_effort(PreparedRecording& out) {
+namespace {
+
+// What comes with the delay of a torque that is measured.
+bool is_effort(Role role) {
+  return role == Role::motor_torque || role == Role::motor_current ||
+         role == Role::friction_torque || role == Role::external_torque;
+}
+
+// The mark of a row holds for the instants beside it.
+void round_up(Channel& mark) {
+  for (double& one : mark.values) one = std::ceil(one);
+}
+
+}  // namespace
+
+void settle_effort(PreparedRecording& out, const Drive& drive) {
   constexpr double kSurelyLate = 5;  // standard errors
-  const Channel* t = find_channel(out.data, Role::time);
-  if (t == nullptr || !is_regular(t->values, out.data.movement)) return;
-  const std::vector<RowRange> pieces = pieces_of(t->values, out.data.movement, {});
-  const std::optional<EffortDelay> delay = effort_delay(out.data, pieces);
-  if (!delay) return;
-  const double step = median_step(t->values, out.data.movement);
+  const Channel* time = find_channel(out.data, Role::time);
+  if (time == nullptr || !is_regular(time->values, out.data.movement)) return;
+  const std::vector<double> t = time->values;
+  const std::vector<RowRange> pieces = pieces_of(t, out.data.movement, {});
+  const std::optional<EffortDelay> delay = effort_delay(out.data, pieces, drive.gear_ratio);
   // No filter and no bus brings a torque before its motion.
-  if (delay->value < std::max(kLeastDelay * step, kSurelyLate * delay->error)) return;
+  if (!delay || delay->value <= kSurelyLate * delay->error) return;
   std::vector<char> lost(out.data.rows(), 0);
   std::string names;
-  for (const Role role : {Role::motor_torque, Role::motor_current}) {
-    Channel* effort = find_channel(out.data, role);
-    if (effort == nullptr) continue;
-    Shifted shifted = shifted_by(t->values, effort->values, pieces, delay->value);
-    effort->values = std::move(shifted.values);
-    lost = std::move(shifted.lost);
-    names += (names.empty() ? "'" : " and '") + effort->name + "'";
+  for (Channel& channel : out.data.channels) {
+    if (is_effort(channel.role)) {
+      names += (names.empty() ? "'" : " and '") + channel.name + "'";
+    } else if (channel.role != Role::time) {
+      // The motion is smooth, the torque is not: between its rows nobody knows it.
+      Shifted shifted = shifted_by(t, channel.values, pieces, -delay->value);
+      channel.values = std::move(shifted.values);
+      lost = std::move(shifted.lost);
+      if (channel.name == kUnresolvedChannel) round_up(channel);
+    }
   }
   out.notes.push_back(fmt::format(
-      "{} comes {:.3g} ms after the motion that it belongs to (+/- {:.2g} ms): taken from there",
+      "{} comes {:.3g} ms after the motion that it belongs to (+/- {:.2g} ms): beside it stands "
+      "the motion of then",
       names, 1e3 * delay->value, 1e3 * delay->error));
-  leave_out(out, lost, "have no torque of their own instant");
+  leave_out(out, lost, "have no motion of their torque's instant");
 }
 
 // Rows of no piece have no derived motion, and the ends of a piece a poor one.

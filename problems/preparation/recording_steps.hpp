@@ -67,8 +67,8 @@ void drop_lonely_acceleration(PreparedRecording& out);
 // that does not: where between half the bandwidth and beyond the whole it is right the torque
 // tells.
 void adjust_acceleration(PreparedRecording& out);
-// A torque or a current that comes later than its motion is taken from where it belongs.
-void settle_effort(PreparedRecording& out);
+// A torque or a current that comes later than its motion is put beside the motion of its instant.
+void settle_effort(PreparedRecording& out, const Drive& drive);
 // Rows of no piece have no derived motion, and the ends of a piece a poor one.
 void drop_edges(PreparedRecording& out, const DerivedMotion& derived);
 

@@ -66,6 +66,23 @@ TEST(EffortDelay, IsFoundWhereTheTorqueComesLate) {
   }
 }
 
+// A joint without gravity that moves gently tells a delay of 4 ms by its gear's ripple.
+TEST(EffortDelay, IsToldByTheGearsRipple) {
+  RawLogPlan plan;
+  plan.gravity = 0;
+  plan.ripple = 0.4;
+  const Dataset data = table_of(late(simulate(plan), 2));
+  const std::vector<RowRange> pieces = pieces_of(data.channels[0].values, data.movement, {});
+  const std::optional<EffortDelay> blind = effort_delay(data, pieces);
+  const std::optional<EffortDelay> delay = effort_delay(data, pieces, 100);
+  ASSERT_TRUE(delay);
+  EXPECT_NEAR(delay->value, 0.004, 4 * delay->error);
+  EXPECT_LT(delay->error, 5e-4);
+  if (blind) {
+    EXPECT_GT(blind->error, 3 * delay->error);
+  }
+}
+
 // Bristles of 0.004 rad that lag behind each reversal are no delay of the torque.
 TEST(EffortDelay, IsNoneWhereFrictionAloneLags) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -98,14 +115,30 @@ TEST(EffortDelay, AChannelIsTakenFromBetweenItsRows) {
   EXPECT_DOUBLE_EQ(early.values[3], 30);
 }
 
-PreparedRecording prepared(const std::vector<RawSample>& samples, const RawLogPlan& plan) {
+PreparedRecording prepared(const std::vector<RawSample>& samples, const RawLogPlan& plan,
+                           std::optional<double> gear_ratio = {}) {
   DataOptions options;
   options.torque_constant = TorqueConstant{plan.torque_constant, false};
+  options.drive.gear_ratio = gear_ratio;
   return prepare(parse_csv(raw_table(samples, plan, {}), "log.csv", {}), options);
 }
 
-// The log of an encoder whose current comes 20 ms late says so and is mended.
-TEST(EffortDelay, ARawLogsLateCurrentIsTakenFromItsInstant) {
+// Root mean square of the prepared position less the true one of so many seconds before.
+double misfit(const PreparedRecording& log, const std::vector<RawSample>& truth, double before) {
+  const std::vector<double>& t = log.data.find(Role::time)->values;
+  const std::vector<double>& q = log.data.find(Role::position)->values;
+  const double step = truth[1].time - truth[0].time;
+  double squares = 0;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const auto row = static_cast<std::size_t>(std::lround((t[i] - truth[0].time - before) / step));
+    squares += std::pow(q[i] - truth.at(row).position, 2);
+  }
+  return std::sqrt(squares / static_cast<double>(t.size()));
+}
+
+// The log of an encoder whose current comes 20 ms late says so: beside each current stands the
+// motion that it belongs to.
+TEST(EffortDelay, ARawLogsLateCurrentStandsBesideItsMotion) {
   RawLogPlan plan;
   plan.seconds = 400;
   const std::vector<RawSample> samples = simulate(plan);
@@ -113,6 +146,30 @@ TEST(EffortDelay, ARawLogsLateCurrentIsTakenFromItsInstant) {
   EXPECT_THAT(fine.notes, Not(Contains(HasSubstr("the motion that it belongs to"))));
   const PreparedRecording mended = prepared(late(samples, 10), plan);
   EXPECT_THAT(mended.notes, Contains(HasSubstr("ms after the motion that it belongs to")));
+  EXPECT_LT(misfit(mended, samples, 0.02), 0.3 * misfit(mended, samples, 0));
+}
+
+std::vector<RawSample> every_fifth(const std::vector<RawSample>& samples) {
+  std::vector<RawSample> some;
+  for (std::size_t i = 0; i < samples.size(); i += 5) some.push_back(samples[i]);
+  return some;
+}
+
+// A ripple is several rows long where the joint is fast: less than a step of delay turns it, and
+// a torque taken from between its rows would lose of it.
+TEST(EffortDelay, LessThanAStepCountsAndTheTorqueStaysAsItWasMeasured) {
+  RawLogPlan plan;
+  plan.seconds = 120;
+  plan.ripple = 0.6;
+  const std::vector<RawSample> samples = every_fifth(late(simulate(plan), 2));
+  const PreparedRecording mended = prepared(samples, plan, 100);
+  EXPECT_THAT(mended.notes, Contains(HasSubstr("ms after the motion that it belongs to")));
+  const std::vector<double>& t = mended.data.find(Role::time)->values;
+  const std::vector<double>& torque = mended.data.find(Role::motor_torque)->values;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const auto row = static_cast<std::size_t>(std::lround(t[i] / (5 * plan.step)));
+    ASSERT_NEAR(torque[i], samples.at(row).torque, 1e-3);
+  }
 }
 
 }  // namespace
