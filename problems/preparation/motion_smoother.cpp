@@ -24,6 +24,7 @@ constexpr std::size_t kSlowest = 10;  // rows a count: an encoder's own error is
 constexpr double kCaution = 0.7;
 constexpr int kRounds = 2;            // of learning where the jerk is
 constexpr double kLeastShape = 0.05;  // of its mean: what a recording says of its jerk is little
+constexpr double kSettled = 3;        // time constants from the ends of a piece
 constexpr double kStill = 0.01;       // s: a count that stays for so long says where the motion is
 
 // Symmetric 3x3: 00 01 02 11 12 22.
@@ -164,14 +165,20 @@ Matrix gain(const Covariance& filtered, const Covariance& predicted, double dt) 
   return c;
 }
 
-// Fills the motion's rows of a piece; returns the variances of velocity and acceleration, summed
-// over the rows (in units of the position's).
-std::array<double, 2> run_backward(std::span<const double> time, const RowRange& piece,
-                                   const std::vector<Step>& steps, Motion& out) {
+// Variances of velocity and acceleration, summed over rows (in units of the position's).
+struct Variances {
+  double velocity = 0;
+  double acceleration = 0;
+  double rows = 0;
+};
+
+// Fills the motion's rows of a piece; adds the variances of those that are `margin` seconds from
+// its ends: closer to them the motion is known far worse, and it is cut there.
+void run_backward(std::span<const double> time, const RowRange& piece,
+                  const std::vector<Step>& steps, double margin, Motion& out, Variances& sum) {
   const std::size_t n = steps.size();
   State x = steps.back().filtered;
   Matrix p = full(steps.back().filtered_covariance);
-  std::array<double, 2> variances = {0, 0};
   for (std::size_t i = n; i-- > 0;) {
     if (i + 1 < n) {
       const double dt = time[piece.begin + i + 1] - time[piece.begin + i];
@@ -198,10 +205,12 @@ std::array<double, 2> run_backward(std::span<const double> time, const RowRange&
     out.position[piece.begin + i] = x[0];
     out.velocity[piece.begin + i] = x[1];
     out.acceleration[piece.begin + i] = x[2];
-    variances[0] += p[1][1];
-    variances[1] += p[2][2];
+    const double now = time[piece.begin + i];
+    if (now - time[piece.begin] < margin || time[piece.end - 1] - now < margin) continue;
+    sum.velocity += p[1][1];
+    sum.acceleration += p[2][2];
+    ++sum.rows;
   }
-  return variances;
 }
 
 double typical_step(std::span<const double> time, std::span<const RowRange> pieces) {
@@ -357,21 +366,23 @@ Motion smooth(std::span<const double> time, const Belief& belief, std::span<cons
   out.bandwidth = bandwidth;
   const double jerk = jerk_of(bandwidth, dt);
   Likelihood sum;
-  std::array<double, 2> variances = {0, 0};
-  double rows = 0;
+  Variances inside;
+  double longest = 0;
+  for (const RowRange& piece : pieces) {
+    longest = std::max(longest, time[piece.end - 1] - time[piece.begin]);
+  }
+  const double margin = std::min(kSettled / (kTwoPi * bandwidth), longest / 4);
   std::vector<Step> steps;
   for (const RowRange& piece : pieces) {
     if (piece.end - piece.begin < 2) continue;
     const Likelihood one = run_forward(time, belief, piece, jerk, &steps);
     sum.squares += one.squares;
     sum.rows += one.rows;
-    const std::array<double, 2> of_piece = run_backward(time, piece, steps, out);
-    for (std::size_t k = 0; k < 2; ++k) variances[k] += of_piece[k];
-    rows += static_cast<double>(piece.end - piece.begin);
+    run_backward(time, piece, steps, margin, out, inside);
   }
-  const double scale = sum.rows > 0 ? sum.squares / sum.rows / std::max(rows, 1.0) : 0;
-  out.velocity_noise = std::sqrt(variances[0] * scale);
-  out.acceleration_noise = std::sqrt(variances[1] * scale);
+  const double scale = sum.rows > 0 ? sum.squares / sum.rows / std::max(inside.rows, 1.0) : 0;
+  out.velocity_noise = std::sqrt(inside.velocity * scale);
+  out.acceleration_noise = std::sqrt(inside.acceleration * scale);
   return out;
 }
 

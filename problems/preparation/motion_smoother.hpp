@@ -21,8 +21,9 @@ struct Motion {
   std::vector<double> position;
   std::vector<double> velocity;
   std::vector<double> acceleration;
-  double bandwidth = 0;       // Hz
-  double velocity_noise = 0;  // root mean square over the rows, as the filter knows it
+  double bandwidth = 0;  // Hz
+  // Root mean square over the rows away from the pieces' ends, as the filter knows it.
+  double velocity_noise = 0;
   double acceleration_noise = 0;
 };
 

@@ -100,6 +100,30 @@ TEST(MotionSmoother, UnevenStepsAndAGapDoNoHarm) {
   }
 }
 
+// Where messages are lost the motion is known far worse for a moment: that is not the recording's
+// noise, by which rests are told and accelerations believed.
+TEST(MotionSmoother, LostMessagesDoNotRaiseTheNoise) {
+  testing::RawLogPlan plan;
+  plan.encoder_bits = 14;
+  const double count = 2 * std::numbers::pi / std::pow(2.0, plan.encoder_bits);
+  std::vector<double> time;
+  std::vector<double> q;
+  for (const testing::RawSample& sample : simulate(plan)) {
+    time.push_back(sample.time);
+    q.push_back(std::floor(sample.position / count) * count);
+  }
+  const std::vector<RowRange> whole = {{0, q.size()}};
+  std::vector<RowRange> pieces;
+  for (std::size_t begin = 0; begin + 1000 < q.size(); begin += 1000) {
+    pieces.push_back({begin, begin + 950});
+    pieces.push_back({begin + 960, begin + 972});  // a few messages between two losses
+  }
+  const Motion steady = MotionSmoother(time, q, whole).smoothed();
+  const Motion lossy = MotionSmoother(time, q, pieces).smoothed();
+  EXPECT_LT(lossy.velocity_noise, 1.5 * steady.velocity_noise);
+  EXPECT_LT(lossy.acceleration_noise, 1.5 * steady.acceleration_noise);
+}
+
 TEST(MotionSmoother, ALongRestAtTheBeginLeavesFiniteNumbers) {
   std::vector<double> time;
   std::vector<double> q;
