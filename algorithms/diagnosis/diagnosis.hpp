@@ -148,7 +148,9 @@ struct Diagnosis {
   std::size_t movements = 0;
   double correlation_rows = 1;  // how many rows the noise lasts
   std::vector<EffectFinding> effects;
-  std::vector<std::string> tried;  // families that stood in the model at some time of the search
+  // Families that the search ended with, before any was taken out or gave way to what is left over:
+  // without one of DiagnosisOptions::unnamed among them its answer is the same.
+  std::vector<std::string> tried;
   LeftoverFinding leftover;
   std::vector<UntestableFinding> untestable;
   std::vector<CoincidingFamilies> aliased;

@@ -236,7 +236,7 @@ void write_findings(Diagnosis& out, const SearchResult& result, const Campaign& 
   out.alias_map = result.first.alias_map;
   out.candidates = result.first.candidates;
   out.notes = state.notes;
-  for (const std::size_t family : state.tried) out.tried.push_back(campaign.families[family].name);
+  for (const std::size_t family : result.tried) out.tried.push_back(campaign.families[family].name);
   const Covariance covariance = covariance_of(state.model, campaign.clusters);
   for (const Found& one : state.found) {
     EffectFinding& finding =

@@ -51,7 +51,6 @@ bool add(SearchState& state, const Candidate& winner, const Round& round,
     state.found.push_back({winner.family, round.family_p[winner.family], winner.gain,
                            winner.rescued, aliases_of(winner, round, state.model, campaign)});
   }
-  state.tried.insert(winner.family);
   state.model = std::move(extended);
   return true;
 }
@@ -143,6 +142,8 @@ SearchResult take_effects(SearchResult out, Round round, const Campaign& campaig
          leave_out_slight(out.state, campaign)) {
     round = test_library(out.state.model, campaign);
   }
+  const std::vector<std::size_t> found = out.state.families();
+  out.tried.insert(found.begin(), found.end());
   take_out_unnamed(out.state, campaign);
   out.taken = out.state.families();
   out.whole = out.state.model;
@@ -158,11 +159,11 @@ SearchResult begin_otherwise(SearchResult one, SearchResult start, const Round& 
   if (one.leftover.inputs.empty() || one.taken.empty()) return one;
   start.state.left_out.push_back(one.taken.front());
   SearchResult other = take_effects(std::move(start), round, campaign, random);
-  one.state.tried.insert(other.state.tried.begin(), other.state.tried.end());
+  one.tried.insert(other.tried.begin(), other.tried.end());
   if (!other.leftover.inputs.empty() || other.state.found.empty()) return one;
   const Gain lead = lead_over(one.whole, other.state.model, campaign);
   if (!(lead.nats > 0)) return one;
-  other.state.tried = one.state.tried;
+  other.tried = one.tried;
   return other;
 }
 

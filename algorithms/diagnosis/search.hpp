@@ -28,7 +28,6 @@ struct SearchState {
   FittedModel model;
   std::vector<Found> found;
   std::vector<std::size_t> left_out;    // next to nothing: not tried again
-  std::set<std::size_t> tried;          // families that were in the model at some time
   std::vector<std::string> given_up;    // atoms that others of their family took the place of
   std::vector<std::size_t> asked_more;  // families that would have taken a third column
   std::vector<std::string> notes;
@@ -44,7 +43,9 @@ struct SearchResult {
   LeftoverFinding leftover;
   bool leftover_tested = false;
   std::vector<std::size_t> taken;  // families, before any gave way to the leftover
-  FittedModel whole;               // the model with all of them
+  // Families that the search ended with, whichever way it had begun, before any was taken out.
+  std::set<std::size_t> tried;
+  FittedModel whole;  // the model with all of them
 };
 
 // Cost: a round of tests an effect found, some fits each, and one of the smoothers.

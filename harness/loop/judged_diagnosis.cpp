@@ -177,7 +177,7 @@ void LoopJudge::search(Searches& all, const std::vector<std::size_t>& which,
 
 // Stability selection (Meinshausen and Buehlmann 2010): what too few of the searches on parts
 // choose hangs on a movement or two. Where the whole names such an effect, all are asked anew for
-// what most of them choose, but those that never took anything else.
+// what most of them choose, but those that had nothing else.
 void LoopJudge::name_the_stable(Searches& all) {
   ChosenShares shares;
   for (std::size_t k = 1; k < all.found.size(); ++k) shares.count(all.found[k]);
