@@ -17,6 +17,7 @@
 #include "reports/record/record_csv.hpp"
 #include "reports/run_reports.hpp"
 #include "reports/study_page.hpp"
+#include "reports/suite_view.hpp"
 #include "tests/reports/browser.hpp"
 #include "tests/reports/sample_run.hpp"
 
@@ -273,6 +274,33 @@ TEST(Page, OfARunFitsAPhoneSaysItsUnitAndWhatChangedFirst) {
   EXPECT_LE(answer["scroll"], answer["room"]);
   EXPECT_EQ(answer["before"], (json{"1", "1", "1"}));
   EXPECT_EQ(answer["hovered"], (json{"1", "0.1", "0.1"}));  // the others fade
+}
+
+// The sample's two problems as the tables of a suite, with one published method.
+TEST(Page, OfASuiteRanksOursAmongThePublished) {
+  if (!has_browser()) GTEST_SKIP() << "no chromium";
+  const fs::path folder = whole_run("page_suite");
+  SuiteInfo suite;
+  suite.name = "A";
+  suite.summary = "two tables";
+  suite.results_note = "read with care";
+  for (const char* table : {"A/j2/no_load", "A/j4/no_load"}) {
+    suite.problems.push_back({table, "", 0});
+    suite.results.push_back({table, "theirs", true, 2, 7});  // better than anything can be
+  }
+  write_file(folder / kSuiteFile, suites_json({suite}));
+  write_run_reports(folder);
+  const json answer = asked_in_browser(folder / "report.html", looking(R"(
+    const rows = (name) => [...document.querySelectorAll(`table[aria-label="${name}"] tbody tr`)].map((r) => r.textContent);
+    window.answer = {errors: window.pageErrors, ranks: rows('ranks on A'), tables: rows('published results of A'),
+      ours: document.querySelector('table[aria-label="ranks on A"] strong')?.textContent};
+  )"));
+  ASSERT_TRUE(answer.is_object()) << answer;
+  EXPECT_EQ(answer["errors"], json::array());
+  ASSERT_FALSE(answer["ranks"].empty());
+  EXPECT_THAT(answer["ranks"][0].get<std::string>(), HasSubstr("theirs"));
+  EXPECT_TRUE(answer["ours"].is_string());
+  EXPECT_THAT(answer["tables"][0].get<std::string>(), HasSubstr("2.00 (theirs)"));
 }
 
 TEST(Page, OfAnUnfinishedRunOpensToo) {

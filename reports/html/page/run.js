@@ -197,7 +197,9 @@ function rankParts(suite) {
   if (!suite.ranks.tables.length) return suite.results_note ? [el("p", {class: "soft"}, suite.results_note)] : [];
   const parts = [el("h4", {}, "Among published results"), el("p", {class: "soft"}, suite.results_note)];
   if (suite.ranks.methods.length) {
-    parts.push(dataTable([{name: "method", key: "method"},
+    parts.push(el("p", {}, "Ranks by R2 on unseen rows: each of ours among the published methods and itself, those among themselves; "
+      + "ours in CPU seconds, theirs as published."));
+    parts.push(dataTable([{name: "method", key: "method", show: (r) => r.operators ? el("strong", {}, r.method) : r.method},
       {name: "operators", key: "operators", show: (r) => r.operators || "published"},
       {name: "median rank", key: "rank_median", number: true}, {name: "mean", key: "rank_mean", number: true},
       {name: "median among formulas", key: "symbolic_rank_median", number: true},
