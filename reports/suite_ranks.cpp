@@ -20,9 +20,10 @@ namespace {
 
 using nlohmann::ordered_json;
 using Results = std::vector<const SuiteResult*>;
+using Cells = std::vector<const Record*>;  // of one method with one operator set, a seed each
 
 // The middle of all cells' R2, failed ones below all others.
-std::optional<double> middle_r2(const std::vector<const Record*>& records) {
+std::optional<double> middle_r2(const Cells& records) {
   std::vector<double> values;
   for (const Record* one : records) {
     if (is_ok(*one)) values.push_back(one->r2_test);
@@ -45,7 +46,24 @@ Results symbolic_of(const Results& all) {
   return some;
 }
 
-TableRank table_rank(const std::vector<const Record*>& records, const Results& published) {
+// Ours on one table, a method at a time.
+std::vector<Cells> cells_on(const std::string& table, const std::vector<Record>& records) {
+  std::vector<Cells> methods;
+  for (const Record& record : records) {
+    if (record.problem != table) continue;
+    const auto same = std::ranges::find_if(methods, [&](const Cells& one) {
+      return one.front()->method == record.method && one.front()->operators == record.operators;
+    });
+    if (same == methods.end()) {
+      methods.push_back({&record});
+    } else {
+      same->push_back(&record);
+    }
+  }
+  return methods;
+}
+
+TableRank table_rank(const Cells& records, const Results& published) {
   TableRank out;
   out.problem = records.front()->problem;
   out.method = records.front()->method;
@@ -173,32 +191,25 @@ SuiteRanks rank_among_published(const std::vector<SuiteResult>& published,
                                 const std::vector<Record>& records) {
   std::map<std::string, Results> by_table;
   for (const SuiteResult& one : published) by_table[one.problem].push_back(&one);
-  std::map<std::string, std::vector<std::vector<const Record*>>> ours;  // a method's at a time
-  for (const Record& record : records) {
-    if (!by_table.contains(record.problem)) continue;
-    std::vector<std::vector<const Record*>>& methods = ours[record.problem];
-    const auto same = std::ranges::find_if(methods, [&](const auto& one) {
-      return one.front()->method == record.method && one.front()->operators == record.operators;
-    });
-    if (same == methods.end()) {
-      methods.push_back({&record});
-    } else {
-      same->push_back(&record);
-    }
-  }
-  std::erase_if(by_table, [&](const auto& one) { return !ours.contains(one.first); });
   SuiteRanks out;
-  bool same_methods = true;
-  for (const auto& [problem, results] : by_table) {
-    for (const auto& own : ours[problem]) out.tables.push_back(table_rank(own, results));
+  std::set<std::set<std::string>> methods;  // of each table
+  for (auto table = by_table.begin(); table != by_table.end();) {
+    const std::vector<Cells> ours = cells_on(table->first, records);
+    if (ours.empty()) {
+      table = by_table.erase(table);
+      continue;
+    }
+    const Results& results = table->second;
+    for (const Cells& own : ours) out.tables.push_back(table_rank(own, results));
     out.best.push_back(**std::ranges::max_element(results, {}, &SuiteResult::r2));
     const Results formulas = symbolic_of(results);
     if (!formulas.empty()) {
       out.best_symbolic.push_back(**std::ranges::max_element(formulas, {}, &SuiteResult::r2));
     }
-    same_methods = same_methods && methods_of(results) == methods_of(by_table.begin()->second);
+    methods.insert(methods_of(results));
+    ++table;
   }
-  if (same_methods && by_table.size() > 1) out.methods = ranked(out.tables, by_table);
+  if (methods.size() == 1 && by_table.size() > 1) out.methods = ranked(out.tables, by_table);
   return out;
 }
 
