@@ -319,27 +319,8 @@ std::optional<Judgement> worst(const CategoryFit& fit,
 
 void judge_errors(const CategoryFit& fit, const Problem& problem, const CategoryColumn& column,
                   Record& record) {
-  const Table& train = problem.stages[0].train;
-  const ErrorFigures on_train =
-      compute_errors(values_of(fit, problem, train, column.train), train.target);
-  record.mae_train = on_train.mae;
-  record.relative_error_train = on_train.relative;
-  const std::vector<double> values = values_of(fit, problem, problem.test, column.test);
-  const ErrorFigures on_test = compute_errors(values, problem.test.target);
-  record.mae_test = on_test.mae;
-  record.rmse_test = on_test.rmse;
-  record.max_error_test = on_test.max_error;
-  record.r2_test = on_test.r2;
-  record.relative_error_test = on_test.relative;
-  if (!problem.test.truth.empty()) {
-    record.mae_truth = compute_errors(values, problem.test.truth).mae;
-  }
-  record.status = CellStatus::ok;
-  if (on_test.not_finite > 0) {
-    mark_failed(record, FailureKind::error,
-                fmt::format("the formula has no finite value at {} of {} test rows",
-                            on_test.not_finite, on_test.rows));
-  }
+  judge_predictions(problem, values_of(fit, problem, problem.stages[0].train, column.train),
+                    values_of(fit, problem, problem.test, column.test), record);
 }
 
 void judge_shape(const CategoryFit& fit, const CategoryColumn& column, Record& record) {

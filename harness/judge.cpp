@@ -142,23 +142,34 @@ bool dominates(const FrontRecord& a, const FrontRecord& b) {
 
 }  // namespace
 
-void judge_formula(const Problem& problem, const StagedFormula& staged, Record& record) {
-  const Expression& formula = staged.formula;
-  TableEvaluator evaluator;
-  const Table& train = fitted_rows(problem);
-  const ErrorFigures on_train = compute_errors(evaluator.evaluate(formula, train), train.target);
+void judge_predictions(const Problem& problem, std::span<const double> train,
+                       std::span<const double> test, Record& record) {
+  const ErrorFigures on_train = compute_errors(train, fitted_rows(problem).target);
   record.mae_train = on_train.mae;
   record.relative_error_train = on_train.relative;
-  const std::span<const double> values = evaluator.evaluate(formula, problem.test);
-  const ErrorFigures on_test = compute_errors(values, problem.test.target);
+  const ErrorFigures on_test = compute_errors(test, problem.test.target);
   record.mae_test = on_test.mae;
   record.rmse_test = on_test.rmse;
   record.max_error_test = on_test.max_error;
   record.r2_test = on_test.r2;
   record.relative_error_test = on_test.relative;
   if (!problem.test.truth.empty()) {
-    record.mae_truth = compute_errors(values, problem.test.truth).mae;
+    record.mae_truth = compute_errors(test, problem.test.truth).mae;
   }
+  record.status = CellStatus::ok;
+  if (on_test.not_finite > 0) {
+    mark_failed(record, FailureKind::error,
+                fmt::format("the formula has no finite value at {} of {} test rows",
+                            on_test.not_finite, on_test.rows));
+  }
+}
+
+void judge_formula(const Problem& problem, const StagedFormula& staged, Record& record) {
+  const Expression& formula = staged.formula;
+  TableEvaluator on_train;
+  TableEvaluator on_test;
+  judge_predictions(problem, on_train.evaluate(formula, fitted_rows(problem)),
+                    on_test.evaluate(formula, problem.test), record);
   record.complexity = paper_complexity(formula);
   record.nodes = node_count(formula);
   if (!staged.adaptation.empty()) {
@@ -168,12 +179,6 @@ void judge_formula(const Problem& problem, const StagedFormula& staged, Record& 
   if (problem.motion) record.motion_error = motion_error_of(problem, formula);
   record.eval_ns_per_row = measure_ns_per_row(formula, problem.test);
   record.formula = formula_text(problem, formula);
-  record.status = CellStatus::ok;
-  if (on_test.not_finite > 0) {
-    mark_failed(record, FailureKind::error,
-                fmt::format("the formula has no finite value at {} of {} test rows",
-                            on_test.not_finite, on_test.rows));
-  }
 }
 
 std::vector<FrontRecord> judge_front(const Problem& problem, const std::vector<Expression>& front,

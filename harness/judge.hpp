@@ -4,6 +4,7 @@
 // complexity, singularity, evaluation time. A method never scores itself.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "algorithms/expression/expression.hpp"
@@ -17,6 +18,11 @@ struct StagedFormula {
   Expression formula;
   Expression adaptation;  // the part of the second stage alone; empty where there is none
 };
+
+// Fills the errors of `record` for what is predicted in the rows that were fitted and in those that
+// test. Without a finite value at a test row the record has failed and says at how many.
+void judge_predictions(const Problem& problem, std::span<const double> train,
+                       std::span<const double> test, Record& record);
 
 // Fills the figures of `record` for the formula the cell stands for. Where the formula has no
 // finite value at a test row the record has failed and says at how many.
