@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "foundation/error.hpp"
 
@@ -53,6 +54,10 @@ Json read_json_or_throw(std::string_view text, std::string_view place) {
   Json value = read_json<Json>(text, &reason);
   if (value.is_discarded()) throw_bad_input(reason, place);
   return value;
+}
+
+nlohmann::ordered_json json_number(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
 template <typename Json>

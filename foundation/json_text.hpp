@@ -25,6 +25,9 @@ Json read_json(std::string_view text, std::string* reason = nullptr);
 template <typename Json>
 Json read_json_or_throw(std::string_view text, std::string_view place);
 
+// null where the value is not finite.
+nlohmann::ordered_json json_number(double value);
+
 // On one line where indent is negative.
 template <typename Json>
 std::string write_json(const Json& value, int indent = -1);

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "foundation/json_text.hpp"
 #include "reports/comparison.hpp"
 #include "reports/figures.hpp"
 #include "reports/markdown.hpp"
@@ -55,10 +55,6 @@ std::string table_of(const std::vector<ComparisonRow>& rows) {
 }
 
 // JSON knows no infinity and no NaN.
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
 ordered_json rows_json(const std::vector<ComparisonRow>& rows) {
   ordered_json array = ordered_json::array();
   for (const ComparisonRow& row : rows) {
@@ -67,12 +63,12 @@ ordered_json rows_json(const std::vector<ComparisonRow>& rows) {
                      {"problem", row.problem},
                      {"pairs", row.pairs},
                      {"equal", row.equal},
-                     {"ratio", number(row.ratio)},
-                     {"low", number(row.interval.low)},
-                     {"high", number(row.interval.high)},
-                     {"effect", number(row.effect)},
-                     {"p", number(row.p)},
-                     {"detectable", number(row.detectable)},
+                     {"ratio", json_number(row.ratio)},
+                     {"low", json_number(row.interval.low)},
+                     {"high", json_number(row.interval.high)},
+                     {"effect", json_number(row.effect)},
+                     {"p", json_number(row.p)},
+                     {"detectable", json_number(row.detectable)},
                      {"undecided", row.undecided},
                      {"verdict", comparison_verdict_name(row.verdict)}});
   }

@@ -22,17 +22,15 @@ constexpr double kHeight = 220;
 constexpr double kLeft = 70;
 constexpr double kFoot = 34;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json figures_json(const MotionFigures& figures) {
   return {{"movements", figures.movements},
           {"rows", figures.rows},
-          {"mean_position", number(figures.mean_position)},
-          {"rms_position", number(figures.rms_position)},
-          {"largest_position", number(figures.largest_position)},
-          {"mean_velocity", number(figures.mean_velocity)},
-          {"rms_velocity", number(figures.rms_velocity)},
-          {"percent_position", number(figures.percent_position)}};
+          {"mean_position", json_number(figures.mean_position)},
+          {"rms_position", json_number(figures.rms_position)},
+          {"largest_position", json_number(figures.largest_position)},
+          {"mean_velocity", json_number(figures.mean_velocity)},
+          {"rms_velocity", json_number(figures.rms_velocity)},
+          {"percent_position", json_number(figures.percent_position)}};
 }
 
 std::string summary_line(const char* which, const MotionFigures& figures, const std::string& unit) {
@@ -167,10 +165,10 @@ std::string write_motion_json(const MotionRecord& record) {
   Json all = {{"title", record.title},
               {"unit", record.unit},
               {"formula", record.formula},
-              {"inertia", number(record.inertia)},
+              {"inertia", json_number(record.inertia)},
               {"gravity", record.gravity},
-              {"motor_constant", number(record.motor_constant)},
-              {"resistance", number(record.resistance)},
+              {"motor_constant", json_number(record.motor_constant)},
+              {"resistance", json_number(record.resistance)},
               {"drive", record.drive},
               {"horizon_s", record.horizon_s},
               {"held_out", figures_json(record.held_out)},
@@ -181,8 +179,8 @@ std::string write_motion_json(const MotionRecord& record) {
     all["fit"] = {{"parameters", record.fit.parameters},
                   {"iterations", record.fit.iterations},
                   {"simulations", record.fit.simulations},
-                  {"rms_before", number(record.fit.rms_before)},
-                  {"rms_after", number(record.fit.rms_after)}};
+                  {"rms_before", json_number(record.fit.rms_before)},
+                  {"rms_after", json_number(record.fit.rms_after)}};
   }
   return write_json(all, 2) + "\n";
 }

@@ -3,9 +3,9 @@
 // Published figures beside ours, for people (Markdown) and for the page (JSON).
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "foundation/json_text.hpp"
 #include "reports/figures.hpp"
 #include "reports/markdown.hpp"
 #include "reports/published.hpp"
@@ -14,10 +14,6 @@ namespace tribench {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
 
 std::string spread_text(const Spread& spread) {
   return spread.count < 2 ? std::string()
@@ -82,21 +78,21 @@ ordered_json published_json(const std::vector<PublishedProblem>& problems) {
     for (const PublishedRow& row : problem.rows) {
       const MethodRow* ours = row.ours;
       const auto of_ours = [&](auto figure_of) {
-        return number(ours != nullptr ? figure_of(*ours) : kMissing);
+        return json_number(ours != nullptr ? figure_of(*ours) : kMissing);
       };
       rows.push_back(
           {{"table", problem.table},
            {"problem", problem.problem},
            {"published_method", row.published.published_method},
-           {"published_mae", number(row.published.mae)},
-           {"published_complexity", number(row.published.complexity)},
+           {"published_mae", json_number(row.published.mae)},
+           {"published_complexity", json_number(row.published.complexity)},
            {"method", ours != nullptr ? ours->method : "not in this run"},
            {"operators", row.operators},
            {"mae", of_ours([](const MethodRow& r) { return r.mae_test.middle; })},
            {"low", of_ours([](const MethodRow& r) { return r.mae_test.low; })},
            {"high", of_ours([](const MethodRow& r) { return r.mae_test.high; })},
-           {"ceiling", number(problem.mae_ceiling)},
-           {"refitted", number(problem.mae_refitted)},
+           {"ceiling", json_number(problem.mae_ceiling)},
+           {"refitted", json_number(problem.mae_refitted)},
            {"against_ceiling", ours != nullptr ? yardstick_ratio_text(ours->ceiling) : "-"},
            {"against_refitted", ours != nullptr ? yardstick_ratio_text(ours->refitted) : "-"},
            {"complexity", of_ours([](const MethodRow& r) { return published_complexity_of(r); })},

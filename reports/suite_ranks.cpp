@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 #include <utility>
 
+#include "foundation/json_text.hpp"
 #include "foundation/order_statistics.hpp"
 #include "reports/figures.hpp"
 #include "reports/markdown.hpp"
@@ -181,10 +181,6 @@ std::string tables_table(const SuiteRanks& ranks) {
   return table.text();
 }
 
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
 }  // namespace
 
 SuiteRanks rank_among_published(const std::vector<SuiteResult>& published,
@@ -250,8 +246,8 @@ ordered_json suite_ranks_json(const SuiteRanks& ranks) {
                        {"tables", one.tables},
                        {"rank_median", one.rank_median},
                        {"rank_mean", one.rank_mean},
-                       {"symbolic_rank_median", number(one.symbolic_rank_median)},
-                       {"seconds", number(one.seconds)}});
+                       {"symbolic_rank_median", json_number(one.symbolic_rank_median)},
+                       {"seconds", json_number(one.seconds)}});
   }
   return {{"tables", tables}, {"methods", methods}};
 }
@@ -263,7 +259,7 @@ ordered_json suite_results_json(const std::vector<SuiteResult>& results) {
                      {"method", one.method},
                      {"symbolic", one.symbolic},
                      {"r2", one.r2},
-                     {"seconds", number(one.seconds)}});
+                     {"seconds", json_number(one.seconds)}});
   }
   return array;
 }

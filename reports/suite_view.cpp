@@ -191,10 +191,6 @@ std::string never_solved_text(const SuiteView& view) {
   return text;
 }
 
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
 ordered_json reference_json(const SuiteReferencePoint& one) {
   return {{"method", one.method},
           {"seconds", one.seconds},
@@ -205,7 +201,7 @@ ordered_json reference_json(const SuiteReferencePoint& one) {
 
 ordered_json row_json(const SuiteMethodRow& row) {
   ordered_json sizes = ordered_json::array();
-  for (const double share : row.recovered_by_size) sizes.push_back(number(share));
+  for (const double share : row.recovered_by_size) sizes.push_back(json_number(share));
   return {{"method", row.method},
           {"operators", row.operators},
           {"problems", row.problems},
@@ -215,10 +211,10 @@ ordered_json row_json(const SuiteMethodRow& row) {
           {"low", row.interval.low},
           {"high", row.interval.high},
           {"r2_at_least", row.r2_at_least},
-          {"r2_median", number(row.r2_median)},
-          {"fit_cpu_s", number(row.fit_cpu_s)},
-          {"fit_wall_s", number(row.fit_wall_s)},
-          {"evaluations", number(row.evaluations)},
+          {"r2_median", json_number(row.r2_median)},
+          {"fit_cpu_s", json_number(row.fit_cpu_s)},
+          {"fit_wall_s", json_number(row.fit_wall_s)},
+          {"evaluations", json_number(row.evaluations)},
           {"recovered_by_size", sizes}};
 }
 

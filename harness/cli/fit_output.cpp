@@ -6,13 +6,12 @@
 #include <cmath>
 
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 
 namespace tribench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 std::string figure(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string("-");
@@ -22,9 +21,9 @@ Json intervals_json(const FitIntervals& intervals) {
   Json constants = Json::array();
   for (std::size_t k = 0; k < intervals.constants.size(); ++k) {
     const ConstantInterval& one = intervals.constants[k];
-    constants.push_back({{"value", number(one.value)},
-                         {"low", number(one.low)},
-                         {"high", number(one.high)},
+    constants.push_back({{"value", json_number(one.value)},
+                         {"low", json_number(one.low)},
+                         {"high", json_number(one.high)},
                          {"place", intervals.places[k]}});
   }
   return {{"level", 0.95},
@@ -44,17 +43,17 @@ Json fit_json(const FitAnswer& answer) {
   for (const FrontRecord& entry : answer.result.front) {
     front.push_back({{"formula", entry.formula},
                      {"complexity", entry.complexity},
-                     {"mae_train", number(entry.mae_train)},
-                     {"mae_test", number(entry.mae_test)},
+                     {"mae_train", json_number(entry.mae_train)},
+                     {"mae_test", json_number(entry.mae_test)},
                      {"singularity", record_word(entry.singularity)}});
   }
   Json all = {{"formula", record.formula},
               {"complexity", record.complexity},
               {"nodes", record.nodes},
-              {"mae_train", number(record.mae_train)},
-              {"mae_test", number(record.mae_test)},
+              {"mae_train", json_number(record.mae_train)},
+              {"mae_test", json_number(record.mae_test)},
               {"evaluations", record.evaluations},
-              {"fit_cpu_s", number(record.fit_cpu_s)},
+              {"fit_cpu_s", json_number(record.fit_cpu_s)},
               {"singularity", record_word(record.singularity)}};
   if (!record.witness.empty()) all["witness"] = nlohmann::json::parse(record.witness);
   if (!record.note.empty()) all["note"] = record.note;
@@ -98,9 +97,9 @@ Json category_json(const CategoryFit& fit) {
   const auto record_json = [](const Record& record) {
     return Json{{"formula", record.formula},
                 {"complexity", record.complexity},
-                {"mae_train", number(record.mae_train)},
-                {"mae_test", number(record.mae_test)},
-                {"rmse_test", number(record.rmse_test)},
+                {"mae_train", json_number(record.mae_train)},
+                {"mae_test", json_number(record.mae_test)},
+                {"rmse_test", json_number(record.rmse_test)},
                 {"singularity", record_word(record.singularity)}};
   };
   for (const CategoryResult& each : fit.categories) {
@@ -112,7 +111,7 @@ Json category_json(const CategoryFit& fit) {
   return {{"shape", fit.shape},
           {"complexity", fit.complexity},
           {"evaluations", fit.evaluations},
-          {"fit_cpu_s", number(fit.fit_cpu_s)},
+          {"fit_cpu_s", json_number(fit.fit_cpu_s)},
           {"ended", fit.was_ended_by_clock ? "seconds" : "finished"},
           {"categories", categories}};
 }

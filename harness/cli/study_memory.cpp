@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "foundation/json_text.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/study/memory_study.hpp"
 
@@ -29,10 +30,6 @@ void print_table(const std::vector<MemoryFigure>& figures) {
   }
 }
 
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-}
-
 void print_json(const std::vector<MemoryFigure>& figures) {
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
   for (const MemoryFigure& f : figures) {
@@ -41,9 +38,9 @@ void print_json(const std::vector<MemoryFigure>& figures) {
                      {"has_state", f.has_state},
                      {"is_best_without", f.is_best_without},
                      {"recordings", f.recordings},
-                     {"rmse", f.failed.empty() ? number(f.rmse) : nullptr},
-                     {"gain", number(f.gain)},
-                     {"half", number(f.half)}});
+                     {"rmse", f.failed.empty() ? json_number(f.rmse) : nullptr},
+                     {"gain", json_number(f.gain)},
+                     {"half", json_number(f.half)}});
   }
   fmt::print("{}\n", array.dump(2));
 }

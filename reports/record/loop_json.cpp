@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "reports/record/loop_json.hpp"
+#include "foundation/json_text.hpp"
 
 #include <fmt/format.h>
 
@@ -12,18 +13,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
 Json bristles_json(const LoopBristles& bristles) {
   return {{"law", bristles.law},
-          {"stiffness", number(bristles.stiffness)},
-          {"lo", number(bristles.stiffness_low)},
-          {"hi", number(bristles.stiffness_high)},
+          {"stiffness", json_number(bristles.stiffness)},
+          {"lo", json_number(bristles.stiffness_low)},
+          {"hi", json_number(bristles.stiffness_high)},
           {"unit", bristles.stiffness_unit},
-          {"sliding", number(bristles.sliding)},
+          {"sliding", json_number(bristles.sliding)},
           {"sliding_unit", bristles.sliding_unit},
-          {"damping", number(bristles.damping)},
-          {"mae_after", number(bristles.mae_after)},
+          {"damping", json_number(bristles.damping)},
+          {"mae_after", json_number(bristles.mae_after)},
           {"formula", bristles.formula}};
 }
 
@@ -31,31 +30,31 @@ Json effect_json(const LoopEffect& effect) {
   Json json = {{"family", effect.family},
                {"atom", effect.atom},
                {"order", effect.order},
-               {"p_adj", number(effect.adjusted_p)},
-               {"cv_gain", number(effect.gain)},
-               {"cv_se", number(effect.gain_error)},
+               {"p_adj", json_number(effect.adjusted_p)},
+               {"cv_gain", json_number(effect.gain)},
+               {"cv_se", json_number(effect.gain_error)},
                {"params", Json::array()},
-               {"rms_contribution", number(effect.rms)},
-               {"vif", number(effect.vif)},
+               {"rms_contribution", json_number(effect.rms)},
+               {"vif", json_number(effect.vif)},
                {"alias", Json::array()},
                {"separate_by", effect.separate_by},
                {"provisional", effect.provisional},
                {"not_physical", effect.objection},
                {"few_movements", effect.few_movements},
                {"another_shape", effect.another_shape},
-               {"chosen_share", number(effect.chosen_share)},
+               {"chosen_share", json_number(effect.chosen_share)},
                {"notes", effect.notes}};
   for (const LoopParameter& p : effect.parameters) {
     json["params"].push_back({{"name", p.name},
-                              {"value", number(p.value)},
-                              {"lo", number(p.low)},
-                              {"hi", number(p.high)}});
+                              {"value", json_number(p.value)},
+                              {"lo", json_number(p.low)},
+                              {"hi", json_number(p.high)}});
   }
   for (const LoopAlias& alias : effect.aliases) {
     json["alias"].push_back({{"family", alias.family},
-                             {"corr", number(alias.correlation)},
-                             {"gain_diff", number(alias.gain_difference)},
-                             {"se", number(alias.error)},
+                             {"corr", json_number(alias.correlation)},
+                             {"gain_diff", json_number(alias.gain_difference)},
+                             {"se", json_number(alias.error)},
                              {"exact", alias.exact},
                              {"separate_by", alias.separate_by}});
   }
@@ -66,9 +65,9 @@ Json effect_json(const LoopEffect& effect) {
 Json leftover_json(const LoopLeftover& leftover) {
   Json curve = Json::array();
   for (const LoopLeftover::Point& point : leftover.curve) {
-    curve.push_back({number(point.x), number(point.y), number(point.error)});
+    curve.push_back({json_number(point.x), json_number(point.y), json_number(point.error)});
   }
-  return {{"p", number(leftover.p)},
+  return {{"p", json_number(leftover.p)},
           {"inputs", leftover.inputs},
           {"proxies_removed", leftover.proxies_removed},
           {"curve", curve}};
@@ -78,38 +77,38 @@ Json error_json(const LoopError& error) {
   Json movements = Json::array();
   for (const LoopMovementError& m : error.movements) {
     movements.push_back({{"movement", m.movement},
-                         {"mae_before", number(m.before)},
-                         {"mae_after", number(m.after)},
+                         {"mae_before", json_number(m.before)},
+                         {"mae_after", json_number(m.after)},
                          {"rows", m.rows}});
   }
   return {{"test_movements", error.test_movements},
           {"how", error.how},
-          {"mae_before", number(error.mae_before)},
-          {"mae_after", number(error.mae_after)},
-          {"rmse_before", number(error.rmse_before)},
-          {"rmse_after", number(error.rmse_after)},
-          {"max_before", number(error.max_before)},
-          {"max_after", number(error.max_after)},
-          {"ci_diff", {number(error.difference_low), number(error.difference_high)}},
-          {"ceiling", number(error.ceiling)},
-          {"attainable", number(error.attainable)},
-          {"closed_fraction", number(error.closed_fraction)},
-          {"closed_fraction_ci", {number(error.closed_low), number(error.closed_high)}},
-          {"closed_fraction_high", number(error.closed_fraction_high)},
+          {"mae_before", json_number(error.mae_before)},
+          {"mae_after", json_number(error.mae_after)},
+          {"rmse_before", json_number(error.rmse_before)},
+          {"rmse_after", json_number(error.rmse_after)},
+          {"max_before", json_number(error.max_before)},
+          {"max_after", json_number(error.max_after)},
+          {"ci_diff", {json_number(error.difference_low), json_number(error.difference_high)}},
+          {"ceiling", json_number(error.ceiling)},
+          {"attainable", json_number(error.attainable)},
+          {"closed_fraction", json_number(error.closed_fraction)},
+          {"closed_fraction_ci", {json_number(error.closed_low), json_number(error.closed_high)}},
+          {"closed_fraction_high", json_number(error.closed_fraction_high)},
           {"ceiling_note", error.ceiling_note},
           {"confirmed", error.confirmed},
-          {"means_before", number(error.means_before)},
-          {"means_after", number(error.means_after)},
+          {"means_before", json_number(error.means_before)},
+          {"means_after", json_number(error.means_after)},
           {"movements", movements}};
 }
 
 // Absent where no motion could be simulated.
 void add_motion(Json& json, const LoopMotion& motion) {
   if (!std::isfinite(motion.after)) return;
-  json["motion"] = {{"before", number(motion.before)},
-                    {"after", number(motion.after)},
+  json["motion"] = {{"before", json_number(motion.before)},
+                    {"after", json_number(motion.after)},
                     {"unit", motion.unit},
-                    {"horizon_s", number(motion.horizon_s)},
+                    {"horizon_s", json_number(motion.horizon_s)},
                     {"held_out", motion.held_out}};
 }
 
@@ -118,32 +117,32 @@ void add_lists(Json& json, const LoopRecord& record) {
   for (const LoopUntestable& one : record.untestable) {
     json["untestable"].push_back({{"family", one.family},
                                   {"reason", one.reason},
-                                  {"share", number(one.share)},
+                                  {"share", json_number(one.share)},
                                   {"clusters", one.stretches},
                                   {"ask", one.ask}});
   }
   json["aliased"] = Json::array();
   for (const LoopCoincidence& pair : record.aliased) {
     json["aliased"].push_back({{"families", {pair.first, pair.second}},
-                               {"corr", number(pair.correlation)},
+                               {"corr", json_number(pair.correlation)},
                                {"separate_by", pair.separate_by}});
   }
   json["events"] = Json::array();
   for (const LoopBurst& burst : record.bursts) {
     json["events"].push_back({{"movement", burst.movement},
                               {"movement_name", burst.movement_name},
-                              {"t0", number(burst.begin)},
-                              {"t1", number(burst.end)},
-                              {"peak", number(burst.peak)}});
+                              {"t0", json_number(burst.begin)},
+                              {"t1", json_number(burst.end)},
+                              {"peak", json_number(burst.peak)}});
   }
   json["candidates"] = Json::array();
   for (const LoopCandidate& one : record.candidates) {
     json["candidates"].push_back({{"family", one.family},
                                   {"atom", one.atom},
-                                  {"p_adj", number(one.adjusted_p)},
-                                  {"score", number(one.score)},
-                                  {"cv_gain", number(one.gain)},
-                                  {"detectable", number(one.detectable)}});
+                                  {"p_adj", json_number(one.adjusted_p)},
+                                  {"score", json_number(one.score)},
+                                  {"cv_gain", json_number(one.gain)},
+                                  {"detectable", json_number(one.detectable)}});
   }
   json["needed"] = record.needed;
 }
@@ -153,8 +152,8 @@ void add_extras(Json& json, const LoopRecord& record) {
   for (const LoopLearned& one : record.learned) {
     json["learned"].push_back({{"family", one.family},
                                {"formula", one.formula},
-                               {"p_adj", number(one.p)},
-                               {"cv_gain", number(one.gain)},
+                               {"p_adj", json_number(one.p)},
+                               {"cv_gain", json_number(one.gain)},
                                {"found_on_movements", one.found_on},
                                {"tested_on_movements", one.tested_on},
                                {"accepted", one.accepted}});
@@ -166,13 +165,13 @@ void add_extras(Json& json, const LoopRecord& record) {
       tones.push_back({tone.amplitude, tone.frequency});
     }
     json["next_movements"].push_back({{"kind", one.kind},
-                                      {"velocity", number(one.velocity)},
-                                      {"from", number(one.from)},
-                                      {"to", number(one.to)},
-                                      {"load_factor", number(one.load_factor)},
-                                      {"duration_s", number(one.duration)},
+                                      {"velocity", json_number(one.velocity)},
+                                      {"from", json_number(one.from)},
+                                      {"to", json_number(one.to)},
+                                      {"load_factor", json_number(one.load_factor)},
+                                      {"duration_s", json_number(one.duration)},
                                       {"tones", tones},
-                                      {"separation", number(one.separation)},
+                                      {"separation", json_number(one.separation)},
                                       {"between", one.between}});
   }
 }
@@ -180,10 +179,13 @@ void add_extras(Json& json, const LoopRecord& record) {
 Json symbols_json(const LoopRecord& record) {
   Json symbols = Json::array();
   for (const LoopSymbol& symbol : record.symbols) {
-    Json json = {{"name", symbol.name},        {"column", symbol.column},
-                 {"unit", symbol.unit},        {"meaning", symbol.meaning},
-                 {"used", symbol.used},        {"low", number(symbol.low)},
-                 {"high", number(symbol.high)}};
+    Json json = {{"name", symbol.name},
+                 {"column", symbol.column},
+                 {"unit", symbol.unit},
+                 {"meaning", symbol.meaning},
+                 {"used", symbol.used},
+                 {"low", json_number(symbol.low)},
+                 {"high", json_number(symbol.high)}};
     if (!symbol.recipe.empty()) json["computed_as"] = symbol.recipe;
     symbols.push_back(std::move(json));
   }
@@ -253,7 +255,7 @@ Json series_json(const std::vector<LoopSeries>& all) {
   Json list = Json::array();
   for (const LoopSeries& one : all) {
     Json json = {
-        {"split", split_key(one.split)}, {"level", number(one.level)}, {"x", rounded(one.x)}};
+        {"split", split_key(one.split)}, {"level", json_number(one.level)}, {"x", rounded(one.x)}};
     const auto add = [&](const char* key, const std::vector<double>& values) {
       if (!values.empty()) json[key] = rounded(values);
     };
@@ -305,19 +307,19 @@ Json loop_json(const LoopRecord& record) {
   json["verdict"] = loop_verdict_name(record.verdict);
   json["confirmed"] = record.error.confirmed;
   json["target"] = {{"name", record.target}, {"unit", record.unit}};
-  json["alpha"] = {{"lib", number(record.alpha_library)},
-                   {"gen", number(record.alpha_leftover)},
+  json["alpha"] = {{"lib", json_number(record.alpha_library)},
+                   {"gen", json_number(record.alpha_leftover)},
                    {"flips", record.flips}};
   json["seed"] = record.seed;
   const LoopNoise& noise = record.noise;
-  json["noise"] = {{"sw", number(noise.within_sd)},
-                   {"sb", number(noise.between_sd)},
-                   {"rho", number(noise.rho)},
+  json["noise"] = {{"sw", json_number(noise.within_sd)},
+                   {"sb", json_number(noise.between_sd)},
+                   {"rho", json_number(noise.rho)},
                    {"n", noise.rows},
                    {"movements", noise.movements},
                    {"clusters", noise.stretches},
-                   {"n_eff", number(noise.effective_rows)}};
-  json["friction_rms"] = number(record.friction_rms);
+                   {"n_eff", json_number(noise.effective_rows)}};
+  json["friction_rms"] = json_number(record.friction_rms);
   json["effects"] = Json::array();
   for (const LoopEffect& effect : record.effects) json["effects"].push_back(effect_json(effect));
   json["leftover"] = leftover_json(record.leftover);
@@ -373,8 +375,8 @@ Json loop_pictures_json(const LoopRecord& record) {
   for (const LoopMovementPoint& one : pictures.movements) {
     json["movements"].push_back({{"name", one.name},
                                  {"test", one.held_out},
-                                 {"mae_before", number(one.before)},
-                                 {"mae_after", number(one.after)}});
+                                 {"mae_before", json_number(one.before)},
+                                 {"mae_after", json_number(one.after)}});
   }
   Json correlation = Json::array();
   for (const std::vector<double>& row : pictures.aliases.correlation) {
