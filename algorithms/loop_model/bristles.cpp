@@ -291,30 +291,74 @@ Scan best_start(const Fit& fit) {
   return best;
 }
 
+// The log of a stiffness over several laws, each weighed by its likelihood: what they agree on is
+// known better than which of them it is (Buckland, Burnham, Augustin 1997).
+class LogStiffness {
+ public:
+  // nats: the negative log evidence of a law.
+  void add(double nats, double stiffness) {
+    if (stiffness > 0) all_.emplace_back(nats, elementary::log(stiffness));
+  }
+  double mean() const {
+    return average([](double one) { return one; });
+  }
+  double variance() const {
+    const double middle = mean();
+    return average([middle](double one) { return (one - middle) * (one - middle); });
+  }
+
+ private:
+  template <typename Value>
+  double average(const Value& value) const {
+    const double least = std::ranges::min(all_).first;
+    double sum = 0;
+    double weights = 0;
+    for (const auto& [nats, one] : all_) {
+      const double weight = elementary::exp(least - nats);
+      weights += weight;
+      sum += weight * value(one);
+    }
+    return sum / weights;
+  }
+
+  std::vector<std::pair<double, double>> all_;  // nats, log stiffness; not empty when asked
+};
+
+struct Laws {
+  Scan best;
+  LogStiffness stiffness;
+};
+
 // Dahl's law is LuGre's without damping, which is held to be there where the rows pay for one more
 // number (Schwarz 1978); four elements hold neither and are not held by them: they are compared by
 // their likelihood, less a nat for each number more (Akaike 1974).
-Scan best_law(const Fit& fit, BristleStart start) {
-  Scan best = scan(fit, {BristleLaw::dahl, start, 1}, false);
-  double least = best.error;
-  const auto try_shape = [&](const Shape& shape, double nats) {
+Laws scan_laws(const Fit& fit, BristleStart start) {
+  Laws out;
+  double least = std::numeric_limits<double>::infinity();
+  const auto try_shape = [&](const Shape& shape, double price) {
     Scan one = scan(fit, shape, false);
-    const double error = one.error * elementary::exp(2 * nats / fit.effective_rows());
-    if (!(error < least)) return;
-    least = error;
-    best = std::move(one);
+    const double nats = 0.5 * fit.effective_rows() * elementary::log(one.error) + price;
+    if (!std::isfinite(nats)) return;
+    out.stiffness.add(nats, one.all.stiffness());
+    if (!(nats < least)) return;
+    least = nats;
+    out.best = std::move(one);
   };
+  try_shape({BristleLaw::dahl, start, 1}, 0);
   try_shape({BristleLaw::lugre, start, 1}, 0.5 * elementary::log(fit.effective_rows()));
   for (const double growth : kGrowths) {
     try_shape({BristleLaw::maxwell_slip, start, growth}, kElements);
   }
-  return scan(fit, best.shape, true);
+  if (std::isfinite(least)) out.best = scan(fit, out.best.shape, true);
+  return out;
 }
 
-void set_interval(Bristles& out, const Scan& scan) {
+// The mean over the laws; how far they lie apart is a part of the interval.
+void set_stiffness(Bristles& out, const Laws& laws) {
   double mean = 0;
   std::vector<double> logs;
-  for (const Profile& one : scan.without) {
+  out.stiffness = elementary::exp(laws.stiffness.mean());
+  for (const Profile& one : laws.best.without) {
     const double stiffness = one.stiffness();
     if (!(stiffness > 0)) continue;
     logs.push_back(elementary::log(stiffness));
@@ -329,7 +373,8 @@ void set_interval(Bristles& out, const Scan& scan) {
   double spread = 0;
   for (const double one : logs) spread += (one - mean) * (one - mean);
   const double parts = kParts;
-  const double half = kStudent9 * std::sqrt((parts - 1) / parts * spread);
+  const double half =
+      kStudent9 * std::sqrt((parts - 1) / parts * spread + laws.stiffness.variance());
   out.low = out.stiffness * elementary::exp(-half);
   out.high = out.stiffness * elementary::exp(half);
 }
@@ -381,7 +426,8 @@ std::optional<Bristles> fit_bristles(const LoopModel& model, std::size_t family,
   const Scan first = best_start(fit);
   if (!std::isfinite(first.error)) return std::nullopt;
   fit.set_noise(fit.noise_beside(first.shape, first.longest, correlated));
-  const Scan scan = best_law(fit, first.shape.start);
+  const Laws laws = scan_laws(fit, first.shape.start);
+  const Scan& scan = laws.best;
   if (!std::isfinite(scan.error)) return std::nullopt;
   const double bar = elementary::exp(elementary::log(fit.effective_rows()) / fit.effective_rows());
   if (scan.error > bar * closed_form_error(fit, model, family, data)) return std::nullopt;
@@ -395,12 +441,11 @@ std::optional<Bristles> fit_bristles(const LoopModel& model, std::size_t family,
     const double stiffness = best.coefficients[fit.fixed() + static_cast<Eigen::Index>(k)];
     if (!(stiffness > 0)) continue;
     out.elements.push_back({slidings[k], stiffness});
-    out.stiffness += stiffness;
     out.sliding = std::max(out.sliding, slidings[k]);
   }
   if (out.elements.empty()) return std::nullopt;
   if (out.law == BristleLaw::lugre) out.damping = best.coefficients[best.coefficients.size() - 1];
-  set_interval(out, scan);
+  set_stiffness(out, laws);
   return out;
 }
 

@@ -45,8 +45,10 @@ struct Bristles {
   std::size_t family = 0;  // whose columns they stand for
   std::vector<Element> elements;
   double damping = 0;    // of lugre: the target's unit over the velocity's, 0 or above
-  double stiffness = 0;  // of all together, relaxed
-  double low = 0;        // 95 %, by leaving out a tenth of the data in turn
+  // Of all together, relaxed: the mean over the laws by their likelihood, so that it may differ
+  // from the elements' sum, which is the likeliest law's.
+  double stiffness = 0;
+  double low = 0;  // 95 %: a tenth of the data left out in turn, and how far the laws lie apart
   double high = 0;
   double sliding = 0;  // deflection from which on all slide
   LoopModel others;    // the model without the family's columns, its coefficients beside these
