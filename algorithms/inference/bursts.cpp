@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "algorithms/inference/burst_likelihood.hpp"
 #include "algorithms/inference/burst_noise.hpp"
 #include "foundation/elementary.hpp"
 
@@ -24,7 +25,6 @@ constexpr double kMostRows = 0.05;
 // exceed four (specification, section 4); less is none, however well it stands out.
 constexpr std::array<std::size_t, 4> kLengths = {4, 6, 9, 14};
 constexpr std::array<double, 5> kHeights = {6, 9, 14, 28, 80};
-constexpr std::size_t kLongestPulse = 15;  // rows it touches
 // Likely pulses in a recording from which on one has to stand out of the others.
 constexpr std::size_t kFewestForTail = 8;
 // A start counts only where four neighbouring innovations, clipped, add up to this: no single row
@@ -37,40 +37,22 @@ constexpr std::size_t kSumRows = 4;
 constexpr std::size_t kDraws = 512;
 constexpr std::size_t kDrawnHeights = 2;
 
-// x to the power -(freedom + 1) / 2, of which twice is an integer.
-double student_power(double x, double freedom) {
-  const auto twice = static_cast<int>(freedom) + 1;
-  double base = 1 / x;
-  double result = twice % 2 == 0 ? 1 : std::sqrt(base);
-  for (int n = twice / 2; n > 0; n /= 2, base *= base) {
-    if (n % 2 == 1) result *= base;
-  }
-  return result;
-}
-
 class BurstScan {
  public:
   BurstScan(std::span<const int> movement, std::span<const double> speed,
             const Eigen::VectorXd& residual)
-      : noise_(movement, speed, residual) {
+      : movement_(movement), noise_(movement, speed, residual) {
     make_pulses();
   }
 
   // The starts that no recording without bursts would show but once in 1 / kFalseBursts;
   // overlapping ones once.
-  std::vector<Burst> find(RandomStream random) const {
-    std::vector<Burst> starts;
-    if (!(noise_.robust_sd() > 0)) return starts;
-    for (std::size_t m = 0; m < noise_.movements().size(); ++m) {
-      const RowRange& range = noise_.movements()[m];
-      for (std::size_t i = range.begin; i < range.end; ++i) {
-        if (!rises(&noise_.innovation()[i], range.end - i)) continue;
-        const Burst burst = burst_at(m, i);
-        if (burst.log_ratio > 0) starts.push_back(burst);
-      }
-    }
-    const std::vector<Burst> separate = likeliest_of_overlapping(std::move(starts));
+  std::vector<Burst> find(RandomStream random) {
+    if (!(noise_.robust_sd() > 0)) return {};
+    std::vector<Burst> separate = likely_pulses();
     if (separate.empty()) return {};
+    loud_ = share_of_loud_spells(noise_, rows_about(separate, movement_));
+    if (loud_ > 0) separate = likely_pulses();
     const double wanted = std::max(threshold(random), stands_out_of(separate));
     std::vector<Burst> found;
     for (Burst one : separate) {
@@ -84,6 +66,19 @@ class BurstScan {
   }
 
  private:
+  std::vector<Burst> likely_pulses() const {
+    std::vector<Burst> starts;
+    for (std::size_t m = 0; m < noise_.movements().size(); ++m) {
+      const RowRange& range = noise_.movements()[m];
+      for (std::size_t i = range.begin; i < range.end; ++i) {
+        if (!rises(&noise_.innovation()[i], range.end - i)) continue;
+        const Burst burst = burst_at(m, i);
+        if (burst.log_ratio > 0) starts.push_back(burst);
+      }
+    }
+    return likeliest_of_overlapping(std::move(starts));
+  }
+
   double peak(const Burst& burst) const {
     double most = 0;
     for (std::size_t i = burst.begin; i < burst.end; ++i) {
@@ -144,47 +139,6 @@ class BurstScan {
     return std::abs(sum) >= kLeastSum;
   }
 
-  // A movement's noise is known but for a factor: five values stand for what it may be (Gauss and
-  // Hermite's, of a normal logarithm).
-  struct Levels {
-    static constexpr std::array<double, 5> kNodes = {-2.856970013872806, -1.355626179974266, 0,
-                                                     1.355626179974266, 2.856970013872806};
-    static constexpr std::array<double, 5> kWeights = {0.011257411327721, 0.222075922005613,
-                                                       0.533333333333333, 0.222075922005613,
-                                                       0.011257411327721};
-    std::array<double, kNodes.size()> factor{};
-    Levels(double middle, double error) {
-      for (std::size_t q = 0; q < kNodes.size(); ++q) {
-        factor[q] = middle * elementary::exp(kNodes[q] * error);
-      }
-    }
-    double draw(RandomStream& random) const {
-      double left = random.uniform();
-      std::size_t q = 0;
-      while (q + 1 < kWeights.size() && left >= kWeights[q]) left -= kWeights[q++];
-      return factor[q];
-    }
-  };
-
-  // How likely the rows' innovations are less a pulse of that height, over the levels that the
-  // noise may have; in units of what `kernels` are the inverse kernels of.
-  double likelihood(const double* z, const double* unit, double height, std::size_t rows,
-                    const Levels& levels, const double* kernels) const {
-    double sum = 0;
-    for (std::size_t q = 0; q < levels.factor.size(); ++q) {
-      const double inverse = 1 / (levels.factor[q] * noise_.law().scale);
-      double product = 1;
-      double scales = 1;
-      for (std::size_t k = 0; k < rows; ++k) {
-        const double x = (z[k] - height * unit[k]) * inverse;
-        product *= (1 + x * x / noise_.law().freedom) * kernels[k];
-        scales *= inverse * noise_.law().scale;
-      }
-      sum += Levels::kWeights[q] * scales * student_power(product, noise_.law().freedom);
-    }
-    return sum;
-  }
-
   // How much likelier pulses make the innovations z, as if they stood from row `first` on.
   struct Ratios {
     double all = 0;             // log of the average
@@ -199,9 +153,20 @@ class BurstScan {
     std::size_t likeliest = 0;  // pulse
   };
 
+  // By least squares.
+  static double fitted_height(const double* z, const double* unit, std::size_t rows) {
+    double product = 0;
+    double square = 0;
+    for (std::size_t k = 0; k < rows; ++k) {
+      product += z[k] * unit[k];
+      square += unit[k] * unit[k];
+    }
+    return product / square;
+  }
+
   // Pulse p, its heights in units of `side`, on `rows` rows from `first` on.
   void add_ratios(std::size_t p, std::size_t first, std::size_t rows, double side, const double* z,
-                  const Levels& levels, RatioSums& sums) const {
+                  const NoiseLevels& levels, RatioSums& sums) const {
     std::array<double, kLongestPulse> unit{};
     std::array<double, kLongestPulse> kernels{};
     for (std::size_t k = 0; k < rows; ++k) {
@@ -209,22 +174,25 @@ class BurstScan {
       kernels[k] = 1 / noise_.law().kernel(z[k]);
     }
     const auto of_height = [&](double height) {
-      return likelihood(z, unit.data(), height, rows, levels, kernels.data());
+      return pulse_likelihood(noise_.law(), z, unit.data(), height, rows, levels, kernels.data());
     };
-    const double null = of_height(0);
-    for (std::size_t h = 0; h < kHeights.size(); ++h) {
-      const double ratio = std::min(of_height(kHeights[h]) / null, 1e250);
+    const double null =
+        quiet_likelihood(noise_.law(), z, rows, levels, kernels.data()).mixed(loud_);
+    const auto add = [&](double height, bool is_drawn) {
+      const double ratio = std::min(of_height(height) / null, 1e250);
       sums.all += ratio;
-      if (h < kDrawnHeights) sums.drawn += ratio;
-      if (ratio <= sums.largest) continue;
+      if (is_drawn) sums.drawn += ratio;
+      if (ratio <= sums.largest) return;
       sums.largest = ratio;
       sums.likeliest = p;
-    }
+    };
+    for (std::size_t h = 0; h < kHeights.size(); ++h) add(kHeights[h], h < kDrawnHeights);
+    add(std::max(kHeights[0], fitted_height(z, unit.data(), rows)), false);
   }
 
   // Rows from `end` on are another movement's; levels: the noise, a pulse, with its rows left out.
   Ratios ratios_at(std::size_t first, const double* z, std::size_t end,
-                   std::span<const Levels> levels) const {
+                   std::span<const NoiseLevels> levels) const {
     const std::size_t reach = std::min(kLongestPulse, end - first);
     double towards = 0;
     for (std::size_t k = 0; k < std::min(reach, kSumRows); ++k) towards += z[k];
@@ -235,14 +203,14 @@ class BurstScan {
     }
     // Half the weight is the other side's, whose ratios are next to nothing.
     const auto pulses = static_cast<double>(pulses_.size());
-    return {elementary::log(sums.all / (2 * pulses * static_cast<double>(kHeights.size()))),
+    return {elementary::log(sums.all / (2 * pulses * static_cast<double>(kHeights.size() + 1))),
             elementary::log(sums.drawn / (2 * pulses * static_cast<double>(kDrawnHeights))),
             sums.likeliest};
   }
 
   Burst burst_at(std::size_t movement, std::size_t first) const {
     const std::size_t end = noise_.movements()[movement].end;
-    std::vector<Levels> levels;
+    std::vector<NoiseLevels> levels;
     for (const std::vector<double>& pulse : pulses_) {
       const std::size_t rows = std::min(pulse.size(), end - first);
       levels.emplace_back(noise_.level_without(movement, first, rows),
@@ -258,7 +226,7 @@ class BurstScan {
     std::size_t from;
     std::size_t end;
     std::array<double, kLongestPulse + 2> z;
-    std::vector<Levels> levels;
+    std::vector<NoiseLevels> levels;
     Ratios ratios;
   };
 
@@ -324,8 +292,10 @@ class BurstScan {
     return 0;
   }
 
+  std::span<const int> movement_;
   BurstNoise noise_;
   std::vector<std::vector<double>> pulses_;  // one row of zero at the end
+  double loud_ = 0;                          // share of rows in loud spells
 };
 
 }  // namespace

@@ -7,13 +7,14 @@
 // away by the noise's own correlation, is none. So the test looks at innovations (each row less
 // what the row before foretells, in units of its speed's and its movement's own noise) under a
 // Student t law fitted to them, and asks at every row how much likelier a pulse makes them: the
-// likelihood ratio, averaged over the lengths, heights and sides a pulse may have. How large the
-// noise is, the movement's other rows say, and both likelihoods are averaged over what they leave
-// open: a burst does not hide in noise that it has made larger itself, nor is noise that is larger
-// than was thought a burst. The tail of that average under the null comes from importance sampling
-// (Siegmund 1976), the union over all rows keeps false bursts in a whole recording at kFalseBursts.
-// The specification's rule (section 4, four rows beyond four robust standard deviations) finds
-// fewer and raises more: heavy tails and correlation make such runs by themselves.
+// likelihood ratio, averaged over the lengths, heights (some, and the one that fits best) and sides
+// a pulse may have. How large the noise is, the movement's other rows say, how often it comes in
+// loud spells all rows do, and both likelihoods are averaged over what they leave open: a burst
+// does not hide in noise that it has made larger itself, nor is noise that is larger than was
+// thought a burst. The tail of that average under the null comes from importance sampling (Siegmund
+// 1976), the union over all rows keeps false bursts in a whole recording at kFalseBursts. The
+// specification's rule (section 4, four rows beyond four robust standard deviations) finds fewer
+// and raises more: heavy tails and correlation make such runs by themselves.
 #pragma once
 
 #include <Eigen/Core>

@@ -170,9 +170,10 @@ PublishedTable read_published(const TomlTable& file) {
 }  // namespace
 
 double lattice_points(const Draw& draw) {
-  // Half a step of slack: 0.1 is no binary fraction.
-  return draw.kind == Draw::Kind::lattice ? std::floor((draw.high - draw.low) / draw.step + 0.5) + 1
-                                          : 1;
+  constexpr double kRounding = 1e-9;  // 0 to 1 by 0.1 are eleven points: 0.1 is no binary fraction
+  return draw.kind == Draw::Kind::lattice
+             ? std::floor((draw.high - draw.low) / draw.step * (1 + kRounding)) + 1
+             : 1;
 }
 
 const SuiteProblem& Suite::find(std::string_view problem) const {

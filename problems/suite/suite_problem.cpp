@@ -58,7 +58,7 @@ Table lattice_table(const SuiteProblem& wanted, const std::vector<const Draw*>& 
     for (std::size_t j = 0; j < draws.size(); ++j) {
       const Draw& draw = *draws[j];
       point[j] = draw.kind == Draw::Kind::lattice
-                     ? draw.low + draw.step * static_cast<double>(at[j])
+                     ? std::min(draw.low + draw.step * static_cast<double>(at[j]), draw.high)
                      : draw_value(draw, random);
     }
     const double value = law(point);

@@ -168,6 +168,15 @@ TEST(Suite, ALatticeHasEveryPointAndLeavesOutWhereTheLawIsNotFinite) {
   EXPECT_EQ(problem.stages[0].train.columns[0][0], 0.1);
 }
 
+TEST(Suite, ALatticeStaysBelowItsHighEndWhereNoStepMeetsIt) {
+  const Suite suite = read_suite(
+      "[suite]\nname = \"s\"\n[[problem]]\nname = \"p\"\nlaw = \"x\"\ninputs = [{ name = "
+      "\"x\", low = 0, high = 1, draw = \"lattice\", step = 0.4 }]\n",
+      "s.toml");
+  const Problem problem = make_suite_problem(suite, suite.problems[0], read_product, {}, 1);
+  EXPECT_EQ(problem.stages[0].train.columns[0], (std::vector<double>{0, 0.4, 0.8}));
+}
+
 TEST(Suite, ALawThatIsFiniteNowhereIsRefused) {
   const Suite suite = read_suite(
       "[suite]\nname = \"s\"\nrows = 3\ntest_rows = 3\n[[problem]]\nname = \"p\"\nlaw = "
