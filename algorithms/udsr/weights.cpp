@@ -49,7 +49,17 @@ std::optional<std::size_t> place_of(const std::vector<std::string>& names,
   return static_cast<std::size_t>(found - names.begin());
 }
 
-// A weight file whose hash matches.
+// What `read` reads of a file; a value of another type than it has to be is a damage.
+template <typename Read>
+auto undamaged(std::string_view place, const Read& read) {
+  try {
+    return read();
+  } catch (const Json::exception&) {
+    throw_bad_input("the weight file is damaged: a value is not of its type", place, kMend);
+  }
+}
+
+// A weight file whose hash matches. Throws Json::exception where a value is of another type.
 Json parse_checked(std::string_view text, std::string_view place) {
   Json file = read_json<Json>(text);
   if (!file.is_object() || file.value("format", "") != kFormat) {
@@ -71,9 +81,11 @@ Json parse_checked(std::string_view text, std::string_view place) {
 }
 
 Stored parse_stored(std::string_view text, std::string_view place) {
-  const Json file = parse_checked(text, place);
-  return {file["tokens"].get<std::vector<std::string>>(), file["operations"].get<std::size_t>(),
-          read_numbers(file["parameters"])};
+  return undamaged(place, [&]() -> Stored {
+    const Json file = parse_checked(text, place);
+    return {file["tokens"].get<std::vector<std::string>>(), file["operations"].get<std::size_t>(),
+            read_numbers(file["parameters"])};
+  });
 }
 
 // Copies the blocks, column by column and row by row where both sides know the token.
@@ -179,13 +191,15 @@ void read_weights(std::string_view text, std::string_view place, Policy& policy)
 }
 
 DataEncoder read_encoder(std::string_view text, std::string_view place) {
-  const Json file = parse_checked(text, place);
   const std::string mend = "make one with: tribench pretrain --encoder --out FILE";
-  if (!file.contains("encoder")) {
-    throw_bad_input("the weight file has no data encoder", place, mend);
-  }
+  Eigen::VectorXd stored = undamaged(place, [&] {
+    const Json file = parse_checked(text, place);
+    if (!file.contains("encoder")) {
+      throw_bad_input("the weight file has no data encoder", place, mend);
+    }
+    return read_numbers(file["encoder"]);
+  });
   DataEncoder encoder(RandomStream(0));
-  Eigen::VectorXd stored = read_numbers(file["encoder"]);
   if (stored.size() != DataEncoder::size()) {
     throw_bad_input("the weight file's data encoder has another size", place, mend);
   }

@@ -59,16 +59,11 @@ struct LoopFormula {
   std::optional<loop::PathFrom> distance_from;
 };
 
-LoopFormula read_loop(const std::string& file) {
-  const nlohmann::json json = read_json<nlohmann::json>(read_file(file));
-  if (!json.is_object() || !json.contains("formula") || !json.contains("symbols")) {
-    throw_bad_input("this is no loop.json: it has no formula and symbols", file,
-                    "give a formula, or the loop.json that 'tribench loop --out' writes");
-  }
-  LoopFormula loop{json["formula"], std::nullopt};
+LoopFormula loop_formula_in(const nlohmann::json& json) {
+  LoopFormula loop{json.at("formula"), std::nullopt};
   bool has_position = false;
   bool derives_distance = false;
-  for (const nlohmann::json& symbol : json["symbols"]) {
+  for (const nlohmann::json& symbol : json.at("symbols")) {
     const std::string name = symbol.value("name", "");
     has_position = has_position || name == "q";
     derives_distance =
@@ -78,6 +73,15 @@ LoopFormula read_loop(const std::string& file) {
     loop.distance_from = has_position ? loop::PathFrom::position : loop::PathFrom::velocity;
   }
   return loop;
+}
+
+LoopFormula read_loop(const std::string& file) {
+  try {
+    return loop_formula_in(read_json<nlohmann::json>(read_file(file)));
+  } catch (const nlohmann::json::exception&) {  // no JSON, no object, another type
+    throw_bad_input("this is no loop.json: it has no formula and symbols", file,
+                    "give a formula, or the loop.json that 'tribench loop --out' writes");
+  }
 }
 
 // "d=q", "d=v"

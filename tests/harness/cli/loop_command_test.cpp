@@ -347,11 +347,13 @@ TEST(LoopCommand, WhatItFoundIsExportedAsCWithTheHistoryItNeeds) {
       code.output,
       HasSubstr("double friction_step(friction_history *h, double v, double q, double dt)"));
   EXPECT_EQ(run_tribench({"export", out + "/loop.md", "--as", "c"}).status, 2);
-  testing::write_text(folder / "other.json", "{}");
-  const testing::ProgramRun other =
-      run_tribench({"export", (folder / "other.json").string(), "--as", "c"});
-  EXPECT_EQ(other.status, 2);
-  EXPECT_THAT(other.errors, HasSubstr("no loop.json"));
+  for (const char* text : {"{}", "[]", R"({"formula": {}, "symbols": [1]})"}) {
+    testing::write_text(folder / "other.json", text);
+    const testing::ProgramRun other =
+        run_tribench({"export", (folder / "other.json").string(), "--as", "c"});
+    EXPECT_EQ(other.status, 2) << text;
+    EXPECT_THAT(other.errors, HasSubstr("no loop.json")) << text;
+  }
   EXPECT_THAT(run_tribench({"export", "2*v", "--as", "c", "--derive", "d=q"}).errors,
               HasSubstr("no input d"));
   EXPECT_THAT(run_tribench({"export", "d*v", "--as", "c", "--derive", "d=x"}).errors,
