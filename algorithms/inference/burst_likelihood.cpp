@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<double, 3> kLoudness = {2, 4, 8};
 constexpr std::size_t kWindow = 9;  // rows in which spells are looked for
 // Spells are reckoned with once the rows speak for them at these odds.
-constexpr double kOdds = 100;
+constexpr double kOdds = 10;
 constexpr double kFirstShare = 0.1;
 constexpr int kRounds = 30;  // of expectation and maximisation
 
