@@ -51,6 +51,18 @@ TEST(RecordJson, IsByteForByteWhatJournalsHold) {
   EXPECT_EQ(after.dump(), before.dump());
 }
 
+TEST(RecordJson, RefusesANumberThatItsTypeDoesNotHold) {
+  nlohmann::json object = record_json(sample_records(1).front());
+  for (const char* number :
+       {"1.8e20", "4294967296", "-2147483649", "2.5", "18446744073709551615"}) {
+    object["joint"] = nlohmann::json::parse(number);
+    EXPECT_THROW(parse_record(object), Error) << number;
+  }
+  object["joint"] = 4;
+  object["evaluations"] = -1;
+  EXPECT_THROW(parse_record(object), Error);
+}
+
 TEST(RecordJson, ReadsBackEveryRowOfASampleRun) {
   for (const Record& record : sample_records(2)) {
     const std::string text = record_json(record).dump();
