@@ -34,6 +34,10 @@ CLI::Option* add_data_options(CLI::App& command, std::shared_ptr<DataOptions> op
       .add_option("--counts-per-turn", options->drive.counts_per_turn,
                   "of an encoder that is read in counts, after quadrature")
       ->transform(real_number(0, kMostCounts, LowEnd::above));
+  command
+      .add_option("--sample-rate", options->sample_rate,
+                  "rows a second, where they are even and no column is the time")
+      ->transform(real_number(0, kLargestSampleRate, LowEnd::above));
   command.add_option_function<std::string>(
       "--torque-constant",
       [options](const std::string& text) {

@@ -10,9 +10,9 @@
 
 namespace tribench {
 
-// Adds --roles, --joint, --where, --drop-missing, --flip-sign, --counts-per-turn, --gear-ratio and
-// --torque-constant; what is given is in the options when the command's callback runs.
-// The options must live as long as the command. Returns the option --gear-ratio.
+// Adds --roles, --joint, --where, --drop-missing, --flip-sign, --counts-per-turn, --sample-rate,
+// --gear-ratio and --torque-constant; what is given is in the options when the command's callback
+// runs. The options must live as long as the command. Returns the option --gear-ratio.
 CLI::Option* add_data_options(CLI::App& command, std::shared_ptr<DataOptions> options);
 
 }  // namespace tribench

@@ -18,6 +18,7 @@ namespace tribench {
 inline constexpr int kMostJoints = 999;
 inline constexpr double kMostCounts = 1e12;
 inline constexpr double kLargestGearRatio = 1e6;
+inline constexpr double kLargestSampleRate = 1e9;  // Hz
 
 struct TorqueConstant {
   double value = 0;  // N m/A
@@ -37,6 +38,7 @@ struct DataOptions {
   std::filesystem::path urdf = {};  // of the arm, for the gravity torque of `joint`
   Drive drive;
   std::optional<TorqueConstant> torque_constant;
+  std::optional<double> sample_rate = {};  // Hz: the rows are even, and no column is the time
 };
 
 // The files as one campaign, with the rows that count and the torques' sign turned where asked.

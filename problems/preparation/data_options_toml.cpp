@@ -24,8 +24,8 @@ std::string text(const TomlTable& table, std::string_view key) {
 
 const std::vector<std::string>& data_option_keys() {
   static const std::vector<std::string> kKeys = {
-      "roles",     "joint",           "where",      "drop_missing",
-      "flip_sign", "counts_per_turn", "gear_ratio", "torque_constant"};
+      "roles",           "joint",      "where",           "drop_missing", "flip_sign",
+      "counts_per_turn", "gear_ratio", "torque_constant", "sample_rate"};
   return kKeys;
 }
 
@@ -41,6 +41,7 @@ DataOptions read_data_options(const TomlTable& table) {
     options.joint = joint;
   }
   options.drive.counts_per_turn = positive(table, "counts_per_turn", kMostCounts);
+  options.sample_rate = positive(table, "sample_rate", kLargestSampleRate);
   options.drive.gear_ratio = positive(table, "gear_ratio", kLargestGearRatio);
   if (table.has("torque_constant")) {
     options.torque_constant =

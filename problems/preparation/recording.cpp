@@ -33,6 +33,17 @@ void note_no_position(PreparedRecording& out, const DataFile& file) {
       fmt::join(strangers, ", "), more ? ", ..." : ""));
 }
 
+// Nor are accelerations, delays and gaps told without a time: it may stand there unknown too.
+void note_no_time(PreparedRecording& out) {
+  const bool told = out.data.find(Role::time) != nullptr ||
+                    out.data.find(Role::acceleration) != nullptr ||
+                    out.data.find(Role::position) == nullptr;
+  if (told) return;
+  out.notes.emplace_back(
+      "no column is the time: the velocity is taken as it stands, and there is no acceleration "
+      "(--roles COLUMN=time[UNIT] or, where the rows are even, --sample-rate HZ)");
+}
+
 }  // namespace
 
 PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gravity,
@@ -46,6 +57,7 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
   for (std::string& one : what_was_converted(file)) out.notes.push_back(std::move(one));
   note_no_position(out, file);
   out.data = std::move(file.data);
+  note_no_time(out);
   if (std::string made = make_torque(out.data, options); !made.empty()) {
     out.notes.push_back(std::move(made));
   }

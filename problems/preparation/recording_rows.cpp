@@ -49,8 +49,9 @@ Jumps jumps_of(const Channel& q, const Channel* t, const Dataset& data) {
 }
 
 // A turn, of the side of the gear that is told, or what a counter of so many bits holds; 0: the
-// values do not lie within one of those from edge to edge.
-double known_turn(const Channel& q, bool at_motor, const Drive& drive) {
+// values do not lie within one of those from edge to edge. count: one of the encoder's, 0 where
+// only the values tell it.
+double known_turn(const Channel& q, bool at_motor, const Drive& drive, double count) {
   const auto [low, high] = std::ranges::minmax(q.values);
   const double range = high - low;
   const auto fills = [&](double turn) {
@@ -59,7 +60,7 @@ double known_turn(const Channel& q, bool at_motor, const Drive& drive) {
   };
   const double turn = kRadPerTurn / (at_motor && drive.gear_ratio ? *drive.gear_ratio : 1);
   if (q.unit == "rad" && fills(turn)) return turn;
-  const double count = resolution_of(q.values);
+  if (count <= 0) count = resolution_of(q.values);
   for (const int bits : {8, 10, 12, 13, 14, 15, 16, 17, 18, 20, 24, 31, 32}) {
     const double span = std::ldexp(count, bits);
     if (count > 0 && fills(span)) return span;
@@ -69,11 +70,12 @@ double known_turn(const Channel& q, bool at_motor, const Drive& drive) {
 
 // How far the position jumps where it starts again; 0: it does not. Without a gap in time, and
 // across what a turn or a counter holds or by the same over and over: a wrong reading is neither.
-double turn_of(const Channel& q, bool at_motor, const Drive& drive, const Jumps& jumps) {
+double turn_of(const Channel& q, bool at_motor, const Drive& drive, double count,
+               const Jumps& jumps) {
   if (jumps.steps.size() < 10 || jumps.usual <= 0) return 0;
   const auto [low, high] = std::ranges::minmax(q.values);
   if (jumps.largest > 0.5 * (high - low)) {
-    if (const double turn = known_turn(q, at_motor, drive); turn > 0) return turn;
+    if (const double turn = known_turn(q, at_motor, drive, count); turn > 0) return turn;
   }
   if (jumps.largest < 20 * jumps.usual) return 0;
   if (q.unit == "rad" && std::abs(jumps.largest - kRadPerTurn) < 0.1 * kRadPerTurn) {
@@ -178,37 +180,89 @@ void join_jumps(PreparedRecording& out) {
       joined, jumps.largest, q->unit));
 }
 
+namespace {
+
+// Over the rows from `first` to `last`, wherever the position starts again between them.
+double mean_speed(const Channel& q, const std::vector<double>& time, std::size_t first,
+                  std::size_t last, double turn) {
+  double way = 0;
+  for (std::size_t i = first + 1; i <= last; ++i) {
+    way += std::remainder(q.values[i] - q.values[i - 1], turn);
+  }
+  return way / (time[last] - time[first]);
+}
+
+// How far the position goes into the row `row`, before which messages are lost: by the velocity
+// where one is measured, else by the position's own speed before and after. gap: s, the shortest.
+double way_across(const Dataset& data, const Channel& q, std::size_t row, double turn, double gap) {
+  const std::vector<double>& time = data.find(Role::time)->values;
+  const double dt = time[row] - time[row - 1];
+  const Channel* v = data.find(Role::velocity);
+  if (v != nullptr && v->unit == q.unit + "/s") {
+    return 0.5 * (v->values[row - 1] + v->values[row]) * dt;
+  }
+  constexpr std::size_t kRows = 10;
+  const auto follows = [&](std::size_t i) {
+    return data.movement[i] == data.movement[i - 1] && time[i] - time[i - 1] <= gap;
+  };
+  std::size_t first = row - 1;
+  while (first > 0 && row - first <= kRows && follows(first)) --first;
+  std::size_t last = row;
+  while (last + 1 < data.rows() && last - row < kRows && follows(last + 1)) ++last;
+  if (first + 1 == row && last == row) return 0;
+  if (last == row) return mean_speed(q, time, first, row - 1, turn) * dt;
+  if (first + 1 == row) return mean_speed(q, time, row, last, turn) * dt;
+  return 0.5 * dt *
+         (mean_speed(q, time, first, row - 1, turn) + mean_speed(q, time, row, last, turn));
+}
+
+// How often the position starts again; what comes after each is moved by a turn.
+std::size_t lay_end_to_end(const Dataset& data, Channel& q, double turn) {
+  const Channel* t = data.find(Role::time);
+  const double gap = t != nullptr ? 1.5 * median_step(t->values, data.movement) : 0;
+  std::size_t wraps = 0;
+  double offset = 0;
+  for (std::size_t i = 1; i < data.rows(); ++i) {
+    if (data.movement[i] != data.movement[i - 1]) {
+      offset = 0;
+      continue;
+    }
+    const bool lost = gap > 0 && t->values[i] - t->values[i - 1] > gap;
+    const double expected = lost ? way_across(data, q, i, turn, gap) : 0;
+    const double turns = std::round((expected - (q.values[i] + offset - q.values[i - 1])) / turn);
+    offset += turns * turn;
+    wraps += turns != 0 ? 1 : 0;
+    q.values[i] += offset;
+  }
+  return wraps;
+}
+
+// Equal counts stay equal, as large as the turns may be.
+void settle_on_counts(std::vector<double>& values, double count) {
+  const auto is_whole = [&](double value) {
+    return std::abs(value / count - std::round(value / count)) < 1e-3;
+  };
+  if (count <= 0 || !std::ranges::all_of(values, is_whole)) return;
+  for (double& value : values) value = count * std::round(value / count);
+}
+
+}  // namespace
+
 // A position that starts again after a turn is laid end to end.
 void unwrap(PreparedRecording& out, const std::vector<ColumnReading>& readings,
             const Drive& drive) {
   Channel* q = find_channel(out.data, Role::position);
   if (q == nullptr) return;
   const auto reading = std::ranges::find(readings, Role::position, &ColumnReading::role);
-  const bool at_motor = reading != readings.end() && reading->unit.ends_with("@motor");
+  const bool is_read = reading != readings.end();
+  const bool at_motor = is_read && reading->unit.ends_with("@motor");
+  const bool in_counts = is_read && reading->unit.find("counts") != std::string::npos;
+  const double count = in_counts ? std::abs(reading->factor) : 0;
   const Channel* t = find_channel(out.data, Role::time);
-  const double turn = turn_of(*q, at_motor, drive, jumps_of(*q, t, out.data));
-  if (turn <= 0) return;
-  const double step_of_time = t != nullptr ? median_step(t->values, out.data.movement) : 0;
-  std::size_t wraps = 0;
-  double offset = 0;
-  double speed = 0;  // of the row before
-  for (std::size_t i = 1; i < out.data.rows(); ++i) {
-    if (out.data.movement[i] != out.data.movement[i - 1]) {
-      offset = 0;
-      speed = 0;
-      continue;
-    }
-    const double dt = t != nullptr ? t->values[i] - t->values[i - 1] : 0;
-    // Where messages are lost the position goes on as before.
-    const double expected = step_of_time > 0 && dt > 1.5 * step_of_time ? speed * dt : 0;
-    const double step = q->values[i] + offset - q->values[i - 1];
-    const double turns = std::round((expected - step) / turn);
-    offset += turns * turn;
-    wraps += turns != 0 ? 1 : 0;
-    q->values[i] += offset;
-    if (dt > 0) speed = (q->values[i] - q->values[i - 1]) / dt;
-  }
+  const double turn = turn_of(*q, at_motor, drive, count, jumps_of(*q, t, out.data));
+  const std::size_t wraps = turn > 0 ? lay_end_to_end(out.data, *q, turn) : 0;
   if (wraps == 0) return;
+  settle_on_counts(q->values, count);
   out.notes.push_back(fmt::format("'{}' starts again {} times after {:.4g} {}: laid end to end",
                                   q->name, wraps, turn, q->unit));
 }

@@ -51,6 +51,7 @@ constexpr std::array kAliases = {
     ChannelAlias{"date_time", time, "", kUsual},
     ChannelAlias{"uhrzeit", time, "", kUsual},
     ChannelAlias{"zeitstempel", time, "", kUsual},
+    ChannelAlias{"time_of_day", time, "", kUsual},
     ChannelAlias{"movement", movement, "", kOwn},
     ChannelAlias{"position", position, "rad", kRos},
     ChannelAlias{"q", position, "rad", kFranka},

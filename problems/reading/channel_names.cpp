@@ -223,6 +223,24 @@ void read_unit_alone(std::string_view name, NameReading& reading) {
   }
 }
 
+// "angle_deg [deg]": the last words say a unit as the brackets do; "angle_deg [rad]" says none.
+bool read_unit_twice(std::string_view name, const NameReading& reading, NameReading& written) {
+  const bool is_read = read_written_unit(split_words(name, false), written) ||
+                       read_written_unit(split_words(name, true), written);
+  const Unit& in_brackets = *reading.known.unit;
+  if (!is_read || written.known.unit->dimension != in_brackets.dimension) return false;
+  written.at_motor = written.at_motor || reading.at_motor;
+  if (written.known.unit != &in_brackets) {
+    written.unknown_unit = std::string(written.known.unit->symbol) + " or ";
+    written.unknown_unit += in_brackets.symbol;
+    written.unit_written = false;
+    written.known = {};
+  } else {
+    written.known = reading.known;
+  }
+  return true;
+}
+
 // A name without a sign prefix and a path before it.
 NameReading read_last(std::string_view whole) {
   std::string_view name = whole;
@@ -242,6 +260,8 @@ NameReading read_last(std::string_view whole) {
     reading = written;
   } else if (read_stem(name, plain)) {
     reading = plain;
+  } else if (reading.unit_written && read_unit_twice(name, reading, written)) {
+    reading = written;
   } else if (!reading.unit_written) {
     read_unit_alone(name, reading);
   }

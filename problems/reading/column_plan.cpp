@@ -68,6 +68,14 @@ WrittenUnit unit_in_row(const CsvLayout& layout, std::size_t column, Role role) 
   return unit.unit != nullptr && suits(*unit.unit, role) ? unit : WrittenUnit{};
 }
 
+// What stands in the row of units and is no unit that is known, else what stands so in the name.
+std::string unknown_unit(const CsvLayout& layout, std::size_t column, const NameReading& heard) {
+  const bool in_row = !layout.units.empty() && !layout.units[column].empty() &&
+                      !heard.unit_written &&
+                      find_written_unit(layout.units[column]).unit == nullptr;
+  return in_row ? layout.units[column] : heard.unknown_unit;
+}
+
 void take_unit(ColumnPlan& plan, const WrittenUnit& unit, std::string_view from) {
   plan.unit = unit;
   plan.reading.unit = unit.symbol();
@@ -105,18 +113,20 @@ ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions&
     unit.at_motor = unit.at_motor || at_motor;
     return unit;
   };
+  const std::string unknown = unknown_unit(layout, j, heard);
   if (given != options.roles.end() && given->second.in.unit != nullptr) {
     take_unit(plan, given->second.in, "--roles");
   } else if (const WrittenUnit row = unit_in_row(layout, j, role); row.unit != nullptr) {
     take_unit(plan, on_side(row), "row of units");
   } else if (heard.unit_written) {
     take_unit(plan, on_side(heard.known), "name");
-  } else if (!heard.unknown_unit.empty() && needs_unit(role)) {
-    throw_bad_input(fmt::format("'{}' is no unit of a {}", heard.unknown_unit, role_name(role)),
+  } else if (!unknown.empty() && needs_unit(role)) {
+    throw_bad_input(fmt::format("'{}' is no unit of a {}", unknown, role_name(role)),
                     fmt::format("{}, column '{}'", file, name),
                     fmt::format("say it with --roles '{}={}[UNIT]'; known: {}", name,
                                 role_name(role), units_of(role)));
-  } else if (heard.known.unit != nullptr && role != Role::none && !plan.role_given) {
+  } else if (heard.known.unit != nullptr && unknown.empty() && role != Role::none &&
+             !plan.role_given) {
     take_unit(plan, on_side(heard.known), heard.source);
     plan.reading.unit_assumed = true;
   } else if (plan.role_given && si_unit(role) != nullptr) {

@@ -209,6 +209,21 @@ void add_to_time(const Reading& in, DataFile& out) {
   out.data.channels.erase(rest);
 }
 
+// The time of rows that are even, by their places in the file: those that are left out count too.
+void count_time(const Reading& in, double rate, DataFile& out) {
+  constexpr std::string_view kName = "sample_time";
+  for (const Channel& channel : out.data.channels) {
+    if (channel.role != Role::time && channel.name != kName) continue;
+    throw_bad_input(fmt::format("'{}' is a time already", channel.name), "--sample-rate",
+                    fmt::format("leave it out, or say --roles '{}=none'", channel.name));
+  }
+  Channel time{std::string(kName), "s", Role::time, {}};
+  for (const std::size_t row : in.rows) time.values.push_back(static_cast<double>(row) / rate);
+  out.data.channels.push_back(std::move(time));
+  out.warnings.push_back(
+      fmt::format("no column is the time: a row every {:.6g} s (--sample-rate)", 1 / rate));
+}
+
 // Columns that no name tells are not even read: they may well hold numbers.
 [[noreturn]] void refuse_no_channel(const Reading& in) {
   if (std::ranges::count(in.plans, ColumnKind::unused, &ColumnPlan::kind) == 0) {
@@ -242,6 +257,7 @@ void fill_channels(Reading& in, DataFile& out) {
   }
   if (out.data.channels.empty()) refuse_no_channel(in);
   add_to_time(in, out);
+  if (in.options.sample_rate) count_time(in, *in.options.sample_rate, out);
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ struct CsvOptions {
   std::optional<std::vector<std::string>> used = {};
   std::optional<int> joint = {};  // of several in the names: q1 ... q7
   Drive drive = {};
-  bool all_positions = false;  // the other joints' positions are channels too
+  bool all_positions = false;              // the other joints' positions are channels too
+  std::optional<double> sample_rate = {};  // rows a second, of a file without a time
 };
 
 struct TextColumn {

@@ -81,19 +81,34 @@ bool names_columns(const Cells& cells) {
   return numbers == 0 && empty < all && (empty <= 1 || empty * 4 < all);
 }
 
-bool names_units(const Cells& cells) {
+// Cells that are a unit, and those that are something else.
+struct UnitCells {
   std::size_t units = 0;
+  std::size_t others = 0;
+};
+
+UnitCells count_units(const Cells& cells) {
+  UnitCells count;
   for (std::string_view cell : cells) {
     if (cell.size() > 2 && (cell.front() == '[' || cell.front() == '(')) {
       cell = cell.substr(1, cell.size() - 2);
     }
     if (find_written_unit(cell).unit != nullptr) {
-      ++units;
+      ++count.units;
     } else if (!cell.empty() && cell != "-" && cell != "1") {
-      return false;
+      ++count.others;
     }
   }
-  return units > 0;
+  return count;
+}
+
+// Whether a line is a row of units below the names in `above`: units throughout, or mostly, where
+// the line above has fewer (some unit may be in another language).
+bool names_units(const Cells& cells, const Cells& above) {
+  const UnitCells count = count_units(cells);
+  if (count.units == 0) return false;
+  return count.others == 0 ||
+         (count.units > count.others && count_units(above).units < count.units);
 }
 
 // As many cells, but for a separator at the end of either line.
@@ -141,15 +156,14 @@ Found try_delimiter(const std::vector<HeadLine>& lines, char delimiter) {
   const auto search = [&](bool comments) {
     for (std::size_t i = row; i-- > 0;) {
       if (lines[i].comment != comments || !same_width(cells[i], cells[row])) continue;
-      if (!found.units && names_units(cells[i])) {
-        bool more = false;
-        for (std::size_t k = 0; k < i; ++k) {
-          more = more || (same_width(cells[k], cells[row]) && names_columns(cells[k]));
-        }
-        if (more) {
-          found.units = i;
-          continue;
-        }
+      const auto is_above = [&](const Cells& other) {
+        return same_width(other, cells[row]) && names_columns(other) &&
+               names_units(cells[i], other);
+      };
+      if (!found.units &&
+          std::any_of(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(i), is_above)) {
+        found.units = i;
+        continue;
       }
       if (!names_columns(cells[i])) continue;
       found.header = i;

@@ -47,7 +47,8 @@ std::vector<std::string> what_is_missing(const DataFile& file) {
         "COLUMN=velocity or COLUMN=position");
   } else if (!has(file, {Role::velocity}) && !has(file, {Role::time})) {
     missing.emplace_back(
-        "there is no velocity, and no time to derive it by: name it with --roles COLUMN=time");
+        "there is no velocity, and no time to derive it by: name it with --roles COLUMN=time (or, "
+        "where the rows are even, --sample-rate HZ)");
   }
   for (const ColumnReading& reading : file.readings) {
     if (!reading.needs.empty()) {

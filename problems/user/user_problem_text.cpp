@@ -251,6 +251,7 @@ void insert_options(toml::table& table, const DataOptions& options) {
   if (options.drive.counts_per_turn) {
     table.insert("counts_per_turn", *options.drive.counts_per_turn);
   }
+  if (options.sample_rate) table.insert("sample_rate", *options.sample_rate);
   if (options.torque_constant) {
     table.insert("torque_constant", fmt::format("{}{}", options.torque_constant->value,
                                                 options.torque_constant->at_motor ? "@motor" : ""));

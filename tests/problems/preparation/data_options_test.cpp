@@ -50,6 +50,18 @@ TEST(DataOptions, ATableOfTomlSaysWhatTheCommandLineSays) {
   EXPECT_EQ(read.data.at("i").unit, "N m");
 }
 
+TEST(DataOptions, ATableOfTomlMaySayTheRateOfItsRows) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "log.csv";
+  std::ofstream(file) << kText;
+  const std::vector<std::filesystem::path> files = {file};
+  const DataFile read =
+      read_named_columns(files, options_of("sample_rate = 500.0"), std::vector<std::string>{"phi"});
+  ASSERT_NE(read.data.find(Role::time), nullptr);
+  EXPECT_EQ(read.data.find(Role::time)->values, (std::vector<double>{0, 0.002, 0.004}));
+  EXPECT_THAT(refusal("sample_rate = 0.0"), HasSubstr("sample_rate"));
+}
+
 TEST(DataOptions, AnEmptyTableLeavesTheColumnsAsTheyAre) {
   const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "log.csv";

@@ -158,6 +158,68 @@ TEST(RecordingRows, CountersAndTurnsThatStartAgainAreLaidEndToEnd) {
   expect_same_motion(prepared(lost, "deg@motor", drive, 3), "laid end to end");
 }
 
+// The counter's span is as exact as its count, which is a billionth of it.
+TEST(RecordingRows, ACounterOf32BitsIsLaidEndToEndToTheCount) {
+  std::vector<Row> rows = swings();
+  for (Row& row : rows) {
+    const double count = std::floor(row.position * 100 / kTurn * 4096);
+    row.position = count - 4294967296.0 * std::floor(count / 4294967296.0);
+  }
+  const PreparedRecording recording = prepared(rows, "counts@motor", Drive{4096.0, 100.0}, 0);
+  expect_same_motion(recording, "laid end to end");
+  const std::vector<double>& t = recording.data.find(Role::time)->values;
+  const std::vector<double>& q = recording.data.find(Role::position)->values;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    ASSERT_NEAR(q[i] - q[0], place_at(t[i]) - place_at(t[0]), 3e-5) << i;
+  }
+}
+
+// For so long that a joint which speeds up goes another way than straight on, by half a turn of its
+// motor: the speed behind the gap tells. By the position alone, and with a measured velocity.
+TEST(RecordingRows, ATurnThatEndsAmongLostMessagesIsCountedByTheSpeedOnBothSides) {
+  for (const bool with_velocity : {false, true}) {
+    std::string text = with_velocity ? "t,pos,tau,vel\n" : "t,pos,tau\n";
+    for (const Row& row : swings()) {
+      const auto number = static_cast<std::size_t>(std::lround(row.time / kStep));
+      if (number % 400 > 325) continue;
+      const double degrees = row.position * 100 * 360 / kTurn;
+      text += fmt::format("{:.6f},{:.3f},{:.4f}", row.time,
+                          degrees - 360 * std::floor(degrees / 360), row.torque);
+      text += with_velocity ? fmt::format(",{:.5f}\n", speed_at(row.time)) : "\n";
+    }
+    CsvOptions csv;
+    csv.used.emplace();
+    csv.drive = {{}, 100.0};
+    csv.roles = parse_roles(fmt::format("t=time[s],pos=position[deg@motor],tau=motor_torque[N m]{}",
+                                        with_velocity ? ",vel=velocity[rad/s]" : ""),
+                            "--roles");
+    DataOptions options;
+    options.drive = csv.drive;
+    const PreparedRecording recording = prepare(parse_csv(text, "log.csv", csv), options);
+    const std::vector<double>& t = recording.data.find(Role::time)->values;
+    const std::vector<double>& q = recording.data.find(Role::position)->values;
+    ASSERT_GT(t.size(), 4000U);
+    double worst = 0;
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      worst = std::max(worst, std::abs(q[i] - place_at(t[i]) - (q[0] - place_at(t[0]))));
+    }
+    EXPECT_LT(worst, 0.01) << with_velocity;
+  }
+}
+
+TEST(RecordingRows, ALogWithoutATimeIsSaidToBeOne) {
+  std::string text = "pos,vel,tau\n";
+  for (const Row& row : swings()) {
+    text += fmt::format("{:.6f},{:.5f},{:.4f}\n", row.position, speed_at(row.time), row.torque);
+  }
+  CsvOptions csv;
+  csv.roles = parse_roles("pos=position[rad],vel=velocity[rad/s],tau=motor_torque[N m]", "--roles");
+  EXPECT_THAT(prepare(parse_csv(text, "log.csv", csv), {}).notes,
+              Contains(HasSubstr("no column is the time")));
+  csv.sample_rate = 1 / kStep;
+  expect_same_motion(prepare(parse_csv(text, "log.csv", csv), {}), "--sample-rate");
+}
+
 TEST(RecordingRows, AVelocityThatNobodyFilledIsRefusedWithTheMend) {
   std::string text = "t_s,pos_rad,vel_rad_s,tau_Nm\n";
   for (const Row& row : swings()) {

@@ -134,6 +134,59 @@ TEST(VendorLogs, Recorders) {
               HasSubstr("instants of their own"));
 }
 
+TEST(VendorLogs, UnitsInOtherLanguagesAndUnitsSaidTwice) {
+  expect_read(
+      "Zeit [s];Istposition [Grad];Istgeschwindigkeit [Grad/s];Iststrom [A]\n0;90;1;1\n"
+      "0,002;91;1;2\n",
+      told(""), {0.002, 91 * kDegree, 2});
+  expect_read("temps,p,v,c\n0,0.25,1,1\n2,0.5,1,2\n",
+              told("temps=time[ms],p=position[rev],v=velocity[tr/min],c=motor_current[A_rms]"),
+              {0.002, M_PI, 2});
+  // A recorder that puts the unit behind names that hold it already.
+  expect_read(
+      "header.stamp.sec [s],header.stamp.nanosec [ns],q_deg [deg],tau [Nm]\n"
+      "10,999000000,90,1\n11,1000000,91,2\n",
+      told(""), {11.001, 91 * kDegree, 2});
+  EXPECT_THAT(complaint("t,q_deg [rad],tau [Nm]\n0,1,1\n1,1,2\n", told("")),
+              HasSubstr("'deg or rad' is no unit of a position"));
+  expect_read("time_of_day [ms],seq [ms],q_rad,tau [Nm]\n36000000,0,1,1\n36000002,1,2,2\n",
+              told(""), {36000.002, 2, 2});
+}
+
+TEST(VendorLogs, ARowOfUnitsMayHoldOneThatIsNotKnown) {
+  const std::string names = "t;theta;omega;tau\n";
+  const std::string rows = "0;90;1;1\n0.002;91;1;2\n";
+  EXPECT_THAT(complaint(names + "s;zoll;rad/s;N m\n" + rows, told("")),
+              ::testing::AllOf(HasSubstr("'zoll' is no unit of a position"),
+                               HasSubstr("--roles 'theta=position[UNIT]'")));
+  expect_read(names + "s;zoll;rad/s;N m\n" + rows, told("theta=position[deg]"),
+              {0.002, 91 * kDegree, 2});
+  // Nor is a unit that nobody knows the one that a name's source always uses.
+  for (const char* text : {"t;q;effort\ns;rad;in-lb\n0;1;1\n1;2;1\n",
+                           "t [s];q [rad];effort [in-lb]\n0;1;1\n1;2;1\n"}) {
+    const DataFile file = parse_csv(text, "log.csv", told(""));
+    ASSERT_NE(file.data.find(Role::motor_torque), nullptr);
+    EXPECT_EQ(file.data.find(Role::motor_torque)->unit, "-");
+  }
+}
+
+TEST(VendorLogs, EvenRowsWithoutATimeAreToldTheirRate) {
+  CsvOptions options = told("pos=position[deg],tau=motor_torque[N m]");
+  options.drop_missing = true;
+  const std::string text = "pos,tau\n90,1\n,2\n91,3\n";
+  EXPECT_THAT(what_is_missing(parse_csv(text, "log.csv", options)),
+              ::testing::Contains(HasSubstr("--sample-rate HZ")));
+  options.sample_rate = 500;
+  const DataFile file = parse_csv(text, "log.csv", options);
+  EXPECT_THAT(what_is_missing(file), ::testing::IsEmpty());
+  // The row that is left out took its time.
+  expect_sample(file, 1, {0.004, 91 * kDegree, 3});
+  EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("a row every 0.002 s")));
+  options.roles = parse_roles("pos=position[deg],t=time[s]", "--roles");
+  EXPECT_THAT(complaint("t,pos\n0,90\n1,91\n", options),
+              ::testing::AllOf(HasSubstr("'t' is a time already"), HasSubstr("'t=none'")));
+}
+
 TEST(VendorLogs, SpreadsheetsAndTheirEncodings) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("tribench-vendor-" + std::to_string(::getpid()));
