@@ -116,32 +116,38 @@ void check_match(const DataFile& file, const MotionMatch& match, std::optional<d
                                        "COLUMN=ROLE[UNIT]), --counts-per-turn and --gear-ratio");
 }
 
-// What was taken for SI because its name's source always uses SI, and cannot be.
-void check_assumed(const DataFile& file) {
+// A joint that turns over and over, in a unit that was only assumed or on a side of the gear that
+// nobody named: counts and, beside a gear ratio, turns may well be the motor's.
+void check_turns(const DataFile& file, std::optional<double> gear_ratio) {
   const ColumnReading* position = reading_of(file, Role::position);
   const Channel* q = file.data.find(Role::position);
-  const bool in_counts =
-      position != nullptr && position->unit == "counts" && position->unit_from != "--roles";
-  if (q != nullptr && q->unit == "rad" && (in_counts || position->unit_assumed)) {
-    const auto [low, high] = std::ranges::minmax(q->values);
-    if (in_counts && high - low > kMostTurns * kTurn) {
-      throw_bad_input(
-          fmt::format("'{}' ranges over {:.3g} turns: nothing says on which side of the gear",
-                      position->column, (high - low) / kTurn),
-          file.data.name,
-          fmt::format("say --roles '{0}=position[counts@motor]' with --gear-ratio, or "
-                      "'{0}=position[counts]' if it is the joint",
-                      position->column));
-    }
-    if (high - low > kMostTurns * kTurn) {
-      throw_bad_input(
-          fmt::format("'{}' ranges over {:.4g} rad, {:.3g} turns: its unit was only assumed",
-                      position->column, high - low, (high - low) / kTurn),
-          file.data.name,
-          fmt::format("say it: --roles '{0}=position[deg]', or '{0}=position[rad]' if it is so",
-                      position->column));
-    }
+  if (position == nullptr || q == nullptr || q->unit != "rad") return;
+  const auto [low, high] = std::ranges::minmax(q->values);
+  const double turns = (high - low) / kTurn;
+  if (turns <= kMostTurns || position->unit.ends_with("@motor")) return;
+  const bool may_be_motor = position->unit_from != "--roles" &&
+                            (position->unit == "counts" || (gear_ratio && !position->unit_assumed));
+  if (may_be_motor) {
+    throw_bad_input(
+        fmt::format("'{}' ranges over {:.3g} turns: nothing says on which side of the gear",
+                    position->column, turns),
+        file.data.name,
+        fmt::format("say --roles '{0}=position[{1}@motor]' with --gear-ratio, or "
+                    "'{0}=position[{1}]' if it is the joint",
+                    position->column, position->unit));
   }
+  if (!position->unit_assumed) return;
+  throw_bad_input(
+      fmt::format("'{}' ranges over {:.4g} rad, {:.3g} turns: its unit was only assumed",
+                  position->column, high - low, turns),
+      file.data.name,
+      fmt::format("say it: --roles '{0}=position[deg]', or '{0}=position[rad]' if it "
+                  "is so",
+                  position->column));
+}
+
+// What was taken for SI because its name's source always uses SI, and cannot be.
+void check_assumed_time(const DataFile& file) {
   const ColumnReading* time = reading_of(file, Role::time);
   const Channel* t = file.data.find(Role::time);
   if (time == nullptr || !time->unit_assumed || t == nullptr) return;
@@ -219,7 +225,8 @@ void check_motion(const DataFile& file, std::optional<double> gear_ratio) {
     check_same_side(*q, *v, match.slope, file.data.name);
     check_match(file, match, gear_ratio);
   }
-  check_assumed(file);
+  check_turns(file, gear_ratio);
+  check_assumed_time(file);
 }
 
 std::optional<double> delay_of(std::span<const double> time,

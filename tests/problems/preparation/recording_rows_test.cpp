@@ -207,6 +207,28 @@ TEST(RecordingRows, ATurnThatEndsAmongLostMessagesIsCountedByTheSpeedOnBothSides
   }
 }
 
+// Degrees of the motor under a name that says nothing of it: a joint would turn 20 times over.
+TEST(RecordingRows, ASideOfTheGearThatNobodyNamesIsAskedFor) {
+  std::string text = "t [s],angle [deg],tau [Nm]\n";
+  for (const Row& row : swings()) {
+    text += fmt::format("{:.3f},{:.4f},{:.4f}\n", row.time, row.position * 50 * 360 / kTurn,
+                        row.torque);
+  }
+  CsvOptions csv;
+  csv.drive.gear_ratio = 50;
+  DataOptions options;
+  options.drive = csv.drive;
+  try {
+    prepare(parse_csv(text, "log.csv", csv), options);
+    FAIL() << "read";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("nothing says on which side of the gear"));
+    EXPECT_THAT(error.what(), HasSubstr("--roles 'angle [deg]=position[deg@motor]'"));
+  }
+  csv.roles = parse_roles("angle [deg]=position[deg@motor]", "--roles");
+  expect_same_motion(prepare(parse_csv(text, "log.csv", csv), options), "velocity is derived");
+}
+
 TEST(RecordingRows, ALogWithoutATimeIsSaidToBeOne) {
   std::string text = "pos,vel,tau\n";
   for (const Row& row : swings()) {
