@@ -8,6 +8,8 @@
 #include <numeric>
 
 #include "algorithms/fitting/constant_fit.hpp"
+#include "algorithms/fitting/evidence_pruning.hpp"
+#include "algorithms/fitting/shape_dimension.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench {
@@ -101,10 +103,11 @@ std::vector<Side> sides_beyond(const Inputs& inputs, const InputBox& box) {
   return sides;
 }
 
+constexpr std::size_t kFewestRows = 10;  // held out, or left
+
 // The fifth of the rows that lies farthest on each such side.
 std::vector<Marks> edge_holdouts(const Inputs& inputs, const InputBox& box) {
   constexpr std::size_t kPart = 5;
-  constexpr std::size_t kFewestRows = 10;
   std::vector<Marks> result;
   if (inputs.rows < kPart * kFewestRows) return result;
   for (const Side& side : sides_beyond(inputs, box)) {
@@ -122,6 +125,28 @@ std::vector<Marks> edge_holdouts(const Inputs& inputs, const InputBox& box) {
     }
   }
   return result;
+}
+
+// The rows that lie farther out than the inner part which the whole range continues as far as the
+// box continues the range: what is said beyond the rows is tried over the same stretch, on all
+// such sides at once.
+std::vector<Marks> outer_holdout(const Inputs& inputs, const InputBox& box) {
+  Marks marks(inputs.rows);
+  for (const Side& side : sides_beyond(inputs, box)) {
+    const double* column = inputs.columns[side.input];
+    const auto [low, high] = std::minmax_element(column, column + inputs.rows);
+    const double middle = 0.5 * (*low + *high);
+    const double half = 0.5 * (*high - *low);
+    const double beyond = side.upper ? box[side.input].high - middle : middle - box[side.input].low;
+    const double inner = half * half / beyond;
+    for (std::size_t r = 0; r < inputs.rows; ++r) {
+      const double out = side.upper ? column[r] - middle : middle - column[r];
+      if (out > inner) marks[r] = 1;
+    }
+  }
+  const auto held_out = static_cast<std::size_t>(std::ranges::count(marks, 1));
+  if (held_out < kFewestRows || inputs.rows < held_out + kFewestRows) return {};
+  return {marks};
 }
 
 struct Rows {
@@ -166,6 +191,29 @@ double rounding_of(std::span<const double> target) {
   for (const double y : target) sum += y * y;
   return 1e-20 * sum / static_cast<double>(target.size());
 }
+
+// The held-out mean square of a formula whose constants are fitted anew. Fits start at what all
+// rows said: a formula with as many numbers as there are rows to fit would keep to that, and what
+// it knows of the rows held out would be no test.
+class Refit {
+ public:
+  explicit Refit(double rounding) : rounding_(rounding) {}
+
+  double error(Expression formula, const Rows& train, const Rows& held_out) {
+    if (shape_dimension(formula) + free_exponents(formula) >= train.target.size()) {
+      return std::numeric_limits<double>::infinity();
+    }
+    node_rows_ += fitter_.fit(formula, train.inputs(), train.target).node_rows;
+    return std::max(rounding_, mean_square(evaluator_, formula, held_out));
+  }
+  std::uint64_t node_rows() const { return node_rows_; }
+
+ private:
+  double rounding_;
+  ConstantFitter fitter_;
+  Evaluator evaluator_;
+  std::uint64_t node_rows_ = 0;
+};
 
 // Whether errors[f], held-out mean squares fold by fold, are larger than the best formula's by no
 // more than chance would have it.
@@ -254,25 +302,24 @@ bool reaches_beyond(const Inputs& inputs, const InputBox& box) {
 
 CrossValidation cross_validate(std::span<const Expression> formulas, const Inputs& inputs,
                                std::span<const double> target, std::span<const int> movement,
-                               const InputBox& box, int folds,
-                               const std::function<bool()>& in_time) {
+                               const InputBox& box, int folds, const std::function<bool()>& in_time,
+                               Beyond held_out_beyond) {
   CrossValidation result;
   result.chosen = formulas.size() - 1;
   std::vector<Marks> holdouts = movement_holdouts(movement, folds);
   if (holdouts.size() < 2) return result;
-  std::ranges::move(edge_holdouts(inputs, box), std::back_inserter(holdouts));
-  ConstantFitter fitter;
-  Evaluator evaluator;
+  std::ranges::move(
+      held_out_beyond == Beyond::edges ? edge_holdouts(inputs, box) : outer_holdout(inputs, box),
+      std::back_inserter(holdouts));
+  Refit refit(rounding_of(target));
   std::vector<std::vector<double>> errors(formulas.size());
-  const double rounding = rounding_of(target);
   for (const Marks& marks : holdouts) {
     const Rows train = select_rows(inputs, target, marks, 0);
     const Rows held_out = select_rows(inputs, target, marks, 1);
     for (std::size_t k = 0; k < formulas.size(); ++k) {
       if (in_time && !in_time()) return result;
-      Expression formula = formulas[k];
-      result.node_rows += fitter.fit(formula, train.inputs(), train.target).node_rows;
-      errors[k].push_back(std::max(rounding, mean_square(evaluator, formula, held_out)));
+      errors[k].push_back(refit.error(formulas[k], train, held_out));
+      result.node_rows = refit.node_rows();
     }
   }
   for (const std::vector<double>& of_formula : errors) {
@@ -283,6 +330,7 @@ CrossValidation cross_validate(std::span<const Expression> formulas, const Input
   const bool beyond = reaches_beyond(inputs, box);
   if (beyond) {
     Band band(inputs, target, box);
+    Evaluator evaluator;
     for (std::size_t k = 0; k < formulas.size(); ++k) {
       if (!band.holds(evaluator, formulas[k])) {
         result.mean_square[k] = std::numeric_limits<double>::infinity();

@@ -26,6 +26,13 @@
 
 namespace tribench {
 
+// What is held out where the box is wider than the rows: `edges`, the fifth of the rows farthest
+// out on each such side, one side after the other; `as_far`, on all such sides at once, what lies
+// as many times farther out than the rest as the box lies farther out than the rows. The second is
+// nearer to what will be asked, and keeps to forms that are simple enough to be continued so far;
+// of a search's own front, whose forms differ little beyond, the first.
+enum class Beyond { edges, as_far };
+
 struct CrossValidation {
   std::size_t chosen = 0;  // place among the formulas
   std::vector<double>
@@ -48,11 +55,13 @@ std::vector<int> held_out_folds(std::span<const int> movement, std::size_t rows,
 // a single movement are held out by stretches, in their order; with fewer than 20 of them the last
 // formula is chosen. box: the ranges the formula will be used over; none given means those of the
 // rows. A formula that leaves the band of a straight continuation somewhere in a wider box counts
-// as infinite. in_time: asked before each fit of a formula to a fold; once it says no, no error is
-// known (mean_square is empty) and the last formula is chosen.
+// as infinite, as does one with as many numbers as a fold leaves rows to fit: it would know those
+// held out by the constants that it came with. in_time: asked before each fit of a formula to a
+// fold; once it says no, no error is known (mean_square is empty) and the last formula is chosen.
 CrossValidation cross_validate(std::span<const Expression> formulas, const Inputs& inputs,
                                std::span<const double> target, std::span<const int> movement,
                                const InputBox& box = {}, int folds = 5,
-                               const std::function<bool()>& in_time = {});
+                               const std::function<bool()>& in_time = {},
+                               Beyond held_out_beyond = Beyond::edges);
 
 }  // namespace tribench

@@ -7,12 +7,16 @@
 #include <vector>
 
 #include "algorithms/expression/complexity.hpp"
+#include "algorithms/fitting/evidence_pruning.hpp"
+#include "algorithms/fitting/shape_dimension.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 namespace {
 
 constexpr double kAlike = 100;
 constexpr double kRounding = 1e-9;
+constexpr double kEpsilon = 1e-16;
 constexpr double kBulk = 0.9;          // the share of the rows that lie nearest to the median
 constexpr double kExactInBulk = 1e-5;  // of their spread
 
@@ -61,6 +65,17 @@ class Bulk {
   double spread_ = 0;
 };
 
+// Whether the rows beyond those that a formula's numbers could meet by themselves say more than it
+// took to find its form: each of them is met to `error` of the spread, and each node is one of
+// all symbols. On a dozen rows any long form is exact once it has as many numbers.
+bool is_more_than_met(const Expression& formula, const Inputs& inputs, double error) {
+  const std::size_t numbers = shape_dimension(formula) + free_exponents(formula);
+  if (numbers >= inputs.rows) return false;
+  const double symbols = kOpCount - 1 + static_cast<double>(inputs.columns.size());
+  return static_cast<double>(inputs.rows - numbers) * -elementary::log(std::max(error, kEpsilon)) >
+         static_cast<double>(node_count(formula)) * elementary::log(symbols);
+}
+
 }  // namespace
 
 std::optional<std::size_t> simplest_exact(std::span<const Expression> formulas,
@@ -78,7 +93,9 @@ std::optional<std::size_t> simplest_exact(std::span<const Expression> formulas,
                                                             : HUGE_VAL);
     if (!(errors.back() <= kNearlyExact)) continue;
     evaluator.evaluate(formula, inputs, values);
-    if (!bulk.is_met_by(values)) errors.back() = HUGE_VAL;
+    if (!bulk.is_met_by(values) || !is_more_than_met(formula, inputs, errors.back())) {
+      errors.back() = HUGE_VAL;
+    }
   }
   const double best = std::ranges::min(errors);
   if (!(best <= kNearlyExact)) return std::nullopt;

@@ -7,6 +7,9 @@
 // A formula that meets the few largest rows of a target over many decades, and those alone, is none
 // of them: nine tenths of the rows, those nearest to the median, count by themselves too.
 //
+// Nor is one that has nearly as many numbers as there are rows: what is left after each number has
+// met a row has to say more, in nats, than it took to choose the form out of all of its length.
+//
 // Where the best formula leaves more than kNearlyExact of the target there is noise, or the law was
 // not found, and there is no such choice: see posterior_choice.hpp.
 #pragma once

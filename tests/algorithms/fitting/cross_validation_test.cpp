@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "algorithms/expression/text.hpp"
 #include "foundation/random.hpp"
@@ -191,6 +192,46 @@ TEST(CrossValidation, TakesTheLastFormulaWhereThereIsNothingToHoldOut) {
   const double* columns[] = {v.data()};
   const std::vector<Expression> front = {parse("2", kNames), parse("1*v", kNames)};
   EXPECT_EQ(cross_validate(front, {columns, 3}, y, movement).chosen, 1U);
+}
+
+TEST(CrossValidation, DoesNotTrustAFormulaWithAsManyNumbersAsThereAreRowsToFit) {
+  // Its constants come from all rows, and rows that are too few to move them leave it exact.
+  const std::vector<double> v = {0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 1.0};
+  const std::string many = "1 + 0.1*v^7 + 0.2*v^6 - 0.3*v^5 + 0.2*v^4 + 0.1*v^3 - 0.5*v^2 + 1*v";
+  std::vector<double> y(v.size());
+  std::vector<int> movement(v.size());
+  std::iota(movement.begin(), movement.end(), 0);
+  const double* columns[] = {v.data()};
+  const std::vector<Expression> front = {parse("1 + 1*v", kNames), parse(many, kNames)};
+  Evaluator().evaluate(front[1], {columns, v.size()}, y);
+  const CrossValidation result = cross_validate(front, {columns, v.size()}, y, movement);
+  EXPECT_EQ(result.chosen, 0U);
+  EXPECT_TRUE(std::isinf(result.mean_square[1]));
+}
+
+TEST(CrossValidation, TriesAFormulaOverTheStretchThatItWillBeContinuedOver) {
+  // A straight line with noise: rows to 0.5 say little of a fourth power at 1.
+  RandomStream random(31);
+  std::vector<double> v;
+  std::vector<double> y;
+  std::vector<int> movement;
+  for (int r = 0; r < 400; ++r) {
+    v.push_back(random.uniform(-1, 1));
+    y.push_back(v.back() + random.uniform(-0.3, 0.3));
+    movement.push_back(r / 40);
+  }
+  const double* columns[] = {v.data()};
+  const std::vector<Expression> front = {parse("1*v", kNames),
+                                         parse("1*v + 0.1*v^2 + 0.1*v^3 + 0.1*v^4", kNames)};
+  const auto worse = [&](double reach, Beyond beyond) {
+    const auto& square =
+        cross_validate(front, {columns, 400}, y, movement, {{-reach, reach}}, 5, {}, beyond)
+            .mean_square;
+    return square[1] / square[0] - 1;
+  };
+  EXPECT_GT(worse(2, Beyond::as_far), 3 * worse(2, Beyond::edges));
+  EXPECT_GT(worse(2, Beyond::as_far), 3 * worse(1.2, Beyond::as_far));
+  EXPECT_EQ(worse(1.2, Beyond::edges), worse(2, Beyond::edges));
 }
 
 }  // namespace

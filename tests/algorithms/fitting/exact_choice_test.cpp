@@ -61,5 +61,25 @@ TEST(ExactChoice, AsksForTheBulkOfTheRowsToo) {
   EXPECT_EQ(simplest_exact({formulas.data() + 1, 1}, rows, target), std::nullopt);
 }
 
+TEST(ExactChoice, IsNoFormulaWithAsManyNumbersAsThereAreRows) {
+  const std::vector<double> v = {1, 2, 3, 4, 5, 6};
+  const double* column = v.data();
+  const auto is_exact = [&](const std::string& text, std::size_t rows) {
+    const Expression formula = parse(text, kNames);
+    const Inputs table{{&column, 1}, rows};
+    std::vector<double> target(rows);
+    Evaluator().evaluate(formula, table, target);
+    return simplest_exact({&formula, 1}, table, target).has_value();
+  };
+  EXPECT_TRUE(is_exact("2*v^2", 3));
+  EXPECT_TRUE(is_exact("2*v^2 + 3", 4));
+  EXPECT_FALSE(is_exact("2*v^2 + 3", 2));
+  // One row is left over, which is less than the choice of such a form.
+  EXPECT_FALSE(is_exact("2*v^2 + 3*v + 4*sin(v) + 5*exp(v)", 6));
+  // An exponent that was fitted is a number as well.
+  EXPECT_TRUE(is_exact("2*v^2", 2));
+  EXPECT_FALSE(is_exact("2*v^2.3", 2));
+}
+
 }  // namespace
 }  // namespace tribench
