@@ -18,6 +18,7 @@ namespace {
 
 // Of the target's size: a good approximation of a smooth law of one or two inputs leaves more.
 constexpr double kToRounding = 1e-11;
+constexpr int kFolds = 5;
 constexpr double kWorthIt = 0.03;  // less error, held out, for a longer formula beyond the rows
 
 // The first whose held-out error is within kWorthIt of the least, of candidates by increasing
@@ -85,9 +86,11 @@ bool JointFront::is_on_front(std::size_t place) const {
          std::ranges::none_of(before, [=](const Member& other) { return other.error <= error; });
 }
 
-// Where no search stands for any, all on the front are candidates.
+// Where no search stands for any, and beyond the rows, where none knows what it stands for, all on
+// the front are candidates.
 std::size_t JointFront::choose() const {
-  const bool any = std::ranges::any_of(members_, &Member::is_choice);
+  const bool beyond = reaches_beyond(inputs_, box_);
+  const bool any = !beyond && std::ranges::any_of(members_, &Member::is_choice);
   std::vector<std::size_t> places;
   std::vector<Expression> candidates;
   for (std::size_t k = 0; k < members_.size(); ++k) {
@@ -103,9 +106,9 @@ std::size_t JointFront::choose() const {
   });
   candidates.clear();
   for (const std::size_t k : places) candidates.push_back(members_[k].formula);
-  if (reaches_beyond(inputs_, box_)) {
+  if (beyond) {
     const CrossValidation validation =
-        cross_validate(candidates, inputs_, target_, movement_, box_);
+        cross_validate(candidates, inputs_, target_, movement_, box_, kFolds, {}, Beyond::as_far);
     return places[std::min(validation.chosen, simplest_as_good(validation.mean_square))];
   }
   std::vector<WeighedFormula> pool;

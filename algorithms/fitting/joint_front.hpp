@@ -4,8 +4,8 @@
 // where there is one (exact_choice.hpp), else of the formulas that the searches stood for the
 // simplest that is typical of what all their fronts say together (posterior_choice.hpp), every
 // form priced alike (evidence.hpp). Where the formula will be used beyond the rows no evidence
-// speaks, and cross-validation with held-out edges decides among them: the simplest within 3 % of
-// the best.
+// speaks, nor what a search stood for: cross-validation that holds out the rows as far as the box
+// goes beyond them decides among all on the front: the simplest within 3 % of the best.
 //
 // The one with the most evidence is no good choice here: of several searches it is the one that
 // fits the noise best.

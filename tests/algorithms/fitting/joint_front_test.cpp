@@ -101,6 +101,17 @@ TEST_F(JointFrontTest, LetsHeldOutEdgesDecideWhereTheFormulaIsUsedBeyondTheRows)
   }
 }
 
+TEST_F(JointFrontTest, LooksBeyondTheRowsAtWhatNoSearchStoodForToo) {
+  for (std::size_t r = v_.size() - 4; r < v_.size(); ++r) target_[r] += 0.4;  // some bad rows
+  const auto both = front({"v^2", "v^2 + 0.4/(1 + exp(-200*(v - 1.775)))"});
+  for (const bool beyond : {false, true}) {
+    JointFront joint(table(), target_, movement_,
+                     beyond ? InputBox{{-20, 20, {}}} : InputBox{{-1, 1.95, {}}});
+    joint.add(both, 1);
+    EXPECT_EQ(chosen(joint) == "v^2", beyond) << chosen(joint);
+  }
+}
+
 TEST_F(JointFrontTest, TakesALongerFormulaBeyondTheRowsOnlyWhereItIsWorthIt) {
   // A wave that every fold shows: at 0.03 an eightieth of the error, at 0.1 an eighth.
   for (const bool is_worth_it : {false, true}) {
