@@ -27,13 +27,19 @@ double variance_of(std::span<const double> target) {
   return square;
 }
 
-// How much smaller an error is because a search chose the form for it: the evidence's price of a
-// node, and for each input written the choice among all of them, in nats.
-double optimism(const Expression& formula, const Inputs& inputs) {
-  double nats = kNodePrice * static_cast<double>(formula.size());
-  const double choice = elementary::log(static_cast<double>(inputs.columns.size()));
-  for (const Node& node : formula.nodes()) nats += node.is_variable() ? choice : 0;
-  return elementary::exp(2 * nats / static_cast<double>(inputs.rows));
+// How much smaller an error is because a search chose so long a form for it: the evidence's price
+// of a node.
+double optimism(const Expression& formula, std::size_t rows) {
+  return elementary::exp(2 * kNodePrice * static_cast<double>(formula.size()) /
+                         static_cast<double>(rows));
+}
+
+// And because for each input written it had the choice among all of them.
+double optimism_of_inputs(const Expression& formula, const Inputs& inputs) {
+  const auto written =
+      static_cast<double>(std::ranges::count_if(formula.nodes(), &Node::is_variable));
+  return elementary::exp(2 * written * elementary::log(static_cast<double>(inputs.columns.size())) /
+                         static_cast<double>(inputs.rows));
 }
 
 }  // namespace
@@ -50,11 +56,13 @@ std::size_t held_out_choice(std::span<const Expression> front, std::size_t chose
   }
   const CrossValidation validation =
       cross_validate(front, inputs, target, movement, {}, kChoiceFolds, in_time);
-  if (validation.mean_square.size() != front.size()) return chosen;
-  const double own = validation.mean_square[chosen];
-  const double least = std::ranges::min(validation.mean_square);
-  const bool stands = own <= kPlainly * least && own <= variance_of(target);
-  return stands ? chosen : validation.chosen;
+  std::vector<double> honest = validation.mean_square;
+  if (honest.size() != front.size()) return chosen;
+  const double own = honest[chosen];
+  for (std::size_t k = 0; k < front.size(); ++k) honest[k] *= optimism(front[k], inputs.rows);
+  const auto best = std::ranges::min_element(honest);
+  const bool stands = honest[chosen] <= kPlainly * *best && own <= variance_of(target);
+  return stands ? chosen : static_cast<std::size_t>(best - honest.begin());
 }
 
 std::optional<Expression> plain_sum_instead(const Expression& chosen, const Inputs& inputs,
@@ -67,7 +75,9 @@ std::optional<Expression> plain_sum_instead(const Expression& chosen, const Inpu
       cross_validate({&chosen, 1}, inputs, target, fold, {}, kFolds, in_time);
   if (own.mean_square.empty()) return std::nullopt;
   const LinearSum sum = fit_linear_sum(inputs, target, movement);
-  if (own.mean_square[0] * optimism(chosen, inputs) <= sum.held_out) return std::nullopt;
+  const double honest =
+      own.mean_square[0] * optimism(chosen, inputs.rows) * optimism_of_inputs(chosen, inputs);
+  if (honest <= sum.held_out) return std::nullopt;
   return sum.formula;
 }
 

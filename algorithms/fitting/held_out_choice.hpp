@@ -3,7 +3,7 @@
 // A last look at a choice on few rows: evidence and posterior trust a formula's constants to the
 // fits that found them, and with some dozen rows a form that a long search has found for them can
 // be worse than their mean on others. Where cross-validation (cross_validation.hpp) says so
-// plainly, its own choice takes the place.
+// plainly, the formula that it speaks for takes the place.
 //
 // Not for choosing in general: a factor of two is far beyond what folds differ by, so that
 // elsewhere the methods' own choice stands. Not for exact formulas (exact_choice.hpp).
@@ -22,8 +22,9 @@ namespace tribench {
 // More rows than this: the choice stands, and nothing is computed.
 inline constexpr std::size_t kFewRows = 400;
 
-// `chosen`, or the place of cross-validation's choice where the chosen formula's held-out error is
-// more than twice the smallest, or above the target's variance. `front` by increasing complexity;
+// `chosen`, or the place of the smallest held-out error where the chosen formula's is more than
+// twice that, or above the target's variance. Errors are charged what a form gains by being
+// searched on all rows, as the evidence charges nodes. `front` by increasing complexity;
 // movement[r] names the movement of row r, or is empty: each row is its own. Cost: a fit a formula
 // and fold, some 20 ms for 20 formulas and 100 rows, seconds for long sums on 400; in_time is asked
 // before each, and once it says no the choice stands.
@@ -33,10 +34,9 @@ std::size_t held_out_choice(std::span<const Expression> front, std::size_t chose
                             const std::function<bool()>& in_time = {});
 
 // A sum of few inputs, or the mean, where it stands better than `chosen` on rows held out from
-// both (linear_sum.hpp): what the form of `chosen` gained by being searched on all rows is charged
-// as the evidence charges nodes, and by the number of inputs that each of its leaves could be. None
-// where `chosen` stands, on more than kFewRows rows, on fewer than 12 and out of time. Cost: ten
-// fits of the formula.
+// both (linear_sum.hpp), that of `chosen` charged as above and by the number of inputs that each of
+// its leaves could be: the sum's were chosen without the rows held out. None where `chosen` stands,
+// on more than kFewRows rows, on fewer than 12 and out of time. Cost: ten fits of the formula.
 std::optional<Expression> plain_sum_instead(const Expression& chosen, const Inputs& inputs,
                                             std::span<const double> target,
                                             std::span<const int> movement,

@@ -62,6 +62,13 @@ TEST(HeldOutChoice, LeavesAChoiceThatIsHardlyWorse) {
   EXPECT_EQ(Rows(60).choice_of({"2*v"}, 0), 0U);
 }
 
+TEST(HeldOutChoice, ChargesAFormForItsLengthTheMoreTheFewerTheRows) {
+  // The same function, written at length: on ten rows a search finds so much for noise.
+  const std::string length = "2*sgn(v)*abs(abs(abs(abs(abs(abs(abs(abs(abs(v)))))))))";
+  EXPECT_EQ(Rows(12).choice_of({"0.5", "2*v", length}, 2), 1U);
+  EXPECT_EQ(Rows(100).choice_of({"0.5", "2*v", length}, 2), 2U);
+}
+
 TEST(HeldOutChoice, LeavesManyRowsToTheMethods) {
   EXPECT_EQ(Rows(401).choice_of({"0.5", "2*v"}, 0), 0U);
   EXPECT_EQ(Rows(400).choice_of({"0.5", "2*v"}, 0), 1U);
