@@ -27,9 +27,6 @@ constexpr std::size_t kVerdictsTold = 5;
 constexpr double kRestCounts = 0.25;  // of a second of motion: it is waited for
 constexpr double kAskAgain = 1.1;     // seconds since the diagnosis said otherwise
 
-// Reversals, without which the distance since the last is not known, and both ways at two speeds;
-// with the loads and the other joint that the limits allow, as that costs no second. Then the same
-// without them, in place of what was refused.
 // What is asked for starts from rest: how far back it has turned is known.
 Observations executed(const Dataset& data) {
   Observations rows = observe(data);
@@ -37,6 +34,10 @@ Observations executed(const Dataset& data) {
   return rows;
 }
 
+// Reversals, without which the distance since the last is not known, and both ways at two speeds,
+// each from where the one before it ended, as the way between two movements is driven and not
+// recorded; with the loads and the other joint that the limits allow, which cost no second. Then
+// the same without them, in place of what was refused.
 std::vector<PlannedMovement> opening_movements(const MotionLimits& limits) {
   const double centre = 0.5 * (limits.lowest_rad + limits.highest_rad);
   const double narrow = 0.0625 * (limits.highest_rad - limits.lowest_rad);
@@ -47,10 +48,10 @@ std::vector<PlannedMovement> opening_movements(const MotionLimits& limits) {
   const double heavy = limits.greatest_load_factor;
   const double light = limits.least_load_factor;
   for (const auto& [part, reach, load] :
-       {std::tuple{0.5, 3.0, heavy}, std::tuple{-0.5, 3.0, light}, std::tuple{0.2, 1.0, light},
-        std::tuple{-0.2, 1.0, heavy}}) {
+       {std::tuple{1.0, 8.0, heavy}, std::tuple{-1.0, 8.0, light}, std::tuple{0.2, 2.0, light},
+        std::tuple{-0.2, 2.0, heavy}}) {
     PlannedMovement straight =
-        constant_movement(part * speed, centre - reach * narrow, centre + reach * narrow, load);
+        constant_movement(part * speed, centre, centre + reach * narrow, load);
     if (broken_limit(straight, limits).broken()) straight.load_factor = 1;
     all.push_back(straight);
   }

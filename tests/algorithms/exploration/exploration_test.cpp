@@ -163,6 +163,18 @@ TEST(Explorer, KeepsToItsSeconds) {
   }
 }
 
+// What is driven between two movements is not recorded.
+TEST(Explorer, OpensWithMovementsThatBeginWhereTheLastOneEnded) {
+  const Exploration done = explored(3, simulation::WorldKind::single, "informative", 25);
+  std::size_t opening = 1;
+  for (; opening < done.steps.size() && done.steps[opening].why == "opening"; ++opening) {
+    EXPECT_NEAR(start_of(done.steps[opening].movement), end_of(done.steps[opening - 1].movement),
+                0.01)
+        << opening;
+  }
+  EXPECT_EQ(opening, 5U);
+}
+
 TEST(Explorer, AsksForSomethingElseWhereAMovementIsRefused) {
   simulation::World world({3, simulation::WorldLevel::easy, simulation::WorldKind::single});
   ExplorerOptions options;
