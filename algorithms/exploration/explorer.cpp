@@ -112,6 +112,13 @@ class RankedMovements {
   std::vector<MovementChoice> choices_;
 };
 
+// Beyond the times of the reference campaign nothing but a straight line is known of what lives in
+// time: no rest leads there.
+bool rests_too_long(const ExplorationState& state, std::size_t candidate, double cost_s) {
+  const double rest_s = state.candidates[candidate].rest;
+  return rest_s > 0 && state.now.time_s + rest_s + cost_s > state.limits.seconds;
+}
+
 std::optional<NextMovement> RankedMovements::best(const ExplorationState& state) {
   std::vector<double> cost_s;
   for (const PlannedMovement& candidate : state.candidates) {
@@ -129,6 +136,7 @@ std::optional<NextMovement> RankedMovements::best(const ExplorationState& state)
   for (const MovementChoice& choice : choices_) {
     if (state.refused[choice.movement] != 0) continue;
     if (state.so_far.seconds + cost_s[choice.movement] > state.options.budget_s) continue;
+    if (rests_too_long(state, choice.movement, cost_s[choice.movement])) continue;
     const double rate = choice.gain / waited_for(choice.movement);
     if (!(rate > most)) continue;
     best = &choice;

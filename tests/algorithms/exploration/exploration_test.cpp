@@ -237,6 +237,31 @@ TEST(Assessor, MovementsAddedOneByOneSayWhatTheySayTogether) {
   EXPECT_NEAR(grown.last().best().log_evidence / together.last().best().log_evidence, 1, 0.1);
 }
 
+// What lives in time has columns for the reference's times alone.
+TEST(Plans, NoRestIsAskedForThatLeadsBeyondTheTimesOfTheReference) {
+  simulation::World world({3, simulation::WorldLevel::easy, simulation::WorldKind::none});
+  const Observations rows = observe(recorded(world, some_movements(world.limits())));
+  const ExplanationSpace space(rows, {100});
+  Assessor assessor(space, 0.01);
+  assessor.add(rows);
+  std::vector<PlannedMovement> candidates(2, some_movements(world.limits()).front());
+  candidates[0].rest = world.limits().longest_rest_s;
+  // What comes after the rest would tell a thousand times as much.
+  const Foreseen foreseen{space.base_columns(rows),
+                          space.columns(rows),
+                          {{{0, rows.rows()}, 1000}, {{0, rows.rows()}, 1}}};
+  const auto asked_at = [&](double time_s) {
+    ExplorerOptions options;
+    const Exploration nothing_yet;
+    const ExplorationState state{world.limits(),   options,  nothing_yet,
+                                 &assessor.look(), {time_s}, candidates,
+                                 foreseen,         {0, 0},   ""};
+    return informative_movements()(state).value().movement.rest;
+  };
+  EXPECT_EQ(asked_at(100), world.limits().longest_rest_s);
+  EXPECT_EQ(asked_at(world.limits().seconds - 60), 0);
+}
+
 // What a row's columns are does not hang on other movements: else sums could not grow.
 TEST(ExplanationSpace, AMovementHasItsColumnsWhateverIsBesideIt) {
   simulation::World world({5, simulation::WorldLevel::easy});
