@@ -199,7 +199,10 @@ Found best_layout(const std::vector<HeadLine>& lines) {
   for (const char delimiter : {',', ';', '\t', '|', ' '}) {
     const Found found = try_delimiter(lines, delimiter);
     if (!found.header) continue;
-    if (!best.header || found.width > best.width) best = found;
+    // As wide, a comment with a comma is no line of names beside one that is none.
+    const bool is_plainer = best.header && found.width == best.width &&
+                            lines[*best.header].comment && !lines[*found.header].comment;
+    if (!best.header || found.width > best.width || is_plainer) best = found;
   }
   // One column: blanks may well be part of its name.
   return best.header ? best : plain_layout(lines);

@@ -217,6 +217,12 @@ TEST(VendorLogs, WhatARecorderSaysOfItselfIsNoRow) {
   expect_read("Robot;KR 10\nSerial;4711\n\nt [s];q [rad];tau [Nm]\n" + rows, told(""),
               {0.002, 0.2, 2});
   expect_read("'t [s]';'q [rad]';'tau [Nm]'\n" + rows, told(""), {0.002, 0.2, 2});
+  // A comment with a comma, above two columns with decimal commas.
+  EXPECT_EQ(parse_csv("# joint: 3, payload: 2.5 kg\nq [rad];tau [Nm]\n0,1;1,5\n0,2;2,5\n",
+                      "log.csv", told(""))
+                .data.find(Role::motor_torque)
+                ->values,
+            (std::vector<double>{1.5, 2.5}));
   // A monitor of the bus writes its counters so.
   expect_read("t_s,enc [counts],tau_Nm\n0,0x0A,1\n0.002,0x10,2\n", told("", {}, {16.0, {}}),
               {0.002, 2 * M_PI, 2});
