@@ -133,6 +133,8 @@ std::vector<std::string> doubts_of(const LoopRecord& record, const LoopEffect& e
   if (!effect.objection.empty()) {
     all.push_back(fmt::format("Not physical ({}): it stands for something else.",
                               plain_text(record, effect.objection)));
+  } else if (!record.error.confirmed) {
+    all.push_back("The movements that were left out do not confirm it.");
   } else if (effect.provisional && !record.leftover.inputs.empty()) {
     all.push_back("It shares an input with what is still unexplained.");
   }

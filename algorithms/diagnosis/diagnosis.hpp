@@ -74,7 +74,8 @@ struct EffectFinding {
   std::vector<AliasFinding> aliases;
   std::vector<std::string> separate_by;
   bool few_movements = false;  // carried by few movements: ask for more of them
-  // Shares an input with the leftover, or is not physical.
+  // Shares an input with the leftover, is not physical, or (the judge says that) is not confirmed
+  // by the movements left out.
   bool provisional = false;
   std::string objection;  // why it is not physical; empty where it is
   // This cause, but a curve that the library does not have: more is left over in its own inputs.

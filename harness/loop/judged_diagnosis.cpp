@@ -345,6 +345,9 @@ JudgedDiagnosis diagnose_and_judge(const Observations& data, const BaseMaker& ba
   // Without a row to judge by there is nothing against them.
   const bool judged = out.error.judged_on != JudgedOn::rows_of_the_fit;
   out.error.confirmed = !judged || out.effects.empty() || out.error.difference_low > 0;
+  for (EffectFinding& effect : out.effects) {
+    effect.provisional = effect.provisional || !out.error.confirmed;
+  }
   return out;
 }
 

@@ -360,6 +360,20 @@ TEST(LoopCommand, WhatItFoundIsExportedAsCWithTheHistoryItNeeds) {
               HasSubstr("write d=q"));
 }
 
+// A bump at a quarter of the noise passes for a ripple: the movements that were left out know
+// better.
+TEST(LoopCommand, WhatTheMovementsLeftOutDoNotConfirmIsProvisional) {
+  const testing::TemporaryFolder folder;
+  for (const auto& [problem, is_confirmed] :
+       {std::pair{"undeclared/position_bump/0.25", false}, {"undeclared/stribeck/2", true}}) {
+    const Json told = Json::parse(
+        run_tribench({"loop", generated(folder, problem, "12"), "--any-sign", "--json"}).output);
+    ASSERT_EQ(told["effects"].size(), 1U) << problem;
+    EXPECT_EQ(told["error"]["confirmed"].get<bool>(), is_confirmed) << problem;
+    EXPECT_EQ(told["effects"][0]["provisional"].get<bool>(), !is_confirmed) << problem;
+  }
+}
+
 TEST(LoopCommand, GrowsAnEffectFromWhatIsLeftOverSavesItAndReadsItBack) {
   const testing::TemporaryFolder folder;
   const std::string first = generated(folder, "undeclared/position_bump/2", "1");
