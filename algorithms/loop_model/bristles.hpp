@@ -44,7 +44,7 @@ struct Bristles {
   BristleStart start = BristleStart::relaxed;
   std::size_t family = 0;  // whose columns they stand for
   std::vector<Element> elements;
-  double damping = 0;    // of lugre: the target's unit over the velocity's, 0 or above
+  double damping = 0;  // of lugre: the target's unit over the velocity's, 0 or above
   // Of all together, relaxed: the mean over the laws by their likelihood, so that it may differ
   // from the elements' sum, which is the likeliest law's.
   double stiffness = 0;
