@@ -291,7 +291,7 @@ Scan best_start(const Fit& fit) {
   return best;
 }
 
-// The log of a stiffness over several laws, each weighed by its likelihood: what they agree on is
+// The log of a stiffness over the laws, each weighed by its likelihood: what they agree on is
 // known better than which of them it is (Buckland, Burnham, Augustin 1997).
 class LogStiffness {
  public:
@@ -299,6 +299,7 @@ class LogStiffness {
   void add(double nats, double stiffness) {
     if (stiffness > 0) all_.emplace_back(nats, elementary::log(stiffness));
   }
+  bool is_known() const { return !all_.empty(); }
   double mean() const {
     return average([](double one) { return one; });
   }
@@ -321,7 +322,7 @@ class LogStiffness {
     return sum / weights;
   }
 
-  std::vector<std::pair<double, double>> all_;  // nats, log stiffness; not empty when asked
+  std::vector<std::pair<double, double>> all_;  // nats, log stiffness
 };
 
 struct Laws {
@@ -428,7 +429,7 @@ std::optional<Bristles> fit_bristles(const LoopModel& model, std::size_t family,
   fit.set_noise(fit.noise_beside(first.shape, first.longest, correlated));
   const Laws laws = scan_laws(fit, first.shape.start);
   const Scan& scan = laws.best;
-  if (!std::isfinite(scan.error)) return std::nullopt;
+  if (!std::isfinite(scan.error) || !laws.stiffness.is_known()) return std::nullopt;
   const double bar = elementary::exp(elementary::log(fit.effective_rows()) / fit.effective_rows());
   if (scan.error > bar * closed_form_error(fit, model, family, data)) return std::nullopt;
   const double longest = scan.longest;
