@@ -13,6 +13,7 @@
 #include "problems/reading/csv_cells.hpp"
 #include "problems/reading/csv_checks.hpp"
 #include "problems/reading/csv_columns.hpp"
+#include "problems/reading/csv_scanner.hpp"
 #include "problems/reading/file_text.hpp"
 #include "problems/reading/time_order.hpp"
 

@@ -12,6 +12,7 @@
 #include <cstdlib>
 
 #include "foundation/error.hpp"
+#include "problems/reading/csv_scanner.hpp"
 
 namespace tribench {
 namespace {

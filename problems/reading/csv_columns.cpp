@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "problems/reading/csv_cells.hpp"
+#include "problems/reading/csv_scanner.hpp"
 #include "problems/reading/time_text.hpp"
 
 namespace tribench {

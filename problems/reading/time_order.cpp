@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "foundation/error.hpp"
-#include "problems/reading/csv_layout.hpp"
+#include "problems/reading/csv_scanner.hpp"
 
 namespace tribench {
 namespace {
