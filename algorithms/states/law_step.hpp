@@ -140,6 +140,15 @@ void advance_gms(std::span<const T> p, BasicStateMemory<T>& memory, const D& v0,
   }
 }
 
+// Of a lagged value: a mean of the three with weights that are not negative, which rounding must
+// not leave.
+template <typename T, typename D>
+T between(const T& next, const T& z, const D& x0, const D& x1) {
+  const T low = std::min(z, T(std::min(x0, x1)));
+  const T high = std::max(z, T(std::max(x0, x1)));
+  return std::clamp(next, low, high);
+}
+
 // z' = (x - z) / T while x runs from x0 to x1, exactly.
 template <typename T, typename D>
 void advance_lag(std::span<const T> p, T& z, const D& x0, const D& x1, const D& dt) {
@@ -147,10 +156,7 @@ void advance_lag(std::span<const T> p, T& z, const D& x0, const D& x1, const D& 
   if (!(r > T(0))) return;
   const T e = exponential(-r);
   const T next = x1 + e * (z - x0) - (x1 - x0) * ((T(1) - e) / r);
-  // A mean of the three with weights that are not negative; rounding must not leave that.
-  const T low = std::min(z, T(std::min(x0, x1)));
-  const T high = std::max(z, T(std::max(x0, x1)));
-  z = std::clamp(next, low, high);
+  z = between(next, z, x0, x1);
 }
 
 template <typename D>

@@ -52,11 +52,11 @@ void column_by_steps(const StateDeclaration& state, const MotionRows& rows, cons
   }
 }
 
-// Laws with exponentials: what does not depend on z is computed for a block of rows at once. Bits
-// are those of law_step.hpp, since each row takes the same operations.
-class BlockColumn {
+// Bristles with exponentials: what does not depend on z is computed for a block of rows at once.
+// Bits are those of law_step.hpp, since each row takes the same operations.
+class BristleColumn {
  public:
-  BlockColumn(const StateDeclaration& state, const MotionRows& rows, const Drives& drives)
+  BristleColumn(const StateDeclaration& state, const MotionRows& rows, const Drives& drives)
       : law_(state.law), p_(state.parameters), rows_(rows), v_(drives.velocity()) {}
 
   void write(std::span<double> out) {
@@ -134,16 +134,75 @@ class BlockColumn {
   std::array<double, kBlock> pull_;
 };
 
+// Lag and warmth, the same way.
+class LagColumn {
+ public:
+  LagColumn(const StateDeclaration& state, const MotionRows& rows, const Drives& drives)
+      : law_(state.law), time_constant_(state.parameters[0]), rows_(rows), drives_(drives) {}
+
+  void write(std::span<double> out) {
+    for (std::size_t run = 0; run < rows_.starts.size(); ++run) {
+      const std::size_t start = rows_.starts[run];
+      const std::size_t end = run_end(rows_, run);
+      double z = state_at_rest(law_, drives_.at(start)).z;
+      out[start] = z;
+      for (std::size_t first = start + 1; first < end; first += kBlock) {
+        const std::size_t count = std::min(kBlock, end - first);
+        prepare(first, count);
+        for (std::size_t i = 0; i < count; ++i) out[first + i] = z = next(i, z);
+      }
+    }
+  }
+
+ private:
+  double followed(std::size_t row) const {
+    const StateDrive drive = drives_.at(row);
+    return law_ == StateLaw::warmth ? power_of(drive) : drive.velocity;
+  }
+
+  void prepare(std::size_t first, std::size_t count) {
+    x_[0] = followed(first - 1);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t r = first + i;
+      x_[i + 1] = followed(r);
+      steps_[i] = (rows_.time[r] - rows_.time[r - 1]) / time_constant_;
+      decay_[i] = -steps_[i];
+    }
+    columns::exp(decay_.data(), decay_.data(), count);
+    for (std::size_t i = 0; i < count; ++i) {
+      ramp_[i] = (x_[i + 1] - x_[i]) * ((1.0 - decay_[i]) / steps_[i]);
+    }
+  }
+
+  double next(std::size_t i, double z) const {
+    if (!(steps_[i] > 0)) return z;
+    return between(x_[i + 1] + decay_[i] * (z - x_[i]) - ramp_[i], z, x_[i], x_[i + 1]);
+  }
+
+  StateLaw law_;
+  double time_constant_;
+  const MotionRows& rows_;
+  const Drives& drives_;
+  std::array<double, kBlock + 1> x_;  // what is followed, from the row before the block on
+  std::array<double, kBlock> steps_;  // in time constants
+  std::array<double, kBlock> decay_;
+  std::array<double, kBlock> ramp_;
+};
+
 }  // namespace
 
 void state_column(const StateDeclaration& state, const MotionRows& rows, std::span<double> out) {
   const Drives drives(state, rows);
-  const bool has_blocks =
-      state.law == StateLaw::dahl || state.law == StateLaw::lugre || state.law == StateLaw::gms;
-  if (has_blocks) {
-    BlockColumn(state, rows, drives).write(out);
-  } else {
-    column_by_steps(state, rows, drives, out);
+  switch (state.law) {
+    case StateLaw::dahl:
+    case StateLaw::lugre:
+    case StateLaw::gms:
+      return BristleColumn(state, rows, drives).write(out);
+    case StateLaw::lag:
+    case StateLaw::warmth:
+      return LagColumn(state, rows, drives).write(out);
+    default:
+      return column_by_steps(state, rows, drives, out);
   }
 }
 
