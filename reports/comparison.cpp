@@ -22,9 +22,6 @@
 namespace tribench {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kConfidence = 0.95;
-
 struct Pair {
   const Record* base;
   const Record* now;
@@ -34,10 +31,6 @@ struct Pair {
 std::string timeless(Record record) {
   forget_costs(record);
   return results_csv({record});
-}
-
-double error_of(const Record& record) {
-  return is_ok(record) && !std::isnan(record.mae_test) ? record.mae_test : kInfinity;
 }
 
 // Shorter fits have no pace: clocks, caches and the start of a process dominate.
@@ -147,7 +140,7 @@ bool is_seen(const std::vector<double>& values, double shift, double level, doub
 double least_seen(const std::vector<double>& values, double level, double equivalence) {
   double low = 0;
   double high = elementary::log(10.0);
-  if (!is_seen(values, high, level, equivalence)) return kInfinity;
+  if (!is_seen(values, high, level, equivalence)) return std::numeric_limits<double>::infinity();
   for (int step = 0; step < 10; ++step) {
     const double middle = 0.5 * (low + high);
     (is_seen(values, middle, level, equivalence) ? high : low) = middle;
@@ -160,7 +153,7 @@ double smallest_detectable_loss(std::vector<double> pairs, double level, std::ui
                                 const ComparisonOptions& options) {
   constexpr double kPower = 0.8;
   std::erase_if(pairs, [](double value) { return std::isinf(value); });
-  if (pairs.empty()) return kInfinity;
+  if (pairs.empty()) return std::numeric_limits<double>::infinity();
   const double middle = median(pairs);
   for (double& value : pairs) value -= middle;
   std::vector<double> shifts;
@@ -487,7 +480,7 @@ Comparison compare_runs(const RunFolder& base, const RunFolder& now,
   comparison.conditions = condition_differences(base, now);
   comparison.conditions_allowed = options.allow_conditions;
   const std::vector<Pair> pairs = count_cells(base, now, comparison);
-  const Groups quality = log_ratios(pairs, error_of);
+  const Groups quality = log_ratios(pairs, placing_error);
   comparison.quality = rows_of(quality, true, options);
   compare_cost(pairs, base, now, options, comparison);
   decide(comparison, options);

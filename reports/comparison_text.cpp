@@ -16,16 +16,16 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kCellsShown = 10;
+constexpr std::size_t kCellsListed = 10;
 
 std::string cell_list(const char* title, const std::vector<std::string>& cells) {
   if (cells.empty()) return {};
   std::string text = fmt::format("\n{} ({}):\n\n", title, cells.size());
-  for (std::size_t i = 0; i < std::min(kCellsShown, cells.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kCellsListed, cells.size()); ++i) {
     text += fmt::format("- {}\n", markdown_code(cells[i]));
   }
-  if (cells.size() > kCellsShown)
-    text += fmt::format("- and {} more\n", cells.size() - kCellsShown);
+  if (cells.size() > kCellsListed)
+    text += fmt::format("- and {} more\n", cells.size() - kCellsListed);
   return text;
 }
 

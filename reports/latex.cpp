@@ -24,7 +24,7 @@ std::string label_of(std::string_view text) {
   return label;
 }
 
-std::string number(double value) {
+std::string figure_cell(double value) {
   return std::isfinite(value) ? fmt::format("${}$", figure(value)) : std::string("--");
 }
 
@@ -113,7 +113,7 @@ std::string results_table(std::string_view name, std::string_view operators, con
   }
   text += "\\midrule\nnoise ceiling";
   for (const ProblemTable* table : part.tables) {
-    text += fmt::format(" & {} & ", number(table->mae_ceiling));
+    text += fmt::format(" & {} & ", figure_cell(table->mae_ceiling));
   }
   return text + " \\\\\n" + std::string(kTableEnd);
 }
@@ -137,9 +137,10 @@ std::string published_table(std::string_view name, const std::string& table,
           std::isnan(row.published.mae) ? "--" : fmt::format("${}$", row.published.mae),
           count(row.published.complexity),
           row.ours == nullptr ? "--" : latex_text(row.ours->method), latex_text(row.operators),
-          ours ? number(row.ours->mae_test.middle) : "--", ours ? range(row.ours->mae_test) : "",
-          ours ? count(published_complexity_of(*row.ours)) : "--", number(problem->mae_ceiling),
-          number(problem->mae_refitted));
+          ours ? figure_cell(row.ours->mae_test.middle) : "--",
+          ours ? range(row.ours->mae_test) : "",
+          ours ? count(published_complexity_of(*row.ours)) : "--",
+          figure_cell(problem->mae_ceiling), figure_cell(problem->mae_refitted));
     }
   }
   return text + std::string(kTableEnd);

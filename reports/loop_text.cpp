@@ -16,12 +16,11 @@
 namespace tribench {
 namespace {
 
-constexpr int kDigits = 4;
-constexpr std::size_t kMostLines = 6;  // of a list or table; loop.json has all
+constexpr std::size_t kMostListed = 6;  // of a list or table; loop.json has all
 
 std::string interval(const LoopUnit& unit, double low, double high) {
-  return fmt::format("{} .. {}", figure(unit.factor * low, kDigits),
-                     figure(unit.factor * high, kDigits));
+  return fmt::format("{} .. {}", figure(unit.factor * low, kLoopDigits),
+                     figure(unit.factor * high, kLoopDigits));
 }
 
 std::string errors_of(const LoopRecord& record) {
@@ -29,7 +28,7 @@ std::string errors_of(const LoopRecord& record) {
   const LoopUnit unit = torque_unit(record);
   MarkdownTable table({{fmt::format("mean absolute error ({})", unit.name)}, {"", Align::right}});
   const auto add = [&](const char* label, double value) {
-    if (std::isfinite(value)) table.add({label, figure(unit.factor * value, kDigits)});
+    if (std::isfinite(value)) table.add({label, figure(unit.factor * value, kLoopDigits)});
   };
   add("before", error.mae_before);
   add("after", error.mae_after);
@@ -79,10 +78,10 @@ std::string effects_table(const LoopRecord& record) {
 std::string list_of(const char* title, const std::vector<std::string>& lines) {
   if (lines.empty()) return {};
   std::string text = fmt::format("\n## {}\n\n", title);
-  for (std::size_t i = 0; i < std::min(lines.size(), kMostLines); ++i)
+  for (std::size_t i = 0; i < std::min(lines.size(), kMostListed); ++i)
     text += fmt::format("- {}\n", lines[i]);
-  if (lines.size() > kMostLines)
-    text += fmt::format("- and {} more in loop.json\n", lines.size() - kMostLines);
+  if (lines.size() > kMostListed)
+    text += fmt::format("- and {} more in loop.json\n", lines.size() - kMostListed);
   return text;
 }
 
@@ -95,7 +94,7 @@ std::string next_movements_of(const LoopRecord& record) {
                        {"load", Align::right},
                        {"tells apart"},
                        {"by", Align::right}});
-  for (std::size_t i = 0; i < std::min(record.next_movements.size(), kMostLines); ++i) {
+  for (std::size_t i = 0; i < std::min(record.next_movements.size(), kMostListed); ++i) {
     const LoopNextMovement& one = record.next_movements[i];
     table.add({plain_text(record, one.kind), figure(one.velocity), figure(one.from), figure(one.to),
                figure(one.load_factor), plain_text(record, one.between), figure(one.separation)});

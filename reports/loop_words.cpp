@@ -16,7 +16,6 @@
 namespace tribench {
 namespace {
 
-constexpr int kDigits = 4;
 // Shares of the searches with movements left out that find an effect again.
 constexpr double kVerySure = 0.95;
 constexpr double kSure = 0.8;
@@ -62,7 +61,7 @@ std::string ask_of(const LoopRecord& record, const std::string& code) {
 }
 
 std::string amount(const LoopUnit& unit, double value) {
-  return fmt::format("{} {}", figure(unit.factor * value, kDigits), unit.name);
+  return fmt::format("{} {}", figure(unit.factor * value, kLoopDigits), unit.name);
 }
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
@@ -84,7 +83,7 @@ std::string motion_sentence(const LoopRecord& record) {
   const LoopMotion& motion = record.motion;
   if (!known(motion.after)) return {};
   const LoopUnit unit = length_unit(motion.unit, motion.after);
-  const auto shown = [&](double value) { return figure(unit.factor * value, kDigits); };
+  const auto shown = [&](double value) { return figure(unit.factor * value, kLoopDigits); };
   return fmt::format(
       " Simulated {} s ahead, the joint is {}{} {} off{}.", figure(motion.horizon_s, 2),
       record.effects.empty() ? "" : shown(motion.before) + " -> ", shown(motion.after), unit.name,
@@ -95,7 +94,7 @@ std::string error_sentence(const LoopRecord& record) {
   const LoopError& error = record.error;
   const LoopUnit unit = torque_unit(record);
   if (!known(error.mae_before)) return "No error before and after could be computed.";
-  const auto shown = [&](double value) { return figure(unit.factor * value, kDigits); };
+  const auto shown = [&](double value) { return figure(unit.factor * value, kLoopDigits); };
   std::string text;
   if (record.effects.empty()) {
     text =
@@ -177,8 +176,8 @@ std::string period_words(const LoopRecord& record, const std::string& family) {
 std::string bristles_of(const LoopRecord& record, const LoopEffect& effect) {
   const LoopBristles& b = effect.bristles;
   if (b.law.empty()) return {};
-  std::string text =
-      fmt::format("As bristles: stiffness {} {}", figure(b.stiffness, kDigits), b.stiffness_unit);
+  std::string text = fmt::format("As bristles: stiffness {} {}", figure(b.stiffness, kLoopDigits),
+                                 b.stiffness_unit);
   if (std::isfinite(b.stiffness_high)) {
     text += fmt::format(" ({} .. {})", figure(b.stiffness_low), figure(b.stiffness_high));
   }
@@ -445,8 +444,8 @@ std::string parameter_words(const LoopEffect& effect) {
   for (const LoopParameter& p : effect.parameters) {
     parts.push_back(p.low < p.high
                         ? fmt::format("{} = {} ({} .. {})", spaced(p.name),
-                                      figure(p.value, kDigits), figure(p.low), figure(p.high))
-                        : fmt::format("{} = {}", spaced(p.name), figure(p.value, kDigits)));
+                                      figure(p.value, kLoopDigits), figure(p.low), figure(p.high))
+                        : fmt::format("{} = {}", spaced(p.name), figure(p.value, kLoopDigits)));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }

@@ -13,6 +13,8 @@
 
 namespace tribench {
 
+inline constexpr int kLoopDigits = 4;  // of the figures of a diagnosis
+
 // A unit with the prefix in which figures of this size are read: 0.00014 N m -> 0.14 mN m.
 struct LoopUnit {
   double factor = 1;

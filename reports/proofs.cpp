@@ -5,7 +5,6 @@
 
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <unordered_map>
 #include <utility>
@@ -25,8 +24,6 @@ namespace {
 constexpr const char* kPlain = "paper";
 constexpr const char* kDivision = "paper+div";
 constexpr const char* kSafeDivision = "paper+safe_div";
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kConfidence = 0.95;
 constexpr std::size_t kRounds = 2000;
 
 using GroupKey = std::pair<std::string, std::string>;  // operators, method
@@ -115,10 +112,6 @@ std::string physics_table(const AllCounts& all) {
               fmt::format("{}", c.odd)});
   }
   return any ? text.text() : std::string();
-}
-
-double placing_error(const Record& r) {
-  return is_ok(r) && !std::isnan(r.mae_test) ? r.mae_test : kInfinity;
 }
 
 // By method: problem and seed -> error.

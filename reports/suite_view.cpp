@@ -22,7 +22,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kConfidence = 0.95;
 constexpr std::size_t kRounds = 1000;
 constexpr std::array kBands = {0.999, 0.99, 0.9};
 constexpr std::array<const char*, 3> kSizes = {"small", "middle", "large"};

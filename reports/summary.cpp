@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <tuple>
 
@@ -14,8 +13,6 @@ namespace tribench {
 namespace {
 
 constexpr const char* kFixedForm = "-";
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 using Cells = std::vector<const Record*>;
 using Key = std::tuple<std::string, std::string, std::string>;  // problem, operators, method
 
@@ -34,11 +31,6 @@ double median_count(const Cells& cells, Count Record::*count) {
     if (is_ok(*record)) values.push_back(static_cast<double>(record->*count));
   }
   return median(values);
-}
-
-// What places a cell: its error, or infinity where there is none.
-double placing_error(const Record& record) {
-  return is_ok(record) && !std::isnan(record.mae_test) ? record.mae_test : kInfinity;
 }
 
 void count_singularities(MethodRow& row, const Record& record) {

@@ -170,8 +170,8 @@ std::vector<CurvePoint> leftover_curve(const SearchResult& result, const Observa
 }
 
 // The role names of what a family reads, signs left out.
-std::vector<std::string> inputs_of(std::size_t family, const LoopModel& model,
-                                   const Observations& data) {
+std::vector<std::string> roles_read(std::size_t family, const LoopModel& model,
+                                    const Observations& data) {
   std::vector<std::string> names;
   for (const Signal* signal : signals_read(model, family, data)) {
     const bool sign = signal->role == Role::velocity_sign || signal->role == Role::gravity_sign;
@@ -197,7 +197,7 @@ void veto(Diagnosis& out, EffectFinding& finding, std::size_t family, const Camp
   out.notes.push_back(fmt::format("'{}' fits but is not physical ({}): something else is missing",
                                   finding.family, finding.objection));
   if (!out.leftover.inputs.empty()) return;
-  out.leftover.inputs = inputs_of(family, out.after, campaign.data);
+  out.leftover.inputs = roles_read(family, out.after, campaign.data);
   if (out.leftover.inputs.empty()) out.leftover.inputs = {"velocity"};
 }
 

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "algorithms/exploration/log_determinant.hpp"
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
@@ -95,14 +95,6 @@ MovementPlan sine_plan(std::uint64_t /*seed*/) {
     if (k % 4 >= 2) movement.other_velocity = limits.greatest_other_velocity_rad_s;
     return planned(movement);
   };
-}
-
-double log_determinant(const Eigen::MatrixXd& information) {
-  const Eigen::LLT<Eigen::MatrixXd> factor(information);
-  const Eigen::MatrixXd lower = factor.matrixL();
-  double sum = 0;
-  for (Eigen::Index i = 0; i < lower.rows(); ++i) sum += 2 * elementary::log(lower(i, i));
-  return sum;
 }
 
 MovementPlan d_optimal_plan(std::uint64_t /*seed*/) {

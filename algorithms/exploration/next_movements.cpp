@@ -19,15 +19,15 @@ namespace {
 constexpr std::size_t kRows = 600;  // enough for what happens just after a reversal
 constexpr double kLongest = 120;    // s; nobody records a longer one by the dozen
 
-struct Rival {
+struct AliasModel {
   LoopModel model;
   std::string between;
 };
 
 // The rivals of the final model: each near alias in the place of its effect, refitted.
-std::vector<Rival> rivals_of(const Diagnosis& diagnosis, const Observations& train,
-                             const Clusters& clusters) {
-  std::vector<Rival> all;
+std::vector<AliasModel> alias_models(const Diagnosis& diagnosis, const Observations& train,
+                                     const Clusters& clusters) {
+  std::vector<AliasModel> all;
   for (const EffectFinding& effect : diagnosis.effects) {
     for (const AliasFinding& alias : effect.aliases) {
       const auto family = std::ranges::find(diagnosis.families, alias.family, &EffectFamily::name);
@@ -202,14 +202,14 @@ std::vector<ProposedMovement> propose_movements(const Diagnosis& diagnosis,
   }
   const Observations train = data.select(keep);
   const Clusters clusters = make_clusters(train.movement, 1);
-  const std::vector<Rival> rivals = rivals_of(diagnosis, train, clusters);
+  const std::vector<AliasModel> rivals = alias_models(diagnosis, train, clusters);
   const Eigen::Vector3d gravity = gravity_of_position(train);
   const double variance = diagnosis.noise.within_sd * diagnosis.noise.within_sd;
   std::vector<ProposedMovement> all;
   for (ProposedMovement movement : candidates(train)) {
     const Observations seen = simulate(movement, train, gravity);
     const Eigen::VectorXd ours = predict(diagnosis.after, seen);
-    for (const Rival& rival : rivals) {
+    for (const AliasModel& rival : rivals) {
       const double apart = (ours - predict(rival.model, seen)).squaredNorm() / kRows / variance;
       if (!std::isfinite(apart) || apart <= movement.separation) continue;
       movement.separation = apart;

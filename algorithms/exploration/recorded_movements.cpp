@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -11,8 +10,8 @@
 #include <utility>
 
 #include "algorithms/exploration/assessment.hpp"
+#include "algorithms/exploration/log_determinant.hpp"
 #include "algorithms/exploration/movement_choice.hpp"
-#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
 
@@ -50,14 +49,6 @@ Observations rows_of(const Observations& data, const Offered& offered,
               keep.begin() + static_cast<std::ptrdiff_t>(range.end), marked[m]);
   }
   return data.select(keep);
-}
-
-double log_determinant(const Eigen::MatrixXd& matrix) {
-  const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
-  const Eigen::VectorXd diagonal = factor.matrixLLT().diagonal();
-  double sum = 0;
-  for (const double value : diagonal) sum += 2 * elementary::log(value);
-  return sum;
 }
 
 struct Next {

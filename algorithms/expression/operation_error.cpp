@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
 constexpr double kKernelError = kKernelUlps * std::numeric_limits<double>::epsilon();
-constexpr double kTiny = std::numeric_limits<double>::denorm_min();
 // A kernel of exp may flush results below the normal range to zero.
 constexpr double kFlushed = std::numeric_limits<double>::min();
 
@@ -88,17 +87,20 @@ double rounding_error_of(Op op, const Interval& a, const Interval& b, bool same,
     case Op::sub:
       return same ? 0 : kRoundoff * magnitude;
     case Op::mul:
-      return is_power_of_two(a) || is_power_of_two(b) ? 0 : kRoundoff * magnitude + kTiny;
+      return is_power_of_two(a) || is_power_of_two(b)
+                 ? 0
+                 : kRoundoff * magnitude + std::numeric_limits<double>::denorm_min();
     case Op::div:
     case Op::sqrt:
-      return kRoundoff * magnitude + kTiny;
+      return kRoundoff * magnitude + std::numeric_limits<double>::denorm_min();
     case Op::exp:
       return kKernelError * magnitude + kFlushed;
     case Op::log:
-      return kKernelError * magnitude + kTiny;
+      return kKernelError * magnitude + std::numeric_limits<double>::denorm_min();
     case Op::pow: {
       const double exponent = std::min(b.magnitude(), 1100.0);
-      return (kKernelError + 2 * exponent * kRoundoff) * magnitude + kTiny;
+      return (kKernelError + 2 * exponent * kRoundoff) * magnitude +
+             std::numeric_limits<double>::denorm_min();
     }
     default:  // sin, cos, tanh; the second term is the reduced argument's
       return kKernelError * magnitude + 0x1p-58 * (1 + b.magnitude());

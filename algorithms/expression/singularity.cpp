@@ -10,6 +10,7 @@
 #include "algorithms/expression/bounds.hpp"
 #include "algorithms/expression/text.hpp"
 #include "algorithms/expression/witness.hpp"
+#include "foundation/sign.hpp"
 
 namespace tribench {
 namespace {
@@ -31,8 +32,6 @@ std::vector<bool> signed_inputs(const Expression& formula, const InputBox& box) 
   return is_signed;
 }
 
-double sign_of(double x) { return x > 0 ? 1 : (x < 0 ? -1 : 0); }
-
 // The parts of a range on which the sign is one number.
 std::vector<Interval> sign_parts(double low, double high) {
   std::vector<Interval> parts;
@@ -45,9 +44,9 @@ std::vector<Interval> sign_parts(double low, double high) {
 void set_signs(const InputBox& box, Witness& witness) {
   for (std::size_t j = 0; j < box.size(); ++j) {
     if (!box[j].sign_of) continue;
-    witness.point[j] = sign_of(witness.point[*box[j].sign_of]);
+    witness.point[j] = sign(witness.point[*box[j].sign_of]);
     if (!witness.neighbour.empty()) {
-      witness.neighbour[j] = sign_of(witness.neighbour[*box[j].sign_of]);
+      witness.neighbour[j] = sign(witness.neighbour[*box[j].sign_of]);
     }
   }
 }
@@ -287,7 +286,7 @@ std::vector<std::vector<Interval>> sign_cells(const Expression& formula, const I
         finer.push_back(cell);
         finer.back()[j] = part;
         for (std::size_t s = 0; s < box.size(); ++s) {
-          if (box[s].sign_of == j) finer.back()[s] = Interval::point(sign_of(part.high + part.low));
+          if (box[s].sign_of == j) finer.back()[s] = Interval::point(sign(part.high + part.low));
         }
       }
     }

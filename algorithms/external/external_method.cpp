@@ -23,8 +23,6 @@ using nlohmann::json;
 constexpr int kProtocol = 1;
 constexpr std::size_t kMaxOutputBytes = 1U << 24;  // a program that prints without end is stopped
 
-[[noreturn]] void throw_unusable(std::string_view what) { throw Error(ErrorKind::failed, what); }
-
 void write_or_throw(const std::filesystem::path& file, std::string_view text) {
   std::ofstream stream(file, std::ios::binary);
   stream << text;
@@ -138,7 +136,7 @@ class ExternalMethod : public Regressor {
       const ChildOutput output = program.read(1.0);
       answer.take(output.output);
       bytes += output.output.size();
-      if (bytes > kMaxOutputBytes) throw_unusable("the program prints without end");
+      if (bytes > kMaxOutputBytes) throw Error(ErrorKind::failed, "the program prints without end");
       errors += output.errors;
       if (errors.size() > 65536) errors.erase(0, errors.size() - 4096);
       ended = output.ended;

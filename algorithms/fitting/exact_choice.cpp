@@ -15,7 +15,7 @@ namespace tribench {
 namespace {
 
 constexpr double kAlike = 100;
-constexpr double kRounding = 1e-9;
+constexpr double kExactEnough = 1e-9;
 constexpr double kEpsilon = 1e-16;
 constexpr double kBulk = 0.9;          // the share of the rows that lie nearest to the median
 constexpr double kExactInBulk = 1e-5;  // of their spread
@@ -99,7 +99,7 @@ std::optional<std::size_t> simplest_exact(std::span<const Expression> formulas,
   }
   const double best = std::ranges::min(errors);
   if (!(best <= kNearlyExact)) return std::nullopt;
-  const double enough = std::max(kAlike * best, kRounding);
+  const double enough = std::max(kAlike * best, kExactEnough);
   std::optional<std::size_t> choice;
   std::pair<int, int> least;
   for (std::size_t i = 0; i < formulas.size(); ++i) {

@@ -18,7 +18,7 @@ namespace {
 
 // Of the target's size: a good approximation of a smooth law of one or two inputs leaves more.
 constexpr double kToRounding = 1e-11;
-constexpr int kFolds = 5;
+constexpr int kFrontFolds = 5;
 constexpr double kWorthIt = 0.03;  // less error, held out, for a longer formula beyond the rows
 
 // The first whose held-out error is within kWorthIt of the least, of candidates by increasing
@@ -107,8 +107,8 @@ std::size_t JointFront::choose() const {
   candidates.clear();
   for (const std::size_t k : places) candidates.push_back(members_[k].formula);
   if (beyond) {
-    const CrossValidation validation =
-        cross_validate(candidates, inputs_, target_, movement_, box_, kFolds, {}, Beyond::as_far);
+    const CrossValidation validation = cross_validate(candidates, inputs_, target_, movement_, box_,
+                                                      kFrontFolds, {}, Beyond::as_far);
     return places[std::min(validation.chosen, simplest_as_good(validation.mean_square))];
   }
   std::vector<WeighedFormula> pool;

@@ -14,7 +14,6 @@ namespace tribench {
 namespace {
 
 constexpr int kFolds = 10;
-constexpr double kNew = 1e-8;  // of a column's square, for it to add anything
 // A slope that changes less than this share of what one fitted number costs is not written.
 constexpr double kNotWorthIt = 0.1;
 
@@ -112,7 +111,7 @@ class Centred {
       for (std::size_t j = 0; j < left.size(); ++j) {
         const double square = dot(left[j], left[j]);
         const double along = dot(left[j], target);
-        if (!(square > kNew) || !(along * along > most * square)) continue;
+        if (!(square > kNewShare) || !(along * along > most * square)) continue;
         most = along * along / square;
         best = j;
       }

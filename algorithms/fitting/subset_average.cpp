@@ -10,7 +10,6 @@
 namespace tribench {
 namespace {
 
-constexpr double kNew = 1e-8;  // of a column's square, for it to add anything
 // Widths of the prior, in rows: from slopes that are hardly seen in the noise to a noise of 1e-10.
 constexpr int kNarrowest = -1;
 constexpr int kWidest = 10;
@@ -79,7 +78,7 @@ class Average {
       left -= factor_[k][i] * factor_[k][i];
       along -= factor_[k][i] * along_[i];
     }
-    if (!(left > kNew * product(j, j))) return false;
+    if (!(left > kNewShare * product(j, j))) return false;
     factor_[k][k] = std::sqrt(left);
     along_[k] = along / factor_[k][k];
     subset_.push_back(j);

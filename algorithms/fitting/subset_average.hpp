@@ -20,6 +20,8 @@
 namespace tribench {
 
 inline constexpr std::size_t kMostAveraged = 15;
+// Of a column\'s square that no other column explains: with less it adds nothing.
+inline constexpr double kNewShare = 1e-8;
 
 // Slopes of the m <= kMostAveraged columns. products: the (m + 1) x (m + 1) matrix of the products
 // of centred columns, the target's last; `rows`: of how many rows, at least 3; `of`: of how many

@@ -6,16 +6,15 @@
 #include <cstring>
 
 #include "algorithms/expression/vector/each_level.hpp"
+#include "algorithms/inference/float_lanes.hpp"
 
 namespace tribench::loop {
 namespace {
 
 constexpr std::size_t kRowsAtOnce = 64;
-constexpr std::size_t kLanes = 8;
 constexpr std::size_t kLeftAtOnce = 4;
 // What a memory has left so little of counts no more.
 constexpr float kFaded = 1e-20F;
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
 
 std::size_t padded(std::size_t n, std::size_t to) { return (n + to - 1) / to * to; }
 

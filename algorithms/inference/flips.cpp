@@ -6,17 +6,16 @@
 #include <cstring>
 
 #include "algorithms/expression/vector/each_level.hpp"
+#include "algorithms/inference/float_lanes.hpp"
 
 namespace tribench::loop {
 namespace {
 
 constexpr std::size_t kCodes = std::size_t{1} << Flips::kGroup;
-constexpr std::size_t kLanes = 8;
 constexpr std::size_t kLanesOfTile = 2;
 constexpr std::size_t kTile =
     kLanesOfTile * kLanes;            // columns at once: their sums stay in registers
 constexpr std::size_t kTogether = 2;  // flips at once
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
 
 using Tile = std::array<float, kTile>;
 

@@ -19,7 +19,7 @@ constexpr double kMostRatio = 8;           // of breakaway to sliding
 // Places in theta. A length, a velocity and a time are logarithms, so that steps are relative.
 constexpr std::size_t kSliding = 0;
 constexpr std::size_t kRatio = 1;  // breakaway / sliding
-constexpr std::size_t kStribeck = 2;
+constexpr std::size_t kStribeckSpeed = 2;
 constexpr std::size_t kGrowth = 3;  // maxwell_slip: of the limits from element to element
 constexpr std::size_t kAttraction = 4;
 
@@ -171,7 +171,7 @@ std::vector<StateDeclaration> DynamicFeatures::states(std::span<const double> th
   if (model_ == DynamicModel::dahl) {
     return {{"z", StateLaw::dahl, {inputs_.velocity}, {sliding}}};
   }
-  const double stribeck = elementary::exp(theta[kStribeck]);
+  const double stribeck = elementary::exp(theta[kStribeckSpeed]);
   if (model_ == DynamicModel::lugre) {
     return {
         {"z", StateLaw::lugre, {inputs_.velocity}, {sliding, sliding * theta[kRatio], stribeck}}};
@@ -201,7 +201,7 @@ std::vector<std::vector<std::vector<double>>> DynamicFeatures::parameter_slopes(
     if (model_ != DynamicModel::dahl) {
       of_state[1][kSliding] = p[1];
       of_state[1][kRatio] = p[0];
-      of_state[2][kStribeck] = p[2];
+      of_state[2][kStribeckSpeed] = p[2];
     }
     if (model_ == DynamicModel::maxwell_slip) {
       of_state[0][kGrowth] = static_cast<double>(i) * p[0];

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kHighestStart = 100;
 constexpr std::uint64_t kIterationsPerParameter = 200;  // SciPy's BFGS
-constexpr std::uint64_t kPassNodes = 30;                // value and gradient
+constexpr std::uint64_t kGradientNodes = 30;            // value and gradient
 
 }  // namespace
 
@@ -17,7 +17,7 @@ StribeckFit fit_printed_stribeck(const StribeckRows& rows, StribeckModel& model,
                                  const RandomStream& random) {
   bool stop = false;
   StribeckModel trial = model;
-  const Objective objective = mean_squares(trial, rows, budget, kPassNodes, stop);
+  const Objective objective = mean_squares(trial, rows, budget, kGradientNodes, stop);
   MinimizeOptions local;
   local.max_evaluations = kIterationsPerParameter * model.parameter_count();
   local.stop = &stop;

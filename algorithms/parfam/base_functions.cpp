@@ -12,8 +12,6 @@ namespace tribench::parfam {
 namespace {
 
 const double kExpCeiling = elementary::exp(10.0);
-constexpr double kLogFloor = 1e-6;
-
 double log_floor(Convention convention) {
   return convention == Convention::published ? kLogFloor : 0;
 }

@@ -16,6 +16,7 @@
 namespace tribench::parfam {
 
 enum class Convention { published, exact };
+inline constexpr double kLogFloor = 1e-6;  // of the published logarithm
 
 // values[r] = g(u[r]).
 void apply_function(Op function, Convention convention, const double* u, double* values,

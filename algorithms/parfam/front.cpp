@@ -20,7 +20,7 @@ namespace {
 constexpr int kPolishIterations = 8;
 constexpr std::uint64_t kPassesPerIteration = 3;  // a trial and its derivatives
 // What a formula must win over the next smaller one to be in the front: more than rounding.
-constexpr double kWorthwhile = 1 - 1e-9;
+constexpr double kLess = 1 - 1e-9;
 
 // Schwarz's penalty takes the form as given; that each constant was chosen from alternatives is
 // paid for with one bit (as Chen & Chen 2008 do, less strictly).
@@ -159,7 +159,7 @@ FitResult Front::result(Choice choice) {
   double least = std::numeric_limits<double>::infinity();
   std::vector<const Member*> front;
   for (const Member& member : members_) {
-    if (!(member.sum_squares < kWorthwhile * least)) continue;
+    if (!(member.sum_squares < kLess * least)) continue;
     least = member.sum_squares;
     front.push_back(&member);
   }

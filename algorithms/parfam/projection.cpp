@@ -11,7 +11,7 @@
 namespace tribench::parfam {
 namespace {
 
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+constexpr std::size_t kNoFactor = static_cast<std::size_t>(-1);
 // A column whose part that is new is smaller than this share of its square adds nothing but noise.
 constexpr double kDependent = 1e-11;
 
@@ -133,7 +133,7 @@ void Projection::evaluate_out_denominator(std::span<const double> inner) {
     values_.clear();
     for (std::size_t place : group.places) values_.push_back(inner[denominator_begin_ + place]);
     columns::combine(group.columns.data(), values_.data(), values_.size(), part_.data(), rows_);
-    const double* product = product_of(factors_, group.functions, kNone, space_);
+    const double* product = product_of(factors_, group.functions, kNoFactor, space_);
     if (product != nullptr) columns::mul(part_.data(), product, part_.data(), rows_);
     columns::add(q_.data(), part_.data(), q_.data(), rows_);
   }
@@ -143,7 +143,7 @@ void Projection::evaluate_out_denominator(std::span<const double> inner) {
 void Projection::make_basis() {
   const bool divides = !denominator_groups_.empty();
   for (const MonomialGroup& group : numerator_groups_) {
-    const double* product = product_of(factors_, group.functions, kNone, space_);
+    const double* product = product_of(factors_, group.functions, kNoFactor, space_);
     for (std::size_t k = 0; k < group.columns.size(); ++k) {
       const std::size_t place = group.places[k];
       double* out = basis_memory_.data() + place * rows_;
@@ -221,7 +221,7 @@ void Projection::write_out_denominator_columns() {
   columns::mul(weight_.data(), slope_.data(), weight_.data(), rows_);
   columns::mul(weight_.data(), -1.0, weight_.data(), rows_);
   for (const MonomialGroup& group : denominator_groups_) {
-    const double* product = product_of(factors_, group.functions, kNone, space_);
+    const double* product = product_of(factors_, group.functions, kNoFactor, space_);
     for (std::size_t k = 0; k < group.columns.size(); ++k) {
       double* out = jacobian_column(denominator_begin_ + group.places[k]);
       columns::mul(weight_.data(), group.columns[k], out, rows_);

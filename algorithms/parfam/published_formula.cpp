@@ -13,7 +13,6 @@ namespace {
 using namespace build;
 
 constexpr double kDecimals = 1000;  // three of them
-constexpr double kLogFloor = 1e-6;
 
 Expression rounded_polynomial(const std::vector<Monomial>& monomials,
                               std::span<const double> coefficients,

@@ -12,7 +12,7 @@ constexpr double kRoundingLeft = 1e-24;   // of y's square
 constexpr double kWorthwhile = 1 - 1e-9;  // an exchange must win more than rounding
 constexpr int kMaxRounds = 20;
 
-struct Choice {
+struct Addition {
   std::size_t candidate = 0;
   double gain = -1;
 };
@@ -23,7 +23,7 @@ class Selector {
       : gram_(gram), m_(candidates), stride_(candidates + 1) {}
 
   // The candidate that adds most to `base`, and what it takes off the sum of squares.
-  Choice best_addition(std::span<const std::size_t> base);
+  Addition best_addition(std::span<const std::size_t> base);
   // Sum of squares left by `base`; valid after best_addition(base).
   double left() const { return left_; }
 
@@ -38,7 +38,7 @@ class Selector {
   std::vector<double> solved_;
 };
 
-Choice Selector::best_addition(std::span<const std::size_t> base) {
+Addition Selector::best_addition(std::span<const std::size_t> base) {
   const std::size_t p = base.size();
   factor_.assign(p * p, 0.0);
   solved_.resize(p);
@@ -59,7 +59,7 @@ Choice Selector::best_addition(std::span<const std::size_t> base) {
   }
   std::vector<double> target(p);
   left_ = at(m_, m_) - solve(m_, p, target.data());
-  Choice best;
+  Addition best;
   for (std::size_t c = 0; c < m_; ++c) {
     const double square = at(c, c);
     const double fresh = square - solve(c, p, solved_.data());
@@ -79,7 +79,7 @@ double exchange(Selector& selector, std::vector<std::size_t>& chosen, double lef
     for (std::size_t place = 0; place < chosen.size(); ++place) {
       std::vector<std::size_t> base = chosen;
       base.erase(base.begin() + static_cast<std::ptrdiff_t>(place));
-      const Choice choice = selector.best_addition(base);
+      const Addition choice = selector.best_addition(base);
       const double reached = selector.left() - choice.gain;
       if (choice.gain < 0 || choice.candidate == chosen[place] || !(reached < kWorthwhile * left)) {
         continue;
@@ -102,7 +102,7 @@ std::vector<Subset> best_subsets(std::span<const double> gram, std::size_t candi
   std::vector<Subset> path;
   std::vector<std::size_t> chosen;
   while (chosen.size() < std::min(max_terms, candidates)) {
-    const Choice choice = selector.best_addition(chosen);
+    const Addition choice = selector.best_addition(chosen);
     if (choice.gain < 0) break;
     double left = selector.left() - choice.gain;
     chosen.push_back(choice.candidate);

@@ -16,7 +16,7 @@ namespace tribench::pysr {
 namespace {
 
 constexpr std::size_t kMostCandidates = 500;
-constexpr std::size_t kMostTerms = 4;
+constexpr std::size_t kMostTermsOfSum = 4;
 constexpr double kWorthwhile = 0.999;  // a term must lower the sum of squares below this share
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
@@ -121,7 +121,7 @@ TermChoice select_terms(const Library& library, std::span<const double> target, 
   std::vector<const double*> columns = {ones.data()};
   TermChoice choice{{}, solve_least_squares(columns, target)};
   std::size_t used = 1;
-  while (choice.chosen.size() < kMostTerms) {
+  while (choice.chosen.size() < kMostTermsOfSum) {
     std::optional<std::size_t> best;
     LinearFit best_fit = choice.fit;
     for (std::size_t k = 0; k < library.formulas.size(); ++k) {
@@ -202,12 +202,12 @@ std::optional<Expression> backsolve(const Expression& parent, std::span<const Me
   std::uint64_t cost = 2 * node_rows(parent, rows.size());
   for (const Expression& formula : formulas) {
     // Its values, and a least squares with it in every round.
-    cost += node_rows(formula, rows.size()) + kMostTerms * kMostTerms * rows.size();
+    cost += node_rows(formula, rows.size()) + kMostTermsOfSum * kMostTermsOfSum * rows.size();
   }
   if (kept >= max_nodes || !budget.spend(cost)) return std::nullopt;
   Evaluator evaluator;
   const Demand demand = demand_at(parent, place, rows, evaluator);
-  if (demand.rows.size() < 2 * kMostTerms) return std::nullopt;
+  if (demand.rows.size() < 2 * kMostTermsOfSum) return std::nullopt;
   const Library library = evaluate_on(std::move(formulas), rows, demand, evaluator);
   std::vector<double> target;
   for (const std::size_t row : demand.rows) target.push_back(demand.values[row]);

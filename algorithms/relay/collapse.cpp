@@ -16,7 +16,7 @@ namespace {
 constexpr double kSmooth = 0.05;
 constexpr std::size_t kMostOuter = 14;
 constexpr double kHardlySmooth = 0.5;
-constexpr double kOffRational = 0.03;
+constexpr double kOffRationalOuter = 0.03;
 constexpr double kRational = 3e-4;
 constexpr double kOutliers = 0.85;  // the share of the rows that is kept by size of the difference
 
@@ -193,7 +193,7 @@ bool is_rational(const std::vector<double>& outer, double tolerance) {
 // Smooth, with exponents near to halves; or hardly smooth, with exponents that are halves (where g
 // hardly differs from a power, only a few rows show it).
 bool is_plausible(const OuterFit& fit, double null_rms) {
-  if (fit.rms <= kSmooth * null_rms) return is_rational(fit.outer, kOffRational);
+  if (fit.rms <= kSmooth * null_rms) return is_rational(fit.outer, kOffRationalOuter);
   return fit.rms <= kHardlySmooth * null_rms && is_rational(fit.outer, kRational);
 }
 

@@ -19,10 +19,10 @@ namespace {
 
 using namespace build;
 
-constexpr std::size_t kFewestRows = 40;
-constexpr std::size_t kMostInputs = 8;
+constexpr std::size_t kFewestRowsOfSum = 40;
+constexpr std::size_t kMostInputsOfSum = 8;
 constexpr std::size_t kManyInputs = 36;  // beyond, products of different inputs are left out
-constexpr std::size_t kMostTerms = 40;
+constexpr std::size_t kLongestSum = 40;
 constexpr std::size_t kRowsATerm = 4;
 constexpr int kFolds = 10;
 constexpr double kNothingNew = 1e-6;      // of a column's square beside the columns before it
@@ -313,7 +313,7 @@ struct Choice {
 Choice choose(const std::vector<Column>& columns, const Sample& sample) {
   const Products products(columns, sample);
   const std::size_t size = products.size();
-  std::vector<double> errors(1 + std::min(kMostTerms, sample.rows() / kRowsATerm), 0.0);
+  std::vector<double> errors(1 + std::min(kLongestSum, sample.rows() / kRowsATerm), 0.0);
   for (std::size_t f = 0; f < products.folds(); ++f) {
     const std::vector<double> rest = products.without(f);
     Selection selection(rest, size);
@@ -343,7 +343,8 @@ std::vector<std::size_t> inputs_of(const Choice& choice, const std::vector<Colum
   std::vector<std::size_t> inputs;
   for (const std::size_t k : choice.columns) {
     for (const std::size_t j : columns[k].inputs) {
-      if (inputs.size() < kMostInputs && std::ranges::count(inputs, j) == 0) inputs.push_back(j);
+      if (inputs.size() < kMostInputsOfSum && std::ranges::count(inputs, j) == 0)
+        inputs.push_back(j);
     }
   }
   std::ranges::sort(inputs);
@@ -388,11 +389,11 @@ std::optional<LinearSum> fit_long_sum(const FiniteRows& rows, const OperatorSet&
                                       std::size_t most_rows, Budget& budget) {
   const bool is_possible =
       operators.allows(Op::add) && operators.allows(Op::sub) && operators.allows(Op::mul);
-  if (rows.rows() < kFewestRows || !is_possible) return std::nullopt;
+  if (rows.rows() < kFewestRowsOfSum || !is_possible) return std::nullopt;
   const Sample sample(rows, most_rows);
   std::vector<std::size_t> inputs(sample.inputs());
   std::iota(inputs.begin(), inputs.end(), 0);
-  if (inputs.size() > kMostInputs) {
+  if (inputs.size() > kMostInputsOfSum) {
     Library products(sample);
     products.add_products(inputs);
     if (!budget.spend(cost_of(products.columns().size(), sample.rows()))) return std::nullopt;

@@ -30,12 +30,6 @@ double tolerance_of(const Surrogate& surrogate) {
   return std::clamp(kNoise * surrogate.error(), kLeast, kMost);
 }
 
-double mean_product(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t r = 0; r < a.size(); ++r) sum += a[r] * b[r];
-  return sum / static_cast<double>(a.size());
-}
-
 bool is_positive(const Factor& input) {
   return input.has_logs() && !input.changes_sign && input.values[0] > 0;
 }

@@ -21,10 +21,10 @@ namespace {
 
 using namespace build;
 
-constexpr double kExact = 1e-8;      // of a row's target, root mean square
-constexpr double kNoPart = 1e-10;    // of a row's target, that a term explains
-constexpr double kPromising = 1e-5;  // in the Gram matrix, whose rounding is larger
-constexpr std::size_t kMostTerms = 6;
+constexpr double kExactRelation = 1e-8;      // of a row's target, root mean square
+constexpr double kNoPart = 1e-10;            // of a row's target, that a term explains
+constexpr double kPromisingRelation = 1e-5;  // in the Gram matrix, whose rounding is larger
+constexpr std::size_t kMostRelationTerms = 6;
 constexpr std::size_t kMostColumns = 2000;  // 0.2 s and 50 MB for their products
 constexpr std::size_t kLikelyOfASize = 3;
 constexpr std::size_t kMostLikelyTerms = 3;
@@ -277,10 +277,10 @@ std::optional<Expression> Search::run(TargetForm form, Shape shape, Budget& budg
   std::vector<SparseSum> sums = fits->best_pairs();
   for (std::size_t terms = 2; !sums.empty(); ++terms) {
     for (const SparseSum& sum : sums) {
-      if (sum.left > kPromising * kPromising) break;
+      if (sum.left > kPromisingRelation * kPromisingRelation) break;
       if (auto found = exact(form, shape, sum, all)) return found;
     }
-    if (terms == kMostTerms || !grow(sums, terms, shape, *fits, all, budget)) break;
+    if (terms == kMostRelationTerms || !grow(sums, terms, shape, *fits, all, budget)) break;
   }
   return std::nullopt;
 }
@@ -324,7 +324,7 @@ std::optional<Expression> Search::exact(TargetForm form, Shape shape, SparseSum 
     std::vector<const double*> pointers;
     for (const std::size_t term : sum.terms) pointers.push_back(all.columns[term].data());
     LinearFit fit = solve_least_squares(pointers, all.target);
-    if (!(std::sqrt(fit.sum_squares / n) <= kExact)) return std::nullopt;
+    if (!(std::sqrt(fit.sum_squares / n) <= kExactRelation)) return std::nullopt;
     coefficients = std::move(fit.coefficients);
     std::vector<std::size_t> kept;
     for (std::size_t k = 0; k < sum.terms.size(); ++k) {
@@ -392,7 +392,7 @@ Expression Search::assembled(TargetForm form, const SparseSum& sum,
     if (product.log_of) {
       powers.push_back(rows_.inputs()[*product.log_of].formula);
       const double power = coefficients[k];
-      const bool is_half = std::abs(power - nearest_half(power)) <= kExact;
+      const bool is_half = std::abs(power - nearest_half(power)) <= kExactRelation;
       exponents.push_back(is_half ? nearest_half(power) : power);
       continue;
     }

@@ -19,11 +19,11 @@ namespace {
 
 using namespace build;
 
-constexpr std::size_t kFewestRows = 20;
+constexpr std::size_t kFewestScaledRows = 20;
 constexpr std::size_t kCoarseRows = 64;
-constexpr int kScales = 60;            // of a, from a hundredth to three thousand over the range
+constexpr int kCoarseScales = 60;      // of a, from a hundredth to three thousand over the range
 constexpr std::size_t kPolished = 60;  // of the best combinations
-constexpr double kPromising = 0.02;    // of the rows' relative square, on the coarse grid
+constexpr double kPromisingSquare = 0.02;  // of the rows' relative square, on the coarse grid
 constexpr std::array kForms = {TargetForm::plain, TargetForm::inverse, TargetForm::square,
                                TargetForm::inverse_square};
 constexpr std::array kOuterPowers = {0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, -2.0, 3.0, -3.0};
@@ -102,7 +102,7 @@ class ScaledFunctionSearch {
     for (const Op op : kFunctions) {
       if (!operators_.allows(op)) continue;
       for (const double q : kInnerPowers) {
-        const std::uint64_t products = kScales * outers_.size() * coarse_x_.size();
+        const std::uint64_t products = kCoarseScales * outers_.size() * coarse_x_.size();
         if (!budget.spend(products / 2)) return std::nullopt;
         look_at(op, q);
       }
@@ -110,7 +110,7 @@ class ScaledFunctionSearch {
     std::ranges::stable_sort(best_, {}, &Combination::left);
     std::optional<Expression> shortest;
     for (std::size_t k = 0; k < std::min(kPolished, best_.size()); ++k) {
-      if (best_[k].left > kPromising || budget.exhausted()) break;
+      if (best_[k].left > kPromisingSquare || budget.exhausted()) break;
       auto found = polished(best_[k], budget);
       if (found && (!shortest || found->size() < shortest->size())) shortest = std::move(found);
     }
@@ -129,8 +129,8 @@ class ScaledFunctionSearch {
     double largest = 0;
     for (const double x : x_) largest = std::max(largest, elementary::pow(x, q));
     std::vector<double> result;
-    for (int k = 0; k < kScales; ++k) {
-      const double decades = -2.0 + 5.5 * k / (kScales - 1);
+    for (int k = 0; k < kCoarseScales; ++k) {
+      const double decades = -2.0 + 5.5 * k / (kCoarseScales - 1);
       result.push_back(elementary::exp(decades * std::numbers::ln10) / largest);
     }
     return result;
@@ -232,7 +232,7 @@ class ScaledFunctionSearch {
 std::optional<Expression> find_scaled_function(const LogRows& rows, const OperatorSet& operators,
                                                Budget& budget) {
   const Factor& x = rows.inputs()[0];
-  if (rows.rows() < kFewestRows || !x.has_logs() || x.changes_sign || x.values[0] < 0) {
+  if (rows.rows() < kFewestScaledRows || !x.has_logs() || x.changes_sign || x.values[0] < 0) {
     return std::nullopt;
   }
   if (!operators.allows(Op::mul) || !operators.allows(Op::div) || !operators.allows(Op::add)) {

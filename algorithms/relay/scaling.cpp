@@ -22,12 +22,6 @@ struct Direction {
   double left = 0;  // of the largest slope, squared
 };
 
-double mean_product(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t r = 0; r < a.size(); ++r) sum += a[r] * b[r];
-  return sum / static_cast<double>(a.size());
-}
-
 // Halves, or thirds and quarters that are plainly meant.
 std::optional<double> fraction_near(double c) {
   const double half = std::nearbyint(2 * c) / 2;
@@ -218,6 +212,12 @@ void write_shortest(const std::vector<Direction>& basis, std::size_t n,
 }
 
 }  // namespace
+
+double mean_product(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t r = 0; r < a.size(); ++r) sum += a[r] * b[r];
+  return sum / static_cast<double>(a.size());
+}
 
 std::vector<Rescaled> find_scalings(const std::vector<std::vector<double>>& slopes,
                                     const std::vector<double>& reference, double tolerance) {

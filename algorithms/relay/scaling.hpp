@@ -23,4 +23,7 @@ struct Rescaled {
 std::vector<Rescaled> find_scalings(const std::vector<std::vector<double>>& slopes,
                                     const std::vector<double>& reference, double tolerance);
 
+// Mean of a[r] * b[r]; both of one size, not empty.
+double mean_product(const std::vector<double>& a, const std::vector<double>& b);
+
 }  // namespace tribench::relay

@@ -12,12 +12,12 @@
 namespace tribench::relay {
 namespace {
 
-constexpr std::size_t kMostInputs = 12;
-constexpr std::size_t kFewestRows = 40;
-constexpr std::size_t kMostTerms = 140;
+constexpr std::size_t kMostInputsSeen = 12;
+constexpr std::size_t kFewestRowsSeen = 40;
+constexpr std::size_t kMostSurfaceTerms = 140;
 constexpr std::size_t kMostDegree = 20;
-constexpr double kExact = 1e-7;      // of the target's spread
-constexpr std::size_t kHeldOut = 6;  // every so many rows one
+constexpr double kExactSurface = 1e-7;  // of the target's spread
+constexpr std::size_t kHeldOut = 6;     // every so many rows one
 
 // An input on [-1, 1] with Chebyshev polynomials of it, and their slopes by the input itself.
 struct Coordinate {
@@ -64,7 +64,7 @@ void add_degrees(std::size_t next, std::size_t left, Degrees& degrees, std::vect
 
 // The highest degree whose products `rows` can determine.
 std::size_t highest_degree(std::size_t inputs, std::size_t rows) {
-  const std::size_t most = std::min(kMostTerms, 2 * rows / 5);
+  const std::size_t most = std::min(kMostSurfaceTerms, 2 * rows / 5);
   std::size_t degree = 1;
   double terms = static_cast<double>(inputs) + 1;
   while (degree < kMostDegree) {
@@ -171,7 +171,7 @@ class Polynomial {
 Surrogate::Surrogate(const LogRows& rows, std::span<const double> target, Budget& budget)
     : error_(HUGE_VAL) {
   const std::size_t inputs = rows.inputs().size();
-  if (inputs == 0 || inputs > kMostInputs || rows.rows() < kFewestRows) return;
+  if (inputs == 0 || inputs > kMostInputsSeen || rows.rows() < kFewestRowsSeen) return;
   const std::size_t degree = highest_degree(inputs, rows.rows());
   const std::size_t terms = products(inputs, degree).size();
   if (!budget.spend(terms * terms / 4 * rows.rows())) return;
@@ -182,7 +182,7 @@ Surrogate::Surrogate(const LogRows& rows, std::span<const double> target, Budget
       Polynomial polynomial(rows, target, by_logs, tried);
       if (!best || polynomial.error() < best->error()) best = std::move(polynomial);
     }
-    if (best->error() <= kExact) break;
+    if (best->error() <= kExactSurface) break;
   }
   error_ = best->error();
   if (!std::isfinite(error_)) return;

@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using ConstMatrix = Eigen::Map<const MatrixXd>;
 
-constexpr Index kH = Policy::kHidden;
+constexpr Index kWidth = Policy::kHidden;
 
 // Log-softmax of each column; forbidden entries (-inf) stay -inf.
 void log_softmax(MatrixXd& logits) {
@@ -63,12 +63,12 @@ void extend_by_zero(MatrixXd& columns, Index count) {
 // One teacher-forced pass over a batch, step by step; columns are the sequences that are as long,
 // n of them, longest first.
 struct Policy::Unrolled {
-  MatrixXd first;                        // 2 kH x sequences: hidden, cell
+  MatrixXd first;                        // 2 kWidth x sequences: hidden, cell
   std::vector<std::vector<int>> parent;  // [step][sequence]: input columns
   std::vector<std::vector<int>> sibling;
-  std::vector<MatrixXd> gates;   // activations, 4 kH x n
-  std::vector<MatrixXd> cell;    // kH x n
-  std::vector<MatrixXd> hidden;  // kH x n
+  std::vector<MatrixXd> gates;   // activations, 4 kWidth x n
+  std::vector<MatrixXd> cell;    // kWidth x n
+  std::vector<MatrixXd> hidden;  // kWidth x n
   std::vector<MatrixXd> log_p;   // outputs x n
 };
 
@@ -77,9 +77,9 @@ struct Policy::StepErrors {
   std::vector<const WeightedSequence*> batch;  // longest first
   double gamma = 1;
   double loss = 0;
-  MatrixXd hidden;     // kH x n
-  MatrixXd cell;       // kH x n
-  MatrixXd recurrent;  // kH x 4 kH: the recurrent weights, transposed
+  MatrixXd hidden;     // kWidth x n
+  MatrixXd cell;       // kWidth x n
+  MatrixXd recurrent;  // kWidth x 4 kWidth: the recurrent weights, transposed
 };
 
 void Policy::unroll(std::span<const Sequence* const> sequences, const MatrixXd& first,
@@ -88,13 +88,13 @@ void Policy::unroll(std::span<const Sequence* const> sequences, const MatrixXd& 
   const std::size_t longest = sequences.empty() ? 0 : sequences.front()->size();
   std::vector<Traversal> traversals(sequences.size(), Traversal(*library_));
   run.first = first;
-  MatrixXd hidden = first.topRows(kH);
-  MatrixXd cell = first.bottomRows(kH);
+  MatrixXd hidden = first.topRows(kWidth);
+  MatrixXd cell = first.bottomRows(kWidth);
   for (std::size_t t = 0; t < longest; ++t) {
     while (sequences[static_cast<std::size_t>(n - 1)]->size() <= t) --n;
     keep_first(cell, n);
     keep_first(hidden, n);
-    MatrixXd gates(4 * kH, n);
+    MatrixXd gates(4 * kWidth, n);
     std::vector<int> parent;
     std::vector<int> sibling;
     MatrixXd shift = MatrixXd::Zero(shape_.outputs(), n);
@@ -138,9 +138,9 @@ std::vector<double> Policy::log_probabilities(std::span<const Sequence* const> s
 void Policy::add_output_gradient(const Unrolled& run, std::size_t t, StepErrors& errors,
                                  VectorXd& gradient) const {
   const PolicyShape::Layout at = shape_.layout();
-  Eigen::Map<MatrixXd> d_output(gradient.data() + at.output, shape_.outputs(), kH);
+  Eigen::Map<MatrixXd> d_output(gradient.data() + at.output, shape_.outputs(), kWidth);
   Eigen::Map<VectorXd> d_output_bias(gradient.data() + at.output_bias, shape_.outputs());
-  const ConstMatrix output(parameters_.data() + at.output, shape_.outputs(), kH);
+  const ConstMatrix output(parameters_.data() + at.output, shape_.outputs(), kWidth);
   const double discount = elementary::pow(errors.gamma, static_cast<double>(t));
   const MatrixXd& log_p = run.log_p[t];
   MatrixXd p(log_p.rows(), log_p.cols());
@@ -167,24 +167,26 @@ void Policy::add_output_gradient(const Unrolled& run, std::size_t t, StepErrors&
 void Policy::add_cell_gradient(const Unrolled& run, std::size_t t, StepErrors& errors,
                                VectorXd& gradient) const {
   const PolicyShape::Layout at = shape_.layout();
-  Eigen::Map<MatrixXd> d_input(gradient.data() + at.input, 4 * kH, shape_.inputs());
-  Eigen::Map<VectorXd> d_gate_bias(gradient.data() + at.gate_bias, 4 * kH);
+  Eigen::Map<MatrixXd> d_input(gradient.data() + at.input, 4 * kWidth, shape_.inputs());
+  Eigen::Map<VectorXd> d_gate_bias(gradient.data() + at.gate_bias, 4 * kWidth);
   const Index n = errors.hidden.cols();
   const MatrixXd& gates = run.gates[t];
-  const auto in = gates.topRows(kH).array();
-  const auto forget = gates.middleRows(kH, kH).array();
-  const auto candidate = gates.middleRows(2 * kH, kH).array();
-  const auto out = gates.bottomRows(kH).array();
+  const auto in = gates.topRows(kWidth).array();
+  const auto forget = gates.middleRows(kWidth, kWidth).array();
+  const auto candidate = gates.middleRows(2 * kWidth, kWidth).array();
+  const auto out = gates.bottomRows(kWidth).array();
   MatrixXd tanh_cell = run.cell[t];
   columns::tanh(tanh_cell.data(), tanh_cell.data(), static_cast<std::size_t>(tanh_cell.size()));
   const ArrayXXd previous = t > 0 ? ArrayXXd(run.cell[t - 1].leftCols(n).array())
-                                  : ArrayXXd(run.first.bottomRows(kH).array());
+                                  : ArrayXXd(run.first.bottomRows(kWidth).array());
   errors.cell.array() += errors.hidden.array() * out * (1 - tanh_cell.array().square());
-  MatrixXd d_gates(4 * kH, n);
-  d_gates.topRows(kH).array() = errors.cell.array() * candidate * in * (1 - in);
-  d_gates.middleRows(kH, kH).array() = errors.cell.array() * previous * forget * (1 - forget);
-  d_gates.middleRows(2 * kH, kH).array() = errors.cell.array() * in * (1 - candidate.square());
-  d_gates.bottomRows(kH).array() = errors.hidden.array() * tanh_cell.array() * out * (1 - out);
+  MatrixXd d_gates(4 * kWidth, n);
+  d_gates.topRows(kWidth).array() = errors.cell.array() * candidate * in * (1 - in);
+  d_gates.middleRows(kWidth, kWidth).array() =
+      errors.cell.array() * previous * forget * (1 - forget);
+  d_gates.middleRows(2 * kWidth, kWidth).array() =
+      errors.cell.array() * in * (1 - candidate.square());
+  d_gates.bottomRows(kWidth).array() = errors.hidden.array() * tanh_cell.array() * out * (1 - out);
   d_gate_bias += d_gates.rowwise().sum();
   for (Index j = 0; j < n; ++j) {
     const auto sequence = static_cast<std::size_t>(j);
@@ -193,12 +195,12 @@ void Policy::add_cell_gradient(const Unrolled& run, std::size_t t, StepErrors& e
   }
   if (t > 0 || !run.first.isZero(0)) {
     const MatrixXd before = t > 0 ? MatrixXd(run.hidden[t - 1].leftCols(n).transpose())
-                                  : MatrixXd(run.first.topRows(kH).transpose());
-    columns::add_product(d_gates.data(), before.data(), 4 * kH, static_cast<std::size_t>(n), kH,
-                         gradient.data() + at.recurrent);
+                                  : MatrixXd(run.first.topRows(kWidth).transpose());
+    columns::add_product(d_gates.data(), before.data(), 4 * kWidth, static_cast<std::size_t>(n),
+                         kWidth, gradient.data() + at.recurrent);
   }
   errors.hidden.setZero();
-  columns::add_product(errors.recurrent.data(), d_gates.data(), kH, 4 * kH,
+  columns::add_product(errors.recurrent.data(), d_gates.data(), kWidth, 4 * kWidth,
                        static_cast<std::size_t>(n), errors.hidden.data());
   errors.cell.array() *= forget;
 }
@@ -211,7 +213,7 @@ double Policy::loss(std::span<const WeightedSequence> batch, const Prior& prior,
   errors.gamma = gamma;
   std::vector<const Sequence*> sequences;
   const std::vector<std::size_t> order = longest_first(given);
-  MatrixXd first(2 * kH, static_cast<Index>(order.size()));
+  MatrixXd first(2 * kWidth, static_cast<Index>(order.size()));
   for (const std::size_t i : order) {
     first.col(static_cast<Index>(sequences.size())) = batch[i].start ? *batch[i].start : start_;
     errors.batch.push_back(&batch[i]);
@@ -221,9 +223,9 @@ double Policy::loss(std::span<const WeightedSequence> batch, const Prior& prior,
   unroll(sequences, first, prior, run);
   const PolicyShape::Layout at = shape_.layout();
   gradient = VectorXd::Zero(at.size);
-  errors.hidden.resize(kH, 0);
-  errors.cell.resize(kH, 0);
-  errors.recurrent = ConstMatrix(parameters_.data() + at.recurrent, 4 * kH, kH).transpose();
+  errors.hidden.resize(kWidth, 0);
+  errors.cell.resize(kWidth, 0);
+  errors.recurrent = ConstMatrix(parameters_.data() + at.recurrent, 4 * kWidth, kWidth).transpose();
   for (std::size_t t = run.log_p.size(); t-- > 0;) {
     extend_by_zero(errors.hidden, run.log_p[t].cols());
     extend_by_zero(errors.cell, run.log_p[t].cols());
@@ -231,11 +233,11 @@ double Policy::loss(std::span<const WeightedSequence> batch, const Prior& prior,
     add_cell_gradient(run, t, errors, gradient);
   }
   if (start_gradient != nullptr) {
-    start_gradient->resize(2 * kH, static_cast<Index>(order.size()));
+    start_gradient->resize(2 * kWidth, static_cast<Index>(order.size()));
     for (std::size_t j = 0; j < order.size(); ++j) {
       const auto column = static_cast<Index>(order[j]);
-      start_gradient->col(column).head(kH) = errors.hidden.col(static_cast<Index>(j));
-      start_gradient->col(column).tail(kH) = errors.cell.col(static_cast<Index>(j));
+      start_gradient->col(column).head(kWidth) = errors.hidden.col(static_cast<Index>(j));
+      start_gradient->col(column).tail(kWidth) = errors.cell.col(static_cast<Index>(j));
     }
   }
   return errors.loss;

@@ -23,7 +23,6 @@ namespace {
 
 constexpr std::size_t kBins = 30;
 constexpr std::size_t kFoldedBins = 36;
-constexpr std::size_t kFewestRows = 5;
 constexpr std::size_t kMostMarks = 200;
 // A way of looking that explains less than this much more is not worth being less simple.
 constexpr double kWorthIt = 0.02;
@@ -219,8 +218,8 @@ std::vector<std::vector<std::size_t>> parts_of(const LoopRows& all, const Partin
 
 Bins bins_of(const Coordinate& coordinate, const std::vector<std::size_t>& rows) {
   return coordinate.axis.period > 0
-             ? equal_widths(rows, coordinate.values, kFoldedBins, kFewestRows)
-             : equal_counts(rows, coordinate.values, kBins, kFewestRows);
+             ? equal_widths(rows, coordinate.values, kFoldedBins, kFewestRowsOfBin)
+             : equal_counts(rows, coordinate.values, kBins, kFewestRowsOfBin);
 }
 
 // Share of the effect's variance that bins along the coordinate explain.
@@ -271,7 +270,7 @@ std::vector<std::size_t> unfaded(const LoopRows& all, const Look& look,
   std::vector<std::size_t> order = all.rows;
   std::ranges::stable_sort(order, {},
                            [&](std::size_t i) { return x[static_cast<Eigen::Index>(i)]; });
-  if (order.size() < 2 * kFewestRows) return all.rows;
+  if (order.size() < 2 * kFewestRowsOfBin) return all.rows;
   const double low = x[static_cast<Eigen::Index>(order.front())];
   const double high = x[static_cast<Eigen::Index>(order.back())];
   double largest = 0;
@@ -286,7 +285,7 @@ std::vector<std::size_t> unfaded(const LoopRows& all, const Look& look,
   if (low < 0 || !(last - low < kMostlyFaded * (high - low))) return all.rows;
   const double end = low + 2 * (last - low);
   std::erase_if(order, [&](std::size_t i) { return x[static_cast<Eigen::Index>(i)] > end; });
-  return order.size() < 2 * kFewestRows ? all.rows : order;
+  return order.size() < 2 * kFewestRowsOfBin ? all.rows : order;
 }
 
 // Where movements begin, of a picture over the campaign.

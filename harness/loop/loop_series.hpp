@@ -55,6 +55,8 @@ std::vector<LoopTrace> traces(const LoopRows& rows);
 // All pictures of the record, and its friction_rms.
 void add_series(LoopRecord& record, const JudgedDiagnosis& diagnosis, const Observations& data);
 
+inline constexpr std::size_t kFewestRowsOfBin = 5;
+
 // Means of rows in bins of `x`. by: the bin of each of the chosen rows, as cut_bins gives it.
 struct Bins {
   std::vector<std::vector<std::size_t>> rows;  // in the order of x

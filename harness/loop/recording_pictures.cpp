@@ -16,7 +16,6 @@ namespace {
 constexpr std::size_t kFrictionBins = 18;  // a direction and load level
 constexpr std::size_t kInputBins = 30;     // a direction
 constexpr std::size_t kMapBins = 18;       // a side
-constexpr std::size_t kFewestRows = 5;     // of a bin
 constexpr std::size_t kTraceRows = 1500;
 
 Eigen::VectorXd values_of(const Observations& data, std::string_view name) {
@@ -111,7 +110,7 @@ LoopFrictionPicture friction_picture(const LoopRows& all) {
   const std::vector<std::vector<std::size_t>> levels = load_levels(all);
   for (const std::vector<std::size_t>& level : levels) {
     for (const double sign : {-1.0, 1.0}) {
-      const Bins bins = equal_counts(rows_with(level, v, sign), v, kFrictionBins, kFewestRows);
+      const Bins bins = equal_counts(rows_with(level, v, sign), v, kFrictionBins, kFewestRowsOfBin);
       if (bins.rows.empty()) continue;
       LoopSeries series;
       series.split = levels.size() > 1 ? LoopSplit::load_level : LoopSplit::all;
@@ -141,7 +140,8 @@ std::vector<LoopInputPicture> input_pictures(const LoopRows& all) {
     picture.leftover = std::ranges::count(all.diagnosis.leftover.signals, signal.name) > 0;
     const Eigen::VectorXd x = values_of(all.data, signal.name);
     for (const double sign : {1.0, -1.0}) {
-      const Bins bins = equal_counts(rows_with(all.rows, way, sign), x, kInputBins, kFewestRows);
+      const Bins bins =
+          equal_counts(rows_with(all.rows, way, sign), x, kInputBins, kFewestRowsOfBin);
       if (bins.rows.size() < 2) continue;
       LoopSeries series;
       series.split = sign > 0 ? LoopSplit::forward : LoopSplit::backward;
@@ -166,9 +166,9 @@ std::vector<LoopMapPicture> leftover_maps(const LoopRows& all) {
   const Eigen::VectorXd y = values_of(all.data, names[1]);
   const Eigen::VectorXd residual = target_vector(all.data) - all.after;
   LoopMapPicture map{axis_of(all.data, names[0]), axis_of(all.data, names[1]), {}};
-  const Bins columns = equal_counts(all.rows, x, kMapBins, kFewestRows);
+  const Bins columns = equal_counts(all.rows, x, kMapBins, kFewestRowsOfBin);
   for (std::size_t b = 0; b < columns.rows.size(); ++b) {
-    const Bins cells = equal_counts(columns.rows[b], y, kMapBins, kFewestRows);
+    const Bins cells = equal_counts(columns.rows[b], y, kMapBins, kFewestRowsOfBin);
     const auto edge = [](const std::vector<std::size_t>& rows, const Eigen::VectorXd& of,
                          bool top) {
       double value = of[static_cast<Eigen::Index>(rows[0])];

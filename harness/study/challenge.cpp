@@ -26,7 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kProtocol = 1;
+constexpr int kChallengeProtocol = 1;
 constexpr std::size_t kLongestLine = 1U << 20;
 constexpr std::size_t kMostRequests = 5000;
 
@@ -117,7 +117,7 @@ void take_verdict(const Json& verdict, const simulation::World& world, Challenge
 }
 
 void converse(Talk& talk, simulation::World& world, ChallengeResult& result) {
-  talk.say({{"protocol", kProtocol},
+  talk.say({{"protocol", kChallengeProtocol},
             {"seal", result.seal},
             {"families", family_names()},
             {"limits", Json::parse(limits_json(world.limits()))}});

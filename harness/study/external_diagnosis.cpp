@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kProtocol = 1;
+constexpr int kDiagnosisProtocol = 1;
 constexpr std::size_t kMaxOutputBytes = 1U << 24;  // a program that prints without end is stopped
 
 // The rows with keep[row] != 0; without the target where it is to be predicted.
@@ -75,7 +75,7 @@ void write_request(const std::filesystem::path& folder, const LoopCase& one,
   write_csv(part_of(planted.data, held_out, false), folder / "held_out.csv");
   json families = json::array();
   for (const loop::EffectFamily& family : loop::builtin_effects()) families.push_back(family.name);
-  const json request = {{"protocol", kProtocol},
+  const json request = {{"protocol", kDiagnosisProtocol},
                         {"train", "train.csv"},
                         {"held_out", "held_out.csv"},
                         {"target", planted.data.find(Role::friction_torque)->name},

@@ -8,8 +8,6 @@
 namespace tribench {
 namespace {
 
-constexpr double kConfidence = 0.95;
-
 bool is_met(double value, FigureTable::Target target) {
   return target.at_least ? value >= target.value : value <= target.value;
 }

@@ -18,7 +18,6 @@
 namespace tribench {
 namespace {
 
-constexpr double kConfidence = 0.95;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kCannotTell = 4;  // the loop's exit status for data that cannot tell; still an answer
 

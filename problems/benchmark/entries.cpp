@@ -8,6 +8,7 @@
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
+#include "foundation/sign.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
 
@@ -43,15 +44,13 @@ constexpr PeerLaw kPeerLaws[] = {
      }},
 };
 
-double sign_of(double x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : 0.0; }
-
 void append(const PeerLaw& law, double v, double g, double noise, Table& table) {
-  const double s = sign_of(v);
+  const double s = sign(v);
   table.columns[0].push_back(v);
   table.columns[1].push_back(s);
   if (law.load) {
     table.columns[2].push_back(g);
-    table.columns[3].push_back(sign_of(g));
+    table.columns[3].push_back(sign(g));
   }
   table.truth.push_back(law.value(v, s, g));
   table.target.push_back(table.truth.back() + noise);

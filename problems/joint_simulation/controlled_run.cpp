@@ -15,7 +15,7 @@
 namespace tribench::simulation {
 namespace {
 
-constexpr double kStep_s = 0.001;
+constexpr double kControllerStep_s = 0.001;
 constexpr double kReach_rad = 1.5;
 constexpr double kSlowest_rad_s = 0.04;
 constexpr double kFastest_rad_s = 1.2;
@@ -25,7 +25,7 @@ constexpr double kOffset = 0.1;  // sd of the movements' offsets, in sd of the n
 constexpr double kSlowestTold_rad_s = 0.02;
 constexpr double kHeld = 0.5;  // of Coulomb friction that stays when the joint has stopped
 
-// The wanted velocity on the grid of kStep_s, and where the brake is on.
+// The wanted velocity on the grid of kControllerStep_s, and where the brake is on.
 struct Schedule {
   std::vector<double> velocity;
   std::vector<char> braked;
@@ -34,7 +34,7 @@ struct Schedule {
   void add(double velocity_rad_s) {
     velocity.push_back(velocity_rad_s);
     braked.push_back(0);
-    position += velocity_rad_s * kStep_s;
+    position += velocity_rad_s * kControllerStep_s;
   }
 };
 
@@ -53,7 +53,7 @@ void add_strokes(Schedule& schedule, RandomStream& random) {
     const double length = std::clamp(speed * random.uniform(1, 4), 0.1, room);
     movement.add_stroke(movement.end_rad() + side * length, speed, random.uniform(1, 6));
   }
-  for (double t = 0; t < movement.duration_s(); t += kStep_s) {
+  for (double t = 0; t < movement.duration_s(); t += kControllerStep_s) {
     schedule.add(movement.at(t).velocity_rad_s);
   }
 }
@@ -66,7 +66,7 @@ void add_sines(Schedule& schedule, RandomStream& random) {
     const double rate = random.uniform(0.8, 4);
     sine = {draw_speed(random) * 0.6 / rate, rate, random.uniform(0, 2 * std::numbers::pi)};
   }
-  for (double t = 0; t < duration; t += kStep_s) {
+  for (double t = 0; t < duration; t += kControllerStep_s) {
     const double fade = elementary::sin(std::numbers::pi * t / duration);
     double velocity = 0;
     for (const Sine& sine : sines) velocity += motion_of(sine, t).velocity_rad_s;
@@ -77,7 +77,7 @@ void add_sines(Schedule& schedule, RandomStream& random) {
 void add_rest(Schedule& schedule, RandomStream& random) {
   const bool brake = random.chance(0.15);
   const double duration = brake ? random.uniform(2, 5) : random.uniform(0.2, 0.8);
-  for (double t = 0; t < duration; t += kStep_s) {
+  for (double t = 0; t < duration; t += kControllerStep_s) {
     schedule.add(0);
     schedule.braked.back() = brake && t > 0.4 && t < duration - 0.2 ? 1 : 0;
   }
@@ -86,7 +86,7 @@ void add_rest(Schedule& schedule, RandomStream& random) {
 Schedule make_schedule(double seconds, RandomStream random) {
   Schedule schedule;
   add_rest(schedule, random);
-  while (static_cast<double>(schedule.velocity.size()) * kStep_s < seconds) {
+  while (static_cast<double>(schedule.velocity.size()) * kControllerStep_s < seconds) {
     if (random.chance(0.2) && std::abs(schedule.position) < 0.7) {
       add_sines(schedule, random);
     } else {
@@ -110,8 +110,9 @@ std::vector<MotionState> motion_along(const Schedule& schedule, std::size_t widt
     if (rests) sum = 0;
     const double before = now.velocity_rad_s;
     now.velocity_rad_s = sum / w;
-    now.acceleration_rad_s2 = rests ? 0 : (schedule.velocity[i] - leaving) / (w * kStep_s);
-    now.position_rad += 0.5 * (before + now.velocity_rad_s) * kStep_s;
+    now.acceleration_rad_s2 =
+        rests ? 0 : (schedule.velocity[i] - leaving) / (w * kControllerStep_s);
+    now.position_rad += 0.5 * (before + now.velocity_rad_s) * kControllerStep_s;
     motion.push_back(now);
   }
   return motion;
@@ -161,13 +162,14 @@ std::vector<Torques> torques_along(const std::vector<MotionState>& motion, const
     if (v == 0) {
       bristle += (kHeld * (bristle > 0 ? 1 : -1) - bristle) * 0.01;
     } else {
-      bristle = now.sign() + (bristle - now.sign()) *
-                                 elementary::exp(-std::abs(v) * kStep_s / joint.presliding_rad);
+      bristle =
+          now.sign() + (bristle - now.sign()) *
+                           elementary::exp(-std::abs(v) * kControllerStep_s / joint.presliding_rad);
     }
     const std::size_t side = bristle > 0 ? 0 : 1;
     torques.push_back({now.gravity_nm,
                        joint.coulomb_nm[side] * bristle + joint.viscous_nms[v > 0 ? 0 : 1] * v,
-                       response ? response(now, kStep_s) : 0});
+                       response ? response(now, kControllerStep_s) : 0});
   }
   return torques;
 }
@@ -191,8 +193,8 @@ std::vector<Channel> channels_of(Columns columns, bool linear) {
 Columns sample(const ControlledRunPlan& plan, const Joint& joint, const Schedule& schedule,
                const std::vector<MotionState>& motion, const std::vector<Torques>& torques,
                RandomStream noise, std::vector<int>& move) {
-  const double kept = elementary::exp(-kStep_s / joint.noise_s);
-  const auto stride = static_cast<std::size_t>(std::lround(1 / (kStep_s * plan.rate_hz)));
+  const double kept = elementary::exp(-kControllerStep_s / joint.noise_s);
+  const auto stride = static_cast<std::size_t>(std::lround(1 / (kControllerStep_s * plan.rate_hz)));
   Columns columns;
   double coloured = joint.noise_sd * noise.normal();
   double offset = 0;
@@ -208,7 +210,7 @@ Columns sample(const ControlledRunPlan& plan, const Joint& joint, const Schedule
     const bool braked = schedule.braked[i] != 0 && !moves;
     const double driven =
         torques[i].gravity + torques[i].base + joint.inertia * motion[i].acceleration_rad_s2;
-    columns.time.push_back(static_cast<double>(i) * kStep_s);
+    columns.time.push_back(static_cast<double>(i) * kControllerStep_s);
     columns.position.push_back(motion[i].position_rad);
     columns.velocity.push_back(motion[i].velocity_rad_s);
     columns.acceleration.push_back(motion[i].acceleration_rad_s2);

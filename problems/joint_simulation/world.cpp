@@ -15,7 +15,7 @@
 namespace tribench::simulation {
 namespace {
 
-constexpr double kStep_s = 0.004;
+constexpr double kWorldStep_s = 0.004;
 constexpr std::size_t kStride = 20;  // steps a row
 constexpr int kUsualMovements = 40;  // over which an effect has its scale
 
@@ -98,7 +98,7 @@ MotionLimits draw_limits(RandomStream random) {
   limits.greatest_load_factor = 1.5;
   limits.greatest_other_velocity_rad_s = 0.6;
   limits.longest_rest_s = 120;
-  limits.rate_hz = 1 / (kStep_s * static_cast<double>(kStride));
+  limits.rate_hz = 1 / (kWorldStep_s * static_cast<double>(kStride));
   limits.gear_ratio = kGearRatio;
   return limits;
 }
@@ -186,16 +186,16 @@ void World::calibrate() {
 
 void World::run(State& state, const Movement& movement, Dataset* data,
                 std::vector<std::vector<double>>* values) const {
-  const auto steps = static_cast<std::size_t>(movement.duration_s() / kStep_s);
+  const auto steps = static_cast<std::size_t>(movement.duration_s() / kWorldStep_s);
   for (std::size_t i = 0; i <= steps; ++i) {
-    const double t_s = static_cast<double>(i) * kStep_s;
+    const double t_s = static_cast<double>(i) * kWorldStep_s;
     Instant now = instant_of(movement, t_s);
     now.part = (state.time_s + t_s) / limits_.seconds;
-    state.thermal.advance(std::abs(now.joint.velocity_rad_s), kStep_s);
+    state.thermal.advance(std::abs(now.joint.velocity_rad_s), kWorldStep_s);
     now.oil_degc = state.thermal.oil_degc();
     const bool recorded = data != nullptr && i % kStride == 0 && now.sign() != 0;
     for (std::size_t k = 0; k < state.responses.size(); ++k) {
-      const double value = state.responses[k](now, kStep_s);
+      const double value = state.responses[k](now, kWorldStep_s);
       if (recorded) (*values)[k].push_back(value);
     }
     if (!recorded) continue;

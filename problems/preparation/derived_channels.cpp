@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "foundation/elementary.hpp"
+#include "foundation/sign.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -18,12 +19,10 @@ double rounded_step(double dt) {
 
 constexpr std::string_view kDerived = " (derived)";
 
-double sign_of(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
-
 }  // namespace
 
 double DistanceSinceReversal::next(double v, double q, double dt) {
-  const double now = sign_of(v);
+  const double now = sign(v);
   if (!started_) {
     distance_ = 0;
     direction_ = now;

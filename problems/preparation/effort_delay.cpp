@@ -16,16 +16,9 @@ namespace {
 constexpr double kLongest = 0.04;  // s
 constexpr double kFast = 0.05;     // of the top speed
 constexpr double kWay = 0.01;      // of the position's range
-constexpr std::size_t kRows = 20'000;
-constexpr std::size_t kFewest = 400;
+constexpr std::size_t kRowsCompared = 20'000;
+constexpr std::size_t kFewestSteady = 400;
 constexpr std::size_t kParts = 8;  // of the recording, left out in turn
-constexpr double kFollows = 1e-6;
-
-const Channel* torque_of(const Dataset& data) {
-  if (const Channel* torque = data.find(Role::motor_torque)) return torque;
-  return data.find(Role::motor_current);
-}
-
 struct Thinned {
   std::vector<std::size_t> rows;
   std::size_t stride = 1;
@@ -48,7 +41,7 @@ Thinned steady_rows(const Dataset& data, std::span<const RowRange> pieces, std::
       if (std::abs(q[i - 2 * reach] - q[begin]) > way) rows.push_back(i - reach);
     }
   }
-  Thinned some{{}, rows.size() / kRows + 1};
+  Thinned some{{}, rows.size() / kRowsCompared + 1};
   for (std::size_t k = 0; k < rows.size(); k += some.stride) some.rows.push_back(rows[k]);
   return some;
 }
@@ -98,7 +91,7 @@ Eigen::MatrixXd base_of(const Terms& all, const std::vector<std::size_t>& rows) 
   }
   const Eigen::VectorXd scale = x.colwise().norm().cwiseMax(1e-300);
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(x * scale.cwiseInverse().asDiagonal());
-  qr.setThreshold(kFollows);
+  qr.setThreshold(kDependent);
   return qr.householderQ() * Eigen::MatrixXd::Identity(n, qr.rank());
 }
 
@@ -147,7 +140,7 @@ std::optional<double> place_of_least(const Eigen::VectorXd& squares) {
 
 std::optional<EffortDelay> effort_delay(const Dataset& data, std::span<const RowRange> pieces,
                                         std::optional<double> gear_ratio) {
-  const Channel* torque = torque_of(data);
+  const Channel* torque = effort_of(data);
   const Channel* t = data.find(Role::time);
   const Channel* v = data.find(Role::velocity);
   if (torque == nullptr || t == nullptr || v == nullptr || !data.find(Role::position) ||
@@ -158,7 +151,7 @@ std::optional<EffortDelay> effort_delay(const Dataset& data, std::span<const Row
   if (!(step > 0)) return {};
   const auto reach = std::max<std::size_t>(2, static_cast<std::size_t>(kLongest / step));
   const Thinned thinned = steady_rows(data, pieces, reach);
-  if (thinned.rows.size() < kFewest) return {};
+  if (thinned.rows.size() < kFewestSteady) return {};
   const Terms terms{data, gear_ratio, fit_rigid_body(data)};
   const Eigen::MatrixXd squares = left_over(
       base_of(terms, thinned.rows), means_of(torque->values, thinned.stride), thinned.rows, reach);

@@ -9,6 +9,7 @@
 
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
+#include "foundation/sign.hpp"
 #include "problems/friction_sign.hpp"
 
 namespace tribench::loop {
@@ -94,7 +95,7 @@ void drop_rows_at_rest(Observations& data) {
     std::size_t end = begin + 1;
     double fastest = std::abs(v[begin]);
     const auto goes_on = [&](std::size_t i) {
-      return data.movement[i] == data.movement[begin] && sign_of(v[i]) == sign_of(v[begin]);
+      return data.movement[i] == data.movement[begin] && sign(v[i]) == sign(v[begin]);
     };
     for (; end < v.size() && goes_on(end); ++end) fastest = std::max(fastest, std::abs(v[end]));
     if (fastest < kGettingAnywhere * top) {
@@ -171,7 +172,7 @@ Observations steady_means(const Observations& data) {
     const std::string& name = out.signals[j].name;
     if (!name.starts_with("sgn_")) continue;
     average(data.find(name.substr(4))->values, out.signals[j].values);
-    for (double& x : out.signals[j].values) x = sign_of(x);
+    for (double& x : out.signals[j].values) x = sign(x);
   }
   average(data.time, out.time);
   const std::vector<double>& v = out.find("v")->values;
@@ -209,12 +210,12 @@ void check_moving(const Observations& data) {
   double travelled = 0;
   double against = 0;
   for (std::size_t begin = 0; begin < data.rows();) {
-    double farthest = sign_of(high) * q->values[begin];
+    double farthest = sign(high) * q->values[begin];
     double nearest = farthest;
     double back = 0;
     std::size_t i = begin;
     for (; i < data.rows() && data.movement[i] == data.movement[begin]; ++i) {
-      const double place = sign_of(high) * q->values[i];
+      const double place = sign(high) * q->values[i];
       farthest = std::max(farthest, place);
       nearest = std::min(nearest, place);
       back = std::max(back, farthest - place);

@@ -8,8 +8,6 @@
 
 namespace tribench::loop {
 
-inline double sign_of(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
-
 // Rows with a value that is not finite.
 void drop_rows_not_finite(Observations& data);
 

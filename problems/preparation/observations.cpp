@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "foundation/error.hpp"
+#include "foundation/sign.hpp"
 #include "problems/preparation/derived_channels.hpp"
 #include "problems/preparation/observation_rows.hpp"
 
@@ -36,7 +37,7 @@ void add_sign(Observations& data, std::string_view of, Role role) {
   const Signal* source = data.find(of);
   if (source == nullptr || data.find(name) != nullptr) return;
   Signal signal{name, source->channel, "-", role, {}, source->values};
-  for (double& x : signal.values) x = sign_of(x);
+  for (double& x : signal.values) x = sign(x);
   data.signals.push_back(std::move(signal));
 }
 
@@ -266,7 +267,7 @@ std::vector<std::size_t> blocks_of(const Observations& data, std::size_t longest
   std::vector<std::size_t> block(data.rows(), 0);
   for (std::size_t i = 1, begin = 0; i < data.rows(); ++i) {
     const bool goes_on = data.movement[i] == data.movement[begin] && i - begin < longest &&
-                         sign_of(v[i]) == sign_of(v[begin]) &&
+                         sign(v[i]) == sign(v[begin]) &&
                          std::abs(v[i] - v[begin]) <= kBlockSpeed * top &&
                          (q == nullptr || std::abs(q->values[i] - q->values[begin]) <= reach);
     block[i] = block[i - 1] + (goes_on ? 0 : 1);
@@ -291,7 +292,7 @@ std::vector<std::size_t> ends_of_means(const Observations& data, std::size_t siz
   for (std::size_t i = 0; i < data.rows(); ++i) {
     if (i > 0 && same_cell(i - 1, i)) continue;
     end[i] = i + 1;
-    while (end[i] < data.rows() && same_cell(i, end[i]) && sign_of(v[end[i]]) == sign_of(v[i]) &&
+    while (end[i] < data.rows() && same_cell(i, end[i]) && sign(v[end[i]]) == sign(v[i]) &&
            std::abs(v[end[i]] - v[i]) <= kBlockSpeed * top &&
            (q == nullptr || std::abs(q->values[end[i]] - q->values[i]) <= reach)) {
       ++end[i];
@@ -322,7 +323,7 @@ Observations means_of(const Observations& data, const std::vector<std::size_t>& 
   for (Signal& signal : out.signals) {
     const Signal* of = signal.name.starts_with("sgn_") ? out.find(signal.name.substr(4)) : nullptr;
     for (std::size_t k = 0; of != nullptr && k < signal.values.size(); ++k) {
-      signal.values[k] = sign_of(of->values[k]);
+      signal.values[k] = sign(of->values[k]);
     }
   }
   return out;

@@ -13,9 +13,8 @@ namespace tribench {
 namespace {
 
 constexpr std::size_t kRows = 20'000;  // that take part, evenly spaced
-constexpr std::size_t kFewest = 100;
+constexpr std::size_t kFewestFitRows = 100;
 constexpr double kLeastRange = 0.3;  // rad: less does not tell gravity from an offset
-constexpr double kFollows = 1e-6;
 constexpr int kRounds = 4;
 // Neighbouring rows repeat one another: of this many only one is new to the standard errors.
 constexpr double kRowsThatAgree = 20;
@@ -32,7 +31,7 @@ Fit least_squares(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
   const Eigen::VectorXd scale = x.colwise().norm().cwiseMax(1e-300);
   const Eigen::MatrixXd scaled = x * scale.cwiseInverse().asDiagonal();
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
-  qr.setThreshold(kFollows);
+  qr.setThreshold(kDependent);
   fit.determined = qr.rank() == scaled.cols();
   fit.coefficients = qr.solve(y).cwiseQuotient(scale);
   fit.squares = (y - x * fit.coefficients).squaredNorm();
@@ -42,11 +41,6 @@ Fit least_squares(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
   const Eigen::VectorXd variance = ridge.inverse().diagonal() * fit.squares / free;
   fit.errors = (kRowsThatAgree * variance).cwiseMax(0).cwiseSqrt().cwiseQuotient(scale);
   return fit;
-}
-
-const Channel* torque_of(const Dataset& data) {
-  if (const Channel* torque = data.find(Role::motor_torque)) return torque;
-  return data.find(Role::motor_current);
 }
 
 // sgn v, v, 1, |v| and, where there is one, the acceleration; then `more` columns left free.
@@ -109,8 +103,13 @@ void fill_load_columns(const Dataset& data, Rows& rows, Eigen::Index first) {
 
 }  // namespace
 
+const Channel* effort_of(const Dataset& data) {
+  const Channel* torque = data.find(Role::motor_torque);
+  return torque != nullptr ? torque : data.find(Role::motor_current);
+}
+
 std::optional<RigidBody> fit_rigid_body(const Dataset& data) {
-  const Channel* torque = torque_of(data);
+  const Channel* torque = effort_of(data);
   const Channel* q = data.find(Role::position);
   if (torque == nullptr || q == nullptr || q->unit != "rad" || !data.find(Role::velocity)) {
     return {};
@@ -118,7 +117,7 @@ std::optional<RigidBody> fit_rigid_body(const Dataset& data) {
   const auto [low, high] = std::ranges::minmax(q->values);
   if (high - low < kLeastRange) return {};
   Rows rows = rows_of(data, *torque, 3);
-  if (rows.places.size() < kFewest) return {};
+  if (rows.places.size() < kFewestFitRows) return {};
   const Eigen::Index n = rows.x.rows();
   for (Eigen::Index r = 0; r < n; ++r) {
     const double angle = q->values[rows.places[static_cast<std::size_t>(r)]];
@@ -152,10 +151,10 @@ std::optional<RigidBody> fit_rigid_body(const Dataset& data) {
 
 std::optional<Blunting> acceleration_blunting(const Dataset& data, std::span<const double> change) {
   constexpr Eigen::Index kAcceleration = 4;
-  const Channel* torque = torque_of(data);
+  const Channel* torque = effort_of(data);
   if (torque == nullptr || !data.find(Role::velocity) || !data.find(Role::acceleration)) return {};
   Rows rows = rows_of(data, *torque, 1 + load_columns(data));
-  if (rows.places.size() < kFewest) return {};
+  if (rows.places.size() < kFewestFitRows) return {};
   for (Eigen::Index r = 0; r < rows.x.rows(); ++r) {
     rows.x(r, rows.base) = change[rows.places[static_cast<std::size_t>(r)]];
   }
@@ -191,11 +190,11 @@ std::optional<double> visible_acceleration(const Dataset& data) {
   constexpr double kSurely = 5;         // standard errors
   constexpr std::size_t kMeans = 6000;  // that a diagnosis averages a recording to
   constexpr Eigen::Index kAcceleration = 4;
-  const Channel* torque = torque_of(data);
+  const Channel* torque = effort_of(data);
   const Channel* v = data.find(Role::velocity);
   if (torque == nullptr || v == nullptr || !data.find(Role::acceleration)) return {};
   Rows rows = rows_of(data, *torque, load_columns(data), kSlow * top_speed(v->values));
-  if (rows.places.size() < kFewest) return {};
+  if (rows.places.size() < kFewestFitRows) return {};
   fill_load_columns(data, rows, rows.base);
   const Fit fit = least_squares(rows.x, rows.y);
   const double inertia = fit.coefficients(kAcceleration);
@@ -205,11 +204,11 @@ std::optional<double> visible_acceleration(const Dataset& data) {
 }
 
 std::optional<GravityFactor> gravity_factor(const Dataset& data) {
-  const Channel* torque = torque_of(data);
+  const Channel* torque = effort_of(data);
   const Channel* gravity = data.find(Role::gravity_torque);
   if (torque == nullptr || gravity == nullptr || !data.find(Role::velocity)) return {};
   Rows rows = rows_of(data, *torque, 1);
-  if (rows.places.size() < kFewest) return {};
+  if (rows.places.size() < kFewestFitRows) return {};
   for (Eigen::Index r = 0; r < rows.x.rows(); ++r) {
     rows.x(r, rows.base) = gravity->values[rows.places[static_cast<std::size_t>(r)]];
   }

@@ -14,6 +14,12 @@
 
 namespace tribench {
 
+// A column that the others explain to this share of its size says nothing of its own.
+inline constexpr double kDependent = 1e-6;
+
+// The motor's torque or, where none was recorded, its current; null without both.
+const Channel* effort_of(const Dataset& data);
+
 struct RigidBody {
   double sine = 0;  // coefficients of sin q and cos q, in the torque's unit
   double cosine = 0;

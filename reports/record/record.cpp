@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "reports/record/record_columns.hpp"
@@ -42,6 +44,11 @@ bool read_word(std::string_view text, const std::array<std::string_view, N>& wor
 }
 
 }  // namespace
+
+double placing_error(const Record& record) {
+  return is_ok(record) && !std::isnan(record.mae_test) ? record.mae_test
+                                                       : std::numeric_limits<double>::infinity();
+}
 
 std::string_view record_word(std::optional<CellStatus> value) {
   return word_of(value, kStatusWords);

@@ -122,6 +122,8 @@ struct Record {
 };
 
 inline bool is_ok(const Record& record) { return record.status == CellStatus::ok; }
+// What a cell is placed by: its error on test rows, infinity where there is none.
+double placing_error(const Record& record);
 void mark_failed(Record& record, FailureKind kind, std::string detail = {});
 
 // A fit that the clock ended cannot be repeated; the record's note says so.

@@ -14,6 +14,8 @@
 
 namespace tribench {
 
+inline constexpr double kConfidence = 0.95;  // of what a report prints
+
 struct ConfidenceInterval {
   double low = 0;
   double high = 0;
