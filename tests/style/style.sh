@@ -4,7 +4,7 @@
 # commit), the latest first. Formatting looks at all of them, clang-tidy at the sources of the
 # program; what it has not begun within SECONDS (120) is counted and left. Exit status 1 where the
 # formatting is another, 123 where clang-tidy finds something. Needs clang-format-14, clang-tidy-14
-# and a built build/release.
+# and, for its generated headers, a built build/release.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds=${1:-120}
@@ -23,16 +23,18 @@ if [ ${#files[@]} -eq 0 ]; then
 fi
 clang-format-14 --dry-run -Werror "${files[@]}"
 
+# The preset `dev` compiles every file by itself, which is what clang-tidy reads.
+[ -f build/dev/compile_commands.json ] || cmake --preset dev >/dev/null
 # A header is seen with the sources that include it; what the compiler is not called for has no flags.
 left=$(mktemp)
 trap 'rm -f "$left"' EXIT
 mapfile -t sources < <(printf '%s\n' "${files[@]}" | grep -vE '^(tests|bench|examples)/' |
-    grep -Fxf <(sed -n "s|^ *\"file\": \"$PWD/\(.*\)\".*|\1|p" build/release/compile_commands.json))
+    grep -Fxf <(sed -n "s|^ *\"file\": \"$PWD/\(.*\)\".*|\1|p" build/dev/compile_commands.json))
 check() { # DEADLINE LEFT FILE
     if [ "$(date +%s)" -ge "$1" ]; then
         echo "$3" >>"$2"
     else
-        clang-tidy-14 -p build/release --quiet "$3" 2> >(grep -v 'warnings\? generated' >&2)
+        clang-tidy-14 -p build/dev --quiet "$3" 2> >(grep -v 'warnings\? generated' >&2)
     fi
 }
 export -f check
