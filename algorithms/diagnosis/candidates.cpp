@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/column_products.hpp"
 #include "algorithms/inference/whitening.hpp"
 
 namespace tribench::loop {
@@ -170,8 +171,8 @@ class AtomSets {
     }
     const Eigen::MatrixXd basis = orthonormal_basis(x);
     const Eigen::MatrixXd z = project_off(round.columns(Eigen::all, columns), basis);
-    gram_ = z.transpose() * z;
-    cross_ = z.transpose() * project_off(y, basis);
+    gram_ = gram_of(z);
+    cross_ = cross_products(z, project_off(y, basis));
   }
 
   // The first few sets of `size` atoms, a first one that may stand alone and any second: those that
@@ -261,7 +262,7 @@ double canonical_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b)
   const Eigen::MatrixXd qa = orthonormal_basis(a);
   const Eigen::MatrixXd qb = orthonormal_basis(b);
   if (qa.cols() == 0 || qb.cols() == 0) return 0;
-  const Eigen::MatrixXd cross = qa.transpose() * qb;
+  const Eigen::MatrixXd cross = cross_products(qa, qb);
   const Eigen::MatrixXd gram = cross.transpose() * cross;
   return std::sqrt(std::min(1.0, spectral_norm_symmetric(gram)));
 }

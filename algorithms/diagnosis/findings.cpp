@@ -9,6 +9,7 @@
 
 #include "algorithms/diagnosis/plausibility.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/column_products.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
 
 namespace tribench::loop {
@@ -28,7 +29,7 @@ struct Covariance {
 Covariance covariance_of(const FittedModel& fit, const Clusters& clusters) {
   const Eigen::VectorXd norms = fit.x.colwise().norm().cwiseMax(1e-300);
   const Eigen::MatrixXd x = fit.x * norms.cwiseInverse().asDiagonal();
-  Eigen::MatrixXd normal = x.transpose() * x;
+  Eigen::MatrixXd normal = gram_of(x);
   normal.diagonal().array() += 1e-10;
   const Eigen::MatrixXd inverse = inverse_symmetric(normal);
   const bool by_movement = clusters.movements.size() >= kEnoughMovements;

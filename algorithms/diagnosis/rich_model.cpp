@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/column_products.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -58,9 +59,8 @@ Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>&
     if (train_rows[i] != 0) train.push_back(static_cast<Eigen::Index>(i));
   }
   const Eigen::MatrixXd rows = x(train, Eigen::all);
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(x.cols(), x.cols());
-  normal.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
-  Eigen::VectorXd right = rows.transpose() * y(train);
+  Eigen::MatrixXd normal = gram_of(rows);
+  Eigen::VectorXd right = cross_products(rows, y(train));
   const auto residual_of = [&] {
     Eigen::MatrixXd loaded = normal;
     loaded.diagonal().array() += kRidge * normal.trace() / static_cast<double>(normal.rows());
@@ -77,8 +77,8 @@ Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>&
   if (wild.empty()) return residual;
   const Eigen::VectorXd lost = 1 - kHuber * sd / residual(wild).array().abs();
   const Eigen::MatrixXd wild_rows = lost.cwiseSqrt().asDiagonal() * x(wild, Eigen::all);
-  normal.selfadjointView<Eigen::Lower>().rankUpdate(wild_rows.transpose(), -1.0);
-  right -= wild_rows.transpose() * lost.cwiseSqrt().cwiseProduct(y(wild));
+  normal -= gram_of(wild_rows);
+  right -= cross_products(wild_rows, lost.cwiseSqrt().cwiseProduct(y(wild)));
   return residual_of();
 }
 

@@ -34,6 +34,10 @@ struct Loops {
 // What the code wants behind the plan's scalars.
 template <typename T>
 std::span<const T> extra_scalars();
+template <>
+std::span<const double> extra_scalars<double>();
+template <>
+std::span<const float> extra_scalars<float>();
 
 // Code for every region of the plan; scalars are of type T.
 template <typename T>

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/column_products.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -27,8 +28,8 @@ std::vector<Eigen::MatrixXd> fold_grams(const Eigen::MatrixXd& x, const Eigen::V
     Eigen::MatrixXd& gram = grams[static_cast<std::size_t>(clusters.fold_of[c])];
     const auto rows = x.middleRows(begin, size);
     const auto target = y.segment(begin, size);
-    gram.topLeftCorner(p, p).noalias() += rows.transpose() * rows;
-    gram.col(p).head(p).noalias() += rows.transpose() * target;
+    gram.topLeftCorner(p, p) += gram_of(rows);
+    gram.col(p).head(p) += cross_products(rows, target);
     gram(p, p) += target.squaredNorm();
   }
   return grams;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/column_products.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -95,43 +96,28 @@ Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 
 Eigen::MatrixXd project_off(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis) {
   if (basis.cols() == 0) return z;
-  return z - basis * (basis.transpose() * z);
+  return less_combination(z, basis, cross_products(basis, z));
 }
 
 namespace {
 
-// Of all columns beside a basis, stretch by stretch, without a copy of the columns less the basis:
-// what the statistic and its null are made of.
+// Of all columns beside a basis, stretch by stretch: what the statistic and its null are made of.
 struct ProjectedSums {
   ProjectedSums(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
                 const Eigen::VectorXd& residual, const Clusters& clusters)
       : sums(static_cast<Eigen::Index>(clusters.stretches.size()), z.cols()),
         squares(sums.rows(), z.cols()),
-        along(Eigen::MatrixXd::Zero(basis.cols(), z.cols())),
-        before(z.colwise().squaredNorm()) {
-    std::vector<Eigen::MatrixXd> parts;  // of `along`
-    std::vector<Eigen::MatrixXd> grams;  // of the basis
-    Eigen::MatrixXd of_residual(sums.rows(), basis.cols());
-    for (Eigen::Index c = 0; c < sums.rows(); ++c) {
-      const RowRange& range = clusters.stretches[static_cast<std::size_t>(c)];
-      const auto begin = static_cast<Eigen::Index>(range.begin);
-      const auto size = static_cast<Eigen::Index>(range.size());
-      const auto rows = z.middleRows(begin, size);
-      const auto own = basis.middleRows(begin, size);
-      const auto left = residual.segment(begin, size).transpose();
-      sums.row(c).noalias() = left * rows;
-      of_residual.row(c).noalias() = left * own;
-      squares.row(c) = rows.colwise().squaredNorm();
-      parts.emplace_back(own.transpose() * rows);
-      grams.emplace_back(own.transpose() * own);
-      along += parts.back();
+        along(cross_products(basis, z)),
+        before(z.colwise().squaredNorm()),
+        after((before - along.colwise().squaredNorm().transpose()).cwiseMax(0)) {
+    constexpr Eigen::Index kColumnsAtOnce = 16;  // are still in the cache when they are summed
+    for (Eigen::Index first = 0; first < z.cols(); first += kColumnsAtOnce) {
+      const Eigen::Index count = std::min(kColumnsAtOnce, z.cols() - first);
+      const Eigen::MatrixXd off =
+          less_combination(z.middleCols(first, count), basis, along.middleCols(first, count));
+      for (Eigen::Index j = 0; j < count; ++j)
+        add_column(off.col(j), residual, clusters, first + j);
     }
-    sums -= of_residual * along;
-    for (Eigen::Index c = 0; c < sums.rows(); ++c) {
-      const auto at = static_cast<std::size_t>(c);
-      squares.row(c) += along.cwiseProduct(grams[at] * along - 2 * parts[at]).colwise().sum();
-    }
-    after = (before - along.colwise().squaredNorm().transpose()).cwiseMax(0);
   }
 
   Eigen::MatrixXd sums;     // stretches x columns: residual' (z less the basis)
@@ -139,6 +125,18 @@ struct ProjectedSums {
   Eigen::MatrixXd along;    // basis' z
   Eigen::VectorXd before;   // a column's squares
   Eigen::VectorXd after;    // ... less the basis
+
+ private:
+  void add_column(const Eigen::Ref<const Eigen::VectorXd>& off, const Eigen::VectorXd& residual,
+                  const Clusters& clusters, Eigen::Index column) {
+    for (Eigen::Index c = 0; c < sums.rows(); ++c) {
+      const RowRange& range = clusters.stretches[static_cast<std::size_t>(c)];
+      const auto begin = static_cast<Eigen::Index>(range.begin);
+      const auto size = static_cast<Eigen::Index>(range.size());
+      sums(c, column) = residual.segment(begin, size).dot(off.segment(begin, size));
+      squares(c, column) = off.segment(begin, size).squaredNorm();
+    }
+  }
 };
 
 BlockScores score_one(const Eigen::MatrixXd& z, const ProjectedSums& all, const Block& block) {
@@ -158,7 +156,7 @@ BlockScores score_one(const Eigen::MatrixXd& z, const ProjectedSums& all, const 
   const Eigen::VectorXd scale = all.before(kept).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd columns = z(Eigen::all, kept);
   const Eigen::MatrixXd along = all.along(Eigen::all, kept);
-  const Eigen::MatrixXd gram = columns.transpose() * columns - along.transpose() * along;
+  const Eigen::MatrixXd gram = gram_of(columns) - along.transpose() * along;
   count_clusters(out.test, all.squares(Eigen::all, kept) * scale.cwiseAbs2());
   finish_scores(out, scale.asDiagonal() * gram * scale.asDiagonal(),
                 all.sums(Eigen::all, kept) * scale.asDiagonal(), 0);

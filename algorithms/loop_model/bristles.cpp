@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "algorithms/expression/build.hpp"
+#include "algorithms/inference/column_products.hpp"
 #include "algorithms/inference/whitening.hpp"
 #include "algorithms/loop_model/bristle_path.hpp"
 #include "foundation/elementary.hpp"
@@ -140,7 +141,7 @@ class Fit {
     out.all.setZero(table.cols(), table.cols());
     for (const std::vector<Eigen::Index>& part : part_) {
       const Eigen::MatrixXd rows = table(part, Eigen::all);
-      out.part.emplace_back(rows.transpose() * rows);
+      out.part.push_back(gram_of(rows));
       out.all += out.part.back();
     }
     return out;

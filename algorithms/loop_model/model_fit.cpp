@@ -7,6 +7,7 @@
 
 #include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/column_products.hpp"
 #include "algorithms/inference/whitening.hpp"
 
 namespace tribench::loop {
@@ -101,7 +102,7 @@ class LinearPart {
     x_ = whitened(evaluate_columns(linear_columns(model), *data_), *clusters_, *noise_);
     lengths_ = Eigen::VectorXd::Ones(x_.cols());
     for (Eigen::Index j = 0; j < x_.cols(); ++j) scale(j);
-    gram_ = x_.transpose() * x_;
+    gram_ = gram_of(x_);
     renew_target(model);
     solve(model);
   }
@@ -119,7 +120,7 @@ class LinearPart {
             evaluate_column(atom.columns[static_cast<std::size_t>(c)], table), *clusters_, *noise_);
         scale(first + c);
       }
-      const Eigen::MatrixXd products = x_.transpose() * x_.middleCols(first, count);
+      const Eigen::MatrixXd products = cross_products(x_, x_.middleCols(first, count));
       gram_.middleCols(first, count) = products;
       gram_.middleRows(first, count) = products.transpose();
     }
@@ -150,9 +151,9 @@ class LinearPart {
     residual_ = y_;
     if (x_.cols() > 0) {
       const Eigen::VectorXd solution =
-          basic_solution_symmetric(gram_, x_.transpose() * y_, kDependent);
+          basic_solution_symmetric(gram_, cross_products(x_, y_), kDependent);
       model.coefficients = solution.cwiseQuotient(lengths_);
-      residual_ -= x_ * solution;
+      residual_ = less_combination(std::move(residual_), x_, solution);
     }
     sum_squares_ = residual_.squaredNorm();
   }
@@ -185,10 +186,10 @@ NonlinearNormal nonlinear_normal(LoopModel& model, const std::vector<Nonlinear>&
     jacobian.col(static_cast<Eigen::Index>(j)) = derivative(model, parameters[j], table);
   }
   jacobian = whitened(std::move(jacobian), clusters, noise);
-  NonlinearNormal out{jacobian.transpose() * jacobian, jacobian.transpose() * fit.residual()};
+  NonlinearNormal out{gram_of(jacobian), cross_products(jacobian, fit.residual())};
   if (fit.columns().cols() == 0) return out;
   const Eigen::VectorXd whole = out.gram.diagonal();
-  const Eigen::MatrixXd cross = fit.columns().transpose() * jacobian;
+  const Eigen::MatrixXd cross = cross_products(fit.columns(), jacobian);
   out.gram -= cross.transpose() * basic_solution_symmetric(fit.gram(), cross, kDependent);
   out.gram.diagonal() = out.gram.diagonal().cwiseMax(kDependent * whole);
   return out;
@@ -221,8 +222,7 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen::Vecto
   Eigen::VectorXd lengths = columns.colwise().norm();
   for (double& length : lengths) length = length > 0 && std::isfinite(length) ? length : 1;
   const Eigen::MatrixXd scaled = columns * lengths.cwiseInverse().asDiagonal();
-  return basic_solution_symmetric(scaled.transpose() * scaled, scaled.transpose() * target,
-                                  kDependent)
+  return basic_solution_symmetric(gram_of(scaled), cross_products(scaled, target), kDependent)
       .cwiseQuotient(lengths);
 }
 

@@ -55,6 +55,10 @@ struct KernelTable {
 // The table of a level that is built in; which those are, kernels_are_built tells.
 template <typename T>
 const KernelTable<T>& kernel_table(VectorLevel level);
+template <>
+const KernelTable<double>& kernel_table<double>(VectorLevel level);
+template <>
+const KernelTable<float>& kernel_table<float>(VectorLevel level);
 bool kernels_are_built(VectorLevel level);
 
 // Whether quotients are better formed partly by multiplications (the same bits): Intel's divider

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/inference/column_products.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "foundation/random.hpp"
+
+namespace tribench::loop {
+namespace {
+
+Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, std::uint64_t seed) {
+  RandomStream random(seed);
+  Eigen::MatrixXd out(rows, columns);
+  for (double& x : out.reshaped()) x = random.normal();
+  return out;
+}
+
+bool have_same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() &&
+         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+}
+
+// The sum in the order that the header states, one number at a time.
+double in_the_stated_order(const double* a, const double* b, Eigen::Index rows) {
+  double product = 0;
+  for (Eigen::Index first = 0; first < rows; first += 1024) {
+    const Eigen::Index count = std::min<Eigen::Index>(1024, rows - first);
+    double s[8] = {};
+    for (Eigen::Index r = 0; r < count - count % 8; ++r) s[r % 8] += a[first + r] * b[first + r];
+    product += ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
+    for (Eigen::Index r = count - count % 8; r < count; ++r) product += a[first + r] * b[first + r];
+  }
+  return product;
+}
+
+TEST(ColumnProducts, AreTheSumsInTheStatedOrderWhateverTheProcessor) {
+  for (const Eigen::Index rows : {0, 1, 7, 8, 9, 1023, 1024, 1025, 3007}) {
+    for (const Eigen::Index p : {1, 2, 3, 4, 5, 11}) {
+      const Eigen::MatrixXd a = random_matrix(rows, p, 1);
+      const Eigen::MatrixXd b = random_matrix(rows, 3, 2);
+      Eigen::MatrixXd expected(p, 3);
+      for (Eigen::Index i = 0; i < p; ++i) {
+        for (Eigen::Index j = 0; j < 3; ++j) {
+          expected(i, j) = in_the_stated_order(a.col(i).data(), b.col(j).data(), rows);
+        }
+      }
+      EXPECT_TRUE(have_same_bits(cross_products(a, b), expected)) << rows << " x " << p;
+    }
+  }
+}
+
+TEST(ColumnProducts, OfAGramMatrixAreThoseOfTheColumnsWithThemselvesAndSymmetric) {
+  for (const Eigen::Index p : {1, 2, 3, 4, 5, 6, 7, 13}) {
+    const Eigen::MatrixXd a = random_matrix(2050, p, 3);
+    const Eigen::MatrixXd gram = gram_of(a);
+    EXPECT_TRUE(have_same_bits(gram, cross_products(a, a))) << p;
+    EXPECT_TRUE(have_same_bits(gram, gram.transpose())) << p;
+  }
+}
+
+TEST(ColumnProducts, TakeRowsOfALargerMatrixAsTheyLie) {
+  const Eigen::MatrixXd a = random_matrix(300, 6, 4);
+  const Eigen::MatrixXd rows = a.middleRows(13, 250);
+  EXPECT_TRUE(have_same_bits(gram_of(a.middleRows(13, 250)), gram_of(rows)));
+}
+
+TEST(ColumnProducts, ACombinationTakenOffLeavesWhatEigenLeaves) {
+  for (const Eigen::Index p : {0, 1, 7, 8, 9, 20}) {
+    const Eigen::MatrixXd columns = random_matrix(1500, p, 5);
+    const Eigen::MatrixXd coefficients = random_matrix(p, 4, 6);
+    const Eigen::MatrixXd from = random_matrix(1500, 4, 7);
+    const Eigen::MatrixXd left = less_combination(from, columns, coefficients);
+    EXPECT_LT((left - (from - columns * coefficients)).norm(), 1e-12 * from.norm()) << p;
+  }
+}
+
+TEST(ColumnProducts, SpreadWhatIsNotFinite) {
+  Eigen::MatrixXd a = random_matrix(40, 3, 8);
+  a(17, 1) = std::numeric_limits<double>::quiet_NaN();
+  const Eigen::MatrixXd gram = gram_of(a);
+  EXPECT_TRUE(std::isnan(gram(0, 1)) && std::isnan(gram(1, 1)) && std::isnan(gram(2, 1)));
+  EXPECT_TRUE(std::isfinite(gram(0, 0)) && std::isfinite(gram(2, 0)));
+}
+
+}  // namespace
+}  // namespace tribench::loop
