@@ -9,6 +9,7 @@
 
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/fitting/evidence_pruning.hpp"
+#include "algorithms/fitting/fit_intervals.hpp"
 #include "algorithms/fitting/shape_dimension.hpp"
 #include "foundation/random.hpp"
 
@@ -104,6 +105,7 @@ std::vector<Side> sides_beyond(const Inputs& inputs, const InputBox& box) {
 }
 
 constexpr std::size_t kFewestRows = 10;  // held out, or left
+constexpr std::size_t kFewRows = 20;     // fitted, where single ones tell a formula's numbers
 
 // The fifth of the rows that lies farthest on each such side.
 std::vector<Marks> edge_holdouts(const Inputs& inputs, const InputBox& box) {
@@ -194,7 +196,8 @@ double rounding_of(std::span<const double> target) {
 
 // The held-out mean square of a formula whose constants are fitted anew. Fits start at what all
 // rows said: a formula with as many numbers as there are rows to fit would keep to that, and what
-// it knows of the rows held out would be no test.
+// it knows of the rows held out would be no test. Nor would it be where a few rows leave a number
+// open that one held out had told: no error is believed below what the fit says of its own there.
 class Refit {
  public:
   explicit Refit(double rounding) : rounding_(rounding) {}
@@ -204,7 +207,10 @@ class Refit {
       return std::numeric_limits<double>::infinity();
     }
     node_rows_ += fitter_.fit(formula, train.inputs(), train.target).node_rows;
-    return std::max(rounding_, mean_square(evaluator_, formula, held_out));
+    const double error = std::max(rounding_, mean_square(evaluator_, formula, held_out));
+    if (train.target.size() > kFewRows) return error;
+    return std::max(error,
+                    mean_curve_variance(formula, train.inputs(), train.target, held_out.inputs()));
   }
   std::uint64_t node_rows() const { return node_rows_; }
 

@@ -101,6 +101,8 @@ struct LinearisedRows {
   Eigen::MatrixXd jacobian;
   Eigen::VectorXd residual;
   Eigen::VectorXd scale;
+
+  bool is_finite() const { return jacobian.allFinite() && residual.allFinite(); }
 };
 
 LinearisedRows linearise(const Expression& formula, const std::vector<std::size_t>& places,
@@ -115,10 +117,6 @@ LinearisedRows linearise(const Expression& formula, const std::vector<std::size_
     const double root = weights.empty() ? 1 : std::sqrt(weights[row]);
     rows.residual[r] = root * (target[row] - values[row]);
     rows.jacobian.row(r) *= root;
-  }
-  if (!rows.jacobian.allFinite() || !rows.residual.allFinite()) {
-    throw_bad_input("the formula has no finite derivative in some row", {},
-                    "its constants have no intervals");
   }
   rows.scale = rows.jacobian.colwise().norm();
   for (double& length : rows.scale) length = length > 0 ? length : 1;
@@ -149,6 +147,10 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
   result.units = inputs.rows;
   if (p == 0) return result;
   const LinearisedRows rows = linearise(formula, result.places, inputs, target, weights);
+  if (!rows.is_finite()) {
+    throw_bad_input("the formula has no finite derivative in some row", {},
+                    "its constants have no intervals");
+  }
   const PseudoInverse base = pseudo_inverse(rows.jacobian.transpose() * rows.jacobian);
   const Eigen::Index rank = base.rank();
   if (n <= rank) {
@@ -196,6 +198,25 @@ std::vector<double> curve_half_widths(const Expression& formula, const FitInterv
     halves[r] = intervals.quantile * std::sqrt(std::max(0.0, slope.dot(covariance * slope)));
   }
   return halves;
+}
+
+double mean_curve_variance(const Expression& formula, const Inputs& fitted,
+                           std::span<const double> target, const Inputs& others) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  constexpr double kMoves = 1e-6;  // of a row's whole slope
+  const std::vector<std::size_t> places = free_constants(formula);
+  if (places.empty() || others.rows == 0) return 0;
+  std::vector<double> values(others.rows);
+  const Eigen::MatrixXd jacobian = jacobian_of(formula, places, others, values);
+  const LinearisedRows rows = linearise(formula, places, fitted, target, {});
+  if (!jacobian.allFinite() || !rows.is_finite()) return 0;
+  const PseudoInverse base = pseudo_inverse(rows.jacobian.transpose() * rows.jacobian);
+  const auto freedom = static_cast<double>(rows.residual.size() - base.rank());
+  if (freedom <= 0) return kInfinite;
+  const Eigen::MatrixXd slopes = jacobian * rows.scale.cwiseInverse().asDiagonal();
+  if ((slopes * base.null_space).norm() > kMoves * slopes.norm()) return kInfinite;
+  const double sum = (slopes * base.inverse).cwiseProduct(slopes).sum();
+  return rows.residual.squaredNorm() / freedom * sum / static_cast<double>(others.rows);
 }
 
 }  // namespace tribench

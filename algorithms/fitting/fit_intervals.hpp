@@ -49,6 +49,12 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
 std::vector<double> curve_half_widths(const Expression& formula, const FitIntervals& intervals,
                                       const Inputs& inputs);
 
+// The mean variance of the curve over `others` that the fitted rows leave: infinite where they are
+// no more than the constants, and where what they do not determine moves the curve there, as an
+// asymptote does that one row alone tells. 0 where a derivative is not finite: nothing is known.
+double mean_curve_variance(const Expression& formula, const Inputs& fitted,
+                           std::span<const double> target, const Inputs& others);
+
 // The two-sided 95 % point of Student's t; 1e-3 at 3 degrees of freedom, 1e-5 from 6 on.
 double student_point(double freedom);
 

@@ -24,10 +24,10 @@ inline constexpr std::size_t kFewRows = 400;
 
 // `chosen`, or the place of the smallest held-out error where the chosen formula's is more than
 // twice that, or above the target's variance. Errors are charged what a form gains by being
-// searched on all rows, as the evidence charges nodes. `front` by increasing complexity;
-// movement[r] names the movement of row r, or is empty: each row is its own. Cost: a fit a formula
-// and fold, some 20 ms for 20 formulas and 100 rows, seconds for long sums on 400; in_time is asked
-// before each, and once it says no the choice stands.
+// searched on all rows, as the evidence charges nodes. Five folds; of at most 20 rows each alone.
+// `front` by increasing complexity; movement[r] names the movement of row r, or is empty: each row
+// is its own. Cost: a fit a formula and fold, some 20 ms for 20 formulas and 100 rows, seconds for
+// long sums on 400; in_time is asked before each, and once it says no the choice stands.
 std::size_t held_out_choice(std::span<const Expression> front, std::size_t chosen,
                             const Inputs& inputs, std::span<const double> target,
                             std::span<const int> movement,

@@ -21,8 +21,8 @@ using namespace build;
 
 constexpr std::size_t kFewestRowsOfSum = 40;
 constexpr std::size_t kMostInputsOfSum = 8;
-constexpr std::size_t kManyInputs = 36;  // beyond, products of different inputs are left out
-constexpr std::size_t kLongestSum = 40;
+constexpr std::size_t kManyInputs = 36;   // beyond, products of different inputs are left out
+constexpr std::size_t kLongestSum = 150;  // bounds the cost; folds end most sums before
 constexpr std::size_t kRowsATerm = 4;
 constexpr int kFolds = 10;
 constexpr double kNothingNew = 1e-6;      // of a column's square beside the columns before it
@@ -185,7 +185,7 @@ class Library {
 // rows, one for each fold.
 class Products {
  public:
-  Products(const std::vector<Column>& columns, const Sample& sample) {
+  Products(const std::vector<Column>& columns, const Sample& sample, Budget& budget) {
     std::vector<const std::vector<double>*> all;
     const std::vector<double> ones(sample.rows(), 1.0);
     all.push_back(&ones);
@@ -195,11 +195,14 @@ class Products {
     const int folds = 1 + *std::ranges::max_element(sample.folds());
     whole_.assign(size_ * size_, 0.0);
     for (int f = 0; f < folds; ++f) {
+      is_whole_ = budget.in_time();
+      if (!is_whole_) return;
       add_fold(all, sample.folds(), f);
       for (std::size_t k = 0; k < whole_.size(); ++k) whole_[k] += folds_.back()[k];
     }
   }
 
+  bool is_whole() const { return is_whole_; }  // the time sufficed
   std::size_t size() const { return size_; }
   std::size_t folds() const { return folds_.size(); }
   const std::vector<double>& whole() const { return whole_; }
@@ -224,6 +227,7 @@ class Products {
     columns::gram(pointers.data(), size_, parts[0].size(), folds_.back().data());
   }
 
+  bool is_whole_ = true;
   std::size_t size_ = 0;
   std::vector<double> whole_;
   std::vector<std::vector<double>> folds_;
@@ -310,8 +314,11 @@ struct Choice {
   double held_out = 0;               // mean square
 };
 
-Choice choose(const std::vector<Column>& columns, const Sample& sample) {
-  const Products products(columns, sample);
+// None where the time ran out.
+std::optional<Choice> choose(const std::vector<Column>& columns, const Sample& sample,
+                             Budget& budget) {
+  const Products products(columns, sample, budget);
+  if (!products.is_whole()) return std::nullopt;
   const std::size_t size = products.size();
   std::vector<double> errors(1 + std::min(kLongestSum, sample.rows() / kRowsATerm), 0.0);
   for (std::size_t f = 0; f < products.folds(); ++f) {
@@ -397,19 +404,20 @@ std::optional<LinearSum> fit_long_sum(const FiniteRows& rows, const OperatorSet&
     Library products(sample);
     products.add_products(inputs);
     if (!budget.spend(cost_of(products.columns().size(), sample.rows()))) return std::nullopt;
-    inputs = inputs_of(choose(products.columns(), sample), products.columns());
+    const auto taken = choose(products.columns(), sample, budget);
+    if (!taken) return std::nullopt;
+    inputs = inputs_of(*taken, products.columns());
   }
   Library pieces(sample);
   pieces.add_pieces(inputs, operators.allows(Op::abs));
-  if (pieces.columns().empty() || !budget.in_time() ||
-      !budget.spend(cost_of(pieces.columns().size(), sample.rows()))) {
+  if (pieces.columns().empty() || !budget.spend(cost_of(pieces.columns().size(), sample.rows()))) {
     return std::nullopt;
   }
-  const Choice choice = choose(pieces.columns(), sample);
-  if (choice.columns.empty()) return std::nullopt;
-  Expression formula = written(choice, pieces.columns(), rows);
+  const auto choice = choose(pieces.columns(), sample, budget);
+  if (!choice || choice->columns.empty()) return std::nullopt;
+  Expression formula = written(*choice, pieces.columns(), rows);
   if (!operators.admits(formula)) return std::nullopt;
-  return LinearSum{std::move(formula), choice.held_out};
+  return LinearSum{std::move(formula), choice->held_out};
 }
 
 double held_out_error(const Expression& formula, const FiniteRows& rows, std::size_t most_rows) {

@@ -41,7 +41,8 @@ constexpr std::size_t kMostDepth = 3;  // of reductions
 constexpr double kSurelyExact = 3e-3;
 // And of what a formula leaves, of its own spread, from which on it is noise.
 constexpr double kAllNoise = 0.95;
-constexpr std::size_t kRivalRows = 4000;  // of a long sum, a round
+// On which a long sum is chosen: at once, and where there is time. Many rows tell more terms.
+constexpr std::size_t kRivalRows[] = {4000, 32'000};
 constexpr double kQuarter = 0.25;      // of the seconds that are left, for a search for structure
 constexpr double kMost = 0.6;          // for reductions, which end by themselves
 constexpr double kHalf = 0.5;          // for a method on fewer variables
@@ -134,9 +135,11 @@ void StructureSearch::search_long_sum() {
       !reaches_beyond(answer_.rows().table(), input_box(context_.data.inputs));
   if (answer_.is_done() || !has(kLongSums) || !stays_within) return;
   Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
-  const std::size_t most_rows = round_ == 0 ? kRivalRows : 4 * kRivalRows;
-  if (auto sum = fit_long_sum(answer_.rows(), context_.operators, most_rows, part)) {
+  for (const std::size_t most_rows : kRivalRows) {
+    auto sum = fit_long_sum(answer_.rows(), context_.operators, most_rows, part);
+    if (!sum) break;
     answer_.set_rival(std::move(*sum), most_rows);
+    if (answer_.rows().rows() <= most_rows) break;
   }
   context_.budget.settle(part);
 }

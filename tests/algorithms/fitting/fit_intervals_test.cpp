@@ -145,5 +145,40 @@ TEST(FitIntervalsCoverage, IsNinetyFivePerCentWithMovementsThatDiffer) {
   expect_covered(coverage(1000, 240, 0.1, 0.1, "movement"));
 }
 
+TEST(MeanCurveVariance, IsTheTextbooksForAStraightLine) {
+  // Anscombe's first set again: s^2 = 1.5291 (1/11 + (x - 9)^2 / 110) at x.
+  Rows rows;
+  rows.x = {10, 8, 13, 9, 11, 14, 6, 4, 12, 7, 5};
+  rows.y = {8.04, 6.95, 7.58, 8.81, 8.33, 9.96, 7.24, 4.26, 10.84, 4.82, 5.68};
+  Expression line = parse("1 + 1*x", kNames);
+  const std::vector<const double*> columns = rows.columns();
+  ConstantFitter().fit(line, {columns, rows.x.size()}, rows.y);
+  const std::vector<double> others = {9, 19};
+  const double* other = others.data();
+  EXPECT_NEAR(mean_curve_variance(line, {columns, 11}, rows.y, {{&other, 1}, 2}),
+              1.5291 * (1 / 11.0 + 0.5 * 100 / 110.0), 1e-3);
+}
+
+TEST(MeanCurveVariance, HasNoEndWhereOneRowAloneTellsANumber) {
+  // 0 but at x = 5: what it is there no row up to 1 has seen.
+  const Rows rows = draw(3, 12, 0.1, 0);
+  const std::vector<const double*> columns = rows.columns();
+  const Inputs fitted{columns, rows.x.size()};
+  const double far = 5;
+  const double near = 0.5;
+  const double* at_far = &far;
+  const double* at_near = &near;
+  const Expression step = parse("2*exp(-1.5*x) + 0.5 + 3*exp(-200*(x - 5)^2)", kNames);
+  EXPECT_FALSE(std::isfinite(mean_curve_variance(step, fitted, rows.y, {{&at_far, 1}, 1})));
+  EXPECT_LT(mean_curve_variance(step, fitted, rows.y, {{&at_near, 1}, 1}), 0.1);
+  // Two constants for one number: what they are is open, what the curve is is not.
+  EXPECT_LT(mean_curve_variance(parse("2*3*x", kNames), fitted, rows.y, {{&at_near, 1}, 1}), 10);
+  EXPECT_EQ(mean_curve_variance(parse("x", kNames), fitted, rows.y, {{&at_far, 1}, 1}), 0);
+  const Rows two = draw(3, 2, 0.1, 0);
+  const std::vector<const double*> pair = two.columns();
+  EXPECT_FALSE(std::isfinite(
+      mean_curve_variance(parse("1 + 2*x", kNames), {pair, 2}, two.y, {{&at_near, 1}, 1})));
+}
+
 }  // namespace
 }  // namespace tribench

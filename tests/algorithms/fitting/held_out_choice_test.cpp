@@ -69,6 +69,16 @@ TEST(HeldOutChoice, ChargesAFormForItsLengthTheMoreTheFewerTheRows) {
   EXPECT_EQ(Rows(100).choice_of({"0.5", "2*v", length}, 2), 2U);
 }
 
+// The last number of the long form is what a single row says, and no other row speaks of it: a fold
+// without that row keeps it, and would find nothing wrong there.
+TEST(HeldOutChoice, CreditsNoFormWithWhatOneRowAloneTells) {
+  Rows rows(14);
+  rows.v.back() = 5;
+  rows.target.back() = 14;
+  rows.column = rows.v.data();
+  EXPECT_EQ(rows.choice_of({"0.5", "2.6*v", "2*v + 4*exp(-400*(v - 5)^2)"}, 2), 1U);
+}
+
 TEST(HeldOutChoice, LeavesManyRowsToTheMethods) {
   EXPECT_EQ(Rows(401).choice_of({"0.5", "2*v"}, 0), 0U);
   EXPECT_EQ(Rows(400).choice_of({"0.5", "2*v"}, 0), 1U);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/relay/long_sum.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "algorithms/finite_rows.hpp"
+#include "foundation/random.hpp"
 #include "tests/algorithms/relay/drawn_law.hpp"
 #include "tests/support/fit.hpp"
 
@@ -51,6 +53,40 @@ TEST(LongSum, DoesWithWhatTheOperatorsHave) {
   ASSERT_TRUE(straight);
   EXPECT_TRUE(find_operator_set("paper").admits(straight->formula));
   EXPECT_GT(straight->held_out, sum_of(law)->held_out);
+}
+
+TEST(LongSum, SaysMoreTheMoreRowsItIsChosenOn) {
+  // Fifty-six terms of no great size, in noise: 400 rows tell some of them.
+  const std::vector<std::string> names = {"a", "b", "c", "d", "e", "f"};
+  std::vector<DrawnInput> inputs;
+  for (const std::string& name : names) inputs.push_back({name, -2, 2});
+  std::string text = "0";
+  RandomStream random(5);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (std::size_t j = i; j < names.size(); ++j) {
+      for (std::size_t k = j; k < names.size(); ++k) {
+        text += fmt::format(" + {:.3f}*{}*{}*{}", random.normal(), names[i], names[j], names[k]);
+      }
+    }
+  }
+  const DrawnLaw law(text, inputs, 6000, 0.3);
+  const DrawnLaw unseen(text, inputs, 1000, 0.0, 2);
+  const FiniteRows rows(law.data());
+  Budget budget({});
+  const auto few = relay::fit_long_sum(rows, find_operator_set("full"), 400, budget);
+  const auto many = relay::fit_long_sum(rows, find_operator_set("full"), 6000, budget);
+  ASSERT_TRUE(few && many);
+  EXPECT_LT(unseen.error_of(many->formula), 0.06) << "0.3 sqrt(56 / 6000) is 0.03";
+  EXPECT_GT(unseen.error_of(few->formula), 2 * unseen.error_of(many->formula));
+}
+
+TEST(LongSum, IsNotBegunWhereTheSecondsAreOver) {
+  const DrawnLaw law(kBent, kThree, 600, 0.05);
+  const FiniteRows rows(law.data());
+  BudgetLimits limits;
+  limits.cpu_seconds = 0;
+  Budget budget(limits);
+  EXPECT_FALSE(relay::fit_long_sum(rows, find_operator_set("full"), kRows, budget));
 }
 
 TEST(LongSum, TakesFewOfFiftyInputs) {
