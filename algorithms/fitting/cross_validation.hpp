@@ -56,8 +56,10 @@ std::vector<int> held_out_folds(std::span<const int> movement, std::size_t rows,
 // formula is chosen. box: the ranges the formula will be used over; none given means those of the
 // rows. A formula that leaves the band of a straight continuation somewhere in a wider box counts
 // as infinite, as does one with as many numbers as a fold leaves rows to fit: it would know those
-// held out by the constants that it came with. in_time: asked before each fit of a formula to a
-// fold; once it says no, no error is known (mean_square is empty) and the last formula is chosen.
+// held out by the constants that it came with. Of a fit to at most 20 rows an error counts at least
+// the curve's own variance at those held out (fit_intervals.hpp). in_time: asked before each fit of
+// a formula to a fold; once it says no, no error is known (mean_square is empty) and the last
+// formula is chosen.
 CrossValidation cross_validate(std::span<const Expression> formulas, const Inputs& inputs,
                                std::span<const double> target, std::span<const int> movement,
                                const InputBox& box = {}, int folds = 5,
