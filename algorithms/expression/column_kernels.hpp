@@ -54,5 +54,11 @@ void add_product(const double* a, const double* b, std::size_t rows, std::size_t
 
 // products[i * count + j] = sum_r columns[i][r] columns[j][r], both triangles.
 void gram(const double* const* columns, std::size_t count, std::size_t n, double* products);
+// products[i * right_count + j] = sum_r left[i][r] right[j][r], the same sums as gram's.
+void cross_products(const double* const* left, std::size_t left_count, const double* const* right,
+                    std::size_t right_count, std::size_t n, double* products);
+// out[i] -= sum_j coefficients[j] columns[j][i].
+void subtract_combination(const double* const* columns, const double* coefficients,
+                          std::size_t count, double* out, std::size_t n);
 
 }  // namespace tribench::columns

@@ -4,12 +4,12 @@
 // diagnosis spends most of its time on. Not for square matrices (Eigen's own products).
 //
 // The program is compiled for any x86-64, and Eigen's products with it: two numbers an instruction.
-// These take what the processor has and give the same bits on each, since the order of the
-// additions is fixed: eight sums of every eighth row, 1024 rows at a time. Eigen's matrices in and
-// out; NaN and infinity spread as in any sum.
+// These are the column kernels' (expression/column_kernels.hpp), which take what the processor has
+// and give the same bits on each. NaN and infinity spread as in any sum.
 //
-// Cost: n p q multiplications and additions, half of it for a Gram matrix; with AVX-512 a Gram matrix
-// takes about a third of the time of Eigen's (14 000 rows, 4 to 60 columns: bench/diagnosis_bench).
+// Cost: n p q multiplications and additions, half of it for a Gram matrix; with AVX-512 a Gram
+// matrix takes about a third of the time of Eigen's (14 000 rows, 4 to 60 columns:
+// bench/diagnosis_bench).
 #pragma once
 
 #include <Eigen/Core>

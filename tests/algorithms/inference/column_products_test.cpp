@@ -26,21 +26,23 @@ bool have_same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
          std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
 }
 
-// The sum in the order that the header states, one number at a time.
+// Eight sums of every eighth row, 512 rows at a time, one number after the other.
 double in_the_stated_order(const double* a, const double* b, Eigen::Index rows) {
   double product = 0;
-  for (Eigen::Index first = 0; first < rows; first += 1024) {
-    const Eigen::Index count = std::min<Eigen::Index>(1024, rows - first);
+  for (Eigen::Index first = 0; first < rows; first += 512) {
+    const Eigen::Index count = std::min<Eigen::Index>(512, rows - first);
+    const Eigen::Index whole = count - count % 8;
     double s[8] = {};
-    for (Eigen::Index r = 0; r < count - count % 8; ++r) s[r % 8] += a[first + r] * b[first + r];
-    product += ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
-    for (Eigen::Index r = count - count % 8; r < count; ++r) product += a[first + r] * b[first + r];
+    double rest = 0;
+    for (Eigen::Index r = 0; r < whole; ++r) s[r % 8] += a[first + r] * b[first + r];
+    for (Eigen::Index r = whole; r < count; ++r) rest += a[first + r] * b[first + r];
+    product += (((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]))) + rest;
   }
   return product;
 }
 
-TEST(ColumnProducts, AreTheSumsInTheStatedOrderWhateverTheProcessor) {
-  for (const Eigen::Index rows : {0, 1, 7, 8, 9, 1023, 1024, 1025, 3007}) {
+TEST(ColumnProducts, AreSumsInOneOrderWhateverTheProcessor) {
+  for (const Eigen::Index rows : {0, 1, 7, 8, 9, 511, 512, 513, 3007}) {
     for (const Eigen::Index p : {1, 2, 3, 4, 5, 11}) {
       const Eigen::MatrixXd a = random_matrix(rows, p, 1);
       const Eigen::MatrixXd b = random_matrix(rows, 3, 2);
