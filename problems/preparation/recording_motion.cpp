@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "problems/preparation/effort_delay.hpp"
@@ -22,7 +21,6 @@ constexpr double kUnresolved = 0.6;   // standard errors of the acceleration
 constexpr double kMatters = 0.33;     // of the acceleration that the torque's noise leaves visible
 constexpr double kLeastDelay = 0.6;   // steps of time
 constexpr double kMuchCoarser = 4;    // than the derived velocity's noise
-constexpr double kForever = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -155,6 +153,39 @@ void erase_channel(Dataset& data, std::string_view name) {
   std::erase_if(data.channels, [&](const Channel& channel) { return channel.name == name; });
 }
 
+// Stretches of rows in one direction in which the change exceeds `least` again and again, at most
+// `near` apart in time. One that turns many times, well above the noise, is no ramp but a
+// vibration, such as a gear's ripple gives the joint: on the mean its error is none, and with it
+// whole strokes would go.
+std::vector<RowRange> fast_ramps(std::span<const double> change, std::span<const double> t,
+                                 std::span<const double> v, double least, double noise,
+                                 double near) {
+  constexpr int kMostTurns = 12;  // of a stroke's two ramps, three at each beginning and end
+  std::vector<RowRange> ramps;
+  int turns = 0;
+  double largest = 0;
+  double before = 0;
+  const auto end_stretch = [&] {
+    if (turns > kMostTurns && largest > kSurely * noise) ramps.pop_back();
+    turns = 0;
+    largest = before = 0;
+  };
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (!(std::abs(change[i]) > least)) continue;
+    const std::size_t last = ramps.empty() ? 0 : ramps.back().end - 1;
+    if (ramps.empty() || !(std::abs(t[i] - t[last]) <= near) || v[i] * v[last] < 0) {
+      end_stretch();
+      ramps.push_back({i, i});
+    }
+    ramps.back().end = i + 1;
+    turns += change[i] * before < 0 ? 1 : 0;
+    largest = std::max(largest, std::abs(change[i]));
+    before = change[i];
+  }
+  end_stretch();
+  return ramps;
+}
+
 }  // namespace
 
 // Where the acceleration changes faster than the smoother follows, inertia would be taken for
@@ -169,18 +200,18 @@ void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived) {
   const std::vector<double>& t = find_channel(out.data, Role::time)->values;
   Channel mark{std::string(kUnresolvedChannel), "-", Role::none, std::vector<double>(t.size(), 0)};
   const double blur = kBlur / (kRadPerTurn * derived.motion.bandwidth);
-  double last = -kForever;  // when the acceleration was last seen to change
-  const double least = std::max(kUnresolved * derived.motion.acceleration_noise,
-                                kMatters * visible_acceleration(out.data).value_or(0));
-  const auto changes = [&](std::size_t i) { return std::abs(change.values[i]) > least; };
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    if (changes(i)) last = t[i];
-    mark.values[i] = std::abs(t[i] - last) <= blur ? 1 : 0;
-  }
-  last = kForever;
-  for (std::size_t i = t.size(); i-- > 0;) {
-    if (changes(i)) last = t[i];
-    if (std::abs(t[i] - last) <= blur) mark.values[i] = 1;
+  const double noise = derived.motion.acceleration_noise;
+  const double least =
+      std::max(kUnresolved * noise, kMatters * visible_acceleration(out.data).value_or(0));
+  const std::vector<RowRange> ramps =
+      fast_ramps(change.values, t, derived.motion.velocity, least, noise, 2 * blur);
+  for (RowRange ramp : ramps) {
+    const double begin = t[ramp.begin] - blur;
+    const double end = t[ramp.end - 1] + blur;
+    while (ramp.begin > 0 && t[ramp.begin - 1] >= begin && t[ramp.begin - 1] <= end) --ramp.begin;
+    while (ramp.end < t.size() && t[ramp.end] <= end && t[ramp.end] >= begin) ++ramp.end;
+    std::fill(mark.values.begin() + static_cast<std::ptrdiff_t>(ramp.begin),
+              mark.values.begin() + static_cast<std::ptrdiff_t>(ramp.end), 1);
   }
   out.data.channels.push_back(std::move(mark));
   out.data.channels.push_back(std::move(change));

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -172,6 +173,32 @@ TEST(PreparedRecording, TellingsOfOnePhysicsAgree) {
       }
     }
   }
+}
+
+// How many rows of a log are faster than `least` rad/s, of a joint that its gear's ripple shakes by
+// so much at half a radian a second.
+std::size_t fast_rows(double shake, double least) {
+  RawLogPlan plan;
+  plan.seconds = 120;
+  plan.encoder_bits = 18;
+  std::vector<RawSample> samples = simulate(plan);
+  constexpr double kRipple = 60;  // rad for one of the joint
+  for (RawSample& sample : samples) {
+    const double ratio = sample.velocity / 0.5;
+    sample.position += shake / (1 + ratio * ratio) * std::cos(kRipple * sample.position);
+  }
+  const PreparedRecording log = prepared(raw_table(samples, plan, {}), engineer());
+  return static_cast<std::size_t>(
+      std::ranges::count_if(log.data.find(Role::velocity)->values,
+                            [&](double speed) { return std::abs(speed) > least; }));
+}
+
+// What shakes a joint all along a stroke is no ramp: fast strokes are kept, and with them what
+// friction does at speed.
+TEST(PreparedRecording, AJointThatItsGearShakesKeepsItsFastStrokes) {
+  const std::size_t calm = fast_rows(0, 0.3);
+  ASSERT_GT(calm, 2000U);
+  EXPECT_GT(fast_rows(0.001, 0.3), calm * 3 / 4);
 }
 
 TEST(PreparedRecording, LostMessagesCutTheRecordingAndNothingIsDrawnThroughThem) {
