@@ -153,7 +153,7 @@ class LinearPart {
       const Eigen::VectorXd solution =
           basic_solution_symmetric(gram_, cross_products(x_, y_), kDependent);
       model.coefficients = solution.cwiseQuotient(lengths_);
-      residual_ = less_combination(std::move(residual_), x_, solution);
+      residual_ = less_combination(residual_, x_, solution);
     }
     sum_squares_ = residual_.squaredNorm();
   }

@@ -37,7 +37,7 @@ struct Column {
 // Rows for the choice, spread evenly.
 class Sample {
  public:
-  Sample(const FiniteRows& all, std::size_t most) : all_(all) {
+  Sample(const FiniteRows& all, std::size_t most) {
     const std::size_t count = std::min(most, all.rows());
     for (std::size_t k = 0; k < count; ++k) rows_.push_back(k * all.rows() / count);
     for (const std::vector<double>& column : all.columns) columns_.push_back(taken(column));
@@ -62,7 +62,6 @@ class Sample {
     return values;
   }
 
-  const FiniteRows& all_;
   std::vector<std::size_t> rows_;
   std::vector<std::vector<double>> columns_;
   std::vector<const double*> pointers_;
