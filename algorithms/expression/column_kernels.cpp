@@ -90,9 +90,8 @@ void pow(const double* a, const double* b, double* out, std::size_t n) {
   kernels().power[kFormVV](out, a, b, nullptr, n);
 }
 
-TRIBENCH_EACH_LEVEL void combine(const double* const* columns, const double* coefficients,
-                                 std::size_t count, double* out, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = 0;
+TRIBENCH_EACH_LEVEL void add_combination(const double* const* columns, const double* coefficients,
+                                         std::size_t count, double* out, std::size_t n) {
   std::size_t j = 0;
   for (; j + 4 <= count; j += 4) {
     const double* a = columns[j];
@@ -112,6 +111,12 @@ TRIBENCH_EACH_LEVEL void combine(const double* const* columns, const double* coe
     const double ca = coefficients[j];
     for (std::size_t i = 0; i < n; ++i) out[i] += ca * a[i];
   }
+}
+
+void combine(const double* const* columns, const double* coefficients, std::size_t count,
+             double* out, std::size_t n) {
+  std::fill(out, out + n, 0.0);
+  add_combination(columns, coefficients, count, out, n);
 }
 
 TRIBENCH_EACH_LEVEL double sum(const double* a, std::size_t n) {
@@ -276,30 +281,6 @@ void gram(const double* const* columns, std::size_t count, std::size_t n, double
 void cross_products(const double* const* left, std::size_t left_count, const double* const* right,
                     std::size_t right_count, std::size_t n, double* products) {
   add_tiles({left, left_count}, {right, right_count}, n, false, products);
-}
-
-TRIBENCH_EACH_LEVEL void subtract_combination(const double* const* columns,
-                                              const double* coefficients, std::size_t count,
-                                              double* out, std::size_t n) {
-  std::size_t j = 0;
-  for (; j + 4 <= count; j += 4) {
-    const double* a = columns[j];
-    const double* b = columns[j + 1];
-    const double* c = columns[j + 2];
-    const double* d = columns[j + 3];
-    const double ca = coefficients[j];
-    const double cb = coefficients[j + 1];
-    const double cc = coefficients[j + 2];
-    const double cd = coefficients[j + 3];
-    for (std::size_t i = 0; i < n; ++i) {
-      out[i] -= (ca * a[i] + cb * b[i]) + (cc * c[i] + cd * d[i]);
-    }
-  }
-  for (; j < count; ++j) {
-    const double* a = columns[j];
-    const double ca = coefficients[j];
-    for (std::size_t i = 0; i < n; ++i) out[i] -= ca * a[i];
-  }
 }
 
 namespace {

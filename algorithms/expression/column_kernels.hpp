@@ -41,6 +41,9 @@ void pow(const double* a, const double* b, double* out, std::size_t n);
 // out[i] = sum_j coefficients[j] columns[j][i]; 0 where count is 0.
 void combine(const double* const* columns, const double* coefficients, std::size_t count,
              double* out, std::size_t n);
+// The same added to what is there.
+void add_combination(const double* const* columns, const double* coefficients, std::size_t count,
+                     double* out, std::size_t n);
 
 double sum(const double* a, std::size_t n);
 double dot(const double* a, const double* b, std::size_t n);
@@ -57,8 +60,5 @@ void gram(const double* const* columns, std::size_t count, std::size_t n, double
 // products[i * right_count + j] = sum_r left[i][r] right[j][r], the same sums as gram's.
 void cross_products(const double* const* left, std::size_t left_count, const double* const* right,
                     std::size_t right_count, std::size_t n, double* products);
-// out[i] -= sum_j coefficients[j] columns[j][i].
-void subtract_combination(const double* const* columns, const double* coefficients,
-                          std::size_t count, double* out, std::size_t n);
 
 }  // namespace tribench::columns

@@ -10,6 +10,7 @@
 namespace tribench {
 namespace {
 
+constexpr double kUnderflow = std::numeric_limits<double>::denorm_min();
 constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
 constexpr double kKernelError = kKernelUlps * std::numeric_limits<double>::epsilon();
 // A kernel of exp may flush results below the normal range to zero.
@@ -87,20 +88,17 @@ double rounding_error_of(Op op, const Interval& a, const Interval& b, bool same,
     case Op::sub:
       return same ? 0 : kRoundoff * magnitude;
     case Op::mul:
-      return is_power_of_two(a) || is_power_of_two(b)
-                 ? 0
-                 : kRoundoff * magnitude + std::numeric_limits<double>::denorm_min();
+      return is_power_of_two(a) || is_power_of_two(b) ? 0 : kRoundoff * magnitude + kUnderflow;
     case Op::div:
     case Op::sqrt:
-      return kRoundoff * magnitude + std::numeric_limits<double>::denorm_min();
+      return kRoundoff * magnitude + kUnderflow;
     case Op::exp:
       return kKernelError * magnitude + kFlushed;
     case Op::log:
-      return kKernelError * magnitude + std::numeric_limits<double>::denorm_min();
+      return kKernelError * magnitude + kUnderflow;
     case Op::pow: {
       const double exponent = std::min(b.magnitude(), 1100.0);
-      return (kKernelError + 2 * exponent * kRoundoff) * magnitude +
-             std::numeric_limits<double>::denorm_min();
+      return (kKernelError + 2 * exponent * kRoundoff) * magnitude + kUnderflow;
     }
     default:  // sin, cos, tanh; the second term is the reduced argument's
       return kKernelError * magnitude + 0x1p-58 * (1 + b.magnitude());

@@ -39,12 +39,13 @@ Eigen::MatrixXd gram_of(const ColumnsRef& a) {
 Eigen::MatrixXd less_combination(Eigen::MatrixXd from, const ColumnsRef& columns,
                                  const ColumnsRef& coefficients) {
   constexpr Index kRowsAtOnce = 1024;  // of all columns stay in the cache
+  const Eigen::MatrixXd taken_off = -coefficients;
   std::vector<const double*> rows = columns_of(columns);
   for (Index row = 0; row < from.rows(); row += kRowsAtOnce) {
     const Index count = std::min(kRowsAtOnce, from.rows() - row);
     for (Index j = 0; j < from.cols(); ++j) {
-      columns::subtract_combination(rows.data(), coefficients.col(j).data(), rows.size(),
-                                    from.col(j).data() + row, static_cast<std::size_t>(count));
+      columns::add_combination(rows.data(), taken_off.col(j).data(), rows.size(),
+                               from.col(j).data() + row, static_cast<std::size_t>(count));
     }
     for (const double*& column : rows) column += count;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// As many floats as one instruction adds on processors with AVX; others take two. Not for sums
-// whose bits matter: the tests that count flips compare sums with a tolerance.
+// Eight floats that are added at once, in one instruction where the processor has AVX: what sums
+// over flips and features are made of. Not for double precision (expression/column_kernels.hpp).
 #pragma once
 
 #include <cstddef>
