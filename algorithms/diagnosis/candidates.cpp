@@ -111,8 +111,8 @@ std::optional<Candidate> best_atom(std::size_t family, const Round& round, const
   if (atoms.size() > kAtomsTried) atoms.resize(kAtomsTried);
   std::optional<Candidate> best;
   for (const std::size_t k : atoms) {
-    const Eigen::MatrixXd x = beside(model.x, campaign.library.block_of(round.columns, k));
-    Eigen::VectorXd losses = held_out_losses(x, model.residual, campaign.clusters, model.noise);
+    Eigen::VectorXd losses =
+        losses_beside(model, campaign.library.block_of(round.columns, k), campaign);
     const Gain gain = paired_gain(model.losses, losses);
     if (!std::isfinite(gain.nats)) continue;  // one fold alone excites it
     if (!best || gain.nats > best->gain.nats) {
@@ -236,17 +236,19 @@ std::vector<std::size_t> better_atoms(std::size_t family, const Round& round,
   const Eigen::MatrixXd x = whitened(tangent(rest, campaign.data), campaign.clusters, model.noise);
   const Eigen::VectorXd y = whitened(target_vector(campaign.data) - predict(rest, campaign.data),
                                      campaign.clusters, model.noise);
+  const StretchGrams of_rest = stretch_grams(x, y, campaign.clusters);
   const AtomSets sets(family, x, y, round, campaign);
   AtomSet best;
   Eigen::VectorXd best_losses = model.losses;
   for (std::size_t size = own.size(); size > 0; --size) {
     for (AtomSet& set : sets.best(size, model.noise.unit())) {
       if (size == own.size() && std::ranges::all_of(set, is_own)) continue;
-      Eigen::MatrixXd columns = x;
+      Eigen::MatrixXd columns(x.rows(), 0);
       for (const std::size_t atom : set) {
         columns = beside(columns, campaign.library.block_of(round.columns, atom));
       }
-      Eigen::VectorXd losses = held_out_losses(columns, y, campaign.clusters, model.noise);
+      Eigen::VectorXd losses = held_out_losses(
+          with_columns(of_rest, x, y, columns, campaign.clusters), campaign.clusters, model.noise);
       const Gain lead = paired_gain(best_losses, losses);
       // One that says as much as two is the simpler story.
       const bool simpler = size < (best.empty() ? own.size() : best.size());

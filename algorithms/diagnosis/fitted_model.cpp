@@ -72,10 +72,19 @@ FittedModel fit_in_its_noise(LoopModel model, const Campaign& campaign, FitScope
   out.x = whitened(out.raw_tangent, clusters, noise);
   out.basis = orthonormal_basis(out.x);
   out.residual = project_off(whitened(out.raw_residual, clusters, noise), out.basis);
-  out.losses = held_out_losses(out.x, out.residual, clusters, noise);
+  out.grams = stretch_grams(out.x, out.residual, clusters);
+  out.losses = held_out_losses(out.grams, clusters, noise);
   out.model = std::move(model);
   out.noise = noise;
   return out;
+}
+
+Eigen::VectorXd losses_beside(const FittedModel& model, const Eigen::MatrixXd& columns,
+                              const Campaign& campaign, double ridge) {
+  const StretchGrams grams =
+      with_columns(model.grams, model.x, model.residual, columns, campaign.clusters);
+  return held_out_losses(grams, campaign.clusters, model.noise, ridge > 0 ? columns.cols() : 0,
+                         ridge);
 }
 
 Gain lead_over(const FittedModel& present, const FittedModel& other, const Campaign& campaign) {

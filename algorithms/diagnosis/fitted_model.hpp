@@ -18,6 +18,7 @@ struct FittedModel {
   Eigen::MatrixXd x;         // whitened tangent
   Eigen::MatrixXd basis;     // of x, orthonormal
   Eigen::VectorXd residual;  // whitened, orthogonal to the basis
+  StretchGrams grams;        // of [x residual]
   Eigen::VectorXd losses;    // held-out, by stretch
   Eigen::MatrixXd raw_tangent;
   Eigen::VectorXd raw_residual;
@@ -25,6 +26,10 @@ struct FittedModel {
 
 // Noise and coefficients in turn. scope: what is fitted besides the coefficients.
 FittedModel fit_in_its_noise(LoopModel model, const Campaign& campaign, FitScope scope);
+
+// Held-out losses of the model with whitened columns beside its own. ridge: on these.
+Eigen::VectorXd losses_beside(const FittedModel& model, const Eigen::MatrixXd& columns,
+                              const Campaign& campaign, double ridge = 0);
 
 // What `other` predicts better than `present`, by cross-validation in the noise of `present`.
 Gain lead_over(const FittedModel& present, const FittedModel& other, const Campaign& campaign);

@@ -173,9 +173,7 @@ std::optional<LeftoverSearch::Home> LeftoverSearch::best_place(
     if (adjusted_p(blocks[k].test.score, maxima) > campaign_.options.alpha_leftover) continue;
     const Eigen::MatrixXd features =
         whitened(places[k].features(campaign_.data), campaign_.clusters, model().noise);
-    const Eigen::VectorXd losses =
-        held_out_losses(beside(model().x, features), model().residual, campaign_.clusters,
-                        model().noise, features.cols(), places[k].ridge());
+    const Eigen::VectorXd losses = losses_beside(model(), features, campaign_, places[k].ridge());
     const Gain gain = paired_gain(model().losses, losses);
     if (std::isnan(gain.nats)) continue;
     if (best) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "algorithms/fitting/symmetric_system.hpp"
@@ -16,23 +17,28 @@ constexpr double kRidge = 1e-9;
 constexpr double kRounding = 1e-12;
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
-// Gram matrices of [x y], one a fold.
-std::vector<Eigen::MatrixXd> fold_grams(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
-                                        const Clusters& clusters) {
-  const Eigen::Index p = x.cols();
-  std::vector<Eigen::MatrixXd> grams(static_cast<std::size_t>(clusters.folds),
-                                     Eigen::MatrixXd::Zero(p + 1, p + 1));
-  for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
-    const auto begin = static_cast<Eigen::Index>(clusters.stretches[c].begin);
-    const auto size = static_cast<Eigen::Index>(clusters.stretches[c].size());
-    Eigen::MatrixXd& gram = grams[static_cast<std::size_t>(clusters.fold_of[c])];
-    const auto rows = x.middleRows(begin, size);
-    const auto target = y.segment(begin, size);
-    gram.topLeftCorner(p, p) += gram_of(rows);
-    gram.col(p).head(p) += cross_products(rows, target);
-    gram(p, p) += target.squaredNorm();
+// A stretch's rows of a matrix or a vector.
+template <typename Matrix>
+auto rows_of(const RowRange& stretch, const Matrix& matrix) {
+  return matrix.middleRows(static_cast<Eigen::Index>(stretch.begin),
+                           static_cast<Eigen::Index>(stretch.size()));
+}
+
+std::vector<Eigen::MatrixXd> sums_by_fold(const StretchGrams& grams, const Clusters& clusters) {
+  std::vector<Eigen::MatrixXd> sums(static_cast<std::size_t>(clusters.folds),
+                                    Eigen::MatrixXd::Zero(grams[0].rows(), grams[0].cols()));
+  for (std::size_t c = 0; c < grams.size(); ++c) {
+    sums[static_cast<std::size_t>(clusters.fold_of[c])] += grams[c];
   }
-  return grams;
+  return sums;
+}
+
+// |y - x b|^2, from the Gram matrix of [x y].
+double squares_left(const Eigen::MatrixXd& gram, const Eigen::VectorXd& b) {
+  const Eigen::Index p = b.size();
+  const double squares =
+      gram(p, p) - 2 * b.dot(gram.col(p).head(p)) + b.dot(gram.topLeftCorner(p, p) * b);
+  return squares < 0 ? 0 : squares;  // by rounding; NaN stays
 }
 
 // `total` has the gram's diagonal over all folds: what the other folds have of a column that only
@@ -56,28 +62,60 @@ Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& gram, const Eigen::VectorXd&
 
 }  // namespace
 
+StretchGrams stretch_grams(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
+                           const Clusters& clusters) {
+  return with_columns(StretchGrams(clusters.stretches.size(), Eigen::MatrixXd::Zero(1, 1)),
+                      Eigen::MatrixXd(x.rows(), 0), y, x, clusters);
+}
+
+StretchGrams with_columns(const StretchGrams& grams, const Eigen::MatrixXd& x,
+                          const Eigen::VectorXd& y, const Eigen::MatrixXd& more,
+                          const Clusters& clusters) {
+  const Eigen::Index p = x.cols();
+  const Eigen::Index q = more.cols();
+  StretchGrams wider;
+  wider.reserve(grams.size());
+  for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
+    const auto rows = rows_of(clusters.stretches[c], more);
+    const auto target = rows_of(clusters.stretches[c], y);
+    Eigen::MatrixXd gram(p + q + 1, p + q + 1);
+    gram.topLeftCorner(p, p) = grams[c].topLeftCorner(p, p);
+    gram.block(p, 0, q, p) = cross_products(rows, rows_of(clusters.stretches[c], x));
+    gram.block(0, p, p, q) = gram.block(p, 0, q, p).transpose();
+    gram.block(p, p, q, q) = gram_of(rows);
+    gram.col(p + q).head(p) = grams[c].col(p).head(p);
+    gram.col(p + q).segment(p, q) = cross_products(rows, target);
+    gram.row(p + q).head(p + q) = gram.col(p + q).head(p + q);
+    gram(p + q, p + q) = target.squaredNorm();
+    wider.push_back(std::move(gram));
+  }
+  return wider;
+}
+
+Eigen::VectorXd held_out_losses(const StretchGrams& grams, const Clusters& clusters,
+                                const Noise& noise, Eigen::Index penalised, double ridge) {
+  const Eigen::Index p = grams[0].cols() - 1;
+  const std::vector<Eigen::MatrixXd> folds = sums_by_fold(grams, clusters);
+  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(p + 1, p + 1);
+  for (const Eigen::MatrixXd& gram : folds) total += gram;
+  std::vector<Eigen::VectorXd> solutions;
+  solutions.reserve(folds.size());
+  for (const Eigen::MatrixXd& gram : folds) {
+    solutions.push_back(solve_scaled(total - gram, total.diagonal().head(p), penalised, ridge));
+  }
+  Eigen::VectorXd losses(static_cast<Eigen::Index>(grams.size()));
+  for (std::size_t c = 0; c < grams.size(); ++c) {
+    losses[static_cast<Eigen::Index>(c)] =
+        squares_left(grams[c], solutions[static_cast<std::size_t>(clusters.fold_of[c])]) /
+        noise.unit();
+  }
+  return losses;
+}
+
 Eigen::VectorXd held_out_losses(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
                                 const Clusters& clusters, const Noise& noise,
                                 Eigen::Index penalised, double ridge) {
-  const Eigen::Index p = x.cols();
-  const std::vector<Eigen::MatrixXd> grams = fold_grams(x, y, clusters);
-  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(p + 1, p + 1);
-  for (const Eigen::MatrixXd& gram : grams) total += gram;
-  std::vector<Eigen::VectorXd> solutions;
-  solutions.reserve(grams.size());
-  for (const Eigen::MatrixXd& gram : grams) {
-    solutions.push_back(solve_scaled(total - gram, total.diagonal().head(p), penalised, ridge));
-  }
-  const double unit = noise.unit();
-  Eigen::VectorXd losses(static_cast<Eigen::Index>(clusters.stretches.size()));
-  for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
-    const auto begin = static_cast<Eigen::Index>(clusters.stretches[c].begin);
-    const auto size = static_cast<Eigen::Index>(clusters.stretches[c].size());
-    const Eigen::VectorXd& solution = solutions[static_cast<std::size_t>(clusters.fold_of[c])];
-    losses[static_cast<Eigen::Index>(c)] =
-        (y.segment(begin, size) - x.middleRows(begin, size) * solution).squaredNorm() / unit;
-  }
-  return losses;
+  return held_out_losses(stretch_grams(x, y, clusters), clusters, noise, penalised, ridge);
 }
 
 Gain paired_gain(const Eigen::VectorXd& losses_before, const Eigen::VectorXd& losses_after) {

@@ -15,12 +15,26 @@
 
 namespace tribench::loop {
 
-// Per cluster: sum of squared held-out errors over the noise's unit, in nats. x: rows x columns,
-// y: rows, both whitened. Columns that depend on others are harmless.
-// Cost: rows x columns^2, and one small factorisation a fold.
+// Gram matrices of [x y], one a stretch: all that held-out losses need. x: rows x columns, y: rows,
+// both whitened.
+// Cost: rows x columns^2.
+using StretchGrams = std::vector<Eigen::MatrixXd>;
+StretchGrams stretch_grams(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
+                           const Clusters& clusters);
+// Those of [x more y], where those of [x y] are known: what candidates beside one model share is
+// multiplied once. Cost: rows x more columns x all columns.
+StretchGrams with_columns(const StretchGrams& grams, const Eigen::MatrixXd& x,
+                          const Eigen::VectorXd& y, const Eigen::MatrixXd& more,
+                          const Clusters& clusters);
+
+// Per cluster: sum of squared held-out errors over the noise's unit, in nats. Columns that depend
+// on others are harmless.
+// Cost: one small factorisation a fold.
 // NaN where a column is excited by one fold alone, which then has no prediction; with a ridge such
 // a column has no weight there. ridge: on the last `penalised` columns, relative to their sums of
 // squares.
+Eigen::VectorXd held_out_losses(const StretchGrams& grams, const Clusters& clusters,
+                                const Noise& noise, Eigen::Index penalised = 0, double ridge = 0);
 Eigen::VectorXd held_out_losses(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
                                 const Clusters& clusters, const Noise& noise,
                                 Eigen::Index penalised = 0, double ridge = 0);

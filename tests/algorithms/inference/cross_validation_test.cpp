@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
 #include <cmath>
 #include <vector>
 
@@ -72,6 +73,27 @@ TEST(CrossValidation, LossesAreThoseOfTheFitToTheOtherFolds) {
   const Eigen::VectorXd losses = held_out_losses(c.x.leftCols(1), c.y, c.clusters, c.noise);
   EXPECT_NEAR(losses[0], 20 * 81 / (2 * 9.0), 1e-6);  // the others' mean is 1
   EXPECT_NEAR(losses[1], 20 / (2 * 9.0), 1e-6);       // theirs is 2
+}
+
+// Against the errors themselves, row by row, of least squares on the other folds.
+TEST(CrossValidation, ColumnsBesideAModelCountAsIfTheyWereItsOwn) {
+  Case c = make_case();
+  RandomStream random(3);
+  const Eigen::MatrixXd all =
+      Eigen::MatrixXd::NullaryExpr(200, 4, [&] { return random.normal() + 1; });
+  const Eigen::MatrixXd own = all.leftCols(2);
+  const StretchGrams grams =
+      with_columns(stretch_grams(own, c.y, c.clusters), own, c.y, all.rightCols(2), c.clusters);
+  const Eigen::VectorXd losses = held_out_losses(grams, c.clusters, c.noise);
+  for (Eigen::Index m = 0; m < 10; ++m) {
+    Eigen::MatrixXd others = all;
+    Eigen::VectorXd target = c.y;
+    others.middleRows(20 * m, 20).setZero();
+    target.segment(20 * m, 20).setZero();
+    const Eigen::VectorXd b = others.colPivHouseholderQr().solve(target);
+    const double squares = (c.y.segment(20 * m, 20) - all.middleRows(20 * m, 20) * b).squaredNorm();
+    EXPECT_NEAR(losses[m], squares / c.noise.unit(), 1e-6) << m;
+  }
 }
 
 TEST(PairedGain, IsASumWithItsStandardError) {
