@@ -80,8 +80,10 @@ StretchGrams with_columns(const StretchGrams& grams, const Eigen::MatrixXd& x,
     const auto target = rows_of(clusters.stretches[c], y);
     Eigen::MatrixXd gram(p + q + 1, p + q + 1);
     gram.topLeftCorner(p, p) = grams[c].topLeftCorner(p, p);
-    gram.block(p, 0, q, p) = cross_products(rows, rows_of(clusters.stretches[c], x));
-    gram.block(0, p, p, q) = gram.block(p, 0, q, p).transpose();
+    if (p > 0) {
+      gram.block(p, 0, q, p) = cross_products(rows, rows_of(clusters.stretches[c], x));
+      gram.block(0, p, p, q) = gram.block(p, 0, q, p).transpose();
+    }
     gram.block(p, p, q, q) = gram_of(rows);
     gram.col(p + q).head(p) = grams[c].col(p).head(p);
     gram.col(p + q).segment(p, q) = cross_products(rows, target);

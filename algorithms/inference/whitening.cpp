@@ -107,6 +107,7 @@ void Whitening::filter_rows(Eigen::Ref<Eigen::MatrixXd> rows) const {
 }
 
 Eigen::MatrixXd Whitening::of(Eigen::MatrixXd columns) const {
+  if (columns.cols() == 0) return columns;
   Eigen::VectorXd direction;
   for (std::size_t m = 0; m < clusters_.movements.size(); ++m) {
     const RowRange& range = clusters_.movements[m];

@@ -111,7 +111,9 @@ std::string truth_json(const simulation::WorldTruth& truth) {
 
 std::string seal_key(const simulation::WorldPlan& plan) {
   RandomStream random = RandomStream(key_of("world/seal")).split(plan.seed);
-  return fmt::format("{:016x}{:016x}", random.next(), random.next());
+  const std::uint64_t last = random.next();
+  const std::uint64_t first = random.next();
+  return fmt::format("{:016x}{:016x}", first, last);
 }
 
 std::string sealed_text(const simulation::WorldTruth& truth) {

@@ -42,7 +42,7 @@ operators = ["paper"]
 evaluations = 1_000_000
 seconds = 5
 wall_seconds = 5
-cpu_limit_seconds = 0.3
+cpu_limit_seconds = 1
 memory_mib = 256
 )");
   EXPECT_EQ(reasons["test_mean"], "");

@@ -17,16 +17,18 @@ Expression random_leaf(RandomStream& random, const FormulaKind& kind) {
   return Expression::constant(std::round(3000 * random.normal()) / 1000);
 }
 
+// One draw a statement: compilers differ in which of a call's arguments they evaluate first.
 Expression grow(RandomStream& random, const FormulaKind& kind, std::size_t operations) {
   if (operations == 0) return random_leaf(random, kind);
   if (random.chance(0.25)) {
-    return Expression::unary(kUnary[random.below(kUnary.size())],
-                             grow(random, kind, operations - 1));
+    const Expression argument = grow(random, kind, operations - 1);
+    return Expression::unary(kUnary[random.below(kUnary.size())], argument);
   }
   if (random.chance(0.12)) {
-    const auto exponent = static_cast<double>(random.below(7)) - 2;
-    return Expression::binary(Op::pow, grow(random, kind, operations - 1),
-                              Expression::constant(random.chance(0.2) ? exponent / 2 : exponent));
+    const auto whole = static_cast<double>(random.below(7)) - 2;
+    const double exponent = random.chance(0.2) ? whole / 2 : whole;
+    const Expression base = grow(random, kind, operations - 1);
+    return Expression::binary(Op::pow, base, Expression::constant(exponent));
   }
   const std::size_t left = random.below(operations);
   const Expression a = grow(random, kind, left);

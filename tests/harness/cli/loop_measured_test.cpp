@@ -81,7 +81,8 @@ TEST_F(MeasuredLoop, EmpsHasARippleEveryTwoAndAHalfMillimetresOfItsScrew) {
                 1e-9);
     EXPECT_GT((*ripple)["cv_gain"], 20);
     for (const char* lead : {"0.0023", "0.0027"}) {
-      for (const Json& effect : found({"--screw-lead", lead})["effects"]) {
+      const Json wrong = found({"--screw-lead", lead});
+      for (const Json& effect : wrong["effects"]) {
         if (effect["family"] == "gear_ripple") EXPECT_LT(effect["cv_gain"], 5) << file << lead;
       }
     }

@@ -75,9 +75,10 @@ TEST(Retelling, DegreesAreToldOnlyWhereTheNameSaysTheUnit) {
 
 TEST(Retelling, OrderAndNamesChangeWithoutTheRows) {
   const RecordingToTell columns = told("columns");
-  EXPECT_NE(columns.files[0].cells.header, small_recording().files[0].cells.header);
-  for (const std::string& name : small_recording().files[0].cells.header) {
-    EXPECT_EQ(column(columns, name), column(small_recording(), name));
+  const RecordingToTell as_it_was = small_recording();
+  EXPECT_NE(columns.files[0].cells.header, as_it_was.files[0].cells.header);
+  for (const std::string& name : as_it_was.files[0].cells.header) {
+    EXPECT_EQ(column(columns, name), column(as_it_was, name));
   }
   RecordingToTell shuffled = told("movements");
   for (std::uint64_t key = 2; column(shuffled, "movement")[0] == "up"; ++key) {
