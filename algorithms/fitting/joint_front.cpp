@@ -19,13 +19,14 @@ namespace {
 // Of the target's size: a good approximation of a smooth law of one or two inputs leaves more.
 constexpr double kToRounding = 1e-11;
 constexpr int kFrontFolds = 5;
-constexpr double kWorthIt = 0.03;  // less error, held out, for a longer formula beyond the rows
+constexpr double kWorthIt = 0.1;  // of the error held out (squared), for what is longer
 
-// The first whose held-out error is within kWorthIt of the least, of candidates by increasing
-// complexity: with many rows every term is significant, and what it is beyond them nobody has seen.
+// The first whose held-out mean square is at most kWorthIt above the least, of candidates by
+// increasing complexity: with many rows every term is significant, and what it is beyond them
+// nobody has seen. No standard error is asked: of folds one of which lies farther out than the rest
+// it is as large as that one's difference, and forgives it.
 std::size_t simplest_as_good(std::span<const double> mean_square) {
-  if (mean_square.empty()) return 0;
-  const double enough = (1 + kWorthIt) * (1 + kWorthIt) * std::ranges::min(mean_square);
+  const double enough = (1 + kWorthIt) * std::ranges::min(mean_square);
   const auto first =
       std::ranges::find_if(mean_square, [enough](double square) { return square <= enough; });
   return first == mean_square.end() ? 0 : static_cast<std::size_t>(first - mean_square.begin());
@@ -109,7 +110,7 @@ std::size_t JointFront::choose() const {
   if (beyond) {
     const CrossValidation validation = cross_validate(candidates, inputs_, target_, movement_, box_,
                                                       kFrontFolds, {}, Beyond::as_far);
-    return places[std::min(validation.chosen, simplest_as_good(validation.mean_square))];
+    if (!validation.mean_square.empty()) return places[simplest_as_good(validation.mean_square)];
   }
   std::vector<WeighedFormula> pool;
   for (const Member& member : members_) {

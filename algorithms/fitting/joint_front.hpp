@@ -5,7 +5,8 @@
 // simplest that is typical of what all their fronts say together (posterior_choice.hpp), every
 // form priced alike (evidence.hpp). Where the formula will be used beyond the rows no evidence
 // speaks, nor what a search stood for: cross-validation that holds out the rows as far as the box
-// goes beyond them decides among all on the front: the simplest within 3 % of the best.
+// goes beyond them decides among all on the front: the simplest whose held-out mean square is at
+// most a tenth above the least.
 //
 // The one with the most evidence is no good choice here: of several searches it is the one that
 // fits the noise best.

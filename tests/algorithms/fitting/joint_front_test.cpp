@@ -132,6 +132,34 @@ TEST_F(JointFrontTest, TakesALongerFormulaBeyondTheRowsOnlyWhereItIsWorthIt) {
   }
 }
 
+TEST_F(JointFrontTest, ForgivesNoErrorBeyondTheRowsBecauseFoldsWithinThemAgree) {
+  // Left out, the fourth power costs 1 % of the error within the rows, and 80 % farther out.
+  v_.clear();
+  movement_.clear();
+  for (int r = 0; r < 2000; ++r) {
+    v_.push_back(0.001 * r - 1);
+    movement_.push_back(r % 20);
+  }
+  target_.assign(v_.size(), 0);
+  const std::string longer = "0.001 + v - 0.6*v^2 + 0.256*v^4";
+  Evaluator().evaluate(parse(longer, kNames), table(), target_);
+  for (std::size_t r = 0; r < v_.size(); ++r) target_[r] += r / 20 % 2 == 0 ? 0.1 : -0.1;
+  JointFront joint(table(), target_, movement_, InputBox{{-2, 2, {}}});
+  joint.add(front({longer}), 0);
+  joint.add(front({"v - 0.38*v^2 - 0.022"}), 0);
+  EXPECT_EQ(chosen(joint), longer);
+}
+
+TEST_F(JointFrontTest, ChoosesByEvidenceBeyondTheRowsWhereTooFewAreThereToHoldOut) {
+  v_.resize(16);
+  target_.clear();
+  for (const double v : v_) target_.push_back(3 * v * v + (target_.size() % 2 == 0 ? 1e-3 : -1e-3));
+  movement_.assign(v_.size(), 0);
+  JointFront joint(table(), target_, movement_, InputBox{{-2, 2, {}}});
+  joint.add(front({"1", "3*v^2"}), 1);
+  EXPECT_EQ(chosen(joint), "3*v^2");
+}
+
 TEST_F(JointFrontTest, PricesExponentsThatWereFitted) {
   JointFront joint = joint_front();
   joint.add(front({"abs(v)^2.001"}), 0);
