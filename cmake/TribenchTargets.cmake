@@ -83,6 +83,9 @@ function(tribench_test name)
   endif()
   add_test(NAME ${name} COMMAND ${name})
   set_tests_properties(${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
+  if("tribench_test_runs" IN_LIST TEST_LINKS)  # take longest: begun first, none is waited for at the end
+    set_tests_properties(${name} PROPERTIES COST 1)
+  endif()
 endfunction()
 
 # tribench_bench(NAME SOURCES ... LINKS ...): one Google Benchmark program. The functions that register

@@ -100,7 +100,7 @@ class Reading {
     const auto whole = name.starts_with(kSign) ? box_.place_of(name.substr(kSign.size()))
                                                : std::optional<std::size_t>();
     if (!whole || box_.sign_of[*whole]) refuse("an input without a range");
-    box_.names.emplace_back(name);
+    box_.add_name(name);
     box_.ranges.push_back({-1, 1});
     box_.sign_of.push_back(whole);
     return box_.names.size() - 1;
@@ -139,9 +139,14 @@ double finite_number(std::string_view text) {
 }  // namespace
 
 std::optional<std::size_t> ClaimedBox::place_of(std::string_view name) const {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - names.begin());
+  const auto found = places_.find(name);
+  if (found == places_.end()) return std::nullopt;
+  return found->second;
+}
+
+void ClaimedBox::add_name(std::string_view name) {
+  places_.try_emplace(std::string(name), names.size());
+  names.emplace_back(name);
 }
 
 ClaimedBox read_claimed_box(std::string_view text) {
@@ -158,7 +163,7 @@ ClaimedBox read_claimed_box(std::string_view text) {
     if (!is_name || box.place_of(name) || !(equals < colon && colon < part.size())) {
       throw_bad_input("the box is not NAME=LOW:HIGH,...", "certificate");
     }
-    box.names.emplace_back(name);
+    box.add_name(name);
     box.ranges.push_back({finite_number(part.substr(equals + 1, colon - equals - 1)),
                           finite_number(part.substr(colon + 1))});
     if (box.ranges.back().low > box.ranges.back().high) {

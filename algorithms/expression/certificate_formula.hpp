@@ -8,6 +8,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -38,6 +40,10 @@ struct ClaimedBox {
   std::vector<std::optional<std::size_t>> sign_of;  // the place of X
 
   std::optional<std::size_t> place_of(std::string_view name) const;
+  void add_name(std::string_view name);
+
+ private:
+  std::map<std::string, std::size_t, std::less<>> places_;
 };
 
 // Both throw Error (bad_input) on whatever is not as print and print_box write it, and on ranges

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 
+#include "algorithms/expression/name_index.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/formula_name.hpp"
@@ -36,13 +36,7 @@ double number_in(std::string_view text, std::string_view part) {
   return value;
 }
 
-std::optional<std::size_t> place_of(const std::vector<std::string>& names, std::string_view name) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - names.begin());
-}
-
-void add_range(std::string_view part, NamedBox& box) {
+void add_range(std::string_view part, NamedBox& box, NameIndex& places) {
   const std::size_t equals = part.find('=');
   const std::size_t colon = part.find(':');
   if (equals == std::string_view::npos || colon == std::string_view::npos || colon < equals) {
@@ -50,7 +44,7 @@ void add_range(std::string_view part, NamedBox& box) {
   }
   const std::string name(trimmed(part.substr(0, equals)));
   require_formula_name(name, "--box");
-  if (place_of(box.names, name)) {
+  if (places.find(name)) {
     throw_bad_input(fmt::format("the name '{}' is given twice", name), "--box", kExample);
   }
   if (box.names.size() == kMaxInputs) {
@@ -73,10 +67,11 @@ void add_range(std::string_view part, NamedBox& box) {
 // question.
 void leave_out_signs(NamedBox& box) {
   NamedBox kept;
+  NameIndex places(box.names);
   for (std::size_t j = 0; j < box.names.size(); ++j) {
     const std::string& name = box.names[j];
     const auto base = name.starts_with(kSign)
-                          ? place_of(box.names, std::string_view(name).substr(kSign.size()))
+                          ? places.find(std::string_view(name).substr(kSign.size()))
                           : std::nullopt;
     if (!base) {
       kept.names.push_back(name);
@@ -97,9 +92,10 @@ void leave_out_signs(NamedBox& box) {
 
 NamedBox parse_box(std::string_view text) {
   NamedBox box;
+  NameIndex places(box.names);
   while (!trimmed(text).empty()) {
     const std::size_t comma = text.find(',');
-    add_range(trimmed(text.substr(0, comma)), box);
+    add_range(trimmed(text.substr(0, comma)), box, places);
     text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 1);
   }
   leave_out_signs(box);
@@ -119,10 +115,11 @@ std::string print_box(const NamedBox& box) {
 Expression parse_over(std::string_view formula, NamedBox& box) {
   std::vector<std::string> names = box.names;
   Expression parsed = parse_collecting_names(formula, names);
+  NameIndex places(box.names);
   for (std::size_t j = box.names.size(); j < names.size(); ++j) {
     const std::string& name = names[j];
     const auto base = name.starts_with(kSign)
-                          ? place_of(box.names, std::string_view(name).substr(kSign.size()))
+                          ? places.find(std::string_view(name).substr(kSign.size()))
                           : std::nullopt;
     if (!base) {
       throw_bad_input(fmt::format("the formula's input '{}' has no range", name), "--box",

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "algorithms/expression/name_index.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/formula_name.hpp"
@@ -111,6 +112,7 @@ class Parser {
          std::vector<Hole>* holes = nullptr)
       : cursor_(text, holes == nullptr ? "formula" : "template"),
         names_(names),
+        places_(names),
         collect_(collect),
         holes_(holes) {}
 
@@ -242,8 +244,8 @@ class Parser {
   }
 
   void variable(std::string_view name, std::size_t start) {
-    auto found = std::find(names_.begin(), names_.end(), name);
-    if (found == names_.end()) {
+    const std::size_t place = places_.find(name).value_or(names_.size());
+    if (place == names_.size()) {
       if (!collect_) {
         cursor_.fail_at(start, fmt::format("'{}' is not an input", name), suggestion(name, names_));
       }
@@ -252,15 +254,14 @@ class Parser {
                         fmt::format("call it {}", formula_name_for(name)));
       }
       names_.emplace_back(name);
-      found = names_.end() - 1;
     }
-    if (found - names_.begin() >= static_cast<std::ptrdiff_t>(kMaxInputs)) {
+    if (place >= kMaxInputs) {
       cursor_.fail_at(
           start,
           fmt::format("'{}' is an input beyond the {} that a formula can name", name, kMaxInputs),
           "leave out inputs that it does not use");
     }
-    tape_.push_back(Node::input(static_cast<std::size_t>(found - names_.begin())));
+    tape_.push_back(Node::input(place));
   }
 
   // name(a, b): the arguments leave the tape, and a variable beyond the names stays.
@@ -272,7 +273,7 @@ class Parser {
     if (std::ranges::count(*holes_, name, &Hole::name) > 0) {
       refuse("stands twice", "give every part a name of its own");
     }
-    if (std::ranges::count(names_, name) > 0) {
+    if (places_.find(name)) {
       refuse("is an input, which takes no arguments", "give the part another name");
     }
     Hole hole{std::string(name), {}};
@@ -296,6 +297,7 @@ class Parser {
 
   Cursor cursor_;
   std::vector<std::string>& names_;
+  NameIndex places_;
   bool collect_;
   std::vector<Hole>* holes_;  // null where a formula has none
   bool inside_hole_ = false;
