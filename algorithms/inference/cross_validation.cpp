@@ -64,8 +64,11 @@ Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& gram, const Eigen::VectorXd&
 
 StretchGrams stretch_grams(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
                            const Clusters& clusters) {
-  return with_columns(StretchGrams(clusters.stretches.size(), Eigen::MatrixXd::Zero(1, 1)),
-                      Eigen::MatrixXd(x.rows(), 0), y, x, clusters);
+  StretchGrams of_target;
+  for (const RowRange& stretch : clusters.stretches) {
+    of_target.push_back(Eigen::MatrixXd::Constant(1, 1, rows_of(stretch, y).squaredNorm()));
+  }
+  return with_columns(of_target, Eigen::MatrixXd(x.rows(), 0), y, x, clusters);
 }
 
 StretchGrams with_columns(const StretchGrams& grams, const Eigen::MatrixXd& x,
@@ -73,6 +76,7 @@ StretchGrams with_columns(const StretchGrams& grams, const Eigen::MatrixXd& x,
                           const Clusters& clusters) {
   const Eigen::Index p = x.cols();
   const Eigen::Index q = more.cols();
+  if (q == 0) return grams;
   StretchGrams wider;
   wider.reserve(grams.size());
   for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
@@ -88,7 +92,7 @@ StretchGrams with_columns(const StretchGrams& grams, const Eigen::MatrixXd& x,
     gram.col(p + q).head(p) = grams[c].col(p).head(p);
     gram.col(p + q).segment(p, q) = cross_products(rows, target);
     gram.row(p + q).head(p + q) = gram.col(p + q).head(p + q);
-    gram(p + q, p + q) = target.squaredNorm();
+    gram(p + q, p + q) = grams[c](p, p);
     wider.push_back(std::move(gram));
   }
   return wider;

@@ -96,6 +96,14 @@ TEST(CrossValidation, ColumnsBesideAModelCountAsIfTheyWereItsOwn) {
   }
 }
 
+TEST(CrossValidation, AModelWithoutColumnsLeavesTheTargetAsItIs) {
+  const Case c = make_case();
+  const Eigen::VectorXd losses = held_out_losses(Eigen::MatrixXd(200, 0), c.y, c.clusters, c.noise);
+  for (Eigen::Index m = 0; m < 10; ++m) {
+    EXPECT_DOUBLE_EQ(losses[m], c.y.segment(20 * m, 20).squaredNorm() / c.noise.unit()) << m;
+  }
+}
+
 TEST(PairedGain, IsASumWithItsStandardError) {
   const Gain gain = paired_gain(Eigen::Vector2d(5, 8), Eigen::Vector2d(4, 5));
   EXPECT_DOUBLE_EQ(gain.nats, 4);
