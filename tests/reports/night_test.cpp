@@ -369,7 +369,9 @@ TEST(NightPage, HoldsTenYears) {
   EXPECT_EQ(history.nights.size(), 3650U);
   EXPECT_EQ(history.benches.size(), 150U);
   EXPECT_LT(page.size(), 5U << 20);
+#ifndef TRIBENCH_SANITIZED
   EXPECT_LT(taken_s, 2);
+#endif
   std::printf("%zu bytes, %.2f s\n", page.size(), taken_s);
   EXPECT_TRUE(page.find("&lt;b&gt;first") != std::string::npos);
   const std::vector<HistoryChange> changes = changes_of(history);
