@@ -47,6 +47,7 @@ double squares_left(const Eigen::MatrixXd& gram, const Eigen::VectorXd& b) {
 Eigen::VectorXd solve_scaled(const Eigen::MatrixXd& gram, const Eigen::VectorXd& total,
                              Eigen::Index penalised = 0, double ridge = 0) {
   const Eigen::Index p = total.size();
+  if (p == 0) return total;
   Eigen::VectorXd scale(p);
   for (Eigen::Index j = 0; j < p; ++j) {
     const bool excited = gram(j, j) > kRounding * total[j];
