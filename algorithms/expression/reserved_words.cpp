@@ -51,6 +51,7 @@ constexpr std::string_view kMatlab =
 constexpr std::string_view kOwn = " exp log sqrt abs sgn sin cos tanh sign_of ";
 
 bool holds(std::string_view list, std::string_view name) {
+  if (name.empty()) return false;  // what has no name; every list begins and ends with a blank
   for (std::size_t at = list.find(name); at != std::string_view::npos;
        at = list.find(name, at + 1)) {
     if (list[at - 1] == ' ' && list[at + name.size()] == ' ') return true;
