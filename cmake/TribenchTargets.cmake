@@ -61,13 +61,16 @@ function(tribench_room name)
   set_property(GLOBAL APPEND PROPERTY TRIBENCH_ROOMS tribench_${name})
 endfunction()
 
-# tribench_test(NAME SOURCES ... LINKS ... LABELS ... TIMEOUT s): one GoogleTest program,
-# one ctest. Tests that run the program link tribench_test_runs.
+# tribench_test(NAME [APART] SOURCES ... LINKS ... LABELS ... TIMEOUT s): one GoogleTest program,
+# one ctest. Tests that run the program link tribench_test_runs. APART: each of its files has names and
+# boxes of its own under the same words, and is compiled by itself everywhere.
 function(tribench_test name)
-  cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;LINKS;LABELS" ${ARGN})
+  cmake_parse_arguments(TEST "APART" "TIMEOUT" "SOURCES;LINKS;LABELS" ${ARGN})
   add_executable(${name} ${TEST_SOURCES})
-  # Each test file has fixtures of its own, often of one name: compiled by itself.
-  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF UNITY_BUILD OFF)
+  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF UNITY_BUILD_BATCH_SIZE 6)
+  if(TEST_APART)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
+  endif()
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE
     ${TEST_LINKS} tribench_test_support GTest::gmock GTest::gtest_main)

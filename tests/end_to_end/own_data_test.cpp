@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr const char* kGrid = R"([grid]
+constexpr const char* kOwnGrid = R"([grid]
 name = "mine"
 methods = ["linear", "test_search"]
 
@@ -50,7 +50,7 @@ class OwnDataTest : public ::testing::Test {
       }
       write_text(place / "logs" / ("joint " + std::to_string(k) + ".csv"), text);
     }
-    write_text(place / "grid.toml", kGrid);
+    write_text(place / "grid.toml", kOwnGrid);
   }
 
   static ProgramRun run(const std::vector<std::string>& words) {

@@ -20,7 +20,7 @@ double log_tail_of_integer_shape(int a, double x) {
   return std::log(sum) - x;
 }
 
-class GammaTailAtScore : public testing::TestWithParam<double> {};
+class GammaTailAtScore : public ::testing::TestWithParam<double> {};
 
 TEST_P(GammaTailAtScore, IsExactForIntegerShapes) {
   for (const int a : {1, 2, 5, 30}) {
@@ -41,7 +41,7 @@ TEST_P(GammaTailAtScore, IsTheComplementaryErrorFunctionForShapeOneHalf) {
   EXPECT_NEAR(log_gamma_upper_tail(0.5, x) / expected, 1, 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scores, GammaTailAtScore, testing::Values(0.3, 3.0, 30.0, 150.0));
+INSTANTIATE_TEST_SUITE_P(Scores, GammaTailAtScore, ::testing::Values(0.3, 3.0, 30.0, 150.0));
 
 TEST(GammaTail, IsCertainAtZeroAndContinuousAtTheChangeOfExpansion) {
   EXPECT_EQ(log_gamma_upper_tail(0.5, 0), 0);

@@ -30,13 +30,13 @@ Registry small_registry() {
   return registry;
 }
 
-Grid parse(const std::string& toml) {
+Grid parse_text(const std::string& toml) {
   return parse_grid(toml, "g.toml", small_registry(), Catalogue());
 }
 
 std::string refusal(const std::string& toml) {
   try {
-    parse(toml);
+    parse_text(toml);
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::bad_input);
     return error.what();
@@ -77,7 +77,7 @@ TEST(Grid, TakesPublishedFiguresAlongIntoTheRunsFolder) {
 }
 
 TEST(Grid, CrossesProblemsMethodsSetsAndSeedsAndRunsFixedFormsOnce) {
-  const Grid grid = parse(R"([grid]
+  const Grid grid = parse_text(R"([grid]
 problems = ["A/j?/no_load"]
 methods = ["grid_*"]
 operators = ["paper", "paper+div"]
@@ -169,9 +169,9 @@ TEST(Grid, RefusesMoreCellsThanARunCanHold) {
 }
 
 TEST(Grid, ReadsAPriorAndHandsItToTheProblemsInputs) {
-  const Grid grid = parse(std::string(kAxes) + "[prior]\nmax_degree = { g = 1 }\n");
+  const Grid grid = parse_text(std::string(kAxes) + "[prior]\nmax_degree = { g = 1 }\n");
   EXPECT_EQ(grid.prior.max_degree.at("g"), 1);
-  EXPECT_EQ(parse(print_grid(grid)).prior, grid.prior);
+  EXPECT_EQ(parse_text(print_grid(grid)).prior, grid.prior);
   Problem problem = Catalogue().find("A/j2/load").make(1);
   apply_prior(grid.prior, problem);
   for (const Input& input : problem.inputs) {
@@ -220,8 +220,8 @@ wall_seconds = 9
 name = "mine"
 operators = ["+", "*", "tanh"]
 )";
-  const Grid grid = parse(toml);
-  const Grid again = parse(print_grid(grid));
+  const Grid grid = parse_text(toml);
+  const Grid again = parse_text(print_grid(grid));
   EXPECT_EQ(print_grid(again), print_grid(grid));
   EXPECT_EQ(again.cells(), grid.cells());
   EXPECT_EQ(again.limits, grid.limits);
@@ -235,13 +235,13 @@ operators = ["+", "*", "tanh"]
 
 TEST(Grid, ANewCellKeyIsANewStream) {
   std::set<std::string> keys;
-  for (const Cell& cell : parse(std::string(kAxes) + "operators = [\"*\"]\n").cells()) {
+  for (const Cell& cell : parse_text(std::string(kAxes) + "operators = [\"*\"]\n").cells()) {
     EXPECT_TRUE(keys.insert(cell.key()).second) << cell.key();
   }
 }
 
 TEST(Grid, ASweepMultipliesProblemsAndMethods) {
-  const Grid grid = parse(R"([grid]
+  const Grid grid = parse_text(R"([grid]
 problems = ["A/j2/no_load"]
 methods = ["grid_alpha", "grid_fixed"]
 sweep = { noise = [0, 0.1], rows = [20], "grid_alpha.islands" = [2, 8] }
@@ -252,7 +252,7 @@ sweep = { noise = [0, 0.1], rows = [20], "grid_alpha.islands" = [2, 8] }
   for (const Method& method : grid.methods) methods.push_back(method.name);
   EXPECT_THAT(methods, ElementsAre("grid_alpha-islands-2", "grid_alpha-islands-8", "grid_fixed"));
   EXPECT_EQ(std::get<std::int64_t>(grid.methods[1].parameters.at("islands")), 8);
-  const Grid again = parse(print_grid(grid));
+  const Grid again = parse_text(print_grid(grid));
   EXPECT_EQ(print_grid(again), print_grid(grid));
   EXPECT_EQ(again.cells(), grid.cells());
 }

@@ -15,12 +15,12 @@ namespace tribench::loop {
 namespace {
 
 constexpr std::size_t kMovements = 60;
-constexpr std::size_t kRows = 60;
+constexpr std::size_t kBurstRows = 60;
 
 std::vector<int> movements() {
   std::vector<int> movement;
-  for (std::size_t i = 0; i < kMovements * kRows; ++i) {
-    movement.push_back(static_cast<int>(i / kRows));
+  for (std::size_t i = 0; i < kMovements * kBurstRows; ++i) {
+    movement.push_back(static_cast<int>(i / kBurstRows));
   }
   return movement;
 }
@@ -28,9 +28,9 @@ std::vector<int> movements() {
 // Student noise, neighbours correlated by 0.6, unit variance.
 Eigen::VectorXd noise(RandomStream random, double freedom = 5) {
   const StudentLaw law{freedom, std::sqrt((freedom - 2) / freedom)};
-  Eigen::VectorXd r(static_cast<Eigen::Index>(kMovements * kRows));
+  Eigen::VectorXd r(static_cast<Eigen::Index>(kMovements * kBurstRows));
   for (Eigen::Index i = 0; i < r.size(); ++i) {
-    const bool first = i % static_cast<Eigen::Index>(kRows) == 0;
+    const bool first = i % static_cast<Eigen::Index>(kBurstRows) == 0;
     r[i] = first ? law.draw(random) : 0.6 * r[i - 1] + 0.8 * law.draw(random);
   }
   return r;
@@ -61,7 +61,7 @@ TEST(Bursts, CleanRecordingsWithTheHeaviestTailsHardlyEverHoldOne) {
 // Four times as loud for twenty rows at a time, a twelfth of all rows; no shape and no side. In
 // movements of 180 rows.
 Eigen::VectorXd in_loud_spells(RandomStream random) {
-  Eigen::VectorXd r(static_cast<Eigen::Index>(kMovements * kRows));
+  Eigen::VectorXd r(static_cast<Eigen::Index>(kMovements * kBurstRows));
   bool loud = false;
   for (double& row : r) {
     if (random.chance(loud ? 1 / 20.0 : 1 / 220.0)) loud = !loud;
@@ -152,17 +152,17 @@ TEST(Bursts, OneWildRowThatFadesAwayIsNoBurst) {
 // How many are found of so many pulses that are alike, in noise that itself makes none.
 std::size_t found_of_alike(std::size_t pulses, std::size_t rows, std::size_t among) {
   RandomStream random(8);
-  Eigen::VectorXd residual(static_cast<Eigen::Index>(among * kRows));
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(among * kBurstRows));
   for (double& row : residual) row = random.uniform(-1, 1);
   for (std::size_t p = 0; p < pulses; ++p) {
-    const std::size_t first = kRows * (2 + 4 * p) + 30;
+    const std::size_t first = kBurstRows * (2 + 4 * p) + 30;
     for (std::size_t k = 0; k < rows; ++k) {
       residual[static_cast<Eigen::Index>(first + k)] +=
           12 * std::sin(3.14159265 * (static_cast<double>(k) + 0.5) / static_cast<double>(rows));
     }
   }
   const std::vector<int> movement = movements();
-  return find_bursts(std::span(movement).first(among * kRows), {}, residual, RandomStream(1))
+  return find_bursts(std::span(movement).first(among * kBurstRows), {}, residual, RandomStream(1))
       .size();
 }
 
@@ -180,7 +180,7 @@ TEST(Bursts, RowsOfWhichMoreThanATwentiethWouldBeOneHaveAnotherModelsNoise) {
 }
 
 TEST(Bursts, ARecordingWithoutNoiseHasNone) {
-  EXPECT_TRUE(bursts_of(Eigen::VectorXd::Zero(kMovements * kRows), 1).empty());
+  EXPECT_TRUE(bursts_of(Eigen::VectorXd::Zero(kMovements * kBurstRows), 1).empty());
 }
 
 TEST(Bursts, OnlyRowsOfItsOwnMovementAreMaskedAboutOne) {
@@ -200,10 +200,10 @@ struct Reference {
 };
 
 // From row to row and from movement to movement another.
-std::vector<double> speeds() {
+std::vector<double> burst_speeds() {
   std::vector<double> all;
-  for (std::size_t i = 0; i < kMovements * kRows; ++i) {
-    all.push_back(static_cast<double>(i * 37 % kRows) / kRows);
+  for (std::size_t i = 0; i < kMovements * kBurstRows; ++i) {
+    all.push_back(static_cast<double>(i * 37 % kBurstRows) / kBurstRows);
   }
   return all;
 }
@@ -211,7 +211,7 @@ std::vector<double> speeds() {
 class BurstReference {
  public:
   BurstReference(const Eigen::VectorXd& residual, std::size_t first)
-      : noise_(movements(), speeds(), residual),
+      : noise_(movements(), burst_speeds(), residual),
         first_(first),
         movement_(noise_.movement_at(first)),
         left_(noise_.movements()[movement_].end - first) {
@@ -295,7 +295,7 @@ TEST(Bursts, TheLogRatioIsThatOfItsDefinition) {
     int rows;
     double height;
   };
-  const std::vector<double> speed = speeds();
+  const std::vector<double> speed = burst_speeds();
   Eigen::VectorXd residual = noise(RandomStream(17));  // wider the faster
   for (Eigen::Index i = 0; i < residual.size(); ++i) {
     residual[i] *= 0.6 + 0.8 * speed[static_cast<std::size_t>(i)];
@@ -313,7 +313,7 @@ TEST(Bursts, TheLogRatioIsThatOfItsDefinition) {
   for (const Burst& burst : bursts) {
     const Reference reference = BurstReference(residual, burst.begin).best();
     EXPECT_NEAR(burst.log_ratio, reference.log_ratio, 0.02 * reference.log_ratio) << burst.begin;
-    const std::size_t end = (burst.begin / kRows + 1) * kRows;
+    const std::size_t end = (burst.begin / kBurstRows + 1) * kBurstRows;
     EXPECT_EQ(burst.end, std::min(burst.begin + reference.rows, end));
     double peak = 0;
     for (std::size_t i = burst.begin; i < burst.end; ++i) {

@@ -16,7 +16,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-const std::vector<std::string> kNames = {"v", "a", "g"};
+const std::vector<std::string> kInputs = {"v", "a", "g"};
 
 TEST(StateText, ReadsBackWhatItPrints) {
   const std::vector<std::string> texts = {
@@ -26,13 +26,13 @@ TEST(StateText, ReadsBackWhatItPrints) {
       "100*v + 2",
   };
   for (const std::string& text : texts) {
-    EXPECT_EQ(print_stateful(parse_stateful(text, kNames), kNames), text);
+    EXPECT_EQ(print_stateful(parse_stateful(text, kInputs), kInputs), text);
   }
 }
 
 TEST(StateText, StatesFollowTheInputs) {
   const StatefulFormula read =
-      parse_stateful("z = slip(v, limit=0.5); y=lag( g ,time_constant = 2 ) ;y + z", kNames);
+      parse_stateful("z = slip(v, limit=0.5); y=lag( g ,time_constant = 2 ) ;y + z", kInputs);
   ASSERT_EQ(read.states.size(), 2U);
   EXPECT_EQ(read.first_state, 3U);
   EXPECT_EQ(read.states[1], (StateDeclaration{"y", StateLaw::lag, {2}, {2}}));
@@ -51,8 +51,8 @@ TEST(StateText, CollectsInputsDrivesFirst) {
 
 TEST(StateText, AStateThatIsNotReadIsNotPrinted) {
   const StatefulFormula read =
-      parse_stateful("z = dahl(v, sliding=2); y = dahl(v, sliding=3); 2*y", kNames);
-  EXPECT_EQ(print_stateful(read, kNames), "y = dahl(v, sliding=3); 2*y");
+      parse_stateful("z = dahl(v, sliding=2); y = dahl(v, sliding=3); 2*y", kInputs);
+  EXPECT_EQ(print_stateful(read, kInputs), "y = dahl(v, sliding=3); 2*y");
 }
 
 TEST(StateText, AStateIsProvedOverItsRange) {
@@ -70,7 +70,7 @@ TEST(StateText, AStateIsProvedOverItsRange) {
 
 std::string refusal(const std::string& text) {
   try {
-    parse_stateful(text, kNames);
+    parse_stateful(text, kInputs);
   } catch (const Error& error) {
     return std::string(error.what());
   }

@@ -18,7 +18,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-constexpr double kStep = 0.004;
+constexpr double kRecordingStep = 0.004;
 constexpr double kTurn = 2 * M_PI;
 
 struct Row {
@@ -36,7 +36,7 @@ double speed_at(double t) {
 std::vector<Row> swings() {
   std::vector<Row> rows;
   for (int i = 0; i < 10'000; ++i) {
-    const double t = kStep * i;
+    const double t = kRecordingStep * i;
     const double v = speed_at(t);
     const double noise = 0.02 * std::sin(17.0 * i) + 0.02 * std::sin(5.3 * i * i);
     rows.push_back({t, place_at(t), (v > 0 ? 0.5 : -0.5) + 0.3 * v + noise});
@@ -91,7 +91,7 @@ TEST(RecordingRows, AClockThatTicksMoreSlowlyThanTheRowsCome) {
 TEST(RecordingRows, StampsThatJitterAboutASteadyBeat) {
   std::vector<Row> rows = swings();
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    rows[i].time += 0.3 * kStep * std::sin(7.7 * static_cast<double>(i * i));
+    rows[i].time += 0.3 * kRecordingStep * std::sin(7.7 * static_cast<double>(i * i));
   }
   expect_same_motion(prepared(rows), "jitter by 0.85 ms about even instants");
 }
@@ -101,7 +101,7 @@ TEST(RecordingRows, StampsThatAreRightAreKept) {
   std::vector<Row> rows = swings();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Row& row = rows[i];
-    row.time += 0.4 * kStep * std::sin(7.7 * static_cast<double>(i * i));
+    row.time += 0.4 * kRecordingStep * std::sin(7.7 * static_cast<double>(i * i));
     row.position = place_at(row.time);
   }
   const PreparedRecording recording = prepared(rows);
@@ -180,7 +180,7 @@ TEST(RecordingRows, ATurnThatEndsAmongLostMessagesIsCountedByTheSpeedOnBothSides
   for (const bool with_velocity : {false, true}) {
     std::string text = with_velocity ? "t,pos,tau,vel\n" : "t,pos,tau\n";
     for (const Row& row : swings()) {
-      const auto number = static_cast<std::size_t>(std::lround(row.time / kStep));
+      const auto number = static_cast<std::size_t>(std::lround(row.time / kRecordingStep));
       if (number % 400 > 325) continue;
       const double degrees = row.position * 100 * 360 / kTurn;
       text += fmt::format("{:.6f},{:.3f},{:.4f}", row.time,
@@ -238,7 +238,7 @@ TEST(RecordingRows, ALogWithoutATimeIsSaidToBeOne) {
   csv.roles = parse_roles("pos=position[rad],vel=velocity[rad/s],tau=motor_torque[N m]", "--roles");
   EXPECT_THAT(prepare(parse_csv(text, "log.csv", csv), {}).notes,
               Contains(HasSubstr("no column is the time")));
-  csv.sample_rate = 1 / kStep;
+  csv.sample_rate = 1 / kRecordingStep;
   expect_same_motion(prepare(parse_csv(text, "log.csv", csv), {}), "--sample-rate");
 }
 

@@ -10,7 +10,7 @@
 namespace tribench {
 namespace {
 
-constexpr double kStep = 0.004;
+constexpr double kPeriod = 0.004;
 constexpr std::size_t kRows = 4000;
 
 struct Stamped {
@@ -23,9 +23,9 @@ Stamped late_stamps(double jitter, double lost) {
   RandomStream random(71);
   Stamped out;
   for (std::size_t i = 0; i < kRows; ++i) {
-    const double late = -jitter * kStep * std::log(random.uniform(1e-9, 1));
+    const double late = -jitter * kPeriod * std::log(random.uniform(1e-9, 1));
     if (random.chance(lost)) continue;
-    out.sampled.push_back(kStep * static_cast<double>(i) * (1 + 5e-5));
+    out.sampled.push_back(kPeriod * static_cast<double>(i) * (1 + 5e-5));
     out.stamps.push_back(out.sampled.back() + late);
   }
   return out;
@@ -45,9 +45,9 @@ TEST(SteadyClock, TheInstantsBehindLateAndLostMessagesAreFound) {
     const std::vector<RowRange> whole = {{0, rows.stamps.size()}};
     const std::optional<SteadyClock> clock = steady_clock(rows.stamps, whole);
     ASSERT_TRUE(clock);
-    EXPECT_NEAR(clock->jitter, 0.1 * kStep, 0.01 * kStep);
-    EXPECT_LT(distance(clock->time, rows.sampled), 0.02 * kStep);
-    EXPECT_NEAR(distance(rows.stamps, rows.sampled), 0.1 * kStep, 0.01 * kStep);
+    EXPECT_NEAR(clock->jitter, 0.1 * kPeriod, 0.01 * kPeriod);
+    EXPECT_LT(distance(clock->time, rows.sampled), 0.02 * kPeriod);
+    EXPECT_NEAR(distance(rows.stamps, rows.sampled), 0.1 * kPeriod, 0.01 * kPeriod);
   }
 }
 
@@ -56,8 +56,8 @@ TEST(SteadyClock, EvenStampsAndRowsWithoutABeatHaveNone) {
   std::vector<double> uneven;
   RandomStream random(72);
   for (std::size_t i = 0; i < kRows; ++i) {
-    even.push_back(kStep * static_cast<double>(i));
-    uneven.push_back((i == 0 ? 0 : uneven.back()) + kStep * random.uniform(0.2, 3));
+    even.push_back(kPeriod * static_cast<double>(i));
+    uneven.push_back((i == 0 ? 0 : uneven.back()) + kPeriod * random.uniform(0.2, 3));
   }
   const std::vector<RowRange> whole = {{0, kRows}};
   EXPECT_FALSE(steady_clock(even, whole));

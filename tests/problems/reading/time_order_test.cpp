@@ -30,7 +30,7 @@ std::string table_of(const std::vector<std::pair<double, int>>& rows) {
   return text;
 }
 
-std::string complaint(const std::string& text) {
+std::string complaint_about(const std::string& text) {
   try {
     parse_csv(text, "log.csv");
   } catch (const Error& error) {
@@ -81,15 +81,15 @@ TEST(TimeOrder, WhatIsNotPlainIsRefused) {
   // Too many to be messages that were overtaken.
   std::vector<std::pair<double, int>> rows = even_rows(300);
   for (std::size_t i = 0; i + 1 < rows.size(); i += 4) std::swap(rows[i], rows[i + 1]);
-  EXPECT_THAT(complaint(table_of(rows)), HasSubstr("log.csv:3:time_s: time runs back"));
+  EXPECT_THAT(complaint_about(table_of(rows)), HasSubstr("log.csv:3:time_s: time runs back"));
   // A column names the movements.
   std::string named = "movement,time_s\n";
   for (int i = 0; i < 400; ++i) named += fmt::format("a,{}\n", i % 200);
-  EXPECT_THAT(complaint(named), HasSubstr("sort the rows"));
+  EXPECT_THAT(complaint_about(named), HasSubstr("sort the rows"));
   // So does this one, if somebody says so.
   std::string numbered = "run,time_s\n";
   for (int i = 0; i < 400; ++i) numbered += fmt::format("{},{}\n", i / 200, i % 200);
-  EXPECT_THAT(complaint(numbered), HasSubstr("--roles run=movement"));
+  EXPECT_THAT(complaint_about(numbered), HasSubstr("--roles run=movement"));
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ void expect_read(const std::string& text, const CsvOptions& options, const Sampl
   expect_sample(again, 1, second);
 }
 
-std::string complaint(const std::string& text, const CsvOptions& options) {
+std::string complaint_of_log(const std::string& text, const CsvOptions& options) {
   try {
     parse_csv(text, "log.csv", options);
   } catch (const Error& error) {
@@ -130,7 +130,7 @@ TEST(VendorLogs, Recorders) {
     options.drop_missing = true;
     return options;
   }();
-  EXPECT_THAT(complaint("__time,/js/position_deg,/drive/current_A\n0,1,\n0.001,,2\n", gaps),
+  EXPECT_THAT(complaint_of_log("__time,/js/position_deg,/drive/current_A\n0,1,\n0.001,,2\n", gaps),
               HasSubstr("instants of their own"));
 }
 
@@ -147,7 +147,7 @@ TEST(VendorLogs, UnitsInOtherLanguagesAndUnitsSaidTwice) {
       "header.stamp.sec [s],header.stamp.nanosec [ns],q_deg [deg],tau [Nm]\n"
       "10,999000000,90,1\n11,1000000,91,2\n",
       told(""), {11.001, 91 * kDegree, 2});
-  EXPECT_THAT(complaint("t,q_deg [rad],tau [Nm]\n0,1,1\n1,1,2\n", told("")),
+  EXPECT_THAT(complaint_of_log("t,q_deg [rad],tau [Nm]\n0,1,1\n1,1,2\n", told("")),
               HasSubstr("'deg or rad' is no unit of a position"));
   expect_read("time_of_day [ms],seq [ms],q_rad,tau [Nm]\n36000000,0,1,1\n36000002,1,2,2\n",
               told(""), {36000.002, 2, 2});
@@ -156,7 +156,7 @@ TEST(VendorLogs, UnitsInOtherLanguagesAndUnitsSaidTwice) {
 TEST(VendorLogs, ARowOfUnitsMayHoldOneThatIsNotKnown) {
   const std::string names = "t;theta;omega;tau\n";
   const std::string rows = "0;90;1;1\n0.002;91;1;2\n";
-  EXPECT_THAT(complaint(names + "s;zoll;rad/s;N m\n" + rows, told("")),
+  EXPECT_THAT(complaint_of_log(names + "s;zoll;rad/s;N m\n" + rows, told("")),
               ::testing::AllOf(HasSubstr("'zoll' is no unit of a position"),
                                HasSubstr("--roles 'theta=position[UNIT]'")));
   expect_read(names + "s;zoll;rad/s;N m\n" + rows, told("theta=position[deg]"),
@@ -183,7 +183,7 @@ TEST(VendorLogs, EvenRowsWithoutATimeAreToldTheirRate) {
   expect_sample(file, 1, {0.004, 91 * kDegree, 3});
   EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("a row every 0.002 s")));
   options.roles = parse_roles("pos=position[deg],t=time[s]", "--roles");
-  EXPECT_THAT(complaint("t,pos\n0,90\n1,91\n", options),
+  EXPECT_THAT(complaint_of_log("t,pos\n0,90\n1,91\n", options),
               ::testing::AllOf(HasSubstr("'t' is a time already"), HasSubstr("'t=none'")));
 }
 
@@ -253,7 +253,7 @@ TEST(VendorLogs, TimesInWords) {
                            "25:00:00", "1:2:3", "12 rad", "2024-05-14", "09:12:33.5 x"}) {
     EXPECT_FALSE(read_time_text(none)) << none;
   }
-  EXPECT_THAT(complaint("time,q_rad,tau_Nm\n09:12:33,0.1,1\n5,0.2,2\n", told("")),
+  EXPECT_THAT(complaint_of_log("time,q_rad,tau_Nm\n09:12:33,0.1,1\n5,0.2,2\n", told("")),
               HasSubstr("log.csv:3:time"));
 }
 
@@ -267,14 +267,16 @@ TEST(VendorLogs, RecordingsOneAfterTheOtherAndWordsAtTheEnd) {
   EXPECT_FALSE(file.has_movements);
   EXPECT_EQ(file.warnings.size(), 2U);
   // A row that is torn in the middle of a file is no closing text.
-  EXPECT_THAT(complaint("time_s,pos_deg\n0,1\nstopped\n0.1,2\n", told("")), HasSubstr("log.csv:3"));
-  EXPECT_THAT(complaint("time_s,pos_deg,i_A\n0,1,1\n0.1,2\n", told("")), HasSubstr("log.csv:3"));
+  EXPECT_THAT(complaint_of_log("time_s,pos_deg\n0,1\nstopped\n0.1,2\n", told("")),
+              HasSubstr("log.csv:3"));
+  EXPECT_THAT(complaint_of_log("time_s,pos_deg,i_A\n0,1,1\n0.1,2\n", told("")),
+              HasSubstr("log.csv:3"));
 }
 
 TEST(VendorLogs, WhatIsNoTableOrCannotBeToldIsRefused) {
-  EXPECT_THAT(complaint("{\"t\": 0.1, \"pos\": 2}\n{\"t\": 0.2, \"pos\": 2}\n", told("")),
+  EXPECT_THAT(complaint_of_log("{\"t\": 0.1, \"pos\": 2}\n{\"t\": 0.2, \"pos\": 2}\n", told("")),
               HasSubstr("log.csv:1: these are JSON objects"));
-  EXPECT_THAT(complaint("time [ms],pos [mdeg]\n\"1.0\",\"19,607.5\"\n", told("")),
+  EXPECT_THAT(complaint_of_log("time [ms],pos [mdeg]\n\"1.0\",\"19,607.5\"\n", told("")),
               HasSubstr("signs for thousands"));
   const DataFile bare = parse_csv("t,pos,cur\n0,1,2\n0.002,3,4\n", "log.csv", told(""));
   EXPECT_EQ(roles_line(bare), "t=time[s],pos=position[?],cur=motor_current[?]");
@@ -316,7 +318,7 @@ TEST(VendorLogs, AColumnThatIsWrittenAgainCountsOnce) {
   expect_sample(file, 1, {0.002, 91 * kDegree, 2});
   EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("'Name' stands in the file again")));
   // What stands still in both tells nothing of what they are.
-  EXPECT_THAT(complaint("t;vel;vel\n0;0;0\n1;0;0\n2;0;0\n", told("")),
+  EXPECT_THAT(complaint_of_log("t;vel;vel\n0;0;0\n1;0;0\n2;0;0\n", told("")),
               HasSubstr("two columns are named"));
 }
 
@@ -328,7 +330,7 @@ TEST(VendorLogs, AThermometerThatIsReadMoreRarelyGoesStraightBetweenItsReadings)
             (std::vector<double>{20, 20, 22, 24, 26, 28, 28}));
   EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("a value in 2 of 7 rows")));
   // A few that are missing are as anywhere.
-  EXPECT_THAT(complaint("t,q,temp [degC]\n0,1,20\n1,2,-\n2,2,21\n", told("")),
+  EXPECT_THAT(complaint_of_log("t,q,temp [degC]\n0,1,20\n1,2,-\n2,2,21\n", told("")),
               HasSubstr("'-' is not"));
 }
 
@@ -358,8 +360,9 @@ TEST(VendorLogs, ColumnsWithoutNamesAreNumbered) {
                            "0\t90\t5\t1\n2\t91\t5\t2\n"}) {
     expect_read(text, told(roles), {0.002, 91 * kDegree, 2});
   }
-  EXPECT_THAT(complaint("0 90 5 1\n2 91 5 2\n", told("")), HasSubstr("'column_1=time[s]"));
-  EXPECT_THAT(complaint("0 90 5\n2 91\n3 1 2\n", told(roles)), HasSubstr("column 'column_4'"));
+  EXPECT_THAT(complaint_of_log("0 90 5 1\n2 91 5 2\n", told("")), HasSubstr("'column_1=time[s]"));
+  EXPECT_THAT(complaint_of_log("0 90 5\n2 91\n3 1 2\n", told(roles)),
+              HasSubstr("column 'column_4'"));
 }
 
 TEST(VendorLogs, ADateThatHoldsTheClockIsTheTime) {
@@ -372,10 +375,11 @@ TEST(VendorLogs, ADateThatHoldsTheClockIsTheTime) {
 }
 
 TEST(VendorLogs, NamesThatSayNothingAreListedWithTheMend) {
-  EXPECT_THAT(complaint("c1,c2\n0,1\n", told("")),
+  EXPECT_THAT(complaint_of_log("c1,c2\n0,1\n", told("")),
               ::testing::AllOf(HasSubstr("no column's name is known: c1, c2"),
                                HasSubstr("--roles 'c1=time[s]")));
-  EXPECT_THAT(complaint("0.1 2\n0.2 3\n", told("c1=time")), HasSubstr("holds numbers, not names"));
+  EXPECT_THAT(complaint_of_log("0.1 2\n0.2 3\n", told("c1=time")),
+              HasSubstr("holds numbers, not names"));
 }
 
 }  // namespace
