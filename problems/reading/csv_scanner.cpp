@@ -23,11 +23,10 @@ bool CsvScanner::is_comment(std::size_t width) const {
       text_[first] == '#' || text_[first] == '%' || text_.substr(first).starts_with("//");
   if (!sign || width < 2) return sign;
   CsvScanner probe(text_, file_, delimiter_, place_, line_);
-  std::size_t cells = 0;
-  do {
-    probe.next_cell();
-    ++cells;
-  } while (probe.goes_on());
+  std::size_t cells = 1;
+  const std::string_view begin = probe.next_cell();
+  if (begin == "#" || begin == "%" || begin == "//") return true;
+  for (; probe.goes_on(); ++cells) probe.next_cell();
   return cells != width;
 }
 
