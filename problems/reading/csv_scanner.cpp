@@ -25,7 +25,7 @@ bool CsvScanner::is_comment(std::size_t width) const {
   CsvScanner probe(text_, file_, delimiter_, place_, line_);
   std::size_t cells = 1;
   const std::string_view begin = probe.next_cell();
-  if (begin == "#" || begin == "%" || begin == "//") return true;
+  if (delimiter_ == ' ' && (begin == "#" || begin == "%" || begin == "//")) return true;
   for (; probe.goes_on(); ++cells) probe.next_cell();
   return cells != width;
 }

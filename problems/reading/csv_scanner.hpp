@@ -30,8 +30,8 @@ class CsvScanner {
   // After a cell: whether the record goes on. Passes the delimiter, or the line end.
   bool goes_on();
   // Passes blank lines and lines of comment at the begin of a record; true: something is left.
-  // A line that begins like a comment but has `width` cells is a row (0: never), unless its first
-  // cell is the sign alone: between blanks every word of a comment is a cell.
+  // A line that begins like a comment but has `width` cells is a row (0: never). Between blanks,
+  // where every word of a comment is a cell, it is none if its first cell is the sign alone.
   bool find_record(std::size_t width);
   void skip_line();
 
