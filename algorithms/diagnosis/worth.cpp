@@ -8,7 +8,7 @@
 namespace tribench::loop {
 namespace {
 
-// No more than the error of the other effects' shapes may be (docs/closed_loop.md).
+// No more than the error of the other effects' shapes may be (docs/decisions.md).
 constexpr double kSlight = 0.03;
 
 double squared_error(const LoopModel& model, const Campaign& campaign,

@@ -120,7 +120,7 @@ void add_loop_study(CLI::App& study, ExitStatus& status) {
   auto command_line = std::make_shared<std::vector<std::string>>();
   command->add_option("--command", *command_line,
                       "your own method instead of the loop: a program and its words, run without a "
-                      "shell once a case (docs/closed_loop.md)");
+                      "shell once a case (docs/own_diagnosis.md)");
   auto without = std::make_shared<std::vector<std::string>>();
   std::string rule_lines;
   for (const loop::Rule& rule : loop::rules()) {

@@ -2,7 +2,7 @@
 //
 // How often a diagnosis is right: the test matrix of planted effects, run many times with the
 // truth known, and the naive tests on the same data for comparison. A bench for the closed loop
-// and for anyone's own method (docs/closed_loop.md).
+// and for anyone's own method (docs/own_diagnosis.md).
 //
 // Source: the specification of the closed loop, sections 6.1 to 6.3.
 #pragma once

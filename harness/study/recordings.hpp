@@ -43,7 +43,7 @@ struct RecordingList {
 // what messages call the text. Throws Error (bad_input).
 RecordingList read_recordings(std::string_view toml, const std::string& name,
                               const std::filesystem::path& folder);
-// The measured sets of docs/closed_loop.md with the options named there.
+// The measured sets of docs/loop_on_measured_data.md with the options named there.
 std::string_view measured_recordings_toml();
 
 // Writes the files to a folder and returns what asks the loop about them, program aside:

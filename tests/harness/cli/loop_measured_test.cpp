@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The closed loop on measured data, as a user runs it. Bounds are the figures of
-// docs/closed_loop.md with room for rounding; expectations stand beside them.
+// docs/loop_on_measured_data.md with room for rounding; expectations stand beside them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
