@@ -29,17 +29,25 @@ bool write_all(const fs::path& file, std::string_view text) {
   return static_cast<bool>(out);
 }
 
+// Where a link leads, also to what is not there yet.
+fs::path end_of_links(fs::path file) {
+  std::error_code error;
+  while (fs::is_symlink(file, error)) file = file.parent_path() / fs::read_symlink(file, error);
+  return file;
+}
+
 }  // namespace
 
 void write_file(const fs::path& file, std::string_view text) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
+  // Links in a ring, a name that is too long.
+  if (!fs::status_known(status)) throw_unwritable(file, error.value());
   if (fs::exists(status) && !fs::is_regular_file(status)) {  // a terminal, a pipe: stays what it is
     if (!write_all(file, text)) throw_unwritable(file, errno);
     return;
   }
-  // Where a link leads, so that the link stays one.
-  const fs::path target = fs::is_symlink(file, error) ? fs::weakly_canonical(file, error) : file;
+  const fs::path target = end_of_links(file);  // so that a link stays one
   fs::path partial = target;
   partial += ".partial";
   if (!write_all(partial, text)) {
@@ -48,7 +56,10 @@ void write_file(const fs::path& file, std::string_view text) {
     throw_unwritable(file, why);
   }
   fs::rename(partial, target, error);
-  if (error) throw Error(ErrorKind::failed, error.message(), file.string());
+  if (!error) return;
+  const int why = error.value();
+  fs::remove(partial, error);
+  throw_unwritable(file, why);
 }
 
 }  // namespace tribench

@@ -15,6 +15,7 @@ namespace tribench {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 TEST(OutputFile, ALinkStaysALink) {
@@ -24,6 +25,31 @@ TEST(OutputFile, ALinkStaysALink) {
   write_file(folder.path() / "link", "new");
   EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
   EXPECT_EQ(read_file(folder.path() / "file"), "new");
+}
+
+TEST(OutputFile, ALinkToWhatIsNotThereYetStaysALink) {
+  const ScratchFolder folder;
+  fs::create_directory(folder.path() / "place");
+  fs::create_symlink("place/second", folder.path() / "first");
+  fs::create_symlink("file", folder.path() / "place/second");
+  write_file(folder.path() / "first", "new");
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "first"));
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "place/second"));
+  EXPECT_EQ(read_file(folder.path() / "place/file"), "new");
+}
+
+TEST(OutputFile, LinksInARingAreAnErrorAndNothingIsLeft) {
+  const ScratchFolder folder;
+  fs::create_symlink("ring", folder.path() / "ring");
+  try {
+    write_file(folder.path() / "ring", "text");
+    FAIL() << "written";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("ring"), HasSubstr("symbolic links")));
+  }
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "ring"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+  EXPECT_FALSE(fs::exists(".partial"));
 }
 
 // A device that is replaced by a file (/dev/null, as root) is lost to the whole machine.
