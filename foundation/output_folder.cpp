@@ -15,7 +15,7 @@
 namespace tribench {
 
 void make_output_folder(const std::filesystem::path& folder) {
-  constexpr const char* kMend = "choose a folder that can be written to by --out";
+  constexpr const char* kMend = "choose a folder that can be written to";
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {

@@ -53,9 +53,18 @@ void print_score_json(const ChallengeScore& score) {
       score.name, score.right(), score.wrong(), score.results.size(), score.median_seconds());
 }
 
+// A file of blanks hides nothing: everybody could make its worlds.
+std::string read_secret(const std::string& file) {
+  std::string secret = read_file_text(file);
+  if (secret.find_first_not_of(" \t\r\n") == std::string::npos) {
+    throw_bad_input("the file holds no secret", file, "write a line into it that nobody knows");
+  }
+  return secret;
+}
+
 ExitStatus run_challenge_command(ChallengeArguments arguments) {
   arguments.plan.level = arguments.choice.level;
-  if (!arguments.secret_file.empty()) arguments.plan.secret = read_file_text(arguments.secret_file);
+  if (!arguments.secret_file.empty()) arguments.plan.secret = read_secret(arguments.secret_file);
   if (arguments.reveal) {
     fmt::print("{}", revealed_challenge(arguments.plan));
     return ExitStatus::done;

@@ -8,8 +8,10 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "algorithms/fitting/product_blocking.hpp"
@@ -82,21 +84,22 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
   return exit_code(is_usage ? ExitStatus::bad_input : ExitStatus::done);
 }
 
-// Where something is written. An empty one is a shell's variable that was not set, and what is
-// written there would lie anywhere.
-void refuse_empty_places(CLI::App& app) {
+// An empty word is a shell's variable that was not set: what is written there would lie anywhere,
+// and an option would be taken for one that was not given.
+void refuse_empty_words(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {
+    if (option->get_items_expected_max() == 0) continue;  // a flag
     const bool is_place = std::ranges::any_of(option->get_lnames(), [](const std::string& name) {
       return name == "out" || name == "save" || name == "certificate" || name == "store" ||
              name == "page" || name == "pictures";
     });
-    if (!is_place || option->get_items_expected_max() == 0) continue;
-    option->check([](const std::string& text) {
-      return text.empty() ? std::string("'' cannot be used; use the name of a file or folder")
-                          : std::string();
+    option->check([is_place](const std::string& text) -> std::string {
+      if (!text.empty()) return {};
+      return is_place ? "'' cannot be used; use the name of a file or folder"
+                      : "'' cannot be used; use a word, or leave it out";
     });
   }
-  for (CLI::App* command : app.get_subcommands(nullptr)) refuse_empty_places(*command);
+  for (CLI::App* command : app.get_subcommands(nullptr)) refuse_empty_words(*command);
 }
 
 int run_command_line(int argc, char** argv, const Registry& registry) {
@@ -132,7 +135,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_study_command(app, status, registry);
   add_submit_command(app, status, registry);
   add_describe_command(app);
-  refuse_empty_places(app);
+  refuse_empty_words(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -149,6 +152,12 @@ int run_guarded(int argc, char** argv, const Registry& registry) {
     print_message(fmt::format("tribench: {}\n", error.what()));
     return exit_code(error.kind() == ErrorKind::bad_input ? ExitStatus::bad_input
                                                           : ExitStatus::failed);
+  } catch (const std::filesystem::filesystem_error& error) {  // a name that no file can have
+    print_message(
+        fmt::format("tribench: {}: {}\n", error.path1().string(), error.code().message()));
+    const bool is_name = error.code() == std::errc::too_many_symbolic_link_levels ||
+                         error.code() == std::errc::filename_too_long;
+    return exit_code(is_name ? ExitStatus::bad_input : ExitStatus::failed);
   } catch (const std::bad_alloc&) {
     print_message("tribench: there is not enough memory; give it less data or more memory\n");
     return exit_code(ExitStatus::failed);

@@ -20,6 +20,7 @@ namespace {
 
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 using Words = std::vector<std::string>;
 
@@ -142,6 +143,33 @@ TEST(CommandLine, NothingIsWrittenToAPlaceWithoutAName) {
     const ProgramRun run = run_tribench(words);
     EXPECT_EQ(run.status, 2) << words.front();
     EXPECT_THAT(run.errors, HasSubstr("use the name of a file or folder")) << words.front();
+  }
+}
+
+// A shell's variable that was not set: nothing would be held out, verified or compared.
+TEST(CommandLine, AnEmptyWordIsNotTakenForAnOptionThatWasNotGiven) {
+  for (const Words& words :
+       {Words{"fit", "log.csv", "--target", "y", "--inputs", "x", "--test", ""},
+        Words{"run", "quick", "--verify", ""}, Words{"run", "quick", "--quarantine", ""},
+        Words{"report", "run", "--base", ""}, Words{"report", ""},
+        Words{"compare", "run", "run", "--history", ""}, Words{"challenge", "--secret-file", ""}}) {
+    const ProgramRun run = run_tribench(words);
+    EXPECT_EQ(run.status, 2) << words.front();
+    EXPECT_THAT(run.errors, HasSubstr("'' cannot be used")) << words.front();
+  }
+}
+
+TEST(CommandLine, ANameThatNoFileCanHaveIsBadInput) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("ring", folder / "ring");
+  for (const std::string& name : {(folder / "ring").string(), std::string(300, 'x')}) {
+    for (const Words& words : {Words{"report", name}, Words{"compare", name, name},
+                               Words{"world", name, "reveal"}, Words{"explore", name}}) {
+      const ProgramRun run = run_tribench(words);
+      EXPECT_EQ(run.status, 2) << words.front();
+      EXPECT_THAT(run.errors, StartsWith("tribench: " + name)) << words.front();
+      EXPECT_THAT(run.errors, AnyOf(HasSubstr("symbolic links"), HasSubstr("too long")));
+    }
   }
 }
 

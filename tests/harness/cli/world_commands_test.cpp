@@ -294,6 +294,11 @@ TEST(ChallengeCommand, AnotherSecretIsAnotherSetOfWorlds) {
                                        (folder / "secret.txt").string(), "--reveal"});
   EXPECT_NE(json::parse(one.output)["worlds"], json::parse(two.output)["worlds"]);
   EXPECT_EQ(run_tribench({"challenge"}).status, 2);
+  write_text(folder / "blank.txt", " \n");
+  const ProgramRun blank = run_tribench(
+      {"challenge", "--worlds", "3", "--secret-file", (folder / "blank.txt").string(), "--reveal"});
+  EXPECT_EQ(blank.status, 2);
+  EXPECT_THAT(blank.errors, HasSubstr("holds no secret"));
 }
 
 TEST(StudyCommand, ExploreCountsSecondsAndErrors) {
