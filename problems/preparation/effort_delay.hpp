@@ -8,7 +8,9 @@
 // Told by the shift under which friction, inertia, gravity and, where the gear ratio is known, what
 // repeats with the motor's turn explain most, on rows well away from
 // rests and reversals: there friction that lags, as bristles do, goes with the motion's own terms.
-// NaN policy: values and times are finite, times increase within a piece. Cost: about 0.1 s.
+// Friction that changes slowly through the recording, that builds up after a reversal, and what a
+// smoother took off the acceleration have terms of their own: they passed for a delay, or hid one.
+// NaN policy: values and times are finite, times increase within a piece. Cost: about 0.2 s.
 #pragma once
 
 #include <optional>
@@ -27,9 +29,12 @@ struct EffortDelay {
 
 // Needs a time, an angle or a length, velocity, acceleration and motor_torque or motor_current;
 // nothing where one of them is missing or where the rows do not tell.
-// gear_ratio: motor turns per turn of the joint, where it is known; only for an angle.
+// gear_ratio: motor turns per turn of the joint, where it is known; only for an angle. blunting:
+// the acceleration less that of half the smoother's bandwidth, per row (see acceleration_blunting);
+// empty where it was measured.
 std::optional<EffortDelay> effort_delay(const Dataset& data, std::span<const RowRange> pieces,
-                                        std::optional<double> gear_ratio = {});
+                                        std::optional<double> gear_ratio = {},
+                                        std::span<const double> blunting = {});
 
 // A channel as it is `delay` later, by straight lines between neighbours of a piece; rows whose
 // time lies outside of their piece then are marked in `lost`.

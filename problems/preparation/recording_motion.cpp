@@ -300,7 +300,10 @@ void settle_effort(PreparedRecording& out, const Drive& drive) {
   if (time == nullptr || !is_regular(time->values, out.data.movement)) return;
   const std::vector<double> t = time->values;
   const std::vector<RowRange> pieces = pieces_of(t, out.data.movement, {});
-  const std::optional<EffortDelay> delay = effort_delay(out.data, pieces, drive.gear_ratio);
+  const Channel* change = out.data.find(kChangeChannel);
+  const std::optional<EffortDelay> delay =
+      effort_delay(out.data, pieces, drive.gear_ratio,
+                   change != nullptr ? change->values : std::span<const double>{});
   // No filter and no bus brings a torque before its motion.
   if (!delay || delay->value <= kSurelyLate * delay->error) return;
   std::vector<char> lost(out.data.rows(), 0);

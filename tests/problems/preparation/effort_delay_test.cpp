@@ -96,6 +96,30 @@ TEST(EffortDelay, IsNoneWhereFrictionAloneLags) {
   }
 }
 
+// Friction that is half as large again at first, as that of cold grease.
+std::vector<RawSample> running_in(std::vector<RawSample> samples) {
+  for (RawSample& sample : samples) {
+    const double more = 4 * std::exp(-sample.time / 60);
+    const double sign = (sample.velocity > 0 ? 1 : 0) - (sample.velocity < 0 ? 1 : 0);
+    sample.torque += more * (sign + 2 * sample.velocity);
+  }
+  return samples;
+}
+
+TEST(EffortDelay, IsToldBesideFrictionThatChangesThroughTheRecording) {
+  for (const std::uint64_t seed : {2U, 3U, 4U}) {
+    RawLogPlan plan;
+    plan.seed = seed;
+    plan.seconds = 200;
+    for (const int rows : {0, 3}) {
+      const std::optional<EffortDelay> delay = delay_in(late(running_in(simulate(plan)), rows));
+      ASSERT_TRUE(delay) << seed;
+      EXPECT_NEAR(delay->value, rows * plan.step, 4 * delay->error) << seed;
+      EXPECT_LT(delay->error, 1e-3) << seed;
+    }
+  }
+}
+
 TEST(EffortDelay, NothingWithoutAnAcceleration) {
   Dataset data = table_of(simulate(RawLogPlan()));
   std::erase_if(data.channels, [](const Channel& one) { return one.role == Role::acceleration; });
