@@ -34,6 +34,14 @@ bool is_positive(const Factor& input) {
   return input.has_logs() && !input.changes_sign && input.values[0] > 0;
 }
 
+// T(y) = y^p.
+double exponent_of(TargetForm form) {
+  return form == TargetForm::square           ? 2
+         : form == TargetForm::inverse        ? -1
+         : form == TargetForm::inverse_square ? -2
+                                              : 1;
+}
+
 class Finder {
  public:
   Finder(const LogRows& rows, Guesses guesses, Budget& budget)
@@ -43,11 +51,17 @@ class Finder {
         has_one_sign_(rows.target().has_logs() && !rows.target().changes_sign) {}
 
   Reductions run() {
-    for (const TargetForm form :
-         {TargetForm::plain, TargetForm::logarithm, TargetForm::square, TargetForm::inverse}) {
+    struct Power {
+      double exponent;
+      std::vector<double> target;
+      Surrogate surrogate;
+    };
+    std::optional<Power> power;  // of y, that a polynomial is nearest to
+    double log_error = HUGE_VAL;
+    for (const TargetForm form : kTargetForms) {
       if (form != TargetForm::plain && !has_one_sign_) continue;
-      const std::vector<double> target = formed_target(rows_.target().values, form);
-      const Surrogate surrogate(rows_, target, budget_);
+      std::vector<double> target = formed_target(rows_.target().values, form);
+      Surrogate surrogate(rows_, target, budget_);
       roughness_ = std::min(roughness_, surrogate.error());
       if (!(surrogate.error() <= kRough)) continue;
       add_terms(form, surrogate);
@@ -57,10 +71,15 @@ class Finder {
         add_scalings(TargetForm::plain, surrogate, ones);
         add_scalings(TargetForm::logarithm, surrogate, target);
         add_shifts(surrogate);
-      } else if (form == TargetForm::plain && !has_one_sign_) {
-        add_scalings(TargetForm::plain, surrogate, target);
-        add_shifts(surrogate);
+        log_error = surrogate.error();
+      } else if (!power || surrogate.error() < power->surrogate.error()) {
+        power = Power{exponent_of(form), std::move(target), std::move(surrogate)};
       }
+    }
+    // Near a pole or a root the logarithm is rougher than a power.
+    if (power && power->surrogate.error() < log_error) {
+      add_scalings(TargetForm::plain, power->surrogate, power->target, power->exponent);
+      add_shifts(power->surrogate);
     }
     if (!has_one_sign_) add_of_compressed();
     if (!has_scaling_ && guesses_ == Guesses::yes) add_guesses();
@@ -69,9 +88,10 @@ class Finder {
   }
 
  private:
-  // T(y) = g of the products that no scaling changes, times a product.
+  // T(y) = g of the products that no scaling changes, times a product; the surrogate is of T(y) to
+  // some power.
   void add_scalings(TargetForm form, const Surrogate& surrogate,
-                    const std::vector<double>& reference) {
+                    const std::vector<double>& reference, double exponent = 1) {
     std::vector<std::size_t> scaled;
     std::vector<std::vector<double>> slopes;  // by the logarithms of the inputs
     for (std::size_t j = 0; j < rows_.inputs().size(); ++j) {
@@ -82,7 +102,8 @@ class Finder {
         slopes.back()[r] *= rows_.inputs()[j].values[r];
       }
     }
-    for (const Rescaled& rescaled : find_scalings(slopes, reference, tolerance_of(surrogate))) {
+    for (Rescaled& rescaled : find_scalings(slopes, reference, tolerance_of(surrogate))) {
+      for (double& power : rescaled.outer) power /= exponent;
       add_scaling(form, scaled, rescaled);
       has_scaling_ = true;
     }

@@ -7,8 +7,10 @@
 //   shift        y of a difference or a sum of two inputs
 //   a term       T(y) = c x_j^p + g(the others)
 //
-// with T one of y, log y, y^2, 1/y. What is found is as exact as its small whole exponents; whether
-// it is true is for the caller to see by what becomes of g.
+// with T one of y, log y, y^2, 1/y, 1/y^2. Scalings are those of log y, and of the power of y that
+// a polynomial is nearest to, where it is nearer to that: near a pole or a root. What is found is
+// as exact as its small whole exponents; whether it is true is for the caller to see by what
+// becomes of g.
 //
 // Source: pi theorem, Buckingham 1914, from the data alone; symmetries by gradients, Udrescu et al.
 // 2020 (AI Feynman 2.0), there with a neural network.

@@ -48,6 +48,13 @@ TEST(Reduction, FindsTheProductsThatALawDependsOn) {
               has(reductions_of(gas), gas, relay::TargetForm::plain, {"v/(n*b)", "t/b"}));
 }
 
+// Near the pole the logarithm is rough; 1/y^2 is a polynomial.
+TEST(Reduction, FindsProductsByAPowerWhereTheLogarithmIsRough) {
+  const DrawnLaw gain("1/sqrt((1 - w^2*c)^2 + (w*r)^2)",
+                      {{"w", 0.2, 3}, {"c", 0.5, 2}, {"r", 0.1, 2}}, 256);
+  EXPECT_TRUE(has(reductions_of(gain), gain, relay::TargetForm::plain, {"w^2*c", "w*r", "1"}));
+}
+
 TEST(Reduction, FindsTermsAndDifferences) {
   const DrawnLaw sum("h + exp(a*b)", {{"h", 0, 5}, {"a", 0.2, 1}, {"b", 0.2, 1}}, 300);
   EXPECT_TRUE(has(reductions_of(sum), sum, relay::TargetForm::plain, {"a", "b", "h"}));
