@@ -13,6 +13,7 @@
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/relay/index_fit.hpp"
 #include "algorithms/relay/long_sum.hpp"
+#include "algorithms/relay/part_search.hpp"
 #include "algorithms/relay/product_search.hpp"
 #include "algorithms/relay/relation_search.hpp"
 #include "algorithms/relay/scaled_function.hpp"
@@ -39,8 +40,6 @@ constexpr std::size_t kProblems = 16;  // in fewer variables that are looked at
 constexpr std::size_t kMostDepth = 3;  // of reductions
 // A surrogate's error, of the target's spread, below which noise is no matter.
 constexpr double kSurelyExact = 3e-3;
-// And of what a formula leaves, of its own spread, from which on it is noise.
-constexpr double kAllNoise = 0.95;
 // On which a long sum is chosen: at once, and where there is time. Many rows tell more terms.
 constexpr std::size_t kRivalRows[] = {4000, 32'000};
 constexpr double kQuarter = 0.25;      // of the seconds that are left, for a search for structure
@@ -52,6 +51,7 @@ constexpr std::string_view kByProduct = "a product of powers";
 constexpr std::string_view kBySum = "a sum of products";
 constexpr std::string_view kByRoot = "a root of a quadratic equation";
 constexpr std::string_view kByReduction = "fewer variables";
+constexpr std::string_view kByParts = "parts without a common input";
 
 // Takes out of `open` what slopes say before guesses, and of these the problem with the fewest
 // inputs; none where it was seen before, on another way.
@@ -91,14 +91,19 @@ void StructureSearch::search() {
   Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
   auto simpler = find_structure(rows, part);
   context_.budget.settle(part);
-  search_likely();
+  find_parts(rows);
+  const bool has_parts = parts_ && parts_->error < kSurelyExact;
+  if (!has_parts) search_likely();
   if (is_noise_left_) return;
   if (has(kReductions)) {
     auto reduced = reduce(Guesses::no);
     if (reduced && !simpler) simpler = std::move(reduced);
   }
+  // Fewer variables are as exact as the rows, parts are not.
+  if (has_parts && !simpler) search_parts();
   if (round_ == 0 && has(kSums) && !answer_.is_done()) search_waves();
   if (simpler && !answer_.is_done()) search_by_solver(*simpler);
+  if (has_parts && simpler) search_parts();
 }
 
 void StructureSearch::search_likely() {
@@ -117,16 +122,10 @@ void StructureSearch::search_likely() {
   Budget fits = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
   answer_.offer_likeliest(likely, fits);
   context_.budget.settle(fits);
-  is_noise_left_ = answer_.has_formula() && leaves_noise(answer_.likeliest());
-}
-
-// Whether a polynomial has nothing to say of what a formula leaves, on rows held out.
-bool StructureSearch::leaves_noise(const Expression& formula) {
-  const LogRows rows(answer_.rows(), kSearchedRows);
-  std::vector<double> left = factor_of(formula, rows).values;
-  for (std::size_t r = 0; r < left.size(); ++r) left[r] = rows.target().values[r] - left[r];
-  const double error = roughness_of(rows, left, context_.budget);
-  return std::isfinite(error) && error >= kAllNoise;
+  if (!answer_.has_formula()) return;
+  Budget look = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
+  is_noise_left_ = leaves_noise(answer_.likeliest(), LogRows(answer_.rows(), kSearchedRows), look);
+  context_.budget.settle(look);
 }
 
 void StructureSearch::search_long_sum() {
@@ -175,6 +174,26 @@ void StructureSearch::search_waves() {
                   kBySum);
   }
   context_.budget.settle(budget);
+}
+
+void StructureSearch::find_parts(const LogRows& rows) {
+  if (round_ > 0 || !has(kParts) || answer_.is_done()) return;
+  Budget budget = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
+  parts_ = find_separation(rows, budget);
+  context_.budget.settle(budget);
+}
+
+void StructureSearch::search_parts() {
+  if (!parts_ || answer_.is_done()) return;
+  Budget budget = context_.budget.share(context_.budget.remaining() / 4, kHalf);
+  const std::vector<Expression> joined =
+      PartSearch(context_, solver_).run(LogRows(answer_.rows(), kSearchedRows), *parts_, budget);
+  parts_.reset();
+  context_.budget.settle(budget);
+  for (const Expression& formula : joined) {
+    if (answer_.is_done()) return;
+    answer_.offer(formula, kByParts);
+  }
 }
 
 void StructureSearch::find_products_and_sums(const LogRows& rows, Budget& budget) {

@@ -18,6 +18,7 @@
 #include "algorithms/relay/answer.hpp"
 #include "algorithms/relay/collapse.hpp"
 #include "algorithms/relay/log_rows.hpp"
+#include "algorithms/relay/part_search.hpp"
 #include "algorithms/relay/reduced_problem.hpp"
 #include "algorithms/relay/reduction.hpp"
 
@@ -28,11 +29,12 @@ inline constexpr std::string_view kProducts = "products";
 inline constexpr std::string_view kSums = "sums";
 inline constexpr std::string_view kCollapses = "collapses";
 inline constexpr std::string_view kReductions = "reductions";
+inline constexpr std::string_view kParts = "parts";
 inline constexpr std::string_view kGuesses = "guesses";
 inline constexpr std::string_view kWideSums = "wide_sums";
 inline constexpr std::string_view kLikely = "likely";
 inline constexpr std::string_view kLongSums = "long_sums";
-inline constexpr std::array kSearches = {kProducts, kSums,     kCollapses, kReductions,
+inline constexpr std::array kSearches = {kProducts, kSums,     kCollapses, kReductions, kParts,
                                          kGuesses,  kWideSums, kLikely,    kLongSums};
 
 class StructureSearch {
@@ -52,17 +54,20 @@ class StructureSearch {
   void search_guesses();
   // Sums of products with waves and differences: many, and seldom what a law is.
   void search_wide_sums();
+  // A sum or a product of parts without a common input, unless that was tried: where polynomials
+  // do not show it to be exact it is expensive, too.
+  void search_parts();
 
  private:
   enum class Width { narrow, wide };  // wide: with factors (factors.hpp)
 
   // What structure is likely under noise: weighed beside the methods' choices.
   void search_likely();
-  bool leaves_noise(const Expression& formula);
   // What is exact is offered; the return is a problem of fewer variables that was not solved.
   std::optional<ReducedProblem> find_structure(const LogRows& rows, Budget& budget);
   void find_products_and_sums(const LogRows& rows, Budget& budget);
   void search_waves();
+  void find_parts(const LogRows& rows);
   // The reduced problem with the fewest inputs that was not solved.
   std::optional<ReducedProblem> reduce(Guesses guesses);
   // False where the reduction that led to the problem was not true; else it is tried to be solved
@@ -80,7 +85,8 @@ class StructureSearch {
   const Regressor& solver_;
   int round_;
   std::string_view without_;
-  bool is_noise_left_ = false;  // and nothing else, of the likeliest formula
+  std::optional<Separation> parts_;  // not tried yet
+  bool is_noise_left_ = false;       // and nothing else, of the likeliest formula
 };
 
 }  // namespace tribench::relay

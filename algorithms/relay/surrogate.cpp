@@ -17,6 +17,7 @@ constexpr std::size_t kFewestRowsSeen = 40;
 constexpr std::size_t kMostSurfaceTerms = 140;
 constexpr std::size_t kMostDegree = 20;
 constexpr double kExactSurface = 1e-7;  // of the target's spread
+constexpr double kAllNoise = 0.95;      // of its own spread, of what is left
 constexpr std::size_t kHeldOut = 6;     // every so many rows one
 
 // An input on [-1, 1] with Chebyshev polynomials of it, and their slopes by the input itself.
@@ -50,37 +51,52 @@ struct Coordinate {
 
 using Degrees = std::vector<std::size_t>;  // per input
 
-void add_degrees(std::size_t next, std::size_t left, Degrees& degrees, std::vector<Degrees>& all) {
-  if (next == degrees.size()) {
-    all.push_back(degrees);
+// The products of the part's inputs from place `next` on; the constant not among them.
+void add_degrees(const std::vector<std::size_t>& part, std::size_t next, std::size_t left,
+                 Degrees& degrees, std::vector<Degrees>& all) {
+  if (next == part.size()) {
+    if (std::ranges::any_of(degrees, [](std::size_t k) { return k > 0; })) all.push_back(degrees);
     return;
   }
   for (std::size_t k = 0; k <= left; ++k) {
-    degrees[next] = k;
-    add_degrees(next + 1, left - k, degrees, all);
+    degrees[part[next]] = k;
+    add_degrees(part, next + 1, left - k, degrees, all);
   }
-  degrees[next] = 0;
+  degrees[part[next]] = 0;
+}
+
+Parts all_together(std::size_t inputs) {
+  Parts whole(1);
+  for (std::size_t j = 0; j < inputs; ++j) whole[0].push_back(j);
+  return whole;
+}
+
+// Of one polynomial in each part, with the constant.
+double count_terms(const Parts& parts, std::size_t degree) {
+  double all = 1;
+  for (const auto& part : parts) {
+    double terms = 1;
+    for (std::size_t d = 1; d <= degree; ++d) {
+      terms *= static_cast<double>(part.size() + d) / static_cast<double>(d);
+    }
+    all += std::nearbyint(terms) - 1;
+  }
+  return all;
 }
 
 // The highest degree whose products `rows` can determine.
-std::size_t highest_degree(std::size_t inputs, std::size_t rows) {
-  const std::size_t most = std::min(kMostSurfaceTerms, 2 * rows / 5);
+std::size_t highest_degree(const Parts& parts, std::size_t rows) {
+  const auto most = static_cast<double>(std::min(kMostSurfaceTerms, 2 * rows / 5));
   std::size_t degree = 1;
-  double terms = static_cast<double>(inputs) + 1;
-  while (degree < kMostDegree) {
-    const double more =
-        terms * static_cast<double>(inputs + degree + 1) / static_cast<double>(degree + 1);
-    if (more > static_cast<double>(most)) break;
-    terms = more;
-    ++degree;
-  }
+  while (degree < kMostDegree && count_terms(parts, degree + 1) <= most) ++degree;
   return degree;
 }
 
-std::vector<Degrees> products(std::size_t inputs, std::size_t degree) {
+// The constant first.
+std::vector<Degrees> products(const Parts& parts, std::size_t inputs, std::size_t degree) {
   Degrees none(inputs, 0);
-  std::vector<Degrees> all;
-  add_degrees(0, degree, none, all);
+  std::vector<Degrees> all = {none};
+  for (const auto& part : parts) add_degrees(part, 0, degree, none, all);
   return all;
 }
 
@@ -93,11 +109,14 @@ double spread_of(std::span<const double> values) {
   return std::sqrt(square);
 }
 
-class Polynomial {
+}  // namespace
+
+class Surrogate::Polynomial {
  public:
-  Polynomial(const LogRows& rows, std::span<const double> target, bool by_logs, std::size_t degree)
-      : rows_(rows.rows()), terms_(products(rows.inputs().size(), degree)) {
-    for (const Factor& input : rows.inputs()) {
+  Polynomial(const std::vector<Factor>& inputs, std::span<const double> target, const Parts& parts,
+             bool by_logs, std::size_t degree)
+      : rows_(target.size()), terms_(products(parts, inputs.size(), degree)), by_logs_(by_logs) {
+    for (const Factor& input : inputs) {
       const bool is_log = by_logs && input.has_logs() && !input.changes_sign && input.values[0] > 0;
       coordinates_.emplace_back(input, is_log, degree);
     }
@@ -105,19 +124,42 @@ class Polynomial {
   }
 
   double error() const { return error_; }
+  bool by_logs() const { return by_logs_; }
 
   std::vector<double> slope(std::size_t j) const {
-    std::vector<double> sum(rows_, 0.0);
+    return sum_where([j](const Degrees& term) { return term[j] > 0; }, j);
+  }
+
+  // The values of the terms with inputs of the part.
+  std::vector<double> values_in(const std::vector<std::size_t>& part) const {
+    return sum_where(
+        [&](const Degrees& term) {
+          return std::ranges::any_of(part, [&](std::size_t j) { return term[j] > 0; });
+        },
+        kNone);
+  }
+
+  double shared(std::size_t i, std::size_t j) const {
+    double sum = 0;
     for (std::size_t t = 0; t < terms_.size(); ++t) {
-      if (terms_[t][j] == 0 || coefficients_[t] == 0) continue;
-      const std::vector<double> values = values_of(terms_[t], j);
-      for (std::size_t r = 0; r < rows_; ++r) sum[r] += coefficients_[t] * values[r];
+      if (terms_[t][i] > 0 && terms_[t][j] > 0) sum += coefficients_[t] * coefficients_[t];
     }
     return sum;
   }
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  template <typename IsWanted>
+  std::vector<double> sum_where(const IsWanted& is_wanted, std::size_t by) const {
+    std::vector<double> sum(rows_, 0.0);
+    for (std::size_t t = 0; t < terms_.size(); ++t) {
+      if (coefficients_[t] == 0 || !is_wanted(terms_[t])) continue;
+      const std::vector<double> values = values_of(terms_[t], by);
+      for (std::size_t r = 0; r < rows_; ++r) sum[r] += coefficients_[t] * values[r];
+    }
+    return sum;
+  }
 
   // The product, or its slope by one input.
   std::vector<double> values_of(const Degrees& degrees, std::size_t by) const {
@@ -163,30 +205,67 @@ class Polynomial {
   std::vector<Degrees> terms_;
   std::vector<Coordinate> coordinates_;
   std::vector<double> coefficients_;
+  bool by_logs_;
   double error_ = HUGE_VAL;
 };
 
-}  // namespace
-
-Surrogate::Surrogate(const LogRows& rows, std::span<const double> target, Budget& budget)
-    : error_(HUGE_VAL) {
+Surrogate::Surrogate(const LogRows& rows, std::span<const double> target, Budget& budget) {
   const std::size_t inputs = rows.inputs().size();
-  if (inputs == 0 || inputs > kMostInputsSeen || rows.rows() < kFewestRowsSeen) return;
-  const std::size_t degree = highest_degree(inputs, rows.rows());
-  const std::size_t terms = products(inputs, degree).size();
-  if (!budget.spend(terms * terms / 4 * rows.rows())) return;
+  const Parts together = all_together(inputs);
+  const auto best = fitted(rows, target, together, {false, true}, budget);
+  if (!best) return;
+  error_ = best->error();
+  by_logs_ = best->by_logs();
+  if (!std::isfinite(error_)) return;
+  for (std::size_t j = 0; j < inputs; ++j) slopes_.push_back(best->slope(j));
+  for (std::size_t i = 0; i < inputs; ++i) {
+    for (std::size_t j = 0; j < inputs; ++j) shared_.push_back(best->shared(i, j));
+  }
+}
+
+Surrogate::Surrogate(const LogRows& rows, std::span<const double> target, const Parts& parts,
+                     const Surrogate& whole, Budget& budget) {
+  const auto best = fitted(rows, target, parts, {whole.by_logs_}, budget);
+  if (!best) return;
+  error_ = best->error();
+  for (const auto& part : parts) parts_.push_back(best->values_in(part));
+}
+
+Surrogate::Surrogate(const std::vector<Factor>& inputs, std::span<const double> target,
+                     std::size_t degree, Budget& budget) {
+  const Parts whole = all_together(inputs.size());
+  const auto terms = static_cast<std::size_t>(count_terms(whole, degree));
+  if (target.size() < kFewestRowsSeen || !budget.spend(terms * terms / 8 * target.size())) return;
+  error_ = Polynomial(inputs, target, whole, false, degree).error();
+}
+
+std::optional<Surrogate::Polynomial> Surrogate::fitted(const LogRows& rows,
+                                                       std::span<const double> target,
+                                                       const Parts& parts,
+                                                       std::initializer_list<bool> by_logs,
+                                                       Budget& budget) {
+  const std::size_t inputs = rows.inputs().size();
+  if (inputs == 0 || inputs > kMostInputsSeen || rows.rows() < kFewestRowsSeen) return std::nullopt;
+  const std::size_t degree = highest_degree(parts, rows.rows());
+  const auto terms = static_cast<std::size_t>(count_terms(parts, degree));
+  if (!budget.spend(terms * terms / 4 * rows.rows())) return std::nullopt;
   // The lower degree where it will do: its slopes are steadier.
   std::optional<Polynomial> best;
   for (const std::size_t tried : {(degree + 1) / 2, degree}) {
-    for (const bool by_logs : {false, true}) {
-      Polynomial polynomial(rows, target, by_logs, tried);
+    for (const bool is_log : by_logs) {
+      Polynomial polynomial(rows.inputs(), target, parts, is_log, tried);
       if (!best || polynomial.error() < best->error()) best = std::move(polynomial);
     }
     if (best->error() <= kExactSurface) break;
   }
-  error_ = best->error();
-  if (!std::isfinite(error_)) return;
-  for (std::size_t j = 0; j < inputs; ++j) slopes_.push_back(best->slope(j));
+  return best;
+}
+
+bool leaves_noise(const Expression& formula, const LogRows& rows, Budget& budget) {
+  std::vector<double> left = factor_of(formula, rows).values;
+  for (std::size_t r = 0; r < left.size(); ++r) left[r] = rows.target().values[r] - left[r];
+  const double error = Surrogate(rows, left, budget).error();
+  return std::isfinite(error) && error >= kAllNoise;
 }
 
 }  // namespace tribench::relay

@@ -43,8 +43,8 @@ TEST(Relay, StaysWithItsMembersWhereNoStructureIsExact) {
 // Every part can be left out, and what it alone finds is then found by another or not at all.
 TEST(Relay, DoesWithoutAnyOfItsParts) {
   const DrawnLaw law("2.5*x^2/y", {{"x", 1, 3}, {"y", 1, 3}}, 60);
-  for (const char* part : {"nothing", "products", "sums", "collapses", "reductions", "guesses",
-                           "wide_sums", "pysr", "udsr", "parfam"}) {
+  for (const char* part : {"nothing", "products", "sums", "collapses", "reductions", "parts",
+                           "guesses", "wide_sums", "pysr", "udsr", "parfam"}) {
     FitOptions options = with_evaluations(30'000'000);
     options.parameters["without"] = std::string(part);
     const FitResult result = run_fit(law.data(), "relay", options);
