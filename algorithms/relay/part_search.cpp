@@ -27,58 +27,56 @@ constexpr double kRough = 0.1;          // error of a sum of polynomials that sa
 constexpr double kClearly = 0.5;        // of the error of one polynomial in all inputs
 constexpr double kNearPower = 1e-4;     // of a part's square in logarithms
 constexpr std::size_t kPartRows = 300;  // that what is likely is told from
+constexpr std::size_t kFewColumns = 60;
 constexpr std::size_t kColumns = 150;
-constexpr std::size_t kPairDegree = 6;  // of the products of two inputs
-constexpr std::size_t kFitted = 12;     // of the likely ones
-constexpr std::size_t kTaken = 3;       // of a part's formulas
-constexpr double kOfSolver = 0.8;       // of the seconds; the rest is for leaving out numbers
-constexpr int kMostDepth = 2;           // of parts of parts
+constexpr std::size_t kCommonTerms = 40;  // of a polynomial in the inputs of two parts
+constexpr std::size_t kFitted = 12;       // of the likely ones
+constexpr std::size_t kTaken = 3;         // of a part's formulas
+constexpr double kOfSolver = 0.8;         // of the seconds; the rest is for leaving out numbers
+constexpr int kMostDepth = 2;             // of parts of parts
 
-using Pair = std::pair<std::size_t, std::size_t>;
+using Pair = std::pair<std::size_t, std::size_t>;  // of parts
 
-// Of inputs of different parts.
-std::vector<Pair> pairs_between(const Parts& parts) {
+std::vector<Pair> pairs_of(const Parts& parts) {
   std::vector<Pair> pairs;
   for (std::size_t a = 0; a < parts.size(); ++a) {
-    for (std::size_t b = a + 1; b < parts.size(); ++b) {
-      for (const std::size_t i : parts[a]) {
-        for (const std::size_t j : parts[b]) pairs.emplace_back(i, j);
-      }
-    }
+    for (std::size_t b = a + 1; b < parts.size(); ++b) pairs.emplace_back(a, b);
   }
   return pairs;
 }
 
 Parts with_together(Parts parts, const Pair& pair) {
-  const auto of = [&](std::size_t input) {
-    return std::ranges::find_if(
-        parts, [input](const auto& part) { return std::ranges::count(part, input) > 0; });
-  };
-  const auto one = of(pair.first);
-  const auto other = of(pair.second);
-  one->insert(one->end(), other->begin(), other->end());
-  std::ranges::sort(*one);
-  parts.erase(other);
+  std::vector<std::size_t>& one = parts[pair.first];
+  one.insert(one.end(), parts[pair.second].begin(), parts[pair.second].end());
+  std::ranges::sort(one);
+  parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(pair.second));
   return parts;
 }
 
-// The two inputs of different parts of which products explain most of what a sum of parts leaves.
+// The two parts of whose inputs a polynomial explains most of what the sum of all parts leaves.
 Pair most_in_common(const LogRows& rows, const Parts& parts, const Surrogate& sum,
                     const std::vector<double>& target, Budget& budget) {
   std::vector<double> left = target;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     for (std::size_t r = 0; r < left.size(); ++r) left[r] -= sum.part(k)[r];
   }
-  return std::ranges::min(pairs_between(parts), {}, [&](const Pair& pair) {
-    const std::vector<Factor> two = {rows.inputs()[pair.first], rows.inputs()[pair.second]};
-    return Surrogate(two, left, kPairDegree, budget).error();
+  return std::ranges::min(pairs_of(parts), {}, [&](const Pair& pair) {
+    std::vector<Factor> inputs;
+    for (const std::size_t j : parts[pair.first]) inputs.push_back(rows.inputs()[j]);
+    for (const std::size_t j : parts[pair.second]) inputs.push_back(rows.inputs()[j]);
+    return Surrogate(inputs, left, kCommonTerms, budget).error();
   });
 }
 
 // The same, by the terms of a polynomial in all inputs.
 Pair most_in_common(const Parts& parts, const Surrogate& whole) {
-  return std::ranges::max(pairs_between(parts), {},
-                          [&](const Pair& pair) { return whole.shared(pair.first, pair.second); });
+  return std::ranges::max(pairs_of(parts), {}, [&](const Pair& pair) {
+    double most = 0;
+    for (const std::size_t i : parts[pair.first]) {
+      for (const std::size_t j : parts[pair.second]) most = std::max(most, whole.shared(i, j));
+    }
+    return most;
+  });
 }
 
 // What all other parts leave of the target.
@@ -283,7 +281,11 @@ PartSearch::Solution PartSearch::solved(const TrainingData& data, int depth, Bud
     }
   };
   propose(likely_products(rows, context_.operators, budget));
-  propose(likely_relations(rows, context_.operators, Columns::with_factors, kColumns, budget));
+  // Few columns first: of many all too many sums are nearly as good.
+  for (const auto& [columns, most] : {std::pair(Columns::powers_alone, kFewColumns),
+                                      std::pair(Columns::with_factors, kColumns)}) {
+    propose(likely_relations(rows, context_.operators, columns, most, budget));
+  }
   for (const Expression& formula : fitted(proposed.likeliest(kFitted), all, budget)) {
     front.add(std::array{formula}, 0);
   }

@@ -49,7 +49,6 @@ class Relay : public Regressor {
       if ((answer.is_done() || answer.is_late()) && answer.has_formula()) break;
       run(members_[k], context.budget.remaining() / (members_.size() - k), context, answer);
       if (k > 0 || answer.is_done()) continue;
-      structure.search_parts();
       structure.search_wide_sums();
       structure.search_guesses();
     }

@@ -100,10 +100,10 @@ void StructureSearch::search() {
     if (reduced && !simpler) simpler = std::move(reduced);
   }
   // Fewer variables are as exact as the rows, parts are not.
-  if (has_parts && !simpler) search_parts();
+  if (!simpler) search_parts();
   if (round_ == 0 && has(kSums) && !answer_.is_done()) search_waves();
   if (simpler && !answer_.is_done()) search_by_solver(*simpler);
-  if (has_parts && simpler) search_parts();
+  if (simpler) search_parts();
 }
 
 void StructureSearch::search_likely() {
@@ -188,7 +188,6 @@ void StructureSearch::search_parts() {
   Budget budget = context_.budget.share(context_.budget.remaining() / 4, kHalf);
   const std::vector<Expression> joined =
       PartSearch(context_, solver_).run(LogRows(answer_.rows(), kSearchedRows), *parts_, budget);
-  parts_.reset();
   context_.budget.settle(budget);
   for (const Expression& formula : joined) {
     if (answer_.is_done()) return;

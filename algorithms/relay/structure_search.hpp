@@ -54,9 +54,6 @@ class StructureSearch {
   void search_guesses();
   // Sums of products with waves and differences: many, and seldom what a law is.
   void search_wide_sums();
-  // A sum or a product of parts without a common input, unless that was tried: where polynomials
-  // do not show it to be exact it is expensive, too.
-  void search_parts();
 
  private:
   enum class Width { narrow, wide };  // wide: with factors (factors.hpp)
@@ -67,7 +64,9 @@ class StructureSearch {
   std::optional<ReducedProblem> find_structure(const LogRows& rows, Budget& budget);
   void find_products_and_sums(const LogRows& rows, Budget& budget);
   void search_waves();
+  // A sum or a product of parts without a common input.
   void find_parts(const LogRows& rows);
+  void search_parts();
   // The reduced problem with the fewest inputs that was not solved.
   std::optional<ReducedProblem> reduce(Guesses guesses);
   // False where the reduction that led to the problem was not true; else it is tried to be solved
@@ -85,8 +84,8 @@ class StructureSearch {
   const Regressor& solver_;
   int round_;
   std::string_view without_;
-  std::optional<Separation> parts_;  // not tried yet
-  bool is_noise_left_ = false;       // and nothing else, of the likeliest formula
+  std::optional<Separation> parts_;
+  bool is_noise_left_ = false;  // and nothing else, of the likeliest formula
 };
 
 }  // namespace tribench::relay

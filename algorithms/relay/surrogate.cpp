@@ -84,9 +84,8 @@ double count_terms(const Parts& parts, std::size_t degree) {
   return all;
 }
 
-// The highest degree whose products `rows` can determine.
-std::size_t highest_degree(const Parts& parts, std::size_t rows) {
-  const auto most = static_cast<double>(std::min(kMostSurfaceTerms, 2 * rows / 5));
+std::size_t highest_degree(const Parts& parts, std::size_t most_terms) {
+  const auto most = static_cast<double>(most_terms);
   std::size_t degree = 1;
   while (degree < kMostDegree && count_terms(parts, degree + 1) <= most) ++degree;
   return degree;
@@ -232,8 +231,9 @@ Surrogate::Surrogate(const LogRows& rows, std::span<const double> target, const 
 }
 
 Surrogate::Surrogate(const std::vector<Factor>& inputs, std::span<const double> target,
-                     std::size_t degree, Budget& budget) {
+                     std::size_t most_terms, Budget& budget) {
   const Parts whole = all_together(inputs.size());
+  const std::size_t degree = highest_degree(whole, most_terms);
   const auto terms = static_cast<std::size_t>(count_terms(whole, degree));
   if (target.size() < kFewestRowsSeen || !budget.spend(terms * terms / 8 * target.size())) return;
   error_ = Polynomial(inputs, target, whole, false, degree).error();
@@ -246,7 +246,9 @@ std::optional<Surrogate::Polynomial> Surrogate::fitted(const LogRows& rows,
                                                        Budget& budget) {
   const std::size_t inputs = rows.inputs().size();
   if (inputs == 0 || inputs > kMostInputsSeen || rows.rows() < kFewestRowsSeen) return std::nullopt;
-  const std::size_t degree = highest_degree(parts, rows.rows());
+  // As many terms as the rows can determine.
+  const std::size_t degree =
+      highest_degree(parts, std::min(kMostSurfaceTerms, 2 * rows.rows() / 5));
   const auto terms = static_cast<std::size_t>(count_terms(parts, degree));
   if (!budget.spend(terms * terms / 4 * rows.rows())) return std::nullopt;
   // The lower degree where it will do: its slopes are steadier.

@@ -33,9 +33,9 @@ class Surrogate {
   Surrogate(const LogRows& rows, std::span<const double> target, const Parts& parts,
             const Surrogate& whole, Budget& budget);
 
-  // In a few inputs alone, of one degree.
-  Surrogate(const std::vector<Factor>& inputs, std::span<const double> target, std::size_t degree,
-            Budget& budget);
+  // In a few inputs alone, of the highest degree with at most so many terms.
+  Surrogate(const std::vector<Factor>& inputs, std::span<const double> target,
+            std::size_t most_terms, Budget& budget);
 
   // Root mean square on every sixth row, which is held out, of the target's own about its mean.
   double error() const { return error_; }
