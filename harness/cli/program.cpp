@@ -84,22 +84,50 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
   return exit_code(is_usage ? ExitStatus::bad_input : ExitStatus::done);
 }
 
+// Whether something is written there.
+bool is_place(const CLI::Option& option) {
+  static const std::vector<std::string> kPlaces = {"out",  "save", "save-effect", "certificate",
+                                                   "page", "feed", "pictures",    "store"};
+  return std::ranges::any_of(option.get_lnames(), [](const std::string& name) {
+    return std::ranges::find(kPlaces, name) != kPlaces.end();
+  });
+}
+
 // An empty word is a shell's variable that was not set: what is written there would lie anywhere,
 // and an option would be taken for one that was not given.
 void refuse_empty_words(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {
     if (option->get_items_expected_max() == 0) continue;  // a flag
-    const bool is_place = std::ranges::any_of(option->get_lnames(), [](const std::string& name) {
-      return name == "out" || name == "save" || name == "certificate" || name == "store" ||
-             name == "page" || name == "pictures";
-    });
-    option->check([is_place](const std::string& text) -> std::string {
+    option->check([is_place = is_place(*option)](const std::string& text) -> std::string {
       if (!text.empty()) return {};
       return is_place ? "'' cannot be used; use the name of a file or folder"
                       : "'' cannot be used; use a word, or leave it out";
     });
   }
   for (CLI::App* command : app.get_subcommands(nullptr)) refuse_empty_words(*command);
+}
+
+// A file that the command reads is not where it writes: a measurement would be lost.
+void refuse_writing_over_what_is_read(const CLI::App& command) {
+  const auto is_one_file = [](const std::string& one, const std::string& other) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(one, ignored) &&
+           std::filesystem::equivalent(one, other, ignored);
+  };
+  for (const CLI::Option* place : command.get_options()) {
+    if (!is_place(*place)) continue;
+    for (const CLI::Option* other : command.get_options()) {
+      if (is_place(*other)) continue;
+      for (const std::string& written : place->results()) {
+        for (const std::string& read : other->results()) {
+          if (!is_one_file(written, read)) continue;
+          throw CLI::ValidationError(
+              place->get_name(),
+              fmt::format("'{}' is read by this command; write to another file", written));
+        }
+      }
+    }
+  }
 }
 
 int run_command_line(int argc, char** argv, const Registry& registry) {
@@ -136,6 +164,8 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   add_submit_command(app, status, registry);
   add_describe_command(app);
   refuse_empty_words(app);
+  // When all words are read, before a subcommand begins.
+  app.parse_complete_callback([&app] { refuse_writing_over_what_is_read(innermost(app)); });
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

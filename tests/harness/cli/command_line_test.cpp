@@ -146,6 +146,27 @@ TEST(CommandLine, NothingIsWrittenToAPlaceWithoutAName) {
   }
 }
 
+TEST(CommandLine, WhatIsReadIsNotWrittenOver) {
+  const TemporaryFolder folder;
+  const std::string data = (folder / "joint.csv").string();
+  const std::string rows = "x,y\n1,2\n2,4.5\n3,5.5\n4,8\n";
+  write_text(data, rows);
+  std::filesystem::create_symlink("joint.csv", folder / "link");
+  const std::string link = (folder / "link").string();
+  const Words fit = {"fit", data, "--target", "y", "--inputs", "x", "--method", "linear"};
+  for (const Words& words :
+       {with(with(fit, "--save"), data), with(with(fit, "--save"), link),
+        Words{"predict", "2*x", data, "--out", data}, Words{"predict", "2*x", link, "--out", data},
+        Words{"world", "w", "execute", data, "--out", link}}) {
+    const ProgramRun run = run_tribench(words);
+    EXPECT_EQ(run.status, 2) << words.front();
+    EXPECT_THAT(run.errors, HasSubstr("is read by this command")) << words.front();
+  }
+  EXPECT_EQ(read_text(data), rows);
+  EXPECT_EQ(run_tribench({"predict", "2*x", data, "--out", (folder / "new").string()}).status, 0);
+  EXPECT_EQ(run_tribench({"predict", "2*x", data, "--out", (folder / "new").string()}).status, 0);
+}
+
 // A shell's variable that was not set: nothing would be held out, verified or compared.
 TEST(CommandLine, AnEmptyWordIsNotTakenForAnOptionThatWasNotGiven) {
   for (const Words& words :
