@@ -258,7 +258,8 @@ std::vector<double> gains_of(const Contrast& contrast, const Assessment& now,
              movement.counts, now.noise, now.variance);
     const BlockInformation after = information(gram, contrast.mean);
     const double shows = 0.5 * (after.squares - before.squares);
-    const double fades = (0.5 + 2 / p) * (after.log_determinant - before.log_determinant);
+    const double fades = (0.5 + static_cast<double>(kMomentOrder) / p) *
+                         (after.log_determinant - before.log_determinant);
     const double gain = contrast.if_there * shows + (1 - contrast.if_there) * fades;
     if (std::isfinite(gain) && gain > 0) gains.back() = gain;
   }

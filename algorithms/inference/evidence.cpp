@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "foundation/elementary.hpp"
@@ -37,27 +38,56 @@ struct NormalGamma {
   double precision;
 };
 
-// Expectation of the fourth power of the effect, over that under the prior's unit covariance.
-double fourth_power(const Eigen::MatrixXd& metric, const NormalGamma& over) {
+// Expectation of the effect's square to the power of the moment prior's order, over that under the
+// prior's unit covariance. By the cumulants of a quadratic form of normal variables (Mathai and
+// Provost 1992, theorem 3.2b.2), each linear in the precision; so moments are polynomials of it.
+double prior_moment(const Eigen::MatrixXd& metric, const NormalGamma& over) {
   const Eigen::Index size = over.mean.size();
   const Eigen::MatrixXd own =
       metric.size() > 0 ? metric
                         : Eigen::MatrixXd::Identity(size, size) / static_cast<double>(size);
-  const Eigen::MatrixXd spread = own * over.covariance;
-  const Eigen::VectorXd weighed = own * over.mean;
-  const double trace = spread.trace();
-  const double length = over.precision * over.mean.dot(weighed);
-  const double both = over.precision * weighed.dot(over.covariance * weighed);
-  const double squares = length * length * (1 + 2 / over.degrees_of_freedom) + 2 * length * trace +
-                         trace * trace + 4 * both +
-                         2 * spread.cwiseProduct(spread.transpose()).sum();
-  return squares / (1 + 2 * own.squaredNorm());
+  using Polynomial = std::array<double, kMomentOrder + 1>;  // of the precision
+  const auto moment = [&](const Eigen::MatrixXd& covariance, const Eigen::VectorXd& mean) {
+    const Eigen::MatrixXd spread = own * covariance;
+    Eigen::MatrixXd power = spread;
+    Eigen::VectorXd weighed = own * mean;
+    std::array<std::array<double, 2>, kMomentOrder + 1> cumulants{};
+    double factor = 1;  // 2^(s - 1) (s - 1)!
+    for (std::size_t s = 1; s <= kMomentOrder; ++s) {
+      cumulants[s] = {factor * power.trace(), factor * static_cast<double>(s) * mean.dot(weighed)};
+      weighed = spread * weighed;
+      power = spread * power;
+      factor *= 2 * static_cast<double>(s);
+    }
+    std::array<Polynomial, kMomentOrder + 1> moments{};
+    moments[0][0] = 1;
+    for (std::size_t n = 1; n <= kMomentOrder; ++n) {
+      double choose = 1;  // of n - 1, k
+      for (std::size_t k = 0; k < n; ++k) {
+        for (std::size_t d = 0; d <= k; ++d) {
+          moments[n][d] += choose * cumulants[n - k][0] * moments[k][d];
+          moments[n][d + 1] += choose * cumulants[n - k][1] * moments[k][d];
+        }
+        choose *= static_cast<double>(n - 1 - k) / static_cast<double>(k + 1);
+      }
+    }
+    return moments[kMomentOrder];
+  };
+  const Polynomial here = moment(over.covariance, over.mean);
+  double expected = 0;
+  double power = 1;  // expectation of the precision's
+  for (std::size_t d = 0; d <= kMomentOrder; ++d) {
+    expected += power * here[d];
+    power *= over.precision * (1 + 2 * static_cast<double>(d) / over.degrees_of_freedom);
+  }
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(size, size);
+  return expected / moment(unit, Eigen::VectorXd::Zero(size))[0];
 }
 
 }  // namespace
 
 double prior_variance(const EffectBlock& block) {
-  return block.size * block.size / (2 * static_cast<double>(block.columns.size()));
+  return block.size * block.size / static_cast<double>(kMomentOrder * block.columns.size());
 }
 
 // Of the columns, those of a block times its prior's spread, then what the misfits' have for
@@ -197,7 +227,7 @@ double EvidenceTable::log_factor(std::span<const EffectBlock* const> blocks) con
     const auto size = static_cast<Eigen::Index>(block->columns.size());
     const Eigen::MatrixXd roots = inverse.middleCols(first, size);
     nats += elementary::log(
-        fourth_power(block->metric, {solved.mean.segment(first, size), roots.transpose() * roots,
+        prior_moment(block->metric, {solved.mean.segment(first, size), roots.transpose() * roots,
                                      dof_, dof_ / solved.squares}));
     first += size;
   }

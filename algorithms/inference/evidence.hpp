@@ -6,10 +6,11 @@
 // Base coefficients and the noise's standard deviation have their invariant priors (flat, 1/sigma),
 // so that the factor is one of the residual's direction and length alone; under the base its
 // expectation is 1 at any stopping time (a test martingale), whatever base and noise are. A block's
-// coefficients have a normal prior (covariance sigma^2 size^2 / 2 over the number of its columns)
-// times the fourth power of the effect that they make (its square by the block's metric; the sum of
-// squares without one): nothing near no effect, likeliest about 1.4 times the block's size. A block
-// that is absent is ruled out at the rate n^(2 + p/2) instead of n^(p/2). Columns that are nearly
+// coefficients have a normal prior (covariance sigma^2 size^2 / 4 over the number of its columns)
+// times the eighth power of the effect that they make (its square by the block's metric; the sum of
+// squares without one): a moment prior of order 4. It has nothing near no effect and is likeliest
+// about 1.4 times the block's size, whatever the order. A block that is absent is ruled out at the
+// rate n^(4 + p/2) instead of n^(p/2). Columns that are nearly
 // alike make no effect where they cancel. The power's expectation is taken at the posterior, block
 // by block.
 //
@@ -31,6 +32,9 @@
 #include <vector>
 
 namespace tribench::loop {
+
+// Order of the moment prior: the power of the effect's square.
+inline constexpr std::size_t kMomentOrder = 4;
 
 // Columns by number.
 using ColumnBlock = std::vector<Eigen::Index>;

@@ -66,7 +66,7 @@ TEST(EvidenceTable, FavoursWhatIsThere) {
   EXPECT_EQ(table.degrees_of_freedom(), 199);
 }
 
-// A column that explains nothing at all is ruled out at the rate n^(5/2).
+// A column that explains nothing at all is ruled out at the rate n^(9/2).
 TEST(EvidenceTable, AnAbsentColumnCostsAsItsRowsDo) {
   Eigen::MatrixXd column(100, 1);
   Eigen::VectorXd target(100);
@@ -75,11 +75,11 @@ TEST(EvidenceTable, AnAbsentColumnCostsAsItsRowsDo) {
     target[i] = i % 4 < 2 ? 1 : -1;
   }
   const EvidenceTable table = table_of(Eigen::MatrixXd::Ones(100, 1), column, target);
-  EXPECT_NEAR(log_factor(table, {{0}}), -2.5 * std::log(51), 1e-10);
-  EXPECT_NEAR(log_factor(table, {{0}, 2}), -2.5 * std::log(201), 1e-10);
+  EXPECT_NEAR(log_factor(table, {{0}}), -4.5 * std::log(26), 1e-10);
+  EXPECT_NEAR(log_factor(table, {{0}, 2}), -4.5 * std::log(101), 1e-10);
 }
 
-// One column: a normal prior of a variance, a noise of unknown size, and the fourth power of the
+// One column: a normal prior of a variance, a noise of unknown size, and the eighth power of the
 // coefficient, its mean over the posterior against that over the prior.
 TEST(EvidenceTable, OfOneColumnIsWhatIntegrationGives) {
   constexpr Eigen::Index kMany = 64;
@@ -91,17 +91,23 @@ TEST(EvidenceTable, OfOneColumnIsWhatIntegrationGives) {
   }
   const EvidenceTable table = table_of(Eigen::MatrixXd::Ones(kMany, 1), column, target);
   for (const double size : {0.5, 1.0, 3.0}) {
-    const double prior = size * size / 2;
+    const double prior = size * size / 4;
     const double dof = kMany - 1;
     const double before = target.squaredNorm();
     const double covariance = 1 / (1 + kMany * prior);  // in units of the prior's
     const double product = column.dot(target) * std::sqrt(prior);
     const double after = before - product * product * covariance;
     const double length = product * covariance * product * covariance * dof / after;
-    const double fourth =
-        length * length * (1 + 2 / dof) + 6 * length * covariance + 3 * covariance * covariance;
-    const double expected =
-        0.5 * std::log(covariance) - dof / 2 * std::log(after / before) + std::log(fourth / 3);
+    // Moments of the precision over its mean, to the powers 2, 3 and 4.
+    const double second = 1 + 2 / dof;
+    const double third = second * (1 + 4 / dof);
+    const double fourth = third * (1 + 6 / dof);
+    const double eighth_power =
+        fourth * std::pow(length, 4) + 28 * third * std::pow(length, 3) * covariance +
+        210 * second * std::pow(length * covariance, 2) + 420 * length * std::pow(covariance, 3) +
+        105 * std::pow(covariance, 4);
+    const double expected = 0.5 * std::log(covariance) - dof / 2 * std::log(after / before) +
+                            std::log(eighth_power / 105);
     EXPECT_NEAR(log_factor(table, {{0}, size}), expected, 1e-9) << size;
   }
 }
@@ -153,7 +159,7 @@ TEST(EvidenceTable, AbsentColumnsCostWhatEachOfThemDoesInAnyUnit) {
     for (Eigen::Index j = 0; j < kBlocks; ++j) blocks.push_back({{j}});
     std::vector<const EffectBlock*> all;
     for (const EffectBlock& block : blocks) all.push_back(&block);
-    const double each = -2.5 * std::log1p(0.5 * kMany * unit * unit);
+    const double each = -4.5 * std::log1p(0.25 * kMany * unit * unit);
     const EvidenceTable table = table_of(Eigen::MatrixXd::Ones(kMany, 1), columns, target);
     EXPECT_NEAR(table.log_factor(all), kBlocks * each, 1e-9 * std::abs(each));
   }
@@ -213,7 +219,7 @@ TEST(EvidenceTable, PosteriorIsThatOfTheNormalPrior) {
   const EffectBlock one = {{0}};
   const EffectBlock two = {{1, 2}};
   const auto found = table.posterior(std::array<const EffectBlock*, 2>{&one, &two});
-  const Eigen::Vector3d precision(2, 4, 4);
+  const Eigen::Vector3d precision(4, 8, 8);
   const Eigen::MatrixXd normal =
       columns.transpose() * columns + Eigen::MatrixXd(precision.asDiagonal());
   const Eigen::VectorXd mean = normal.inverse() * columns.transpose() * target;
