@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Anyone's own method of diagnosis in the study of the closed loop: a program in any language,
-// run once a case. The protocol is docs/own_diagnosis.md. It is judged like the loop itself; it sees
-// the training movements and the held-out ones without their target.
+// run once a case. The protocol is docs/own_diagnosis.md. It is judged like the loop itself; it
+// sees the training movements and the held-out ones without their target.
 #pragma once
 
 #include <string>
