@@ -38,50 +38,57 @@ struct NormalGamma {
   double precision;
 };
 
+// Cumulants of an effect's square, a quadratic form of normal variables, from the first on: each is
+// one number and another times the precision. Source: Mathai and Provost 1992, theorem 3.2b.2.
+using Cumulants = std::array<std::array<double, 2>, kMomentOrder + 1>;
+Cumulants cumulants_of(const Eigen::MatrixXd& metric, const Eigen::VectorXd& mean,
+                       const Eigen::MatrixXd& covariance) {
+  const Eigen::MatrixXd spread = metric * covariance;
+  Eigen::MatrixXd power = spread;
+  Eigen::VectorXd weighed = metric * mean;
+  Cumulants cumulants{};
+  double factor = 1;  // 2^(s - 1) (s - 1)!
+  for (std::size_t s = 1; s <= kMomentOrder; ++s) {
+    cumulants[s] = {factor * power.trace(), factor * static_cast<double>(s) * mean.dot(weighed)};
+    weighed = spread * weighed;
+    power = spread * power;
+    factor *= 2 * static_cast<double>(s);
+  }
+  return cumulants;
+}
+
+// The moment of the prior's order, as a polynomial of the precision.
+using Polynomial = std::array<double, kMomentOrder + 1>;
+Polynomial moment_of(const Cumulants& cumulants) {
+  std::array<Polynomial, kMomentOrder + 1> moments{};
+  moments[0][0] = 1;
+  for (std::size_t n = 1; n <= kMomentOrder; ++n) {
+    double choose = 1;  // of n - 1, k
+    for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t d = 0; d <= k; ++d) {
+        moments[n][d] += choose * cumulants[n - k][0] * moments[k][d];
+        moments[n][d + 1] += choose * cumulants[n - k][1] * moments[k][d];
+      }
+      choose *= static_cast<double>(n - 1 - k) / static_cast<double>(k + 1);
+    }
+  }
+  return moments[kMomentOrder];
+}
+
 // Expectation of the effect's square to the power of the moment prior's order, over that under the
-// prior's unit covariance. By the cumulants of a quadratic form of normal variables (Mathai and
-// Provost 1992, theorem 3.2b.2), each linear in the precision; so moments are polynomials of it.
+// prior's unit covariance.
 double prior_moment(const Eigen::MatrixXd& metric, const NormalGamma& over) {
   const Eigen::Index size = over.mean.size();
-  const Eigen::MatrixXd own =
-      metric.size() > 0 ? metric
-                        : Eigen::MatrixXd::Identity(size, size) / static_cast<double>(size);
-  using Polynomial = std::array<double, kMomentOrder + 1>;  // of the precision
-  const auto moment = [&](const Eigen::MatrixXd& covariance, const Eigen::VectorXd& mean) {
-    const Eigen::MatrixXd spread = own * covariance;
-    Eigen::MatrixXd power = spread;
-    Eigen::VectorXd weighed = own * mean;
-    std::array<std::array<double, 2>, kMomentOrder + 1> cumulants{};
-    double factor = 1;  // 2^(s - 1) (s - 1)!
-    for (std::size_t s = 1; s <= kMomentOrder; ++s) {
-      cumulants[s] = {factor * power.trace(), factor * static_cast<double>(s) * mean.dot(weighed)};
-      weighed = spread * weighed;
-      power = spread * power;
-      factor *= 2 * static_cast<double>(s);
-    }
-    std::array<Polynomial, kMomentOrder + 1> moments{};
-    moments[0][0] = 1;
-    for (std::size_t n = 1; n <= kMomentOrder; ++n) {
-      double choose = 1;  // of n - 1, k
-      for (std::size_t k = 0; k < n; ++k) {
-        for (std::size_t d = 0; d <= k; ++d) {
-          moments[n][d] += choose * cumulants[n - k][0] * moments[k][d];
-          moments[n][d + 1] += choose * cumulants[n - k][1] * moments[k][d];
-        }
-        choose *= static_cast<double>(n - 1 - k) / static_cast<double>(k + 1);
-      }
-    }
-    return moments[kMomentOrder];
-  };
-  const Polynomial here = moment(over.covariance, over.mean);
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(size, size);
+  const Eigen::MatrixXd own = metric.size() > 0 ? metric : unit / static_cast<double>(size);
+  const Polynomial moment = moment_of(cumulants_of(own, over.mean, over.covariance));
   double expected = 0;
   double power = 1;  // expectation of the precision's
   for (std::size_t d = 0; d <= kMomentOrder; ++d) {
-    expected += power * here[d];
+    expected += power * moment[d];
     power *= over.precision * (1 + 2 * static_cast<double>(d) / over.degrees_of_freedom);
   }
-  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(size, size);
-  return expected / moment(unit, Eigen::VectorXd::Zero(size))[0];
+  return expected / moment_of(cumulants_of(own, Eigen::VectorXd::Zero(size), unit))[0];
 }
 
 }  // namespace
