@@ -156,10 +156,19 @@ std::size_t Pruner::least_needed(const Expression& formula, std::uint64_t& node_
   return least;
 }
 
+// CPU seconds that a fit may take, roughly: a fit does not look at the clock. Of hundreds of terms
+// on thousands of rows it takes seconds.
+static double fit_seconds(const Expression& formula, std::size_t rows) {
+  constexpr double kPasses = 10;  // over products of all pairs of constants
+  constexpr double kProductsPerSecond = 2e9;
+  const auto constants = static_cast<double>(movable_constants(formula).size());
+  return kPasses * constants * constants / 2 * static_cast<double>(rows) / kProductsPerSecond;
+}
+
 std::vector<Pruner::Step> Pruner::path(Expression formula, std::size_t fewest, Budget& budget,
                                        Budget& clock) {
   std::vector<Step> steps;
-  while (true) {
+  while (fit_seconds(formula, problem_->rows()) < clock.remaining_seconds()) {
     const ConstantFitResult fit = fitter_.fit(formula, problem_->inputs(), problem_->target());
     std::uint64_t cost = fit.node_rows;
     if (fit.status == FitStatus::not_finite || fit.status == FitStatus::no_constants) break;
