@@ -14,7 +14,7 @@ namespace {
 
 // Starts at the true constants, so that the minimum found is theirs.
 Expression refit_law(const Problem& problem) {
-  constexpr ConstantFitOptions kToConvergence{.max_iterations = 100, .function_tolerance = 1e-12};
+  const ConstantFitOptions to_convergence{.max_iterations = 100, .function_tolerance = 1e-12};
   const std::vector<std::string> names = problem.input_names();
   TableEvaluator evaluator;
   Expression whole;
@@ -25,7 +25,7 @@ Expression refit_law(const Problem& problem) {
       for (std::size_t r = 0; r < left.size(); ++r) left[r] -= explained[r];
     }
     Expression law = parse(stage.law, names);
-    ConstantFitter().fit(law, TableInputs(stage.train).inputs(), left, {}, kToConvergence);
+    ConstantFitter().fit(law, TableInputs(stage.train).inputs(), left, {}, to_convergence);
     whole = whole.empty() ? law : Expression::binary(Op::add, whole, law);
   }
   return whole;

@@ -2,6 +2,7 @@
 #include "algorithms/expression/differentiate.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "algorithms/expression/backward_pass.hpp"
 #include "algorithms/expression/column_kernels.hpp"
@@ -98,10 +99,11 @@ double Differentiator::residuals(std::span<const double> target, std::span<const
 }
 
 double Differentiator::sum_squares(const Inputs& inputs, std::span<const double> target,
-                                   std::span<const double> weights) {
+                                   std::span<const double> weights, const InTime& in_time) {
   const std::size_t block = begin_blocks(inputs.rows);
   double sum = 0;
   for (std::size_t row = 0; row < inputs.rows; row += block) {
+    if (in_time && !in_time()) return std::numeric_limits<double>::quiet_NaN();
     const std::size_t n = std::min(block, inputs.rows - row);
     block_.forward(plan_, inputs, row, n);
     sum += residuals(target, weights, row, n);
@@ -111,7 +113,8 @@ double Differentiator::sum_squares(const Inputs& inputs, std::span<const double>
 }
 
 void Differentiator::normal_equations(const Inputs& inputs, std::span<const double> target,
-                                      std::span<const double> weights, NormalEquations& result) {
+                                      std::span<const double> weights, NormalEquations& result,
+                                      const InTime& in_time) {
   const std::size_t p = plan_.parameters();
   const bool reuse = values_are_current_;
   const std::size_t block = begin_blocks(inputs.rows);
@@ -119,6 +122,11 @@ void Differentiator::normal_equations(const Inputs& inputs, std::span<const doub
   result.gradient.assign(p, 0);
   result.curvature.assign(p * p, 0);
   for (std::size_t row = 0; row < inputs.rows; row += block) {
+    if (in_time && !in_time()) {
+      result.sum_squares = std::numeric_limits<double>::quiet_NaN();
+      std::ranges::fill(result.gradient, result.sum_squares);
+      return;
+    }
     const std::size_t n = std::min(block, inputs.rows - row);
     if (!reuse) block_.forward(plan_, inputs, row, n);
     result.sum_squares += residuals(target, weights, row, n);

@@ -18,6 +18,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,10 @@
 #include "algorithms/expression/expression.hpp"
 
 namespace tribench {
+
+// Whether there is time to go on; empty: always. Asked before every block of rows, for what takes
+// seconds (the sums of hundreds of constants).
+using InTime = std::function<bool()>;
 
 // The sums of a weighted least-squares problem at one point, residual r = f - target.
 struct NormalEquations {
@@ -53,13 +58,15 @@ class Differentiator {
   // empty where they are not wanted.
   void jacobian(const Inputs& inputs, std::span<double> values, std::span<double> jacobian);
 
-  // sum_r w_r (f(r) - target[r])^2; weights may be empty (all 1).
+  // sum_r w_r (f(r) - target[r])^2; weights may be empty (all 1). NaN where the time was too short.
   double sum_squares(const Inputs& inputs, std::span<const double> target,
-                     std::span<const double> weights);
+                     std::span<const double> weights, const InTime& in_time = {});
   // All sums of least squares. Only after `prepare` with constants. Where the call before was
-  // `sum_squares` with the same arguments and constants, its values are used again.
+  // `sum_squares` with the same arguments and constants, its values are used again. The sum of
+  // squares and the gradient are NaN where the time was too short.
   void normal_equations(const Inputs& inputs, std::span<const double> target,
-                        std::span<const double> weights, NormalEquations& result);
+                        std::span<const double> weights, NormalEquations& result,
+                        const InTime& in_time = {});
 
  private:
   std::size_t begin_blocks(std::size_t rows);

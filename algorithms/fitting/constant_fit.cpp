@@ -36,6 +36,8 @@ struct ConstantFitter::Workspace : public LeastSquaresProblem {
   std::uint64_t pass_cost = 0;
   std::uint64_t spent = 0;
   std::size_t linear = 0;
+  InTime in_time;    // of this fit; empty: no clock is watched
+  bool cut = false;  // by it
 
   Differentiator differentiator;
   LevenbergMarquardt minimizer;
@@ -54,6 +56,7 @@ struct ConstantFitter::Workspace : public LeastSquaresProblem {
   void solve_linear();
   double sum_squares(std::span<const double> x) override;
   void normal_equations(NormalEquations& result) override;
+  bool may_go_on() const override { return !cut; }
 };
 
 void ConstantFitter::Workspace::choose_constants(const Expression& formula, bool fit_exponents) {
@@ -75,7 +78,7 @@ void ConstantFitter::Workspace::put_linear_first(const Expression& formula) {
 double ConstantFitter::Workspace::plain_sum_squares() {
   spent += pass_cost;
   differentiator.set_constants(constants);
-  return differentiator.sum_squares(*inputs, target, weights);
+  return differentiator.sum_squares(*inputs, target, weights, in_time);
 }
 
 // The linear constants' step to their best values, from the sums at hand: step = -A^-1 g.
@@ -97,7 +100,7 @@ double ConstantFitter::Workspace::sum_squares(std::span<const double> x) {
   if (linear == 0) return plain_sum_squares();
   spent += kPassWithSums * pass_cost;
   differentiator.set_constants(constants);
-  differentiator.normal_equations(*inputs, target, weights, sums);
+  differentiator.normal_equations(*inputs, target, weights, sums, in_time);
   if (!std::isfinite(sums.sum_squares)) return sums.sum_squares;
   solve_linear();
   double sum = sums.sum_squares;
@@ -117,12 +120,12 @@ double ConstantFitter::Workspace::sum_squares(std::span<const double> x) {
 void ConstantFitter::Workspace::normal_equations(NormalEquations& result) {
   spent += kPassWithSums * pass_cost;
   if (linear == 0) {
-    differentiator.normal_equations(*inputs, target, weights, result);
+    differentiator.normal_equations(*inputs, target, weights, result, in_time);
     return;
   }
   for (std::size_t k = 0; k < linear; ++k) constants[k] += step[k];
   differentiator.set_constants(constants);
-  differentiator.normal_equations(*inputs, target, weights, sums);
+  differentiator.normal_equations(*inputs, target, weights, sums, in_time);
   const std::size_t p = places.size();
   const std::size_t q = p - linear;
   result.sum_squares = sums.sum_squares;
@@ -174,8 +177,17 @@ ConstantFitResult ConstantFitter::fit(Expression& formula, const Inputs& inputs,
   work.constants.clear();
   for (std::size_t place : work.places) work.constants.push_back(formula.node(place).value);
   work.differentiator.prepare(formula, work.places);
+  work.cut = false;
+  work.in_time = {};
+  if (options.in_time) {
+    work.in_time = [&work, &options] {
+      work.cut = work.cut || !options.in_time();
+      return !work.cut;
+    };
+  }
   const double given = work.plain_sum_squares();
-  ConstantFitResult result{FitStatus::not_finite, given, 0, work.spent};
+  ConstantFitResult result{work.cut ? FitStatus::out_of_time : FitStatus::not_finite, given, 0,
+                           work.spent};
   if (!std::isfinite(given)) return result;
   if (work.places.empty()) {
     result.status = FitStatus::no_constants;
@@ -194,6 +206,7 @@ ConstantFitResult ConstantFitter::fit(Expression& formula, const Inputs& inputs,
   }
   const double reached = work.plain_sum_squares();
   result.node_rows = work.spent;
+  if (work.cut) result.status = FitStatus::out_of_time;
   if (!(reached < given)) return result;
   result.sum_squares = reached;
   for (std::size_t k = 0; k < work.places.size(); ++k) {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 
+#include "algorithms/expression/differentiate.hpp"
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/fitting/levenberg_marquardt.hpp"
@@ -26,6 +27,7 @@ struct ConstantFitOptions {
   // constants given must keep to them.
   std::span<const double> low = {};
   std::span<const double> high = {};
+  InTime in_time = {};  // once it says no, the fit ends and leaves the constants as they were given
 };
 
 struct ConstantFitResult {

@@ -110,6 +110,10 @@ void LevenbergMarquardt::iterate(LeastSquaresProblem& problem, std::vector<doubl
   result.status = FitStatus::converged;
   while (result.iterations < options.max_iterations) {
     if (largest_scaled_gradient() <= options.gradient_tolerance) return;
+    if (!problem.may_go_on()) {
+      result.status = FitStatus::out_of_time;
+      return;
+    }
     result.iterations += 1;
     double sum = result.sum_squares;
     double gain = -1;

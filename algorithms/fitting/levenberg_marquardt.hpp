@@ -20,7 +20,8 @@ namespace tribench {
 enum class FitStatus {
   converged,  // gradient, step or decrease below tolerance
   max_iterations,
-  not_finite,  // the sum of squares or its derivatives are not finite at the start
+  out_of_time,  // the problem stopped it
+  not_finite,   // the sum of squares or its derivatives are not finite at the start
   no_constants,
 };
 
@@ -31,6 +32,8 @@ class LeastSquaresProblem {
   virtual double sum_squares(std::span<const double> x) = 0;
   // Sums at the point `sum_squares` was asked for last.
   virtual void normal_equations(NormalEquations& sums) = 0;
+  // Whether another point may be asked for.
+  virtual bool may_go_on() const { return true; }
 };
 
 struct LevenbergMarquardtOptions {

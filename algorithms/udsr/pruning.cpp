@@ -126,16 +126,17 @@ Expression without_term(const Expression& formula, std::size_t place) {
   return result;
 }
 
-std::size_t Pruner::least_needed(const Expression& formula, std::uint64_t& node_rows) {
+std::size_t Pruner::least_needed(const Expression& formula, const InTime& in_time,
+                                 std::uint64_t& node_rows) {
   const std::vector<std::size_t> constants = movable_constants(formula);
   const std::vector<std::size_t> parents = parents_of(formula);
   differentiator_.prepare(formula, constants);
   NormalEquations normal;
-  differentiator_.normal_equations(problem_->inputs(), problem_->target(), {}, normal);
+  differentiator_.normal_equations(problem_->inputs(), problem_->target(), {}, normal, in_time);
   node_rows += 4 * tribench::node_rows(formula, problem_->rows());
   const auto p = static_cast<Eigen::Index>(constants.size());
   Eigen::MatrixXd curvature = Eigen::Map<const Eigen::MatrixXd>(normal.curvature.data(), p, p);
-  if (p == 0 || !curvature.allFinite()) return formula.size();
+  if (p == 0 || !std::isfinite(normal.sum_squares) || !curvature.allFinite()) return formula.size();
   // Scaled to a unit diagonal; the ridge lets redundant terms be told apart at all.
   const Eigen::VectorXd scale = curvature.diagonal().cwiseSqrt().cwiseMax(1e-150);
   curvature = scale.cwiseInverse().asDiagonal() * curvature * scale.cwiseInverse().asDiagonal();
@@ -156,27 +157,24 @@ std::size_t Pruner::least_needed(const Expression& formula, std::uint64_t& node_
   return least;
 }
 
-// CPU seconds that a fit may take, roughly: a fit does not look at the clock. Of hundreds of terms
-// on thousands of rows it takes seconds.
-static double fit_seconds(const Expression& formula, std::size_t rows) {
-  constexpr double kPasses = 10;  // over products of all pairs of constants
-  constexpr double kProductsPerSecond = 2e9;
-  const auto constants = static_cast<double>(movable_constants(formula).size());
-  return kPasses * constants * constants / 2 * static_cast<double>(rows) / kProductsPerSecond;
-}
-
 std::vector<Pruner::Step> Pruner::path(Expression formula, std::size_t fewest, Budget& budget,
                                        Budget& clock) {
   std::vector<Step> steps;
-  while (fit_seconds(formula, problem_->rows()) < clock.remaining_seconds()) {
-    const ConstantFitResult fit = fitter_.fit(formula, problem_->inputs(), problem_->target());
+  // Of hundreds of terms on thousands of rows a single step takes seconds.
+  const InTime in_time = [&clock] { return clock.in_time(); };
+  while (true) {
+    const ConstantFitResult fit =
+        fitter_.fit(formula, problem_->inputs(), problem_->target(), {}, {.in_time = in_time});
     std::uint64_t cost = fit.node_rows;
-    if (fit.status == FitStatus::not_finite || fit.status == FitStatus::no_constants) break;
+    if (fit.status == FitStatus::not_finite || fit.status == FitStatus::no_constants ||
+        fit.status == FitStatus::out_of_time) {
+      break;
+    }
     const double mean = fit.sum_squares / static_cast<double>(problem_->rows());
     steps.push_back(
         {formula, std::sqrt(problem_->variance() > 0 ? mean / problem_->variance() : mean)});
     if (movable_constants(formula).size() <= fewest) break;
-    const std::size_t term = least_needed(formula, cost);
+    const std::size_t term = least_needed(formula, in_time, cost);
     budget.spend(cost);
     if (!clock.in_time() || term == formula.size()) break;
     formula = without_term(formula, term);

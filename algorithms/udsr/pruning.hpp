@@ -39,7 +39,8 @@ class Pruner {
 
  private:
   // The place of the term to drop, or the size of the tape where none can be.
-  std::size_t least_needed(const Expression& formula, std::uint64_t& node_rows);
+  std::size_t least_needed(const Expression& formula, const InTime& in_time,
+                           std::uint64_t& node_rows);
 
   const ScoringProblem* problem_;
   ConstantFitter fitter_;

@@ -161,6 +161,32 @@ TEST(ConstantFit, SaysSoWhereThereIsNothingToFitOrNothingFinite) {
   EXPECT_EQ(ConstantFitter().fit(bad, curve.inputs(), curve.y).status, FitStatus::not_finite);
 }
 
+TEST(ConstantFit, LeavesTheFormulaAsItWasWhenItsTimeRunsOut) {
+  Curve curve = curve_of(kParFam);
+  for (int allowed = 0; allowed < 12; ++allowed) {
+    const Expression given = parse("1*exp(1*v)/(1 + 2*s*v)", kNames);
+    Expression formula = given;
+    int asked = 0;
+    const ConstantFitResult result = ConstantFitter().fit(
+        formula, curve.inputs(), curve.y, {}, {.in_time = [&] { return ++asked <= allowed; }});
+    EXPECT_EQ(result.status, FitStatus::out_of_time) << allowed;
+    EXPECT_LE(asked, allowed + 1);  // once it has said no it is not asked again
+    EXPECT_EQ(formula, given);
+  }
+}
+
+TEST(ConstantFit, AClockThatNeverRunsOutChangesNothing) {
+  Curve curve = curve_of(kParFam);
+  Expression with = parse("1*exp(1*v)/(1 + 2*s*v)", kNames);
+  Expression without = with;
+  const ConstantFitResult watched =
+      ConstantFitter().fit(with, curve.inputs(), curve.y, {}, {.in_time = [] { return true; }});
+  const ConstantFitResult plain = ConstantFitter().fit(without, curve.inputs(), curve.y);
+  EXPECT_EQ(watched.status, plain.status);
+  EXPECT_EQ(watched.node_rows, plain.node_rows);
+  EXPECT_EQ(with, without);
+}
+
 TEST(ConstantFit, SurvivesRedundantConstants) {
   Curve curve = curve_of("6*v");
   Expression formula = parse("1*(1*(1*v)) + 0*s", kNames);
