@@ -20,35 +20,6 @@ constexpr double kExactSurface = 1e-7;  // of the target's spread
 constexpr double kAllNoise = 0.95;      // of its own spread, of what is left
 constexpr std::size_t kHeldOut = 6;     // every so many rows one
 
-// An input on [-1, 1] with Chebyshev polynomials of it, and their slopes by the input itself.
-struct Coordinate {
-  std::vector<std::vector<double>> values;  // [degree][row]
-  std::vector<std::vector<double>> slopes;
-
-  Coordinate(const Factor& input, bool is_log, std::size_t degree) {
-    std::vector<double> place = is_log ? input.logs : input.values;
-    const auto [low, high] = std::ranges::minmax(place);
-    const double scale = high > low ? 2 / (high - low) : 0;
-    std::vector<double> inner(place.size());  // of the place by the input
-    for (std::size_t r = 0; r < place.size(); ++r) {
-      inner[r] = is_log ? scale / input.values[r] : scale;
-      place[r] = scale * (place[r] - low) - 1;
-    }
-    values.assign(degree + 1, std::vector<double>(place.size(), 1.0));
-    slopes.assign(degree + 1, std::vector<double>(place.size(), 0.0));
-    for (std::size_t k = 1; k <= degree; ++k) {
-      for (std::size_t r = 0; r < place.size(); ++r) {
-        const double before = k > 1 ? values[k - 2][r] : 0;
-        const double slope_before = k > 1 ? slopes[k - 2][r] : 0;
-        const double twice = k > 1 ? 2 : 1;
-        values[k][r] = twice * place[r] * values[k - 1][r] - before;
-        slopes[k][r] =
-            twice * (values[k - 1][r] * inner[r] + place[r] * slopes[k - 1][r]) - slope_before;
-      }
-    }
-  }
-};
-
 using Degrees = std::vector<std::size_t>;  // per input
 
 // The products of the part's inputs from place `next` on; the constant not among them.
@@ -111,6 +82,35 @@ double spread_of(std::span<const double> values) {
 }  // namespace
 
 class Surrogate::Polynomial {
+  // An input on [-1, 1] with Chebyshev polynomials of it, and their slopes by the input itself.
+  struct Coordinate {
+    std::vector<std::vector<double>> values;  // [degree][row]
+    std::vector<std::vector<double>> slopes;
+
+    Coordinate(const Factor& input, bool is_log, std::size_t degree) {
+      std::vector<double> place = is_log ? input.logs : input.values;
+      const auto [low, high] = std::ranges::minmax(place);
+      const double scale = high > low ? 2 / (high - low) : 0;
+      std::vector<double> inner(place.size());  // of the place by the input
+      for (std::size_t r = 0; r < place.size(); ++r) {
+        inner[r] = is_log ? scale / input.values[r] : scale;
+        place[r] = scale * (place[r] - low) - 1;
+      }
+      values.assign(degree + 1, std::vector<double>(place.size(), 1.0));
+      slopes.assign(degree + 1, std::vector<double>(place.size(), 0.0));
+      for (std::size_t k = 1; k <= degree; ++k) {
+        for (std::size_t r = 0; r < place.size(); ++r) {
+          const double before = k > 1 ? values[k - 2][r] : 0;
+          const double slope_before = k > 1 ? slopes[k - 2][r] : 0;
+          const double twice = k > 1 ? 2 : 1;
+          values[k][r] = twice * place[r] * values[k - 1][r] - before;
+          slopes[k][r] =
+              twice * (values[k - 1][r] * inner[r] + place[r] * slopes[k - 1][r]) - slope_before;
+        }
+      }
+    }
+  };
+
  public:
   Polynomial(const std::vector<Factor>& inputs, std::span<const double> target, const Parts& parts,
              bool by_logs, std::size_t degree)
