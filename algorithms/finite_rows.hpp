@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,15 +19,24 @@ struct FiniteRows {
   std::vector<int> movement;
 
   explicit FiniteRows(const TrainingData& data);
+  // Of these those that are taken, by their numbers.
+  FiniteRows(const FiniteRows& all, const std::function<bool(std::size_t)>& is_taken);
 
   std::size_t rows() const { return target.size(); }
   std::span<const double* const> pointers() const { return pointers_; }
   Inputs table() const { return {pointers_, rows()}; }
+  // For methods without states.
+  TrainingData as_data(std::span<const Input> inputs) const {
+    return {inputs, pointers_, target, movement};
+  }
 
   FiniteRows(const FiniteRows&) = delete;
   FiniteRows& operator=(const FiniteRows&) = delete;
 
  private:
+  void add_row(std::span<const double* const> from, std::size_t row, double value, int group);
+  void point_at_columns();
+
   std::vector<const double*> pointers_;
 };
 

@@ -22,6 +22,7 @@
 #include "harness/metrics.hpp"
 #include "harness/stateful_problem.hpp"
 #include "harness/table_evaluator.hpp"
+#include "problems/table.hpp"
 
 namespace tribench {
 namespace {
@@ -36,29 +37,10 @@ std::vector<std::size_t> rows_in(std::span<const double> column, double category
   return rows;
 }
 
-template <typename T>
-std::vector<T> at_rows(const std::vector<T>& values, const std::vector<std::size_t>& rows) {
-  std::vector<T> taken;
-  if (values.empty()) return taken;
-  for (const std::size_t r : rows) taken.push_back(values[r]);
-  return taken;
-}
-
-Table rows_of(const Table& table, const std::vector<std::size_t>& rows) {
-  Table taken;
-  for (const auto& column : table.columns) taken.columns.push_back(at_rows(column, rows));
-  taken.target = at_rows(table.target, rows);
-  taken.movement = at_rows(table.movement, rows);
-  taken.truth = at_rows(table.truth, rows);
-  taken.trail = table.trail;
-  taken.trail_row = at_rows(table.trail_row, rows);
-  return taken;
-}
-
 Problem problem_of(const Problem& problem, const CategoryColumn& column, double category) {
   Problem part = problem;
-  part.stages[0].train = rows_of(problem.stages[0].train, rows_in(column.train, category));
-  part.test = rows_of(problem.test, rows_in(column.test, category));
+  part.stages[0].train = select_rows(problem.stages[0].train, rows_in(column.train, category));
+  part.test = select_rows(problem.test, rows_in(column.test, category));
   return part;
 }
 
@@ -78,7 +60,7 @@ Problem pooled(const Problem& problem, const CategoryColumn& column,
     const double size = root_mean_square(at_rows(target, rows));
     for (const std::size_t r : rows) target[r] /= size;
   }
-  all.test = rows_of(problem.test, {});
+  all.test = select_rows(problem.test, {});
   return all;
 }
 

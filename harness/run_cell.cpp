@@ -26,6 +26,7 @@
 #include "harness/instruction_counter.hpp"
 #include "harness/judge.hpp"
 #include "harness/restarts.hpp"
+#include "harness/searches_anew.hpp"
 #include "harness/stateful_problem.hpp"
 #include "harness/table_evaluator.hpp"
 
@@ -233,15 +234,32 @@ class StageFits {
                 const WidenedMethod& widened, Trace& trace) {
     FitResult first = once(method, random.split(stage), &trace);
     if (!task_.limits.spend) return first;
-    // The trace is the first round's: a later one starts from nothing.
-    const auto again = [&](RandomStream stream, int round) {
-      return widened ? once(*widened(round), stream, nullptr) : once(method, stream, nullptr);
+    const RandomStream later = random.split("again").split(stage);
+    if (data_.rows() > kFewRows) {
+      return rounds(std::move(first), method, widened, budget_, later);
+    }
+    Budget half = budget_.share(budget_.remaining() / 2, 0.5);
+    FitResult result = rounds(std::move(first), method, widened, half, later);
+    budget_.settle(half);
+    const auto search = [&](const TrainingData& rows, RandomStream stream, Budget& part) {
+      return StageFits(rows, task_, part).once(method, stream, nullptr);
     };
-    return fit_until_spent(std::move(first), again, widened != nullptr, data_, budget_,
-                           random.split("again").split(stage));
+    look_at_choice(result, search, data_, budget_, random.split("held out").split(stage));
+    return result;
   }
 
  private:
+  // Further ones in one front with the first, as long as `budget` has something left.
+  FitResult rounds(FitResult first, const Regressor& method, const WidenedMethod& widened,
+                   Budget& budget, const RandomStream& random) {
+    StageFits fits(data_, task_, budget);
+    // The trace is the first round's: a later one starts from nothing.
+    const auto again = [&](RandomStream stream, int round) {
+      return fits.once(widened ? *widened(round) : method, stream, nullptr);
+    };
+    return fit_until_spent(std::move(first), again, widened != nullptr, data_, budget, random);
+  }
+
   FitResult once(const Regressor& method, RandomStream stream, Progress* progress) {
     const TrainingData seen = scaled_.data();
     Budget part = search_part();

@@ -10,6 +10,7 @@
 #include "harness/judge.hpp"
 #include "harness/stateful_problem.hpp"
 #include "harness/table_evaluator.hpp"
+#include "problems/table.hpp"
 
 namespace tribench {
 namespace {
@@ -37,21 +38,6 @@ std::vector<std::size_t> sampled_rows(std::span<const double> weights) {
   return rows;
 }
 
-Table rows_of(const Table& table, const std::vector<std::size_t>& rows) {
-  Table taken;
-  taken.trail = table.trail;
-  for (const std::vector<double>& column : table.columns) {
-    std::vector<double>& values = taken.columns.emplace_back();
-    for (const std::size_t r : rows) values.push_back(column[r]);
-  }
-  for (const std::size_t r : rows) {
-    taken.target.push_back(table.target[r]);
-    taken.movement.push_back(table.movement[r]);
-    if (table.trail != nullptr) taken.trail_row.push_back(table.trail_row[r]);
-  }
-  return taken;
-}
-
 }  // namespace
 
 CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
@@ -59,7 +45,7 @@ CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
                         const WidenedMethod& widened) {
   const Table& table = problem.stages.front().train;
   Problem searched = problem;
-  searched.stages.front().train = rows_of(table, sampled_rows(weights));
+  searched.stages.front().train = select_rows(table, sampled_rows(weights));
   CellResult result = fit_and_judge(searched, method, task, widened);
   if (!is_ok(result.record)) return result;
   // A method's formulas have the same states: their columns are those of the chosen one.

@@ -144,16 +144,23 @@ KnownDataset select_rows(const KnownDataset& source, std::span<const std::size_t
   selected.data.name = source.data.name;
   selected.data.movement_names = source.data.movement_names;
   for (const Channel& channel : source.data.channels) {
-    Channel kept{channel.name, channel.unit, channel.role, {}};
-    kept.values.reserve(rows.size());
-    for (const std::size_t r : rows) kept.values.push_back(channel.values[r]);
-    selected.data.channels.push_back(std::move(kept));
+    selected.data.channels.push_back(
+        {channel.name, channel.unit, channel.role, at_rows(channel.values, rows)});
   }
-  for (const std::size_t r : rows) {
-    selected.data.movement.push_back(source.data.movement[r]);
-    if (!source.truth.empty()) selected.truth.push_back(source.truth[r]);
-  }
+  selected.data.movement = at_rows(source.data.movement, rows);
+  selected.truth = at_rows(source.truth, rows);
   return selected;
+}
+
+Table select_rows(const Table& table, std::span<const std::size_t> rows) {
+  Table taken;
+  for (const auto& column : table.columns) taken.columns.push_back(at_rows(column, rows));
+  taken.target = at_rows(table.target, rows);
+  taken.movement = at_rows(table.movement, rows);
+  taken.truth = at_rows(table.truth, rows);
+  taken.trail = table.trail;
+  taken.trail_row = at_rows(table.trail_row, rows);
+  return taken;
 }
 
 KnownDataset thin(const KnownDataset& source, std::size_t per_movement,

@@ -49,6 +49,18 @@ std::vector<char> draw_test_movements(const Dataset& data, double share, RandomS
 // The rows at the given places, which must increase.
 KnownDataset select_rows(const KnownDataset& source, std::span<const std::size_t> rows);
 
+// The values at the given places, in that order; nothing of nothing.
+template <typename T>
+std::vector<T> at_rows(const std::vector<T>& values, std::span<const std::size_t> rows) {
+  std::vector<T> taken;
+  if (values.empty()) return taken;
+  for (const std::size_t r : rows) taken.push_back(values[r]);
+  return taken;
+}
+
+// The rows at the given places, in that order; one may be named again. The trail stays whole.
+Table select_rows(const Table& table, std::span<const std::size_t> rows);
+
 // The same number of rows of every movement: each movement is cut into per_movement equal runs of
 // rows and one row is drawn from each. Movements with fewer rows are kept whole.
 KnownDataset thin(const KnownDataset& source, std::size_t per_movement, const RandomStream& random);

@@ -25,6 +25,9 @@ constexpr double kStandardErrorsBeyond = 2;
 // has a standard error that forgives anything.
 constexpr double kFarWorse = 2;
 
+// Of the error held out (squared), what a longer formula has to be worth.
+constexpr double kWorthIt = 0.1;
+
 // A single movement is cut into this many stretches, which take the movements' place.
 constexpr std::size_t kStretches = 10;
 
@@ -346,6 +349,13 @@ CrossValidation cross_validate(std::span<const Expression> formulas, const Input
   result.chosen =
       simplest_good(errors, result.mean_square, beyond ? kStandardErrorsBeyond : kStandardErrors);
   return result;
+}
+
+std::size_t simplest_as_good(std::span<const double> mean_square) {
+  const double enough = (1 + kWorthIt) * std::ranges::min(mean_square);
+  const auto first =
+      std::ranges::find_if(mean_square, [enough](double square) { return square <= enough; });
+  return first == mean_square.end() ? 0 : static_cast<std::size_t>(first - mean_square.begin());
 }
 
 }  // namespace tribench

@@ -19,7 +19,6 @@ constexpr int kChoiceFolds = 5;
 constexpr std::size_t kHeldOutAlone = 20;
 constexpr int kFolds = 10;
 constexpr std::size_t kFewestRows = 12;
-constexpr double kPlainly = 2;  // times the smallest held-out error
 
 double variance_of(std::span<const double> target) {
   const auto n = static_cast<double>(target.size());

@@ -21,6 +21,8 @@ namespace tribench {
 
 // More rows than this: the choice stands, and nothing is computed.
 inline constexpr std::size_t kFewRows = 400;
+// What is held out speaks plainly against a choice that errs so many times as much, squared.
+inline constexpr double kPlainly = 2;
 
 // `chosen`, or the place of the smallest held-out error where the chosen formula's is more than
 // twice that, or above the target's variance. Errors are charged what a form gains by being

@@ -14,12 +14,12 @@ namespace {
 constexpr double kInfinity = 2e19;  // what Ipopt takes for "no bound"
 constexpr double kFeasible = 1e-8;
 
-struct Free {
+struct FreeIpopt {
   void operator()(IpoptProblemInfo* problem) const { FreeIpoptProblem(problem); }
 };
-using Problem = std::unique_ptr<IpoptProblemInfo, Free>;
+using OwnedIpopt = std::unique_ptr<IpoptProblemInfo, FreeIpopt>;
 
-struct Call {
+struct IpoptCall {
   const Objective& objective;
   const Bounds& bounds;
   const Constraints& constraints;
@@ -58,19 +58,19 @@ struct Call {
 };
 
 Bool eval_f(Index n, Number* x, Bool /*new_x*/, Number* value, UserDataPtr call) {
-  *value = static_cast<Call*>(call)->value({x, static_cast<std::size_t>(n)}, {});
+  *value = static_cast<IpoptCall*>(call)->value({x, static_cast<std::size_t>(n)}, {});
   return std::isfinite(*value) ? TRUE : FALSE;
 }
 
 Bool eval_grad_f(Index n, Number* x, Bool /*new_x*/, Number* gradient, UserDataPtr call) {
   const auto size = static_cast<std::size_t>(n);
-  static_cast<Call*>(call)->value({x, size}, {gradient, size});
+  static_cast<IpoptCall*>(call)->value({x, size}, {gradient, size});
   return std::all_of(gradient, gradient + n, [](double g) { return std::isfinite(g); }) ? TRUE
                                                                                         : FALSE;
 }
 
 Bool eval_g(Index n, Number* x, Bool /*new_x*/, Index m, Number* values, UserDataPtr call) {
-  const auto& constraints = static_cast<Call*>(call)->constraints;
+  const auto& constraints = static_cast<IpoptCall*>(call)->constraints;
   if (m == 0) return TRUE;
   constraints.evaluate({x, static_cast<std::size_t>(n)}, {values, static_cast<std::size_t>(m)}, {});
   return TRUE;
@@ -87,7 +87,7 @@ Bool eval_jac_g(Index n, Number* x, Bool /*new_x*/, Index m, Index entries, Inde
     return TRUE;
   }
   if (m == 0) return TRUE;
-  Call& state = *static_cast<Call*>(call);
+  IpoptCall& state = *static_cast<IpoptCall*>(call);
   state.constraints.evaluate({x, static_cast<std::size_t>(n)}, state.values,
                              {values, static_cast<std::size_t>(entries)});
   return TRUE;
@@ -100,7 +100,7 @@ Bool eval_h(Index, Number*, Bool, Number, Index, Number*, Bool, Index, Index*, I
 
 Bool after_iteration(Index, Index, Number, Number, Number, Number, Number, Number, Number, Number,
                      Index, UserDataPtr call) {
-  const Call& state = *static_cast<Call*>(call);
+  const IpoptCall& state = *static_cast<IpoptCall*>(call);
   const bool stopped = state.options.stop != nullptr && *state.options.stop;
   return stopped || state.best.evaluations >= state.options.max_evaluations ? FALSE : TRUE;
 }
@@ -138,7 +138,7 @@ Minimum minimize_ipopt(const Objective& objective, std::span<const double> start
   const std::lock_guard<std::mutex> lock(one_solve);
   const std::size_t n = start.size();
   const std::size_t m = constraints.low.size();
-  Call call{objective, bounds, constraints, options};
+  IpoptCall call{objective, bounds, constraints, options};
   std::vector<double> low = ipopt_bounds(bounds.low, n, -kInfinity);
   std::vector<double> high = ipopt_bounds(bounds.high, n, kInfinity);
   std::vector<double> constraint_low = ipopt_bounds(constraints.low, m, -kInfinity);
@@ -147,10 +147,10 @@ Minimum minimize_ipopt(const Objective& objective, std::span<const double> start
   for (std::size_t i = 0; i < n; ++i) x[i] = std::clamp(start[i], low[i], high[i]);
   call.best.x = x;
   call.value(x, {});  // an interior-point method moves off the start: keep it if it is best
-  const Problem problem(CreateIpoptProblem(static_cast<Index>(n), low.data(), high.data(),
-                                           static_cast<Index>(m), constraint_low.data(),
-                                           constraint_high.data(), static_cast<Index>(n * m), 0, 0,
-                                           eval_f, eval_g, eval_grad_f, eval_jac_g, eval_h));
+  const OwnedIpopt problem(CreateIpoptProblem(static_cast<Index>(n), low.data(), high.data(),
+                                              static_cast<Index>(m), constraint_low.data(),
+                                              constraint_high.data(), static_cast<Index>(n * m), 0,
+                                              0, eval_f, eval_g, eval_grad_f, eval_jac_g, eval_h));
   if (!problem) return call.best;
   set_options(problem.get(), options);
   SetIntermediateCallback(problem.get(), after_iteration);

@@ -19,18 +19,6 @@ namespace {
 // Of the target's size: a good approximation of a smooth law of one or two inputs leaves more.
 constexpr double kToRounding = 1e-11;
 constexpr int kFrontFolds = 5;
-constexpr double kWorthIt = 0.1;  // of the error held out (squared), for what is longer
-
-// The first whose held-out mean square is at most kWorthIt above the least, of candidates by
-// increasing complexity: with many rows every term is significant, and what it is beyond them
-// nobody has seen. No standard error is asked: of folds one of which lies farther out than the rest
-// it is as large as that one's difference, and forgives it.
-std::size_t simplest_as_good(std::span<const double> mean_square) {
-  const double enough = (1 + kWorthIt) * std::ranges::min(mean_square);
-  const auto first =
-      std::ranges::find_if(mean_square, [enough](double square) { return square <= enough; });
-  return first == mean_square.end() ? 0 : static_cast<std::size_t>(first - mean_square.begin());
-}
 
 }  // namespace
 

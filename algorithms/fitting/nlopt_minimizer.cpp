@@ -18,10 +18,10 @@ constexpr unsigned kStoredVectors = 10;
 // Share of a global method's evaluations that MLSL may give to one local search.
 constexpr int kLocalEvaluationsPerParameter = 100;
 
-struct Free {
+struct FreeNlopt {
   void operator()(nlopt_opt_s* problem) const { nlopt_destroy(problem); }
 };
-using Problem = std::unique_ptr<nlopt_opt_s, Free>;
+using OwnedNlopt = std::unique_ptr<nlopt_opt_s, FreeNlopt>;
 
 nlopt_algorithm algorithm_of(NloptMethod method) {
   switch (method) {
@@ -45,7 +45,7 @@ nlopt_algorithm algorithm_of(NloptMethod method) {
 }
 
 // What the library's callback sees; keeps the best point, because NLopt may return another.
-struct Call {
+struct NloptCall {
   const Objective& objective;
   const bool* stop;
   nlopt_opt problem;
@@ -76,7 +76,7 @@ struct Call {
 };
 
 double evaluate(unsigned n, const double* x, double* gradient, void* call) {
-  return (*static_cast<Call*>(call))(n, x, gradient);
+  return (*static_cast<NloptCall*>(call))(n, x, gradient);
 }
 
 void check_bounds(NloptMethod method, const Bounds& bounds, std::size_t n) {
@@ -111,8 +111,8 @@ Minimum minimize_nlopt(NloptMethod method, const Objective& objective,
                        const MinimizeOptions& options) {
   const auto n = static_cast<unsigned>(start.size());
   check_bounds(method, bounds, start.size());
-  const Problem problem(nlopt_create(algorithm_of(method), n));
-  Call call{objective, options.stop, problem.get(), {}};
+  const OwnedNlopt problem(nlopt_create(algorithm_of(method), n));
+  NloptCall call{objective, options.stop, problem.get(), {}};
   call.best.x.assign(start.begin(), start.end());
   nlopt_set_min_objective(problem.get(), evaluate, &call);
   if (!bounds.low.empty()) nlopt_set_lower_bounds(problem.get(), bounds.low.data());
@@ -122,7 +122,7 @@ Minimum minimize_nlopt(NloptMethod method, const Objective& objective,
   nlopt_set_vector_storage(problem.get(), kStoredVectors);
   if (is_global(method)) {
     // A global search ends by its evaluations; tolerances are for its local searches.
-    const Problem local(nlopt_create(NLOPT_LD_LBFGS, n));
+    const OwnedNlopt local(nlopt_create(NLOPT_LD_LBFGS, n));
     set_tolerances(local.get(), options);
     nlopt_set_maxeval(local.get(), kLocalEvaluationsPerParameter * static_cast<int>(n));
     nlopt_set_local_optimizer(problem.get(), local.get());

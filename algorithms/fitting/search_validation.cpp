@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/fitting/search_validation.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "algorithms/expression/complexity.hpp"
+#include "algorithms/fitting/cross_validation.hpp"
+#include "algorithms/fitting/held_out_choice.hpp"
+
+namespace tribench {
+namespace {
+
+// Times the target's variance: an error of a fold counts so much at most. A formula that leaves all
+// bounds on one row must not be all that the folds say.
+constexpr double kAsBadAsCanBe = 2;
+
+}  // namespace
+
+void SearchValidation::add(std::span<const Expression> front, std::size_t chosen,
+                           const Inputs& held_out, std::span<const double> target) {
+  Fold fold;
+  fold.chosen = chosen;
+  fold.target.assign(target.begin(), target.end());
+  Evaluator evaluator;
+  for (const Expression& formula : front) {
+    const ErrorSum sum = evaluator.sum_squared_errors(formula, held_out, target);
+    fold.complexity.push_back(paper_complexity(formula));
+    fold.mean_square.push_back(sum.status == ErrorSumStatus::complete
+                                   ? sum.sum / static_cast<double>(target.size())
+                                   : std::numeric_limits<double>::infinity());
+  }
+  folds_.push_back(std::move(fold));
+}
+
+// Of the most complex formula within the bound, else of the simplest.
+double SearchValidation::Fold::up_to(int complexity_bound) const {
+  const auto above = std::ranges::upper_bound(complexity, complexity_bound);
+  const auto within = above - complexity.begin();
+  return mean_square[static_cast<std::size_t>(std::max<std::ptrdiff_t>(within - 1, 0))];
+}
+
+double SearchValidation::variance() const {
+  double n = 0;
+  double mean = 0;
+  for (const Fold& fold : folds_) n += static_cast<double>(fold.target.size());
+  for (const Fold& fold : folds_) {
+    for (const double y : fold.target) mean += y / n;
+  }
+  double variance = 0;
+  for (const Fold& fold : folds_) {
+    for (const double y : fold.target) variance += (y - mean) * (y - mean) / n;
+  }
+  return variance;
+}
+
+template <typename Error>
+double SearchValidation::mean_over_rows(const Error& error) const {
+  const double most = kAsBadAsCanBe * variance();
+  double sum = 0;
+  double rows = 0;
+  for (const Fold& fold : folds_) {
+    const auto own = static_cast<double>(fold.target.size());
+    sum += own * std::min(error(fold), most);
+    rows += own;
+  }
+  return sum / rows;
+}
+
+std::size_t SearchValidation::choice(std::span<const Expression> front, std::size_t chosen) const {
+  if (folds_.empty() || front.size() < 2) return chosen;
+  std::vector<double> within;
+  for (const Expression& formula : front) {
+    const int bound = paper_complexity(formula);
+    within.push_back(mean_over_rows([bound](const Fold& fold) { return fold.up_to(bound); }));
+  }
+  const double of_choices =
+      mean_over_rows([](const Fold& fold) { return fold.mean_square[fold.chosen]; });
+  if (of_choices <= std::min(kPlainly * std::ranges::min(within), variance())) return chosen;
+  return simplest_as_good(within);
+}
+
+}  // namespace tribench

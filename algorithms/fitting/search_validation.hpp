@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+//
+// What a search's choice is worth on rows that the search has not seen, and how complex a formula
+// does better where it is worth little.
+//
+// On some dozen rows a long search finds forms that fit their noise. Folds that fit the constants
+// of such a form anew do not see it (held_out_choice.hpp): the form itself was chosen with the rows
+// held out. So the whole search is made again without each fold, and its fronts are judged there.
+//
+// The choice stands unless the folds' choices err more than the mean would, or plainly more than
+// their formulas of some bounded complexity do. Then the formula of the simplest bound that is as good as the best one takes its
+// place.
+//
+// Not for exact formulas (exact_choice.hpp), nor where searches are dear: it costs one a fold.
+// Source: Stone 1974 (assessment of a choice by cross-validation of all of its steps).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/expression.hpp"
+
+namespace tribench {
+
+class SearchValidation {
+ public:
+  // A front that was found without these rows, by increasing complexity, and the place of what its
+  // search chose. At least one formula and one row; all values finite.
+  void add(std::span<const Expression> front, std::size_t chosen, const Inputs& held_out,
+           std::span<const double> target);
+
+  // Of a front that was found on all rows, by increasing complexity: `chosen`, or the place of what
+  // the folds speak for. Without folds the choice stands.
+  std::size_t choice(std::span<const Expression> front, std::size_t chosen) const;
+
+ private:
+  struct Fold {
+    std::vector<int> complexity;
+    std::vector<double> mean_square;  // of each formula; infinite where it is not finite
+    std::size_t chosen = 0;
+    std::vector<double> target;
+
+    double up_to(int complexity_bound) const;
+  };
+  double variance() const;  // of all targets
+  template <typename Error>
+  double mean_over_rows(const Error& error) const;
+
+  std::vector<Fold> folds_;
+};
+
+}  // namespace tribench

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/fitting/search_validation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "algorithms/expression/text.hpp"
+
+namespace tribench {
+namespace {
+
+const std::vector<std::string> kNames = {"v"};
+
+std::vector<Expression> front_of(const std::vector<std::string>& texts) {
+  std::vector<Expression> front;
+  for (const std::string& text : texts) front.push_back(parse(text, kNames));
+  return front;
+}
+
+// Held-out rows of 2 v, off by 0.1 this way and that.
+class SearchValidationTest : public ::testing::Test {
+ protected:
+  SearchValidationTest() {
+    for (int r = 0; r < 10; ++r) {
+      v_.push_back(0.1 * r);
+      target_.push_back(2 * v_.back() + (r % 2 == 0 ? 0.1 : -0.1));
+    }
+  }
+  void add(const std::vector<std::string>& front, std::size_t chosen) {
+    const double* column = v_.data();
+    validation_.add(front_of(front), chosen, {{&column, 1}, v_.size()}, target_);
+  }
+  std::size_t choice(std::size_t chosen) const {
+    return validation_.choice(front_of({"1", "2*v", "2*v + v^9", "2*v + 3*v^9 - v"}), chosen);
+  }
+
+  std::vector<double> v_;
+  std::vector<double> target_;
+  SearchValidation validation_;
+};
+
+TEST_F(SearchValidationTest, TheChoiceStandsWithoutFolds) { EXPECT_EQ(choice(3), 3U); }
+
+TEST_F(SearchValidationTest, TheChoiceStandsWhereTheFoldsChooseWell) {
+  add({"1", "2*v", "2*v + 9*v^9"}, 1);
+  add({"1", "1.9*v", "2*v - 9*v^9"}, 1);
+  EXPECT_EQ(choice(3), 3U);
+}
+
+TEST_F(SearchValidationTest, WhereTheFoldsChooseBadlyTheSimplestThatIsAsGoodStands) {
+  add({"1", "2*v", "2*v + 9*v^9"}, 2);
+  add({"1", "1.9*v", "2*v - 9*v^9"}, 2);
+  EXPECT_EQ(choice(3), 1U);
+}
+
+TEST_F(SearchValidationTest, WhatIsWorseThanTheMeanGivesWay) {
+  add({"0.9", "9*v^9"}, 1);  // on rows of the mean 0.9
+  EXPECT_EQ(choice(3), 0U);
+}
+
+TEST_F(SearchValidationTest, OneFoldThatLeavesAllBoundsIsOneOfMany) {
+  // In one of six the form of two terms has a pole on a row; in the others it alone is right.
+  for (int fold = 0; fold < 5; ++fold) add({"0", "2*v", "2*v + 9*v^9"}, 2);
+  add({"0", "2*v + 1/(v - v)", "2*v + 9*v^9"}, 2);
+  EXPECT_EQ(choice(3), 1U);
+}
+
+}  // namespace
+}  // namespace tribench
