@@ -234,30 +234,30 @@ class StageFits {
                 const WidenedMethod& widened, Trace& trace) {
     FitResult first = once(method, random.split(stage), &trace);
     if (!task_.limits.spend) return first;
-    const RandomStream later = random.split("again").split(stage);
-    if (data_.rows() > kFewRows) {
-      return rounds(std::move(first), method, widened, budget_, later);
-    }
-    Budget half = budget_.share(budget_.remaining() / 2, 0.5);
-    FitResult result = rounds(std::move(first), method, widened, half, later);
-    budget_.settle(half);
-    const auto search = [&](const TrainingData& rows, RandomStream stream, Budget& part) {
-      return StageFits(rows, task_, part).once(method, stream, nullptr);
+    const std::optional<int> bound = bearable_complexity_of(first, method, random, stage);
+    // The trace is the first round's: a later one starts from nothing.
+    const auto again = [&](RandomStream stream, int round) {
+      return widened ? once(*widened(round), stream, nullptr) : once(method, stream, nullptr);
     };
-    look_at_choice(result, search, data_, budget_, random.split("held out").split(stage));
+    FitResult result = fit_until_spent(std::move(first), again, widened != nullptr, data_, budget_,
+                                       random.split("again").split(stage));
+    if (bound) keep_within(*bound, data_, result);
     return result;
   }
 
  private:
-  // Further ones in one front with the first, as long as `budget` has something left.
-  FitResult rounds(FitResult first, const Regressor& method, const WidenedMethod& widened,
-                   Budget& budget, const RandomStream& random) {
-    StageFits fits(data_, task_, budget);
-    // The trace is the first round's: a later one starts from nothing.
-    const auto again = [&](RandomStream stream, int round) {
-      return fits.once(widened ? *widened(round) : method, stream, nullptr);
+  // Few rows alone; half of what is left is for it.
+  std::optional<int> bearable_complexity_of(const FitResult& first, const Regressor& method,
+                                            const RandomStream& random, std::size_t stage) {
+    if (data_.rows() > kFewRows) return std::nullopt;
+    const auto search = [&](const TrainingData& rows, RandomStream stream, Budget& part) {
+      return StageFits(rows, task_, part).once(method, stream, nullptr);
     };
-    return fit_until_spent(std::move(first), again, widened != nullptr, data_, budget, random);
+    Budget half = budget_.share(budget_.remaining() / 2, 0.5);
+    const std::optional<int> bound =
+        bearable_complexity(first, search, data_, half, random.split("held out").split(stage));
+    budget_.settle(half);
+    return bound;
   }
 
   FitResult once(const Regressor& method, RandomStream stream, Progress* progress) {

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "algorithms/expression/complexity.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/exact_choice.hpp"
@@ -23,12 +26,14 @@ bool is_worth_a_look(const FitResult& fit, const FiniteRows& rows) {
 
 }  // namespace
 
-void look_at_choice(FitResult& fit, const SearchOfRows& search, const TrainingData& data,
-                    Budget& budget, const RandomStream& random) {
+std::optional<int> bearable_complexity(const FitResult& fit, const SearchOfRows& search,
+                                       const TrainingData& data, Budget& budget,
+                                       const RandomStream& random) {
   const FiniteRows rows(data);
-  if (!is_worth_a_look(fit, rows)) return;
-  const std::vector<int> fold_of = held_out_folds(
-      data.movement.empty() ? std::span<const int>() : rows.movement, rows.rows(), kFolds);
+  if (!is_worth_a_look(fit, rows)) return std::nullopt;
+  const std::span<const int> movements =
+      data.movement.empty() ? std::span<const int>() : rows.movement;
+  const std::vector<int> fold_of = held_out_folds(movements, rows.rows(), kFolds);
   SearchValidation validation;
   for (int fold = 0; fold < kFolds; ++fold) {
     const FiniteRows held_out(rows, [&](std::size_t row) { return fold_of[row] == fold; });
@@ -39,15 +44,25 @@ void look_at_choice(FitResult& fit, const SearchOfRows& search, const TrainingDa
     const FitResult anew =
         search(kept.as_data(data.inputs), random.split(static_cast<std::uint64_t>(fold)), part);
     budget.settle(part);
-    if (anew.front.empty()) return;
+    if (anew.front.empty()) return std::nullopt;
     validation.add(anew.front, anew.chosen, held_out.table(), held_out.target);
   }
-  const std::size_t choice = validation.choice(fit.front, fit.chosen);
-  if (choice == fit.chosen) return;
-  fit.chosen = choice;
-  fit.note +=
-      fmt::format("{}simpler than the search's choice, which errs more on rows held out from it",
-                  fit.note.empty() ? "" : "; ");
+  return validation.bound(fit.front, fit.chosen);
+}
+
+void keep_within(int complexity, const TrainingData& data, FitResult& fit) {
+  const auto is_within = [complexity](const Expression& formula) {
+    return paper_complexity(formula) <= complexity;
+  };
+  if (fit.front.empty() || is_within(fit.front[fit.chosen])) return;
+  const FiniteRows rows(data);
+  if (simplest_exact(fit.front, rows.table(), rows.target)) return;
+  const auto within = static_cast<std::size_t>(std::ranges::count_if(fit.front, is_within));
+  fit.chosen = within > 0 ? within - 1 : 0;
+  fit.note += fmt::format(
+      "{}no formula of more than {} operations is chosen: they err more on rows "
+      "held out from the search",
+      fit.note.empty() ? "" : "; ", complexity);
 }
 
 }  // namespace tribench

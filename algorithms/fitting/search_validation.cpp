@@ -67,17 +67,18 @@ double SearchValidation::mean_over_rows(const Error& error) const {
   return sum / rows;
 }
 
-std::size_t SearchValidation::choice(std::span<const Expression> front, std::size_t chosen) const {
-  if (folds_.empty() || front.size() < 2) return chosen;
+int SearchValidation::bound(std::span<const Expression> front, std::size_t chosen) const {
   std::vector<double> within;
   for (const Expression& formula : front) {
-    const int bound = paper_complexity(formula);
-    within.push_back(mean_over_rows([bound](const Fold& fold) { return fold.up_to(bound); }));
+    const int complexity = paper_complexity(formula);
+    within.push_back(
+        mean_over_rows([complexity](const Fold& fold) { return fold.up_to(complexity); }));
   }
   const double of_choices =
       mean_over_rows([](const Fold& fold) { return fold.mean_square[fold.chosen]; });
-  if (of_choices <= std::min(kPlainly * std::ranges::min(within), variance())) return chosen;
-  return simplest_as_good(within);
+  const int as_good = paper_complexity(front[simplest_as_good(within)]);
+  const bool stands = of_choices <= std::min(kPlainly * std::ranges::min(within), variance());
+  return stands ? std::max(as_good, paper_complexity(front[chosen])) : as_good;
 }
 
 }  // namespace tribench

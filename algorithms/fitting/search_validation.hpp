@@ -8,8 +8,8 @@
 // held out. So the whole search is made again without each fold, and its fronts are judged there.
 //
 // The choice stands unless the folds' choices err more than the mean would, or plainly more than
-// their formulas of some bounded complexity do. Then the formula of the simplest bound that is as good as the best one takes its
-// place.
+// their formulas of some bounded complexity do: then nothing is chosen beyond the simplest bound
+// that is as good as any. Where it stands, what more searching finds may be as complex as it is.
 //
 // Not for exact formulas (exact_choice.hpp), nor where searches are dear: it costs one a fold.
 // Source: Stone 1974 (assessment of a choice by cross-validation of all of its steps).
@@ -31,9 +31,9 @@ class SearchValidation {
   void add(std::span<const Expression> front, std::size_t chosen, const Inputs& held_out,
            std::span<const double> target);
 
-  // Of a front that was found on all rows, by increasing complexity: `chosen`, or the place of what
-  // the folds speak for. Without folds the choice stands.
-  std::size_t choice(std::span<const Expression> front, std::size_t chosen) const;
+  // The greatest complexity that the folds speak for, of a front that was found on all rows, by
+  // increasing complexity, and the place of its choice. At least one fold.
+  int bound(std::span<const Expression> front, std::size_t chosen) const;
 
  private:
   struct Fold {

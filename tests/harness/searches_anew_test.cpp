@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -37,10 +38,12 @@ class SearchesAnewTest : public ::testing::Test {
       movement_.push_back(r / 4);
     }
   }
-  // What becomes of a fit whose search, made anew, answers so.
-  FitResult looked_at(FitResult fit, const FitResult& anew) {
-    const double* column = v_.data();
-    const TrainingData data{kOneInput, {&column, 1}, target_, movement_};
+  TrainingData data() {
+    column_ = v_.data();
+    return {kOneInput, {&column_, 1}, target_, movement_};
+  }
+  // Of a fit whose search, made anew, answers so.
+  std::optional<int> bound(const FitResult& fit, const FitResult& anew) {
     Budget budget({.evaluations = 1000});
     const auto search = [&](const TrainingData& rows, RandomStream stream, Budget& part) {
       EXPECT_TRUE(part.spend(150));
@@ -51,10 +54,14 @@ class SearchesAnewTest : public ::testing::Test {
       searched_.push_back(rows.rows());
       return anew;
     };
-    look_at_choice(fit, search, data, budget, RandomStream(3));
+    return bearable_complexity(fit, search, data(), budget, RandomStream(3));
+  }
+  FitResult kept_within(int complexity, FitResult fit) {
+    keep_within(complexity, data(), fit);
     return fit;
   }
 
+  const double* column_ = nullptr;
   std::vector<double> v_;
   std::vector<double> target_;
   std::vector<int> movement_;
@@ -63,38 +70,46 @@ class SearchesAnewTest : public ::testing::Test {
   std::set<std::uint64_t> keys_;
 };
 
-TEST_F(SearchesAnewTest, WhatErrsOnRowsItHasNotSeenGivesWay) {
+TEST_F(SearchesAnewTest, WhatErrsOnRowsItHasNotSeenIsTooComplex) {
   fill(60);
-  const FitResult result =
-      looked_at(front_of({"0", "0.9*v", "v + 3*v^8"}, 2), front_of({"0", "1.1*v", "v - 4*v^8"}, 2));
-  EXPECT_EQ(result.chosen, 1U);
-  EXPECT_THAT(result.note, HasSubstr("simpler"));
+  EXPECT_EQ(
+      bound(front_of({"0", "0.9*v", "v + 3*v^8"}, 2), front_of({"0", "1.1*v", "v - 4*v^8"}, 2)), 2);
   EXPECT_THAT(searched_, Each(48U));
   EXPECT_THAT(rows_of_a_movement_, Each(4));  // whole movements are held out
   EXPECT_EQ(keys_.size(), 5U);
 }
 
-TEST_F(SearchesAnewTest, WhatHoldsThereStands) {
+TEST_F(SearchesAnewTest, WhatHoldsThereIsNot) {
   fill(60);
-  const FitResult result =
-      looked_at(front_of({"0", "v", "v + 3*v^8"}, 2), front_of({"0", "9*v", "v + 0.1*v^8"}, 2));
-  EXPECT_EQ(result.chosen, 2U);
-  EXPECT_EQ(result.note, "");
+  EXPECT_EQ(bound(front_of({"0", "v", "v + 3*v^8"}, 2), front_of({"0", "9*v", "v + 0.1*v^8"}, 2)),
+            5);
 }
 
 TEST_F(SearchesAnewTest, NothingIsSearchedForExactFormulasOrManyRows) {
   fill(60);
   target_ = v_;
-  EXPECT_EQ(looked_at(front_of({"0", "v"}, 1), front_of({"0"}, 0)).chosen, 1U);
+  EXPECT_EQ(bound(front_of({"0", "v"}, 1), front_of({"0"}, 0)), std::nullopt);
   fill(400);
-  EXPECT_EQ(looked_at(front_of({"0", "v^3"}, 1), front_of({"0"}, 0)).chosen, 1U);
+  EXPECT_EQ(bound(front_of({"0", "v^3"}, 1), front_of({"0"}, 0)), std::nullopt);
   EXPECT_TRUE(searched_.empty());
 }
 
 TEST_F(SearchesAnewTest, ASearchWithoutAnAnswerSaysNothing) {
   fill(60);
-  EXPECT_EQ(looked_at(front_of({"0", "v", "v + 3*v^8"}, 2), FitResult{}).chosen, 2U);
+  EXPECT_EQ(bound(front_of({"0", "v", "v + 3*v^8"}, 2), FitResult{}), std::nullopt);
   EXPECT_EQ(searched_.size(), 1U);
+}
+
+TEST_F(SearchesAnewTest, TheChoiceIsKeptWithinTheBoundUnlessItIsExact) {
+  fill(60);
+  const FitResult fit = front_of({"0", "v", "0.9*v", "v + 3*v^8"}, 3);
+  const FitResult kept = kept_within(3, fit);
+  EXPECT_EQ(kept.chosen, 2U);
+  EXPECT_THAT(kept.note, HasSubstr("more than 3 operations"));
+  EXPECT_EQ(kept_within(5, fit).chosen, 3U);
+  EXPECT_EQ(kept_within(5, fit).note, "");
+  target_ = v_;
+  EXPECT_EQ(kept_within(0, front_of({"0", "v"}, 1)).chosen, 1U);
 }
 
 }  // namespace
