@@ -232,9 +232,17 @@ class StageFits {
 
   FitResult fit(const Regressor& method, const RandomStream& random, std::size_t stage,
                 const WidenedMethod& widened, Trace& trace) {
+    const BudgetLimits before = left();
     FitResult first = once(method, random.split(stage), &trace);
     if (!task_.limits.spend) return first;
-    const std::optional<int> bound = bearable_complexity_of(first, method, random, stage);
+    std::optional<int> bound;
+    if (data_.rows() <= kFewRows && is_enough_for_searches_anew(before, left())) {
+      const auto search = [&](const TrainingData& rows, RandomStream anew, Budget& part) {
+        return StageFits(rows, task_, part).once(method, anew, nullptr);
+      };
+      bound =
+          bearable_complexity(first, search, data_, budget_, random.split("held out").split(stage));
+    }
     // The trace is the first round's: a later one starts from nothing.
     const auto again = [&](RandomStream stream, int round) {
       return widened ? once(*widened(round), stream, nullptr) : once(method, stream, nullptr);
@@ -246,19 +254,7 @@ class StageFits {
   }
 
  private:
-  // Few rows alone; half of what is left is for it.
-  std::optional<int> bearable_complexity_of(const FitResult& first, const Regressor& method,
-                                            const RandomStream& random, std::size_t stage) {
-    if (data_.rows() > kFewRows) return std::nullopt;
-    const auto search = [&](const TrainingData& rows, RandomStream stream, Budget& part) {
-      return StageFits(rows, task_, part).once(method, stream, nullptr);
-    };
-    Budget half = budget_.share(budget_.remaining() / 2, 0.5);
-    const std::optional<int> bound =
-        bearable_complexity(first, search, data_, half, random.split("held out").split(stage));
-    budget_.settle(half);
-    return bound;
-  }
+  BudgetLimits left() const { return {budget_.remaining(), budget_.remaining_seconds()}; }
 
   FitResult once(const Regressor& method, RandomStream stream, Progress* progress) {
     const TrainingData seen = scaled_.data();

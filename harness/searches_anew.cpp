@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/finite_rows.hpp"
@@ -17,6 +18,7 @@ namespace {
 
 constexpr int kFolds = 5;
 constexpr std::size_t kFewestRows = 20;  // four of them held out
+constexpr double kOfTheFirst = 0.5;      // what the first search spent
 
 bool is_worth_a_look(const FitResult& fit, const FiniteRows& rows) {
   return fit.front.size() > 1 && fit.states.empty() && !fit.keeps_form &&
@@ -25,6 +27,15 @@ bool is_worth_a_look(const FitResult& fit, const FiniteRows& rows) {
 }
 
 }  // namespace
+
+bool is_enough_for_searches_anew(const BudgetLimits& before, const BudgetLimits& after) {
+  const auto is_enough = [](double had, double has) {
+    return !std::isfinite(had) || has / kFolds >= kOfTheFirst * (had - has);
+  };
+  return is_enough(static_cast<double>(before.evaluations),
+                   static_cast<double>(after.evaluations)) &&
+         is_enough(before.cpu_seconds, after.cpu_seconds);
+}
 
 std::optional<int> bearable_complexity(const FitResult& fit, const SearchOfRows& search,
                                        const TrainingData& data, Budget& budget,

@@ -17,6 +17,10 @@ namespace tribench {
 // A fit of other rows with a part of the budget; its front finished (finished_front.hpp).
 using SearchOfRows = std::function<FitResult(const TrainingData&, RandomStream, Budget&)>;
 
+// Whether each search may spend at least half of what the first one did: what was left of the
+// budget before and after it. What is not the same search says nothing of it.
+bool is_enough_for_searches_anew(const BudgetLimits& before, const BudgetLimits& after);
+
 // `fit`: what the search made of all rows. Each search may spend an equal part of the budget. None
 // where nothing is to be looked at, or one of them has no answer.
 std::optional<int> bearable_complexity(const FitResult& fit, const SearchOfRows& search,

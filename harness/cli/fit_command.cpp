@@ -362,8 +362,8 @@ BudgetOptions add_budget_options(CLI::App& command, FitArguments& arguments) {
           .add_option(
               "--seconds", arguments.seconds,
               "CPU seconds to spend: fits again from other starts until they are, or the data "
-              "are explained to rounding, and on at most 400 rows looks with half of them how "
-              "complex a formula the rows bear; without it one fit of at most 60")
+              "are explained to rounding, and on at most 400 rows looks how complex a formula "
+              "they bear; without it one fit of at most 60")
           ->transform(real_number(0.0, 1e9));
   return budget;
 }

@@ -85,6 +85,13 @@ TEST_F(SearchesAnewTest, WhatHoldsThereIsNot) {
             5);
 }
 
+TEST_F(SearchesAnewTest, EachMaySpendHalfOfWhatTheFirstDidOrNoneIsMade) {
+  EXPECT_TRUE(is_enough_for_searches_anew({.evaluations = 1000}, {.evaluations = 800}));
+  EXPECT_FALSE(is_enough_for_searches_anew({.evaluations = 1000}, {.evaluations = 700}));
+  EXPECT_TRUE(is_enough_for_searches_anew({.cpu_seconds = 60}, {.cpu_seconds = 46}));
+  EXPECT_FALSE(is_enough_for_searches_anew({.cpu_seconds = 36}, {.cpu_seconds = 22}));
+}
+
 TEST_F(SearchesAnewTest, NothingIsSearchedForExactFormulasOrManyRows) {
   fill(60);
   target_ = v_;
