@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <memory>
+#include <optional>
 #include <thread>
 
 #include "tests/support/paths.hpp"
@@ -45,6 +47,31 @@ bool has_control_groups() {
   return read_text("/proc/self/mounts").find(" /sys/fs/cgroup") != std::string::npos;
 }
 
+// One cluster for all tests: it takes seconds to start and to end. Each test has a folder of its
+// own.
+class Cluster {
+ public:
+  Cluster() {
+    // By the shell: what run_to_end starts is ended with the script, and the daemons are to stay.
+    const std::string start = "'" + script() + "' start '" + folder_.path().string() + "'";
+    is_started_ = std::system(start.c_str()) == 0;
+  }
+  ~Cluster() { run_to_end({script(), "stop", folder_.path().string()}); }
+  Cluster(const Cluster&) = delete;
+  Cluster& operator=(const Cluster&) = delete;
+
+  bool is_started() const { return is_started_; }
+  ProgramRun run(const std::vector<std::string>& command) const {
+    return run_to_end(command, {"SLURM_CONF=" + (folder_ / "slurm.conf").string()});
+  }
+
+ private:
+  static std::string script() { return (source_dir() / "tests/slurm/cluster.sh").string(); }
+
+  TemporaryFolder folder_;
+  bool is_started_ = false;
+};
+
 class SlurmTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -55,20 +82,16 @@ class SlurmTest : public ::testing::Test {
     }
     if (::geteuid() != 0) GTEST_SKIP() << "a Slurm of the test's own needs root";
     if (!has_control_groups()) GTEST_SKIP() << "slurmd needs /sys/fs/cgroup, which is not mounted";
-    // By the shell: what run_to_end starts is ended with the script, and the daemons are to stay.
-    const std::string start = "'" + script() + "' start '" + folder_.path().string() + "'";
-    is_started_ = true;
-    ASSERT_EQ(std::system(start.c_str()), 0);
+    if (!cluster_) cluster_ = std::make_unique<Cluster>();
+    ASSERT_TRUE(cluster_->is_started());
     write_text(folder_ / "grid.toml", kGrid);
   }
-  void TearDown() override {
-    if (is_started_) run_to_end({script(), "stop", folder_.path().string()});
+  static void TearDownTestSuite() {
+    cluster_.reset();
+    local_results_.reset();
   }
 
-  static std::string script() { return (source_dir() / "tests/slurm/cluster.sh").string(); }
-  ProgramRun slurm(const std::vector<std::string>& command) {
-    return run_to_end(command, {"SLURM_CONF=" + (folder_ / "slurm.conf").string()});
-  }
+  ProgramRun slurm(const std::vector<std::string>& command) { return cluster_->run(command); }
   ProgramRun submit(const std::string& out, std::vector<std::string> more) {
     std::vector<std::string> command = {test_program().string(),
                                         "submit",
@@ -81,26 +104,33 @@ class SlurmTest : public ::testing::Test {
     command.insert(command.end(), more.begin(), more.end());
     return slurm(command);
   }
-  void run_locally() {
-    const ProgramRun local =
-        run_to_end({test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
-                    (folder_ / "local").string(), "--jobs", "2"});
-    ASSERT_EQ(local.status, 0) << local.errors;
+  // What the same grid gives here, without a cluster; run once.
+  const std::string& local_results() {
+    if (!local_results_) {
+      const ProgramRun local =
+          run_to_end({test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
+                      (folder_ / "local").string(), "--jobs", "2"});
+      EXPECT_EQ(local.status, 0) << local.errors;
+      local_results_ = timeless_results(folder_ / "local");
+    }
+    return *local_results_;
   }
   std::string log_of(const std::string& out) {
     return run_to_end({"bash", "-c", "tail -n 5 " + (folder_ / out).string() + "/log/*"}).output;
   }
 
   TemporaryFolder folder_;
-  bool is_started_ = false;
+
+ private:
+  static inline std::unique_ptr<Cluster> cluster_;
+  static inline std::optional<std::string> local_results_;
 };
 
 TEST_F(SlurmTest, AnArrayAndItsMergeGiveTheResultsOfALocalRun) {
   const ProgramRun submitted = submit("cluster", {});
   ASSERT_EQ(submitted.status, 0) << submitted.errors << log_of("cluster");
   EXPECT_THAT(submitted.output, HasSubstr("60 cells in 3 elements"));
-  run_locally();
-  EXPECT_EQ(timeless_results(folder_ / "cluster"), timeless_results(folder_ / "local"));
+  EXPECT_EQ(timeless_results(folder_ / "cluster"), local_results());
   EXPECT_EQ(column_of(folder_ / "cluster", "status").size(), 60U);
 }
 
@@ -133,8 +163,7 @@ TEST_F(SlurmTest, AnElementKilledHalfWayIsRequeuedAndResumes) {
   })) << log_of("cluster");
   EXPECT_TRUE(read_text(journal).starts_with(before.substr(0, before.rfind('\n') + 1)))
       << "the second life of the element did not go on where the first ended";
-  run_locally();
-  EXPECT_EQ(timeless_results(folder_ / "cluster"), timeless_results(folder_ / "local"));
+  EXPECT_EQ(timeless_results(folder_ / "cluster"), local_results());
 }
 
 // What the documents say of nights on a cluster: a job whose status is the night's.
