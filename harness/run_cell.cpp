@@ -235,21 +235,24 @@ class StageFits {
     const BudgetLimits before = left();
     FitResult first = once(method, random.split(stage), &trace);
     if (!task_.limits.spend) return first;
-    std::optional<int> bound;
+    std::optional<Bearable> bearable;
     if (data_.rows() <= kFewRows && is_enough_for_searches_anew(before, left())) {
       const auto search = [&](const TrainingData& rows, RandomStream anew, Budget& part) {
         return StageFits(rows, task_, part).once(method, anew, nullptr);
       };
-      bound =
-          bearable_complexity(first, search, data_, budget_, random.split("held out").split(stage));
+      bearable =
+          bearable_search(first, search, data_, budget_, random.split("held out").split(stage));
     }
-    // The trace is the first round's: a later one starts from nothing.
-    const auto again = [&](RandomStream stream, int round) {
-      return widened ? once(*widened(round), stream, nullptr) : once(method, stream, nullptr);
-    };
-    FitResult result = fit_until_spent(std::move(first), again, widened != nullptr, data_, budget_,
-                                       random.split("again").split(stage));
-    if (bound) keep_within(*bound, data_, result);
+    FitResult result = std::move(first);
+    if (!bearable || bearable->is_more_worth_it) {
+      // The trace is the first round's: a later one starts from nothing.
+      const auto again = [&](RandomStream stream, int round) {
+        return widened ? once(*widened(round), stream, nullptr) : once(method, stream, nullptr);
+      };
+      result = fit_until_spent(std::move(result), again, widened != nullptr, data_, budget_,
+                               random.split("again").split(stage));
+    }
+    if (bearable) keep_within(*bearable, data_, result);
     return result;
   }
 

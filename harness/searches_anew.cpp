@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "algorithms/expression/complexity.hpp"
+#include "algorithms/expression/evaluate.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/exact_choice.hpp"
@@ -37,9 +39,9 @@ bool is_enough_for_searches_anew(const BudgetLimits& before, const BudgetLimits&
          is_enough(before.cpu_seconds, after.cpu_seconds);
 }
 
-std::optional<int> bearable_complexity(const FitResult& fit, const SearchOfRows& search,
-                                       const TrainingData& data, Budget& budget,
-                                       const RandomStream& random) {
+std::optional<Bearable> bearable_search(const FitResult& fit, const SearchOfRows& search,
+                                        const TrainingData& data, Budget& budget,
+                                        const RandomStream& random) {
   const FiniteRows rows(data);
   if (!is_worth_a_look(fit, rows)) return std::nullopt;
   const std::span<const int> movements =
@@ -58,22 +60,31 @@ std::optional<int> bearable_complexity(const FitResult& fit, const SearchOfRows&
     if (anew.front.empty()) return std::nullopt;
     validation.add(anew.front, anew.chosen, held_out.table(), held_out.target);
   }
-  return validation.bound(fit.front, fit.chosen);
+  const ErrorSum seen =
+      Evaluator().sum_squared_errors(fit.front[fit.chosen], rows.table(), rows.target);
+  return Bearable{
+      validation.bound(fit.front, fit.chosen),
+      validation.mean_square() * static_cast<double>(rows.rows()) <= kPlainly * seen.sum};
 }
 
-void keep_within(int complexity, const TrainingData& data, FitResult& fit) {
-  const auto is_within = [complexity](const Expression& formula) {
-    return paper_complexity(formula) <= complexity;
+void keep_within(const Bearable& bearable, const TrainingData& data, FitResult& fit) {
+  if (fit.front.empty()) return;
+  const auto say = [&fit](std::string_view what) {
+    fit.note += fmt::format("{}{}", fit.note.empty() ? "" : "; ", what);
   };
-  if (fit.front.empty() || is_within(fit.front[fit.chosen])) return;
+  if (!bearable.is_more_worth_it) {
+    say("no wider search: what this one chooses errs twice as much on rows held out from it");
+  }
+  const auto is_within = [&](const Expression& formula) {
+    return paper_complexity(formula) <= bearable.complexity;
+  };
+  if (is_within(fit.front[fit.chosen])) return;
   const FiniteRows rows(data);
   if (simplest_exact(fit.front, rows.table(), rows.target)) return;
   const auto within = static_cast<std::size_t>(std::ranges::count_if(fit.front, is_within));
   fit.chosen = within > 0 ? within - 1 : 0;
-  fit.note += fmt::format(
-      "{}no formula of more than {} operations is chosen: they err more on rows "
-      "held out from the search",
-      fit.note.empty() ? "" : "; ", complexity);
+  say(fmt::format("no choice of more than {} operations: such err more on rows held out",
+                  bearable.complexity));
 }
 
 }  // namespace tribench

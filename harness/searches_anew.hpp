@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// How complex a formula few rows bear: the search that was made is made again without a fifth of
+// How much searching few rows bear: the search that was made is made again without a fifth of
 // the movements (of the rows, where none are named), five times, its fronts judged on what was held
 // out (fitting/search_validation.hpp). For budgets that shall be spent: it costs five searches.
 //
@@ -17,18 +17,25 @@ namespace tribench {
 // A fit of other rows with a part of the budget; its front finished (finished_front.hpp).
 using SearchOfRows = std::function<FitResult(const TrainingData&, RandomStream, Budget&)>;
 
+struct Bearable {
+  int complexity = 0;  // of what is chosen, at most
+  // Whether a wider search may find more than noise: what this one chooses errs no plainly more on
+  // rows that it has not seen than on those that it has.
+  bool is_more_worth_it = true;
+};
+
 // Whether each search may spend at least half of what the first one did: what was left of the
 // budget before and after it. What is not the same search says nothing of it.
 bool is_enough_for_searches_anew(const BudgetLimits& before, const BudgetLimits& after);
 
 // `fit`: what the search made of all rows. Each search may spend an equal part of the budget. None
 // where nothing is to be looked at, or one of them has no answer.
-std::optional<int> bearable_complexity(const FitResult& fit, const SearchOfRows& search,
-                                       const TrainingData& data, Budget& budget,
-                                       const RandomStream& random);
+std::optional<Bearable> bearable_search(const FitResult& fit, const SearchOfRows& search,
+                                        const TrainingData& data, Budget& budget,
+                                        const RandomStream& random);
 
 // Chooses the most accurate of the front within the bound where the choice is beyond it and none is
-// exact, and says so in the note.
-void keep_within(int complexity, const TrainingData& data, FitResult& fit);
+// exact. The note says so, and where more searching is not worth it.
+void keep_within(const Bearable& bearable, const TrainingData& data, FitResult& fit);
 
 }  // namespace tribench

@@ -67,6 +67,10 @@ double SearchValidation::mean_over_rows(const Error& error) const {
   return sum / rows;
 }
 
+double SearchValidation::mean_square() const {
+  return mean_over_rows([](const Fold& fold) { return fold.mean_square[fold.chosen]; });
+}
+
 int SearchValidation::bound(std::span<const Expression> front, std::size_t chosen) const {
   std::vector<double> within;
   for (const Expression& formula : front) {
@@ -74,10 +78,8 @@ int SearchValidation::bound(std::span<const Expression> front, std::size_t chose
     within.push_back(
         mean_over_rows([complexity](const Fold& fold) { return fold.up_to(complexity); }));
   }
-  const double of_choices =
-      mean_over_rows([](const Fold& fold) { return fold.mean_square[fold.chosen]; });
   const int as_good = paper_complexity(front[simplest_as_good(within)]);
-  const bool stands = of_choices <= std::min(kPlainly * std::ranges::min(within), variance());
+  const bool stands = mean_square() <= std::min(kPlainly * std::ranges::min(within), variance());
   return stands ? std::max(as_good, paper_complexity(front[chosen])) : as_good;
 }
 

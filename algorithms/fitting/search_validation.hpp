@@ -31,8 +31,10 @@ class SearchValidation {
   void add(std::span<const Expression> front, std::size_t chosen, const Inputs& held_out,
            std::span<const double> target);
 
-  // The greatest complexity that the folds speak for, of a front that was found on all rows, by
-  // increasing complexity, and the place of its choice. At least one fold.
+  // With at least one fold: the mean square of the folds' choices on the rows held out, and the
+  // greatest complexity that the folds speak for, of a front that was found on all rows, by
+  // increasing complexity, and the place of its choice.
+  double mean_square() const;
   int bound(std::span<const Expression> front, std::size_t chosen) const;
 
  private:

@@ -43,7 +43,7 @@ class SearchesAnewTest : public ::testing::Test {
     return {kOneInput, {&column_, 1}, target_, movement_};
   }
   // Of a fit whose search, made anew, answers so.
-  std::optional<int> bound(const FitResult& fit, const FitResult& anew) {
+  std::optional<Bearable> bearable(const FitResult& fit, const FitResult& anew) {
     Budget budget({.evaluations = 1000});
     const auto search = [&](const TrainingData& rows, RandomStream stream, Budget& part) {
       EXPECT_TRUE(part.spend(150));
@@ -54,10 +54,10 @@ class SearchesAnewTest : public ::testing::Test {
       searched_.push_back(rows.rows());
       return anew;
     };
-    return bearable_complexity(fit, search, data(), budget, RandomStream(3));
+    return bearable_search(fit, search, data(), budget, RandomStream(3));
   }
   FitResult kept_within(int complexity, FitResult fit) {
-    keep_within(complexity, data(), fit);
+    keep_within({complexity, true}, data(), fit);
     return fit;
   }
 
@@ -70,10 +70,13 @@ class SearchesAnewTest : public ::testing::Test {
   std::set<std::uint64_t> keys_;
 };
 
-TEST_F(SearchesAnewTest, WhatErrsOnRowsItHasNotSeenIsTooComplex) {
+TEST_F(SearchesAnewTest, WhatErrsOnRowsItHasNotSeenIsTooComplexAndMoreOfItInVain) {
   fill(60);
-  EXPECT_EQ(
-      bound(front_of({"0", "0.9*v", "v + 3*v^8"}, 2), front_of({"0", "1.1*v", "v - 4*v^8"}, 2)), 2);
+  const auto found = bearable(front_of({"0", "0.9*v", "v + 0.1*v^8"}, 2),
+                              front_of({"0", "1.1*v", "v - 4*v^8"}, 2));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->complexity, 2);
+  EXPECT_FALSE(found->is_more_worth_it);
   EXPECT_THAT(searched_, Each(48U));
   EXPECT_THAT(rows_of_a_movement_, Each(4));  // whole movements are held out
   EXPECT_EQ(keys_.size(), 5U);
@@ -81,8 +84,11 @@ TEST_F(SearchesAnewTest, WhatErrsOnRowsItHasNotSeenIsTooComplex) {
 
 TEST_F(SearchesAnewTest, WhatHoldsThereIsNot) {
   fill(60);
-  EXPECT_EQ(bound(front_of({"0", "v", "v + 3*v^8"}, 2), front_of({"0", "9*v", "v + 0.1*v^8"}, 2)),
-            5);
+  const auto found =
+      bearable(front_of({"0", "v", "v + 0.1*v^8"}, 2), front_of({"0", "9*v", "v + 0.2*v^8"}, 2));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->complexity, 5);
+  EXPECT_TRUE(found->is_more_worth_it);
 }
 
 TEST_F(SearchesAnewTest, EachMaySpendHalfOfWhatTheFirstDidOrNoneIsMade) {
@@ -95,15 +101,15 @@ TEST_F(SearchesAnewTest, EachMaySpendHalfOfWhatTheFirstDidOrNoneIsMade) {
 TEST_F(SearchesAnewTest, NothingIsSearchedForExactFormulasOrManyRows) {
   fill(60);
   target_ = v_;
-  EXPECT_EQ(bound(front_of({"0", "v"}, 1), front_of({"0"}, 0)), std::nullopt);
+  EXPECT_FALSE(bearable(front_of({"0", "v"}, 1), front_of({"0"}, 0)));
   fill(400);
-  EXPECT_EQ(bound(front_of({"0", "v^3"}, 1), front_of({"0"}, 0)), std::nullopt);
+  EXPECT_FALSE(bearable(front_of({"0", "v^3"}, 1), front_of({"0"}, 0)));
   EXPECT_TRUE(searched_.empty());
 }
 
 TEST_F(SearchesAnewTest, ASearchWithoutAnAnswerSaysNothing) {
   fill(60);
-  EXPECT_EQ(bound(front_of({"0", "v", "v + 3*v^8"}, 2), FitResult{}), std::nullopt);
+  EXPECT_FALSE(bearable(front_of({"0", "v", "v + 3*v^8"}, 2), FitResult{}));
   EXPECT_EQ(searched_.size(), 1U);
 }
 
