@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/cli/program.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
@@ -27,6 +28,19 @@ using Words = std::vector<std::string>;
 Words with(Words words, const std::string& more) {
   words.push_back(more);
   return words;
+}
+
+// As the program would, without starting it: a thousand lines take a tenth of the time.
+ProgramRun run_in_this_process(Words words) {
+  words.insert(words.begin(), "tribench");
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  ::testing::internal::CaptureStderr();
+  ProgramRun run;
+  run.status = run_program(static_cast<int>(words.size()), pointers.data(), Registry());
+  run.errors = ::testing::internal::GetCapturedStderr();
+  return run;
 }
 
 // Subcommands below `command`, and theirs.
@@ -99,9 +113,8 @@ TEST(CommandLine, EveryNumberIsReadStrictly) {
   for (const Words& command : commands_below({})) {
     for (const std::string& option : numeric_options(command)) {
       for (const char* text : {"nan", "inf", "1xyz", "0x10", "1'000", "1e999", "-1", "text"}) {
-        const ProgramRun run = run_tribench(with(with(command, option), text));
+        const ProgramRun run = run_in_this_process(with(with(command, option), text));
         EXPECT_EQ(run.status, 2) << command.back() << " " << option << " " << text;
-        EXPECT_EQ(run.signal, 0) << command.back() << " " << option << " " << text;
         EXPECT_THAT(run.errors, HasSubstr("cannot be used; use a"))
             << command.back() << " " << option << " " << text;
         ++asked;
