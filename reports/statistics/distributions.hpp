@@ -14,7 +14,8 @@ double normal_quantile(double p);
 double chi_squared_tail(double x, double degrees);
 
 // P(range of k independent standard normals <= q): the studentized range with infinitely many
-// degrees of freedom, by Simpson's rule (absolute error below 1e-9 for k <= 100), and its inverse.
+// degrees of freedom, by sums at even steps (absolute error below 1e-9 for k <= 100), and its
+// inverse, which takes 10 000 values of normal_cdf: 10 ms.
 double normal_range_cdf(double q, int k);
 double normal_range_quantile(double p, int k);
 
