@@ -14,8 +14,8 @@ constexpr double kRidge = 1e-4;  // of the mean diagonal
 constexpr std::size_t kAtomsOfFamily = 4;
 constexpr double kHuber = 2;  // standard deviations
 
-// The base's linear terms and the library. Neighbours on a grid of shapes say nearly the same: some
-// of them will do.
+// The base's linear terms and the library, without what differs by direction or stands beside
+// another. Neighbours on a grid of shapes say nearly the same: some of them will do.
 std::vector<Expression> rich_columns(const Observations& data, const BaseModel& base,
                                      const std::vector<EffectFamily>& families,
                                      const std::vector<double>& gear_ratios) {
@@ -23,7 +23,7 @@ std::vector<Expression> rich_columns(const Observations& data, const BaseModel& 
   for (std::size_t f = 0; f < families.size(); ++f) {
     std::vector<std::string> missing;
     std::vector<Atom> atoms = instantiate(families[f], f, data, gear_ratios, missing);
-    std::erase_if(atoms, [](const Atom& atom) { return atom.beside_another; });
+    std::erase_if(atoms, [](const Atom& atom) { return atom.beside_another || atom.one_way; });
     const std::size_t step = (atoms.size() + kAtomsOfFamily - 1) / kAtomsOfFamily;
     for (std::size_t k = 0; k < atoms.size(); k += std::max<std::size_t>(1, step)) {
       formulas.insert(formulas.end(), atoms[k].columns.begin(), atoms[k].columns.end());

@@ -41,16 +41,24 @@ EffectFamily stribeck() {
   const ShapeTemplate narrow{"vs", "v", {0.02, 0.045, 0.09, 0.14}, 0.004, kNarrowFall, true};
   const ShapeTemplate wide{"vs", "v", {0.2, 0.4}, kNarrowFall, 0.5, true};
   const ShapeTemplate delta{"delta", "", {1, 2}, 0.5, 3};
+  // In one direction alone a tail of less than 1 is viscous friction that differs by direction.
+  const ShapeTemplate short_tail{"delta", "", {1, 2}, 1, 3};
   const std::string curve = "exp(-(abs(v)/vs)^delta)";
   f.atoms = {{{"sgn_v*" + curve}, {"excess"}, {narrow, delta}},
              {.columns = {"sgn_v*" + curve},
               .coefficients = {"excess"},
               .shapes = {wide, delta},
               .curve = SpeedCurve::falls},
-             {.columns = {curve},
+             {.columns = {"sgn_v^2*" + curve},
               .coefficients = {"excess_half_gap"},
               .shapes = {narrow, delta},
               .by_direction = true}};
+  for (const char* direction : {"sgn_v*(1 + sgn_v)/2*", "sgn_v*(1 - sgn_v)/2*"}) {
+    f.atoms.push_back({.columns = {direction + curve},
+                       .coefficients = {"excess"},
+                       .shapes = {narrow, short_tail},
+                       .one_way = true});
+  }
   f.sanity = {{"excess", 1, 0, "breakaway friction below Coulomb friction"}};
   f.separate_by = {"R6"};
   return f;

@@ -211,6 +211,7 @@ AtomTemplate read_atom(const Entry& entry) {
   atom.rigid_load = entry.find<bool>("rigid_load").value_or(false);
   atom.beside_another = entry.find<bool>("beside_another").value_or(false);
   atom.by_direction = entry.find<bool>("by_direction").value_or(false);
+  atom.one_way = entry.find<bool>("one_way").value_or(false);
   atom.curve = read_curve(entry);
   return atom;
 }
@@ -302,6 +303,7 @@ toml::table table_of(const AtomTemplate& atom) {
   if (atom.rigid_load) table.insert("rigid_load", true);
   if (atom.beside_another) table.insert("beside_another", true);
   if (atom.by_direction) table.insert("by_direction", true);
+  if (atom.one_way) table.insert("one_way", true);
   if (atom.curve != SpeedCurve::any) table.insert("curve", std::string(curve_name(atom.curve)));
   toml::array shapes;
   for (const ShapeTemplate& shape : atom.shapes) {
@@ -331,7 +333,7 @@ std::vector<EffectFamily> read_effects(const std::filesystem::path& file) {
   const std::vector<Entry> effects = whole.entries(
       "effect", {"name", "id", "phrase", "summary", "source", "origin", "title", "angular", "curve",
                  "separate_by", "sanity", "alias", "columns", "coefficients", "shape", "rigid_load",
-                 "beside_another", "by_direction"});
+                 "beside_another", "by_direction", "one_way"});
   if (effects.empty()) {
     throw_bad_input("there is no [[effect]] in the file", file.string(),
                     "see --save-effect for the form");

@@ -88,6 +88,7 @@ Atom make_atom(const AtomTemplate& source, std::size_t family, const Observation
   atom.family = family;
   atom.coefficients = source.coefficients;
   atom.beside_another = source.beside_another || source.by_direction;
+  atom.one_way = source.one_way;
   atom.curve = source.curve;
   for (std::size_t k = 0; k < source.shapes.size(); ++k) {
     const ShapeTemplate& shape = source.shapes[k];
@@ -199,7 +200,7 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
       std::ranges::count(data.rigid, "g") > 0 && std::ranges::count(data.rigid, "a") > 0;
   for (const AtomTemplate& source : family.atoms) {
     if (source.rigid_load && !rigid_load) continue;
-    if (source.by_direction && !moves_both_ways(data)) continue;
+    if ((source.by_direction || source.one_way) && !moves_both_ways(data)) continue;
     std::vector<std::string> lacking;
     for (const std::string& name : variables_of(source)) {
       const auto withheld = std::ranges::find(data.withheld, name, &WithheldSignal::name);

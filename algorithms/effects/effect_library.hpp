@@ -59,6 +59,8 @@ struct AtomTemplate {
   // The same, and only in motion both ways: what differs by direction (a sense forwards only is one
   // half of each).
   bool by_direction = false;
+  // What there is in one direction alone: only in motion both ways, else it is the whole effect.
+  bool one_way = false;
   SpeedCurve curve = SpeedCurve::any;
 };
 
@@ -127,6 +129,7 @@ struct Atom {
   std::vector<std::string> coefficients;
   std::vector<Shape> shapes;
   bool beside_another = false;
+  bool one_way = false;
   SpeedCurve curve = SpeedCurve::any;
 
   void set_shape(std::size_t shape, double value);

@@ -176,8 +176,10 @@ void ExplanationSpace::add_library(const std::vector<double>& gear_ratios) {
   const std::vector<EffectFamily>& library = builtin_effects();
   for (std::size_t f = 0; f < library.size(); ++f) {
     std::vector<std::string> missing;
-    const std::vector<Atom> atoms =
+    std::vector<Atom> atoms =
         instantiate(library[f], f, reference_, gear_ratios_for(reference_, gear_ratios), missing);
+    // A column and what of it differs by direction are a block, and so is either direction of it.
+    std::erase_if(atoms, [](const Atom& atom) { return atom.one_way; });
     if (atoms.empty()) {
       untestable_.push_back(library[f].name);
       continue;

@@ -241,6 +241,15 @@ TEST(Diagnosis, AWideCurveIsStribeckWhereFrictionFallsAndNonlinearWhereItRises) 
   }
 }
 
+// Half of it is a curve in both directions, too small to be told first.
+TEST(Diagnosis, AStribeckCurveInOneDirectionIsNamed) {
+  const simulation::ControlledRun run =
+      simulation::run_under_control({.cause = "stribeck_forwards", .scale = 1, .rate_hz = 250}, 4);
+  const Diagnosis diagnosis = diagnose_most(observe(run.clean()).averaged(6000).data, {});
+  EXPECT_EQ(diagnosis.verdict, Verdict::effects);
+  EXPECT_EQ(families(diagnosis), std::vector<std::string>{"stribeck"});
+}
+
 TEST(Diagnosis, NamesTwoEffects) {
   const Diagnosis diagnosis =
       diagnose_planted({.effects = {{"load_coulomb", 1.0}, {"hysteresis", 1.0}}}, 5);

@@ -60,6 +60,17 @@ TEST(EffectLibrary, AJointHasRipplesOfTheUsualGears) {
   EXPECT_FALSE(atoms_of("output_ripple", data).empty());
 }
 
+// Where a joint moves one way alone, what is there in one direction is the whole effect.
+TEST(EffectLibrary, AnEffectOfOneDirectionNeedsMotionBothWays) {
+  Observations data = observe(kuka::make_planted({}, 1).data);
+  EXPECT_EQ(std::ranges::count(atoms_of("stribeck", data), true, &Atom::one_way), 16);
+  for (Signal& signal : data.signals) {
+    if (signal.name != "v" && signal.name != "sgn_v") continue;
+    for (double& v : signal.values) v = std::abs(v);
+  }
+  EXPECT_EQ(std::ranges::count(atoms_of("stribeck", data), true, &Atom::one_way), 0);
+}
+
 TEST(EffectLibrary, TheLoopFindsTheRippleOfAScrewWithoutBeingToldItsLead) {
   Observations data = linear_axis(3);
   DiagnosisOptions options;
@@ -87,7 +98,8 @@ bool same(const AtomTemplate& a, const AtomTemplate& b) {
            x.values == y.values;
   };
   return a.columns == b.columns && a.coefficients == b.coefficients &&
-         a.rigid_load == b.rigid_load && a.curve == b.curve &&
+         a.rigid_load == b.rigid_load && a.beside_another == b.beside_another &&
+         a.by_direction == b.by_direction && a.one_way == b.one_way && a.curve == b.curve &&
          std::ranges::equal(a.shapes, b.shapes, same_shape);
 }
 
