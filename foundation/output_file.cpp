@@ -15,7 +15,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Of a name that no file can have here, as opposed to a machine that has no room.
+bool is_of_the_name(int error) {
+  return error == ENOENT || error == ENOTDIR || error == EISDIR || error == ELOOP ||
+         error == ENAMETOOLONG;
+}
+
 [[noreturn]] void throw_unwritable(const fs::path& file, int error) {
+  if (is_of_the_name(error)) {
+    throw_bad_input(fmt::format("cannot be written: {}", std::strerror(error)), file.string(),
+                    "name a file in a folder that is there");
+  }
   throw Error(ErrorKind::failed, fmt::format("cannot be written: {}", std::strerror(error)),
               file.string(), "check the disk's free space and the folder's rights");
 }

@@ -11,7 +11,7 @@ namespace tribench {
 
 // Writes the text beside its place and renames it, so that a reader sees the old file or the new,
 // never half of one. A link is followed; what is no file (a pipe, a terminal, /dev/null) is written
-// to as it is. Throws Error (failed) naming the file; nothing is left beside it then.
+// to as it is. Throws Error naming the file (bad_input: the name is wrong) and leaves nothing.
 void write_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace tribench

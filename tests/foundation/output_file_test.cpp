@@ -63,6 +63,21 @@ TEST(OutputFile, WhatIsNoFileIsWrittenToAsItIs) {
   EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
+TEST(OutputFile, ANameThatNoFileCanHaveIsTheUsersToMend) {
+  const ScratchFolder folder;
+  write_file(folder.path() / "file", "text");
+  fs::create_symlink("ring", folder.path() / "ring");
+  for (const std::string name : {"no folder/file", "file/below", ".", "ring"}) {
+    try {
+      write_file(folder.path() / name, "text");
+      ADD_FAILURE() << "written: " << name;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::bad_input) << name;
+      EXPECT_THAT(error.what(), HasSubstr("name a file in a folder that is there"));
+    }
+  }
+}
+
 TEST(OutputFile, SaysWhyItCannotBeWritten) {
   try {
     write_file("/dev/full", "text");
