@@ -7,8 +7,8 @@
 // These are the column kernels' (expression/column_kernels.hpp), which take what the processor has
 // and give the same bits on each. NaN and infinity spread as in any sum.
 //
-// Cost: n p q multiplications and additions, half of it for a Gram matrix; a Gram matrix takes about
-// half of the time of Eigen's with AVX2, a third with AVX-512 (14 000 rows, 4 to 60 columns:
+// Cost: n p q multiplications and additions, half of it for a Gram matrix; a Gram matrix takes
+// about half of the time of Eigen's with AVX2, a third with AVX-512 (14 000 rows, 4 to 60 columns:
 // bench/diagnosis_bench).
 #pragma once
 
