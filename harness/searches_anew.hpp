@@ -24,7 +24,7 @@ struct Bearable {
   bool is_more_worth_it = true;
 };
 
-// Whether each search may spend at least half of what the first one did: what was left of the
+// Whether each search may spend at least a quarter of what the first one did: what was left of the
 // budget before and after it. What is not the same search says nothing of it.
 bool is_enough_for_searches_anew(const BudgetLimits& before, const BudgetLimits& after);
 

@@ -91,11 +91,11 @@ TEST_F(SearchesAnewTest, WhatHoldsThereIsNot) {
   EXPECT_TRUE(found->is_more_worth_it);
 }
 
-TEST_F(SearchesAnewTest, EachMaySpendHalfOfWhatTheFirstDidOrNoneIsMade) {
-  EXPECT_TRUE(is_enough_for_searches_anew({.evaluations = 1000}, {.evaluations = 800}));
-  EXPECT_FALSE(is_enough_for_searches_anew({.evaluations = 1000}, {.evaluations = 700}));
-  EXPECT_TRUE(is_enough_for_searches_anew({.cpu_seconds = 60}, {.cpu_seconds = 46}));
-  EXPECT_FALSE(is_enough_for_searches_anew({.cpu_seconds = 36}, {.cpu_seconds = 22}));
+TEST_F(SearchesAnewTest, EachMaySpendAQuarterOfWhatTheFirstDidOrNoneIsMade) {
+  EXPECT_TRUE(is_enough_for_searches_anew({.evaluations = 1000}, {.evaluations = 600}));
+  EXPECT_FALSE(is_enough_for_searches_anew({.evaluations = 1000}, {.evaluations = 500}));
+  EXPECT_TRUE(is_enough_for_searches_anew({.cpu_seconds = 60}, {.cpu_seconds = 40}));
+  EXPECT_FALSE(is_enough_for_searches_anew({.cpu_seconds = 36}, {.cpu_seconds = 6}));
 }
 
 TEST_F(SearchesAnewTest, NothingIsSearchedForExactFormulasOrManyRows) {
