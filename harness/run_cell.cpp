@@ -243,17 +243,17 @@ class StageFits {
       bearable =
           bearable_search(first, search, data_, budget_, random.split("held out").split(stage));
     }
-    FitResult result = std::move(first);
-    if (!bearable || bearable->is_more_worth_it) {
-      // The trace is the first round's: a later one starts from nothing.
-      const auto again = [&](RandomStream stream, int round) {
-        return widened ? once(*widened(round), stream, nullptr) : once(method, stream, nullptr);
-      };
-      result = fit_until_spent(std::move(result), again, widened != nullptr, data_, budget_,
-                               random.split("again").split(stage));
-    }
-    if (bearable) keep_within(*bearable, data_, result);
-    return result;
+    if (bearable) keep_within(*bearable, data_, first);
+    if (bearable && !bearable->is_more_worth_it) return first;
+    const FitResult judged = first;
+    // The trace is the first round's: a later one starts from nothing.
+    const auto again = [&](RandomStream stream, int round) {
+      return widened ? once(*widened(round), stream, nullptr) : once(method, stream, nullptr);
+    };
+    FitResult result = fit_until_spent(std::move(first), again, widened != nullptr, data_, budget_,
+                                       random.split("again").split(stage));
+    // What wider searches make of few rows under noise, no row held out has judged.
+    return bearable && !holds_exact(result, data_) ? judged : result;
   }
 
  private:

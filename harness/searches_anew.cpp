@@ -67,6 +67,11 @@ std::optional<Bearable> bearable_search(const FitResult& fit, const SearchOfRows
       validation.mean_square() * static_cast<double>(rows.rows()) <= kPlainly * seen.sum};
 }
 
+bool holds_exact(const FitResult& fit, const TrainingData& data) {
+  const FiniteRows rows(data);
+  return simplest_exact(fit.front, rows.table(), rows.target).has_value();
+}
+
 void keep_within(const Bearable& bearable, const TrainingData& data, FitResult& fit) {
   if (fit.front.empty()) return;
   const auto say = [&fit](std::string_view what) {
@@ -79,8 +84,7 @@ void keep_within(const Bearable& bearable, const TrainingData& data, FitResult& 
     return paper_complexity(formula) <= bearable.complexity;
   };
   if (is_within(fit.front[fit.chosen])) return;
-  const FiniteRows rows(data);
-  if (simplest_exact(fit.front, rows.table(), rows.target)) return;
+  if (holds_exact(fit, data)) return;
   const auto within = static_cast<std::size_t>(std::ranges::count_if(fit.front, is_within));
   fit.chosen = within > 0 ? within - 1 : 0;
   say(fmt::format("no choice of more than {} operations: such err more on rows held out",

@@ -34,6 +34,9 @@ std::optional<Bearable> bearable_search(const FitResult& fit, const SearchOfRows
                                         const TrainingData& data, Budget& budget,
                                         const RandomStream& random);
 
+// Whether a formula of the front explains the rows exactly (fitting/exact_choice.hpp).
+bool holds_exact(const FitResult& fit, const TrainingData& data);
+
 // Chooses the most accurate of the front within the bound where the choice is beyond it and none is
 // exact. The note says so, and where more searching is not worth it.
 void keep_within(const Bearable& bearable, const TrainingData& data, FitResult& fit);
