@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "algorithms/expression/text.hpp"
@@ -16,6 +17,7 @@ namespace tribench {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // y = 2 v + 1 without noise; a second stage in which 3 g is left on top.
 Problem two_stage_problem() {
@@ -92,6 +94,46 @@ TEST(FitAndJudge, AddsTheStagesFormulasAndCountsTheAdaptationApart) {
   Record again;
   judge_formula(problem, {formula, {}}, again);
   EXPECT_EQ(again.mae_test, record.mae_test);
+}
+
+// Has found one formula beforehand.
+class FormulaMethod : public Regressor {
+ public:
+  explicit FormulaMethod(std::string formula) : formula_(std::move(formula)) {}
+  FitResult fit(FitContext& context) const override {
+    const std::vector<std::string> names = {context.data.inputs[0].name};
+    FitResult result;
+    result.front = {Expression::constant(0), parse(formula_, names)};
+    result.chosen = 1;
+    EXPECT_TRUE(context.budget.spend(100));
+    return result;
+  }
+
+ private:
+  std::string formula_;
+};
+
+TEST(FitAndJudge, FurtherRoundsOnFewRowsCountByExactFormulasAlone) {
+  Problem problem = two_stage_problem();
+  problem.stages.pop_back();
+  for (int i = 0; i < 40; ++i) {  // 0.3 cos(10 pi v), which no row held out has heard of
+    problem.stages[0].train.target[static_cast<std::size_t>(i)] += i % 2 == 0 ? 0.3 : -0.3;
+  }
+  CellTask task;
+  task.cell = {problem.name, "line", "full", 1};
+  task.operators = find_operator_set("full");
+  task.limits.evaluations = 5000;
+  task.limits.spend = true;
+  const auto formula_after = [&](const std::string& found_by_a_wider_search) {
+    const auto wider = [&](int) {
+      return std::make_unique<FormulaMethod>(found_by_a_wider_search);
+    };
+    const CellResult result = fit_and_judge(problem, LineMethod(), task, wider);
+    EXPECT_TRUE(is_ok(result.record)) << reason_text(result.record.reason);
+    return result.record.formula;
+  };
+  EXPECT_THAT(formula_after("2*v + 1 + 0.25*cos(31.41592653589793*v)"), Not(HasSubstr("cos")));
+  EXPECT_THAT(formula_after("2*v + 1 + 0.3*cos(31.41592653589793*v)"), HasSubstr("cos"));
 }
 
 // Refuses data of which the first input has another name.
