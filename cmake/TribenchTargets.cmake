@@ -76,8 +76,6 @@ function(tribench_test name)
     ${TEST_LINKS} tribench_test_support GTest::gmock GTest::gtest_main)
   if("tribench_test_runs" IN_LIST TEST_LINKS)  # the others are built without the program
     add_dependencies(${name} tribench_program)
-    # Nearly all that they do is done by it: not optimised, they compile in two thirds of the time.
-    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O0>)
   endif()
   if(NOT TEST_TIMEOUT)
     set(TEST_TIMEOUT 120)
