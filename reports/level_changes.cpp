@@ -98,13 +98,14 @@ std::vector<std::size_t> partition(const Segments& segments, const std::vector<s
   std::vector<std::size_t> from(m, 0);
   best[0] = -penalty;
   std::vector<std::size_t> candidates;
+  std::vector<double> costs;
   std::size_t next = 0;  // the first place that is no candidate yet
   for (std::size_t end = 1; end < m; ++end) {
     while (places[next] + kShortest <= places[end]) {
       if (best[next] < std::numeric_limits<double>::infinity()) candidates.push_back(next);
       ++next;
     }
-    std::vector<double> costs;
+    costs.clear();
     for (const std::size_t begin : candidates) {
       costs.push_back(best[begin] + segments.cost(places[begin], places[end]));
       if (costs.back() + penalty < best[end]) {
