@@ -15,7 +15,8 @@ constexpr std::size_t kWindow = 9;  // rows in which spells are looked for
 // Spells are reckoned with once the rows speak for them at these odds.
 constexpr double kOdds = 10;
 constexpr double kFirstShare = 0.1;
-constexpr int kRounds = 30;  // of expectation and maximisation
+constexpr int kRounds = 30;        // of expectation and maximisation
+constexpr double kMostNats = 600;  // what is likelier is as good as certain
 
 // x to the power -(freedom + 1) / 2, of which twice is an integer.
 double student_power(double x, double freedom) {
@@ -26,6 +27,36 @@ double student_power(double x, double freedom) {
     if (n % 2 == 1) result *= base;
   }
   return result;
+}
+
+// The kernels of rows on either side of 0, multiplied.
+struct SideProducts {
+  double below = 1;
+  double above = 1;
+  int rows_above = 0;
+  void add(const StudentLaw& law, double z) {
+    (z > 0 ? above : below) *= law.kernel(z);
+    rows_above += z > 0 ? 1 : 0;
+  }
+};
+
+// pulse_likelihood where the sides have laws of their own, so that the kernels' powers differ.
+double skewed_likelihood(const StudentLaw& law, const double* z, const double* unit, double height,
+                         std::size_t rows, const NoiseLevels& levels) {
+  SideProducts without;
+  for (std::size_t k = 0; k < rows; ++k) without.add(law, z[k]);
+  double sum = 0;
+  for (std::size_t q = 0; q < levels.factor.size(); ++q) {
+    const StudentLaw own = law.times(levels.factor[q]);
+    SideProducts with;
+    for (std::size_t k = 0; k < rows; ++k) with.add(own, z[k] - height * unit[k]);
+    double nats = (with.rows_above - without.rows_above) * law.log_density_ratio;
+    nats -= static_cast<double>(rows) * elementary::log(levels.factor[q]);
+    nats -= 0.5 * (law.below.freedom + 1) * elementary::log(with.below / without.below);
+    nats -= 0.5 * (law.above.freedom + 1) * elementary::log(with.above / without.above);
+    sum += NoiseLevels::kWeights[q] * elementary::exp(std::min(nats, kMostNats));
+  }
+  return sum;
 }
 
 // Of every window without a row left out: how much likelier it is in a loud spell.
@@ -72,17 +103,18 @@ double NoiseLevels::draw(RandomStream& random) const {
 double pulse_likelihood(const StudentLaw& law, const double* z, const double* unit, double height,
                         std::size_t rows, const NoiseLevels& levels,
                         const double* inverse_kernels) {
+  if (!law.is_even()) return skewed_likelihood(law, z, unit, height, rows, levels);
   double sum = 0;
   for (std::size_t q = 0; q < levels.factor.size(); ++q) {
-    const double inverse = 1 / (levels.factor[q] * law.scale);
+    const double inverse = 1 / (levels.factor[q] * law.above.scale);
     double product = 1;
     double scales = 1;
     for (std::size_t k = 0; k < rows; ++k) {
       const double x = (z[k] - height * unit[k]) * inverse;
-      product *= (1 + x * x / law.freedom) * inverse_kernels[k];
-      scales *= inverse * law.scale;
+      product *= (1 + x * x / law.above.freedom) * inverse_kernels[k];
+      scales *= inverse * law.above.scale;
     }
-    sum += NoiseLevels::kWeights[q] * scales * student_power(product, law.freedom);
+    sum += NoiseLevels::kWeights[q] * scales * student_power(product, law.above.freedom);
   }
   return sum;
 }

@@ -149,9 +149,9 @@ void BurstNoise::scale_by_movement() {
     level_[m] = shrunk_level(own[m], static_cast<double>(movements_[m].size())).factor;
   }
   divide_by_levels();
-  const double before = law_.scale;
+  const double before = law_.scale();
   law_ = fit_student(innovation_);
-  mean_log_level_ += elementary::log(before / law_.scale);
+  mean_log_level_ += elementary::log(before / law_.scale());
 }
 
 double BurstNoise::level_error(std::size_t movement, std::size_t rows) const {

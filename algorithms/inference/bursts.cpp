@@ -244,8 +244,7 @@ class BurstScan {
     }
     const double height =
         random.sign() * noise_.robust_sd() * kHeights[number / pulses_.size() % kDrawnHeights];
-    StudentLaw own = noise_.law();
-    own.scale *= out.levels[drawn].draw(random);
+    const StudentLaw own = noise_.law().times(out.levels[drawn].draw(random));
     out.from = std::max(range.begin + 1, out.first) - 1;
     out.end = range.end;
     for (std::size_t i = out.from; i < std::min(out.end, out.first + kLongestPulse + 1); ++i) {

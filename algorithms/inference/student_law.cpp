@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <vector>
 
 #include "foundation/elementary.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 constexpr std::array<double, 6> kDegreesOfFreedom = {3, 4, 5, 7, 12, 40};
 
 // Of the kernels; a logarithm of the product of eight takes the time of one.
-double sum_of_logs(std::span<const double> z, const StudentLaw& law) {
+double sum_of_logs(std::span<const double> z, const StudentSide& law) {
   double sum = 0;
   double product = 1;
   for (std::size_t i = 0; i < z.size(); ++i) {
@@ -25,13 +26,21 @@ double sum_of_logs(std::span<const double> z, const StudentLaw& law) {
   return sum;
 }
 
-}  // namespace
+// But for a constant.
+double log_density_at_0(const StudentSide& law) {
+  return elementary::lgamma((law.freedom + 1) / 2) - elementary::lgamma(law.freedom / 2) -
+         0.5 * elementary::log(law.freedom) - elementary::log(law.scale);
+}
 
-StudentLaw fit_student(std::span<const double> z) {
+struct FittedSide {
+  StudentSide law;
+  double log_likelihood = -std::numeric_limits<double>::infinity();
+};
+
+FittedSide fit_side(std::span<const double> z) {
   constexpr int kIterations = 8;  // for each law, from where the one before ended
   const auto n = static_cast<double>(z.size());
-  StudentLaw best;
-  double most = -std::numeric_limits<double>::infinity();
+  FittedSide best;
   double variance = 1;
   for (const double freedom : kDegreesOfFreedom) {
     for (int pass = 0; pass < kIterations; ++pass) {
@@ -39,28 +48,45 @@ StudentLaw fit_student(std::span<const double> z) {
       for (const double x : z) sum += x * x * (freedom + 1) / (freedom + x * x / variance);
       variance = std::max(sum / n, 1e-12);
     }
-    const StudentLaw law{freedom, std::sqrt(variance)};
-    double likelihood =
-        n * (elementary::lgamma((freedom + 1) / 2) - elementary::lgamma(freedom / 2) -
-             0.5 * elementary::log(freedom) - elementary::log(law.scale));
-    likelihood -= 0.5 * (freedom + 1) * sum_of_logs(z, law);
-    if (likelihood > most) {
-      most = likelihood;
-      best = law;
-    }
+    const StudentSide law{freedom, std::sqrt(variance)};
+    const double likelihood = n * log_density_at_0(law) - 0.5 * (freedom + 1) * sum_of_logs(z, law);
+    if (likelihood > best.log_likelihood) best = {law, likelihood};
   }
   return best;
 }
 
+}  // namespace
+
+StudentLaw fit_student(std::span<const double> z) {
+  const FittedSide both = fit_side(z);
+  StudentLaw even(both.law.freedom, both.law.scale);
+  std::vector<double> below;
+  std::vector<double> above;
+  for (const double x : z) (x > 0 ? above : below).push_back(x);
+  if (below.empty() || above.empty()) return even;
+  const FittedSide low = fit_side(below);
+  const FittedSide high = fit_side(above);
+  const double gained = low.log_likelihood + high.log_likelihood - both.log_likelihood;
+  if (!(gained > elementary::log(static_cast<double>(z.size())))) return even;
+  StudentLaw skewed;
+  skewed.below = low.law;
+  skewed.above = high.law;
+  skewed.log_density_ratio = log_density_at_0(high.law) - log_density_at_0(low.law);
+  return skewed;
+}
+
 double level_of(std::span<const double> z, const StudentLaw& law, double level, int iterations) {
-  const double unit = law.scale * law.scale;
-  double square = level * level * unit;
+  double square = level * level;
   for (int k = 0; k < iterations; ++k) {
     double sum = 0;
-    for (const double x : z) sum += x * x * (law.freedom + 1) / (law.freedom + x * x / square);
-    square = std::max(sum / static_cast<double>(z.size()), kLeastLevel * kLeastLevel * unit);
+    for (const double value : z) {
+      const StudentSide& side = law.side(value);
+      const double x = value / side.scale;
+      sum += x * x * (side.freedom + 1) / (side.freedom + x * x / square);
+    }
+    square = std::max(sum / static_cast<double>(z.size()), kLeastLevel * kLeastLevel);
   }
-  return std::sqrt(square / unit);
+  return std::sqrt(square);
 }
 
 }  // namespace tribench::loop

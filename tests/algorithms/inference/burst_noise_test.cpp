@@ -49,7 +49,7 @@ Example example(RandomStream random) {
 TEST(BurstNoise, KnowsEachMovementsLevelAsWellAsItSays) {
   const Example e = example(RandomStream(1));
   const BurstNoise noise(e.movement, e.speed, e.residual);
-  EXPECT_EQ(noise.law().freedom, 5);
+  EXPECT_EQ(noise.law().above.freedom, 5);
   EXPECT_NEAR(noise.rho(), kRho, 0.03);
   // A movement's first row has none before it: it is an innovation by itself.
   const double first = noise.deviation()[0] / noise.unit()[0];
@@ -57,7 +57,7 @@ TEST(BurstNoise, KnowsEachMovementsLevelAsWellAsItSays) {
   double squares = 0;
   for (std::size_t m = 0; m < kMovements; ++m) {
     const std::size_t row = m * kRows + 10;
-    const double taken = noise.unit()[row] * noise.law().scale * noise.level_without(m, row, 7);
+    const double taken = noise.unit()[row] * noise.law().scale() * noise.level_without(m, row, 7);
     const double off = std::log(taken / e.unit[row]) / noise.level_error(m, 7);
     squares += off * off;
   }
@@ -85,10 +85,10 @@ TEST(BurstNoise, AMovementLeftOutWholeIsAsLoudAsTheOthersAreApart) {
   for (std::size_t m = 0; m < 3; ++m) {
     EXPECT_NEAR(noise.level_error(m, kLong), 1, 0.02);
     const double typical =
-        noise.unit()[m * kLong] * noise.law().scale * noise.level_without(m, m * kLong, kLong);
-    EXPECT_NEAR(typical, law.scale, 0.06);
-    const double own = noise.unit()[m * kLong] * noise.law().scale;
-    EXPECT_NEAR(std::log(own / law.scale), static_cast<double>(m) - 1, 0.1);
+        noise.unit()[m * kLong] * noise.law().scale() * noise.level_without(m, m * kLong, kLong);
+    EXPECT_NEAR(typical, law.scale(), 0.06);
+    const double own = noise.unit()[m * kLong] * noise.law().scale();
+    EXPECT_NEAR(std::log(own / law.scale()), static_cast<double>(m) - 1, 0.1);
   }
 }
 
