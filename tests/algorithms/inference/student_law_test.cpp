@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 namespace tribench::loop {
@@ -18,6 +19,33 @@ TEST(StudentLaw, IsFoundFromItsOwnDraws) {
     EXPECT_EQ(found.above.freedom, law.above.freedom);
     EXPECT_NEAR(found.scale(), law.scale(), 0.03 * law.scale());
   }
+}
+
+TEST(StudentLaw, OfSkewedNoiseIsFoundOnEitherSide) {
+  StudentLaw skewed;
+  skewed.below = {40, 0.5};
+  skewed.above = {5, 1.2};
+  RandomStream random(key_of("skewed"));
+  std::vector<double> draws(20000);
+  for (double& draw : draws) draw = skewed.draw(random);
+  const StudentLaw found = fit_student(draws);
+  EXPECT_EQ(found.below.freedom, 40);
+  EXPECT_EQ(found.above.freedom, 5);
+  EXPECT_NEAR(found.below.scale, 0.5, 0.015);
+  EXPECT_NEAR(found.above.scale, 1.2, 0.036);
+  // At 0 a t density is less high the heavier its tails are, and the wider it is.
+  EXPECT_NEAR(found.log_density_ratio, std::log(0.3796 / 1.2 / (0.3965 / 0.5)), 0.05);
+}
+
+TEST(StudentLaw, OfEvenNoiseIsTheSameOnBothSides) {
+  int uneven = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    RandomStream random(seed);
+    std::vector<double> draws(2000);
+    for (double& draw : draws) draw = StudentLaw(5, 1).draw(random);
+    uneven += fit_student(draws).is_even() ? 0 : 1;
+  }
+  EXPECT_LE(uneven, 2);
 }
 
 TEST(StudentLaw, OfNormalNoiseHasTheLightestTails) {
