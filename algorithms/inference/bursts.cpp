@@ -242,8 +242,8 @@ class BurstScan {
     for (const std::vector<double>& one : pulses_) {
       out.levels.emplace_back(1, noise_.level_error(movement, one.size()));
     }
-    const double height =
-        random.sign() * noise_.robust_sd() * kHeights[number / pulses_.size() % kDrawnHeights];
+    const double height = random.sign() * noise_.law().wider_side() * noise_.robust_sd() *
+                          kHeights[number / pulses_.size() % kDrawnHeights];
     const StudentLaw own = noise_.law().times(out.levels[drawn].draw(random));
     out.from = std::max(range.begin + 1, out.first) - 1;
     out.end = range.end;

@@ -62,7 +62,13 @@ StudentLaw fit_student(std::span<const double> z) {
   StudentLaw even(both.law.freedom, both.law.scale);
   std::vector<double> below;
   std::vector<double> above;
-  for (const double x : z) (x > 0 ? above : below).push_back(x);
+  for (const double x : z) {
+    if (x != 0) (x > 0 ? above : below).push_back(x);
+  }
+  // Half of what lies at 0 is either side's.
+  const std::size_t zeros = (z.size() - below.size() - above.size()) / 2;
+  below.insert(below.end(), zeros, 0.0);
+  above.insert(above.end(), zeros, 0.0);
   if (below.empty() || above.empty()) return even;
   const FittedSide low = fit_side(below);
   const FittedSide high = fit_side(above);

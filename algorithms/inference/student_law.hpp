@@ -34,7 +34,8 @@ struct StudentLaw {
   bool is_even() const { return below == above; }
   const StudentSide& side(double z) const { return z > 0 ? above : below; }
   double kernel(double z) const { return side(z).kernel(z); }
-  double scale() const { return std::sqrt(below.scale * above.scale); }  // typical
+  double scale() const { return std::sqrt(below.scale * above.scale); }     // typical
+  double wider_side() const { return below.scale > above.scale ? -1 : 1; }  // sign
   StudentLaw times(double factor) const {
     StudentLaw out = *this;
     out.below.scale *= factor;
@@ -45,10 +46,10 @@ struct StudentLaw {
   double variance_of_log_level(double rows) const {
     return 2 / (rows * (below.information() + above.information()));
   }
-  // Bailey 1994: one draw from two uniform ones.
+  // Bailey 1994: one draw from two uniform ones. Of a mirrored law it is the negative.
   double draw(RandomStream& random) const {
     const double u = 1 - random.uniform();
-    const double cosine = elementary::cos(random.uniform(0, 2 * std::numbers::pi));
+    const double cosine = wider_side() * elementary::cos(random.uniform(0, 2 * std::numbers::pi));
     const StudentSide& own = side(cosine);
     return own.scale * std::sqrt(own.freedom * (elementary::pow(u, -2 / own.freedom) - 1)) * cosine;
   }

@@ -71,6 +71,27 @@ TEST(Bursts, CleanRecordingsWithALongTailToOneSideHardlyEverHoldOne) {
   EXPECT_LE(with, 6);  // 2 are expected; more than 6 in one of 200
 }
 
+// Bit for bit, where the noise is skewed and where many rows lie at its middle.
+TEST(Bursts, OfAMirroredRecordingAreTheSame) {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Eigen::VectorXd residual = skewed_noise(RandomStream(seed));
+    for (Eigen::Index k = 0; k < 9; ++k) residual[700 + k] += seed % 2 == 0 ? 9 : -9;
+    if (seed % 3 == 0) residual = residual.array().round();
+    const std::vector<Burst> told = bursts_of(residual, seed);
+    const std::vector<Burst> mirrored = bursts_of(-residual, seed);
+    ASSERT_EQ(told.size(), mirrored.size()) << seed;
+    for (std::size_t k = 0; k < told.size(); ++k) {
+      EXPECT_EQ(told[k].begin, mirrored[k].begin);
+      EXPECT_EQ(told[k].end, mirrored[k].end);
+      EXPECT_EQ(told[k].peak, mirrored[k].peak);
+      EXPECT_EQ(told[k].log_ratio, mirrored[k].log_ratio);
+    }
+    found += told.size();
+  }
+  EXPECT_GE(found, 25U);
+}
+
 // Of such noise nearly every recording has rows beyond six robust standard deviations: that they
 // are none is for the threshold alone to say.
 TEST(Bursts, CleanRecordingsWithTheHeaviestTailsHardlyEverHoldOne) {
