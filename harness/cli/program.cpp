@@ -16,6 +16,7 @@
 
 #include "algorithms/fitting/product_blocking.hpp"
 #include "foundation/error.hpp"
+#include "foundation/freed_memory.hpp"
 #include "foundation/standard_streams.hpp"
 #include "foundation/suggestion.hpp"
 #include "harness/cli/commands.hpp"
@@ -131,6 +132,7 @@ void refuse_writing_over_what_is_read(const CLI::App& command) {
 }
 
 int run_command_line(int argc, char** argv, const Registry& registry) {
+  keep_freed_memory();
   CLI::App app("Benchmarks symbolic regression of joint friction, and closes the loop with data.",
                "tribench");
   app.set_version_flag("--version", version_with_commit());
