@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/canonical_correlation.hpp"
 #include "algorithms/inference/column_products.hpp"
 #include "algorithms/inference/whitening.hpp"
 
@@ -258,15 +259,6 @@ std::vector<std::size_t> better_atoms(std::size_t family, const Round& round,
     }
   }
   return best;
-}
-
-double canonical_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  const Eigen::MatrixXd qa = orthonormal_basis(a);
-  const Eigen::MatrixXd qb = orthonormal_basis(b);
-  if (qa.cols() == 0 || qb.cols() == 0) return 0;
-  const Eigen::MatrixXd cross = cross_products(qa, qb);
-  const Eigen::MatrixXd gram = cross.transpose() * cross;
-  return std::sqrt(std::min(1.0, spectral_norm_symmetric(gram)));
 }
 
 std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round,

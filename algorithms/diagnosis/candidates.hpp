@@ -49,7 +49,4 @@ std::vector<std::size_t> better_atoms(std::size_t family, const Round& round,
 std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round,
                                      const FittedModel& model, const Campaign& campaign);
 
-// The largest canonical correlation of two column spaces.
-double canonical_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
-
 }  // namespace tribench::loop

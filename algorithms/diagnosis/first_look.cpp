@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "algorithms/diagnosis/candidates.hpp"
+#include "algorithms/inference/canonical_correlation.hpp"
 
 namespace tribench::loop {
 namespace {

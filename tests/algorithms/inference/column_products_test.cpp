@@ -5,21 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 
-#include "foundation/random.hpp"
+#include "tests/algorithms/inference/normal_columns.hpp"
 
 namespace tribench::loop {
 namespace {
 
-Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, std::uint64_t seed) {
-  RandomStream random(seed);
-  Eigen::MatrixXd out(rows, columns);
-  for (double& x : out.reshaped()) x = random.normal();
-  return out;
-}
+using testing::normal_columns;
 
 bool have_same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() &&
@@ -44,8 +38,8 @@ double in_the_stated_order(const double* a, const double* b, Eigen::Index rows) 
 TEST(ColumnProducts, AreSumsInOneOrderWhateverTheProcessor) {
   for (const Eigen::Index rows : {0, 1, 7, 8, 9, 511, 512, 513, 3007}) {
     for (const Eigen::Index p : {1, 2, 3, 4, 5, 11}) {
-      const Eigen::MatrixXd a = random_matrix(rows, p, 1);
-      const Eigen::MatrixXd b = random_matrix(rows, 3, 2);
+      const Eigen::MatrixXd a = normal_columns(rows, p, 1);
+      const Eigen::MatrixXd b = normal_columns(rows, 3, 2);
       Eigen::MatrixXd expected(p, 3);
       for (Eigen::Index i = 0; i < p; ++i) {
         for (Eigen::Index j = 0; j < 3; ++j) {
@@ -59,7 +53,7 @@ TEST(ColumnProducts, AreSumsInOneOrderWhateverTheProcessor) {
 
 TEST(ColumnProducts, OfAGramMatrixAreThoseOfTheColumnsWithThemselvesAndSymmetric) {
   for (const Eigen::Index p : {1, 2, 3, 4, 5, 6, 7, 13}) {
-    const Eigen::MatrixXd a = random_matrix(2050, p, 3);
+    const Eigen::MatrixXd a = normal_columns(2050, p, 3);
     const Eigen::MatrixXd gram = gram_of(a);
     EXPECT_TRUE(have_same_bits(gram, cross_products(a, a))) << p;
     EXPECT_TRUE(have_same_bits(gram, gram.transpose())) << p;
@@ -67,23 +61,23 @@ TEST(ColumnProducts, OfAGramMatrixAreThoseOfTheColumnsWithThemselvesAndSymmetric
 }
 
 TEST(ColumnProducts, TakeRowsOfALargerMatrixAsTheyLie) {
-  const Eigen::MatrixXd a = random_matrix(300, 6, 4);
+  const Eigen::MatrixXd a = normal_columns(300, 6, 4);
   const Eigen::MatrixXd rows = a.middleRows(13, 250);
   EXPECT_TRUE(have_same_bits(gram_of(a.middleRows(13, 250)), gram_of(rows)));
 }
 
 TEST(ColumnProducts, ACombinationTakenOffLeavesWhatEigenLeaves) {
   for (const Eigen::Index p : {0, 1, 7, 8, 9, 20}) {
-    const Eigen::MatrixXd columns = random_matrix(1500, p, 5);
-    const Eigen::MatrixXd coefficients = random_matrix(p, 4, 6);
-    const Eigen::MatrixXd from = random_matrix(1500, 4, 7);
+    const Eigen::MatrixXd columns = normal_columns(1500, p, 5);
+    const Eigen::MatrixXd coefficients = normal_columns(p, 4, 6);
+    const Eigen::MatrixXd from = normal_columns(1500, 4, 7);
     const Eigen::MatrixXd left = less_combination(from, columns, coefficients);
     EXPECT_LT((left - (from - columns * coefficients)).norm(), 1e-12 * from.norm()) << p;
   }
 }
 
 TEST(ColumnProducts, SpreadWhatIsNotFinite) {
-  Eigen::MatrixXd a = random_matrix(40, 3, 8);
+  Eigen::MatrixXd a = normal_columns(40, 3, 8);
   a(17, 1) = std::numeric_limits<double>::quiet_NaN();
   const Eigen::MatrixXd gram = gram_of(a);
   EXPECT_TRUE(std::isnan(gram(0, 1)) && std::isnan(gram(1, 1)) && std::isnan(gram(2, 1)));
