@@ -11,6 +11,7 @@
 
 #include "foundation/elementary.hpp"
 #include "foundation/order_statistics.hpp"
+#include "reports/figures.hpp"
 #include "reports/statistics/permutation_shift.hpp"
 
 namespace tribench {
@@ -203,12 +204,12 @@ std::string losses_text(const std::vector<NightFinding>& findings) {
   std::string text;
   for (const NightFinding& each : findings) {
     text +=
-        fmt::format("{} ({}) on {}: {:.1f} % worse {} than before ({} seeds, p = {:.1g})\n",
-                    each.method, each.operators,
-                    each.problem.empty() ? "all problems" : each.problem, 100 * (each.ratio - 1),
+        fmt::format("{} ({}) on {}: {:.1f} % worse {} than before ({}, p = {:.1g})\n", each.method,
+                    each.operators, each.problem.empty() ? "all problems" : each.problem,
+                    100 * (each.ratio - 1),
                     each.window == 1 ? std::string("this night")
                                      : fmt::format("in the last {} nights", each.window),
-                    each.pairs, each.p);
+                    counted(each.pairs, "seed"), each.p);
   }
   return text;
 }

@@ -31,6 +31,10 @@ const char* is_are(const std::vector<std::string>& names) {
   return names.size() == 1 ? "is" : "are";
 }
 
+std::string too_few(std::size_t seeds) {
+  return fmt::format("{} {} too few for a test", counted(seeds, "seed"), seeds == 1 ? "is" : "are");
+}
+
 std::string failures_of(const ProblemTable& table) {
   std::vector<std::string> parts;
   for (const MethodRow& row : table.rows) {
@@ -76,8 +80,8 @@ std::string reading_of(const ProblemTable& table) {
   }
   const auto untested = methods_with(table, Standing::behind_untested);
   if (!untested.empty()) {
-    text += fmt::format(" {} {} behind on every seed, but {} seeds are too few for a test.",
-                        list_of(untested), is_are(untested), table.seeds);
+    text += fmt::format(" {} {} behind on every seed, but {}.", list_of(untested), is_are(untested),
+                        too_few(table.seeds));
   }
   const auto behind = methods_with(table, Standing::behind);
   if (!behind.empty()) {
@@ -91,7 +95,7 @@ namespace {
 
 // What the seeds could have shown and did not.
 std::string seen_text(const MethodRow& row) {
-  if (!std::isfinite(row.seen_ratio)) return fmt::format("{} seeds can show nothing", row.pairs);
+  if (!std::isfinite(row.seen_ratio)) return counted(row.pairs, "seed") + " can show nothing";
   return fmt::format("x{} would be seen", ratio_figure(row.seen_ratio));
 }
 
@@ -120,7 +124,7 @@ std::string certainty_of(const ProblemTable& table) {
     return "the others gave no formula";
   }
   if (!methods_with(table, Standing::behind_untested).empty()) {
-    return fmt::format("ahead on every seed, {} seeds are too few for a test", table.seeds);
+    return "ahead on every seed, " + too_few(table.seeds);
   }
   return "clearly (5 %)";
 }
@@ -159,7 +163,8 @@ std::string standing_text(const MethodRow& row) {
     case Standing::not_distinguishable:
       return fmt::format("not distinguishable (x{}; {})", ratio_figure(row.ratio), seen_text(row));
     case Standing::behind_untested:
-      return fmt::format("x{} on all {} seeds", ratio_figure(row.ratio), row.pairs);
+      return fmt::format("x{} on {}{}", ratio_figure(row.ratio), row.pairs == 1 ? "" : "all ",
+                         counted(row.pairs, "seed"));
     case Standing::behind:
       return fmt::format("x{} (p {})", ratio_figure(row.ratio), figure(row.p, 2));
     default:

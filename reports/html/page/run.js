@@ -255,6 +255,11 @@ function fact(value, label, bad) {
   return el("div", {class: "fact"}, el("b", {class: bad ? "bad" : undefined}, value), el("span", {class: "soft"}, label));
 }
 
+// Only where some problem of the run has such curves: a law of a suite has no velocity profile.
+function curveCard(picture, ...words) {
+  return data.curves.some((c) => c.picture === picture) ? card(picture, ...words) : null;
+}
+
 function problemPart() {
   return [el("h2", {id: "problem"}, el("span", {id: "problem-title"})),
     el("p", {class: "reading", id: "problem-reading"}), el("p", {class: "soft", id: "problem-ceiling"}),
@@ -263,9 +268,9 @@ function problemPart() {
        el("span", {class: "soft"}, "in the pictures:"), ...methodButtons()),
     el("div", {class: "grid"},
       card("front", "Accuracy and complexity", "Each point is a formula no other beats in both; ringed: chosen; cross: singular. Hover shows the formula, click its record."),
-      card("profile", "Sinusoidal velocity profile", "What each model predicts along the profile; dashed: the true law where it is known."),
-      card("friction", "Friction against velocity", "One panel a method. Lines: the model, at three loads where the load is an input; dashed: the true law; dots: measured.", true),
-      card("error", "Error against velocity", "Prediction minus measured on test movements, one panel a method. Points beyond five times the best method's errors are cut off.", true),
+      curveCard("profile", "Sinusoidal velocity profile", "What each model predicts along the profile; dashed: the true law where it is known."),
+      curveCard("friction", "Friction against velocity", "One panel a method. Lines: the model, at three loads where the load is an input; dashed: the true law; dots: measured.", true),
+      curveCard("error", "Error against velocity", "Prediction minus measured on test movements, one panel a method. Points beyond five times the best method's errors are cut off.", true),
       card("trace_evaluations", "Error against evaluations", "Median over seeds of the best training error so far; band: lowest to highest."),
       card("trace_cpu", "Error against CPU time", "The same against seconds of the fit."),
       card("singular", "Singularities in the input box", "Points where a formula has no finite value. Hover shows the formula and the witness.", true))];
