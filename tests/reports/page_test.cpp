@@ -107,7 +107,7 @@ TEST(Page, OfNightsDrawsALineForEverySeriesAndFigureWithinItsWindow) {
       wide: document.documentElement.scrollWidth > window.innerWidth,
       loaded: performance.getEntriesByType('resource').length};
   )",
-                                       "390,800");
+                                       {390, 800});
   ASSERT_TRUE(answer.is_object()) << answer;
   EXPECT_EQ(answer["lines"], 5);
   EXPECT_EQ(answer["inside"], true);
@@ -264,7 +264,7 @@ TEST(Page, OfARunFitsAPhoneSaysItsUnitAndWhatChangedFirst) {
     window.answer = {first: first.id, text: first.textContent, before, hovered: line(), scroll: document.documentElement.scrollWidth,
       width: innerWidth, room: document.documentElement.clientWidth, label: cell.dataset.label, errors: window.pageErrors};
   )"),
-                                       "390,844");
+                                       {390, 844});
   ASSERT_TRUE(answer.is_object()) << answer;
   EXPECT_EQ(answer["errors"], json::array());
   EXPECT_EQ(answer["first"], "changed");
