@@ -39,17 +39,23 @@ if(TRIBENCH_COVERAGE)
   add_link_options(--coverage)
 endif()
 
-# tribench_room(NAME [COLD] SOURCES ... LINKS ... PRIVATE_LINKS ...): a static library for one room,
-# exported as tribench::NAME. COLD rooms read, write and wait: they are compiled with -O1, which
+# tribench_room(NAME [COLD] [BATCH n] SOURCES ... LINKS ... PRIVATE_LINKS ...): a static library for one
+# room, exported as tribench::NAME. COLD rooms read, write and wait: they are compiled with -O1, which
 # takes a third off the build of a fresh clone and changes no result (no flag here reorders sums).
-# The preset `release` compiles a room's files eight at a time (CMAKE_UNITY_BUILD): what all of them
-# include is read once, for half of the time. `dev` compiles each by itself: a forgotten include fails.
+# The preset `release` compiles a room's files together (CMAKE_UNITY_BUILD), eight at a time or BATCH:
+# what all of them include is read once, for half of the time. More gain where a file is little beside
+# what it includes, and lose where one long unit is waited for at the end. `dev` compiles each file by
+# itself: a forgotten include fails.
 function(tribench_room name)
-  cmake_parse_arguments(ROOM "COLD" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  cmake_parse_arguments(ROOM "COLD" "BATCH" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  if(NOT ROOM_BATCH)
+    set(ROOM_BATCH 8)
+  endif()
   add_library(tribench_${name} STATIC ${ROOM_SOURCES})
   add_library(tribench::${name} ALIAS tribench_${name})
   set_target_properties(tribench_${name} PROPERTIES
-    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF UNITY_BUILD_BATCH_SIZE 8)
+    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF
+    UNITY_BUILD_BATCH_SIZE ${ROOM_BATCH})
   target_include_directories(tribench_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tribench>)
@@ -61,16 +67,12 @@ function(tribench_room name)
   set_property(GLOBAL APPEND PROPERTY TRIBENCH_ROOMS tribench_${name})
 endfunction()
 
-# tribench_test(NAME [APART] SOURCES ... LINKS ... LABELS ... TIMEOUT s): one GoogleTest program,
-# one ctest. Tests that run the program link tribench_test_runs. APART: each of its files has names and
-# boxes of its own under the same words, and is compiled by itself everywhere.
+# tribench_test(NAME SOURCES ... LINKS ... LABELS ... TIMEOUT s): one GoogleTest program, one ctest. Tests
+# that run the program link tribench_test_runs. Twelve of its files are compiled at a time.
 function(tribench_test name)
-  cmake_parse_arguments(TEST "APART" "TIMEOUT" "SOURCES;LINKS;LABELS" ${ARGN})
+  cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;LINKS;LABELS" ${ARGN})
   add_executable(${name} ${TEST_SOURCES})
-  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF UNITY_BUILD_BATCH_SIZE 6)
-  if(TEST_APART)
-    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
-  endif()
+  set_target_properties(${name} PROPERTIES CXX_EXTENSIONS OFF UNITY_BUILD_BATCH_SIZE 12)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE
     ${TEST_LINKS} tribench_test_support GTest::gmock GTest::gtest_main)
@@ -85,7 +87,9 @@ function(tribench_test name)
     math(EXPR TEST_TIMEOUT "10 * ${TEST_TIMEOUT}")
   endif()
   add_test(NAME ${name} COMMAND ${name})
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} LABELS "${TEST_LABELS}")
+  # Freed memory stays, as with the program (foundation/freed_memory).
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} LABELS "${TEST_LABELS}"
+    ENVIRONMENT "MALLOC_MMAP_THRESHOLD_=1073741824;MALLOC_TRIM_THRESHOLD_=2147483647")
   if("tribench_test_runs" IN_LIST TEST_LINKS)  # take longest: begun first, none is waited for at the end
     set_tests_properties(${name} PROPERTIES COST 1)
   endif()

@@ -16,6 +16,9 @@ namespace tribench {
 // Without blanks, tabs and line ends on either side.
 std::string_view trimmed(std::string_view text);
 
+// As a sentence begins: the first letter large, where it is one of ASCII's.
+std::string capitalised(std::string text);
+
 // The pieces between separators, trimmed: "a, b" at ',' gives "a" and "b"; "a,,b" has an empty
 // piece; an empty or blank text has none.
 std::vector<std::string> split(std::string_view text, char separator);

@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <functional>
 #include <sstream>
 
 #include "harness/grid.hpp"
@@ -13,13 +14,6 @@
 namespace tribench {
 namespace {
 
-template <typename Items, typename NameOf>
-std::vector<std::string> names_of(const Items& items, NameOf name_of) {
-  std::vector<std::string> names;
-  for (const auto& item : items) names.push_back(name_of(item));
-  return names;
-}
-
 toml::table parameters_table(const std::map<std::string, ParameterValue>& parameters) {
   toml::table table;
   for (const auto& [name, value] : parameters) {
@@ -28,9 +22,10 @@ toml::table parameters_table(const std::map<std::string, ParameterValue>& parame
   return table;
 }
 
-toml::array text_array(const std::vector<std::string>& texts) {
+template <typename Items, typename TextOf = std::identity>
+toml::array text_array(const Items& items, TextOf text_of = {}) {
   toml::array array;
-  for (const std::string& text : texts) array.push_back(text);
+  for (const auto& item : items) array.push_back(std::invoke(text_of, item));
   return array;
 }
 
@@ -80,11 +75,8 @@ std::string print_grid_with(const Grid& grid, const toml::array& own) {
   toml::table table;
   table.insert("name", grid.name);
   table.insert("problems", text_array(grid.problems));
-  table.insert("methods", text_array(names_of(grid.methods,
-                                              [](const Method& method) { return method.name; })));
-  table.insert(
-      "operators",
-      text_array(names_of(grid.operators, [](const OperatorSet& set) { return set.name(); })));
+  table.insert("methods", text_array(grid.methods, &Method::name));
+  table.insert("operators", text_array(grid.operators, &OperatorSet::name));
   table.insert("seeds", toml::table{{"first", static_cast<std::int64_t>(grid.first_seed)},
                                     {"count", static_cast<std::int64_t>(grid.seed_count)}});
   table.insert("quarantine", text_array(grid.quarantine));

@@ -47,8 +47,8 @@ std::string made_with(const RunFolder& run) {
   return text.empty() ? text : fmt::format("Made with {}.\n", text);
 }
 
-// "3/10" with its share of trouble visible; "" where there is nothing to say.
-std::string share(std::size_t count, std::size_t of) {
+// "**3/10**", so that trouble is seen; "0" where there is none.
+std::string marked_count(std::size_t count, std::size_t of) {
   return count == 0 ? std::string("0") : fmt::format("**{}/{}**", count, of);
 }
 
@@ -68,7 +68,7 @@ std::string winners(const RunSummary& summary) {
     const MethodRow& best = each.rows.front();
     table.add({each.problem, each.operators, fmt::format("**{}**", best.method),
                figure(best.mae_test.middle), count_figure(best.complexity),
-               share(best.refuted, best.mae_test.count), certainty_of(each)});
+               marked_count(best.refuted, best.mae_test.count), certainty_of(each)});
   }
   return table.text();
 }
@@ -155,8 +155,8 @@ std::string method_table(const ProblemTable& table) {
     if (relative) cells.push_back(figure(row.relative_error_test));
     cells.push_back(complexity_text(row));
     cells.push_back(figure(row.fit_cpu_s));
-    cells.push_back(share(row.refuted, row.mae_test.count));
-    cells.push_back(share(row.failed, row.cells) +
+    cells.push_back(marked_count(row.refuted, row.mae_test.count));
+    cells.push_back(marked_count(row.failed, row.cells) +
                     (row.missing > 0 ? fmt::format(" ({} missing)", row.missing) : ""));
     text.add(std::move(cells));
   }

@@ -11,6 +11,7 @@
 #include <regex>
 #include <utility>
 
+#include "foundation/text.hpp"
 #include "reports/figures.hpp"
 
 namespace tribench {
@@ -23,11 +24,6 @@ constexpr std::size_t kNamedEffects = 3;  // in the headline
 constexpr std::size_t kNamedSizes = 5;    // that would have been seen
 
 bool known(double value) { return std::isfinite(value); }
-
-std::string capital(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
 
 std::string spaced(std::string text) {
   std::ranges::replace(text, '_', ' ');
@@ -193,7 +189,7 @@ std::string bristles_of(const LoopRecord& record, const LoopEffect& effect) {
 LoopCard card_of(const LoopRecord& record, const LoopEffect& effect) {
   LoopCard card;
   card.family = effect.family;
-  card.title = capital(phrase_of(record, effect.family)) + period_words(record, effect.family);
+  card.title = capitalised(phrase_of(record, effect.family)) + period_words(record, effect.family);
   card.noun = family_title(record, effect.family);
   if (known(effect.rms)) {
     card.amount = amount(torque_unit(record), effect.rms);
@@ -220,7 +216,7 @@ std::string effects_clause(const LoopRecord& record) {
   if (phrases.size() < record.effects.size()) {
     phrases.push_back(fmt::format("{} more effects", record.effects.size() - phrases.size()));
   }
-  return capital(listed(phrases));
+  return capitalised(listed(phrases));
 }
 
 std::string leftover_inputs(const LoopRecord& record) {
@@ -348,7 +344,7 @@ std::vector<std::string> untestable_lines(const LoopRecord& record) {
   }
   std::vector<std::string> lines;
   for (const std::string& reason : reasons) {
-    std::string line = fmt::format("{}: {}.", capital(listed(families[reason])), reason);
+    std::string line = fmt::format("{}: {}.", capitalised(listed(families[reason])), reason);
     if (!asks[reason].empty()) line += fmt::format(" To test it: {}.", listed(asks[reason], "or"));
     lines.push_back(std::move(line));
   }
@@ -359,7 +355,7 @@ std::vector<std::string> aliased_lines(const LoopRecord& record) {
   std::vector<std::string> lines;
   for (const LoopCoincidence& pair : record.aliased) {
     std::string line =
-        fmt::format("{} and {} (correlation {}).", capital(family_title(record, pair.first)),
+        fmt::format("{} and {} (correlation {}).", capitalised(family_title(record, pair.first)),
                     family_title(record, pair.second), figure(pair.correlation));
     const std::string ask = ask_of(record, pair.separate_by);
     if (!ask.empty()) line += fmt::format(" To tell them apart: {}.", ask);
@@ -471,7 +467,7 @@ LoopWords loop_words(const LoopRecord& record) {
   words.bursts = burst_lines(record);
   for (const auto* list : {&record.warnings, &record.notes}) {
     for (const std::string& one : *list) {
-      words.remarks.push_back(capital(plain_text(record, one)) + '.');
+      words.remarks.push_back(capitalised(plain_text(record, one)) + '.');
     }
   }
   words.next = next_of(record, words);

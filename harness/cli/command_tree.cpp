@@ -7,14 +7,16 @@
 #include <sstream>
 #include <utility>
 
+#include "foundation/text.hpp"
+
 namespace tribench {
 namespace {
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
   std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
-  return parts;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
 }
 
 // CLI11 writes an option's type and checks as "TEXT:{c,python}" or "INT:INT in [1 - 9]".
@@ -60,7 +62,7 @@ Command described(const CLI::App& app, const std::string& parent) {
   command.name = app.get_name();
   command.path = parent.empty() ? command.name : parent + " " + command.name;
   command.description = app.get_description();
-  command.notes = split(app.get_footer(), '\n');
+  command.notes = lines_of(app.get_footer());
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_group().empty()) continue;
     auto& kind = option->nonpositional() ? command.options : command.positionals;

@@ -5,15 +5,10 @@
 
 #include <map>
 
+#include "foundation/shell_word.hpp"
+
 namespace tribench {
 namespace {
-
-// A shell's word: in single quotes, those within written as '\''.
-std::string shell_word(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
 
 std::string words_of(const CommandOption& option) {
   if (!option.choices.empty()) return shell_word(fmt::format("{}", fmt::join(option.choices, " ")));

@@ -5,10 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "foundation/text.hpp"
 #include "reports/figures.hpp"
 #include "reports/loop_words.hpp"
 
@@ -64,11 +64,6 @@ Json series_json(const std::vector<LoopSeries>& all, double x_factor, double fac
   return list;
 }
 
-std::string capital(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
-
 Json picture(std::string id, const char* kind, std::string title, std::string caption) {
   return {{"id", std::move(id)},
           {"kind", kind},
@@ -122,10 +117,11 @@ Json effect_picture(const LoopRecord& record, const LoopEffectPicture& from,
                     std::size_t number_of) {
   const LoopUnit unit = torque_unit(record);
   const LoopUnit x = axis_unit(from.x, from.series);
-  Json json = picture(
-      "effect-" + std::to_string(number_of), "effect", capital(family_title(record, from.family)),
-      "Points: what the rows say of it, the rest of the model taken off (means, 95 %). "
-      "Line: the fitted effect with its 95 % band.");
+  Json json =
+      picture("effect-" + std::to_string(number_of), "effect",
+              capitalised(family_title(record, from.family)),
+              "Points: what the rows say of it, the rest of the model taken off (means, 95 %). "
+              "Line: the fitted effect with its 95 % band.");
   json["family"] = from.family;
   json["x"] = axis_title(from.x, x);
   json["y"] = fmt::format("{} ({})", from.against_motion ? "torque against the motion" : "torque",

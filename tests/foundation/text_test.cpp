@@ -41,6 +41,13 @@ std::string complaint_of(const std::filesystem::path& file, std::size_t largest)
 }
 
 // Without a bound the program would read until its memory ends.
+TEST(Text, ASentenceBeginsWithALargeLetter) {
+  EXPECT_EQ(capitalised("lag of the drive"), "Lag of the drive");
+  EXPECT_EQ(capitalised("2 waves"), "2 waves");
+  EXPECT_EQ(capitalised("\xC3\xA4 bc"), "\xC3\xA4 bc") << "not one of ASCII's";
+  EXPECT_EQ(capitalised(""), "");
+}
+
 TEST(Text, ADeviceWithoutAnEndIsRefused) {
   EXPECT_THAT(complaint_of("/dev/zero", kLargestTextFile), HasSubstr("no text"));
   EXPECT_THAT(complaint_of("/dev/urandom", kLargestTextFile), HasSubstr("no text"));

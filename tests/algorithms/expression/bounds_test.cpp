@@ -16,7 +16,7 @@
 #include "tests/algorithms/expression/containment.hpp"
 #include "tests/algorithms/expression/proof_formulas.hpp"
 
-namespace tribench {
+namespace tribench::bounds_test {
 namespace {
 
 using testing::count_escapes;
@@ -253,4 +253,4 @@ TEST(BoundsTest, NoticesAMeanValueFormThatForgetsRoundingErrors) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::bounds_test

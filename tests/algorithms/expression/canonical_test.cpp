@@ -20,7 +20,7 @@
 #include "algorithms/expression/text.hpp"
 #include "tests/algorithms/expression/proof_formulas.hpp"
 
-namespace tribench {
+namespace tribench::canonical_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v", "g", "t"};
@@ -346,4 +346,4 @@ TEST(Simplify, NeverGrowsAndKeepsTheVerdict) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::canonical_test

@@ -15,7 +15,7 @@
 #include "tests/algorithms/expression/containment.hpp"
 #include "tests/algorithms/expression/proof_formulas.hpp"
 
-namespace tribench {
+namespace tribench::certificate_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -275,4 +275,4 @@ TEST(Certificate, MostProvedFormulasHaveOne) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::certificate_test

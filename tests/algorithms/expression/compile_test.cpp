@@ -14,7 +14,7 @@
 #include "algorithms/expression/text.hpp"
 #include "tests/algorithms/expression/agreement.hpp"
 
-namespace tribench {
+namespace tribench::compile_test {
 namespace {
 
 constexpr std::size_t kVariables = 12;  // more than there are registers for
@@ -201,4 +201,4 @@ TEST(RepeatedEvaluator, CompilesWhenItPaysAndNeverChangesAResult) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::compile_test

@@ -15,7 +15,7 @@
 namespace tribench::testing {
 namespace {
 
-const std::vector<std::string> kNames = {"v", "g", "t"};
+const std::vector<std::string> kInputNames = {"v", "g", "t"};
 }  // namespace
 
 Box random_box(RandomStream& random, std::size_t inputs) {
@@ -67,7 +67,7 @@ void expect_containment(std::string_view key, int trials) {
       for (std::size_t i = 0; i < known; ++i) {
         if (arity(formula.node(i).op) == 0) continue;
         ASSERT_EQ(count_escapes(subtree(formula, i), columns, bounds.at(i).range), 0)
-            << print(subtree(formula, i), kNames) << " sharpened " << sharpened << " on v "
+            << print(subtree(formula, i), kInputNames) << " sharpened " << sharpened << " on v "
             << print_number(box[0].low) << " : " << print_number(box[0].high) << " bounds "
             << print_number(bounds.at(i).range.low) << " : "
             << print_number(bounds.at(i).range.high);

@@ -9,7 +9,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::differentiate_test {
 namespace {
 
 const std::vector<std::string> kNames = {"x", "y"};
@@ -241,4 +241,4 @@ TEST(Differentiate, KeepsToItsConventions) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::differentiate_test

@@ -12,7 +12,7 @@
 #include "algorithms/expression/random_formula.hpp"
 #include "algorithms/expression/text.hpp"
 
-namespace tribench {
+namespace tribench::edit_test {
 namespace {
 
 const std::vector<std::string> kNames = {"a", "b", "c", "d"};
@@ -172,4 +172,4 @@ TEST(RandomFormula, RepeatsForTheSameStream) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::edit_test

@@ -15,7 +15,7 @@
 #include "tests/algorithms/expression/agreement.hpp"
 #include "tests/algorithms/expression/reference.hpp"
 
-namespace tribench {
+namespace tribench::evaluate_test {
 namespace {
 
 constexpr std::size_t kVariables = 3;
@@ -209,4 +209,4 @@ TYPED_TEST(Evaluate, ReportsAnErrorSumThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::evaluate_test

@@ -9,7 +9,7 @@
 #include "algorithms/expression/singularity.hpp"
 #include "algorithms/expression/text.hpp"
 
-namespace tribench {
+namespace tribench::grid_check_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v", "sgn_v", "g"};
@@ -38,4 +38,4 @@ TEST(GridCheck, NeverSeesWhatIsProvedFree) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::grid_check_test

@@ -16,7 +16,7 @@
 #include "algorithms/expression/evaluate.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::interval_test {
 namespace {
 
 constexpr int kPrecision = 200;
@@ -283,4 +283,4 @@ TEST(Interval, HoldsWhatTheEvaluatorComputesFromTwoOperands) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::interval_test

@@ -15,7 +15,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::polynomial_range_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v", "g"};
@@ -124,4 +124,4 @@ TEST(PolynomialRange, DecidesNearDoubleRootsInAFewBoxes) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::polynomial_range_test

@@ -11,7 +11,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 
-namespace tribench {
+namespace tribench::property_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v", "sgn_v", "g", "sgn_g"};
@@ -139,4 +139,4 @@ TEST(Properties, RefuseAQuestionThatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::property_test

@@ -14,7 +14,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 
-namespace tribench {
+namespace tribench::singularity_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v", "sgn_v", "g", "sgn_g"};
@@ -240,4 +240,4 @@ TEST(Singularity, CountsAConstantThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::singularity_test

@@ -12,7 +12,7 @@
 #include "foundation/formula_name.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::text_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v", "g", "sgn_v"};
@@ -136,4 +136,4 @@ TEST(Parse, CollectsNamesInOrderOfAppearance) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::text_test

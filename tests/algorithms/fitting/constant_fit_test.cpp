@@ -11,7 +11,7 @@
 #include "algorithms/fitting/linear_constants.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::constant_fit_test {
 namespace {
 
 using testing::DoubleNear;
@@ -221,4 +221,4 @@ TEST(ConstantFit, CountsWhatItSpends) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::constant_fit_test

@@ -9,7 +9,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::cross_validation_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v"};
@@ -235,4 +235,4 @@ TEST(CrossValidation, TriesAFormulaOverTheStretchThatItWillBeContinuedOver) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::cross_validation_test

@@ -11,7 +11,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::evidence_pruning_test {
 namespace {
 
 const std::vector<std::string> kNames = {"x", "z"};
@@ -66,4 +66,4 @@ TEST(EvidencePruning, CountsExponentsThatWereFitted) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::evidence_pruning_test

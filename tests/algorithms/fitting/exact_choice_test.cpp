@@ -9,7 +9,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/elementary.hpp"
 
-namespace tribench {
+namespace tribench::exact_choice_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v"};
@@ -82,4 +82,4 @@ TEST(ExactChoice, IsNoFormulaWithAsManyNumbersAsThereAreRows) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::exact_choice_test

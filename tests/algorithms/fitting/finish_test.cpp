@@ -15,7 +15,7 @@
 #include "foundation/random.hpp"
 #include "tests/algorithms/expression/proof_formulas.hpp"
 
-namespace tribench {
+namespace tribench::finish_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v", "g", "t"};
@@ -143,4 +143,4 @@ TEST(Finish, IsNeverWorseNorLongerNorMoreSingular) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::finish_test

@@ -12,7 +12,7 @@
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::fit_intervals_test {
 namespace {
 
 const std::vector<std::string> kNames = {"x"};
@@ -181,4 +181,4 @@ TEST(MeanCurveVariance, HasNoEndWhereOneRowAloneTellsANumber) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::fit_intervals_test

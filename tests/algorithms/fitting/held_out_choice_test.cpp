@@ -10,7 +10,7 @@
 #include "algorithms/fitting/linear_sum.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::held_out_choice_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v"};
@@ -134,4 +134,4 @@ TEST(LinearSum, IsTheLeastSquaresLineOfTheInputsThatSaySomething) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::held_out_choice_test

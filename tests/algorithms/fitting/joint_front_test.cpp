@@ -10,7 +10,7 @@
 #include "algorithms/expression/text.hpp"
 #include "algorithms/fitting/evidence.hpp"
 
-namespace tribench {
+namespace tribench::joint_front_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v"};
@@ -186,4 +186,4 @@ TEST_F(JointFrontTest, KeepsAChoiceThatIsNotFiniteUntilThereIsABetterOne) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::joint_front_test

@@ -13,7 +13,7 @@
 #include "algorithms/fitting/subset_average.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::linear_sum_test {
 namespace {
 
 // Of two columns at right angles, of unit length, every subset's slopes are the same.
@@ -135,4 +135,4 @@ TEST(LinearSum, SaysHowWellAndWritesNoInputThatSaysNothing) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::linear_sum_test

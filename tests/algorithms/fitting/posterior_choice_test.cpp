@@ -11,7 +11,7 @@
 #include "algorithms/fitting/evidence.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench {
+namespace tribench::posterior_choice_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v"};
@@ -94,4 +94,4 @@ TEST(Evidence, ChargesNumbersAndNodesByHand) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::posterior_choice_test

@@ -8,7 +8,7 @@
 
 #include "algorithms/expression/text.hpp"
 
-namespace tribench {
+namespace tribench::search_validation_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v"};
@@ -68,4 +68,4 @@ TEST_F(SearchValidationTest, OneFoldThatLeavesAllBoundsIsOneOfMany) {
 }
 
 }  // namespace
-}  // namespace tribench
+}  // namespace tribench::search_validation_test

@@ -11,7 +11,7 @@
 #include "foundation/order_statistics.hpp"
 #include "foundation/random.hpp"
 
-namespace tribench::loop {
+namespace tribench::loop::burst_noise_test {
 namespace {
 
 constexpr std::size_t kMovements = 200;
@@ -213,4 +213,4 @@ TEST(BurstNoise, KnowsWhichMovementARowIsOf) {
 }
 
 }  // namespace
-}  // namespace tribench::loop
+}  // namespace tribench::loop::burst_noise_test

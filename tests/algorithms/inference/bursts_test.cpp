@@ -12,7 +12,7 @@
 #include "algorithms/inference/burst_noise.hpp"
 #include "algorithms/inference/student_law.hpp"
 
-namespace tribench::loop {
+namespace tribench::loop::bursts_test {
 namespace {
 
 constexpr std::size_t kMovements = 60;
@@ -368,4 +368,4 @@ TEST(Bursts, TheLogRatioIsThatOfItsDefinition) {
 }
 
 }  // namespace
-}  // namespace tribench::loop
+}  // namespace tribench::loop::bursts_test

@@ -10,7 +10,7 @@
 
 #include "foundation/random.hpp"
 
-namespace tribench::loop {
+namespace tribench::loop::evidence_test {
 namespace {
 
 constexpr Eigen::Index kRows = 14;
@@ -268,4 +268,4 @@ TEST(EvidenceTable, SaysNothingWithoutBlocksOrOfATargetThatIsWhollyExplained) {
 }
 
 }  // namespace
-}  // namespace tribench::loop
+}  // namespace tribench::loop::evidence_test

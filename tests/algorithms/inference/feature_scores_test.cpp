@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace tribench::loop {
+namespace tribench::loop::feature_scores_test {
 namespace {
 
 constexpr double kRidge = 0.02;
@@ -95,4 +95,4 @@ TEST(FeatureScorer, SaysWhatTheColumnsSayOneByOne) {
 }
 
 }  // namespace
-}  // namespace tribench::loop
+}  // namespace tribench::loop::feature_scores_test

@@ -8,7 +8,7 @@
 
 #include "algorithms/inference/cross_validation.hpp"
 
-namespace tribench::loop {
+namespace tribench::loop::score_test_test {
 namespace {
 
 constexpr std::size_t kMovements = 60;
@@ -208,4 +208,4 @@ TEST(ScoreTest, WhatTheModelExplainsIsNoPartOfABlock) {
 }
 
 }  // namespace
-}  // namespace tribench::loop
+}  // namespace tribench::loop::score_test_test

@@ -14,7 +14,7 @@
 #include "algorithms/registry.hpp"
 #include "foundation/error.hpp"
 
-namespace tribench::pysr {
+namespace tribench::pysr::backsolve_test {
 namespace {
 
 const std::vector<std::string> kNames = {"x", "y"};
@@ -161,4 +161,4 @@ TEST(MutationWeights, SayWhatTheyDoNotUnderstand) {
 }
 
 }  // namespace
-}  // namespace tribench::pysr
+}  // namespace tribench::pysr::backsolve_test

@@ -13,7 +13,7 @@
 #include "algorithms/pysr/simplify.hpp"
 #include "foundation/error.hpp"
 
-namespace tribench::pysr {
+namespace tribench::pysr::constraints_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v", "m", "t"};
@@ -176,4 +176,4 @@ TEST(Simplification, HashesStructuresWithoutTheirConstants) {
 }
 
 }  // namespace
-}  // namespace tribench::pysr
+}  // namespace tribench::pysr::constraints_test

@@ -10,7 +10,7 @@
 #include "algorithms/registry.hpp"
 #include "foundation/error.hpp"
 
-namespace tribench::pysr {
+namespace tribench::pysr::feature_selection_test {
 namespace {
 
 constexpr std::size_t kInputs = 8;
@@ -121,4 +121,4 @@ TEST(FeatureSelection, AndATemplateExcludeEachOther) {
 }
 
 }  // namespace
-}  // namespace tribench::pysr
+}  // namespace tribench::pysr::feature_selection_test

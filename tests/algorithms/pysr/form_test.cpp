@@ -15,7 +15,7 @@
 #include "algorithms/registry.hpp"
 #include "foundation/error.hpp"
 
-namespace tribench::pysr {
+namespace tribench::pysr::form_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v", "sgn_v", "load"};
@@ -249,4 +249,4 @@ TEST(Template, RefusesWhatWouldBreakIt) {
 }
 
 }  // namespace
-}  // namespace tribench::pysr
+}  // namespace tribench::pysr::form_test

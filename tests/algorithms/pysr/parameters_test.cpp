@@ -9,7 +9,7 @@
 #include "algorithms/pysr/options.hpp"
 #include "algorithms/registry.hpp"
 
-namespace tribench::pysr {
+namespace tribench::pysr::parameters_test {
 namespace {
 
 using Given = std::map<std::string, ParameterValue>;
@@ -179,4 +179,4 @@ TEST(Parameters, LeaveWhatIsNotGivenToTheProfile) {
 }
 
 }  // namespace
-}  // namespace tribench::pysr
+}  // namespace tribench::pysr::parameters_test

@@ -15,7 +15,7 @@
 #include "algorithms/pysr/selection.hpp"
 #include "algorithms/pysr/tournament.hpp"
 
-namespace tribench::pysr {
+namespace tribench::pysr::published_behaviour_test {
 namespace {
 
 RandomStream stream(std::string_view name) { return RandomStream(key_of(name)); }
@@ -213,4 +213,4 @@ TEST(PublishedBehaviour, TheProfilesHaveThePublishedDefaults) {
 }
 
 }  // namespace
-}  // namespace tribench::pysr
+}  // namespace tribench::pysr::published_behaviour_test

@@ -16,7 +16,7 @@
 #include "algorithms/pysr/units.hpp"
 #include "algorithms/registry.hpp"
 
-namespace tribench::pysr {
+namespace tribench::pysr::search_test {
 namespace {
 
 const std::vector<std::string> kNames = {"v", "sgn_v"};
@@ -218,4 +218,4 @@ TEST(Search, RefusesInconsistentUnitsWhereTheyAreHard) {
 }
 
 }  // namespace
-}  // namespace tribench::pysr
+}  // namespace tribench::pysr::search_test

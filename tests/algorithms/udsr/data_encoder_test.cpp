@@ -9,7 +9,7 @@
 #include "algorithms/udsr/pretraining.hpp"
 #include "foundation/error.hpp"
 
-namespace tribench::udsr {
+namespace tribench::udsr::data_encoder_test {
 namespace {
 
 struct Fixture {
@@ -135,4 +135,4 @@ TEST(DataEncoder, IsKeptInTheWeightFileAndAskedForOnlyWhereItIs) {
 }
 
 }  // namespace
-}  // namespace tribench::udsr
+}  // namespace tribench::udsr::data_encoder_test

@@ -7,7 +7,7 @@
 
 #include "algorithms/udsr/training.hpp"
 
-namespace tribench::udsr {
+namespace tribench::udsr::policy_test {
 namespace {
 
 // Every weight away from zero, so that no part of a gradient vanishes by symmetry.
@@ -107,4 +107,4 @@ TEST(RewardQuantile, TakesTheHigherOfTwoNeighbours) {
 }
 
 }  // namespace
-}  // namespace tribench::udsr
+}  // namespace tribench::udsr::policy_test

@@ -18,7 +18,7 @@ namespace {
 using namespace tribench;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kSamples = 64;
+constexpr std::size_t kPointsChecked = 64;
 
 // The text with the digest that its content has; as it is where it is no JSON object.
 std::string with_fitting_digest(std::string_view text) {
@@ -38,7 +38,7 @@ void expect_true(const Json& certificate) {
   const Expression formula = parse_over(certificate.at("formula").get<std::string>(), box);
   const Json& claim = certificate.at("claim");
   Evaluator evaluator;
-  for (const std::vector<double>& point : fuzz::samples_of(box.ranges, kSamples)) {
+  for (const std::vector<double>& point : fuzz::samples_of(box.ranges, kPointsChecked)) {
     const double value = evaluator.evaluate_at(formula, point);
     fuzz::expect(std::isfinite(value), "accepted, and not finite: " + certificate.dump());
     if (!claim.is_object()) continue;

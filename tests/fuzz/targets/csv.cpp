@@ -20,7 +20,7 @@ void expect_same(const Dataset& before, const Dataset& after) {
   fuzz::expect(before.movement == after.movement, "movements change");
 }
 
-void read(std::string_view text, bool drop_missing) {
+void try_data(std::string_view text, bool drop_missing) {
   CsvOptions options;
   options.drop_missing = drop_missing;
   DataFile file;
@@ -40,6 +40,6 @@ void read(std::string_view text, bool drop_missing) {
 }  // namespace
 
 TRIBENCH_FUZZ_TARGET(csv) {
-  read(input, false);
-  read(input, true);
+  try_data(input, false);
+  try_data(input, true);
 }

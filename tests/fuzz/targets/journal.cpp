@@ -11,7 +11,7 @@ namespace {
 
 using namespace tribench;
 
-void read(std::string_view text) {
+void try_journal(std::string_view text) {
   const fuzz::MemoryFile file(text);
   fuzz::reads([&] {
     const JournalContents contents = read_journal(file.path());
@@ -22,9 +22,9 @@ void read(std::string_view text) {
 }  // namespace
 
 TRIBENCH_FUZZ_TARGET(journal) {
-  read(input);
+  try_journal(input);
   std::istringstream bodies{std::string(input)};
   std::string text;
   for (std::string body; std::getline(bodies, body);) text += journal_line(body);
-  read(text);
+  try_journal(text);
 }

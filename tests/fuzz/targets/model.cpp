@@ -11,7 +11,7 @@ namespace {
 
 using namespace tribench;
 
-void read(const std::string& file) {
+void try_model(const std::string& file) {
   const nlohmann::json model = model_argument(file);
   std::vector<std::string> names;
   const StatefulFormula formula =
@@ -29,5 +29,5 @@ void read(const std::string& file) {
 
 TRIBENCH_FUZZ_TARGET(model) {
   const fuzz::MemoryFile file(input);
-  fuzz::reads([&] { read(file.path()); });
+  fuzz::reads([&] { try_model(file.path()); });
 }

@@ -13,7 +13,7 @@ namespace {
 
 using namespace tribench;
 
-void read(std::string_view text) {
+void try_night(std::string_view text) {
   Night night;
   fuzz::reads([&] { read_night(text, "a.night", false); });
   if (!fuzz::reads([&] { night = read_night(text, "a.night"); })) return;
@@ -25,8 +25,8 @@ void read(std::string_view text) {
 }  // namespace
 
 TRIBENCH_FUZZ_TARGET(night) {
-  read(input);
-  read(night_text(input));
+  try_night(input);
+  try_night(night_text(input));
   static const ScratchFolder folder;
   static const NightStore store(folder.path());
   write_file(folder.path() / "blessings" / "2026.json", std::string(input));

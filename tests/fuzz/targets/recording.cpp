@@ -15,9 +15,9 @@ namespace {
 
 using namespace tribench;
 
-constexpr std::size_t kMostRows = 300;  // smoothing more is no fault, but takes long
+constexpr std::size_t kMostRowsSmoothed = 300;  // smoothing more is no fault, but takes long
 
-void read(std::string_view roles, std::string_view text, Gravity gravity, bool all_known) {
+void try_recording(std::string_view roles, std::string_view text, Gravity gravity, bool all_known) {
   DataOptions options;
   CsvOptions reading;
   options.roles = reading.roles = parse_roles(roles, "--roles");
@@ -29,7 +29,7 @@ void read(std::string_view roles, std::string_view text, Gravity gravity, bool a
     options.joint = reading.joint = 1;
   }
   DataFile file = parse_csv(text, "data.csv", reading);
-  if (file.data.rows() > kMostRows) return;
+  if (file.data.rows() > kMostRowsSmoothed) return;
   make_torque(file.data, options);
   const PreparedRecording prepared = prepare(std::move(file), options, gravity);
   for (const Channel& channel : prepared.data.channels) {
@@ -45,6 +45,6 @@ TRIBENCH_FUZZ_TARGET(recording) {
   const std::size_t end = std::min(input.find('\n'), input.size());
   const std::string_view roles = input.substr(0, end);
   const std::string_view text = input.substr(std::min(end + 1, input.size()));
-  fuzz::reads([&] { read(roles, text, Gravity::automatic, false); });
-  fuzz::reads([&] { read(roles, text, Gravity::fit, true); });
+  fuzz::reads([&] { try_recording(roles, text, Gravity::automatic, false); });
+  fuzz::reads([&] { try_recording(roles, text, Gravity::fit, true); });
 }

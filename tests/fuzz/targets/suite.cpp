@@ -14,7 +14,7 @@ namespace {
 
 using namespace tribench;
 
-constexpr std::size_t kMostRows = 2000;  // more are no fault, but take long to draw
+constexpr std::size_t kMostRowsDrawn = 2000;  // more are no fault, but take long to draw
 constexpr std::size_t kMostProblems = 4;
 
 suite::Law sum_of_inputs(const std::string&, std::span<const std::string>) {
@@ -40,8 +40,8 @@ TRIBENCH_FUZZ_TARGET(suite) {
   if (read.problems.size() > kMostProblems) return;
   for (suite::SuiteProblem wanted : read.problems) {
     if (!wanted.file.empty()) continue;
-    wanted.rows = std::min(wanted.rows, kMostRows);
-    wanted.test_rows = std::min(wanted.test_rows, kMostRows);
+    wanted.rows = std::min(wanted.rows, kMostRowsDrawn);
+    wanted.test_rows = std::min(wanted.test_rows, kMostRowsDrawn);
     Problem problem;
     if (!fuzz::reads([&] {
           problem = suite::make_suite_problem(read, wanted, sum_of_inputs, std::nullopt, 1);

@@ -19,7 +19,7 @@ const udsr::TokenLibrary& library() {
   return kLibrary;
 }
 
-void read(std::string_view text) {
+void try_weights(std::string_view text) {
   fuzz::reads([&] { udsr::read_encoder(text, "weights.json"); });
   fuzz::reads([&] {
     udsr::Policy policy(library(), RandomStream(1));
@@ -37,14 +37,14 @@ void fill_in(Json& parameters) {
 }  // namespace
 
 TRIBENCH_FUZZ_TARGET(weights) {
-  read(input);
+  try_weights(input);
   Json file = Json::parse(input, nullptr, false);
   if (!file.is_object()) return;
   fill_in(file["parameters"]);
   try {
     file["hash"] =
         udsr::weights_hash(file["tokens"], file["parameters"], file.value("encoder", Json()));
-    read(file.dump());
+    try_weights(file.dump());
   } catch (const Json::exception&) {  // no UTF-8
   }
 }

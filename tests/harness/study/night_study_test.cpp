@@ -38,7 +38,7 @@ RunFolder made_streams() {
   return run;
 }
 
-NightStudyOptions small_study() {
+NightStudyOptions small_night_study() {
   NightStudyOptions options;
   options.pairs = 40;
   options.sequences = 2;
@@ -51,7 +51,7 @@ NightStudyOptions small_study() {
 }
 
 TEST(NightStudy, FindsMoreTheLargerTheLossAndHoldsItsRate) {
-  const NightStudy study = run_night_study(made_streams(), small_study());
+  const NightStudy study = run_night_study(made_streams(), small_night_study());
   ASSERT_EQ(study.series.size(), 4U);
   EXPECT_EQ(study.pairs.asked, 40U);
   EXPECT_LE(study.pairs.by_comparison + study.pairs.by_nights, 2U);
@@ -76,7 +76,7 @@ TEST(NightStudy, FindsMoreTheLargerTheLossAndHoldsItsRate) {
 }
 
 TEST(NightStudy, IsTheSameWithAnyNumberOfThreads) {
-  NightStudyOptions options = small_study();
+  NightStudyOptions options = small_night_study();
   options.pairs = 10;
   options.sequences = 1;
   options.trials = 2;
