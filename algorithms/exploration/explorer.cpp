@@ -249,8 +249,8 @@ class Explorer {
     return false;
   }
 
-  // The loop's own diagnosis of the rows so far, which knows nothing of weights, names the same
-  // families, and finds something of no library left over just where the verdict does.
+  // The loop's own diagnosis of the rows so far, which knows nothing of weights, names as many
+  // families and the same, and finds something of no library left over just where the verdict does.
   bool diagnosis_agrees() {
     DiagnosisOptions options;
     if (limits_.gear_ratio > 0) options.gear_ratios = {limits_.gear_ratio};
@@ -261,11 +261,12 @@ class Explorer {
       if (!space_->families()[f].unknown) ours.push_back(space_->families()[f].name);
     }
     return found.unknown == last()->best().verdict.ends_with(kUnknownVerdict) &&
-           are_named_by(found.names, ours) && are_named_by(ours, found.names);
+           found.names.size() == ours.size() && are_named_by(found.names, ours) &&
+           are_named_by(ours, found.names);
   }
 
   // Each of the one is among the others; what shows where motion changes alone (lag, presliding,
-  // inertia) is one cause that either may call by several of its names.
+  // inertia) either may call by another of its names.
   bool are_named_by(const std::vector<std::string>& names,
                     const std::vector<std::string>& others) const {
     const auto is_transient = [&](const std::string& name) {

@@ -286,6 +286,20 @@ TEST(Explorer, ALagIsToldWithoutAStribeckEffect) {
   EXPECT_THAT(done.families, ::testing::IsSubsetOf({"lag", "hysteresis", "inertia"}));
 }
 
+// After half a minute the weights are sure of a lag and presliding, the diagnosis names presliding
+// alone, and what runs in with time has not shown yet.
+TEST(Explorer, AsksOnWhereTheDiagnosisNamesFewerCauses) {
+  simulation::World world({172031, simulation::WorldLevel::medium});
+  ASSERT_EQ(world.truth().effects.size(), 2U);
+  ExplorerOptions options;
+  options.budget_s = 60;
+  const Exploration done = explore(
+      world.limits(),
+      [&](const PlannedMovement& movement) { return world.execute(movement, "the plan"); }, options,
+      informative_movements());
+  EXPECT_NE(done.end, ExplorationEnd::sure) << done.verdict;
+}
+
 TEST(RecordedMovements, LongOnesAreCutAndKeepTheirRows) {
   simulation::World world({5, simulation::WorldLevel::easy});
   const Observations rows = observe(recorded(world, some_movements(world.limits())));
