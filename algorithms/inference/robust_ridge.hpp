@@ -14,8 +14,8 @@ namespace tribench::loop {
 
 // y - x c of every row, c fitted to the rows `train` with a ridge of 1e-4 of the mean square of a
 // column there; rows beyond two standard deviations weigh the less the farther they lie, so that
-// a burst does not bend the fit. x: n x p, y: n, finite; columns are scaled to length 1 first, one
-// of zeros gets no weight, one with a number that is not finite is left out. O(n p^2).
+// a burst does not bend the fit. x: n x p, y: n, finite. Columns are scaled to length 1 first; one
+// of zeros, or with a number that is not finite, gets no weight. O(n p^2).
 Eigen::VectorXd robust_ridge_residual(Eigen::MatrixXd x, const Eigen::VectorXd& y,
                                       std::span<const Eigen::Index> train);
 

@@ -5,12 +5,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+
 
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
@@ -341,13 +343,14 @@ TEST(NightTests, LeavesNightsOfAnotherGridOut) {
 struct NightsRead {
   StoreHistory history;
   std::string page;
-  double seconds = 0;  // CPU: the machine may be busy
+  double seconds = 0;  // CPU, of up to three rounds the least: the machine may be busy
 };
 
-// As many nights as there are, of these texts in turn: the first ones up to night 2000.
+// So many nights, of these texts in turn: the first ones up to night 2000. Read again while it
+// takes longer than `bound_s`.
 NightsRead nights_read(const std::filesystem::path& folder, int count,
                        const std::vector<std::string>& before,
-                       const std::vector<std::string>& after) {
+                       const std::vector<std::string>& after, double bound_s) {
   NightStore store(folder);
   for (int k = 0; k < count; ++k) {
     const std::vector<std::string>& texts = k < 2000 ? before : after;
@@ -356,10 +359,14 @@ NightsRead nights_read(const std::filesystem::path& folder, int count,
   }
   store.bless({"2026-000000", "<b>first</b>", "2026-01-01T00:00:00Z"});
   NightsRead read;
-  const std::clock_t start = std::clock();
-  read.history = read_history(store);
-  read.page = history_page(read.history);
-  read.seconds = static_cast<double>(std::clock() - start) / static_cast<double>(CLOCKS_PER_SEC);
+  read.seconds = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < 3 && read.seconds >= bound_s; ++round) {
+    const std::clock_t start = std::clock();
+    read.history = read_history(store);
+    read.page = history_page(read.history);
+    read.seconds = std::min(read.seconds, static_cast<double>(std::clock() - start) /
+                                              static_cast<double>(CLOCKS_PER_SEC));
+  }
   return read;
 }
 
@@ -380,11 +387,13 @@ TEST(NightPage, HoldsTenYears) {
   std::vector<std::string> after;
   for (int k = 0; k < kDifferent; ++k) before.push_back(made_text(k, false));
   for (int k = 0; k < kDifferent; ++k) after.push_back(made_text(k, true));
-  const double year_s = nights_read(folder / "year", 365, before, after).seconds;
-  const auto [history, page, seconds] = nights_read(folder / "store", 3650, before, after);
+  constexpr double kBound_s = 2;
+  const double year_s = nights_read(folder / "year", 365, before, after, kBound_s).seconds;
+  const auto [history, page, seconds] =
+      nights_read(folder / "store", 3650, before, after, kBound_s);
 #ifndef TRIBENCH_SANITIZED
+  EXPECT_LT(seconds, kBound_s);
   EXPECT_LT(seconds, 10 * year_s);
-  EXPECT_LT(seconds, 10);  // on a slow machine; 1.4 on one of 2023
 #endif
   std::printf("%zu bytes, %.2f s, a year %.2f s\n", page.size(), seconds, year_s);
   EXPECT_EQ(history.nights.size(), 3650U);
