@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-
+#include <limits>
 
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
