@@ -16,13 +16,15 @@
 namespace tribench::loop {
 namespace {
 
-// Of the prior: what share each number of missing effects has.
+// Of the prior: what share each number of missing effects has, all of the library or one of them
+// of none; three take half of what more take, four a quarter, ...
 constexpr double kNone = 0.2;
 constexpr double kOne = 0.25;
 constexpr double kUnknown = 0.1;
 constexpr double kTwo = 0.25;
 constexpr double kWithUnknown = 0.1;
-constexpr double kMore = 0.1;  // three take half of it, four a quarter, ...
+constexpr double kMore = 0.07;
+constexpr double kMoreWithUnknown = 0.03;
 
 constexpr std::size_t kSinglesToExtend = 3;
 constexpr std::size_t kPairsToExtend = 3;
@@ -31,8 +33,6 @@ constexpr std::size_t kNarrowBlocks = 6;  // of one column, that are looked at i
 
 // Of a column's squares, in the noise's: a coefficient of the expected size shows.
 constexpr double kVisited = 20;
-
-double choose(double n, int k) { return k == 2 ? n * (n - 1) / 2 : n * (n - 1) * (n - 2) / 6; }
 
 // Of a block the columns with these numbers in it.
 EffectBlock part_of(const EffectBlock& block, const ColumnBlock& kept) {
@@ -78,10 +78,11 @@ class ExplanationSearch {
   }
 
  private:
-  // Something of no library is judged where it was looked for: at a temperature, a time, a place
-  // that no row has been near it may be anything.
+  // Something of no library is judged where it was looked for: at a temperature, a place that no
+  // row has been near it may be anything. A time comes by waiting: until then it is not ruled out.
   std::vector<EffectBlock> visited(const ExplainingFamily& family) const {
-    if (!family.unknown) return family.blocks;
+    const std::vector<std::string> time = {std::string(role_name(Role::time))};
+    if (!family.unknown || family.inputs == time) return family.blocks;
     std::vector<EffectBlock> all;
     for (const EffectBlock& block : family.blocks) {
       ColumnBlock seen;
@@ -95,31 +96,22 @@ class ExplanationSearch {
     return all;
   }
 
+  // Alike for all sets of as many effects, with or without one of no library.
   double log_prior_of(std::span<const std::size_t> families) const {
-    const auto unknown =
-        std::ranges::count_if(families, [&](std::size_t f) { return families_[f].unknown; });
-    switch (families.size()) {
-      case 0:
-        return elementary::log(kNone);
-      case 1:
-        return elementary::log(unknown > 0 ? kUnknown / unknown_ : kOne / library_);
-      case 2:
-        return elementary::log(unknown > 0 ? kWithUnknown / (library_ * unknown_)
-                                           : kTwo / choose(library_, 2));
-      default:
-        return log_prior_of_many(families.size());
+    const bool unknown =
+        std::ranges::any_of(families, [&](std::size_t f) { return families_[f].unknown; });
+    const std::size_t known = families.size() - (unknown ? 1 : 0);
+    double share = kNone;
+    if (families.size() == 1) share = unknown ? kUnknown : kOne;
+    if (families.size() == 2) share = unknown ? kWithUnknown : kTwo;
+    if (families.size() > 2) {
+      share = std::ldexp(unknown ? kMoreWithUnknown : kMore, 2 - static_cast<int>(families.size()));
     }
-  }
-
-  double log_prior_of_many(std::size_t count) const {
-    double log = elementary::log(2 * kMore);
-    const double all = library_ + unknown_;
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto number = static_cast<double>(k);
-      log += elementary::log((number + 1) / (all - number));
-      if (k >= 1) log -= elementary::log(2);
+    double sets = unknown ? unknown_ : 1;
+    for (std::size_t k = 0; k < known; ++k) {
+      sets *= (library_ - static_cast<double>(k)) / static_cast<double>(k + 1);
     }
-    return log;
+    return elementary::log(share / sets);
   }
 
   Explanation made(std::vector<std::size_t> families, std::vector<const EffectBlock*> blocks,

@@ -21,8 +21,9 @@ namespace {
 
 // More columns than this are not tried as one block: most would be there for nothing.
 constexpr std::size_t kWholeFamily = 10;
-// Root mean squares of an effect, in the noise's, that one expects: it may be small.
-constexpr std::array<double, 2> kSizes = {1.5, 0.4};
+// Root mean squares of an effect that one expects, in the smallest of interest: for one of these
+// the prior of the smaller size is likeliest about there (evidence.hpp).
+constexpr std::array<double, 2> kSizes = {3, 0.8};
 constexpr double kExplainedByBase = 1e-4;  // of a column's squares, on the reference
 
 constexpr double kMisfit = 0.27;  // of a family's size: what one expects of its misfit
@@ -162,13 +163,13 @@ std::vector<std::string> inputs_of(const std::vector<std::string>& signals,
 }  // namespace
 
 ExplanationSpace::ExplanationSpace(const Observations& reference,
-                                   const std::vector<double>& gear_ratios)
+                                   const std::vector<double>& gear_ratios, double smallest_effect)
     : reference_(reference) {
   add_library(gear_ratios);
   add_places();
   settle_scale();
   add_misfits();
-  measure_blocks();
+  measure_blocks(smallest_effect);
   std::erase_if(families_, [](const ExplainingFamily& family) { return family.blocks.empty(); });
 }
 
@@ -349,7 +350,7 @@ void ExplanationSpace::add_misfits() {
 
 // The size of an effect and what a misfit has of it, over the reference; then every block in
 // several sizes.
-void ExplanationSpace::measure_blocks() {
+void ExplanationSpace::measure_blocks(double smallest_effect) {
   const Eigen::MatrixXd base = base_columns(reference_);
   Eigen::MatrixXd all = columns(reference_);
   all -= base * base.colPivHouseholderQr().solve(all);
@@ -366,7 +367,7 @@ void ExplanationSpace::measure_blocks() {
     std::vector<EffectBlock> sized;
     for (const double size : kSizes) {
       for (EffectBlock& block : family.blocks) {
-        block.size = size;
+        block.size = size * smallest_effect;
         sized.push_back(block);
       }
     }

@@ -27,6 +27,9 @@
 
 namespace tribench::loop {
 
+// Of interest, where nobody says otherwise: root mean square over the reference, in the noise's.
+inline constexpr double kSmallestEffect = 0.5;
+
 struct ExplainingFamily {
   std::string name;                 // "stribeck", "unknown:position", "unknown:velocity x position"
   bool unknown = false;             // of no library: its name is where it lives
@@ -40,7 +43,9 @@ struct ExplainingFamily {
 class ExplanationSpace {
  public:
   // reference: every signal that can vary does. gear_ratios as of DiagnosisOptions.
-  ExplanationSpace(const Observations& reference, const std::vector<double>& gear_ratios);
+  // smallest_effect: of interest, > 0; what is smaller is neither named nor ruled out.
+  ExplanationSpace(const Observations& reference, const std::vector<double>& gear_ratios,
+                   double smallest_effect = kSmallestEffect);
 
   const std::vector<ExplainingFamily>& families() const { return families_; }
   const std::vector<std::string>& untestable() const { return untestable_; }
@@ -70,7 +75,7 @@ class ExplanationSpace {
   void add_places();
   void settle_scale();
   void add_misfits();
-  void measure_blocks();
+  void measure_blocks(double smallest_effect);
   Eigen::MatrixXd shaped(const Misfit& misfit, const Observations& rows,
                          const Eigen::MatrixXd& formulas) const;
   // Unscaled; without the misfits' columns.

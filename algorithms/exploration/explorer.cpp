@@ -296,7 +296,7 @@ class Explorer {
     const Observations reference = thinned(observe_plan(all), every);
     std::vector<double> ratios;
     if (limits_.gear_ratio > 0) ratios.push_back(limits_.gear_ratio);
-    space_ = std::make_unique<ExplanationSpace>(reference, ratios);
+    space_ = std::make_unique<ExplanationSpace>(reference, ratios, options_.smallest_effect);
     out_.untestable = space_->untestable();
     assessor_ = std::make_unique<Assessor>(*space_, options_.alpha);
   }

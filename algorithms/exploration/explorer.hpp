@@ -36,7 +36,8 @@
 namespace tribench::loop {
 
 struct ExplorerOptions {
-  double alpha = 0.01;                      // of naming anything else while one explanation is true
+  double alpha = 0.01;  // of naming anything else while one explanation is true
+  double smallest_effect = kSmallestEffect;
   double budget_s = 600;                    // of motion
   double longest_s = 30;                    // of one movement that is proposed
   double start_rad = 0;                     // where the joint stands

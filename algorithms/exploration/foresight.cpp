@@ -142,8 +142,10 @@ std::vector<PlannedMovement> candidate_movements(const MotionLimits& limits, dou
       add(constant_movement(direction * speed, centre - narrow, centre + narrow, 1),
           limits.longest_rest_s, 0);
     }
-    add(two_tone_movement(speed, centre - 3 * narrow, centre + 3 * narrow, 1),
-        limits.longest_rest_s, 0);
+    PlannedMovement tones = two_tone_movement(speed, centre - 3 * narrow, centre + 3 * narrow, 1);
+    add(tones, limits.longest_rest_s, 0);
+    tones.duration /= 3;
+    add(tones, limits.longest_rest_s, 0);
   }
   return all;
 }

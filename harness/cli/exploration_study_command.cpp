@@ -76,6 +76,7 @@ void add_exploration_study(CLI::App& study) {
   command->add_option("--alpha", options->alpha, "of the rule of stopping")
       ->transform(real_number(1e-6, 0.5))
       ->capture_default_str();
+  add_smallest_effect(*command, options->smallest_effect, "else the least that the level hides");
   command->add_option("--jobs", options->threads, "threads; the figures are the same for any")
       ->transform(whole_number(0, 1024));
   command->add_option("--out", options->out,

@@ -18,6 +18,7 @@
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
+#include "harness/cli/world_options.hpp"
 #include "harness/exploration/executing_program.hpp"
 #include "harness/exploration/exploration_report.hpp"
 #include "harness/exploration/recorded_world.hpp"
@@ -35,6 +36,7 @@ struct ExploreArguments {
   double command_seconds = 600;
   double budget_s = 600;
   double alpha = 0.01;
+  std::optional<double> smallest_effect;
   std::string plan = "informative";
   std::uint64_t seed = 1;
   std::string out;
@@ -86,6 +88,7 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
     limits = folder->world().limits();
     limits.seconds = std::max(0.0, limits.seconds - folder->world().seconds_used());
     options.start_rad = folder->world().position_rad();
+    options.smallest_effect = folder->world().smallest_effect();
     execute = [&](const PlannedMovement& movement) {
       return folder->execute({movement}, "the plan");
     };
@@ -94,6 +97,7 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
     execute = executing_program(arguments.command, arguments.command_seconds);
   }
   options.budget_s = std::min(arguments.budget_s, limits.seconds);
+  options.smallest_effect = arguments.smallest_effect.value_or(options.smallest_effect);
   options.stop = &stop_requested_by_signal();
   if (!arguments.json) {
     options.told = [](const loop::ExplorationStep& step) {
@@ -102,17 +106,17 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
   }
   const loop::Exploration done = loop::explore(limits, execute, options, plan.make(arguments.seed));
   const SecondOpinion second = second_opinion(done, limits.gear_ratio);
-  const std::string json = exploration_json(done, second, arguments.alpha);
+  const std::string json = exploration_json(done, second, options);
   if (!arguments.out.empty()) {
     const std::filesystem::path out = arguments.out;
     write_file(out / "exploration.json", json);
-    write_file(out / "exploration.md", exploration_markdown(done, second, arguments.alpha));
+    write_file(out / "exploration.md", exploration_markdown(done, second, options));
     std::vector<PlannedMovement> movements;
     for (const loop::ExplorationStep& step : done.steps) movements.push_back(step.movement);
     write_file(out / "movements.csv", movements_text(movements, "rad", "rad/s"));
     if (done.data.rows() > 0) write_csv(done.data, out / "data.csv");
   }
-  fmt::print("{}", arguments.json ? json : exploration_terminal(done, second, arguments.alpha));
+  fmt::print("{}", arguments.json ? json : exploration_terminal(done, second, options));
   return done.end == loop::ExplorationEnd::sure ? ExitStatus::done : ExitStatus::undecided;
 }
 
@@ -148,6 +152,9 @@ void add_explore_command(CLI::App& app, ExitStatus& status) {
           "truth is one of the explanations (docs/explore.md)")
       ->transform(real_number(1e-6, 0.5))
       ->capture_default_str();
+  add_smallest_effect(
+      *command, arguments->smallest_effect,
+      fmt::format("else what the world says, {:g} where nobody does", loop::kSmallestEffect));
   std::string plans;
   for (const loop::NamedPlan& plan : loop::movement_plans()) {
     plans += fmt::format("\n  {:<12} {}", plan.name, plan.summary);

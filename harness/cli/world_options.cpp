@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/cli/choice_option.hpp"
+#include "harness/cli/number_options.hpp"
 
 namespace tribench {
 
@@ -32,6 +33,16 @@ void add_world_choice(CLI::App& command, WorldChoice& choice) {
                                  "what is missing: nothing, one cause, two, one that no library "
                                  "has; else drawn"),
               kinds);
+}
+
+void add_smallest_effect(CLI::App& command, std::optional<double>& size,
+                         const std::string& otherwise) {
+  command
+      .add_option("--smallest-effect", size,
+                  "of interest, in units of the noise: what is smaller need not be found before it "
+                  "is sure; " +
+                      otherwise)
+      ->transform(real_number(0.01, 100));
 }
 
 }  // namespace tribench

@@ -6,6 +6,7 @@
 #include <CLI/App.hpp>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "problems/joint_simulation/world.hpp"
 
@@ -21,5 +22,8 @@ struct WorldChoice {
 void add_world_level(CLI::App& command, WorldChoice& choice);
 // Adds --level and --kind. choice must live as long as the command.
 void add_world_choice(CLI::App& command, WorldChoice& choice);
+// Adds --smallest-effect. otherwise: what it is where it is not given.
+void add_smallest_effect(CLI::App& command, std::optional<double>& size,
+                         const std::string& otherwise);
 
 }  // namespace tribench

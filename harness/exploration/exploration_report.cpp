@@ -41,10 +41,11 @@ std::string weights_words(const std::vector<WeighedVerdict>& verdicts, std::size
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string end_words(const Exploration& done, double alpha) {
+std::string end_words(const Exploration& done, const loop::ExplorerOptions& options) {
   switch (done.end) {
     case ExplorationEnd::sure:
-      return fmt::format("sure at the level {:g}", alpha);
+      return fmt::format("sure at the level {:g}, of effects from {:g} times the noise on",
+                         options.alpha, options.smallest_effect);
     case ExplorationEnd::budget:
       return "not sure: the seconds are spent";
     case ExplorationEnd::nothing_tells:
@@ -99,7 +100,8 @@ SecondOpinion second_opinion(const Exploration& done, double gear_ratio) {
   return out;
 }
 
-std::string exploration_json(const Exploration& done, const SecondOpinion& second, double alpha) {
+std::string exploration_json(const Exploration& done, const SecondOpinion& second,
+                             const loop::ExplorerOptions& options) {
   Json path = Json::array();
   for (const ExplorationStep& step : done.steps) {
     Json one = {{"movement", movement_json(step.movement)},
@@ -121,7 +123,8 @@ std::string exploration_json(const Exploration& done, const SecondOpinion& secon
                          {"log_e_value", done.log_e_value},
                          {"end", exploration_end_name(done.end)},
                          {"seconds", done.seconds},
-                         {"alpha", alpha},
+                         {"alpha", options.alpha},
+                         {"smallest_effect", options.smallest_effect},
                          {"left", weights_json(done.left)},
                          {"untestable", done.untestable},
                          {"refused", done.refused},
@@ -135,10 +138,10 @@ std::string exploration_json(const Exploration& done, const SecondOpinion& secon
 }
 
 std::string exploration_terminal(const Exploration& done, const SecondOpinion& second,
-                                 double alpha) {
+                                 const loop::ExplorerOptions& options) {
   std::string text =
       fmt::format("{} (e-value {:.3g}, weight {:.4g}): {}\n", done.verdict,
-                  elementary::exp(done.log_e_value), done.weight, end_words(done, alpha));
+                  elementary::exp(done.log_e_value), done.weight, end_words(done, options));
   text += fmt::format("  {} movements, {:.1f} s of motion, {} rows\n", done.steps.size(),
                       done.seconds, done.data.rows());
   if (done.unknown) text += fmt::format("  it lives in {}\n", fmt::join(done.inputs, " x "));
@@ -161,9 +164,9 @@ std::string step_line(const ExplorationStep& step) {
 }
 
 std::string exploration_markdown(const Exploration& done, const SecondOpinion& second,
-                                 double alpha) {
+                                 const loop::ExplorerOptions& options) {
   std::string text = fmt::format("# What is missing: {}\n\n{}\n", done.verdict,
-                                 exploration_terminal(done, second, alpha));
+                                 exploration_terminal(done, second, options));
   text += "| | movement | s | asked to tell apart | expected nats | what it told | left |\n";
   text += "|--:|---|--:|---|--:|---|--:|\n";
   for (std::size_t i = 0; i < done.steps.size(); ++i) {

@@ -19,16 +19,16 @@ struct SecondOpinion {
 };
 SecondOpinion second_opinion(const loop::Exploration& done, double gear_ratio);
 
-// {"verdict", "families", "unknown", "inputs", "weight", "end", "seconds", "alpha", "left",
-// "untestable", "refused", "second_opinion", "path": [{"movement", "seconds", "why", "expected",
-// "verdicts", "left"}]}
+// {"verdict", "families", "unknown", "inputs", "weight", "end", "seconds", "alpha",
+// "smallest_effect", "left", "untestable", "refused", "second_opinion", "path": [{"movement",
+// "seconds", "why", "expected", "verdicts", "left"}]}. options: what it was explored by.
 std::string exploration_json(const loop::Exploration& done, const SecondOpinion& second,
-                             double alpha);
+                             const loop::ExplorerOptions& options);
 std::string exploration_markdown(const loop::Exploration& done, const SecondOpinion& second,
-                                 double alpha);
+                                 const loop::ExplorerOptions& options);
 // The verdict and what it rests on, a few lines.
 std::string exploration_terminal(const loop::Exploration& done, const SecondOpinion& second,
-                                 double alpha);
+                                 const loop::ExplorerOptions& options);
 // One line a movement.
 std::string step_line(const loop::ExplorationStep& step);
 

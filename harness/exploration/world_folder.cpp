@@ -176,6 +176,7 @@ WorldFolder WorldFolder::create(const std::filesystem::path& folder,
   write_file(folder / "sealed.json", write_json(sealed) + "\n");
   const Json known = {{"world", 1},
                       {"truth_sha256", seal_of(out.world_.truth())},
+                      {"smallest_effect", out.world_.smallest_effect()},
                       {"limits", Json::parse(limits_json(out.world_.limits()))}};
   write_file(folder / "world.json", write_json(known, 1) + "\n");
   return out;

@@ -120,6 +120,7 @@ void converse(Talk& talk, simulation::World& world, ChallengeResult& result) {
   talk.say({{"protocol", kChallengeProtocol},
             {"seal", result.seal},
             {"families", family_names()},
+            {"smallest_effect", world.smallest_effect()},
             {"limits", Json::parse(limits_json(world.limits()))}});
   for (std::size_t k = 0; k < kMostRequests; ++k) {
     const Json heard = talk.hear();

@@ -29,7 +29,8 @@ std::string worlds_name(const ExplorationStudyOptions& options) {
 }
 
 std::string key_of_run(const ExplorationRun& run) {
-  return fmt::format("{}/{}/{}/{}/{}", run.worlds, run.seed, run.plan, run.budget_s, run.alpha);
+  return fmt::format("{}/{}/{}/{}/{}/{}", run.worlds, run.seed, run.plan, run.budget_s, run.alpha,
+                     run.smallest_effect);
 }
 
 // "lag+stribeck", "load_coulomb+UNKNOWN", "NONE".
@@ -82,6 +83,8 @@ ExplorationRun planned_run(const ExplorationStudyOptions& options, std::uint64_t
   run.seed = seed;
   run.budget_s = options.budget_s;
   run.alpha = options.alpha;
+  run.smallest_effect =
+      options.smallest_effect.value_or(simulation::smallest_effect(options.level));
   run.plan = plan.name;
   return run;
 }
@@ -90,6 +93,7 @@ void explore_world(const ExplorationStudyOptions& options, ExplorationRun& run) 
   simulation::World world({run.seed, options.level, options.kind});
   loop::ExplorerOptions how;
   how.alpha = options.alpha;
+  how.smallest_effect = run.smallest_effect;
   how.budget_s = options.budget_s;
   how.stop = options.stop;
   const loop::ExecuteMovement execute = [&](const PlannedMovement& movement) {
@@ -145,14 +149,14 @@ ExplorationFigure figure_of(const std::vector<ExplorationRun>& runs, const std::
 
 std::string run_row(const ExplorationRun& run) {
   std::string text;
-  append_csv_row(
-      text, std::vector<std::string>{
-                run.worlds, fmt::format("{}", run.seed), csv_number(run.budget_s),
-                csv_number(run.alpha), run.kind, run.causes, run.plan, run.verdict,
-                fmt::format("{:.4f}", run.weight), run.end, run.diagnosis, run.right ? "1" : "0",
-                std::string(says_name(run.says)), fmt::format("{:.2f}", run.seconds),
-                fmt::format("{}", run.movements), fmt::format("{:.2f}", run.cpu_s),
-                fmt::format("{}", run.aliases), fmt::format("{}", run.aliases_left)});
+  append_csv_row(text, std::vector<std::string>{
+                           run.worlds, fmt::format("{}", run.seed), csv_number(run.budget_s),
+                           csv_number(run.alpha), csv_number(run.smallest_effect), run.kind,
+                           run.causes, run.plan, run.verdict, fmt::format("{:.4f}", run.weight),
+                           run.end, run.diagnosis, run.right ? "1" : "0",
+                           std::string(says_name(run.says)), fmt::format("{:.2f}", run.seconds),
+                           fmt::format("{}", run.movements), fmt::format("{:.2f}", run.cpu_s),
+                           fmt::format("{}", run.aliases), fmt::format("{}", run.aliases_left)});
   return text;
 }
 
@@ -164,30 +168,31 @@ ExplorationRun read_run(std::span<const std::string_view> fields) {
   run.seed = static_cast<std::uint64_t>(number_of(fields[1]));
   run.budget_s = number_of(fields[2]);
   run.alpha = number_of(fields[3]);
-  run.kind = fields[4];
-  run.causes = fields[5];
-  run.plan = fields[6];
-  run.verdict = fields[7];
-  run.weight = number_of(fields[8]);
-  run.end = fields[9];
-  run.diagnosis = fields[10];
-  run.right = fields[11] == "1";
-  run.says = find_says(fields[12]);
-  run.seconds = number_of(fields[13]);
-  run.movements = static_cast<std::size_t>(number_of(fields[14]));
-  run.cpu_s = number_of(fields[15]);
-  run.aliases = static_cast<std::size_t>(number_of(fields[16]));
-  run.aliases_left = static_cast<std::size_t>(number_of(fields[17]));
+  run.smallest_effect = number_of(fields[4]);
+  run.kind = fields[5];
+  run.causes = fields[6];
+  run.plan = fields[7];
+  run.verdict = fields[8];
+  run.weight = number_of(fields[9]);
+  run.end = fields[10];
+  run.diagnosis = fields[11];
+  run.right = fields[12] == "1";
+  run.says = find_says(fields[13]);
+  run.seconds = number_of(fields[14]);
+  run.movements = static_cast<std::size_t>(number_of(fields[15]));
+  run.cpu_s = number_of(fields[16]);
+  run.aliases = static_cast<std::size_t>(number_of(fields[17]));
+  run.aliases_left = static_cast<std::size_t>(number_of(fields[18]));
   return run;
 }
 
 RunFormat<ExplorationRun> run_format() {
-  return {
-      {"worlds", "seed", "budget_s", "alpha", "kind", "causes", "plan", "verdict", "weight", "end",
-       "diagnosis", "right", "says", "seconds", "movements", "cpu_s", "aliases", "aliases_left"},
-      run_row,
-      read_run,
-      key_of_run};
+  return {{"worlds", "seed", "budget_s", "alpha", "smallest_effect", "kind", "causes", "plan",
+           "verdict", "weight", "end", "diagnosis", "right", "says", "seconds", "movements",
+           "cpu_s", "aliases", "aliases_left"},
+          run_row,
+          read_run,
+          key_of_run};
 }
 
 std::vector<ExplorationFigure> figures_of(const std::vector<ExplorationRun>& runs,

@@ -26,6 +26,7 @@ struct ExplorationStudyOptions {
   std::vector<std::string> plans;  // empty: all of movement_plans()
   double budget_s = 600;
   double alpha = 0.01;
+  std::optional<double> smallest_effect = {};  // of interest; else that of the level
   int threads = 0;
   // Takes explorations.csv, a line an exploration, written as they end; what it holds of these is
   // not explored again. Empty: nothing is written.
@@ -39,6 +40,7 @@ struct ExplorationRun {
   std::uint64_t seed = 0;
   double budget_s = 0;
   double alpha = 0;
+  double smallest_effect = 0;
   std::string kind;
   std::string causes;  // "load+stribeck_forwards", "none"
   std::string plan;

@@ -76,7 +76,7 @@ NoiseKind draw_noise(WorldLevel level, RandomStream random) {
 }
 
 double draw_scale(WorldLevel level, RandomStream& random) {
-  const double least = level == WorldLevel::easy ? 2 : level == WorldLevel::medium ? 1 : 0.5;
+  const double least = smallest_effect(level);
   return random.uniform(least, 2 * least);
 }
 
@@ -134,6 +134,11 @@ std::string_view world_kind_name(WorldKind kind) {
 std::string_view world_level_name(WorldLevel level) {
   constexpr std::array<std::string_view, 3> kNames = {"easy", "medium", "hard"};
   return kNames[static_cast<std::size_t>(level)];
+}
+
+double smallest_effect(WorldLevel level) {
+  constexpr std::array kScales = {2.0, 1.0, 0.5};
+  return kScales[static_cast<std::size_t>(level)];
 }
 
 World::World(const WorldPlan& plan)

@@ -40,6 +40,8 @@ std::string_view world_kind_name(WorldKind kind);
 enum class WorldLevel { easy, medium, hard };
 inline constexpr std::array kWorldLevels = {WorldLevel::easy, WorldLevel::medium, WorldLevel::hard};
 std::string_view world_level_name(WorldLevel level);
+// What is missing is so many times the noise at least; at most twice that.
+double smallest_effect(WorldLevel level);
 
 struct WorldPlan {
   std::uint64_t seed = 1;
@@ -61,6 +63,7 @@ class World {
   explicit World(const WorldPlan& plan);
 
   const MotionLimits& limits() const { return limits_; }
+  double smallest_effect() const { return simulation::smallest_effect(truth_.plan.level); }
   const WorldTruth& truth() const { return truth_; }
   double seconds_used() const { return state_.used_s; }
   double position_rad() const { return state_.position_rad; }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "algorithms/exploration/fixed_plans.hpp"
 #include "algorithms/exploration/recorded_movements.hpp"
@@ -237,6 +239,40 @@ TEST(Assessor, MovementsAddedOneByOneSayWhatTheySayTogether) {
   EXPECT_NEAR(grown.last().best().log_evidence / together.last().best().log_evidence, 1, 0.1);
 }
 
+// What nobody cares for need not be ruled out.
+TEST(Assessor, IsTheSurerThatNothingIsMissingTheLargerTheSmallestEffect) {
+  simulation::World world({8, simulation::WorldLevel::easy, simulation::WorldKind::none});
+  const Observations rows = observe(recorded(world, some_movements(world.limits())));
+  const auto doubt = [&](double smallest_effect) {
+    const ExplanationSpace space(rows, {100}, smallest_effect);
+    Assessor assessor(space, 0.01);
+    assessor.add(rows);
+    return 1 - assessor.look().weight_of("NONE");
+  };
+  EXPECT_LT(doubt(2), 0.5 * doubt(1));
+  EXPECT_LT(doubt(1), 0.5 * doubt(0.25));
+}
+
+// A further effect costs a share of its own and the number of those it may be, whatever is there.
+TEST(Explanations, AreAsLikelyBeforehandAsOthersOfAsManyEffects) {
+  simulation::World world({3, simulation::WorldLevel::easy, simulation::WorldKind::single});
+  const Observations rows = observe(recorded(world, some_movements(world.limits())));
+  const ExplanationSpace space(rows, {100});
+  Assessor assessor(space, 0.01);
+  assessor.add(rows);
+  std::map<std::pair<std::size_t, bool>, double> known;  // of so many effects, one of no library
+  for (const Explanation& one : assessor.look().explanations) {
+    const bool unknown = std::ranges::any_of(
+        one.families, [&](std::size_t f) { return space.families()[f].unknown; });
+    const auto [place, is_new] = known.try_emplace({one.families.size(), unknown}, one.log_prior);
+    EXPECT_DOUBLE_EQ(one.log_prior, place->second) << one.verdict;
+  }
+  const double third = known.at({2, false}) - known.at({3, false});
+  const double second = known.at({1, false}) - known.at({2, false});
+  EXPECT_GT(third, second);
+  EXPECT_LT(third, second + std::log(10));
+}
+
 // What lives in time has columns for the reference's times alone.
 TEST(Plans, NoRestIsAskedForThatLeadsBeyondTheTimesOfTheReference) {
   simulation::World world({3, simulation::WorldLevel::easy, simulation::WorldKind::none});
@@ -275,6 +311,23 @@ TEST(ExplanationSpace, AMovementHasItsColumnsWhateverIsBesideIt) {
   const Eigen::MatrixXd there =
       space.columns(rows).middleRows(static_cast<Eigen::Index>(own.begin), alone.rows());
   EXPECT_LE((alone - there).cwiseAbs().maxCoeff(), 1e-10);
+}
+
+// A slow oscillation, of which the first half minute shows nothing.
+TEST(Explorer, WaitsBeforeItIsSureThatNothingLivesInTime) {
+  simulation::World world({172068, simulation::WorldLevel::medium});
+  ASSERT_EQ(world.truth().effects[0].family, "slow_oscillation");
+  ExplorerOptions options;
+  options.budget_s = 50;
+  options.smallest_effect = world.smallest_effect();
+  const Exploration done = explore(
+      world.limits(),
+      [&](const PlannedMovement& movement) { return world.execute(movement, "the plan"); }, options,
+      informative_movements());
+  EXPECT_FALSE(done.end == ExplorationEnd::sure && done.verdict == "NONE");
+  EXPECT_TRUE(std::ranges::any_of(done.steps, [](const ExplorationStep& step) {
+    return step.movement.rest > 0;
+  })) << "it never waited";
 }
 
 // Its shape is none of the library's: the misfit is its own, and no reason to name another family.

@@ -86,6 +86,7 @@ TEST(WorldCommand, RevealsWhatTheSealSaidAndNothingIsAskedAfterwards) {
   ASSERT_EQ(made.status, 0) << made.errors;
   const std::string seal = json::parse(made.output)["truth_sha256"];
   EXPECT_THAT(read_text(folder / "w/world.json"), Not(HasSubstr("cause")));
+  EXPECT_EQ(json::parse(read_text(folder / "w/world.json"))["smallest_effect"], 1);
   const ProgramRun revealed = run_tribench({"world", world, "reveal", "--json"});
   ASSERT_EQ(revealed.status, 0) << revealed.errors;
   const auto answer = nlohmann::ordered_json::parse(revealed.output);
@@ -181,12 +182,13 @@ TEST(ExploreCommand, AProgramTakesTheWorldsPlace) {
   }
   write_text(folder / "robot.sh", "d=$(mktemp) && '" + program().string() + "' world '" + world +
                                       "' execute \"$1\" --out $d >&2 || exit $?\ncat $d; rm $d\n");
-  const ProgramRun done =
-      run_tribench({"explore", "--limits", (folder / "w/world.json").string(), "--budget", "18",
-                    "--json", "--command", "sh", (folder / "robot.sh").string()});
+  const ProgramRun done = run_tribench({"explore", "--limits", (folder / "w/world.json").string(),
+                                        "--budget", "18", "--smallest-effect", "1", "--json",
+                                        "--command", "sh", (folder / "robot.sh").string()});
   EXPECT_EQ(done.status, 4) << done.errors;
   const ProgramRun same = run_tribench({"explore", direct, "--budget", "18", "--json"});
   EXPECT_EQ(json::parse(done.output)["path"], json::parse(same.output)["path"]);
+  EXPECT_EQ(json::parse(same.output)["smallest_effect"], 1) << "what a world of its level says";
   EXPECT_EQ(run_tribench({"explore"}).status, 2);
   EXPECT_EQ(run_tribench({"explore", "--command", "true"}).status, 2);
   const ProgramRun broken = run_tribench(
@@ -310,7 +312,7 @@ TEST(StudyCommand, ExploreCountsSecondsAndErrors) {
   const json figures = json::parse(done.output);
   EXPECT_EQ(figures[0]["group"], "all");
   EXPECT_EQ(figures[0]["worlds"], 2);
-  EXPECT_THAT(read_text(folder / "explorations.csv"), HasSubstr("medium,1,30,0.01,"));
+  EXPECT_THAT(read_text(folder / "explorations.csv"), HasSubstr("medium,1,30,0.01,1,"));
   EXPECT_EQ(run_tribench({"study", "explore", "--plans", "swep"}).status, 2);
 }
 

@@ -101,8 +101,8 @@ TEST(World, HidesWhatItsKindSays) {
       ASSERT_EQ(effects.size(), count);
       for (const PlantedEffect& effect : effects) {
         EXPECT_EQ(effect.in_library(), kind != WorldKind::unknown);
-        EXPECT_GE(effect.scale, 1);
-        EXPECT_LE(effect.scale, 2);
+        EXPECT_GE(effect.scale, world.smallest_effect());
+        EXPECT_LE(effect.scale, 2 * world.smallest_effect());
         EXPECT_GT(std::abs(effect.coefficient), 0);
       }
     }
