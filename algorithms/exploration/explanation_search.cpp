@@ -78,11 +78,14 @@ class ExplanationSearch {
   }
 
  private:
-  // Something of no library is judged where it was looked for: at a temperature, a place that no
-  // row has been near it may be anything. A time comes by waiting: until then it is not ruled out.
+  // What lives in a temperature is judged at those that came, as none comes at will: at others it
+  // may be anything. Places, speeds and times can be visited; until then nothing there is ruled
+  // out.
   std::vector<EffectBlock> visited(const ExplainingFamily& family) const {
-    const std::vector<std::string> time = {std::string(role_name(Role::time))};
-    if (!family.unknown || family.inputs == time) return family.blocks;
+    const std::string temperature(role_name(Role::temperature));
+    if (!family.unknown || std::ranges::count(family.inputs, temperature) == 0) {
+      return family.blocks;
+    }
     std::vector<EffectBlock> all;
     for (const EffectBlock& block : family.blocks) {
       ColumnBlock seen;

@@ -26,6 +26,8 @@ constexpr std::size_t kFewestMovements = 5;
 constexpr std::size_t kVerdictsTold = 5;
 constexpr double kRestCounts = 0.25;  // of a second of motion: it is waited for
 constexpr double kAskAgain = 1.1;     // seconds since the diagnosis said otherwise
+// Of the level: the rest is for what the weights do not know, a truth that is no explanation.
+constexpr double kHindsight = 0.5;
 
 // What is asked for starts from rest: how far back it has turned is known.
 Observations executed(const Dataset& data) {
@@ -240,7 +242,7 @@ class Explorer {
   // What was said before the rows came says so, what they say in hindsight does, and the diagnosis.
   bool sure() {
     const WeighedVerdict leader = verdicts_of(*last(), false).front();
-    if (leader.weight < 1 - options_.alpha) return false;
+    if (leader.weight < 1 - kHindsight * options_.alpha) return false;
     if (log_e_value_of(leader.verdict) < -elementary::log(options_.alpha)) return false;
     if (denied_ == leader.verdict && out_.seconds < kAskAgain * denied_at_s_) return false;
     if (diagnosis_agrees()) return true;
@@ -261,23 +263,7 @@ class Explorer {
       if (!space_->families()[f].unknown) ours.push_back(space_->families()[f].name);
     }
     return found.unknown == last()->best().verdict.ends_with(kUnknownVerdict) &&
-           found.names.size() == ours.size() && are_named_by(found.names, ours) &&
-           are_named_by(ours, found.names);
-  }
-
-  // Each of the one is among the others; what shows where motion changes alone (lag, presliding,
-  // inertia) either may call by another of its names.
-  bool are_named_by(const std::vector<std::string>& names,
-                    const std::vector<std::string>& others) const {
-    const auto is_transient = [&](const std::string& name) {
-      const auto family = std::ranges::find(space_->families(), name, &ExplainingFamily::name);
-      return family != space_->families().end() &&
-             std::ranges::count(family->characteristic, role_name(Role::acceleration)) > 0;
-    };
-    return std::ranges::all_of(names, [&](const std::string& name) {
-      return std::ranges::count(others, name) > 0 ||
-             (is_transient(name) && std::ranges::any_of(others, is_transient));
-    });
+           name_the_same(found.names, ours, space_->families());
   }
 
   // Until the diagnosis agrees, what it says is a rival: it asks for an effect in several
@@ -401,6 +387,23 @@ MovementPlan informative_movements() {
     }
     return ranked.best(state);
   };
+}
+
+bool name_the_same(const std::vector<std::string>& names, const std::vector<std::string>& others,
+                   std::span<const ExplainingFamily> families) {
+  const auto is_transient = [&](const std::string& name) {
+    const auto family = std::ranges::find(families, name, &ExplainingFamily::name);
+    return family != families.end() &&
+           std::ranges::count(family->characteristic, role_name(Role::acceleration)) > 0;
+  };
+  const auto are_among = [&](const std::vector<std::string>& some,
+                             const std::vector<std::string>& all) {
+    return std::ranges::all_of(some, [&](const std::string& name) {
+      return std::ranges::count(all, name) > 0 ||
+             (is_transient(name) && std::ranges::any_of(all, is_transient));
+    });
+  };
+  return names.size() == others.size() && are_among(names, others) && are_among(others, names);
 }
 
 DiagnosedFamilies diagnosed_families(const Observations& rows, const DiagnosisOptions& options) {

@@ -7,7 +7,7 @@
 //   const Exploration done = explore(limits, execute, options, informative_movements());
 //
 // Sure: what a verdict said of the rows before they came is 1/alpha times likelier than what all
-// others said (forecasts.hpp), in hindsight it has all but a few alpha of the weight, and the
+// others said (forecasts.hpp), in hindsight it has all but half of alpha of the weight, and the
 // loop's own diagnosis of the same rows says the same. A movement that is refused is asked for
 // again after a rest.
 //
@@ -116,6 +116,11 @@ struct DiagnosedFamilies {
   bool unknown = false;
 };
 DiagnosedFamilies diagnosed_families(const Observations& rows, const DiagnosisOptions& options);
+
+// As many families, each of the one among the others; what shows where motion changes alone (lag,
+// presliding, inertia) either may call by another of its names.
+bool name_the_same(const std::vector<std::string>& names, const std::vector<std::string>& others,
+                   std::span<const ExplainingFamily> families);
 
 // Appends the rows of a movement, under its own number.
 void append_movement(Dataset& data, const Dataset& movement);
