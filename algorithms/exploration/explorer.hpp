@@ -37,11 +37,11 @@ namespace tribench::loop {
 
 struct ExplorerOptions {
   double alpha = 0.01;  // of naming anything else while one explanation is true
-  double smallest_effect = kSmallestEffect;
-  double budget_s = 600;                    // of motion
-  double longest_s = 30;                    // of one movement that is proposed
-  double start_rad = 0;                     // where the joint stands
-  const std::atomic<bool>* stop = nullptr;  // looked at between movements
+  double smallest_effect = kSmallestEffect;  // of interest, in the noise's (explanations.hpp)
+  double budget_s = 600;                     // of motion
+  double longest_s = 30;                     // of one movement that is proposed
+  double start_rad = 0;                      // where the joint stands
+  const std::atomic<bool>* stop = nullptr;   // looked at between movements
   // Told after every movement; may be empty.
   std::function<void(const struct ExplorationStep&)> told = {};
 };
