@@ -7,6 +7,9 @@ function(tribench_embed target name file)
   set(EMBEDDED_PATH ${path})
   set(source ${CMAKE_CURRENT_BINARY_DIR}/embedded/${name}.cpp)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/embedded.cpp.in ${source} @ONLY)
-  set_source_files_properties(${source} PROPERTIES OBJECT_DEPENDS ${path})
+  # By itself: of a source that is compiled with others CMake forgets what its object hangs on, and a
+  # compiler cache keeps nothing that holds a file.
+  set_source_files_properties(${source} PROPERTIES
+    OBJECT_DEPENDS ${path} SKIP_UNITY_BUILD_INCLUSION ON)
   target_sources(${target} PRIVATE ${source})
 endfunction()

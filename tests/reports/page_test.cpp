@@ -20,6 +20,8 @@
 #include "reports/suite_view.hpp"
 #include "tests/reports/browser.hpp"
 #include "tests/reports/sample_run.hpp"
+#include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
 
 namespace tribench {
 namespace {
@@ -66,6 +68,16 @@ TEST(Page, AsksForNothingFromOutsideAndRunsNoTextOfTheData) {
   EXPECT_THAT(page, Not(HasSubstr("</script><script>alert(1)")));
   for (const char* outside : {"src=\"http", "href=\"http", "url(http", "@import"}) {
     EXPECT_THAT(page, Not(HasSubstr(outside))) << outside;
+  }
+}
+
+// Embedded files are built anew when they change, also where sources are compiled together.
+TEST(Page, HasTheScriptsAndStylesAsTheyLieInTheTree) {
+  const std::string page = html_page("a", PageKind::run, nlohmann::ordered_json::object());
+  for (const char* file : {"common.js", "plots.js", "run_plots.js", "run.js", "page.css"}) {
+    EXPECT_NE(page.find(testing::read_text(testing::source_dir() / "reports/html/page" / file)),
+              std::string::npos)
+        << file;
   }
 }
 
