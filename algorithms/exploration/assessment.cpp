@@ -173,7 +173,6 @@ void Assessor::hold_forecasts_against_rows(std::span<const double> weights) {
     if (is_new(seen_[m])) add_to(further, seen_[m], weights[m]);
   }
   forecasts_.add(last_.explanations, last_.table, EvidenceTable(further));
-  last_.forecast = forecasts_.verdicts();
 }
 
 const Assessment& Assessor::look() {
@@ -184,7 +183,6 @@ const Assessment& Assessor::look() {
   if (!noise_is_as_it_was(noise, weights)) {
     // What was said under another noise says nothing: the rows so far are the opening.
     forecasts_ = {};
-    last_.forecast.clear();
     last_.noise = noise;
     last_.sums = {};
     for (SeenMovement& movement : seen_) movement.weight = 0;
@@ -199,6 +197,8 @@ const Assessment& Assessor::look() {
   weigh(found.explanations);
   last_.explanations = std::move(found.explanations);
   last_.blocks = std::move(found.blocks);
+  forecasts_.hear(last_.explanations);
+  last_.forecast = forecasts_.verdicts();
   last_.variance = last_.table.posterior(last_.best().blocks).variance;
   const double limit = -elementary::log(alpha_);
   last_.alive.clear();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -25,7 +26,6 @@ constexpr std::size_t kMostRefused = 40;  // one after the other
 constexpr std::size_t kFewestMovements = 5;
 constexpr std::size_t kVerdictsTold = 5;
 constexpr double kRestCounts = 0.25;  // of a second of motion: it is waited for
-constexpr double kAskAgain = 1.1;     // seconds since the diagnosis said otherwise
 // Of the level: the rest is for what the weights do not know, a truth that is no explanation.
 constexpr double kHindsight = 0.5;
 
@@ -121,6 +121,16 @@ bool rests_too_long(const ExplorationState& state, std::size_t candidate, double
   return rest_s > 0 && state.now.time_s + rest_s + cost_s > state.limits.seconds;
 }
 
+// By which the weight of all others has to fall yet. What a movement tells beyond that comes too
+// late: a shorter one is as good.
+double nats_to_sure(const ExplorationState& state) {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  if (!state.disputed.empty()) return kAny;
+  const double others = 1 - state.last->weight_of(state.last->best().verdict);
+  const double nats = elementary::log(others / (kHindsight * state.options.alpha));
+  return nats > 0 ? nats : kAny;
+}
+
 std::optional<NextMovement> RankedMovements::best(const ExplorationState& state) {
   std::vector<double> cost_s;
   for (const PlannedMovement& candidate : state.candidates) {
@@ -133,13 +143,14 @@ std::optional<NextMovement> RankedMovements::best(const ExplorationState& state)
     choices_ = movement_gains(*state.last, state.foreseen, state.disputed);
     ranked_at_ = state.last->sums.rows();
   }
+  const double enough = nats_to_sure(state);
   const MovementChoice* best = nullptr;
   double most = 0;
   for (const MovementChoice& choice : choices_) {
     if (state.refused[choice.movement] != 0) continue;
     if (state.so_far.seconds + cost_s[choice.movement] > state.options.budget_s) continue;
     if (rests_too_long(state, choice.movement, cost_s[choice.movement])) continue;
-    const double rate = choice.gain / waited_for(choice.movement);
+    const double rate = std::min(choice.gain, enough) / waited_for(choice.movement);
     if (!(rate > most)) continue;
     best = &choice;
     most = rate;
@@ -244,10 +255,8 @@ class Explorer {
     const WeighedVerdict leader = verdicts_of(*last(), false).front();
     if (leader.weight < 1 - kHindsight * options_.alpha) return false;
     if (log_e_value_of(leader.verdict) < -elementary::log(options_.alpha)) return false;
-    if (denied_ == leader.verdict && out_.seconds < kAskAgain * denied_at_s_) return false;
     if (diagnosis_agrees()) return true;
     denied_ = leader.verdict;
-    denied_at_s_ = out_.seconds;
     return false;
   }
 
@@ -360,8 +369,7 @@ class Explorer {
   std::size_t assessed_ = 0;  // movements
   JointNow now_;
   double looked_at_s_ = 0;
-  std::string denied_;  // the verdict that the diagnosis did not share, and when
-  double denied_at_s_ = 0;
+  std::string denied_;  // the verdict that the diagnosis did not share
   Exploration out_;
 };
 

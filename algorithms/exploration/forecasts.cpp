@@ -19,9 +19,8 @@ std::vector<std::size_t> sorted_families(const Explanation& one) {
 
 }  // namespace
 
-// The first ones enter with what the opening made of them, later ones with their prior; weights and
-// priors have the same sum.
-void Forecasts::wake(const std::vector<Explanation>& all) {
+// Weights and priors have the same sum.
+void Forecasts::hear(const std::vector<Explanation>& all) {
   const bool opening = forecasters_.empty();
   std::vector<double> priors;
   std::vector<double> weights;
@@ -39,7 +38,7 @@ void Forecasts::wake(const std::vector<Explanation>& all) {
 
 void Forecasts::add(const std::vector<Explanation>& all, const EvidenceTable& before,
                     const EvidenceTable& after) {
-  wake(all);
+  hear(all);
   std::vector<Forecaster*> awake;
   std::vector<double> said;
   std::vector<double> weights;

@@ -35,12 +35,16 @@ struct ForecastVerdict {
 
 class Forecasts {
  public:
+  // Those that nobody has heard yet: the first ones enter with what all rows so far, the opening,
+  // made of them, later ones with their prior. Nothing happens to those that are known.
+  void hear(const std::vector<Explanation>& all);
+
   // all: the explanations as they stood before the further rows. before, after: without and with
   // these, under the noise that was known before them.
   void add(const std::vector<Explanation>& all, const EvidenceTable& before,
            const EvidenceTable& after);
 
-  // The likeliest first; empty before the first further rows.
+  // The likeliest first; empty before any were heard.
   std::vector<ForecastVerdict> verdicts() const;
 
  private:
@@ -49,8 +53,6 @@ class Forecasts {
     double log_prior = 0;
     double log_weight = 0;
   };
-  void wake(const std::vector<Explanation>& all);
-
   std::map<std::vector<std::size_t>, Forecaster> forecasters_;  // by sorted families
 };
 

@@ -300,7 +300,7 @@ TEST(Explanations, AreAsLikelyBeforehandAsOthersOfAsManyEffects) {
 }
 
 // What lives in time has columns for the reference's times alone.
-TEST(Plans, NoRestIsAskedForThatLeadsBeyondTheTimesOfTheReference) {
+TEST(Plans, NoRestIsAskedForThatLeadsBeyondTheTimesOfTheReferenceOrTellsMoreThanIsNeeded) {
   simulation::World world({3, simulation::WorldLevel::easy, simulation::WorldKind::none});
   const Observations rows = observe(recorded(world, some_movements(world.limits())));
   const ExplanationSpace space(rows, {100});
@@ -312,16 +312,21 @@ TEST(Plans, NoRestIsAskedForThatLeadsBeyondTheTimesOfTheReference) {
   const Foreseen foreseen{space.base_columns(rows),
                           space.columns(rows),
                           {{{0, rows.rows()}, 1000}, {{0, rows.rows()}, 1}}};
-  const auto asked_at = [&](double time_s) {
+  const auto asked_at = [&](double time_s, double alpha) {
     ExplorerOptions options;
+    options.alpha = alpha;
     const Exploration nothing_yet;
     const ExplorationState state{world.limits(),   options,  nothing_yet,
                                  &assessor.look(), {time_s}, candidates,
                                  foreseen,         {0, 0},   ""};
     return informative_movements()(state).value().movement.rest;
   };
-  EXPECT_EQ(asked_at(100), world.limits().longest_rest_s);
-  EXPECT_EQ(asked_at(world.limits().seconds - 60), 0);
+  const double far = 1e-200;  // a level for which neither tells enough
+  EXPECT_EQ(asked_at(100, far), world.limits().longest_rest_s);
+  EXPECT_EQ(asked_at(world.limits().seconds - 60, far), 0);
+  // Where what comes without a rest is enough, nobody waits to hear more.
+  const double others = 1 - assessor.look().weight_of(assessor.last().best().verdict);
+  EXPECT_EQ(asked_at(100, others), 0);
 }
 
 // What a row's columns are does not hang on other movements: else sums could not grow.

@@ -116,5 +116,28 @@ TEST(Forecasts, WhatComesLateEntersWithItsPrior) {
   EXPECT_NEAR(log_e_value(verdicts, "firstsecond"), 0, 1e-9);
 }
 
+// What the rows so far made of them, before anything was foreseen: its Bayes factor.
+TEST(Forecasts, OpenWithTheBayesFactorOfTheRowsSoFar) {
+  RandomStream random(9);
+  EvidenceSums sums;
+  for (int k = 0; k < 5; ++k) add_batch(sums, 0.8, random);
+  const EvidenceTable now(sums);
+  std::vector<Explanation> all = all_explanations();
+  double others = 0;  // the mixture of all but the first
+  double prior = 0;
+  for (Explanation& one : all) {
+    one.log_evidence = now.log_factor(one.blocks);
+    if (one.verdict == "first") continue;
+    others += std::exp(one.log_prior + one.log_evidence);
+    prior += std::exp(one.log_prior);
+  }
+  Forecasts forecasts;
+  forecasts.hear(all);
+  const std::vector<ForecastVerdict> verdicts = forecasts.verdicts();
+  EXPECT_NEAR(log_e_value(verdicts, "first"), all[1].log_evidence - std::log(others / prior), 1e-9);
+  forecasts.hear(all);  // known already
+  EXPECT_EQ(log_e_value(forecasts.verdicts(), "first"), log_e_value(verdicts, "first"));
+}
+
 }  // namespace
 }  // namespace tribench::loop
