@@ -34,10 +34,10 @@ Catalogue full_catalogue_of(std::string_view data, std::span<const user::UserPro
                    law_reader(), own);
 }
 
-Catalogue full_catalogue_of_run(const std::filesystem::path& folder) {
+Catalogue full_catalogue_of_run(const std::filesystem::path& folder, std::string_view data) {
   const std::filesystem::path file = folder / "grid.toml";
   const std::string text = read_file_if_there(file).value_or("");
-  return full_catalogue_of({}, user::parse_user_problems(text, file.string(), folder));
+  return full_catalogue_of(data, user::parse_user_problems(text, file.string(), folder));
 }
 
 }  // namespace tribench

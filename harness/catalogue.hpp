@@ -21,6 +21,6 @@ Catalogue full_catalogue(const std::optional<std::filesystem::path>& data = std:
 // own: problems that a grid brings itself.
 Catalogue full_catalogue_of(std::string_view data, std::span<const user::UserProblem> own = {});
 // For a run's folder: with the problems that its grid.toml brings itself, where it has any.
-Catalogue full_catalogue_of_run(const std::filesystem::path& folder);
+Catalogue full_catalogue_of_run(const std::filesystem::path& folder, std::string_view data);
 
 }  // namespace tribench

@@ -200,25 +200,43 @@ void sample_problem(const ProblemEntry& entry, const std::vector<const Record*>&
 
 }  // namespace
 
-std::vector<CurveRecord> sample_curves(const std::vector<Record>& records,
-                                       const Catalogue& catalogue) {
-  std::vector<CurveRecord> points;
+Curves sample_curves(const std::vector<Record>& records, const Catalogue& catalogue) {
+  Curves curves;
   for (const auto& [problem, chosen] : choose(records)) {
     try {
-      sample_problem(catalogue.find(problem), chosen, points);
+      sample_problem(catalogue.find(problem), chosen, curves.points);
     } catch (const Error& error) {
       // The run's figures stand without its pictures: measured data may have gone since.
       if (error.kind() != ErrorKind::bad_input) throw;
+      curves.not_here.emplace(problem, error.what());
     }
   }
-  return points;
+  return curves;
 }
 
-void write_curves(const std::filesystem::path& folder, const std::vector<CellResult>& results,
-                  const Catalogue& catalogue) {
+std::vector<std::string> write_curves(const std::filesystem::path& folder,
+                                      const std::vector<CellResult>& results,
+                                      const Catalogue& catalogue) {
   std::vector<Record> records;
   for (const CellResult& result : results) records.push_back(result.record);
-  write_file(folder / "curves.csv", curves_csv(sample_curves(records, catalogue)));
+  Curves curves = sample_curves(records, catalogue);
+  const std::filesystem::path file = folder / "curves.csv";
+  std::map<std::string, std::size_t> kept;
+  if (!curves.not_here.empty() && std::filesystem::exists(file)) {
+    read_curves(file, [&](CurveRecord&& point) {
+      if (!curves.not_here.contains(point.problem)) return;
+      ++kept[point.problem];
+      curves.points.push_back(std::move(point));
+    });
+  }
+  write_file(file, curves_csv(curves.points));
+  std::vector<std::string> lines;
+  for (const auto& [problem, why] : curves.not_here) {
+    lines.push_back(fmt::format("the pictures of {} {}: {}", problem,
+                                kept.contains(problem) ? "are those of the run" : "are missing",
+                                why));
+  }
+  return lines;
 }
 
 }  // namespace tribench

@@ -10,6 +10,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "harness/cell_task.hpp"
@@ -18,12 +20,16 @@
 
 namespace tribench {
 
-// A problem whose data are not here gives no curves. About 300 points a method and problem.
-std::vector<CurveRecord> sample_curves(const std::vector<Record>& records,
-                                       const Catalogue& catalogue);
+struct Curves {
+  std::vector<CurveRecord> points;              // about 300 a method and problem
+  std::map<std::string, std::string> not_here;  // problems without data, and why
+};
+Curves sample_curves(const std::vector<Record>& records, const Catalogue& catalogue);
 
-// Writes curves.csv.
-void write_curves(const std::filesystem::path& folder, const std::vector<CellResult>& results,
-                  const Catalogue& catalogue);
+// Writes curves.csv. Of a problem whose data are not here it keeps the points that the file had.
+// Returns what to tell the user of these, a line each.
+std::vector<std::string> write_curves(const std::filesystem::path& folder,
+                                      const std::vector<CellResult>& results,
+                                      const Catalogue& catalogue);
 
 }  // namespace tribench

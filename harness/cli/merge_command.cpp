@@ -27,6 +27,7 @@ namespace {
 struct MergeArguments {
   std::vector<std::string> folders;
   std::string out;
+  std::string data;
 };
 
 void print_damage(const JournalContents& journal) {
@@ -51,7 +52,10 @@ void merge(const MergeArguments& arguments) {
                                std::filesystem::copy_options::overwrite_existing);
   }
   write_result_files(out, merged.results);
-  write_curves(out, merged.results, full_catalogue_of_run(out));
+  const Catalogue catalogue = full_catalogue_of_run(out, arguments.data);
+  for (const std::string& line : write_curves(out, merged.results, catalogue)) {
+    print_message(fmt::format("tribench: {}\n", line));
+  }
   write_merged_provenance(out, folders, merged);
   fmt::print("{}\n{} cells from {} folders; see {}\n", write_run_reports(out),
              merged.results.size(), folders.size(), (out / "leaderboard.md").string());
@@ -66,6 +70,7 @@ void add_merge_command(CLI::App& app, ExitStatus& /*status*/) {
   command->add_option("folders", arguments->folders, "folders of the shards, in any order")
       ->required();
   command->add_option("--out", arguments->out, "the joined run's folder")->required();
+  command->add_option("--data", arguments->data, "folder of the measured sets, for the pictures");
   command->callback([arguments] { merge(*arguments); });
 }
 

@@ -27,6 +27,7 @@ namespace {
 struct ReportArguments {
   std::string folder;
   std::string base;
+  std::string data;
   std::string pictures;
   std::string page;
   std::string form;
@@ -34,18 +35,21 @@ struct ReportArguments {
 };
 
 // The journal is the truth, even of a run that was killed; without one the CSV files are.
-void refresh_files(const std::filesystem::path& folder) {
+void refresh_files(const std::filesystem::path& folder, const std::string& data) {
   if (!std::filesystem::exists(folder / "cells.jsonl")) return;
   const JournalContents journal = read_journal(folder / "cells.jsonl");
   for (const std::string& damage : journal.damage)
     print_message(fmt::format("tribench: {}\n", damage));
   write_result_files(folder, journal.results);
-  write_curves(folder, journal.results, full_catalogue_of_run(folder));
+  const Catalogue catalogue = full_catalogue_of_run(folder, data);
+  for (const std::string& line : write_curves(folder, journal.results, catalogue)) {
+    print_message(fmt::format("tribench: {}\n", line));
+  }
 }
 
 void report(const ReportArguments& arguments) {
   const std::filesystem::path folder = arguments.folder;
-  refresh_files(folder);
+  refresh_files(folder, arguments.data);
   if (!arguments.form.empty()) {
     const std::string tables = run_tables_latex(folder);
     if (arguments.out.empty()) {
@@ -76,6 +80,7 @@ void add_report_command(CLI::App& app, ExitStatus& /*status*/) {
   command->add_option("--base", arguments->base,
                       "an earlier run: the first screen says what changed since then");
   add_pictures_option(*command, arguments->pictures);
+  command->add_option("--data", arguments->data, "folder of the measured sets, for the pictures");
   command->add_option("--page", arguments->page,
                       "write a page to cite (Markdown): settings, machine, published figures "
                       "beside ours, proofs, pictures (needs nodejs)");

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// generate, data and study, as a user calls them.
+// generate, data, report and study, as a user calls them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "problems/reading/csv.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench::testing {
@@ -85,6 +87,34 @@ TEST(StudyCommand, AProgramThatDoesNotAnswerIsEndedAfterItsTime) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
   EXPECT_NE(study.status, 0);
   EXPECT_THAT(study.errors, HasSubstr("longer than 0.2 s"));
+}
+
+// A run's pictures are drawn again from the measured rows, which its folder does not have.
+TEST(ReportCommand, FindsTheMeasuredRowsWhereItIsTold) {
+  const auto data = shared_data();
+  if (!data) GTEST_SKIP() << kNoSharedData;
+  const TemporaryFolder folder;
+  const std::string run = (folder / "run").string();
+  write_text(folder / "grid.toml",
+             "[grid]\nname = \"measured\"\nproblems = [\"emps/estimation\"]\n"
+             "methods = [\"linear\"]\noperators = [\"paper\"]\nseeds = { first = 1, count = 1 }\n");
+  ASSERT_EQ(run_tribench({"run", (folder / "grid.toml").string(), "--data", data->string(), "--out",
+                          run, "--quiet"})
+                .status,
+            0);
+  const std::string drawn = read_text(folder / "run/curves.csv");
+  ASSERT_THAT(drawn, HasSubstr("measured rows"));
+  const std::string nowhere = (folder / "nowhere").string();
+  const ProgramRun kept = run_tribench({"report", run, "--data", nowhere});
+  EXPECT_EQ(kept.status, 0);
+  EXPECT_THAT(kept.errors, HasSubstr("the pictures of emps/estimation are those of the run"));
+  EXPECT_EQ(read_text(folder / "run/curves.csv"), drawn);
+  std::filesystem::remove(folder / "run/curves.csv");
+  EXPECT_EQ(run_tribench({"report", run, "--data", data->string()}).errors, "");
+  EXPECT_EQ(read_text(folder / "run/curves.csv"), drawn);
+  const std::string joined = (folder / "joined").string();
+  EXPECT_EQ(run_tribench({"merge", run, "--out", joined, "--data", data->string()}).errors, "");
+  EXPECT_EQ(read_text(folder / "joined/curves.csv"), drawn);
 }
 
 }  // namespace
