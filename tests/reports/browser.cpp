@@ -2,6 +2,8 @@
 #include "tests/reports/browser.hpp"
 
 #include <cstdlib>
+#include <utility>
+#include <vector>
 
 #include "foundation/output_file.hpp"
 #include "tests/reports/sample_run.hpp"
@@ -17,7 +19,16 @@ bool has_browser() { return std::system("command -v chromium >/dev/null 2>&1") =
 
 namespace {
 
-constexpr int kNarrowest = 500;  // pixels: the browser makes no window narrower
+struct Asked {
+  std::function<fs::path()> make_page;
+  std::string script;
+  Window window;
+};
+
+std::vector<Asked>& all_asked() {
+  static std::vector<Asked> all;
+  return all;
+}
 
 // The page with a script that leaves its answer in the document, and tells it to the page around
 // it.
@@ -40,45 +51,54 @@ fs::path page_with(const std::string& script, const fs::path& page, std::size_t 
 }
 
 // What a script of the page leaves between BEGIN and END, read by a browser.
-json answer_of(const fs::path& page, Window window) {
+json answer_of(const fs::path& page) {
   const std::string dom = output_of(
       "timeout 90 chromium --headless --no-sandbox --disable-gpu --disable-background-networking "
       "--disable-dev-shm-usage --user-data-dir=" +
-      (page.parent_path() / "profile").string() + " --window-size=" + std::to_string(window.width) +
-      "," + std::to_string(window.height) + " --virtual-time-budget=10000 --dump-dom file://" +
-      page.string() + " 2>/dev/null");
+      (page.parent_path() / "profile").string() +
+      " --window-size=1500,1100 --virtual-time-budget=10000 --dump-dom file://" + page.string() +
+      " 2>/dev/null");
   const std::size_t first = dom.rfind("BEGIN");
   const std::size_t last = dom.rfind("END");
   if (first == std::string::npos || last < first) return nullptr;
   return json::parse(dom.substr(first + 5, last - first - 5), nullptr, false);
 }
 
-}  // namespace
-
-json asked_in_browser(const fs::path& page, const std::string& script, Window window) {
-  if (window.width >= kNarrowest) return answer_of(page_with(script, page, 0), window);
-  return all_asked_in_browser({{page, window}}, script)[0];
-}
-
-json all_asked_in_browser(const std::vector<ShownPage>& pages, const std::string& script) {
-  // One above the other: what lies outside the window is not drawn.
+// An array in the questions' order. What is missing when the time is up stays null, and takes no
+// other answer with it.
+json ask_all(const std::vector<Asked>& all) {
+  // What hears the answers comes first: a short page gives its own before the last frame is read.
   std::string text =
       "<!DOCTYPE html><style>iframe { position: absolute; left: 0; top: 0; border: 0 "
-      "}</style><body>";
-  for (std::size_t k = 0; k < pages.size(); ++k) {
-    text += "<iframe src='file://" + page_with(script, pages[k].page, k).string() +
-            "' style='width:" + std::to_string(pages[k].window.width) +
-            "px;height:" + std::to_string(pages[k].window.height) + "px'></iframe>";
+      "}</style><body><script>const all = Array(" +
+      std::to_string(all.size()) +
+      ").fill(null); let missing = all.length;\n"
+      "const tell = (place) => { place.textContent = 'BEGIN' + JSON.stringify(all) + 'END'; };\n"
+      "onmessage = ({data}) => { all[data.number] = data.answer ?? null; missing -= 1;\n"
+      "  tell(missing ? document.querySelector('pre') : document.body); };</script><pre></pre>";
+  // One above the other: what lies outside the window is not drawn.
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    text += "<iframe src='file://" + page_with(all[k].script, all[k].make_page(), k).string() +
+            "' style='width:" + std::to_string(all[k].window.width) +
+            "px;height:" + std::to_string(all[k].window.height) + "px'></iframe>";
   }
-  text += "<script>const all = Array(" + std::to_string(pages.size()) +
-          ").fill(null); let missing = all.length;\n"
-          "onmessage = ({data}) => { all[data.number] = data.answer ?? null; missing -= 1;\n"
-          "  if (!missing) document.body.textContent = 'BEGIN' + JSON.stringify(all) + 'END'; };"
-          "</script></body>";
-  const fs::path frames = pages.front().page.parent_path() / "frames.html";
+  text += "</body>";
+  const fs::path frames = fresh_folder("browser") / "frames.html";
   write_file(frames, text);
-  const json answers = answer_of(frames, {1500, 1100});
-  return answers.is_array() ? answers : json(pages.size(), nullptr);
+  const json answers = answer_of(frames);
+  return answers.is_array() ? answers : json(all.size(), nullptr);
+}
+
+}  // namespace
+
+Question::Question(std::function<fs::path()> make_page, std::string script, Window window)
+    : number_(all_asked().size()) {
+  all_asked().push_back({std::move(make_page), std::move(script), window});
+}
+
+json Question::answer() const {
+  static const json answers = ask_all(all_asked());
+  return answers[number_];
 }
 
 std::string looking(const std::string& question) {

@@ -3,10 +3,11 @@
 // Pages as a browser shows them. Tests that need one: if (!has_browser()) GTEST_SKIP() << ...;
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 namespace tribench {
 
@@ -17,19 +18,22 @@ struct Window {
   int height = 1000;
 };
 
-struct ShownPage {
-  std::filesystem::path page;
-  Window window;
+// What a test asks of a page: a script that is appended to it and leaves its answer in
+// `window.answer`. A browser takes seconds to start, so that one shows all pages of a program, each
+// in a frame of its window's size and without a network, when the first answer is wanted. Questions
+// therefore stand beside the tests and not in them.
+class Question {
+ public:
+  // `make_page` writes the page and says where it lies; it is called when the browser starts.
+  Question(std::function<std::filesystem::path()> make_page, std::string script,
+           Window window = {});
+
+  // Null where there is no answer.
+  nlohmann::json answer() const;
+
+ private:
+  std::size_t number_;  // among all questions of the program
 };
-
-// Appends a script to the page, opens it in a browser without a network and returns what the
-// script left in `window.answer`; null where there is no answer.
-nlohmann::json asked_in_browser(const std::filesystem::path& page, const std::string& script,
-                                Window window = {});
-
-// The same of several pages at once, each in a frame of its window's size: a browser takes seconds
-// to start. An array in the pages' order.
-nlohmann::json all_asked_in_browser(const std::vector<ShownPage>& pages, const std::string& script);
 
 // What every look at a page needs: all pictures drawn, then a question.
 std::string looking(const std::string& question);

@@ -77,9 +77,7 @@ constexpr const char* kFaint = R"(
     }
 )";
 
-TEST(LoopPage, DrawsEveryPictureWithItsData) {
-  if (!has_browser()) GTEST_SKIP() << "no chromium";
-  const json answer = asked_in_browser(loop_page("loop_page", sample_loop()), looking(R"(
+const Question kLoopPictures([] { return loop_page("loop_page", sample_loop()); }, looking(R"(
     const marks = {};
     for (const plot of document.querySelectorAll('.plot')) {
       marks[plot.id] = plot.querySelectorAll('svg .role-mark path, svg .role-mark line').length;
@@ -94,6 +92,10 @@ TEST(LoopPage, DrawsEveryPictureWithItsData) {
       headline: text('.headline'), badge: text('.badge'), next: text('.answer'), body: document.body.innerText,
       requests: performance.getEntriesByType('resource').map((r) => r.name)};
   )"));
+
+TEST(LoopPage, DrawsEveryPictureWithItsData) {
+  if (!has_browser()) GTEST_SKIP() << "no chromium";
+  const json answer = kLoopPictures.answer();
   ASSERT_TRUE(answer.is_object()) << answer;
   EXPECT_EQ(answer["ready"], "yes");
   EXPECT_EQ(answer["errors"], json::array());
@@ -119,51 +121,62 @@ TEST(LoopPage, DrawsEveryPictureWithItsData) {
   EXPECT_EQ(answer["requests"], json::array());
 }
 
-// What is missing, how much, how sure, what next: nothing of it needs scrolling.
-TEST(LoopPage, AnswersOnTheFirstScreen) {
-  if (!has_browser()) GTEST_SKIP() << "no chromium";
-  const std::vector<LoopVerdict> verdicts = {LoopVerdict::none, LoopVerdict::effects,
-                                             LoopVerdict::unknown, LoopVerdict::cannot_tell};
-  std::vector<ShownPage> pages;
-  for (const LoopVerdict verdict : verdicts) {
-    const std::string folder = "loop_first_" + std::string(loop_verdict_name(verdict));
-    pages.push_back({loop_page(folder, loop_with(verdict)), {1400, 900}});
-  }
-  const json answers = all_asked_in_browser(pages, looking(R"(
+Question first_screen(LoopVerdict verdict) {
+  const std::string folder = "loop_first_" + std::string(loop_verdict_name(verdict));
+  return {[=] { return loop_page(folder, loop_with(verdict)); },
+          looking(R"(
       const bottom = (query) => Math.max(0, ...[...document.querySelectorAll(query)].map((e) => e.getBoundingClientRect().bottom));
       window.answer = {ends: Math.max(bottom('.headline'), bottom('.matters'), bottom('.hero'), bottom('.effects .card')),
                        cards: document.querySelectorAll('.effects .card').length};
-    )"));
-  for (std::size_t k = 0; k < verdicts.size(); ++k) {
-    ASSERT_TRUE(answers[k].is_object()) << answers;
-    EXPECT_GT(answers[k]["ends"].get<double>(), 0);
-    EXPECT_LE(answers[k]["ends"].get<double>(), 900) << loop_verdict_name(verdicts[k]);
-    EXPECT_EQ(answers[k]["cards"], loop_with(verdicts[k]).effects.size());
+    )"),
+          {1400, 900}};
+}
+
+const std::map<LoopVerdict, Question> kFirstScreens = {
+    {LoopVerdict::none, first_screen(LoopVerdict::none)},
+    {LoopVerdict::effects, first_screen(LoopVerdict::effects)},
+    {LoopVerdict::unknown, first_screen(LoopVerdict::unknown)},
+    {LoopVerdict::cannot_tell, first_screen(LoopVerdict::cannot_tell)}};
+
+// What is missing, how much, how sure, what next: nothing of it needs scrolling.
+TEST(LoopPage, AnswersOnTheFirstScreen) {
+  if (!has_browser()) GTEST_SKIP() << "no chromium";
+  for (const auto& [verdict, question] : kFirstScreens) {
+    const json answer = question.answer();
+    ASSERT_TRUE(answer.is_object()) << answer;
+    EXPECT_GT(answer["ends"].get<double>(), 0);
+    EXPECT_LE(answer["ends"].get<double>(), 900) << loop_verdict_name(verdict);
+    EXPECT_EQ(answer["cards"], loop_with(verdict).effects.size());
   }
 }
 
-TEST(LoopPage, FitsAPhoneAndADeskInLightAndDark) {
-  if (!has_browser()) GTEST_SKIP() << "no chromium";
-  const std::vector<Window> windows = {{1400, 900}, {390, 844}};
-  std::vector<ShownPage> pages;
-  for (const Window& window : windows) {
-    pages.push_back({loop_page("loop_fit_" + std::to_string(window.width), sample_loop()), window});
-  }
-  const json answers = all_asked_in_browser(pages, R"(
+Question both_themes(const Window& window) {
+  const std::string folder = "loop_fit_" + std::to_string(window.width);
+  return {[=] { return loop_page(folder, sample_loop()); },
+          R"(
       const looks = [];
       for (const theme of ['light', 'dark']) {
-        setTheme(theme);)" + looking(std::string(kOverlaps) + kFaint) +
-                                                       R"(
+        setTheme(theme);)" +
+              looking(std::string(kOverlaps) + kFaint) +
+              R"(
         looks.push({theme, overlaps, faint: [...faint], width: innerWidth, room: document.documentElement.clientWidth, scroll: document.documentElement.scrollWidth,
           wide: [...document.querySelectorAll('.plot svg')].filter((s) => s.getBoundingClientRect().right > innerWidth).length});
       }
       window.answer = looks;
-    )");
-  for (std::size_t k = 0; k < windows.size(); ++k) {
-    ASSERT_TRUE(answers[k].is_array()) << answers;
-    ASSERT_EQ(answers[k].size(), 2U);
-    for (const json& look : answers[k]) {
-      const int width = windows[k].width;
+    )",
+          window};
+}
+
+const std::map<int, Question> kThemesByWidth = {{1400, both_themes({1400, 900})},
+                                                {390, both_themes({390, 844})}};
+
+TEST(LoopPage, FitsAPhoneAndADeskInLightAndDark) {
+  if (!has_browser()) GTEST_SKIP() << "no chromium";
+  for (const auto& [width, question] : kThemesByWidth) {
+    const json answer = question.answer();
+    ASSERT_TRUE(answer.is_array()) << answer;
+    ASSERT_EQ(answer.size(), 2U);
+    for (const json& look : answer) {
       EXPECT_EQ(look["overlaps"], json::array()) << width << look["theme"];
       EXPECT_EQ(look["faint"], json::array()) << width << look["theme"];
       EXPECT_LE(look["scroll"].get<int>(), look["room"].get<int>()) << width;
@@ -173,14 +186,19 @@ TEST(LoopPage, FitsAPhoneAndADeskInLightAndDark) {
   }
 }
 
-TEST(LoopPage, SaysNothingOfFiguresThatAreNotThere) {
-  if (!has_browser()) GTEST_SKIP() << "no chromium";
+fs::path bare_loop_page() {
   LoopRecord record = sample_loop();
   record.error.ceiling = kNoFigure;
   record.error.attainable = kNoFigure;
   record.error.closed_fraction = kNoFigure;
-  const json answer = asked_in_browser(loop_page("loop_bare", record),
-                                       looking("window.answer = document.body.innerText;"));
+  return loop_page("loop_bare", record);
+}
+
+const Question kBareText(bare_loop_page, looking("window.answer = document.body.innerText;"));
+
+TEST(LoopPage, SaysNothingOfFiguresThatAreNotThere) {
+  if (!has_browser()) GTEST_SKIP() << "no chromium";
+  const json answer = kBareText.answer();
   ASSERT_TRUE(answer.is_string());
   EXPECT_THAT(answer.get<std::string>(), HasSubstr("0.2400 N m on movements"));
   EXPECT_THAT(answer.get<std::string>(), Not(HasSubstr("noise lies")));

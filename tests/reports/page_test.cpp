@@ -82,8 +82,7 @@ TEST(Page, HasTheScriptsAndStylesAsTheyLieInTheTree) {
 }
 
 // Two hundred nights of two series and a bench, a change in one of each.
-TEST(Page, OfNightsDrawsALineForEverySeriesAndFigureWithinItsWindow) {
-  if (!has_browser()) GTEST_SKIP() << "no chromium";
+fs::path page_of_nights() {
   StoreHistory history;
   history.nights.resize(200);
   BenchHistory bench;
@@ -109,7 +108,10 @@ TEST(Page, OfNightsDrawsALineForEverySeriesAndFigureWithinItsWindow) {
   history.benches = {bench};
   const fs::path folder = fresh_folder("page_of_nights");
   write_file(folder / "nights.html", history_page(history));
-  const json answer = asked_in_browser(folder / "nights.html", R"(
+  return folder / "nights.html";
+}
+
+const Question kLinesOfNights(page_of_nights, R"(
     const inside = (e) => e.getBBox().y >= -1 && e.getBBox().y + e.getBBox().height <= 91;
     window.answer = {
       lines: document.querySelectorAll('polyline').length,
@@ -119,7 +121,11 @@ TEST(Page, OfNightsDrawsALineForEverySeriesAndFigureWithinItsWindow) {
       wide: document.documentElement.scrollWidth > window.innerWidth,
       loaded: performance.getEntriesByType('resource').length};
   )",
-                                       {390, 800});
+                              {390, 800});
+
+TEST(Page, OfNightsDrawsALineForEverySeriesAndFigureWithinItsWindow) {
+  if (!has_browser()) GTEST_SKIP() << "no chromium";
+  const json answer = kLinesOfNights.answer();
   ASSERT_TRUE(answer.is_object()) << answer;
   EXPECT_EQ(answer["lines"], 5);
   EXPECT_EQ(answer["inside"], true);
@@ -187,11 +193,11 @@ constexpr const char* kUseEverything = R"(
       requests: performance.getEntriesByType('resource').map((r) => r.name)};
   )";
 
+const Question kEverything([] { return whole_run("page") / "report.html"; }, kUseEverything);
+
 TEST(Page, DrawsEveryPictureSortsFiltersAndShowsAFormulaOnHover) {
   if (!has_browser()) GTEST_SKIP() << "no chromium";
-  const fs::path folder = whole_run("page");
-  const json answer = asked_in_browser(folder / "report.html", kUseEverything);
-
+  const json answer = kEverything.answer();
   ASSERT_TRUE(answer.is_object()) << answer;
   EXPECT_EQ(answer["ready"], "yes");
   EXPECT_EQ(answer["errors"], json::array());
@@ -259,12 +265,14 @@ TEST(StudyPage, HoldsWhatAReviewerAsksFor) {
   EXPECT_TRUE(fs::exists(folder / "docs/page/A_j2_no_load.paper.profile.svg"));
 }
 
-TEST(Page, OfARunFitsAPhoneSaysItsUnitAndWhatChangedFirst) {
-  if (!has_browser()) GTEST_SKIP() << "no chromium";
+fs::path page_with_changes() {
   const fs::path base = whole_run("page_base");
   const fs::path folder = whole_run("page_phone");
   write_run_reports(folder, base);
-  const json answer = asked_in_browser(folder / "report.html", looking(R"(
+  return folder / "report.html";
+}
+
+const Question kOnAPhone(page_with_changes, looking(R"(
     const first = document.getElementById('main').firstElementChild;
     const line = () => [...document.querySelectorAll('#profile .mark-line.role-mark path')].map((p) => p.getAttribute('stroke-opacity') || '1');
     const label = document.querySelector('#profile .role-legend-label text');
@@ -276,7 +284,11 @@ TEST(Page, OfARunFitsAPhoneSaysItsUnitAndWhatChangedFirst) {
     window.answer = {first: first.id, text: first.textContent, before, hovered: line(), scroll: document.documentElement.scrollWidth,
       width: innerWidth, room: document.documentElement.clientWidth, label: cell.dataset.label, errors: window.pageErrors};
   )"),
-                                       {390, 844});
+                         {390, 844});
+
+TEST(Page, OfARunFitsAPhoneSaysItsUnitAndWhatChangedFirst) {
+  if (!has_browser()) GTEST_SKIP() << "no chromium";
+  const json answer = kOnAPhone.answer();
   ASSERT_TRUE(answer.is_object()) << answer;
   EXPECT_EQ(answer["errors"], json::array());
   EXPECT_EQ(answer["first"], "changed");
@@ -289,8 +301,7 @@ TEST(Page, OfARunFitsAPhoneSaysItsUnitAndWhatChangedFirst) {
 }
 
 // The sample's two problems as the tables of a suite, with one published method.
-TEST(Page, OfASuiteRanksOursAmongThePublished) {
-  if (!has_browser()) GTEST_SKIP() << "no chromium";
+fs::path page_of_a_suite() {
   const fs::path folder = whole_run("page_suite");
   SuiteInfo suite;
   suite.name = "A";
@@ -302,11 +313,18 @@ TEST(Page, OfASuiteRanksOursAmongThePublished) {
   }
   write_file(folder / kSuiteFile, suites_json({suite}));
   write_run_reports(folder);
-  const json answer = asked_in_browser(folder / "report.html", looking(R"(
+  return folder / "report.html";
+}
+
+const Question kSuiteTables(page_of_a_suite, looking(R"(
     const rows = (name) => [...document.querySelectorAll(`table[aria-label="${name}"] tbody tr`)].map((r) => r.textContent);
     window.answer = {errors: window.pageErrors, ranks: rows('ranks on A'), tables: rows('published results of A'),
       ours: document.querySelector('table[aria-label="ranks on A"] strong')?.textContent};
   )"));
+
+TEST(Page, OfASuiteRanksOursAmongThePublished) {
+  if (!has_browser()) GTEST_SKIP() << "no chromium";
+  const json answer = kSuiteTables.answer();
   ASSERT_TRUE(answer.is_object()) << answer;
   EXPECT_EQ(answer["errors"], json::array());
   ASSERT_FALSE(answer["ranks"].empty());
@@ -315,14 +333,20 @@ TEST(Page, OfASuiteRanksOursAmongThePublished) {
   EXPECT_THAT(answer["tables"][0].get<std::string>(), HasSubstr("2.00 (theirs)"));
 }
 
-TEST(Page, OfAnUnfinishedRunOpensToo) {
-  if (!has_browser()) GTEST_SKIP() << "no chromium";
+fs::path page_of_an_unfinished_run() {
   const fs::path folder = fresh_folder("empty_page");
   write_file(folder / "grid.toml", "[grid]\nname = \"nothing yet\"\n");
   write_run_reports(folder);
-  const json answer = asked_in_browser(folder / "report.html", R"(
+  return folder / "report.html";
+}
+
+const Question kUnfinished(page_of_an_unfinished_run, R"(
     window.answer = {ready: document.documentElement.dataset.ready, errors: window.pageErrors};
   )");
+
+TEST(Page, OfAnUnfinishedRunOpensToo) {
+  if (!has_browser()) GTEST_SKIP() << "no chromium";
+  const json answer = kUnfinished.answer();
   ASSERT_TRUE(answer.is_object());
   EXPECT_EQ(answer["ready"], "yes");
   EXPECT_EQ(answer["errors"], json::array());
