@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "foundation/elementary.hpp"
+#include "foundation/elementary_columns.hpp"
 #include "foundation/sign.hpp"
 
 namespace tribench {
@@ -40,6 +41,20 @@ double FrictionLaw::at(double velocity_rad_s, double gravity_nm) const {
          quadrant_step_nm * elementary::tanh(gravity_nm / quadrant_width_nm);
 }
 
+std::vector<double> FrictionLaw::at(double velocity_rad_s,
+                                    std::span<const double> gravity_nm) const {
+  const double s = sign(velocity_rad_s);
+  const double averaged = averaged_at(velocity_rad_s);
+  std::vector<double> out(gravity_nm.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = gravity_nm[i] / quadrant_width_nm;
+  elementary::tanh_of_each(out);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = averaged + s * load_coulomb * (std::abs(gravity_nm[i]) - mean_load_nm) +
+             quadrant_gain * gravity_nm[i] + quadrant_step_nm * out[i];
+  }
+  return out;
+}
+
 std::string FrictionLaw::formula(bool with_load, double offset_nm) const {
   const Pair f0 = halves(positive.coulomb_nm, negative.coulomb_nm);
   const Pair f1 = halves(positive.viscous, negative.viscous);
@@ -61,6 +76,20 @@ double ripple_at(std::span<const Harmonic> harmonics, double position_rad) {
         harmonic.amplitude_nm * elementary::cos(harmonic.order * position_rad + harmonic.phase_rad);
   }
   return sum;
+}
+
+std::vector<double> ripple_at(std::span<const Harmonic> harmonics,
+                              std::span<const double> positions_rad) {
+  std::vector<double> sums(positions_rad.size(), 0.0);
+  std::vector<double> wave(positions_rad.size());
+  for (const Harmonic& harmonic : harmonics) {
+    for (std::size_t i = 0; i < wave.size(); ++i) {
+      wave[i] = harmonic.order * positions_rad[i] + harmonic.phase_rad;
+    }
+    elementary::cos_of_each(wave);
+    for (std::size_t i = 0; i < wave.size(); ++i) sums[i] += harmonic.amplitude_nm * wave[i];
+  }
+  return sums;
 }
 
 }  // namespace tribench

@@ -44,6 +44,8 @@ struct FrictionLaw {
 
   // [N m]; any finite arguments.
   double at(double velocity_rad_s, double gravity_nm) const;
+  // The same at one velocity and a column of gravity torques, bit for bit.
+  std::vector<double> at(double velocity_rad_s, std::span<const double> gravity_nm) const;
   // The mean over a stroke that is symmetric in the load: what is left of `at` without c0, c1, c2.
   double averaged_at(double velocity_rad_s) const;
 
@@ -59,5 +61,7 @@ struct Harmonic {
   double phase_rad = 0;
 };
 double ripple_at(std::span<const Harmonic> harmonics, double position_rad);
+std::vector<double> ripple_at(std::span<const Harmonic> harmonics,
+                              std::span<const double> positions_rad);
 
 }  // namespace tribench

@@ -8,9 +8,12 @@
 
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <utility>
 #include <vector>
 
+#include "foundation/elementary/column.hpp"
 #include "foundation/elementary/scalar.hpp"
 #include "foundation/random.hpp"
 
@@ -53,6 +56,32 @@ TEST(Elementary, GivesTheSameBitsOnEveryMachine) {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
     EXPECT_EQ(bits, results(elementary::kScalarFma));
+  }
+#endif
+}
+
+// A column of any length, and so the last, part-filled register, gives what one number at a time
+// does.
+void expect_columns(const elementary::ColumnTable& column, const elementary::ScalarTable& scalar) {
+  const std::pair<void (*)(double*, std::size_t), double (*)(double)> functions[] = {
+      {column.sin, scalar.sin}, {column.cos, scalar.cos}, {column.tanh, scalar.tanh}};
+  const std::vector<double> x = arguments();
+  for (std::size_t k = 0; k < std::size(functions); ++k) {
+    for (const std::size_t length : {std::size_t{1}, std::size_t{2}, std::size_t{7}, x.size()}) {
+      std::vector<double> y(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(length));
+      functions[k].first(y.data(), length);
+      for (std::size_t i = 0; i < length; ++i) {
+        ASSERT_EQ(bits_of(y[i]), bits_of(functions[k].second(x[i]))) << k << " of " << x[i];
+      }
+    }
+  }
+}
+
+TEST(Elementary, GivesAColumnTheBitsOfItsNumbers) {
+  expect_columns(elementary::kColumnBaseline, elementary::kScalarBaseline);
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+    expect_columns(elementary::kColumnFma, elementary::kScalarFma);
   }
 #endif
 }

@@ -29,6 +29,20 @@ TEST(FrictionLaw, GivesHandComputedValues) {
   EXPECT_DOUBLE_EQ(law.at(0, 0), 0);
 }
 
+TEST(FrictionLaw, IsTheSameForAColumnBitForBit) {
+  const kuka::Joint joint = kuka::make_joint(2, 7);
+  std::vector<double> x;
+  for (int i = 0; i < 1001; ++i) x.push_back(-45 + 0.09 * i);
+  for (const double v : {-0.3, 0.0, 0.6}) {
+    const std::vector<double> law = joint.law.at(v, x);
+    for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(law[i], joint.law.at(v, x[i])) << x[i];
+  }
+  const std::vector<double> ripple = ripple_at(joint.ripple, x);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    EXPECT_EQ(ripple[i], ripple_at(joint.ripple, x[i])) << x[i];
+  }
+}
+
 TEST(FrictionLaw, ItsFormulaIsTheLaw) {
   const std::vector<std::string> names = {"qd", "sgn_qd", "g", "sgn_g"};
   Evaluator evaluator;
