@@ -5,15 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
 #include <set>
+#include <span>
 #include <string>
-#include <thread>
 #include <variant>
 #include <vector>
 
@@ -39,7 +39,7 @@ struct Tally {
   int too_little = 0;  // in range, but the budget did not reach a formula
 };
 
-std::set<std::string> values_of(const ParameterSpec& spec) {
+std::vector<std::string> values_of(const ParameterSpec& spec) {
   std::set<std::string> values = {"0",   "-1", "0.5",  "1e9",
                                   "nan", "",   "text", "18446744073709551615"};
   values.insert(spec.choices.begin(), spec.choices.end());
@@ -49,7 +49,7 @@ std::set<std::string> values_of(const ParameterSpec& spec) {
       for (const double off : {-1.0, 0.0, 1.0}) values.insert(fmt::format("{}", bound + off));
     }
   }
-  return values;
+  return {values.begin(), values.end()};
 }
 
 std::string friction_csv() {
@@ -68,50 +68,91 @@ class ParameterSweep : public ::testing::Test {
  protected:
   void SetUp() override { write_text(folder_ / "friction.csv", friction_csv()); }
 
-  void check(const std::string& method, const std::string& name, const std::string& value,
-             const Sweep& sweep) {
-    SCOPED_TRACE(fmt::format("{} --parameter '{}={}'", method, name, value));
-    const std::filesystem::path errors = folder_ / "errors";
-    const pid_t child =
-        start({"tribench", "fit", (folder_ / "friction.csv").string(), "--target", "tau",
-               "--inputs", "v,g", "--method", method, "--parameter",
-               fmt::format("{}={}", name, value), "--evaluations",
-               std::to_string(sweep.evaluations), "--seconds", fmt::format("{}", sweep.seconds)},
-              errors);
-    ASSERT_GT(child, 0);
-    const auto begin = std::chrono::steady_clock::now();
-    int status = 0;
-    while (::waitpid(child, &status, WNOHANG) == 0) {
-      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-      if (taken.count() > sweep.hang_s) {
-        ::kill(child, SIGKILL);
-        ::waitpid(child, &status, 0);
-        ADD_FAILURE() << "hangs";
-        return;
+  // One parameter's values, in a process of their own: begun as a copy of this one, as starts of
+  // the program's file would take most of the time. What ends or hangs it is the value that it has
+  // not answered; the others have another process.
+  void check(const std::string& method, const std::string& name, const Sweep& sweep,
+             std::span<const std::string> values) {
+    while (!values.empty()) {
+      int ends[2];
+      ASSERT_EQ(::pipe(ends), 0);
+      const pid_t child = start(method, name, sweep, values, ends[1]);
+      ::close(ends[1]);
+      ASSERT_GT(child, 0);
+      std::size_t answered = 0;
+      bool is_alive = true;
+      while (is_alive && answered < values.size()) {
+        SCOPED_TRACE(fmt::format("{} --parameter '{}={}'", method, name, values[answered]));
+        is_alive = judge_next(child, ends[0], answered, sweep.hang_s);
+        ++answered;
       }
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      ::close(ends[0]);
+      if (is_alive) ::waitpid(child, nullptr, 0);
+      values = values.subspan(answered);
     }
-    judge({WIFEXITED(status) ? WEXITSTATUS(status) : 0, WIFSIGNALED(status) ? WTERMSIG(status) : 0},
-          read_text(errors));
   }
 
-  // The program in a process of its own, begun as a copy of this one: a thousand starts of the file
-  // would take most of the time.
-  static pid_t start(std::vector<std::string> words, const std::filesystem::path& errors) {
+  // The status of the value with this number, as the process tells it; false where it tells none.
+  bool judge_next(pid_t child, int from, std::size_t number, double hang_s) {
+    pollfd told = {from, POLLIN, 0};
+    const bool is_told = ::poll(&told, 1, static_cast<int>(1000 * hang_s)) == 1;
+    int status = 0;
+    if (is_told && ::read(from, &status, sizeof status) == sizeof status) {
+      judge({status, 0}, read_text(errors_of(number)));
+      return true;
+    }
+    if (!is_told) {
+      ::kill(child, SIGKILL);
+      ADD_FAILURE() << "hangs";
+    }
+    ::waitpid(child, &status, 0);
+    if (is_told) {
+      judge(
+          {WIFEXITED(status) ? WEXITSTATUS(status) : 0, WIFSIGNALED(status) ? WTERMSIG(status) : 0},
+          read_text(errors_of(number)));
+    }
+    return false;
+  }
+
+  std::filesystem::path errors_of(std::size_t number) const {
+    return folder_ / ("errors" + std::to_string(number));
+  }
+
+  // Tells the status of each value that it comes to.
+  pid_t start(const std::string& method, const std::string& name, const Sweep& sweep,
+              std::span<const std::string> values, int to) {
     std::fflush(nullptr);  // what is not written yet would be written twice
     const pid_t child = ::fork();
     if (child != 0) return child;
     if (std::freopen("/dev/null", "r", stdin) == nullptr ||
-        std::freopen("/dev/null", "w", stdout) == nullptr ||
-        std::freopen(errors.c_str(), "w", stderr) == nullptr) {
+        std::freopen("/dev/null", "w", stdout) == nullptr) {
       ::_exit(125);
     }
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    const int status = run_program(static_cast<int>(words.size()), arguments.data(), Registry());
-    std::fflush(nullptr);
-    ::_exit(status);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (std::freopen(errors_of(i).c_str(), "w", stderr) == nullptr) ::_exit(125);
+      std::vector<std::string> words = {"tribench",
+                                        "fit",
+                                        (folder_ / "friction.csv").string(),
+                                        "--target",
+                                        "tau",
+                                        "--inputs",
+                                        "v,g",
+                                        "--method",
+                                        method,
+                                        "--parameter",
+                                        fmt::format("{}={}", name, values[i]),
+                                        "--evaluations",
+                                        std::to_string(sweep.evaluations),
+                                        "--seconds",
+                                        fmt::format("{}", sweep.seconds)};
+      std::vector<char*> arguments;
+      for (std::string& word : words) arguments.push_back(word.data());
+      arguments.push_back(nullptr);
+      const int status = run_program(static_cast<int>(words.size()), arguments.data(), registry_);
+      std::fflush(nullptr);
+      if (::write(to, &status, sizeof status) != sizeof status) ::_exit(125);
+    }
+    ::_exit(0);
   }
 
   void judge(const ChildExit& exit, const std::string& errors) {
@@ -129,12 +170,9 @@ class ParameterSweep : public ::testing::Test {
   }
 
   void run(const Sweep& sweep) {
-    const Registry registry;
-    for (const AlgorithmEntry& entry : registry.entries()) {
+    for (const AlgorithmEntry& entry : registry_.entries()) {
       for (const ParameterSpec& spec : entry.parameters) {
-        for (const std::string& value : values_of(spec)) {
-          check(entry.name, spec.name, value, sweep);
-        }
+        check(entry.name, spec.name, sweep, values_of(spec));
       }
     }
     fmt::print("{} cases: {} fitted, {} refused, {} beyond the budget; 0 signals, 0 hangs\n",
@@ -144,6 +182,7 @@ class ParameterSweep : public ::testing::Test {
     EXPECT_GT(tally_.refused, 500);
   }
 
+  Registry registry_;
   TemporaryFolder folder_;
   Tally tally_;
 };
