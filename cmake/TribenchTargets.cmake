@@ -87,9 +87,11 @@ function(tribench_test name)
     math(EXPR TEST_TIMEOUT "10 * ${TEST_TIMEOUT}")
   endif()
   add_test(NAME ${name} COMMAND ${name})
-  # Freed memory stays, as with the program (foundation/freed_memory).
+  # Freed memory stays, as with the program (foundation/freed_memory). Tests share the processors:
+  # a thread that waits for others leaves its own to them.
   set_tests_properties(${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} LABELS "${TEST_LABELS}"
-    ENVIRONMENT "MALLOC_MMAP_THRESHOLD_=1073741824;MALLOC_TRIM_THRESHOLD_=2147483647")
+    ENVIRONMENT "MALLOC_MMAP_THRESHOLD_=1073741824;MALLOC_TRIM_THRESHOLD_=2147483647"
+    ENVIRONMENT_MODIFICATION "OMP_WAIT_POLICY=set:passive")
   if("tribench_test_runs" IN_LIST TEST_LINKS)  # take longest: begun first, none is waited for at the end
     set_tests_properties(${name} PROPERTIES COST 1)
   endif()
