@@ -9,9 +9,12 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <new>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "algorithms/fitting/product_blocking.hpp"
@@ -131,6 +134,42 @@ void refuse_writing_over_what_is_read(const CLI::App& command) {
   }
 }
 
+// The subcommand that is asked for, without the others: all their options are most of what a start
+// takes. All of them where the word is none, as for --help and for a misspelt one, and for
+// `describe`, which tells of all.
+void add_commands(CLI::App& app, ExitStatus& status, const Registry& registry,
+                  std::string_view asked) {
+  const std::pair<std::string_view, std::function<void()>> commands[] = {
+      {"run", [&] { add_run_command(app, status, registry); }},
+      {"fit", [&] { add_fit_command(app, status, registry); }},
+      {"merge", [&] { add_merge_command(app, status); }},
+      {"pretrain", [&] { add_pretrain_command(app, status); }},
+      {"report", [&] { add_report_command(app, status); }},
+      {"check", [&] { add_check_command(app, status); }},
+      {"data", [&] { add_data_command(app, status); }},
+      {"compare", [&] { add_compare_command(app, status); }},
+      {"export", [&] { add_export_command(app, status); }},
+      {"predict", [&] { add_predict_command(app, status); }},
+      {"simulate", [&] { add_simulate_command(app, status); }},
+      {"generate", [&] { add_generate_command(app, status); }},
+      {"loop", [&] { add_loop_command(app, status, registry); }},
+      {"history", [&] { add_history_command(app, status); }},
+      {"nightly", [&] { add_nightly_command(app, status, registry); }},
+      {"world", [&] { add_world_command(app, status); }},
+      {"explore", [&] { add_explore_command(app, status); }},
+      {"challenge", [&] { add_challenge_command(app, status); }},
+      {"list", [&] { add_list_command(app, status, registry); }},
+      {"study", [&] { add_study_command(app, status, registry); }},
+      {"submit", [&] { add_submit_command(app, status, registry); }},
+      {"describe", [&] { add_describe_command(app); }}};
+  const bool is_one = asked != "describe" && std::ranges::any_of(commands, [&](const auto& each) {
+                        return each.first == asked;
+                      });
+  for (const auto& [name, add] : commands) {
+    if (!is_one || name == asked) add();
+  }
+}
+
 int run_command_line(int argc, char** argv, const Registry& registry) {
   keep_freed_memory();
   CLI::App app("Benchmarks symbolic regression of joint friction, and closes the loop with data.",
@@ -143,28 +182,7 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
       "bad "
       "input, 3 failed, 4 undecided.");
   ExitStatus status = ExitStatus::done;
-  add_run_command(app, status, registry);
-  add_fit_command(app, status, registry);
-  add_merge_command(app, status);
-  add_pretrain_command(app, status);
-  add_report_command(app, status);
-  add_check_command(app, status);
-  add_data_command(app, status);
-  add_compare_command(app, status);
-  add_export_command(app, status);
-  add_predict_command(app, status);
-  add_simulate_command(app, status);
-  add_generate_command(app, status);
-  add_loop_command(app, status, registry);
-  add_history_command(app, status);
-  add_nightly_command(app, status, registry);
-  add_world_command(app, status);
-  add_explore_command(app, status);
-  add_challenge_command(app, status);
-  add_list_command(app, status, registry);
-  add_study_command(app, status, registry);
-  add_submit_command(app, status, registry);
-  add_describe_command(app);
+  add_commands(app, status, registry, argc > 1 ? argv[1] : "");
   refuse_empty_words(app);
   // When all words are read, before a subcommand begins.
   app.parse_complete_callback([&app] { refuse_writing_over_what_is_read(innermost(app)); });

@@ -36,9 +36,10 @@ ProgramRun run_in_this_process(Words words) {
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
+  static const Registry kRegistry;
   ::testing::internal::CaptureStderr();
   ProgramRun run;
-  run.status = run_program(static_cast<int>(words.size()), pointers.data(), Registry());
+  run.status = run_program(static_cast<int>(words.size()), pointers.data(), kRegistry);
   run.errors = ::testing::internal::GetCapturedStderr();
   return run;
 }
