@@ -131,10 +131,12 @@ TEST(LoopStudy, OnSimulatedCampaignsTheTruthMeetsEveryTargetAndSilenceIsNeverWro
     for (LoopAnswer::Effect& effect : answer.effects) effect.stiffness_low *= 1.2;
     return answer;
   };
-  EXPECT_EQ(figure(run_loop_study(small_simulated_study(), too_sure),
-                   "stiffness in its 95 % interval, k >= 1")
-                .hits,
-            0U);
+  // Nothing else has a stiffness.
+  LoopStudyOptions presliding = small_simulated_study();
+  presliding.only = "simulated/presliding";
+  const LoopStudy sure = run_loop_study(presliding, too_sure);
+  EXPECT_EQ(figure(sure, "stiffness in its 95 % interval, k >= 1").trials, 12U);
+  EXPECT_EQ(figure(sure, "stiffness in its 95 % interval, k >= 1").hits, 0U);
   const LoopStudy silent = run_loop_study(small_simulated_study(), says_nothing);
   EXPECT_EQ(figure(silent, "stiffness within 10 %, k >= 1").hits, 0U);
   EXPECT_EQ(figure(silent, "named, k >= 1").hits, 0U);
