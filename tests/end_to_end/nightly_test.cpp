@@ -23,13 +23,14 @@ using ::testing::HasSubstr;
 
 class NightlyTest : public ::testing::Test {
  protected:
+  // As many seeds as say something of a loss.
+  static constexpr int kEnough = 12;
   // `loss`: what the outside method adds to its one constant.
-  void write_grid(const std::string& evaluations, const std::string& loss = "0") {
+  void write_grid(const std::string& evaluations, const std::string& loss = "0", int seeds = 3) {
     write_text(folder_ / "g.toml",
                "[grid]\nname = \"night\"\nproblems = [\"A/j2/no_load\"]\n"
-               "methods = [\"linear\", \"outside\"]\nseeds = { first = 1, count = 12 }\n"
-               "[budget]\nevaluations = " +
-                   evaluations +
+               "methods = [\"linear\", \"outside\"]\nseeds = { first = 1, count = " +
+                   std::to_string(seeds) + " }\n[budget]\nevaluations = " + evaluations +
                    "\n"
                    "[[external]]\nname = \"outside\"\ncommand = [\"bash\", \"" +
                    (folder_ / "method.sh").string() + "\"]\n");
@@ -46,7 +47,7 @@ class NightlyTest : public ::testing::Test {
   }
   // Kills the command at random instants, then lets it go on.
   void kill_and_go_on(int kills) {
-    write_grid("2_000_000");
+    write_grid("2_000_000", "0", kEnough);
     RandomStream random(key_of("nightly"));
     for (int kill = 0; kill < kills; ++kill) {
       // Killed with the keepers of its workers, it leaves temporary files.
@@ -81,7 +82,7 @@ class NightlyTest : public ::testing::Test {
 };
 
 TEST_F(NightlyTest, TheFirstIsTheBaseTheSecondIsComparedAndAWorseOneIsFound) {
-  write_grid("2_000_000");
+  write_grid("2_000_000", "0", kEnough);
   const std::string told = (folder_ / "told").string();
   const ProgramRun first = night({"--notify", "cat > " + told});
   ASSERT_EQ(first.status, 0) << first.errors;
@@ -93,7 +94,7 @@ TEST_F(NightlyTest, TheFirstIsTheBaseTheSecondIsComparedAndAWorseOneIsFound) {
   EXPECT_THAT(second.output, HasSubstr("All 24 cells are identical apart from time"));
   EXPECT_THAT(second.output, HasSubstr("3 cells run again, 0 differ"));
   next_second();
-  write_grid("2_000_000", "2");
+  write_grid("2_000_000", "2", kEnough);
   const ProgramRun third = night();
   EXPECT_EQ(third.status, 1) << third.output << third.errors;
   EXPECT_THAT(third.output, HasSubstr("REGRESSION"));

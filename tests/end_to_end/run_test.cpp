@@ -27,7 +27,7 @@ name = "small"
 problems = ["A/j2/no_load", "A/j4/load", "B/j2/load"]
 methods = ["test_mean", "test_search", "test_sleep"]
 operators = ["paper", "paper+div"]
-seeds = { first = 1, count = 4 }
+seeds = { first = 1, count = 2 }
 
 [budget]
 evaluations = 2_000_000
@@ -37,7 +37,7 @@ seconds = 20
 name = "test_sleep"
 parameters = { seconds = 0.1 }
 )";
-constexpr std::size_t kCells = 3 * (1 + 2 + 1) * 4;
+constexpr std::size_t kCells = 3 * (1 + 2 + 1) * 2;
 
 class RunTest : public ::testing::Test {
  protected:
@@ -230,8 +230,8 @@ TEST_F(RunTest, NothingOutlivesARunThatIsKilled) {
 TEST_F(RunTest, DryRunListsTheCellsAndWritesTheGridThatTakesEffect) {
   const ProgramRun listed = run("dry", {"--dry-run"});
   EXPECT_EQ(listed.status, 0);
-  EXPECT_THAT(listed.output, HasSubstr("B/j2/load|test_search|paper+div|4"));
-  EXPECT_THAT(listed.output, HasSubstr("48 cells"));
+  EXPECT_THAT(listed.output, HasSubstr("B/j2/load|test_search|paper+div|2"));
+  EXPECT_THAT(listed.output, HasSubstr("24 cells"));
   EXPECT_THAT(read_text(folder_ / "dry" / "grid.toml"), HasSubstr("test_search"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "dry" / "cells.jsonl"));
   // What it writes is a grid that gives the same cells.
@@ -246,19 +246,19 @@ TEST_F(RunTest, DryRunGoesByARunThatIsThere) {
   const ProgramRun told = run("dry", {"--dry-run", "--like", (folder_ / "before").string()});
   EXPECT_EQ(told.status, 0) << told.errors;
   EXPECT_THAT(told.output, HasSubstr("by the medians of " + (folder_ / "before").string()));
-  EXPECT_THAT(told.output, HasSubstr("48 cells, about "));
-  EXPECT_THAT(run("dry", {"--dry-run"}).output, HasSubstr("48 cells, at most "));
+  EXPECT_THAT(told.output, HasSubstr("24 cells, about "));
+  EXPECT_THAT(run("dry", {"--dry-run"}).output, HasSubstr("24 cells, at most "));
 }
 
 TEST_F(RunTest, VerifyRunsASampleAgainAndFindsResultsThatDoNotComeOutAgain) {
   copy_finished_run("run");
   const auto verify = [&] {
     return run_to_end({test_program().string(), "run", "--verify", (folder_ / "run").string(),
-                       "--sample", "48", "--quiet"});
+                       "--sample", "24", "--quiet"});
   };
   const ProgramRun good = verify();
   EXPECT_EQ(good.status, 0) << good.errors;
-  EXPECT_THAT(good.output, HasSubstr("48 cells run again, 0 differ"));
+  EXPECT_THAT(good.output, HasSubstr("24 cells run again, 0 differ"));
   // A journal made with half the budget under a grid file that says the whole.
   std::string other = kGrid;
   other.replace(other.find("2_000_000"), 9, "1_000_000");
@@ -267,7 +267,7 @@ TEST_F(RunTest, VerifyRunsASampleAgainAndFindsResultsThatDoNotComeOutAgain) {
   std::filesystem::copy_file(folder_ / "run" / "grid.toml", folder_ / "other" / "grid.toml",
                              std::filesystem::copy_options::overwrite_existing);
   const ProgramRun bad = run_to_end({test_program().string(), "run", "--verify",
-                                     (folder_ / "other").string(), "--sample", "48", "--quiet"});
+                                     (folder_ / "other").string(), "--sample", "24", "--quiet"});
   EXPECT_EQ(bad.status, 1) << bad.errors;
   EXPECT_THAT(bad.output, HasSubstr("test_search"));
 }
@@ -297,7 +297,7 @@ TEST_F(RunTest, ReportWritesTablesForAPaperAndSaysWhatChangedSinceABase) {
   const ProgramRun changed = run_to_end({program, "report", folder, "--base", folder});
   EXPECT_EQ(changed.status, 0) << changed.errors;
   EXPECT_THAT(changed.output, HasSubstr("## What changed"));
-  EXPECT_THAT(changed.output, HasSubstr("All 48 cells are identical apart from time."));
+  EXPECT_THAT(changed.output, HasSubstr("All 24 cells are identical apart from time."));
 }
 
 }  // namespace
