@@ -53,9 +53,11 @@ for command in run fit loop check "study loop" "data list"; do
     check "describes tribench $command" grep -q "^ *tribench $command" <<<"$text"
 done
 # Every option that --help prints stands in the page, and nothing of what is hidden.
+declare -A told=()
+while read -r option; do told[$option]=1; done < <(grep -oE -- '--[a-z-]+' <<<"$text" | sort -u)
 for command in $(tribench --help | sed -n '/^Subcommands/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
     for option in $(tribench "$command" --help | grep -o -- '^  *--[a-z-]*' | tr -d ' '); do
-        grep -q -- "$option\b" <<<"$text" || wrong "the page has no $option of $command"
+        [ -n "${told[$option]-}" ] || wrong "the page has no $option of $command"
     done
 done
 if grep -q "tribench describe" <<<"$text"; then wrong "the page shows what is hidden"; fi
