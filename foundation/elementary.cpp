@@ -5,30 +5,41 @@
 #include <limits>
 #include <numbers>
 
+#include "foundation/elementary/column.hpp"
 #include "foundation/elementary/scalar.hpp"
 
 namespace tribench::elementary {
 namespace {
 
-const ScalarTable& table() {
+// The same bits on every processor, by the widest instructions that it has.
+struct Tables {
+  const ScalarTable& scalar;
+  const ColumnTable& column;
+};
+
+const Tables& tables() {
 #if defined(__x86_64__)
-  static const ScalarTable& chosen = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
-                                         ? kScalarFma
-                                         : kScalarBaseline;
-  return chosen;
+  static const Tables chosen = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
+                                   ? Tables{kScalarFma, kColumnFma}
+                                   : Tables{kScalarBaseline, kColumnBaseline};
 #else
-  return kScalarBaseline;
+  static constexpr Tables chosen{kScalarBaseline, kColumnBaseline};
 #endif
+  return chosen;
 }
 
 }  // namespace
 
-double exp(double x) { return table().exp(x); }
-double log(double x) { return table().log(x); }
-double sin(double x) { return table().sin(x); }
-double cos(double x) { return table().cos(x); }
-double tanh(double x) { return table().tanh(x); }
-double pow(double x, double y) { return table().pow(x, y); }
+double exp(double x) { return tables().scalar.exp(x); }
+double log(double x) { return tables().scalar.log(x); }
+double sin(double x) { return tables().scalar.sin(x); }
+double cos(double x) { return tables().scalar.cos(x); }
+double tanh(double x) { return tables().scalar.tanh(x); }
+double pow(double x, double y) { return tables().scalar.pow(x, y); }
+
+void sin_of_each(std::span<double> x) { tables().column.sin(x.data(), x.size()); }
+void cos_of_each(std::span<double> x) { tables().column.cos(x.data(), x.size()); }
+void tanh_of_each(std::span<double> x) { tables().column.tanh(x.data(), x.size()); }
 
 // Kahan: what rounding took from 1 + x is made good by the ratio.
 double log1p(double x) {

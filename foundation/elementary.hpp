@@ -15,6 +15,8 @@
 // NaN policy: NaN in, NaN out; outside a function's domain NaN, at its poles infinity.
 #pragma once
 
+#include <span>
+
 namespace tribench::elementary {
 
 // Within 2 ulp of the true value, pow within 1; special points as IEEE 754 has them.
@@ -24,6 +26,12 @@ double sin(double x);
 double cos(double x);
 double tanh(double x);
 double pow(double x, double y);
+
+// Of every number of a column, in place: the same bits in a third of the time. Not for formulas,
+// whose kernels are in algorithms/expression.
+void sin_of_each(std::span<double> x);
+void cos_of_each(std::span<double> x);
+void tanh_of_each(std::span<double> x);
 
 // Within 4 ulp, expm1 and atanh within 8.
 double log1p(double x);

@@ -38,7 +38,6 @@ void Forecasts::hear(const std::vector<Explanation>& all) {
 
 void Forecasts::add(const std::vector<Explanation>& all, const EvidenceTable& before,
                     const EvidenceTable& after) {
-  hear(all);
   std::vector<Forecaster*> awake;
   std::vector<double> said;
   std::vector<double> weights;

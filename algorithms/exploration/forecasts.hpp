@@ -39,8 +39,8 @@ class Forecasts {
   // made of them, later ones with their prior. Nothing happens to those that are known.
   void hear(const std::vector<Explanation>& all);
 
-  // all: the explanations as they stood before the further rows. before, after: without and with
-  // these, under the noise that was known before them.
+  // all: the explanations as they stood, and were heard, before the further rows. before, after:
+  // without and with these, under the noise that was known before them.
   void add(const std::vector<Explanation>& all, const EvidenceTable& before,
            const EvidenceTable& after);
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "foundation/elementary.hpp"
-#include "foundation/elementary_columns.hpp"
 #include "foundation/sign.hpp"
 
 namespace tribench {
@@ -22,6 +21,14 @@ Pair halves(double positive, double negative) {
   return {(positive + negative) / 2, (positive - negative) / 2};
 }
 
+// The averaged curve with what the load adds; step: between -1 and 1, from one quadrant to the
+// other.
+double loaded(const FrictionLaw& law, double averaged_nm, double sign, double gravity_nm,
+              double step) {
+  return averaged_nm + sign * law.load_coulomb * (std::abs(gravity_nm) - law.mean_load_nm) +
+         law.quadrant_gain * gravity_nm + law.quadrant_step_nm * step;
+}
+
 }  // namespace
 
 double Branch::at(double speed_rad_s) const {
@@ -35,10 +42,8 @@ double FrictionLaw::averaged_at(double velocity_rad_s) const {
 }
 
 double FrictionLaw::at(double velocity_rad_s, double gravity_nm) const {
-  const double s = sign(velocity_rad_s);
-  return averaged_at(velocity_rad_s) + s * load_coulomb * (std::abs(gravity_nm) - mean_load_nm) +
-         quadrant_gain * gravity_nm +
-         quadrant_step_nm * elementary::tanh(gravity_nm / quadrant_width_nm);
+  return loaded(*this, averaged_at(velocity_rad_s), sign(velocity_rad_s), gravity_nm,
+                elementary::tanh(gravity_nm / quadrant_width_nm));
 }
 
 std::vector<double> FrictionLaw::at(double velocity_rad_s,
@@ -49,8 +54,7 @@ std::vector<double> FrictionLaw::at(double velocity_rad_s,
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = gravity_nm[i] / quadrant_width_nm;
   elementary::tanh_of_each(out);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = averaged + s * load_coulomb * (std::abs(gravity_nm[i]) - mean_load_nm) +
-             quadrant_gain * gravity_nm[i] + quadrant_step_nm * out[i];
+    out[i] = loaded(*this, averaged, s, gravity_nm[i], out[i]);
   }
   return out;
 }

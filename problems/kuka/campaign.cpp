@@ -8,7 +8,6 @@
 #include <span>
 
 #include "foundation/elementary.hpp"
-#include "foundation/elementary_columns.hpp"
 #include "foundation/random.hpp"
 #include "foundation/sign.hpp"
 

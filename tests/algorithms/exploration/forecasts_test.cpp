@@ -59,6 +59,7 @@ TEST(Forecasts, TellWhatForesawTheRows) {
   for (int k = 0; k < 20; ++k) {
     const EvidenceTable before(sums);
     add_batch(sums, 0.8, random);
+    forecasts.hear(all_explanations());
     forecasts.add(all_explanations(), before, EvidenceTable(sums));
   }
   const std::vector<ForecastVerdict> verdicts = forecasts.verdicts();
@@ -84,6 +85,7 @@ TEST(Forecasts, RarelyFavourWhatIsWrongHoweverOftenOneLooks) {
     for (int k = 0; k < 30; ++k) {
       const EvidenceTable before(sums);
       add_batch(sums, 0, random);
+      forecasts.hear(all_explanations());
       forecasts.add(all_explanations(), before, EvidenceTable(sums));
       for (const ForecastVerdict& one : forecasts.verdicts()) {
         ever = ever || (one.verdict != "NONE" && one.log_e_value > -std::log(kAlpha));
@@ -105,10 +107,12 @@ TEST(Forecasts, WhatComesLateEntersWithItsPrior) {
   for (int k = 0; k < 5; ++k) {
     const EvidenceTable before(sums);
     add_batch(sums, 0, random);
+    forecasts.hear(few);
     forecasts.add(few, before, EvidenceTable(sums));
   }
   EXPECT_EQ(forecasts.verdicts().size(), 2U);
   const EvidenceTable now(sums);
+  forecasts.hear(all);
   forecasts.add(all, now, now);  // no further row
   const std::vector<ForecastVerdict> verdicts = forecasts.verdicts();
   ASSERT_EQ(verdicts.size(), 4U);
