@@ -46,30 +46,48 @@ fs::path end_of_links(fs::path file) {
   return file;
 }
 
+// A terminal, a pipe: stays what it is. Links in a ring and names that are too long are errors.
+bool is_written_in_place(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::status_known(status)) throw_unwritable(file, error.value());
+  return fs::exists(status) && !fs::is_regular_file(status);
+}
+
+// Beside its place, which is where links lead to.
+fs::path write_partial(const fs::path& file, const fs::path& target, std::string_view text) {
+  fs::path partial = target;
+  partial += ".partial";
+  if (write_all(partial, text)) return partial;
+  const int why = errno;
+  std::error_code error;
+  fs::remove(partial, error);
+  throw_unwritable(file, why);
+}
+
 }  // namespace
 
 void write_file(const fs::path& file, std::string_view text) {
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  // Links in a ring, a name that is too long.
-  if (!fs::status_known(status)) throw_unwritable(file, error.value());
-  if (fs::exists(status) && !fs::is_regular_file(status)) {  // a terminal, a pipe: stays what it is
+  if (is_written_in_place(file)) {
     if (!write_all(file, text)) throw_unwritable(file, errno);
     return;
   }
   const fs::path target = end_of_links(file);  // so that a link stays one
-  fs::path partial = target;
-  partial += ".partial";
-  if (!write_all(partial, text)) {
-    const int why = errno;
-    fs::remove(partial, error);
-    throw_unwritable(file, why);
-  }
+  const fs::path partial = write_partial(file, target, text);
+  std::error_code error;
   fs::rename(partial, target, error);
   if (!error) return;
   const int why = error.value();
   fs::remove(partial, error);
   throw_unwritable(file, why);
+}
+
+void try_output_file(const fs::path& file) {
+  if (is_written_in_place(file)) {
+    if (fs::is_directory(file)) throw_unwritable(file, EISDIR);
+    return;
+  }
+  fs::remove(write_partial(file, end_of_links(file), ""));
 }
 
 }  // namespace tribench

@@ -14,4 +14,7 @@ namespace tribench {
 // to as it is. Throws Error naming the file (bad_input: the name is wrong) and leaves nothing.
 void write_file(const std::filesystem::path& file, std::string_view text);
 
+// Before long work: throws what write_file would for this file, and leaves it as it is.
+void try_output_file(const std::filesystem::path& file);
+
 }  // namespace tribench

@@ -224,7 +224,10 @@ ExitStatus run_check(const CheckOptions& options) {
     return check_dissipation(options, read, box, question.velocity);
   }
   CertificateClaim claim;  // asked for before the proof, so that a request in vain fails at once
-  if (!options.certificate.empty()) claim = claim_of(question, box);
+  if (!options.certificate.empty()) {
+    claim = claim_of(question, box);
+    try_output_file(options.certificate);
+  }
   const auto start = std::chrono::steady_clock::now();
   const PropertyResult result = prove_property(formula, box.ranges, question);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;

@@ -274,6 +274,7 @@ void fit_shared_shape(const FitArguments& arguments, Problem& problem, const Cho
 }
 
 void fit(const FitArguments& arguments, const Registry& registry) {
+  if (!arguments.save.empty()) try_output_file(arguments.save);
   const ChosenMethod chosen = choose_method(arguments, registry);
   std::vector<std::string> inputs = arguments.inputs;
   for (const std::string* column : {&arguments.weights, &arguments.sigma, &arguments.category}) {

@@ -297,6 +297,7 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
   // that nothing would be written to.
   if (!arguments.out.empty()) make_output_folder(arguments.out);
   if (!arguments.pictures.empty()) make_output_folder(arguments.pictures);
+  if (!arguments.save_effect.empty()) try_output_file(arguments.save_effect);
   if (arguments.learn != "none") {
     registry.make(arguments.learn);
   } else if (!arguments.save_effect.empty()) {

@@ -6,14 +6,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "algorithms/udsr/pretraining.hpp"
-#include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/standard_streams.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
@@ -35,9 +34,7 @@ void show_progress(double done) {
 }
 
 void run(const Arguments& arguments) {
-  std::ofstream file(arguments.out, std::ios::binary);
-  if (!file)
-    throw_bad_input("the file cannot be written", arguments.out, "name another with --out");
+  try_output_file(arguments.out);
   const udsr::TokenLibrary library = udsr::pretraining_library();
   udsr::Policy policy(library, RandomStream(arguments.options.seed));
   std::optional<udsr::DataEncoder> encoder;
@@ -45,9 +42,7 @@ void run(const Arguments& arguments) {
   udsr::DataEncoder* const trained = encoder ? &*encoder : nullptr;
   const udsr::WeightsProvenance provenance =
       udsr::pretrain(policy, trained, arguments.options, show_progress);
-  file << udsr::write_weights(policy, trained, provenance);
-  file.close();
-  if (!file) throw Error(ErrorKind::failed, "the file could not be written whole", arguments.out);
+  write_file(arguments.out, udsr::write_weights(policy, trained, provenance));
   if (arguments.json) {
     fmt::print("{}\n", nlohmann::json({{"file", arguments.out},
                                        {"sequences", provenance.sequences},

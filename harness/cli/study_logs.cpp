@@ -2,16 +2,16 @@
 #include "harness/cli/study_logs.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "foundation/error.hpp"
+#include "foundation/output_file.hpp"
+#include "foundation/output_folder.hpp"
+#include "foundation/shell_word.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/study/log_study.hpp"
 
@@ -24,18 +24,15 @@ struct LogStudyArguments {
   bool json = false;
 };
 
-// The command that asks again; writes the file where there is a folder for it.
-std::string command_of(const LogOutcome& one, const std::string& folder) {
+// Writes the log; the command that asks again.
+std::string keep_log(const LogOutcome& one, const std::filesystem::path& folder) {
   std::string name = one.name;
   std::ranges::replace(name, '/', '_');
   const std::filesystem::path file =
-      std::filesystem::path(folder) / fmt::format("{}_{}.csv", name, log_told_name(one.told));
-  std::filesystem::create_directories(folder);
-  std::ofstream(file, std::ios::binary) << one.text;
-  std::string command = "tribench loop " + file.string();
-  for (const std::string& word : one.options) {
-    command += word.find('[') != std::string::npos ? " '" + word + "'" : " " + word;
-  }
+      folder / fmt::format("{}_{}.csv", name, log_told_name(one.told));
+  write_file(file, one.text);
+  std::string command = "tribench loop " + shell_word(file.string());
+  for (const std::string& word : one.options) command += " " + shell_word(word);
   return command;
 }
 
@@ -45,7 +42,7 @@ void print_outcomes(const LogStudy& study, const std::string& folder) {
     fmt::print("{} {}: {} ({}){}{}\n", one.name, log_told_name(one.told), one.story.text(),
                says_name(one.says), one.misread.empty() ? "" : "; " + one.misread,
                one.summary.empty() ? "" : fmt::format("\n    {}", one.summary));
-    if (!folder.empty()) fmt::print("    {}\n", command_of(one, folder));
+    if (!folder.empty()) fmt::print("    {}\n", keep_log(one, folder));
   }
 }
 
@@ -60,7 +57,7 @@ void print_figures(const std::vector<LogFigure>& figures) {
   }
 }
 
-void print_json(const LogStudy& study) {
+void print_json(const LogStudy& study, const std::string& folder) {
   nlohmann::ordered_json figures = nlohmann::ordered_json::array();
   for (const LogFigure& f : study.figures) {
     figures.push_back({{"name", log_told_name(f.told)},
@@ -83,14 +80,16 @@ void print_json(const LogStudy& study) {
                     {"story", one.story.text()},
                     {"says", says_name(one.says)},
                     {"misread", one.misread}});
+    if (!folder.empty() && !one.text.empty()) logs.back()["repeat"] = keep_log(one, folder);
   }
   fmt::print("{}\n", nlohmann::ordered_json{{"figures", figures}, {"logs", logs}}.dump(2));
 }
 
 void run(const LogStudyArguments& arguments, ExitStatus& status) {
+  if (!arguments.out.empty()) make_output_folder(arguments.out);
   const LogStudy study = run_log_study("/proc/self/exe", arguments.study);
   if (arguments.json) {
-    print_json(study);
+    print_json(study, arguments.out);
   } else {
     print_outcomes(study, arguments.out);
     print_figures(study.figures);

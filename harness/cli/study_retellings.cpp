@@ -11,6 +11,8 @@
 #include <optional>
 
 #include "foundation/error.hpp"
+#include "foundation/output_folder.hpp"
+#include "foundation/shell_word.hpp"
 #include "foundation/standard_streams.hpp"
 #include "foundation/text.hpp"
 #include "harness/cli/number_options.hpp"
@@ -68,24 +70,26 @@ std::vector<RecordingToTell> chosen_recordings(const Arguments& arguments) {
   return recordings;
 }
 
-// The changed stories, a line each, and where --out is given the files that tell them.
+// What asks again about a changed story; where --out is given its files are written there.
+std::string repeating(const RetellingOutcome& one, std::size_t number, const std::string& folder) {
+  if (folder.empty()) {
+    return fmt::format("--only {} --retellings {}", shell_word(one.recording), one.retelling->name);
+  }
+  const std::filesystem::path place =
+      std::filesystem::path(folder) / fmt::format("{}_{}", number, one.retelling->name);
+  std::string command = "tribench";
+  for (const std::string& word : write_recording(one.told, place)) {
+    command += " " + shell_word(word);
+  }
+  return command;
+}
+
 void print_changes(const RetellingStudy& study, const std::string& folder) {
   std::size_t number = 0;
   for (const RetellingOutcome& one : study.outcomes) {
     if (one.same) continue;
-    fmt::print("{}, {}: {} | {}\n", one.recording, one.retelling->name, one.first.text(),
-               one.again.text());
-    if (folder.empty()) {
-      fmt::print("    --only '{}' --retellings {}\n", one.recording, one.retelling->name);
-    } else {
-      const std::filesystem::path place =
-          std::filesystem::path(folder) / fmt::format("{}_{}", ++number, one.retelling->name);
-      std::vector<std::string> words = write_recording(one.told, place);
-      for (std::string& word : words) {
-        if (word.find(' ') != std::string::npos) word = "'" + word + "'";
-      }
-      fmt::print("    tribench {}\n", fmt::join(words, " "));
-    }
+    fmt::print("{}, {}: {} | {}\n    {}\n", one.recording, one.retelling->name, one.first.text(),
+               one.again.text(), repeating(one, ++number, folder));
   }
 }
 
@@ -113,7 +117,7 @@ nlohmann::ordered_json story_json(const LoopStory& story) {
           {"mae_after", number(story.mae_after)}};
 }
 
-void print_json(const RetellingStudy& study) {
+void print_json(const RetellingStudy& study, const std::string& folder) {
   nlohmann::ordered_json figures = nlohmann::ordered_json::array();
   for (const RetellingFigure& f : study.figures) {
     figures.push_back({{"name", f.retelling},
@@ -137,16 +141,18 @@ void print_json(const RetellingStudy& study) {
     changed.push_back({{"recording", one.recording},
                        {"retelling", one.retelling->name},
                        {"first", story_json(one.first)},
-                       {"again", story_json(one.again)}});
+                       {"again", story_json(one.again)},
+                       {"repeat", repeating(one, changed.size() + 1, folder)}});
   }
   fmt::print("{}\n", nlohmann::ordered_json{{"figures", figures}, {"changed", changed}}.dump(2));
 }
 
 void run(const Arguments& arguments, ExitStatus& status) {
+  if (!arguments.out.empty()) make_output_folder(arguments.out);
   const RetellingStudy study = run_retelling_study(
       chosen_recordings(arguments), make_loop_teller("/proc/self/exe"), arguments.study);
   if (arguments.json) {
-    print_json(study);
+    print_json(study, arguments.out);
   } else {
     print_changes(study, arguments.out);
     print_table(study.figures);

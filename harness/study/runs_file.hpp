@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "foundation/output_folder.hpp"
 #include "foundation/text.hpp"
 #include "reports/csv.hpp"
 
@@ -51,7 +52,7 @@ class RunsFile {
   RunsFile(const std::filesystem::path& file, RunFormat<Run> format)
       : file_(file), format_(std::move(format)) {
     if (file_.empty()) return;
-    std::filesystem::create_directories(file_.parent_path());
+    make_output_folder(file_.parent_path());
     read_back();
     write_afresh();
   }

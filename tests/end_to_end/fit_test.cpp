@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/paths.hpp"
@@ -115,6 +116,16 @@ TEST_F(FitTest, RefusesBadInputWithPlaceAndMend) {
               HasSubstr("template, character 3: 'velocity_rad' is not an input; did you mean"));
   EXPECT_EQ(fit({"--target", "x", "--inputs", "y", "--method", "linear", "--seed", "-1"}).status,
             2);
+}
+
+TEST_F(FitTest, AFileThatCannotBeWrittenIsFoundBeforeTheWork) {
+  const std::filesystem::path begun = folder_ / "begun";
+  const ProgramRun run =
+      fit({"--target", "friction_torque_Nm", "--inputs", "velocity_rad_s", "--external",
+           "touch " + begun.string(), "--save", (folder_ / "no folder/model.json").string()});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("name a file in a folder that is there"));
+  EXPECT_FALSE(std::filesystem::exists(begun));
 }
 
 // y = 1.5 v + noise of 1 in every other row, none beside it: only weights tell which.

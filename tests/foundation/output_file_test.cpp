@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <functional>
 #include <future>
+#include <set>
+#include <string>
 
 #include "foundation/error.hpp"
 #include "foundation/scratch_folder.hpp"
@@ -16,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 TEST(OutputFile, ALinkStaysALink) {
@@ -67,15 +71,33 @@ TEST(OutputFile, ANameThatNoFileCanHaveIsTheUsersToMend) {
   const ScratchFolder folder;
   write_file(folder.path() / "file", "text");
   fs::create_symlink("ring", folder.path() / "ring");
+  const auto write = [](const fs::path& file) { write_file(file, "text"); };
   for (const std::string name : {"no folder/file", "file/below", ".", "ring"}) {
-    try {
-      write_file(folder.path() / name, "text");
-      ADD_FAILURE() << "written: " << name;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::bad_input) << name;
-      EXPECT_THAT(error.what(), HasSubstr("name a file in a folder that is there"));
+    for (const std::function<void(const fs::path&)>& way :
+         {std::function(write), std::function(try_output_file)}) {
+      try {
+        way(folder.path() / name);
+        ADD_FAILURE() << "written: " << name;
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::bad_input) << name;
+        EXPECT_THAT(error.what(), HasSubstr("name a file in a folder that is there"));
+      }
     }
   }
+}
+
+TEST(OutputFile, TryingOneLeavesItAndItsFolderAsTheyAre) {
+  const ScratchFolder folder;
+  write_file(folder.path() / "file", "text");
+  fs::create_symlink("not there yet", folder.path() / "link");
+  for (const std::string name : {"file", "link", "another"}) try_output_file(folder.path() / name);
+  try_output_file("/dev/null");
+  EXPECT_EQ(read_file(folder.path() / "file"), "text");
+  std::set<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.path())) {
+    names.insert(entry.path().filename());
+  }
+  EXPECT_THAT(names, ElementsAre("file", "link"));
 }
 
 TEST(OutputFile, SaysWhyItCannotBeWritten) {

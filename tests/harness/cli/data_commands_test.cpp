@@ -89,6 +89,29 @@ TEST(StudyCommand, AProgramThatDoesNotAnswerIsEndedAfterItsTime) {
   EXPECT_THAT(study.errors, HasSubstr("longer than 0.2 s"));
 }
 
+// Effects of a hundredth of the noise are not found: the log's story is wrong.
+TEST(StudyCommand, KeepsTheLogsOfWrongStoriesWhateverItPrints) {
+  const TemporaryFolder folder;
+  const std::string out = (folder / "wrong logs").string();
+  const auto study = run_tribench({"study", "logs", "--logs", "1", "--seed", "2", "--scale", "0.01",
+                                   "--seconds", "10", "--clean-only", "--json", "--out", out});
+  const std::string file = out + "/viscous_power_2_cleanly.csv";
+  const nlohmann::json log = nlohmann::json::parse(study.output).at("logs").at(0);
+  EXPECT_THAT(log.at("repeat").get<std::string>(),
+              HasSubstr("tribench loop '" + file + "' --gear-ratio"));
+  EXPECT_GT(read_csv(file).data.rows(), 100U);
+}
+
+TEST(StudyCommand, AFolderThatCannotBeMadeIsFoundBeforeTheWork) {
+  const TemporaryFolder folder;
+  write_text(folder / "file", "");
+  for (const std::string study : {"loop", "explore", "logs", "retellings"}) {
+    const auto run = run_tribench({"study", study, "--out", (folder / "file/below").string()});
+    EXPECT_THAT(run.errors, HasSubstr("choose a folder that can be written to")) << study;
+    EXPECT_TRUE(run.output.empty()) << study;
+  }
+}
+
 // A run's pictures are drawn again from the measured rows, which its folder does not have.
 TEST(ReportCommand, FindsTheMeasuredRowsWhereItIsTold) {
   const auto data = shared_data();
