@@ -71,4 +71,22 @@ const Channel& Dataset::at(std::string_view channel_name) const {
                   did_you_mean(channel_name, names));
 }
 
+void cut_movements(Dataset& data, std::span<const std::size_t> first_rows) {
+  std::vector<int> movement;
+  std::vector<std::string> names;
+  std::vector<std::size_t> part(data.movement_names.size(), 0);
+  auto next = first_rows.begin();
+  for (std::size_t r = 0; r < data.rows(); ++r) {
+    const bool begins = next != first_rows.end() && *next == r;
+    if (begins) ++next;
+    if (r == 0 || begins || data.movement[r] != data.movement[r - 1]) {
+      const auto of = static_cast<std::size_t>(data.movement[r]);
+      names.push_back(fmt::format("{}, part {}", data.movement_names[of], ++part[of]));
+    }
+    movement.push_back(static_cast<int>(names.size()) - 1);
+  }
+  data.movement = std::move(movement);
+  data.movement_names = std::move(names);
+}
+
 }  // namespace tribench

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,5 +58,8 @@ struct Dataset {
   // As `find`, but throws Error (bad_input) with the nearest name.
   const Channel& at(std::string_view channel_name) const;
 };
+
+// Lets a movement begin in each of these rows, which increase: 'NAME, part 1', 'NAME, part 2'.
+void cut_movements(Dataset& data, std::span<const std::size_t> first_rows);
 
 }  // namespace tribench

@@ -68,7 +68,7 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
   unwrap(out, file.readings, options.drive);
   if (!file.has_movements) {
     drop_wrong_readings(out);
-    join_jumps(out);
+    settle_jumps(out);
     settle_clock(out);
   }
   file.data = std::move(out.data);

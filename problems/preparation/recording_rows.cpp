@@ -147,37 +147,109 @@ void drop_wrong_readings(PreparedRecording& out) {
   }
 }
 
-// A position that is set anew has not moved.
-void join_jumps(PreparedRecording& out) {
-  constexpr double kFar = 20;       // usual steps
-  constexpr std::size_t kMost = 3;  // more are recordings that somebody put together
+namespace {
+
+// Per row: by how much a channel's mean over so many rows after it differs from that before it.
+std::vector<double> changes_of(const std::vector<double>& x, std::size_t rows) {
+  std::vector<double> sum(x.size() + 1, 0.0);
+  std::partial_sum(x.begin(), x.end(), sum.begin() + 1);
+  std::vector<double> change(x.size(), 0.0);
+  for (std::size_t i = rows; i + rows < x.size(); ++i) {
+    const double after = sum[i + rows + 1] - sum[i + 1];
+    const double before = sum[i] - sum[i - rows];
+    change[i] = std::abs(after - before) / static_cast<double>(rows);
+  }
+  return change;
+}
+
+// Rows across which the channel goes on as it does nearly everywhere.
+std::vector<char> goes_on(const std::vector<double>& x, std::size_t rows) {
+  constexpr double kNearlyEverywhere = 0.95;
+  const std::vector<double> change = changes_of(x, rows);
+  const double usual = quantile(change, kNearlyEverywhere);
+  std::vector<char> same;
+  for (const double one : change) same.push_back(one <= usual ? 1 : 0);
+  return same;
+}
+
+std::vector<double> speeds_of(const Channel& q, const std::vector<double>& time) {
+  std::vector<double> speed(time.size(), 0.0);
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    speed[i] = (q.values[i] - q.values[i - 1]) / (time[i] - time[i - 1]);
+  }
+  return speed;
+}
+
+// Rows into which the position steps farther, by far, than it does before and after.
+std::vector<std::size_t> rows_after_jumps(const Channel& q, const Channel& t, const Dataset& data) {
+  constexpr double kFar = 3;  // usual steps
+  const Jumps steps = jumps_of(q, &t, data);
+  if (steps.steps.size() < 100 || steps.usual <= 0) return {};
+  const double gap = 1.5 * median_step(t.values, data.movement);
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 2; i + 1 < data.rows(); ++i) {
+    if (data.movement[i - 2] != data.movement[i + 1] || t.values[i] - t.values[i - 1] > gap) {
+      continue;
+    }
+    const double before = q.values[i - 1] - q.values[i - 2];
+    const double step = q.values[i] - q.values[i - 1];
+    const double after = q.values[i + 1] - q.values[i];
+    const double beyond = std::max(std::min(before, after) - step, step - std::max(before, after));
+    if (beyond > kFar * steps.usual) rows.push_back(i);
+  }
+  return rows;
+}
+
+}  // namespace
+
+// Whoever sets a position anew changes neither the speed nor the torque.
+void settle_jumps(PreparedRecording& out) {
+  constexpr double kSeen_s = 0.02;  // of the motion on either side
   Channel* q = find_channel(out.data, Role::position);
   const Channel* t = find_channel(out.data, Role::time);
   if (q == nullptr || t == nullptr || !is_regular(t->values, out.data.movement)) return;
-  const Jumps jumps = jumps_of(*q, t, out.data);
-  if (jumps.steps.size() < 100 || jumps.usual <= 0) return;
-  const double far = kFar * jumps.usual;
-  const auto count = std::ranges::count_if(jumps.steps, [&](double step) { return step > far; });
-  if (count == 0 || static_cast<std::size_t>(count) > kMost) return;
-  const double gap = 1.5 * median_step(t->values, out.data.movement);
-  double offset = 0;
+  const std::vector<std::size_t> jumps = rows_after_jumps(*q, *t, out.data);
+  if (jumps.empty()) return;
+  const auto seen = static_cast<std::size_t>(
+      std::max(2.0, std::round(kSeen_s / median_step(t->values, out.data.movement))));
+  const std::vector<double> speed = speeds_of(*q, t->values);
+  std::vector<char> same = goes_on(speed, seen);
+  for (const Role role : {Role::motor_torque, Role::motor_current}) {
+    const Channel* effort = find_channel(out.data, role);
+    if (effort == nullptr) continue;
+    const std::vector<char> own = goes_on(effort->values, seen);
+    for (std::size_t i = 0; i < same.size(); ++i) same[i] = same[i] != 0 && own[i] != 0 ? 1 : 0;
+  }
   std::size_t joined = 0;
-  for (std::size_t i = 1; i < out.data.rows(); ++i) {
-    if (out.data.movement[i] != out.data.movement[i - 1]) {
-      offset = 0;
+  double largest = 0;
+  std::vector<std::size_t> begins;
+  for (const std::size_t row : jumps) {
+    const double jump = q->values[row] - q->values[row - 1];
+    largest = std::max(largest, std::abs(jump));
+    if (same[row] == 0) {
+      begins.push_back(row);
       continue;
     }
-    const double jump = q->values[i] + offset - q->values[i - 1];
-    if (t->values[i] - t->values[i - 1] <= gap && std::abs(jump) > far) {
-      offset += (i > 1 ? q->values[i - 1] - q->values[i - 2] : 0) - jump;
-      ++joined;
+    ++joined;
+    const double step =
+        0.5 * (speed[row - 1] + speed[row + 1]) * (t->values[row] - t->values[row - 1]);
+    const int movement = out.data.movement[row];
+    for (std::size_t i = row; i < out.data.rows() && out.data.movement[i] == movement; ++i) {
+      q->values[i] += step - jump;
     }
-    q->values[i] += offset;
   }
-  if (joined == 0) return;
+  if (joined > 0) {
+    out.notes.push_back(
+        fmt::format("'{}' jumps {} times, by {:.4g} {} at most, and the joint goes on as before: "
+                    "laid end to end",
+                    q->name, joined, largest, q->unit));
+  }
+  if (begins.empty()) return;
+  cut_movements(out.data, begins);
   out.notes.push_back(fmt::format(
-      "'{}' jumps {} times, by {:.4g} {} at most, without having moved: laid end to end", q->name,
-      joined, jumps.largest, q->unit));
+      "'{}' jumps {} times, by {:.4g} {} at most, and the joint moves otherwise: recordings that "
+      "were put together",
+      q->name, begins.size(), largest, q->unit));
 }
 
 namespace {

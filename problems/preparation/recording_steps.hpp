@@ -35,8 +35,9 @@ void drop_repeated_messages(PreparedRecording& out);
 void unwrap(PreparedRecording& out, const std::vector<ColumnReading>& readings, const Drive& drive);
 // Rows whose position, velocity or torque is far off the rows before and after: wrong readings.
 void drop_wrong_readings(PreparedRecording& out);
-// A position that is set anew (a reference run) is laid end to end.
-void join_jumps(PreparedRecording& out);
+// A position that is set anew while the joint goes on (a reference mark) is laid end to end; where
+// it goes on otherwise two recordings were put together, and a movement begins.
+void settle_jumps(PreparedRecording& out);
 // Currents and torques at a limit of the amplifier.
 void drop_clipped(PreparedRecording& out);
 

@@ -96,25 +96,6 @@ bool are_long_enough(const std::vector<std::size_t>& restarts, std::size_t rows)
   return rows - begin >= kFewestOfRecording;
 }
 
-// Movements of their own from the given rows on.
-void cut_movements(Dataset& data, const std::vector<std::size_t>& restarts) {
-  std::vector<int> movement;
-  std::vector<std::string> names;
-  std::vector<std::size_t> part(data.movement_names.size(), 0);
-  auto restart = restarts.begin();
-  for (std::size_t r = 0; r < data.rows(); ++r) {
-    const bool anew = restart != restarts.end() && *restart == r;
-    if (anew) ++restart;
-    if (r == 0 || anew || data.movement[r] != data.movement[r - 1]) {
-      const auto of = static_cast<std::size_t>(data.movement[r]);
-      names.push_back(fmt::format("{}, part {}", data.movement_names[of], ++part[of]));
-    }
-    movement.push_back(static_cast<int>(names.size()) - 1);
-  }
-  data.movement = std::move(movement);
-  data.movement_names = std::move(names);
-}
-
 template <typename Value>
 void put_in_order(std::vector<Value>& values, const std::vector<std::size_t>& order) {
   std::vector<Value> sorted;

@@ -134,7 +134,28 @@ TEST(RecordingRows, WrongReadingsAreLeftOutAndCounted) {
 TEST(RecordingRows, APositionThatIsSetAnewHasNotMoved) {
   std::vector<Row> rows = swings();
   for (std::size_t i = 5000; i < rows.size(); ++i) rows[i].position += 3.3;
-  expect_same_motion(prepared(rows), "jumps 1 times");
+  expect_same_motion(prepared(rows), "laid end to end");
+}
+
+// Stamped again as one: each keeps its positions, and no motion leads from one to the next.
+TEST(RecordingRows, RecordingsThatWerePutTogetherAreCutWhereTheOtherBegins) {
+  const auto instant = [](double t) { return t < 16 ? t : t + 51.3; };
+  std::vector<Row> rows = swings();
+  for (Row& row : rows) {
+    const double v = speed_at(instant(row.time));
+    row.position = place_at(instant(row.time));
+    row.torque = (v > 0 ? 0.5 : -0.5) + 0.3 * v + 0.02 * std::sin(1e4 * row.time);
+  }
+  const PreparedRecording recording = prepared(rows);
+  EXPECT_THAT(recording.notes, Contains(HasSubstr("recordings that were put together")));
+  const std::vector<double>& t = recording.data.find(Role::time)->values;
+  ASSERT_GT(t.size(), 5000U);
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    ASSERT_NEAR(recording.data.find(Role::position)->values[i], place_at(instant(t[i])), 1e-6);
+    ASSERT_NEAR(recording.data.find(Role::velocity)->values[i], speed_at(instant(t[i])), 0.03);
+    if (i == 0 || t[i - 1] >= 16 || t[i] < 16) continue;
+    EXPECT_NE(recording.data.movement[i], recording.data.movement[i - 1]);
+  }
 }
 
 // 4 096 counts a turn of the motor in a counter of 16 bits; one turn of the motor in degrees.
