@@ -5,8 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +12,9 @@
 #include <span>
 
 #include "algorithms/effects/effect_library.hpp"
+#include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
+#include "foundation/pivoted_qr.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -266,9 +266,7 @@ void ExplanationSpace::add_places() {
 void ExplanationSpace::settle_scale() {
   const Eigen::MatrixXd all = raw_columns(reference_);
   const Eigen::MatrixXd base = base_columns(reference_);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(base);
-  const Eigen::MatrixXd own =
-      factor.householderQ() * Eigen::MatrixXd::Identity(base.rows(), factor.rank());
+  const Eigen::MatrixXd own = PivotedQr(base).basis();
   const Eigen::RowVectorXd explained = (own.transpose() * all).colwise().squaredNorm();
   const auto rows = static_cast<double>(reference_.rows());
   scale_.setZero(all.cols());
@@ -328,12 +326,12 @@ void ExplanationSpace::add_misfits() {
     const Eigen::MatrixXd all = shaped(misfits_[f], reference_, formulas);
     EvidenceSums sums;
     sums.add(base, all, Eigen::VectorXd::Zero(base.rows()));  // no torque is looked at
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(EvidenceTable(sums).gram());
-    const double most = parts.eigenvalues().maxCoeff();
+    const EigenParts parts = eigen_parts_symmetric(EvidenceTable(sums).gram());
+    const double most = parts.values.maxCoeff();
     const Eigen::Index kept = std::min<Eigen::Index>(
-        kMisfitColumns, (parts.eigenvalues().array() > kLeastMisfit * most).count());
-    Eigen::MatrixXd fold = parts.eigenvectors().rightCols(kept);
-    const Eigen::VectorXd values = parts.eigenvalues().tail(kept);
+        kMisfitColumns, (parts.values.array() > kLeastMisfit * most).count());
+    Eigen::MatrixXd fold = parts.vectors.rightCols(kept);
+    const Eigen::VectorXd values = parts.values.tail(kept);
     for (Eigen::Index k = 0; k < kept; ++k) {
       // Later directions are smaller, but less than variance would have it: nobody knows the
       // misfit.
@@ -353,7 +351,7 @@ void ExplanationSpace::add_misfits() {
 void ExplanationSpace::measure_blocks(double smallest_effect) {
   const Eigen::MatrixXd base = base_columns(reference_);
   Eigen::MatrixXd all = columns(reference_);
-  all -= base * base.colPivHouseholderQr().solve(all);
+  all -= base * PivotedQr(base).solve_each(all);
   for (ExplainingFamily& family : families_) {
     for (EffectBlock& block : family.blocks) {
       const Eigen::MatrixXd own = all(Eigen::all, block.columns);

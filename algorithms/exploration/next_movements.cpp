@@ -3,14 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/QR>
-
 #include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/elementary.hpp"
+#include "foundation/pivoted_qr.hpp"
 #include "problems/preparation/derived_channels.hpp"
 
 namespace tribench::loop {
@@ -72,7 +72,7 @@ Eigen::Vector3d gravity_of_position(const Observations& data) {
   Eigen::MatrixXd x(n, 3);
   x << angle.unaryExpr(&elementary::sin).matrix(), angle.unaryExpr(&elementary::cos).matrix(),
       Eigen::VectorXd::Ones(n);
-  return x.colPivHouseholderQr().solve(Eigen::Map<const Eigen::VectorXd>(g->values.data(), n));
+  return PivotedQr(x).solve(Eigen::Map<const Eigen::VectorXd>(g->values.data(), n));
 }
 
 double middle_of(const Signal& signal) {

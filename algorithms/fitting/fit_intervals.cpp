@@ -12,6 +12,7 @@
 
 #include "algorithms/expression/differentiate.hpp"
 #include "algorithms/fitting/free_constants.hpp"
+#include "algorithms/fitting/symmetric_system.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench {
@@ -42,14 +43,14 @@ struct PseudoInverse {
 };
 
 PseudoInverse pseudo_inverse(const Eigen::MatrixXd& matrix) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
-  const Eigen::VectorXd& values = solver.eigenvalues();
+  const EigenParts parts = eigen_parts_symmetric(matrix);
+  const Eigen::VectorXd& values = parts.values;
   const double least = kRankTolerance * std::max(values.maxCoeff(), 0.0);
   Eigen::Index lost = 0;
   while (lost < values.size() && !(values[lost] > least)) ++lost;
-  const Eigen::MatrixXd kept = solver.eigenvectors().rightCols(values.size() - lost);
+  const Eigen::MatrixXd kept = parts.vectors.rightCols(values.size() - lost);
   const Eigen::VectorXd inverted = values.tail(values.size() - lost).cwiseInverse();
-  return {kept * inverted.asDiagonal() * kept.transpose(), solver.eigenvectors().leftCols(lost)};
+  return {kept * inverted.asDiagonal() * kept.transpose(), parts.vectors.leftCols(lost)};
 }
 
 // Nothing where a movement alone determines something.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/fitting/linear_least_squares.hpp"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "foundation/pivoted_qr.hpp"
 
 namespace tribench {
 namespace {
@@ -33,10 +34,7 @@ bool solve_free(std::span<const double> a, std::span<const double> b,
       matrix(i, j) = scale[i] * scale[j] * a[row * n + free[static_cast<std::size_t>(j)]];
     }
   }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-  qr.setThreshold(kRankTolerance);
-  qr.compute(matrix);
-  const Eigen::VectorXd x = qr.solve(rhs).cwiseProduct(scale);
+  const Eigen::VectorXd x = PivotedQr(matrix, kRankTolerance).solve(rhs).cwiseProduct(scale);
   for (Eigen::Index i = 0; i < p; ++i) solution[free[static_cast<std::size_t>(i)]] = x[i];
   return x.allFinite();
 }
@@ -82,20 +80,14 @@ LinearFit solve_least_squares(std::span<const double* const> columns,
     if (!std::isfinite(scale[k])) scale[k] = 0;
     design.col(k) = column * scale[k];
   }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-  qr.setThreshold(kRankTolerance);
-  qr.compute(design);
+  const PivotedQr qr(design, kRankTolerance);
   const Eigen::VectorXd solution = qr.solve(y);
   for (Eigen::Index k = 0; k < p; ++k) {
     fit.coefficients[static_cast<std::size_t>(k)] = solution[k] * scale[k];
   }
   fit.sum_squares = (design * solution - y).squaredNorm();
   fit.rank = static_cast<int>(qr.rank());
-  const Eigen::MatrixXd triangle =
-      qr.matrixR().topRows(std::min(rows, p)).triangularView<Eigen::Upper>();
-  const Eigen::VectorXd singular = triangle.jacobiSvd().singularValues();
-  fit.condition = fit.rank == p ? singular.maxCoeff() / singular.minCoeff()
-                                : std::numeric_limits<double>::infinity();
+  fit.condition = qr.condition();
   return fit;
 }
 

@@ -87,6 +87,11 @@ Eigen::MatrixXd orthonormal_columns(const Eigen::MatrixXd& x, double threshold) 
   return orthonormalised(orthonormalised(scaled(Eigen::all, factor.order)));
 }
 
+EigenParts eigen_parts_symmetric(const Eigen::MatrixXd& a) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(a);
+  return {parts.eigenvalues(), parts.eigenvectors()};
+}
+
 double spectral_norm_symmetric(const Eigen::MatrixXd& a) {
   return a.selfadjointView<Eigen::Lower>().operatorNorm();
 }

@@ -27,6 +27,13 @@ Eigen::MatrixXd basic_solution_symmetric(const Eigen::MatrixXd& a, const Eigen::
 // above, of columns scaled to unit length). Source: Yamamoto et al. 2015 (CholeskyQR2).
 Eigen::MatrixXd orthonormal_columns(const Eigen::MatrixXd& x, double threshold);
 
+// a vectors.col(k) = values[k] vectors.col(k); the smallest value first, the vectors orthonormal.
+struct EigenParts {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+EigenParts eigen_parts_symmetric(const Eigen::MatrixXd& a);
+
 // The largest magnitude of an eigenvalue.
 double spectral_norm_symmetric(const Eigen::MatrixXd& a);
 

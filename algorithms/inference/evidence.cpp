@@ -2,11 +2,11 @@
 #include "algorithms/inference/evidence.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "algorithms/fitting/symmetric_system.hpp"
 #include "foundation/elementary.hpp"
 
 namespace tribench::loop {
@@ -20,13 +20,13 @@ Eigen::MatrixXd inverse_root(const Eigen::MatrixXd& products) {
       products.diagonal().cwiseSqrt().unaryExpr([](double x) { return x > 0 ? x : 1.0; });
   const Eigen::MatrixXd unit =
       length.cwiseInverse().asDiagonal() * products * length.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(unit);
-  const double least = kSameDirection * parts.eigenvalues().maxCoeff();
+  const EigenParts parts = eigen_parts_symmetric(unit);
+  const double least = kSameDirection * parts.values.maxCoeff();
   const auto dropped = static_cast<Eigen::Index>(
-      std::ranges::count_if(parts.eigenvalues(), [&](double value) { return !(value > least); }));
+      std::ranges::count_if(parts.values, [&](double value) { return !(value > least); }));
   const Eigen::Index rank = unit.rows() - dropped;
-  return length.cwiseInverse().asDiagonal() * parts.eigenvectors().rightCols(rank) *
-         parts.eigenvalues().tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+  return length.cwiseInverse().asDiagonal() * parts.vectors.rightCols(rank) *
+         parts.values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
 // Of coefficients in units of the noise: normal about `mean` / sigma with a covariance, where

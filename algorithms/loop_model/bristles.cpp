@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "algorithms/expression/build.hpp"
+#include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/column_products.hpp"
 #include "algorithms/inference/whitening.hpp"
 #include "algorithms/loop_model/bristle_path.hpp"
@@ -55,7 +56,7 @@ Solution solve(const Eigen::MatrixXd& sums, Eigen::Index first) {
     normal.diagonal().array() += kRidge;
     const Eigen::VectorXd right = sums(used, p);
     const Eigen::VectorXd x =
-        normal.ldlt().solve(right.cwiseQuotient(length)).cwiseQuotient(length);
+        solve_symmetric(normal, right.cwiseQuotient(length)).cwiseQuotient(length);
     if ((x.tail(static_cast<Eigen::Index>(used.size()) - first).array() < 0).any()) continue;
     const double error = sums(p, p) - 2 * x.dot(right) + x.dot(sums(used, used) * x);
     if (!(error < best.error)) continue;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,6 +19,7 @@
 #include "foundation/json_text.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
+#include "foundation/pivoted_qr.hpp"
 #include "harness/exploration/world_folder.hpp"
 #include "problems/file_hash.hpp"
 #include "problems/joint_simulation/joint_recording.hpp"
@@ -95,7 +95,7 @@ void fit_gravity(const Dataset& data, std::span<const double> position, MotionLi
     waves(i, 1) = elementary::cos(position[static_cast<std::size_t>(i)]);
   }
   const Eigen::Map<const Eigen::VectorXd> torque(gravity->values.data(), rows);
-  const Eigen::Vector2d size = waves.colPivHouseholderQr().solve(torque);
+  const Eigen::Vector2d size = PivotedQr(waves).solve(torque);
   limits.gravity_nm = size.norm();
   // The angle of (cosine, sine): each step leaves a third power of what was left.
   double phase = size[0] >= 0 ? 0 : std::numbers::pi;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "harness/study/generator_study.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 
 #include "foundation/elementary.hpp"
+#include "foundation/pivoted_qr.hpp"
 #include "problems/kuka/campaign.hpp"
 #include "problems/kuka/entries.hpp"
 
@@ -72,7 +73,7 @@ LinearFit fit_and_judge(const Table& train, const Table& test, const Design& des
   const Eigen::Map<const Eigen::VectorXd> judged(test.target.data(),
                                                  static_cast<Eigen::Index>(test.rows()));
   LinearFit fit;
-  fit.coefficients = matrix.colPivHouseholderQr().solve(target);
+  fit.coefficients = PivotedQr(matrix).solve(target);
   fit.squares = (matrix * fit.coefficients - target).squaredNorm();
   fit.mae_test = (design_matrix(test, design) * fit.coefficients - judged).cwiseAbs().mean();
   return fit;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "harness/study/reference_study.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 
+#include "foundation/pivoted_qr.hpp"
 #include "problems/measured/entries.hpp"
 #include "problems/measured/manifest.hpp"
 
@@ -69,7 +70,7 @@ ReferenceFigure measure(const measured::ProblemPlan& plan, const Problem& proble
     append(problem.test, design, fitted);
     judged = fitted;
   }
-  const Eigen::VectorXd coefficients = fitted.matrix.colPivHouseholderQr().solve(fitted.target);
+  const Eigen::VectorXd coefficients = PivotedQr(fitted.matrix).solve(fitted.target);
   ReferenceFigure figure;
   figure.problem = plan.name;
   figure.model = model;

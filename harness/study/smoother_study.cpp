@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "foundation/elementary.hpp"
+#include "foundation/pivoted_qr.hpp"
 #include "problems/joint_simulation/controlled_run.hpp"
 #include "problems/preparation/motion_smoother.hpp"
 
@@ -84,7 +85,7 @@ Derivatives savitzky_golay(const EncodedRun& run, int half) {
     powers.row(k + half) << 1, x, x * x, x * x * x;
   }
   const Eigen::MatrixXd weights =
-      powers.colPivHouseholderQr().solve(Eigen::MatrixXd::Identity(2 * half + 1, 2 * half + 1));
+      PivotedQr(powers).solve_each(Eigen::MatrixXd::Identity(2 * half + 1, 2 * half + 1));
   const double span = half * run.step;
   const std::size_t n = run.position.size();
   Derivatives out{std::vector<double>(n, 0), std::vector<double>(n, 0)};

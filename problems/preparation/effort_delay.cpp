@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "problems/preparation/effort_delay.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "foundation/elementary.hpp"
+#include "foundation/pivoted_qr.hpp"
 #include "problems/preparation/rigid_body.hpp"
 #include "problems/preparation/segments.hpp"
 
@@ -116,9 +117,7 @@ Eigen::MatrixXd base_of(const Terms& all, const std::vector<SteadyRow>& rows) {
     x.row(r) = Eigen::Map<const Eigen::RowVectorXd>(terms.data(), x.cols());
   }
   const Eigen::VectorXd scale = x.colwise().norm().cwiseMax(1e-300);
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(x * scale.cwiseInverse().asDiagonal());
-  qr.setThreshold(kDependent);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(n, qr.rank());
+  return PivotedQr(x * scale.cwiseInverse().asDiagonal(), kDependent).basis();
 }
 
 // Squares that the terms leave, per shift of the torque (from -reach on) and part of the recording.

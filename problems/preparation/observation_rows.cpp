@@ -3,12 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
+#include "foundation/pivoted_qr.hpp"
 #include "foundation/sign.hpp"
 #include "problems/friction_sign.hpp"
 
@@ -241,7 +242,7 @@ std::vector<double> without_place(const std::vector<double>& values, const std::
     x.row(r) << 1, elementary::sin(angle), elementary::cos(angle);
   }
   const Eigen::Map<const Eigen::VectorXd> y(values.data(), n);
-  const Eigen::VectorXd rest = y - x * x.colPivHouseholderQr().solve(y);
+  const Eigen::VectorXd rest = y - x * PivotedQr(x).solve(y);
   return {rest.begin(), rest.end()};
 }
 

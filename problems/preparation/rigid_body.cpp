@@ -7,6 +7,7 @@
 
 #include "foundation/elementary.hpp"
 #include "foundation/order_statistics.hpp"
+#include "foundation/pivoted_qr.hpp"
 #include "problems/preparation/segments.hpp"
 
 namespace tribench {
@@ -30,8 +31,7 @@ Fit least_squares(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
   Fit fit;
   const Eigen::VectorXd scale = x.colwise().norm().cwiseMax(1e-300);
   const Eigen::MatrixXd scaled = x * scale.cwiseInverse().asDiagonal();
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
-  qr.setThreshold(kDependent);
+  const PivotedQr qr(scaled, kDependent);
   fit.determined = qr.rank() == scaled.cols();
   fit.coefficients = qr.solve(y).cwiseQuotient(scale);
   fit.squares = (y - x * fit.coefficients).squaredNorm();

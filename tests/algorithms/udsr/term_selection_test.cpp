@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -15,6 +15,7 @@
 #include "algorithms/expression/text.hpp"
 #include "algorithms/udsr/linear_token.hpp"
 #include "algorithms/udsr/pruning.hpp"
+#include "foundation/pivoted_qr.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench::udsr {
@@ -110,7 +111,7 @@ TEST(SelectTerms, FindsTheBestOfAllSubsets) {
       design.col(next++) = column_of(terms[k], rows.pointers, rows.y.size());
     }
     const Eigen::Map<const Eigen::VectorXd> y(rows.y.data(), design.rows());
-    const Eigen::VectorXd fitted = design * design.householderQr().solve(y).eval();
+    const Eigen::VectorXd fitted = design * PivotedQr(design).solve(y);
     best = std::min(best, 0.5 * n * std::log((y - fitted).squaredNorm()) +
                               0.5 * static_cast<double>(size) * std::log(n));
   }

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "foundation/pivoted_qr.hpp"
 #include "foundation/random.hpp"
 #include "tests/support/run_program.hpp"
 
@@ -443,7 +444,7 @@ double error_of_the_true_law(const std::vector<PapersRow>& rows, const Json& loo
         std::sin(320 * q), std::cos(3 * q), std::sin(3 * q);
     y[i] = tau;
   }
-  const Eigen::VectorXd error = y - x * x.colPivHouseholderQr().solve(y);
+  const Eigen::VectorXd error = y - x * PivotedQr(x).solve(y);
   double sum = 0;
   double count = 0;
   for (const Json& held_out : loop["error"]["movements"]) {
