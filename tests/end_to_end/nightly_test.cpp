@@ -76,7 +76,11 @@ class NightlyTest : public ::testing::Test {
   static int count_files(const std::filesystem::path& folder) {
     return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
   }
-  static void next_second() { std::this_thread::sleep_for(std::chrono::milliseconds(1100)); }
+  // Nights are told apart by the second in which they begin.
+  static void next_second() {
+    const auto second = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+    std::this_thread::sleep_until(second + std::chrono::milliseconds(1010));
+  }
 
   TemporaryFolder folder_;
 };

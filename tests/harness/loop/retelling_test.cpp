@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// One recording told in many ways has one diagnosis.
+// One recording told in many ways has one diagnosis: every day in all ways at once, at night in
+// each by itself.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -90,14 +91,34 @@ struct Retelling {
   double tolerance;     // of the errors, relative; 0: the same bits
 };
 
-const std::vector<Retelling>& retellings() {
-  static const std::vector<Retelling> kAll = {
+std::vector<Retelling> retellings(const ObservationOptions& observing) {
+  std::vector<Retelling> all = {
       {"mirrored", mirror, 1, 0},
       {"torque in 1/8", [](Dataset& d) { scale(d, kTorques, 8); }, 8, 0},
       {"torque in m", [](Dataset& d) { scale(d, kTorques, 1000); }, 1000, 1e-9},
       {"from 1970", [](Dataset& d) { shift_time(d, 1.76e9); }, 1, 1e-9},
       {"columns turned", reverse_columns, 1, 0}};
-  return kAll;
+  // Movements laid end to end: their rows' times are rounded elsewhere.
+  if (observing.unordered) all.push_back({"shuffled", shuffle_movements, 1, 1e-9});
+  return all;
+}
+
+// One after the other: those that change no bit, then those that round.
+std::vector<Retelling> at_once(const std::vector<Retelling>& all) {
+  Retelling exact{"exact, at once", {}, 1, 0};
+  Retelling rounded{"rounded, at once", {}, 1, 1e-9};
+  for (Retelling* both : {&exact, &rounded}) {
+    std::vector<std::function<void(Dataset&)>> own;
+    for (const Retelling& one : all) {
+      if ((one.tolerance == 0) != (both == &exact)) continue;
+      own.push_back(one.tell);
+      both->error_factor *= one.error_factor;
+    }
+    both->tell = [own](Dataset& data) {
+      for (const auto& tell : own) tell(data);
+    };
+  }
+  return {exact, rounded};
 }
 
 JudgedDiagnosis diagnosed(const Dataset& data, const ObservationOptions& observing) {
@@ -106,13 +127,13 @@ JudgedDiagnosis diagnosed(const Dataset& data, const ObservationOptions& observi
   return diagnose_and_judge(observe(data, observing), coulomb_viscous_base, options);
 }
 
-void expect_one_story(const Dataset& data, const ObservationOptions& observing,
+enum class Told { at_once, one_by_one };
+
+void expect_one_story(const Dataset& data, const ObservationOptions& observing, Told how,
                       const std::string& what) {
   const JudgedDiagnosis plain = diagnosed(data, observing);
-  std::vector<Retelling> all = retellings();
-  // Movements laid end to end: their rows' times are rounded elsewhere.
-  if (observing.unordered) all.push_back({"shuffled", shuffle_movements, 1, 1e-9});
-  for (const Retelling& retelling : all) {
+  const std::vector<Retelling> all = retellings(observing);
+  for (const Retelling& retelling : how == Told::at_once ? at_once(all) : all) {
     Dataset told = data;
     retelling.tell(told);
     const JudgedDiagnosis other = diagnosed(told, observing);
@@ -127,7 +148,7 @@ void expect_one_story(const Dataset& data, const ObservationOptions& observing,
   }
 }
 
-TEST(Retelling, OfAPlantedCampaignChangesNothing) {
+void expect_one_story_of_planted_campaigns(Told how) {
   const std::vector<std::vector<kuka::Plant>> cases = {{},
                                                        {{"stribeck", 1.0}},
                                                        {{"load_coulomb", 0.5}, {"drift", 1.0}},
@@ -138,13 +159,17 @@ TEST(Retelling, OfAPlantedCampaignChangesNothing) {
   for (const std::vector<kuka::Plant>& effects : cases) {
     const PlantedData planted = kuka::make_planted({.effects = effects}, seed);
     const std::string what = effects.empty() ? "nothing" : effects[0].family;
-    expect_one_story(planted.data, {}, what);
-    expect_one_story(planted.data, {.unordered = true}, what + " unordered");
+    // Every day one half of the campaigns with their order in time, the other half without.
+    const bool is_daily = how == Told::at_once;
+    if (!is_daily || seed % 2 == 1) expect_one_story(planted.data, {}, how, what);
+    if (!is_daily || seed % 2 == 0) {
+      expect_one_story(planted.data, {.unordered = true}, how, what + " unordered");
+    }
     ++seed;
   }
 }
 
-TEST(Retelling, OfAMeasuredSetChangesNothing) {
+void expect_one_story_of_a_measured_set(Told how) {
   const auto folder = tribench::testing::shared_data();
   if (!folder) GTEST_SKIP() << tribench::testing::kNoSharedData;
   for (const char* joint : {"joint2", "joint6"}) {
@@ -152,8 +177,19 @@ TEST(Retelling, OfAMeasuredSetChangesNothing) {
     options.roles = {{"model_torque_Nm", Role::gravity_torque}};
     const Dataset data =
         read_csv(*folder / "kinova-gen3" / (std::string(joint) + ".csv"), options).data;
-    expect_one_story(data, {}, joint);
+    expect_one_story(data, {}, how, joint);
   }
+}
+
+TEST(Retelling, OfAPlantedCampaignChangesNothing) {
+  expect_one_story_of_planted_campaigns(Told::at_once);
+}
+TEST(Retelling, OfAMeasuredSetChangesNothing) { expect_one_story_of_a_measured_set(Told::at_once); }
+TEST(Retelling, DISABLED_OneByOneOfAPlantedCampaignChangesNothing) {
+  expect_one_story_of_planted_campaigns(Told::one_by_one);
+}
+TEST(Retelling, DISABLED_OneByOneOfAMeasuredSetChangesNothing) {
+  expect_one_story_of_a_measured_set(Told::one_by_one);
 }
 
 }  // namespace

@@ -190,10 +190,12 @@ TEST(LoopStudy, AProgramIsJudgedLikeTheLoop) {
   const LoopMethod program = make_external_diagnosis(
       {"python3", (tribench::testing::source_dir() / "tests/harness/study/load_only.py").string()});
   LoopStudyOptions options{.null_runs = 2, .runs_per_cell = 1, .first_seed = 920};
-  options.only = "single/load_";
-  const LoopStudy study = run_loop_study(options, program);
-  for (const LoopOutcome& one : study.outcomes) {
-    if (one.scale < 2) continue;
+  for (const char* only : {"single/load_coulomb/2", "single/load_coulomb/4",
+                           "single/load_viscous/2", "single/load_viscous/4"}) {
+    options.only = only;
+    const LoopStudy study = run_loop_study(options, program);
+    ASSERT_EQ(study.outcomes.size(), 1U) << only;
+    const LoopOutcome& one = study.outcomes.front();
     EXPECT_EQ(one.claimed, std::vector<std::string>{"load_coulomb"}) << one.key;
     EXPECT_EQ(one.is_exact(), one.planted[0] == "load_coulomb") << one.key;
     EXPECT_TRUE(one.is_covered()) << one.key;  // the other one is its alias

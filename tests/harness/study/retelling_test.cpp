@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numbers>
 #include <string>
 
@@ -159,16 +160,21 @@ TEST(RetellingStudy, AFirstTellingTheLoopRefusesIsNamed) {
 }
 
 // The loop itself, on planted campaigns: what must hold today, whatever else changes.
-TEST(RetellingStudy, ColumnsInAnotherOrderAndOtherNamesChangeNoBit) {
+void expect_no_bit_changed(int recordings) {
   RetellingStudyOptions options;
   options.retellings = {"columns", "renamed"};
   const RetellingStudy study =
-      run_retelling_study(planted_recordings(LoopGenerator::planted, 3, 5, ""),
+      run_retelling_study(planted_recordings(LoopGenerator::planted, recordings, 5, ""),
                           make_loop_teller(tribench::testing::program().string()), options);
-  ASSERT_EQ(study.outcomes.size(), 6U);
+  ASSERT_EQ(std::ssize(study.outcomes), 2 * recordings);
   for (const RetellingOutcome& one : study.outcomes) {
     EXPECT_TRUE(one.same_bits) << one.recording << " " << one.retelling->name;
   }
+}
+
+TEST(RetellingStudy, ColumnsInAnotherOrderAndOtherNamesChangeNoBit) { expect_no_bit_changed(1); }
+TEST(RetellingStudy, DISABLED_ColumnsAndNamesOfManyRecordingsChangeNoBit) {
+  expect_no_bit_changed(10);
 }
 
 TEST(Recordings, TheListOfMeasuredOnesReadsAndNamesWhatIsMissing) {
