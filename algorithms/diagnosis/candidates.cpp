@@ -15,7 +15,7 @@ namespace {
 // The rescue rule for families carried by few clusters (specification, 6.4).
 constexpr double kFewClusters = 25;
 constexpr double kRescueGain = 12;      // nats
-constexpr std::size_t kAtomsTried = 3;  // of a family, best scores first
+constexpr std::size_t kAtomsTried = 3;  // of a family, those that explain most
 
 // How many independent pieces of data carry an atom, as an effective number: movements where it
 // differs between them rather than within them, else stretches.
@@ -107,7 +107,7 @@ std::optional<Candidate> best_atom(std::size_t family, const Round& round, const
                                    const Campaign& campaign) {
   std::vector<std::size_t> atoms = testable_atoms(family, round, campaign);
   std::ranges::stable_sort(atoms, [&](std::size_t a, std::size_t b) {
-    return round.blocks[a].test.score > round.blocks[b].test.score;
+    return round.blocks[a].test.statistic > round.blocks[b].test.statistic;
   });
   if (atoms.size() > kAtomsTried) atoms.resize(kAtomsTried);
   std::optional<Candidate> best;

@@ -29,7 +29,7 @@ struct Block {
 };
 
 struct BlockTest {
-  double statistic = 0;
+  double statistic = 0;           // sum of squares that the block explains
   double score = 0;               // -log10 of the matched tail
   double share = 0;               // rms of the block that survives projection on the model
   double effective_clusters = 0;  // (sum h)^2 / sum h^2 of the clusters' sums of squares h
