@@ -50,8 +50,8 @@ struct AtomTemplate {
   std::vector<std::string> columns;
   std::vector<std::string> coefficients;  // names of the columns' coefficients, for the report
   std::vector<ShapeTemplate> shapes = {};
-  // Only where gravity and acceleration stand in the base because the recording still contains the
-  // rigid body: the load on the transmission is then their sum, not the gravity alone.
+  // Only where the acceleration stands in the base because the recording still contains the
+  // inertia's torque: the load on the transmission is then its sum with gravity, not gravity alone.
   bool rigid_load = false;
   // Only beside another atom of the family: what an effect that is there may have besides
   // (harmonics, a phase that drifts).

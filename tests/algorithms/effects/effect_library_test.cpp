@@ -71,6 +71,22 @@ TEST(EffectLibrary, AnEffectOfOneDirectionNeedsMotionBothWays) {
   EXPECT_EQ(std::ranges::count(atoms_of("stribeck", data), true, &Atom::one_way), 0);
 }
 
+// Whether gravity is a column or is fitted with the base by the sine and cosine of the position.
+TEST(EffectLibrary, TheLoadHoldsTheInertiaWhereItsTorqueIsInTheRecording) {
+  Observations data = observe(kuka::make_planted({}, 1).data);
+  const auto with_inertia = [&] {
+    return std::ranges::count_if(atoms_of("load_coulomb", data), [](const Atom& atom) {
+      return atom.label == "sgn_v*abs(g + J*a)";
+    });
+  };
+  EXPECT_EQ(with_inertia(), 0);
+  for (const std::vector<std::string>& rigid :
+       {std::vector<std::string>{"g", "a"}, {"sin_q", "cos_q", "a"}}) {
+    data.rigid = rigid;
+    EXPECT_GT(with_inertia(), 0) << rigid.front();
+  }
+}
+
 TEST(EffectLibrary, TheLoopFindsTheRippleOfAScrewWithoutBeingToldItsLead) {
   Observations data = linear_axis(3);
   DiagnosisOptions options;
