@@ -200,56 +200,63 @@ std::vector<std::size_t> rows_after_jumps(const Channel& q, const Channel& t, co
   return rows;
 }
 
+// Rows across which speed and torque go on: whoever sets a position anew changes neither.
+std::vector<char> motion_goes_on(const Dataset& data, const std::vector<double>& speed,
+                                 double step_s) {
+  constexpr double kSeen_s = 0.02;  // on either side
+  const auto seen = static_cast<std::size_t>(std::max(2.0, std::round(kSeen_s / step_s)));
+  std::vector<char> same = goes_on(speed, seen);
+  for (const Role role : {Role::motor_torque, Role::motor_current}) {
+    const Channel* effort = data.find(role);
+    if (effort == nullptr) continue;
+    const std::vector<char> own = goes_on(effort->values, seen);
+    for (std::size_t i = 0; i < same.size(); ++i) same[i] = same[i] != 0 && own[i] != 0 ? 1 : 0;
+  }
+  return same;
+}
+
+std::string jumps_told(const Channel& q, const std::vector<std::size_t>& rows,
+                       std::string_view what) {
+  double largest = 0;
+  for (const std::size_t row : rows) {
+    largest = std::max(largest, std::abs(q.values[row] - q.values[row - 1]));
+  }
+  return fmt::format("'{}' jumps {} times, by {:.4g} {} at most, and the joint {}", q.name,
+                     rows.size(), largest, q.unit, what);
+}
+
 }  // namespace
 
-// Whoever sets a position anew changes neither the speed nor the torque.
 void settle_jumps(PreparedRecording& out) {
-  constexpr double kSeen_s = 0.02;  // of the motion on either side
   Channel* q = find_channel(out.data, Role::position);
   const Channel* t = find_channel(out.data, Role::time);
   if (q == nullptr || t == nullptr || !is_regular(t->values, out.data.movement)) return;
   const std::vector<std::size_t> jumps = rows_after_jumps(*q, *t, out.data);
   if (jumps.empty()) return;
-  const auto seen = static_cast<std::size_t>(
-      std::max(2.0, std::round(kSeen_s / median_step(t->values, out.data.movement))));
   const std::vector<double> speed = speeds_of(*q, t->values);
-  std::vector<char> same = goes_on(speed, seen);
-  for (const Role role : {Role::motor_torque, Role::motor_current}) {
-    const Channel* effort = find_channel(out.data, role);
-    if (effort == nullptr) continue;
-    const std::vector<char> own = goes_on(effort->values, seen);
-    for (std::size_t i = 0; i < same.size(); ++i) same[i] = same[i] != 0 && own[i] != 0 ? 1 : 0;
+  const std::vector<char> same =
+      motion_goes_on(out.data, speed, median_step(t->values, out.data.movement));
+  std::vector<std::size_t> set_anew;
+  std::vector<std::size_t> others;
+  for (const std::size_t row : jumps) (same[row] != 0 ? set_anew : others).push_back(row);
+  if (!others.empty()) {
+    out.notes.push_back(
+        jumps_told(*q, others, "moves otherwise: recordings that were put together"));
+    cut_movements(out.data, others);
   }
-  std::size_t joined = 0;
-  double largest = 0;
-  std::vector<std::size_t> begins;
-  for (const std::size_t row : jumps) {
-    const double jump = q->values[row] - q->values[row - 1];
-    largest = std::max(largest, std::abs(jump));
-    if (same[row] == 0) {
-      begins.push_back(row);
-      continue;
-    }
-    ++joined;
+  if (!set_anew.empty()) {
+    out.notes.push_back(jumps_told(*q, set_anew, "goes on as before: laid end to end"));
+  }
+  // No farther than the next recording, which has positions of its own.
+  for (const std::size_t row : set_anew) {
     const double step =
         0.5 * (speed[row - 1] + speed[row + 1]) * (t->values[row] - t->values[row - 1]);
+    const double offset = q->values[row - 1] + step - q->values[row];
     const int movement = out.data.movement[row];
     for (std::size_t i = row; i < out.data.rows() && out.data.movement[i] == movement; ++i) {
-      q->values[i] += step - jump;
+      q->values[i] += offset;
     }
   }
-  if (joined > 0) {
-    out.notes.push_back(
-        fmt::format("'{}' jumps {} times, by {:.4g} {} at most, and the joint goes on as before: "
-                    "laid end to end",
-                    q->name, joined, largest, q->unit));
-  }
-  if (begins.empty()) return;
-  cut_movements(out.data, begins);
-  out.notes.push_back(fmt::format(
-      "'{}' jumps {} times, by {:.4g} {} at most, and the joint moves otherwise: recordings that "
-      "were put together",
-      q->name, begins.size(), largest, q->unit));
 }
 
 namespace {

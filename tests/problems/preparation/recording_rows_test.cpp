@@ -134,7 +134,7 @@ TEST(RecordingRows, WrongReadingsAreLeftOutAndCounted) {
 TEST(RecordingRows, APositionThatIsSetAnewHasNotMoved) {
   std::vector<Row> rows = swings();
   for (std::size_t i = 5000; i < rows.size(); ++i) rows[i].position += 3.3;
-  expect_same_motion(prepared(rows), "laid end to end");
+  expect_same_motion(prepared(rows), "and the joint goes on as before");
 }
 
 // Stamped again as one: each keeps its positions, and no motion leads from one to the next.
@@ -144,6 +144,7 @@ TEST(RecordingRows, RecordingsThatWerePutTogetherAreCutWhereTheOtherBegins) {
   for (Row& row : rows) {
     const double v = speed_at(instant(row.time));
     row.position = place_at(instant(row.time));
+    if (row.time > 6 && row.time < 16) row.position += 1.7;  // the first was set anew on its way
     row.torque = (v > 0 ? 0.5 : -0.5) + 0.3 * v + 0.02 * std::sin(1e4 * row.time);
   }
   const PreparedRecording recording = prepared(rows);
@@ -151,7 +152,8 @@ TEST(RecordingRows, RecordingsThatWerePutTogetherAreCutWhereTheOtherBegins) {
   const std::vector<double>& t = recording.data.find(Role::time)->values;
   ASSERT_GT(t.size(), 5000U);
   for (std::size_t i = 0; i < t.size(); ++i) {
-    ASSERT_NEAR(recording.data.find(Role::position)->values[i], place_at(instant(t[i])), 1e-6);
+    const double near = t[i] > 6 && t[i] < 16 ? 1e-4 : 1e-6;
+    ASSERT_NEAR(recording.data.find(Role::position)->values[i], place_at(instant(t[i])), near);
     ASSERT_NEAR(recording.data.find(Role::velocity)->values[i], speed_at(instant(t[i])), 0.03);
     if (i == 0 || t[i - 1] >= 16 || t[i] < 16) continue;
     EXPECT_NE(recording.data.movement[i], recording.data.movement[i - 1]);
