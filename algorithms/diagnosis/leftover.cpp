@@ -192,7 +192,7 @@ void LeftoverSearch::locate(const Home& home) {
   const double worth =
       worth_of(home.place->features(campaign_.data), model().model, campaign_, home.place->ridge());
   if (worth < least_worth(found, campaign_.options)) {
-    state().note("what is left over is next to nothing beside the effects found");
+    state().note("what is left over is next to nothing");
     return;
   }
   nats_ = home.nats;
