@@ -45,8 +45,9 @@ class DistanceSinceReversal {
   double distance_ = 0;
 };
 
-// The same, but as far as any where a movement starts in motion. A movement that starts from
-// standstill, as a controller's does, has the one in the other.
+// The same, but as far as any where a movement starts in motion, or where it goes on the way that
+// the one before it ended: what is bent there may stay so over a rest. Any other movement that
+// starts from standstill has the one in the other.
 inline constexpr std::string_view kSeenDistance = "d_seen";
 
 // What a signal that is computed before a recording is cut is called among its channels; `observe`

@@ -16,10 +16,13 @@ namespace {
 constexpr double kForgotten = 0.5;           // s without a message: the joint may have turned
 constexpr std::size_t kEnoughMovements = 8;  // to leave some out in turn
 constexpr std::size_t kMostStrokes = 150;    // more say no more of independence
-// Slower rows are near a rest: bristles that have not slid yet carry a part of the friction there.
+// Slower rows, and nearer ones, are at a rest or a reversal: bristles that have not slid yet carry
+// a part of the friction there, after a reversal twice all of it.
 constexpr double kSlow = 0.02;       // of the top speed
+constexpr double kNear = 4e-4;       // of the longest stroke's way
 constexpr double kSomewhere = 0.01;  // of the longest stroke's way
 constexpr double kNoisy = 3;         // of the velocity's noise
+constexpr double kSamePlace = 1e-3;  // of the position's range
 
 // A stroke, and which of the stretches between two rests it belongs to.
 struct ChainedStroke {
@@ -89,7 +92,8 @@ bool knows_distance(const Dataset& data) {
 
 // The path since the direction last changed, told before a stroke's ends are cut off: the position
 // knows it where the velocity is blurred. Lost messages do not make it start anew. A reversal is
-// seen where a stroke follows another or starts from standstill.
+// seen where a stroke follows another or starts from standstill, but not where it goes on from
+// where the last one the same way ended: bristles may stay bent over a rest.
 void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) {
   const Channel* q = find_channel(out.data, Role::position);
   if (q == nullptr || knows_distance(out.data)) return;
@@ -98,6 +102,7 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
   Channel distance{loop::derived_channel_name("d"), q->unit, Role::none,
                    std::vector<double>(out.data.rows(), 0.0)};
   loop::DistanceSinceReversal path(loop::PathFrom::position);
+  const auto [low, high] = std::ranges::minmax(q->values);
   const RowRange* before = nullptr;
   std::vector<char> seen(out.data.rows(), 1);
   for (const RowRange& stroke : strokes) {
@@ -105,12 +110,16 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
     const bool follows = before != nullptr && before->end == stroke.begin &&
                          out.data.movement[stroke.begin] == out.data.movement[stroke.begin - 1] &&
                          t[stroke.begin] - t[stroke.begin - 1] < kForgotten;
-    const bool goes_on =
-        follows && v[middle] * v[before->begin + (before->end - before->begin) / 2] > 0;
+    const bool same_way =
+        before != nullptr && v[middle] * v[before->begin + (before->end - before->begin) / 2] > 0;
+    const bool goes_on = follows && same_way;
     if (!goes_on) path.start_movement();
     const bool turned =
         follows || std::abs(v[stroke.begin]) < loop::kStandstill * std::abs(v[middle]);
-    const bool is_seen = goes_on ? seen[stroke.begin - 1] != 0 : turned;
+    const bool still_bent =
+        same_way &&
+        std::abs(q->values[stroke.begin] - q->values[before->end - 1]) < kSamePlace * (high - low);
+    const bool is_seen = goes_on ? seen[stroke.begin - 1] != 0 : turned && !still_bent;
     std::fill(seen.begin() + static_cast<std::ptrdiff_t>(stroke.begin),
               seen.begin() + static_cast<std::ptrdiff_t>(stroke.end), is_seen ? char{1} : char{0});
     for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
@@ -159,15 +168,20 @@ std::vector<RowRange> strokes_of_movements(const Dataset& data, const Channel& t
   return strokes;
 }
 
-// What is slow, and how far a stroke has to get that is slow all along to be near no rest.
+// What is slow or near a reversal, and how far a stroke has to get that is slow all along to be
+// near no rest.
 struct Slow {
   double speed = 0;
+  double near = 0;
   double way = 0;
 
   Slow(const std::vector<RowRange>& strokes, const std::vector<double>& t,
        const std::vector<double>& v, double noise)
       : speed(std::max(kSlow * top_speed(v), kNoisy * noise)) {
-    for (const RowRange& stroke : strokes) way = std::max(way, kSomewhere * way_of(stroke, t, v));
+    double longest = 0;
+    for (const RowRange& stroke : strokes) longest = std::max(longest, way_of(stroke, t, v));
+    near = kNear * longest;
+    way = kSomewhere * longest;
   }
 
   static double way_of(const RowRange& stroke, const std::vector<double>& t,
@@ -180,10 +194,23 @@ struct Slow {
   }
 };
 
+std::string in_words(const Slow& slow, const Dataset& data) {
+  std::string words =
+      fmt::format("slower than {:.2g} {}", slow.speed, data.find(Role::velocity)->unit);
+  if (const Channel* d = data.find(loop::derived_channel_name("d")); d != nullptr) {
+    words += fmt::format(", nearer than {:.2g} {} to a reversal", slow.near, d->unit);
+  }
+  return words;
+}
+
 // A stroke's rows from where it is first fast to where it is last; all of a stroke that creeps from
-// one place to another, but for rows as slow as the noise.
+// one place to another, but for rows as slow as the noise; and none so near a reversal.
 void add_moving(std::vector<std::size_t>& rows, RowRange stroke, const Slow& slow,
-                const std::vector<double>& t, const std::vector<double>& v, double noise) {
+                const Dataset& data, double noise) {
+  const std::vector<double>& t = data.find(Role::time)->values;
+  const std::vector<double>& v = data.find(Role::velocity)->values;
+  const Channel* d = data.find(loop::derived_channel_name("d"));  // null: nobody knows it
+  const auto is_near = [&](std::size_t i) { return d != nullptr && d->values[i] < slow.near; };
   const auto is_slow = [&](std::size_t i) { return std::abs(v[i]) < slow.speed; };
   const bool gets_there = Slow::way_of(stroke, t, v) > slow.way;
   RowRange fast = stroke;
@@ -191,7 +218,7 @@ void add_moving(std::vector<std::size_t>& rows, RowRange stroke, const Slow& slo
   while (fast.end > fast.begin && is_slow(fast.end - 1)) --fast.end;
   if (fast.begin < fast.end || !gets_there) stroke = fast;
   for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
-    if (std::abs(v[i]) >= kNoisy * noise) rows.push_back(i);
+    if (std::abs(v[i]) >= kNoisy * noise && !is_near(i)) rows.push_back(i);
   }
 }
 
@@ -218,9 +245,7 @@ void cut_strokes(PreparedRecording& out, double noise, double blur) {
   std::vector<std::string> names;
   for (const std::vector<RowRange>& group : movements_of(strokes)) {
     const std::size_t before = rows.size();
-    for (const RowRange& stroke : group) {
-      add_moving(rows, stroke, slow, t->values, v->values, noise);
-    }
+    for (const RowRange& stroke : group) add_moving(rows, stroke, slow, out.data, noise);
     if (rows.size() == before) continue;
     movement.resize(rows.size(), static_cast<int>(names.size()));
     const auto file = static_cast<std::size_t>(out.data.movement[group.front().begin]);
@@ -239,10 +264,10 @@ void cut_strokes(PreparedRecording& out, double noise, double blur) {
   out.data.movement_names = std::move(names);
   out.notes.push_back(fmt::format(
       "no column names the movements: {} strokes between {} rests and {} reversals make {}; {:.0f} "
-      "% of the rows, at rest, slower than {:.2g} {} or in shorter strokes, are left out",
+      "% of the rows, at rest, {} or in shorter strokes, are left out",
       strokes.size(), found.rests, found.reversals, out.data.movement_names.size(),
-      100.0 * static_cast<double>(all - out.data.rows()) / static_cast<double>(all), slow.speed,
-      find_channel(out.data, Role::velocity)->unit));
+      100.0 * static_cast<double>(all - out.data.rows()) / static_cast<double>(all),
+      in_words(slow, out.data)));
 }
 
 void settle_strokes(PreparedRecording& out, double noise) {
@@ -252,20 +277,19 @@ void settle_strokes(PreparedRecording& out, double noise) {
   const std::vector<RowRange> strokes = strokes_of_movements(out.data, *t, *v, noise);
   Slow slow(strokes, t->values, v->values, noise);
   slow.way = 0;  // somebody has told them apart: each small stroke is wanted
+  const bool from_rest = std::ranges::any_of(strokes, [&](const RowRange& stroke) {
+    return std::abs(v->values[stroke.begin]) < slow.speed;
+  });
+  if (from_rest) add_distance(out, strokes);  // else nobody knows how far back the last one lies
   std::vector<std::size_t> rows;
-  bool from_rest = false;  // else nobody knows how far back the last reversal lies
-  for (const RowRange& stroke : strokes) {
-    add_moving(rows, stroke, slow, t->values, v->values, noise);
-    from_rest = from_rest || std::abs(v->values[stroke.begin]) < slow.speed;
-  }
+  for (const RowRange& stroke : strokes) add_moving(rows, stroke, slow, out.data, noise);
   if (rows.empty() || rows.size() == out.data.rows()) return;
-  if (from_rest) add_distance(out, strokes);
   add_lagged_velocities(out);
   const std::size_t all = out.data.rows();
   keep_rows(out.data, rows);
-  out.notes.push_back(fmt::format(
-      "{} of {} rows, at rest or slower than {:.2g} {}, where bristles may not slide yet: left out",
-      all - rows.size(), all, slow.speed, find_channel(out.data, Role::velocity)->unit));
+  out.notes.push_back(
+      fmt::format("{} of {} rows, at rest, {}, where bristles may not slide yet: left out",
+                  all - rows.size(), all, in_words(slow, out.data)));
 }
 
 }  // namespace tribench
