@@ -15,6 +15,9 @@
 namespace tribench::loop {
 namespace {
 
+// Of what is left, by root mean square a tenth of it: what has no name has nothing else to show.
+constexpr double kLeastWorth = 0.01;
+
 constexpr double kSmootherRidge = 0.02;  // of the mean diagonal (specification, 3.8)
 // Of what an effect adds: what adds less in the same inputs is its shape.
 constexpr double kShapeShare = 0.1;
@@ -191,7 +194,7 @@ void LeftoverSearch::locate(const Home& home) {
   const std::vector<double> found = worths(model().model, state().families(), campaign_);
   const double worth =
       worth_of(home.place->features(campaign_.data), model().model, campaign_, home.place->ridge());
-  if (worth < least_worth(found, campaign_.options)) {
+  if (worth < std::max(kLeastWorth, least_worth(found, campaign_.options))) {
     state().note("what is left over is next to nothing");
     return;
   }

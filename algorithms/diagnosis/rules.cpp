@@ -20,7 +20,7 @@ constexpr std::array kRules = {
     Rule{"bursts", "rows of a burst are left out"},
     Rule{"rescue", "what few movements carry is admitted by its gain"},
     Rule{"most_columns", "a family has two columns at most"},
-    Rule{"slight", "what is next to nothing is left out"},
+    Rule{"slight", "what is next to nothing beside the other effects is left out"},
     Rule{"proxies", "what a smoother of the leftover makes superfluous is dropped"},
     Rule{"shape_of_memory", "a small effect beside one that remembers the motion is its shape"},
     Rule{"shape_of_leftover", "a leftover in the inputs of a larger effect is its shape"}};

@@ -93,9 +93,10 @@ bool choose_anew(SearchState& state, const Round& round, const Campaign& campaig
   return false;
 }
 
-// Leaves out the effect that is worth least, where that is next to nothing and the rest, fitted
-// anew, can be what it is called. False where there is none.
+// Leaves out the effect that is worth least, where that is next to nothing beside the others and
+// the rest, fitted anew, can be what it is called. False where there is none.
 bool leave_out_slight(SearchState& state, const Campaign& campaign) {
+  if (state.found.size() < 2) return false;
   const std::vector<double> worth = worths(state.model.model, state.families(), campaign);
   const double least = least_worth(worth, campaign.options);
   std::vector<std::size_t> order(worth.size());
@@ -107,8 +108,10 @@ bool leave_out_slight(SearchState& state, const Campaign& campaign) {
     FittedModel rest =
         fit_in_its_noise(state.model.model.without(family), campaign, FitScope::everything);
     if (stands_for_another_cause(rest.model, campaign)) continue;
-    state.note(fmt::format("'{}' is worth {:.1f} % of what is left, next to nothing: left out",
-                           campaign.families[family].name, 100 * worth[k]));
+    state.note(
+        fmt::format("'{}' is worth {:.1f} % of what is left, next to nothing beside the others: "
+                    "left out",
+                    campaign.families[family].name, 100 * worth[k]));
     state.left_out.push_back(family);
     state.found.erase(state.found.begin() + static_cast<std::ptrdiff_t>(k));
     state.model = std::move(rest);

@@ -2,15 +2,12 @@
 #include "algorithms/diagnosis/worth.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "algorithms/inference/whitening.hpp"
 
 namespace tribench::loop {
 namespace {
 
-// Of what is left: a tenth of the noise's standard deviation. The base is not the true form either.
-constexpr double kLeast = 0.01;
 // No more than the error of the other effects' shapes may be (docs/decisions.md).
 constexpr double kSlight = 0.03;
 
@@ -40,10 +37,8 @@ std::vector<double> worths(const LoopModel& model, const std::vector<std::size_t
 }
 
 double least_worth(const std::vector<double>& beside, const DiagnosisOptions& options) {
-  if (!options.has("slight")) return -std::numeric_limits<double>::infinity();
-  double largest = 0;
-  for (const double one : beside) largest = std::max(largest, one);
-  return std::max(kLeast, kSlight * std::min(1.0, largest));
+  if (!options.has("slight") || beside.empty()) return -1;
+  return kSlight * std::min(1.0, std::ranges::max(beside));
 }
 
 double worth_of(const Eigen::MatrixXd& columns, const LoopModel& model, const Campaign& campaign,

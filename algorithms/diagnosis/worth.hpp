@@ -3,9 +3,8 @@
 // How much smaller the squared error is for an effect, in rows as they are, each stretch predicted
 // from the others: what decides whether an effect is next to nothing. No form of the library is
 // the true one to the last per cent, and what a large effect's form lacks some small effect can
-// mimic; nor is the base's, and an acceleration told by an encoder is not the joint's. However many
-// rows say so, that is no cause; and it is where stories change when the recording is told again.
-// Internal to the room.
+// mimic. However many rows say so, that is no cause; and it is where stories change when the
+// recording is told again. Internal to the room.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,8 +18,8 @@ namespace tribench::loop {
 std::vector<double> worths(const LoopModel& model, const std::vector<std::size_t>& families,
                            const Campaign& campaign);
 
-// Less is next to nothing beside effects of these worths: a share of what is left, more of it
-// beside a large effect. What makes the error on movements left out no smaller never counts.
+// Less is next to nothing beside effects of these worths: a share of what is left, and of the
+// largest of them. -1 beside none, where everything counts.
 double least_worth(const std::vector<double>& beside, const DiagnosisOptions& options);
 
 // By how much columns beside the model make the squared error smaller, as a share. ridge: on them.
