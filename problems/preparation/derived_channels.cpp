@@ -99,8 +99,7 @@ std::string distance_recipe() {
 
 std::string seen_distance_recipe() {
   return "d; as long as it can be until the first reversal of a movement that starts in motion, or "
-         "goes "
-         "on the way that the one before it ended";
+         "goes on the way that the one before it ended";
 }
 
 std::vector<double> seen_distance(std::vector<double> distance, std::span<const char> seen) {
