@@ -299,6 +299,11 @@ NameReading read_plain(std::string_view name) {
 
 }  // namespace
 
+std::string_view without_unit(std::string_view name) {
+  take_brackets(name);
+  return name;
+}
+
 NameReading read_channel_name(std::string_view name) {
   constexpr std::string_view kSign = "sgn_";
   NameReading reading;

@@ -33,6 +33,9 @@ struct NameReading {
 // joint's. Letters' case decides between t and T alone.
 NameReading read_channel_name(std::string_view name);
 
+// "Strom" of "Strom [A]": what stands before the brackets.
+std::string_view without_unit(std::string_view name);
+
 // Whether a word of the name says that it is no measurement of the joint: a set point, an error, a
 // limit; a bus, a tool; a phase; how long something took.
 bool names_something_else(std::string_view name);

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "foundation/error.hpp"
+#include "problems/reading/channel_names.hpp"
 #include "problems/reading/column_plan.hpp"
 #include "problems/reading/csv_cells.hpp"
 #include "problems/reading/csv_checks.hpp"
@@ -261,12 +262,30 @@ void fill_channels(Reading& in, DataFile& out) {
   if (in.options.sample_rate) count_time(in, *in.options.sample_rate, out);
 }
 
+// A role may name its column without the unit that the header writes behind it, where no other
+// column is called so.
+CsvOptions with_whole_names(CsvOptions options, const CsvLayout& layout) {
+  GivenRoles whole;
+  for (const auto& [column, role] : options.roles) {
+    const auto is_meant = [&](const std::string& name) { return without_unit(name) == column; };
+    const auto meant = std::ranges::find_if(layout.header, is_meant);
+    const bool is_short = std::ranges::count(layout.header, column) == 0 &&
+                          std::ranges::count_if(layout.header, is_meant) == 1 &&
+                          !options.roles.contains(*meant);
+    whole.emplace(is_short ? *meant : column, role);
+  }
+  options.roles = std::move(whole);
+  return options;
+}
+
 }  // namespace
 
-DataFile parse_csv(std::string_view text, std::string_view file, const CsvOptions& options) {
+DataFile parse_csv(std::string_view text, std::string_view file, const CsvOptions& told) {
   DataFile out;
-  const bool nameless = options.roles.contains("column_1") || options.roles.contains("column_2");
-  Reading in{text, file, options, find_layout(text, file, nameless), {}, {}, {}};
+  const bool nameless = told.roles.contains("column_1") || told.roles.contains("column_2");
+  CsvLayout layout = find_layout(text, file, nameless);
+  const CsvOptions options = with_whole_names(told, layout);
+  Reading in{text, file, options, std::move(layout), {}, {}, {}};
   in.plans = plan_columns(in.layout, options, file, out);
   std::vector<ColumnKind> kinds;
   for (const ColumnPlan& plan : in.plans) kinds.push_back(plan.kind);

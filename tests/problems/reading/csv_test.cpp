@@ -161,6 +161,21 @@ TEST(Csv, GivenRolesWinAndUnknownColumnsAreAnsweredWithTheNearest) {
   EXPECT_THAT(complaint("speed,y\n1,2\n", options), HasSubstr("did you mean speed?"));
 }
 
+TEST(Csv, ARoleMayNameItsColumnWithoutTheUnitBehindIt) {
+  CsvOptions options;
+  options.roles = parse_roles("Lage=position,Strom=motor_current[mA]", "--roles");
+  const DataFile file = parse_csv("Lage [deg],Strom (mA)\n90,1500\n", "data.csv", options);
+  EXPECT_EQ(file.data.at("Lage [deg]").role, Role::position);
+  EXPECT_NEAR(file.data.at("Lage [deg]").values[0], M_PI / 2, 1e-15);
+  EXPECT_EQ(file.data.at("Strom (mA)").role, Role::motor_current);
+  // Where that leaves two to choose from, or both are named, it stands for neither.
+  EXPECT_THAT(complaint("Strom [A],Strom (mA)\n1,2\n", options), HasSubstr("no column 'Lage'"));
+  options.roles = parse_roles("Strom=motor_current", "--roles");
+  EXPECT_THAT(complaint("Strom [A],Strom (mA)\n1,2\n", options), HasSubstr("no column 'Strom'"));
+  options.roles = parse_roles("Strom=motor_current,Strom [A]=motor_current", "--roles");
+  EXPECT_THAT(complaint("Strom [A],q\n1,2\n", options), HasSubstr("no column 'Strom'"));
+}
+
 TEST(Csv, TorqueLikeColumnsShareOneUnit) {
   EXPECT_THAT(complaint("v,motor_torque_Nm,gravity_torque_A\n1,2,3\n"), HasSubstr("N m"));
   // A current beside a torque is what the torque was computed from, unless a role is given.
