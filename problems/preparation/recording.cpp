@@ -74,6 +74,7 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
   file.data = std::move(out.data);
   check_motion(file, options.drive.gear_ratio);
   out.data = std::move(file.data);
+  settle_other_acceleration(out);
   double noise = 0;
   double blur = 0;
   if (const std::optional<DerivedMotion> derived = derive_motion(out)) {

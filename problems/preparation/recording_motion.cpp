@@ -22,6 +22,15 @@ constexpr double kMatters = 0.33;     // of the acceleration that the torque's n
 constexpr double kLeastDelay = 0.6;   // steps of time
 constexpr double kMuchCoarser = 4;    // than the derived velocity's noise
 
+// Shorter ones make no stroke.
+std::vector<RowRange> pieces_to_smooth(std::span<const double> time,
+                                       std::span<const int> movement) {
+  std::vector<RowRange> pieces = pieces_of(time, movement, {});
+  std::erase_if(pieces,
+                [](const RowRange& piece) { return piece.end - piece.begin < kFewestRows; });
+  return pieces;
+}
+
 }  // namespace
 
 void settle_clock(PreparedRecording& out) {
@@ -47,9 +56,7 @@ std::optional<DerivedMotion> derive_motion(const PreparedRecording& out) {
   const Channel* t = out.data.find(Role::time);
   if (q == nullptr || t == nullptr || !is_regular(t->values, out.data.movement)) return {};
   DerivedMotion derived;
-  derived.pieces = pieces_of(t->values, out.data.movement, {});
-  std::erase_if(derived.pieces,
-                [](const RowRange& piece) { return piece.end - piece.begin < kFewestRows; });
+  derived.pieces = pieces_to_smooth(t->values, out.data.movement);
   if (derived.pieces.empty()) return {};
   const MotionSmoother smoother(t->values, q->values, derived.pieces);
   derived.motion = smoother.smoothed();
@@ -135,6 +142,26 @@ void settle_acceleration(PreparedRecording& out, const DerivedMotion& derived) {
   // The inertia was not declared: it is no effect that friction lacks.
   if (out.data.find(Role::friction_torque) == nullptr)
     out.rigid.emplace_back("derived_acceleration");
+}
+
+// Inertia couples joints by their accelerations: without the other's its velocity says little.
+void settle_other_acceleration(PreparedRecording& out) {
+  const Channel* v = find_channel(out.data, Role::other_velocity);
+  const Channel* t = find_channel(out.data, Role::time);
+  if (v == nullptr || t == nullptr || find_channel(out.data, Role::other_acceleration) != nullptr ||
+      !is_regular(t->values, out.data.movement)) {
+    return;
+  }
+  const std::vector<RowRange> pieces = pieces_to_smooth(t->values, out.data.movement);
+  if (pieces.empty()) return;
+  // The smoother's velocity is the first derivative of what it is given.
+  Motion motion = MotionSmoother(t->values, v->values, pieces).smoothed();
+  out.notes.push_back(
+      fmt::format("the other joint's acceleration is derived from '{}' ({:.2g} Hz), noise {:.2g} "
+                  "{}^2",
+                  v->name, motion.bandwidth, motion.velocity_noise, v->unit));
+  out.data.channels.push_back({"derived_other_acceleration", v->unit + "^2",
+                               Role::other_acceleration, std::move(motion.velocity)});
 }
 
 namespace {

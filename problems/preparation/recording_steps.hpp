@@ -58,6 +58,8 @@ std::optional<DerivedMotion> derive_motion(const PreparedRecording& out);
 void settle_velocity(PreparedRecording& out, const DerivedMotion& derived);
 // The derived acceleration where there is none.
 void settle_acceleration(PreparedRecording& out, const DerivedMotion& derived);
+// The other joint's acceleration from its velocity, where there is none.
+void settle_other_acceleration(PreparedRecording& out);
 // Where the acceleration changes faster than the smoother follows, inertia would be taken for
 // friction. Marked before rows are left out, dropped when the movements are cut.
 void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived);

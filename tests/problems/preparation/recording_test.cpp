@@ -103,6 +103,24 @@ TEST(PreparedRecording, ATableWithAllOfItsMotionIsCutIntoStrokesToo) {
   EXPECT_EQ(prepared(named, {}).data.movement_names.size(), 1U);
 }
 
+TEST(PreparedRecording, TheOtherJointsAccelerationFollowsFromItsVelocity) {
+  std::string text = "t,q,i_A,other_velocity\n";
+  for (int k = 0; k < 4000; ++k) {
+    const double t = 0.005 * k;
+    text += fmt::format("{:.3f},{:.7f},{:.5f},{:.6f}\n", t, std::sin(t),
+                        std::cos(t) > 0 ? 1.0 : -1.0, 0.8 * std::sin(3 * t));
+  }
+  const PreparedRecording recording = prepared(text, engineer());
+  const Channel* a2 = recording.data.find(Role::other_acceleration);
+  ASSERT_NE(a2, nullptr);
+  EXPECT_EQ(a2->unit, "rad/s^2");
+  EXPECT_THAT(recording.notes, Contains(HasSubstr("other joint's acceleration is derived")));
+  const std::vector<double>& time = recording.data.find(Role::time)->values;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    ASSERT_NEAR(a2->values[i], 2.4 * std::cos(3 * time[i]), 0.03) << time[i];
+  }
+}
+
 TEST(PreparedRecording, GravityThatNoColumnDeclaresIsFound) {
   RawLogPlan plan;
   plan.load = 0.08;
