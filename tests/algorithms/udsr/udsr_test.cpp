@@ -173,9 +173,11 @@ TEST(Udsr, KeepsItsSecondsOnManyRowsAndInputs) {
   const TrainingData data{inputs, columns, y, movement};
   Budget budget({.cpu_seconds = 0.7});
   FitContext context{data, find_operator_set("full"), budget, RandomStream(7)};
-  const double start = process_cpu_seconds();
+  [[maybe_unused]] const double start = process_cpu_seconds();
   EXPECT_FALSE(Registry().make("udsr", {})->fit(context).front.empty());
+#ifndef TRIBENCH_SANITIZED  // whose instructions cost several times as much
   EXPECT_LT(process_cpu_seconds() - start, 1.2);
+#endif
 }
 
 }  // namespace
