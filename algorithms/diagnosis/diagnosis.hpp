@@ -39,7 +39,8 @@ struct DiagnosisOptions {
   bool has(std::string_view rule) const { return std::ranges::count(without, rule) == 0; }
 };
 
-// cannot_tell: nothing could be tested, neither the library nor what is left over.
+// cannot_tell: nothing could be tested, neither the library nor what is left over; or something is
+// there that too few movements show.
 enum class Verdict { none, effects, unknown, cannot_tell };
 // "NONE", "EFFECTS", "UNKNOWN", "CANNOT_TELL"
 std::string_view verdict_name(Verdict verdict);

@@ -87,8 +87,9 @@ EffectFamily nonlinear_viscous() {
   return f;
 }
 
-// Where inertia and gravity weigh alike at the fastest and heaviest the grid holds them so.
-ShapeTemplate inertia_in_load() { return {"J", "g/a", {0.3, 1}, 0.03, 10}; }
+// A gear carries the inertia behind it as it does the gravity, whichever of the two a table has
+// taken off. Where both weigh alike at the fastest and heaviest the grid holds them so.
+ShapeTemplate inertia_in_load() { return {std::string(kInertiaInLoad), "g/a", {0.3, 1}, 0.03, 10}; }
 
 EffectFamily load_coulomb() {
   EffectFamily f{"load_coulomb",
@@ -98,7 +99,7 @@ EffectFamily load_coulomb() {
                  "Bittencourt et al. 2010",
                  {}};
   f.atoms = {{{"sgn_v*abs(g)"}, {"mu"}},
-             {{"sgn_v*abs(g + J*a)"}, {"mu"}, {inertia_in_load()}, true},
+             {{"sgn_v*abs(g + J*a)"}, {"mu"}, {inertia_in_load()}},
              {.columns = {"abs(g)"}, .coefficients = {"mu_half_gap"}, .by_direction = true}};
   f.sanity = {{"mu", 1, 0, "friction that falls as the load grows"}};
   f.separate_by = {"R3"};
@@ -113,7 +114,7 @@ EffectFamily load_viscous() {
                  "Bittencourt et al. 2010",
                  {}};
   f.atoms = {{{"v*abs(g)"}, {"mu_v"}},
-             {{"v*abs(g + J*a)"}, {"mu_v"}, {inertia_in_load()}, true},
+             {{"v*abs(g + J*a)"}, {"mu_v"}, {inertia_in_load()}},
              {.columns = {"abs(v*g)"}, .coefficients = {"mu_v_half_gap"}, .by_direction = true}};
   f.separate_by = {"R3"};
   return f;

@@ -208,7 +208,6 @@ AtomTemplate read_atom(const Entry& entry) {
   for (std::size_t k = atom.coefficients.size(); k < atom.columns.size(); ++k) {
     atom.coefficients.push_back(fmt::format("c{}", k + 1));
   }
-  atom.rigid_load = entry.find<bool>("rigid_load").value_or(false);
   atom.beside_another = entry.find<bool>("beside_another").value_or(false);
   atom.by_direction = entry.find<bool>("by_direction").value_or(false);
   atom.one_way = entry.find<bool>("one_way").value_or(false);
@@ -300,7 +299,6 @@ void insert_family(toml::table& table, const EffectFamily& family) {
 toml::table table_of(const AtomTemplate& atom) {
   toml::table table{{"columns", array_of(atom.columns)},
                     {"coefficients", array_of(atom.coefficients)}};
-  if (atom.rigid_load) table.insert("rigid_load", true);
   if (atom.beside_another) table.insert("beside_another", true);
   if (atom.by_direction) table.insert("by_direction", true);
   if (atom.one_way) table.insert("one_way", true);
@@ -332,7 +330,7 @@ std::vector<EffectFamily> read_effects(const std::filesystem::path& file) {
   const Entry whole(table, file.string(), {"effect"});
   const std::vector<Entry> effects = whole.entries(
       "effect", {"name", "id", "phrase", "summary", "source", "origin", "title", "angular", "curve",
-                 "separate_by", "sanity", "alias", "columns", "coefficients", "shape", "rigid_load",
+                 "separate_by", "sanity", "alias", "columns", "coefficients", "shape",
                  "beside_another", "by_direction", "one_way"});
   if (effects.empty()) {
     throw_bad_input("there is no [[effect]] in the file", file.string(),

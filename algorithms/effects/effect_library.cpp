@@ -196,9 +196,7 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
     missing = {"no angle: the position is in m"};
     return atoms;
   }
-  const bool rigid_load = std::ranges::count(data.rigid, "a") > 0;
   for (const AtomTemplate& source : family.atoms) {
-    if (source.rigid_load && !rigid_load) continue;
     if ((source.by_direction || source.one_way) && !moves_both_ways(data)) continue;
     std::vector<std::string> lacking;
     for (const std::string& name : variables_of(source)) {

@@ -50,9 +50,6 @@ struct AtomTemplate {
   std::vector<std::string> columns;
   std::vector<std::string> coefficients;  // names of the columns' coefficients, for the report
   std::vector<ShapeTemplate> shapes = {};
-  // Only where the acceleration stands in the base because the recording still contains the
-  // inertia's torque: the load on the transmission is then its sum with gravity, not gravity alone.
-  bool rigid_load = false;
   // Only beside another atom of the family: what an effect that is there may have besides
   // (harmonics, a phase that drifts).
   bool beside_another = false;
@@ -120,6 +117,9 @@ struct Shape {
   ShapeValues values = ShapeValues::grid;
   bool refined() const { return high > low; }
 };
+
+// The shape of a load that holds the inertia behind the gear: g + J*a.
+inline constexpr std::string_view kInertiaInLoad = "J";
 
 // Columns with definite shapes, over the signals of one data set.
 struct Atom {
