@@ -228,7 +228,9 @@ std::string leftover_inputs(const LoopRecord& record) {
 std::string headline_of(const LoopRecord& record) {
   switch (record.verdict) {
     case LoopVerdict::cannot_tell:
-      return "These data cannot tell: nothing in them can be tested.";
+      return record.candidates.empty()
+                 ? "These data cannot tell: nothing in them can be tested."
+                 : "These data cannot tell: too few movements show what seems to be missing.";
     case LoopVerdict::none:
       if (record.candidates.empty()) return "These data can test none of the known effects.";
       return record.untestable.empty() ? "Nothing is missing: what is left is noise."

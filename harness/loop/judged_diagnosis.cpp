@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/effects/effect_library.hpp"
 #include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/parallel_for.hpp"
 #include "harness/loop/bristles_of.hpp"
@@ -128,6 +129,28 @@ class ChosenShares {
   std::map<std::string, double> times_;
 };
 
+// ": how", or nothing where no rule of experiment is known.
+std::string experiments_of(const std::vector<std::string>& rules) {
+  std::vector<std::string> texts;
+  for (const std::string& rule : rules) texts.push_back(experiment_text(rule));
+  return texts.empty() ? std::string() : fmt::format(": {}", fmt::join(texts, ", or "));
+}
+
+// It is not that nothing is missing where a smooth function of the same inputs, fitted to the same
+// movements, leaves less error on those that it never saw (more than rounding: then there is
+// nothing to be tested either). On data without a cause it leaves none less: no correction at all
+// is one of its choices.
+void doubt_nothing_missing(JudgedDiagnosis& whole) {
+  constexpr double kTooMuch = 0.1;  // of the error
+  const double less = 1 - whole.error.attainable / whole.error.mae_after;
+  if (whole.verdict != Verdict::none || whole.candidates.empty() || !(less > kTooMuch)) return;
+  whole.verdict = Verdict::cannot_tell;
+  whole.needed.push_back(fmt::format(
+      "more movements of every kind: a smooth function of the same inputs leaves {:.0f} % less "
+      "error on those left out, but too few of them tell what it stands for",
+      100 * less));
+}
+
 // One recording, in its canonical order, and what is asked of it.
 class LoopJudge {
  public:
@@ -177,7 +200,8 @@ void LoopJudge::search(Searches& all, const std::vector<std::size_t>& which,
 
 // Stability selection (Meinshausen and Buehlmann 2010): what too few of the searches on parts
 // choose hangs on a movement or two. Where the whole names such an effect, all are asked anew for
-// what most of them choose, but those that had nothing else.
+// what most of them choose, but those that had nothing else. Where nothing else is found then, it
+// is not that nothing is missing: too few movements show it.
 void LoopJudge::name_the_stable(Searches& all) {
   ChosenShares shares;
   for (std::size_t k = 1; k < all.found.size(); ++k) shares.count(all.found[k]);
@@ -189,11 +213,14 @@ void LoopJudge::name_the_stable(Searches& all) {
     return std::ranges::count(options.unnamed, family) > 0;
   };
   std::vector<std::string> notes;
+  std::vector<std::string> needed;
   for (const EffectFinding& effect : all.whole().effects) {
     if (!is_unnamed(effect.family)) continue;
     notes.push_back(fmt::format(
         "'{}' is chosen by {:.0f} % of the searches without some of the movements: not named",
         effect.family, 100 * shares.of(effect.family)));
+    needed.push_back(fmt::format("more movements that show '{}'{}", effect.family,
+                                 experiments_of(effect.separate_by)));
   }
   if (!notes.empty()) {
     std::vector<std::size_t> again;
@@ -202,9 +229,13 @@ void LoopJudge::name_the_stable(Searches& all) {
     }
     search(all, again, options);
   }
-  std::vector<std::string>& said = all.whole().notes;
-  said.insert(said.end(), notes.begin(), notes.end());
-  shares.write(all.whole());
+  Diagnosis& whole = all.whole();
+  whole.notes.insert(whole.notes.end(), notes.begin(), notes.end());
+  if (whole.verdict == Verdict::none && !needed.empty()) {
+    whole.verdict = Verdict::cannot_tell;
+    whole.needed = std::move(needed);
+  }
+  shares.write(whole);
 }
 
 // Of the rows that a diagnosis has not seen.
@@ -273,6 +304,7 @@ JudgedDiagnosis LoopJudge::in_turn() {
       !data_.group.empty() ? fmt::format("movements of one '{}' left out in turn", data_.group_name)
       : data_.movements().size() > turns ? fmt::format("the movements left out in {} turns", turns)
                                          : "each movement left out in turn";
+  doubt_nothing_missing(whole);
   return whole;
 }
 
@@ -299,6 +331,7 @@ JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
   add_predictions(models, whole, whole.bristles, random_);
   whole.error = judged(rows, models, data_.select(rows).movement);
   whole.error.how = "held out";
+  doubt_nothing_missing(whole);
   return whole;
 }
 

@@ -20,7 +20,8 @@
 
 namespace tribench {
 
-// cannot_tell: nothing could be tested, neither the known effects nor what is left over.
+// cannot_tell: nothing could be tested, neither the known effects nor what is left over; or (there
+// are candidates then) something is there that too few movements show.
 enum class LoopVerdict { none, effects, unknown, cannot_tell };
 // "NONE", "EFFECTS", "UNKNOWN", "CANNOT_TELL"
 std::string_view loop_verdict_name(LoopVerdict verdict);
