@@ -160,10 +160,6 @@ std::vector<std::string> inputs_of(const std::vector<std::string>& signals,
   return inputs;
 }
 
-}  // namespace
-
-namespace {
-
 // With the inertia behind the gear in it, friction with the load would have its room for a misfit
 // in the acceleration too, and explain there what others do (docs/decisions.md).
 bool holds_inertia(const Atom& atom) {
