@@ -139,12 +139,14 @@ std::string experiments_of(const std::vector<std::string>& rules) {
 // It is not that nothing is missing where a smooth function of the same inputs, fitted to the same
 // movements, leaves less error on those that it never saw (more than rounding: then there is
 // nothing to be tested either). On data without a cause it leaves none less: no correction at all
-// is one of its choices.
-void doubt_nothing_missing(JudgedDiagnosis& whole) {
-  constexpr double kTooMuch = 0.1;  // of the error
+// is one of its choices. needed: what to record of what was found and not named.
+void doubt_nothing_missing(JudgedDiagnosis& whole, std::vector<std::string> needed) {
+  constexpr double kTooMuch = 0.05;  // of the error
   const double less = 1 - whole.error.attainable / whole.error.mae_after;
   if (whole.verdict != Verdict::none || whole.candidates.empty() || !(less > kTooMuch)) return;
   whole.verdict = Verdict::cannot_tell;
+  whole.needed = std::move(needed);
+  if (!whole.needed.empty()) return;
   whole.needed.push_back(fmt::format(
       "more movements of every kind: a smooth function of the same inputs leaves {:.0f} % less "
       "error on those left out, but too few of them tell what it stands for",
@@ -170,7 +172,7 @@ class LoopJudge {
   };
   void search(Searches& all, const std::vector<std::size_t>& which,
               const DiagnosisOptions& options);
-  void name_the_stable(Searches& all);
+  std::vector<std::string> name_the_stable(Searches& all);
   // bristles: of `fitted`.
   void add_predictions(LeftOut& all, const Diagnosis& fitted,
                        const std::optional<Bristles>& bristles, const RandomStream& random) const;
@@ -200,9 +202,9 @@ void LoopJudge::search(Searches& all, const std::vector<std::size_t>& which,
 
 // Stability selection (Meinshausen and Buehlmann 2010): what too few of the searches on parts
 // choose hangs on a movement or two. Where the whole names such an effect, all are asked anew for
-// what most of them choose, but those that had nothing else. Where nothing else is found then, it
-// is not that nothing is missing: too few movements show it.
-void LoopJudge::name_the_stable(Searches& all) {
+// what most of them choose, but those that had nothing else. Returns what to record to be sure of
+// what is not named.
+std::vector<std::string> LoopJudge::name_the_stable(Searches& all) {
   ChosenShares shares;
   for (std::size_t k = 1; k < all.found.size(); ++k) shares.count(all.found[k]);
   DiagnosisOptions options = options_;
@@ -231,11 +233,8 @@ void LoopJudge::name_the_stable(Searches& all) {
   }
   Diagnosis& whole = all.whole();
   whole.notes.insert(whole.notes.end(), notes.begin(), notes.end());
-  if (whole.verdict == Verdict::none && !needed.empty()) {
-    whole.verdict = Verdict::cannot_tell;
-    whole.needed = std::move(needed);
-  }
   shares.write(whole);
+  return needed;
 }
 
 // Of the rows that a diagnosis has not seen.
@@ -289,7 +288,7 @@ JudgedDiagnosis LoopJudge::in_turn() {
   const std::size_t turns = searches.without.size();
   searches.without.insert(searches.without.begin(), std::vector<int>());
   search(searches, numbers(0, turns + 1), options_);
-  name_the_stable(searches);
+  std::vector<std::string> needed = name_the_stable(searches);
   // The error is that of what is named.
   LeftOut all(data_.rows());
   for (std::size_t k = 1; k <= turns; ++k) {
@@ -304,13 +303,14 @@ JudgedDiagnosis LoopJudge::in_turn() {
       !data_.group.empty() ? fmt::format("movements of one '{}' left out in turn", data_.group_name)
       : data_.movements().size() > turns ? fmt::format("the movements left out in {} turns", turns)
                                          : "each movement left out in turn";
-  doubt_nothing_missing(whole);
+  doubt_nothing_missing(whole, std::move(needed));
   return whole;
 }
 
 JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
   Searches searches{{test}, {}};
   search(searches, {0}, options_);
+  std::vector<std::string> needed;
   if (judging_.resample && !searches.whole().effects.empty()) {
     for (std::vector<int>& left :
          left_out_together(data_.select(usable_rows(data_, test, false, {})))) {
@@ -319,7 +319,7 @@ JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
       searches.without.push_back(std::move(left));
     }
     search(searches, numbers(1, searches.without.size()), options_);
-    name_the_stable(searches);
+    needed = name_the_stable(searches);
   }
   JudgedDiagnosis whole{std::move(searches.whole()), {}, {}};
   whole.bristles = bristles_of(whole, data_);
@@ -331,7 +331,7 @@ JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
   add_predictions(models, whole, whole.bristles, random_);
   whole.error = judged(rows, models, data_.select(rows).movement);
   whole.error.how = "held out";
-  doubt_nothing_missing(whole);
+  doubt_nothing_missing(whole, std::move(needed));
   return whole;
 }
 

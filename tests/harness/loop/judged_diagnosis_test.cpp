@@ -172,8 +172,6 @@ TEST(JudgedDiagnosis, WhatTheSearchesOnPartsDoNotFindAgainIsNotNamed) {
     const JudgedDiagnosis again = diagnose_planted(planted, seed, {.resample = true});
     EXPECT_EQ(families(again), std::vector<std::string>{}) << seed;
     EXPECT_THAT(again.notes, ::testing::Contains(::testing::HasSubstr("not named"))) << seed;
-    EXPECT_EQ(again.verdict, Verdict::cannot_tell) << "something is there";
-    EXPECT_THAT(again.needed, ::testing::ElementsAre(::testing::HasSubstr("'stribeck'"))) << seed;
   }
 }
 
