@@ -172,7 +172,7 @@ class LoopJudge {
   };
   void search(Searches& all, const std::vector<std::size_t>& which,
               const DiagnosisOptions& options);
-  std::vector<std::string> name_the_stable(Searches& all);
+  [[nodiscard]] std::vector<std::string> name_the_stable(Searches& all);
   // bristles: of `fitted`.
   void add_predictions(LeftOut& all, const Diagnosis& fitted,
                        const std::optional<Bristles>& bristles, const RandomStream& random) const;
