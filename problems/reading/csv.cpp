@@ -267,7 +267,9 @@ void fill_channels(Reading& in, DataFile& out) {
 CsvOptions with_whole_names(CsvOptions options, const CsvLayout& layout) {
   GivenRoles whole;
   for (const auto& [column, role] : options.roles) {
-    const auto is_meant = [&](const std::string& name) { return without_unit(name) == column; };
+    const auto is_meant = [&column = column](const std::string& name) {
+      return without_unit(name) == column;
+    };
     const auto meant = std::ranges::find_if(layout.header, is_meant);
     const bool is_short = std::ranges::count(layout.header, column) == 0 &&
                           std::ranges::count_if(layout.header, is_meant) == 1 &&
