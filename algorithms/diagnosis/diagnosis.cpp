@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "algorithms/diagnosis/findings.hpp"
 #include "algorithms/diagnosis/rich_model.hpp"
 #include "algorithms/diagnosis/search.hpp"
+#include "algorithms/diagnosis/unknown_ripple.hpp"
 #include "algorithms/inference/bursts.hpp"
 #include "foundation/error.hpp"
 #include "foundation/suggestion.hpp"
@@ -166,12 +168,37 @@ Diagnosis diagnose_canonical(const Observations& data, const std::vector<int>& h
   return out;
 }
 
+bool names_gear_ripple(const Diagnosis& diagnosis) {
+  return std::ranges::any_of(diagnosis.families, [&](const EffectFamily& family) {
+    return repeats_with_the_gear(family) &&
+           std::ranges::count(diagnosis.effects, family.name, &EffectFinding::family) > 0;
+  });
+}
+
+// The same once more, what repeats taken for a turn of the motor. As it was where that names no
+// ripple, or something still repeats or lives in the position: a notch has a spectrum, too.
+Diagnosis knowing_the_ripple(Diagnosis first, const Observations& data, const BaseMaker& base) {
+  DiagnosisOptions options = first.options;
+  options.gear_ratios = {*first.leftover.waves};
+  Diagnosis again = diagnose_canonical(data, first.held_out, base, options);
+  const bool explains_it = names_gear_ripple(again) && !again.leftover.waves &&
+                           std::ranges::count(again.leftover.signals, "q") == 0;
+  if (!explains_it) return first;
+  again.notes.push_back(fmt::format(
+      "the ripple's period, {:.4g} {}, was found in these data: whether it is a turn of "
+      "the motor, a tooth or a bearing they do not say",
+      2 * std::numbers::pi / *first.leftover.waves, data.find("q")->unit));
+  return again;
+}
+
 }  // namespace
 
 Diagnosis diagnose(const Observations& data, const BaseMaker& base, const DiagnosisOptions& options,
                    const std::vector<int>& held_out) {
   const Canonical told = canonical(data, held_out);
   Diagnosis out = diagnose_canonical(told.data, held_out, base, options);
+  if (out.leftover.waves && !names_gear_ripple(out))
+    out = knowing_the_ripple(std::move(out), told.data, base);
   out.masked = told.as_told(out.masked);
   return out;
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "algorithms/diagnosis/unknown_ripple.hpp"
 #include "algorithms/diagnosis/worth.hpp"
 #include "algorithms/inference/feature_scores.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
@@ -55,9 +56,13 @@ std::vector<std::string> inputs_of(std::size_t family, const LoopModel& model,
 class LeftoverSearch {
  public:
   LeftoverSearch(SearchResult& result, const Campaign& campaign, RandomStream random)
-      : result_(result), campaign_(campaign), smoothers_(make_smoothers(campaign.data, random)) {}
+      : result_(result),
+        campaign_(campaign),
+        random_(random),
+        smoothers_(make_smoothers(campaign.data, random)) {}
 
   void test_residual();
+  void look_for_waves();
   void name_shapes();
 
  private:
@@ -71,6 +76,7 @@ class LeftoverSearch {
   std::optional<Home> best_place(const std::vector<Place>& places,
                                  const std::vector<BlockScores>& blocks,
                                  const std::vector<double>& maxima) const;
+  bool is_next_to_nothing(const Eigen::MatrixXd& columns, double ridge);
   void locate(const Home& home);
   void drop_proxies(const Smoother& smoother);
   bool drop_if_superfluous(const Smoother& smoother, std::size_t family, bool excused,
@@ -84,6 +90,7 @@ class LeftoverSearch {
 
   SearchResult& result_;
   const Campaign& campaign_;
+  RandomStream random_;
   std::vector<Smoother> smoothers_;
   // With all that was found, before the proxies of what it leaves over were dropped.
   struct WholeModel {
@@ -190,11 +197,14 @@ std::optional<LeftoverSearch::Home> LeftoverSearch::best_place(
   return best;
 }
 
-void LeftoverSearch::locate(const Home& home) {
+bool LeftoverSearch::is_next_to_nothing(const Eigen::MatrixXd& columns, double ridge) {
   const std::vector<double> found = worths(model().model, state().families(), campaign_);
-  const double worth =
-      worth_of(home.place->features(campaign_.data), model().model, campaign_, home.place->ridge());
-  if (worth < std::max(kLeastWorth, least_worth(found, campaign_.options))) {
+  return worth_of(columns, model().model, campaign_, ridge) <
+         std::max(kLeastWorth, least_worth(found, campaign_.options));
+}
+
+void LeftoverSearch::locate(const Home& home) {
+  if (is_next_to_nothing(home.place->features(campaign_.data), home.place->ridge())) {
     state().note("what is left over is next to nothing");
     return;
   }
@@ -217,6 +227,27 @@ void LeftoverSearch::locate(const Home& home) {
     leftover.inputs = known.inputs;
     leftover.signals = known.signals;
   }
+}
+
+// A smoother of the position sees no wave that is shorter than the distance of its centres. What is
+// left of a ripple that was found is its shape.
+void LeftoverSearch::look_for_waves() {
+  if (!result_.leftover_tested || !campaign_.options.has("unknown_ripple")) return;
+  const std::optional<Wave> wave = unknown_ripple(model(), campaign_, random_.split("waves"));
+  if (!wave) return;
+  const Eigen::MatrixXd columns = wave_columns(*wave, campaign_.data);
+  if (is_next_to_nothing(columns, 0)) return;
+  LeftoverFinding& leftover = result_.leftover;
+  leftover.waves = wave->wavenumber;
+  const bool is_named = std::ranges::any_of(state().families(), [&](std::size_t family) {
+    return repeats_with_the_gear(campaign_.families[family]);
+  });
+  if (is_named || !leftover.inputs.empty()) return;
+  leftover.p = wave->p;
+  leftover.signals = {"q"};
+  leftover.inputs = {input_name(campaign_.data, "q")};
+  const Eigen::MatrixXd z = whitened(columns, campaign_.clusters, model().noise);
+  nats_ = paired_gain(model().losses, losses_beside(model(), z, campaign_)).nats;
 }
 
 // Whether the leftover's smoother makes a family superfluous; then the model loses it.
@@ -325,6 +356,7 @@ void LeftoverSearch::name_shapes() {
 void find_leftover(SearchResult& result, const Campaign& campaign, RandomStream random) {
   LeftoverSearch search(result, campaign, random);
   search.test_residual();
+  search.look_for_waves();
   search.name_shapes();
 }
 

@@ -199,11 +199,11 @@ EffectFamily output_ripple() {
                  "torque repeats with the joint's angle",
                  "Tuttle 1992",
                  {}};
-  for (int k = 2; k <= 8; ++k) {
+  for (int k = 2; k <= kMostWavesOfOutput; ++k) {
     const std::string angle = std::to_string(k) + "*q)";
     f.atoms.push_back({{"cos(" + angle, "sin(" + angle}, {"cosine", "sine"}});
   }
-  for (int k = 2; k <= 8; ++k) {
+  for (int k = 2; k <= kMostWavesOfOutput; ++k) {
     const std::string angle = std::to_string(k) + "*q";
     if (3 * k <= 12) f.atoms.push_back(harmonics_of(angle, {}));
     f.atoms.push_back(drifting(angle, {}));

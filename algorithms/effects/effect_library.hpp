@@ -118,6 +118,9 @@ struct Shape {
   bool refined() const { return high > low; }
 };
 
+// Waves a turn of the output, of its own ripples: what repeats more often is the gear's.
+inline constexpr int kMostWavesOfOutput = 8;
+
 // The shape of a load that holds the inertia behind the gear: g + J*a.
 inline constexpr std::string_view kInertiaInLoad = "J";
 

@@ -106,27 +106,59 @@ void Whitening::filter_rows(Eigen::Ref<Eigen::MatrixXd> rows) const {
   for (; j < rows.cols(); ++j) filter_columns<1>(rows.col(j).data(), rows.outerStride(), count);
 }
 
+Eigen::VectorXd Whitening::offset_direction(std::size_t rows) const {
+  Eigen::VectorXd direction(static_cast<Eigen::Index>(rows));
+  for (std::size_t k = 0; k < rows; ++k) {
+    direction[static_cast<Eigen::Index>(k)] = filter_.offset(k);
+  }
+  return direction;
+}
+
+// Of filtered rows of a movement, its weight too.
+void Whitening::shrink_offset(std::size_t movement, Eigen::Ref<Eigen::MatrixXd> rows) const {
+  const Eigen::VectorXd direction = offset_direction(static_cast<std::size_t>(rows.rows()));
+  const OffsetShrinkage u = offset_of(movement);
+  for (Eigen::Index j = 0; j < rows.cols(); ++j) {
+    const double shift = (1 - u.kept) * direction.dot(rows.col(j)) / u.length;
+    rows.col(j) -= shift * direction;
+  }
+  const double weight = clusters_.weight_of(movement);
+  if (weight != 1) rows *= weight;
+}
+
 Eigen::MatrixXd Whitening::of(Eigen::MatrixXd columns) const {
   if (columns.cols() == 0) return columns;
-  Eigen::VectorXd direction;
   for (std::size_t m = 0; m < clusters_.movements.size(); ++m) {
     const RowRange& range = clusters_.movements[m];
     auto block = columns.middleRows(static_cast<Eigen::Index>(range.begin),
                                     static_cast<Eigen::Index>(range.size()));
-    direction.resize(block.rows());
-    for (std::size_t k = 0; k < range.size(); ++k) {
-      direction[static_cast<Eigen::Index>(k)] = filter_.offset(k);
-    }
-    const OffsetShrinkage u = offset_of(m);
     filter_rows(block);
-    for (Eigen::Index j = 0; j < block.cols(); ++j) {
-      const double shift = (1 - u.kept) * direction.dot(block.col(j)) / u.length;
-      block.col(j) -= shift * direction;
-    }
-    const double weight = clusters_.weight_of(m);
-    if (weight != 1) block *= weight;
+    shrink_offset(m, block);
   }
   return columns;
+}
+
+void Whitening::filter_backwards(Eigen::Ref<Eigen::VectorXd> rows) const {
+  if (filter_.carried() == 0) return;
+  double after = 0;  // what the next row's filter was told
+  for (Eigen::Index k = rows.size(); k-- > 0;) {
+    const auto row = static_cast<std::size_t>(k);
+    const double told = filter_.scale(row) * rows[k] + filter_.returned(row + 1) * after;
+    rows[k] = told - filter_.carried() * after;
+    after = told;
+  }
+}
+
+// The shrinkage is its own adjoint.
+Eigen::VectorXd Whitening::adjoint(Eigen::VectorXd rows) const {
+  for (std::size_t m = 0; m < clusters_.movements.size(); ++m) {
+    const RowRange& range = clusters_.movements[m];
+    auto block = rows.segment(static_cast<Eigen::Index>(range.begin),
+                              static_cast<Eigen::Index>(range.size()));
+    shrink_offset(m, block);
+    filter_backwards(block);
+  }
+  return rows;
 }
 
 Eigen::VectorXd Whitening::offset_nats() const {

@@ -65,6 +65,9 @@ class Whitening {
   const RowFilter& filter() const { return filter_; }
   OffsetShrinkage offset_of(std::size_t movement) const;
   Eigen::MatrixXd of(Eigen::MatrixXd columns) const;
+  // Of rows that have been whitened: their product with any whitened column is what comes out here
+  // times that column as it was.
+  Eigen::VectorXd adjoint(Eigen::VectorXd rows) const;
 
   // ln of what the offsets add to the spread of each movement's mean, halved and shared out to its
   // stretches: the part of a negative log likelihood that says how well offsets are explained.
@@ -75,6 +78,9 @@ class Whitening {
   void filter_columns(double* first, Eigen::Index stride, std::size_t rows) const;
   // Of one movement.
   void filter_rows(Eigen::Ref<Eigen::MatrixXd> rows) const;
+  void filter_backwards(Eigen::Ref<Eigen::VectorXd> rows) const;
+  Eigen::VectorXd offset_direction(std::size_t rows) const;
+  void shrink_offset(std::size_t movement, Eigen::Ref<Eigen::MatrixXd> rows) const;
 
   const Clusters& clusters_;
   const Noise& noise_;

@@ -354,7 +354,9 @@ void add_base_options(CLI::App& command, LoopArguments& arguments) {
   command.add_option("--effects", arguments.effects, "test these families only")->delimiter(',');
   CLI::Option* gear_ratio = add_data_options(command, arguments.reading);
   gear_ratio->description(
-      "motor turns per turn of the joint; without it the usual ones are scanned for ripples");
+      "motor turns per turn of the joint; without it the usual ones are scanned for ripples, and "
+      "what "
+      "repeats with another period is found all the same");
   take_one_of<Gravity>(
       command.add_option("--gravity", arguments.gravity,
                          "gravity that no column declares: fit sin and cos of the position with "

@@ -85,6 +85,26 @@ TEST(Whitening, MakesOfItsOwnNoiseRowsOfOneVariance) {
   }
 }
 
+// A score can be had from the whitened column, or from the column as it was.
+TEST(Whitening, HasAnAdjoint) {
+  Clusters clusters = make_clusters(movements_of({1, 2, 3, 40}), 1);
+  clusters.weight = {1, 2, 0.5, 1.5};
+  Noise noise;
+  noise.within_sd = 1.3;
+  noise.between_sd = 0.7;
+  noise.slow_share = 0.6;
+  noise.slow_rho = 0.9;
+  for (const bool whitens : {false, true}) {
+    noise.whitened = whitens;
+    const Eigen::MatrixXd filter = whitened(Eigen::MatrixXd::Identity(46, 46), clusters, noise);
+    const Whitening whitening(clusters, noise);
+    for (Eigen::Index row = 0; row < 46; ++row) {
+      const Eigen::VectorXd out = whitening.adjoint(Eigen::VectorXd::Unit(46, row));
+      EXPECT_LT((out - filter.row(row).transpose()).cwiseAbs().maxCoeff(), 1e-12) << row;
+    }
+  }
+}
+
 // Variance of the last of many rows when all before it are known.
 TEST(RowVariance, IsWhatTheRowsBeforeLeaveOpen) {
   for (const double share : {1.0, 0.6, 0.05}) {

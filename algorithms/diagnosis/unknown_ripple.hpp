@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+//
+// A ripple whose period nobody has named: waves of any length along the position in what a model
+// leaves over. Internal to the room.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "algorithms/diagnosis/fitted_model.hpp"
+#include "algorithms/inference/wave_scan.hpp"
+
+namespace tribench::loop {
+
+// Whether a family has its period from the gear's ratio.
+bool repeats_with_the_gear(const EffectFamily& family);
+
+// Shorter than the output's own ripples alone. None where nothing repeats at the level of what is
+// left over, or no family of the library would with the gear.
+std::optional<Wave> unknown_ripple(const FittedModel& model, const Campaign& campaign,
+                                   RandomStream random);
+
+// Its columns, cos and sin.
+Eigen::MatrixXd wave_columns(const Wave& wave, const Observations& data);
+
+}  // namespace tribench::loop

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/inference/wave_scan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "algorithms/expression/vector/each_level.hpp"
+#include "algorithms/inference/flips.hpp"
+#include "algorithms/inference/score_test.hpp"
+#include "foundation/elementary.hpp"
+
+namespace tribench::loop {
+namespace {
+
+constexpr double kMostWaves = 1000;       // over the span
+constexpr double kStepsOfAWave = 4;       // over the span: how finely wavenumbers are taken
+constexpr std::size_t kAtOnce = 32;       // wavenumbers
+constexpr std::size_t kMostGroups = 100;  // of clusters: more do not sharpen the flips
+constexpr std::size_t kFlipsAtOnce = 250;
+
+// Sums over rows of weight times cos and sin of each wavenumber, forwards and backwards apart.
+struct Sums {
+  explicit Sums(std::size_t wavenumbers)
+      : cosine{std::vector<double>(wavenumbers), std::vector<double>(wavenumbers)}, sine(cosine) {}
+  std::array<std::vector<double>, 2> cosine;
+  std::array<std::vector<double>, 2> sine;
+};
+
+struct Phase {
+  double cosine;
+  double sine;
+  Phase times(const Phase& other) const {
+    return {cosine * other.cosine - sine * other.sine, cosine * other.sine + sine * other.cosine};
+  }
+};
+
+Phase phase_of(double angle) { return {elementary::cos(angle), elementary::sin(angle)}; }
+
+// The phases of `kAtOnce` neighbouring wavenumbers are those of the first, turned.
+TRIBENCH_EACH_LEVEL void add_block(double cosine, double sine, const double* turn_cosine,
+                                   const double* turn_sine, double* sum_cosine, double* sum_sine) {
+  for (std::size_t j = 0; j < kAtOnce; ++j) {
+    sum_cosine[j] += cosine * turn_cosine[j] - sine * turn_sine[j];
+    sum_sine[j] += cosine * turn_sine[j] + sine * turn_cosine[j];
+  }
+}
+
+class Scan {
+ public:
+  Scan(std::span<const double> coordinate, const Eigen::VectorXd& scores,
+       const Eigen::VectorXf& direction, const WaveRange& range)
+      : coordinate_(coordinate), scores_(scores), direction_(direction), range_(range) {
+    const auto count = static_cast<std::size_t>((range.high - range.low) / range.step) + 1;
+    blocks_ = (count + kAtOnce - 1) / kAtOnce;
+  }
+
+  std::size_t wavenumbers() const { return blocks_ * kAtOnce; }
+  double wavenumber(std::size_t k) const {
+    return range_.low + range_.step * static_cast<double>(k);
+  }
+
+  void add_rows(std::size_t begin, std::size_t end, Sums& sums) const {
+    std::array<double, kAtOnce> turn_cosine;
+    std::array<double, kAtOnce> turn_sine;
+    for (std::size_t i = begin; i < end; ++i) {
+      const double x = coordinate_[i];
+      const Phase step = phase_of(range_.step * x);
+      Phase turn{1, 0};
+      for (std::size_t j = 0; j < kAtOnce; ++j, turn = turn.times(step)) {
+        turn_cosine[j] = turn.cosine;
+        turn_sine[j] = turn.sine;
+      }
+      Phase at = phase_of(range_.low * x);
+      const double score = scores_[static_cast<Eigen::Index>(i)];
+      at = {score * at.cosine, score * at.sine};
+      const std::size_t half = is_backwards(i) ? 1 : 0;
+      for (std::size_t b = 0; b < blocks_; ++b, at = at.times(turn)) {
+        add_block(at.cosine, at.sine, turn_cosine.data(), turn_sine.data(),
+                  sums.cosine[half].data() + b * kAtOnce, sums.sine[half].data() + b * kAtOnce);
+      }
+    }
+  }
+
+ private:
+  bool is_backwards(std::size_t row) const {
+    return direction_.size() > 0 && direction_[static_cast<Eigen::Index>(row)] < 0;
+  }
+
+  std::span<const double> coordinate_;
+  const Eigen::VectorXd& scores_;
+  const Eigen::VectorXf& direction_;
+  WaveRange range_;
+  std::size_t blocks_ = 0;
+};
+
+// Neighbouring clusters together, where they are many.
+std::vector<RowRange> groups_of(const Clusters& clusters) {
+  const std::size_t each = (clusters.stretches.size() + kMostGroups - 1) / kMostGroups;
+  std::vector<RowRange> groups;
+  for (std::size_t c = 0; c < clusters.stretches.size(); c += each) {
+    const std::size_t last = std::min(c + each, clusters.stretches.size()) - 1;
+    groups.push_back({clusters.stretches[c].begin, clusters.stretches[last].end});
+  }
+  return groups;
+}
+
+// Four columns a wavenumber, a row a group: without and with the direction, cos and sin each. A
+// pair of columns has unit length over the groups, so that the square of its sum is at most their
+// number and one on average over the flips.
+FloatRows pairs_of(const Scan& scan, std::span<const RowRange> groups) {
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(4 * scan.wavenumbers()),
+                      static_cast<Eigen::Index>(groups.size()));
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    Sums sums(scan.wavenumbers());
+    scan.add_rows(groups[g].begin, groups[g].end, sums);
+    for (std::size_t k = 0; k < scan.wavenumbers(); ++k) {
+      const auto row = static_cast<Eigen::Index>(4 * k);
+      const auto column = static_cast<Eigen::Index>(g);
+      all(row, column) = sums.cosine[0][k] + sums.cosine[1][k];
+      all(row + 1, column) = sums.sine[0][k] + sums.sine[1][k];
+      all(row + 2, column) = sums.cosine[0][k] - sums.cosine[1][k];
+      all(row + 3, column) = sums.sine[0][k] - sums.sine[1][k];
+    }
+  }
+  for (Eigen::Index row = 0; row < all.rows(); row += 2) {
+    const double length = all.middleRows(row, 2).norm();
+    if (length > 0) all.middleRows(row, 2) /= length;
+  }
+  return all.transpose().cast<float>();
+}
+
+struct Peak {
+  std::size_t pair = 0;
+  float square = 0;
+};
+
+Peak largest_square(const float* sums, std::size_t pairs) {
+  Peak best;
+  for (std::size_t k = 0; k < pairs; ++k) {
+    const float square = sums[2 * k] * sums[2 * k] + sums[2 * k + 1] * sums[2 * k + 1];
+    if (square > best.square) best = {k, square};
+  }
+  return best;
+}
+
+double flipped_p(const FloatRows& pairs, float square, std::size_t count, double alpha,
+                 RandomStream random) {
+  const Flips flips(count, static_cast<std::size_t>(pairs.rows()), random);
+  const double most = alpha * static_cast<double>(count + 1);  // of them at least as large
+  double at_least = 1;
+  for (std::size_t first = 0; first < count && at_least <= most; first += kFlipsAtOnce) {
+    const FloatRows sums = flips.sums(pairs, first, std::min(kFlipsAtOnce, count - first));
+    for (Eigen::Index b = 0; b < sums.rows(); ++b) {
+      const float* row = sums.data() + b * sums.cols();
+      if (largest_square(row, static_cast<std::size_t>(sums.cols()) / 2).square >= square) {
+        ++at_least;
+      }
+    }
+  }
+  return at_least > most ? 1 : at_least / static_cast<double>(count + 1);
+}
+
+}  // namespace
+
+std::optional<WaveRange> waves_over(std::span<const double> coordinate, double fewest,
+                                    double shortest) {
+  const auto [least, most] = std::ranges::minmax(coordinate);
+  const double span = most - least;
+  const double longest = span / fewest;
+  shortest = std::max(shortest, span / kMostWaves);
+  if (!(longest > shortest)) return {};
+  constexpr double kTurn = 2 * std::numbers::pi;
+  return WaveRange{kTurn / longest, kTurn / shortest, kTurn / span / kStepsOfAWave};
+}
+
+Wave strongest_wave(std::span<const double> coordinate, const Eigen::VectorXd& scores,
+                    const Eigen::VectorXf& direction, const Clusters& clusters,
+                    const WaveRange& range, std::size_t flips, double alpha, RandomStream random) {
+  const Scan scan(coordinate, scores, direction, range);
+  const FloatRows pairs = pairs_of(scan, groups_of(clusters));
+  const Eigen::RowVectorXf whole = pairs.colwise().sum();
+  const Peak peak = largest_square(whole.data(), static_cast<std::size_t>(whole.size()) / 2);
+  return {scan.wavenumber(peak.pair / 2), peak.pair % 2 == 1,
+          flipped_p(pairs, peak.square, flips, alpha, random)};
+}
+
+}  // namespace tribench::loop
