@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "algorithms/diagnosis/closed_loop.hpp"
+#include "algorithms/closed_loop/closed_loop.hpp"
 #include "algorithms/model_based/bam_models.hpp"
 #include "algorithms/model_based/branch_polynomial.hpp"
 #include "algorithms/model_based/dynamic_friction.hpp"

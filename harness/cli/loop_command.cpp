@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "algorithms/budget.hpp"
-#include "algorithms/diagnosis/closed_loop.hpp"
+#include "algorithms/closed_loop/closed_loop.hpp"
 #include "algorithms/diagnosis/diagnosis.hpp"
 #include "foundation/error.hpp"
 #include "foundation/number_text.hpp"

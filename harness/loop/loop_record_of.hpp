@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/diagnosis/learned_effect.hpp"
+#include "algorithms/closed_loop/learned_effect.hpp"
 #include "algorithms/exploration/next_movements.hpp"
 #include "harness/loop/judged_diagnosis.hpp"
 #include "reports/record/loop_record.hpp"

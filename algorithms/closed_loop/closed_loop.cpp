@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/closed_loop.hpp"
+#include "algorithms/closed_loop/closed_loop.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/learned_effect.hpp"
+#include "algorithms/closed_loop/learned_effect.hpp"
 
 #include <fmt/format.h>
 
