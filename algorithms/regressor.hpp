@@ -116,6 +116,9 @@ struct FitResult {
   // rows held out (fitting/held_out_choice.hpp): a part of the method, done when all rounds of it
   // have ended.
   bool yields_to_plain_sum = false;
+  // So many rows that neither had seen say that what is chosen stands better than a sum of many
+  // terms, or is it; 0: none were asked. A round that has asked fewer has no say beside it.
+  std::size_t held_out_rows = 0;
   // What the formulas remember: column data.inputs.size() + k is states[k], driven by data.inputs.
   std::vector<StateDeclaration> states = {};
 

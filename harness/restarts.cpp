@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,7 +31,8 @@ FitResult fit_until_spent(FitResult first, const FitRound& round, bool widens,
     const FitResult next = round(random.split(static_cast<std::uint64_t>(count)), count + 1);
     if (next.front.empty() || budget.spent() == spent) break;
     ++count;
-    joint.add(next.front, next.chosen);
+    const bool has_a_say = next.held_out_rows >= first.held_out_rows;
+    joint.add(next.front, has_a_say ? std::optional(next.chosen) : std::nullopt);
     alike = std::exchange(before, next.front) == next.front ? alike + 1 : 0;
     if (alike == most_alike) break;
   }

@@ -4,10 +4,11 @@
 // method stops when its own search has come to rest, after a second or so, whatever it was given.
 //
 // A round searches wider than the one before where its method can (AlgorithmEntry::widened). All
-// rounds' formulas form one front (fitting/joint_front.hpp). It ends early where the rows are
-// explained to rounding, and where rounds give what the one before gave: one of a method that does
-// not widen, three of one that does. With a budget of evaluations the same rounds are run on any
-// machine.
+// rounds' formulas form one front (fitting/joint_front.hpp); a round that had no time to hold its
+// choice against as many unseen rows as the first only adds formulas. It ends early where the rows
+// are explained to rounding, and where rounds give what the one before gave: one of a method that
+// does not widen, three of one that does. With a budget of evaluations the same rounds are run on
+// any machine.
 //
 // Not where budgets are ceilings, as they are in a grid that does not say `spend = true`.
 #pragma once

@@ -117,6 +117,7 @@ FitResult Answer::result() && {
   FitResult result{joint_.formulas(), joint_.chosen(),
                    context_.budget.exhausted() ? StopReason::budget : StopReason::converged,
                    std::move(note_)};
+  if (rival_) result.held_out_rows = std::min(rival_rows_, rows_.rows());
   if (yields_to_rival(result.front[result.chosen])) {
     result.chosen = place_by_complexity(rival_->formula, result.front);
   } else {

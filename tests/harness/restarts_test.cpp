@@ -83,6 +83,26 @@ TEST_F(RestartsTest, GoOnUntilTheBudgetIsSpentAndChooseByEvidence) {
   EXPECT_EQ(keys_.size(), 9U);  // of ten evaluations each
 }
 
+// A round that had no time to hold its choice against as many rows that it had not seen does not
+// overrule one that had.
+TEST_F(RestartsTest, ChooseByWhatWasHeldOutOnMoreRows) {
+  fill(0.1);
+  const std::string longer = "v^2 + 0.001*sin(3*v)";
+  for (const std::size_t first_rows : {0, 40, 60}) {
+    for (const std::size_t next_rows : {0, 40, 60}) {
+      asked_ = 0;
+      keys_.clear();
+      std::vector<FitResult> answers = {answer({"v^2", longer}, 1), answer({"v^2"}, 0),
+                                        answer({"v^2"}, 0)};
+      answers[0].held_out_rows = first_rows;
+      answers[1].held_out_rows = answers[2].held_out_rows = next_rows;
+      const FitResult result = fit(answers);
+      EXPECT_EQ(print(result.front[result.chosen], kNames),
+                next_rows < first_rows ? print(parse(longer, kNames), kNames) : "v^2");
+    }
+  }
+}
+
 TEST_F(RestartsTest, EndWhereARoundGivesWhatTheRoundBeforeGave) {
   fill(0.1);
   const FitResult result = fit({answer({"v"}, 0), answer({"v"}, 0), answer({"v^2"}, 0)});
