@@ -168,26 +168,35 @@ Diagnosis diagnose_canonical(const Observations& data, const std::vector<int>& h
   return out;
 }
 
-bool names_gear_ripple(const Diagnosis& diagnosis) {
-  return std::ranges::any_of(diagnosis.families, [&](const EffectFamily& family) {
-    return repeats_with_the_gear(family) &&
-           std::ranges::count(diagnosis.effects, family.name, &EffectFinding::family) > 0;
-  });
+// The mean square of the gear's ripple that was found; 0 where none was.
+double named_ripple(const Diagnosis& diagnosis) {
+  double largest = 0;
+  for (const EffectFinding& effect : diagnosis.effects) {
+    const auto family = std::ranges::find(diagnosis.families, effect.family, &EffectFamily::name);
+    if (!repeats_with_the_gear(*family)) continue;
+    largest = std::max(largest, effect.rms_contribution * effect.rms_contribution);
+  }
+  return largest;
 }
 
 // The same once more, what repeats taken for a turn of the motor. As it was where that names no
-// ripple, or something still repeats or lives in the position: a notch has a spectrum, too.
+// ripple, where something still lives in the position or where what else repeats is nearly as
+// large: a notch has a spectrum, too.
 Diagnosis knowing_the_ripple(Diagnosis first, const Observations& data, const BaseMaker& base) {
+  constexpr double kNearlyAsLarge = 0.5;
+  const RepeatingFinding& ripple = *first.leftover.repeating;
   DiagnosisOptions options = first.options;
-  options.gear_ratios = {*first.leftover.waves};
+  options.gear_ratios = {ripple.wavenumber};
   Diagnosis again = diagnose_canonical(data, first.held_out, base, options);
-  const bool explains_it = names_gear_ripple(again) && !again.leftover.waves &&
-                           std::ranges::count(again.leftover.signals, "q") == 0;
+  const auto& more = again.leftover.repeating;
+  const bool explains_it = named_ripple(again) > 0 &&
+                           std::ranges::count(again.leftover.signals, "q") == 0 &&
+                           (!more || more->mean_square < kNearlyAsLarge * ripple.mean_square);
   if (!explains_it) return first;
   again.notes.push_back(fmt::format(
       "the ripple's period, {:.4g} {}, was found in these data: whether it is a turn of "
       "the motor, a tooth or a bearing they do not say",
-      2 * std::numbers::pi / *first.leftover.waves, data.find("q")->unit));
+      2 * std::numbers::pi / ripple.wavenumber, data.find("q")->unit));
   return again;
 }
 
@@ -197,8 +206,11 @@ Diagnosis diagnose(const Observations& data, const BaseMaker& base, const Diagno
                    const std::vector<int>& held_out) {
   const Canonical told = canonical(data, held_out);
   Diagnosis out = diagnose_canonical(told.data, held_out, base, options);
-  if (out.leftover.waves && !names_gear_ripple(out))
+  // What repeats more than the ripple that was found is the ripple.
+  const auto& more = out.leftover.repeating;
+  if (more && more->mean_square > named_ripple(out)) {
     out = knowing_the_ripple(std::move(out), told.data, base);
+  }
   out.masked = told.as_told(out.masked);
   return out;
 }

@@ -93,13 +93,17 @@ struct CurvePoint {
   double error = 0;
 };
 
+// What repeats along the position with a period that nobody has named.
+struct RepeatingFinding {
+  double wavenumber = 0;   // 2 pi over its length in rad or m: the gear's ratio were it the motor's
+  double mean_square = 0;  // of its torque, told on movements left out
+};
+
 struct LeftoverFinding {
   double p = 1;
   std::vector<std::string> inputs;   // role names; empty where nothing is left
   std::vector<std::string> signals;  // the same as signals
-  // Of what repeats along the position with a period that nobody has named: 2 pi over its length,
-  // in rad or m; what would be the gear's ratio if it were the motor's turn.
-  std::optional<double> waves;
+  std::optional<RepeatingFinding> repeating;
   std::vector<std::string> proxies_removed;
   std::vector<CurvePoint> curve;  // over the one input
 };

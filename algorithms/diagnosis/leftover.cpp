@@ -76,7 +76,7 @@ class LeftoverSearch {
   std::optional<Home> best_place(const std::vector<Place>& places,
                                  const std::vector<BlockScores>& blocks,
                                  const std::vector<double>& maxima) const;
-  bool is_next_to_nothing(const Eigen::MatrixXd& columns, double ridge);
+  bool is_next_to_nothing(double worth);
   void locate(const Home& home);
   void drop_proxies(const Smoother& smoother);
   bool drop_if_superfluous(const Smoother& smoother, std::size_t family, bool excused,
@@ -197,14 +197,16 @@ std::optional<LeftoverSearch::Home> LeftoverSearch::best_place(
   return best;
 }
 
-bool LeftoverSearch::is_next_to_nothing(const Eigen::MatrixXd& columns, double ridge) {
+// Less of the squared error than what is left over has to be worth.
+bool LeftoverSearch::is_next_to_nothing(double worth) {
   const std::vector<double> found = worths(model().model, state().families(), campaign_);
-  return worth_of(columns, model().model, campaign_, ridge) <
-         std::max(kLeastWorth, least_worth(found, campaign_.options));
+  return worth < std::max(kLeastWorth, least_worth(found, campaign_.options));
 }
 
 void LeftoverSearch::locate(const Home& home) {
-  if (is_next_to_nothing(home.place->features(campaign_.data), home.place->ridge())) {
+  const double worth =
+      worth_of(home.place->features(campaign_.data), model().model, campaign_, home.place->ridge());
+  if (is_next_to_nothing(worth)) {
     state().note("what is left over is next to nothing");
     return;
   }
@@ -236,9 +238,11 @@ void LeftoverSearch::look_for_waves() {
   const std::optional<Wave> wave = unknown_ripple(model(), campaign_, random_.split("waves"));
   if (!wave) return;
   const Eigen::MatrixXd columns = wave_columns(*wave, campaign_.data);
-  if (is_next_to_nothing(columns, 0)) return;
+  const double worth = worth_of(columns, model().model, campaign_, 0);
+  if (is_next_to_nothing(worth)) return;
   LeftoverFinding& leftover = result_.leftover;
-  leftover.waves = wave->wavenumber;
+  const auto rows = static_cast<double>(campaign_.data.rows());
+  leftover.repeating = {wave->wavenumber, worth * model().raw_residual.squaredNorm() / rows};
   const bool is_named = std::ranges::any_of(state().families(), [&](std::size_t family) {
     return repeats_with_the_gear(campaign_.families[family]);
   });

@@ -61,9 +61,22 @@ TEST(UnknownRipple, IsNamedWithItsPeriodWhateverRatioIsTold) {
       ASSERT_EQ(diagnosis.effects.size(), 1U) << wavenumber;
       EXPECT_EQ(diagnosis.effects[0].family, "gear_ripple");
       EXPECT_NEAR(ratio_of(diagnosis.effects[0]), wavenumber, 0.1);
-      EXPECT_FALSE(diagnosis.leftover.waves.has_value());
+      EXPECT_FALSE(diagnosis.leftover.repeating.has_value());
     }
   }
+}
+
+// No gear is a sine: what else repeats is smaller than the ripple itself. Here that is where a
+// usual gear has its ripple (121), and is found first.
+TEST(UnknownRipple, IsTheLargestOfWhatRepeats) {
+  const auto ripple = [](double q) {
+    return kNoiseOfStrokes * (std::cos(40.3 * q + 1) + 0.6 * std::cos(3 * 40.3 * q));
+  };
+  const Diagnosis diagnosis = diagnose_strokes(ripple);
+  EXPECT_EQ(diagnosis.verdict, Verdict::effects);
+  ASSERT_EQ(diagnosis.effects.size(), 1U);
+  EXPECT_EQ(diagnosis.effects[0].family, "gear_ripple");
+  EXPECT_NEAR(ratio_of(diagnosis.effects[0]), 40.3, 0.1);
 }
 
 // What is there at one place alone has waves of all lengths.
