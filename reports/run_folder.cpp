@@ -40,7 +40,7 @@ void read_records(RunFolder& run) {
   const CsvReading reading =
       read_results(file, [&](Record&& record) { run.records.push_back(std::move(record)); });
   add_complaints(run, "results.csv", reading);
-  std::sort(run.records.begin(), run.records.end(), comes_before);
+  std::stable_sort(run.records.begin(), run.records.end(), comes_before);
   const auto same = [](const Record& a, const Record& b) { return a.cell == b.cell; };
   const auto end = std::unique(run.records.begin(), run.records.end(), same);
   if (end != run.records.end()) {

@@ -139,7 +139,7 @@ bool comes_before(const Record& a, const Record& b) {
 }
 
 std::string results_csv(std::vector<Record> records) {
-  std::sort(records.begin(), records.end(), comes_before);
+  std::stable_sort(records.begin(), records.end(), comes_before);
   return to_csv(records, result_columns());
 }
 
