@@ -19,12 +19,18 @@ constexpr double kMostWaves = 1000;       // over the span
 constexpr double kStepsOfAWave = 4;       // over the span: how finely wavenumbers are taken
 constexpr std::size_t kAtOnce = 32;       // wavenumbers
 constexpr std::size_t kMostGroups = 100;  // of clusters: more do not sharpen the flips
+constexpr std::size_t kFirstFlips = 24;   // noise shows itself in some ten
 constexpr std::size_t kFlipsAtOnce = 250;
 
 // Sums over rows of weight times cos and sin of each wavenumber, forwards and backwards apart.
 struct Sums {
   explicit Sums(std::size_t wavenumbers)
       : cosine{std::vector<double>(wavenumbers), std::vector<double>(wavenumbers)}, sine(cosine) {}
+  void clear() {
+    for (auto* both : {&cosine, &sine}) {
+      for (std::vector<double>& half : *both) std::ranges::fill(half, 0.0);
+    }
+  }
   std::array<std::vector<double>, 2> cosine;
   std::array<std::vector<double>, 2> sine;
 };
@@ -111,25 +117,33 @@ std::vector<RowRange> groups_of(const Clusters& clusters) {
 // pair of columns has unit length over the groups, so that the square of its sum is at most their
 // number and one on average over the flips.
 FloatRows pairs_of(const Scan& scan, std::span<const RowRange> groups) {
-  Eigen::MatrixXd all(static_cast<Eigen::Index>(4 * scan.wavenumbers()),
-                      static_cast<Eigen::Index>(groups.size()));
+  const std::size_t wavenumbers = scan.wavenumbers();
+  FloatRows all(static_cast<Eigen::Index>(groups.size()),
+                static_cast<Eigen::Index>(4 * wavenumbers));
+  Sums sums(wavenumbers);
+  std::vector<float> squares(2 * wavenumbers);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    Sums sums(scan.wavenumbers());
+    sums.clear();
     scan.add_rows(groups[g].begin, groups[g].end, sums);
-    for (std::size_t k = 0; k < scan.wavenumbers(); ++k) {
-      const auto row = static_cast<Eigen::Index>(4 * k);
-      const auto column = static_cast<Eigen::Index>(g);
-      all(row, column) = sums.cosine[0][k] + sums.cosine[1][k];
-      all(row + 1, column) = sums.sine[0][k] + sums.sine[1][k];
-      all(row + 2, column) = sums.cosine[0][k] - sums.cosine[1][k];
-      all(row + 3, column) = sums.sine[0][k] - sums.sine[1][k];
+    float* row = all.data() + g * 4 * wavenumbers;
+    for (std::size_t k = 0; k < wavenumbers; ++k) {
+      row[4 * k] = static_cast<float>(sums.cosine[0][k] + sums.cosine[1][k]);
+      row[4 * k + 1] = static_cast<float>(sums.sine[0][k] + sums.sine[1][k]);
+      row[4 * k + 2] = static_cast<float>(sums.cosine[0][k] - sums.cosine[1][k]);
+      row[4 * k + 3] = static_cast<float>(sums.sine[0][k] - sums.sine[1][k]);
+    }
+    for (std::size_t pair = 0; pair < squares.size(); ++pair) {
+      squares[pair] += row[2 * pair] * row[2 * pair] + row[2 * pair + 1] * row[2 * pair + 1];
     }
   }
-  for (Eigen::Index row = 0; row < all.rows(); row += 2) {
-    const double length = all.middleRows(row, 2).norm();
-    if (length > 0) all.middleRows(row, 2) /= length;
+  for (float& square : squares) square = square > 0 ? 1 / std::sqrt(square) : 0;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    float* row = all.data() + g * 4 * wavenumbers;
+    for (std::size_t column = 0; column < 4 * wavenumbers; ++column) {
+      row[column] *= squares[column / 2];
+    }
   }
-  return all.transpose().cast<float>();
+  return all;
 }
 
 struct Peak {
@@ -151,8 +165,10 @@ double flipped_p(const FloatRows& pairs, float square, std::size_t count, double
   const Flips flips(count, static_cast<std::size_t>(pairs.rows()), random);
   const double most = alpha * static_cast<double>(count + 1);  // of them at least as large
   double at_least = 1;
-  for (std::size_t first = 0; first < count && at_least <= most; first += kFlipsAtOnce) {
-    const FloatRows sums = flips.sums(pairs, first, std::min(kFlipsAtOnce, count - first));
+  std::size_t together = kFirstFlips;
+  for (std::size_t first = 0; first < count && at_least <= most; first += together) {
+    if (first > 0) together = kFlipsAtOnce;
+    const FloatRows sums = flips.sums(pairs, first, std::min(together, count - first));
     for (Eigen::Index b = 0; b < sums.rows(); ++b) {
       const float* row = sums.data() + b * sums.cols();
       if (largest_square(row, static_cast<std::size_t>(sums.cols()) / 2).square >= square) {
@@ -179,7 +195,10 @@ std::optional<WaveRange> waves_over(std::span<const double> coordinate, double f
 Wave strongest_wave(std::span<const double> coordinate, const Eigen::VectorXd& scores,
                     const Eigen::VectorXf& direction, const Clusters& clusters,
                     const WaveRange& range, std::size_t flips, double alpha, RandomStream random) {
-  const Scan scan(coordinate, scores, direction, range);
+  const double length = scores.stableNorm();
+  if (!(length > 0)) return {range.low, false, 1};
+  const Eigen::VectorXd of_unit_length = scores / length;  // single precision follows
+  const Scan scan(coordinate, of_unit_length, direction, range);
   const FloatRows pairs = pairs_of(scan, groups_of(clusters));
   const Eigen::RowVectorXf whole = pairs.colwise().sum();
   const Peak peak = largest_square(whole.data(), static_cast<std::size_t>(whole.size()) / 2);

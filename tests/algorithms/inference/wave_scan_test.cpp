@@ -75,6 +75,18 @@ TEST(StrongestWave, IsTheOneThatIsThereWithItsDirectionAtOneMistakeInManyFlips) 
   }
 }
 
+TEST(StrongestWave, IsTheSameInAnyUnit) {
+  const Strokes strokes(RandomStream(1));
+  const Eigen::VectorXd noise = noise_of(RandomStream(4), 1);
+  const Wave wave = strokes.strongest(noise);
+  for (const double unit : {1e-200, 1e-30, 1e30, 1e200}) {
+    const Wave again = strokes.strongest(noise * unit);
+    EXPECT_DOUBLE_EQ(again.wavenumber, wave.wavenumber) << unit;
+    EXPECT_DOUBLE_EQ(again.p, wave.p) << unit;
+  }
+  EXPECT_DOUBLE_EQ(strokes.strongest(noise * 0).p, 1);
+}
+
 TEST(WavesOver, GoFromTheFewestOverTheSpanToTheShortest) {
   const std::vector<double> coordinate = {0, 2, -1, 3};
   const WaveRange range = waves_over(coordinate, 2, 0.1).value();
