@@ -206,9 +206,10 @@ Diagnosis diagnose(const Observations& data, const BaseMaker& base, const Diagno
                    const std::vector<int>& held_out) {
   const Canonical told = canonical(data, held_out);
   Diagnosis out = diagnose_canonical(told.data, held_out, base, options);
-  // What repeats more than the ripple that was found is the ripple.
+  // What repeats more than a ripple at a usual ratio is the ripple; one at the ratio told stays.
+  const double named = named_ripple(out);
   const auto& more = out.leftover.repeating;
-  if (more && more->mean_square > named_ripple(out)) {
+  if (more && (named == 0 || (options.gear_ratios.empty() && more->mean_square > named))) {
     out = knowing_the_ripple(std::move(out), told.data, base);
   }
   out.masked = told.as_told(out.masked);
