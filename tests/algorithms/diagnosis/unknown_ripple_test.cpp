@@ -1,43 +1,23 @@
 // SPDX-License-Identifier: MIT
 //
 // Ripples of a gear whose ratio nobody has told, or told wrongly.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "algorithms/diagnosis/diagnosis.hpp"
-#include "foundation/random.hpp"
-#include "problems/reading/csv.hpp"
+#include "tests/algorithms/diagnosis/half_sines.hpp"
 
 namespace tribench::loop {
 namespace {
 
-constexpr double kNoiseOfStrokes = 0.25;  // N m
-constexpr int kStrokes = 30;
-constexpr int kRowsOfStroke = 200;
-
-// Half sines one way and the other over a torque that depends on the place.
 Observations strokes_over(const std::function<double(double)>& torque_of) {
-  RandomStream random(11);
-  std::string text = "movement,q,v,friction_torque_Nm\n";
-  for (int m = 0; m < kStrokes; ++m) {
-    const double s = m % 2 == 0 ? 1 : -1;
-    const double w = random.uniform(0.7, 2.5);
-    const double reach = random.uniform(0.9, 1.3);
-    for (int i = 1; i < kRowsOfStroke; ++i) {
-      const double phase = std::numbers::pi * i / kRowsOfStroke;
-      const double q = -s * reach * std::cos(phase);
-      const double v = s * reach * w * std::sin(phase);
-      const double torque = 4 * s + 6 * v + torque_of(q) + kNoiseOfStrokes * random.normal();
-      text += fmt::format("{},{},{},{}\n", m, q, v, torque);
-    }
-  }
-  return observe(parse_csv(text, "strokes.csv").data);
+  return half_sines_over({.movements = 30, .rows = 200, .seed = 11}, torque_of);
 }
 
 Diagnosis diagnose_strokes(const std::function<double(double)>& torque_of,
@@ -54,7 +34,7 @@ double ratio_of(const EffectFinding& effect) {
 
 TEST(UnknownRipple, IsNamedWithItsPeriodWhateverRatioIsTold) {
   for (const double wavenumber : {23.7, 88.2, 291.6}) {
-    const auto ripple = [&](double q) { return kNoiseOfStrokes * std::cos(wavenumber * q + 1); };
+    const auto ripple = [&](double q) { return kHalfSinesNoise * std::cos(wavenumber * q + 1); };
     for (const std::vector<double>& told : {std::vector<double>{}, std::vector<double>{60}}) {
       const Diagnosis diagnosis = diagnose_strokes(ripple, told);
       EXPECT_EQ(diagnosis.verdict, Verdict::effects) << wavenumber;
@@ -70,7 +50,7 @@ TEST(UnknownRipple, IsNamedWithItsPeriodWhateverRatioIsTold) {
 // usual gear has its ripple (121), and is found first.
 TEST(UnknownRipple, IsTheLargestOfWhatRepeats) {
   const auto ripple = [](double q) {
-    return kNoiseOfStrokes * (std::cos(40.3 * q + 1) + 0.6 * std::cos(3 * 40.3 * q));
+    return kHalfSinesNoise * (std::cos(40.3 * q + 1) + 0.6 * std::cos(3 * 40.3 * q));
   };
   const Diagnosis diagnosis = diagnose_strokes(ripple);
   EXPECT_EQ(diagnosis.verdict, Verdict::effects);
@@ -83,7 +63,7 @@ TEST(UnknownRipple, IsTheLargestOfWhatRepeats) {
 TEST(UnknownRipple, IsNoNotch) {
   const auto notch = [](double q) {
     const double x = (q - 0.2) / 0.03;
-    return -4 * kNoiseOfStrokes * std::exp(-x * x);
+    return -4 * kHalfSinesNoise * std::exp(-x * x);
   };
   const Diagnosis diagnosis = diagnose_strokes(notch);
   EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
@@ -92,7 +72,7 @@ TEST(UnknownRipple, IsNoNotch) {
 }
 
 TEST(UnknownRipple, IsNotLookedForWithoutItsRule) {
-  const auto ripple = [](double q) { return kNoiseOfStrokes * std::cos(88.2 * q + 1); };
+  const auto ripple = [](double q) { return kHalfSinesNoise * std::cos(88.2 * q + 1); };
   DiagnosisOptions options;
   options.without = {"unknown_ripple"};
   const Diagnosis diagnosis = diagnose(strokes_over(ripple), coulomb_viscous_base, options);
