@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "algorithms/diagnosis/local_defect.hpp"
 #include "algorithms/diagnosis/unknown_ripple.hpp"
 #include "algorithms/diagnosis/worth.hpp"
 #include "algorithms/inference/feature_scores.hpp"
@@ -63,6 +64,7 @@ class LeftoverSearch {
 
   void test_residual();
   void look_for_waves();
+  void look_for_defect();
   void name_shapes();
 
  private:
@@ -76,6 +78,7 @@ class LeftoverSearch {
   std::optional<Home> best_place(const std::vector<Place>& places,
                                  const std::vector<BlockScores>& blocks,
                                  const std::vector<double>& maxima) const;
+  std::vector<std::size_t> families_along_the_position() const;
   bool is_next_to_nothing(double worth);
   void locate(const Home& home);
   void drop_proxies(const Smoother& smoother);
@@ -254,6 +257,32 @@ void LeftoverSearch::look_for_waves() {
   nats_ = paired_gain(model().losses, losses_beside(model(), z, campaign_)).nats;
 }
 
+std::vector<std::size_t> LeftoverSearch::families_along_the_position() const {
+  std::vector<std::size_t> families;
+  for (const std::size_t family : result_.state.families()) {
+    const auto inputs = inputs_of(family, model().model, campaign_.data);
+    if (inputs == std::vector<std::string>{"q"}) families.push_back(family);
+  }
+  return families;
+}
+
+// What stands for a bump at one place is no effect: without it the bump is what is left over.
+void LeftoverSearch::look_for_defect() {
+  if (!result_.leftover_tested || !campaign_.options.has("local_defect")) return;
+  const std::vector<std::size_t> families = families_along_the_position();
+  if (families.empty() || !predicts_better_as_a_defect(families, model(), campaign_)) return;
+  LoopModel rest = model().model;
+  for (const std::size_t family : families) {
+    result_.leftover.proxies_removed.push_back(campaign_.families[family].name);
+    std::erase_if(state().found, [&](const Found& one) { return one.family == family; });
+    rest = rest.without(family);
+  }
+  state().model = fit_in_its_noise(std::move(rest), campaign_, FitScope::everything);
+  test_residual();
+  result_.leftover.signals = {"q"};
+  result_.leftover.inputs = {input_name(campaign_.data, "q")};
+}
+
 // Whether the leftover's smoother makes a family superfluous; then the model loses it.
 bool LeftoverSearch::drop_if_superfluous(const Smoother& smoother, std::size_t family, bool excused,
                                          LoopModel& model) {
@@ -360,6 +389,7 @@ void LeftoverSearch::name_shapes() {
 void find_leftover(SearchResult& result, const Campaign& campaign, RandomStream random) {
   LeftoverSearch search(result, campaign, random);
   search.test_residual();
+  search.look_for_defect();
   search.look_for_waves();
   search.name_shapes();
 }

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+//
+// Ripples and loads against something at one place of the travel: a dent in a race, a chipped
+// tooth, a cable that catches. A few harmonics together come near it, but a bump, which has one
+// height for either direction, predicts it better. Internal to the room.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "algorithms/diagnosis/fitted_model.hpp"
+
+namespace tribench::loop {
+
+// Whether one bump in place of these families predicts movements left out better than they do, by
+// more than a standard error. False without a position. Cost: rows x columns x 240 bumps.
+bool predicts_better_as_a_defect(const std::vector<std::size_t>& families,
+                                 const FittedModel& present, const Campaign& campaign);
+
+}  // namespace tribench::loop
