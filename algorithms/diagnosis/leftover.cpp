@@ -257,11 +257,15 @@ void LeftoverSearch::look_for_waves() {
   nats_ = paired_gain(model().losses, losses_beside(model(), z, campaign_)).nats;
 }
 
+// But for learned ones: those may be of one place themselves.
 std::vector<std::size_t> LeftoverSearch::families_along_the_position() const {
   std::vector<std::size_t> families;
   for (const std::size_t family : result_.state.families()) {
     const auto inputs = inputs_of(family, model().model, campaign_.data);
-    if (inputs == std::vector<std::string>{"q"}) families.push_back(family);
+    const bool is_learned =
+        std::ranges::count(campaign_.options.learned, campaign_.families[family].name,
+                           &EffectFamily::name) > 0;
+    if (inputs == std::vector<std::string>{"q"} && !is_learned) families.push_back(family);
   }
   return families;
 }

@@ -361,12 +361,11 @@ TEST(LoopCommand, WhatItFoundIsExportedAsCWithTheHistoryItNeeds) {
               HasSubstr("write d=q"));
 }
 
-// A bump at a quarter of the noise passes for a ripple: the movements that were left out know
-// better.
+// What is a quarter of the noise can be told and yet do nothing on the movements left out.
 TEST(LoopCommand, WhatTheMovementsLeftOutDoNotConfirmIsProvisional) {
   const testing::TemporaryFolder folder;
   for (const auto& [problem, is_confirmed] :
-       {std::pair{"undeclared/position_bump/0.25", false}, {"undeclared/stribeck/2", true}}) {
+       {std::pair{"undeclared/hysteresis/0.25", false}, {"undeclared/stribeck/2", true}}) {
     const Json told = Json::parse(
         run_tribench({"loop", generated(folder, problem, "12"), "--any-sign", "--json"}).output);
     ASSERT_EQ(told["effects"].size(), 1U) << problem;
