@@ -374,6 +374,16 @@ TEST(LoopCommand, WhatTheMovementsLeftOutDoNotConfirmIsProvisional) {
   }
 }
 
+// As small a bump is no ripple.
+TEST(LoopCommand, ABumpOfAQuarterOfTheNoiseIsUnknownInPosition) {
+  const testing::TemporaryFolder folder;
+  const std::string data = generated(folder, "undeclared/position_bump/0.25", "12");
+  const Json told = Json::parse(run_tribench({"loop", data, "--any-sign", "--json"}).output);
+  EXPECT_EQ(told["verdict"], "UNKNOWN");
+  EXPECT_TRUE(told["effects"].empty());
+  EXPECT_EQ(told["leftover"]["inputs"], Json::array({"position"}));
+}
+
 TEST(LoopCommand, GrowsAnEffectFromWhatIsLeftOverSavesItAndReadsItBack) {
   const testing::TemporaryFolder folder;
   const std::string first = generated(folder, "undeclared/position_bump/2", "1");
