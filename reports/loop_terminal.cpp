@@ -72,7 +72,7 @@ std::string loop_terminal(const LoopRecord& record, bool colour) {
   std::vector<std::string> lines = {painted(words.headline, kBold, colour), words.error};
   const std::vector<std::string> effects = effect_lines(words, colour);
   lines.insert(lines.end(), effects.begin(), effects.end());
-  for (const std::string* one : {&words.leftover, &words.detectable}) {
+  for (const std::string* one : {&words.leftover, &words.unused, &words.detectable}) {
     if (!one->empty()) lines.push_back(*one);
   }
   for (std::size_t i = 1; i < words.needed.size() && i < 3; ++i) {

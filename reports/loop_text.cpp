@@ -145,6 +145,7 @@ std::string loop_markdown(const LoopRecord& record) {
   for (const std::string* one : {&words.leftover, &words.detectable}) {
     if (!one->empty()) text += fmt::format("{}{}\n", words.cards.empty() ? "" : "\n", *one);
   }
+  if (!words.unused.empty()) text += words.unused + '\n';
   for (const std::string& one : words.needed) text += fmt::format("- Needed: {}.\n", one);
   text += fmt::format("\nNext: {}\n", words.next);
   text += errors_of(record) + effects_table(record) + model_of(record);

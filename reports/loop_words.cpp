@@ -456,6 +456,24 @@ std::string closed_share(const LoopError& error) {
   return fmt::format("{:.0f} .. {}", 100 * low, percent(high));
 }
 
+// "Column 'v_other' has no role and explains 43 % of what is left: ..."
+std::string unused_of(const LoopRecord& record) {
+  constexpr std::size_t kNamed = 3;
+  const std::vector<LoopUnusedColumn>& columns = record.unused_columns;
+  if (columns.empty()) return {};
+  std::vector<std::string> named;
+  for (std::size_t k = 0; k < columns.size() && k < kNamed; ++k) {
+    named.push_back(fmt::format("'{}' ({})", columns[k].column, percent(columns[k].share)));
+  }
+  const bool one = columns.size() == 1;
+  return fmt::format(
+      "{} no role and explain{} what is left: {}{}. Say what {} (--roles '{}=ROLE'), unless {} "
+      "the torque told otherwise.",
+      one ? "One column has" : fmt::format("{} columns have", columns.size()), one ? "s" : "",
+      fmt::join(named, ", "), columns.size() > kNamed ? ", ..." : "", one ? "it is" : "they are",
+      columns.front().column, one ? "it is" : "they are");
+}
+
 LoopWords loop_words(const LoopRecord& record) {
   LoopWords words;
   words.headline = headline_of(record);
@@ -464,6 +482,7 @@ LoopWords loop_words(const LoopRecord& record) {
   words.leftover = leftover_of(record);
   words.detectable = detectable_of(record);
   for (const std::string& one : record.needed) words.needed.push_back(plain_text(record, one));
+  words.unused = unused_of(record);
   words.untestable = untestable_lines(record);
   words.aliased = aliased_lines(record);
   words.bursts = burst_lines(record);

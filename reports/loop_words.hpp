@@ -48,6 +48,7 @@ struct LoopWords {
   std::string next;                     // what to do next
   std::string detectable;               // where nothing was found: what would have been
   std::vector<std::string> needed;      // where the data cannot tell: what to record
+  std::string unused;                   // columns without a role that explain what is left over
   std::vector<std::string> untestable;  // what these data cannot show, by reason
   std::vector<std::string> aliased;     // what they cannot tell apart
   std::vector<std::string> bursts;

@@ -176,8 +176,10 @@ class LoopJudge {
   // bristles: of `fitted`.
   void add_predictions(LeftOut& all, const Diagnosis& fitted,
                        const std::optional<Bristles>& bristles, const RandomStream& random) const;
-  ErrorFinding judged(const std::vector<char>& rows, const LeftOut& models,
-                      std::span<const int> unit) const;
+  // Errors on the rows with rows[i] != 0. unit: of those rows.
+  void judge_rows(JudgedDiagnosis& whole, const std::vector<char>& rows, const LeftOut& models,
+                  const std::vector<int>& unit) const;
+  void point_at_unused_columns(JudgedDiagnosis& whole) const;
 
   const Observations& data_;
   const BaseMaker& base_;
@@ -259,26 +261,33 @@ void LoopJudge::add_predictions(LeftOut& all, const Diagnosis& fitted,
   }
 }
 
-// Errors on the rows with rows[i] != 0. unit: of those rows.
-ErrorFinding LoopJudge::judged(const std::vector<char>& rows, const LeftOut& models,
-                               std::span<const int> unit) const {
+void LoopJudge::judge_rows(JudgedDiagnosis& whole, const std::vector<char>& rows,
+                           const LeftOut& models, const std::vector<int>& unit) const {
   std::vector<Eigen::Index> kept;
   for (std::size_t i = 0; i < data_.rows(); ++i) {
     if (rows[i] != 0) kept.push_back(static_cast<Eigen::Index>(i));
   }
   const Observations part = data_.select(rows);
+  const Eigen::VectorXd y = target_vector(part);
   const Eigen::VectorXd before = models.before(kept);
   const Eigen::VectorXd after = models.after(kept);
-  ErrorFinding error = judge(part, before, after, unit, random_.split("bootstrap"));
-  if (!kept.empty()) {
-    error.mae_state = (target_vector(part) - models.with_state(kept)).cwiseAbs().mean();
-  }
-  if (judging_.bounds) {
-    const auto y = target_vector(part);
-    bound_noise(error, part, y - before, y - after, y - models.corrected(kept), unit,
-                random_.split("bounds"));
-  }
-  return error;
+  ErrorFinding& error = whole.error;
+  error = judge(part, before, after, unit, random_.split("bootstrap"));
+  if (!kept.empty()) error.mae_state = (y - models.with_state(kept)).cwiseAbs().mean();
+  if (!judging_.bounds) return;
+  bound_noise(error, part, y - before, y - after, y - models.corrected(kept), unit,
+              random_.split("bounds"));
+  point_at_unused_columns(whole);
+}
+
+void LoopJudge::point_at_unused_columns(JudgedDiagnosis& whole) const {
+  if (data_.unused.empty()) return;
+  const std::vector<char> rows = usable_rows(data_, {}, false, whole.masked);
+  const Observations part = data_.select(rows);
+  const RandomStream random = random_.split("unused columns");
+  Eigen::VectorXd residual = target_vector(part) - predict(whole.after, part);
+  residual -= smooth_correction(part, std::vector<char>(part.rows(), 1), residual, random);
+  whole.unused_columns = unused_columns_that_explain(part, residual, random);
 }
 
 // Few movements: the whole procedure again for each, without it, and all of them judged together.
@@ -295,10 +304,10 @@ JudgedDiagnosis LoopJudge::in_turn() {
     const Diagnosis& part = searches.found[k];
     add_predictions(all, part, bristles_of(part, data_), random_.split(k - 1));
   }
-  JudgedDiagnosis whole{std::move(searches.whole()), {}, {}};
+  JudgedDiagnosis whole{std::move(searches.whole()), {}, {}, {}};
   whole.bristles = bristles_of(whole, data_);
   const std::vector<char> usable = usable_rows(data_, {}, false, whole.masked);
-  whole.error = judged(usable, all, pieces(data_.select(usable), whole.correlation_rows));
+  judge_rows(whole, usable, all, pieces(data_.select(usable), whole.correlation_rows));
   whole.error.how =
       !data_.group.empty() ? fmt::format("movements of one '{}' left out in turn", data_.group_name)
       : data_.movements().size() > turns ? fmt::format("the movements left out in {} turns", turns)
@@ -321,7 +330,7 @@ JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
     search(searches, numbers(1, searches.without.size()), options_);
     needed = name_the_stable(searches);
   }
-  JudgedDiagnosis whole{std::move(searches.whole()), {}, {}};
+  JudgedDiagnosis whole{std::move(searches.whole()), {}, {}, {}};
   whole.bristles = bristles_of(whole, data_);
   whole.error.judged_on = JudgedOn::rows_of_the_fit;
   whole.error.how = "none held out";
@@ -329,7 +338,7 @@ JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
   if (std::ranges::count(rows, 1) == 0) return whole;
   LeftOut models(data_.rows());
   add_predictions(models, whole, whole.bristles, random_);
-  whole.error = judged(rows, models, data_.select(rows).movement);
+  judge_rows(whole, rows, models, data_.select(rows).movement);
   whole.error.how = "held out";
   doubt_nothing_missing(whole, std::move(needed));
   return whole;

@@ -12,6 +12,7 @@
 #include "algorithms/diagnosis/diagnosis.hpp"
 #include "algorithms/loop_model/bristles.hpp"
 #include "harness/loop/loop_judge.hpp"
+#include "harness/loop/unused_columns.hpp"
 
 namespace tribench::loop {
 
@@ -35,6 +36,8 @@ struct JudgedDiagnosis : Diagnosis {
   ErrorFinding error;
   // Of presliding that was found, fitted to the same rows as `after`; empty where there is none.
   std::optional<Bristles> bristles;
+  // Columns without a role that explain what is left over; where bounds are asked for.
+  std::vector<UnusedColumn> unused_columns;
 };
 
 // Judges by held_out_movements. Where there are none, all take part in the verdict and the whole

@@ -116,6 +116,9 @@ void add_lists(LoopRecord& record, const JudgedDiagnosis& diagnosis) {
         {one.family, one.atom, one.adjusted_p, one.score, one.gain, one.detectable});
   }
   record.needed = diagnosis.needed;
+  for (const UnusedColumn& one : diagnosis.unused_columns) {
+    record.unused_columns.push_back({one.column, one.share});
+  }
 }
 
 void add_bristles(LoopRecord& record, const JudgedDiagnosis& diagnosis, const Observations& data) {

@@ -75,7 +75,9 @@ Canonical canonical(const Observations& told, const std::vector<int>& last) {
     values = std::move(sorted);
   };
   out.data = told;
-  for (Signal& signal : out.data.signals) reorder(signal.values);
+  for (auto* signals : {&out.data.signals, &out.data.unused}) {
+    for (Signal& signal : *signals) reorder(signal.values);
+  }
   reorder(out.data.target);
   reorder(out.data.movement);
   reorder(out.data.time);

@@ -99,12 +99,14 @@ TorqueConstant parse_torque_constant(const std::string& text, const std::string&
 }
 
 DataFile read_data(std::span<const std::filesystem::path> files, const DataOptions& options,
-                   std::optional<std::vector<std::string>> used) {
+                   std::optional<std::vector<std::string>> used, bool spare) {
   std::optional<Condition> condition;
   if (!options.where.empty()) condition = parse_condition(options.where);
   if (condition && used) used->push_back(condition->column);
-  CsvOptions csv{options.roles, options.drop_missing, options.names_tell,    std::move(used),
-                 options.joint, options.drive,        !options.urdf.empty(), options.sample_rate};
+  const bool chain = !options.urdf.empty();
+  CsvOptions csv{options.roles,   options.drop_missing, options.names_tell,
+                 std::move(used), options.joint,        options.drive,
+                 chain,           options.sample_rate,  spare};
   DataFile file = read_csv_files(files, csv);
   if (condition) keep_rows_where(file, *condition);
   if (options.flip_sign) flip_torques(file.data);

@@ -42,10 +42,10 @@ struct DataOptions {
 };
 
 // The files as one campaign, with the rows that count and the torques' sign turned where asked.
-// used: columns that are needed beside those with a role; without a list all are.
-// Throws Error (bad_input).
+// used: columns that are needed beside those with a role; without a list all are. spare: the others
+// are wanted too where they hold numbers throughout. Throws Error (bad_input).
 DataFile read_data(std::span<const std::filesystem::path> files, const DataOptions& options,
-                   std::optional<std::vector<std::string>> used = {});
+                   std::optional<std::vector<std::string>> used = {}, bool spare = false);
 
 // Columns that are what the user says they are, for a fit or a problem of a grid: names tell
 // nothing, units that were said are converted, current becomes torque where a constant was given

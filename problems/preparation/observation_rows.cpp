@@ -175,6 +175,9 @@ Observations steady_means(const Observations& data) {
     average(data.find(name.substr(4))->values, out.signals[j].values);
     for (double& x : out.signals[j].values) x = sign(x);
   }
+  for (std::size_t j = 0; j < data.unused.size(); ++j) {
+    average(data.unused[j].values, out.unused[j].values);
+  }
   average(data.time, out.time);
   const std::vector<double>& v = out.find("v")->values;
   for (std::size_t k = 1; k < parts; ++k) {

@@ -13,6 +13,7 @@
 #include "foundation/sign.hpp"
 #include "problems/preparation/derived_channels.hpp"
 #include "problems/preparation/observation_rows.hpp"
+#include "problems/reading/units.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -207,16 +208,21 @@ Observations Observations::select(const std::vector<char>& keep) const {
     }
     return out;
   };
+  const auto chosen_signals = [&](const std::vector<Signal>& from) {
+    std::vector<Signal> out;
+    for (const Signal& signal : from) {
+      out.push_back({signal.name, signal.channel, signal.unit, signal.role, signal.recipe, {}});
+      out.back().values = chosen(signal.values);
+    }
+    return out;
+  };
   Observations out;
   out.target = chosen(target);
   out.movement = chosen(movement);
   out.time = chosen(time);
   out.place = chosen(place);
-  for (const Signal& signal : signals) {
-    Signal copy{signal.name, signal.channel, signal.unit, signal.role, signal.recipe, {}};
-    copy.values = chosen(signal.values);
-    out.signals.push_back(std::move(copy));
-  }
+  out.signals = chosen_signals(signals);
+  out.unused = chosen_signals(unused);
   out.target_name = target_name;
   out.target_unit = target_unit;
   out.movement_names = movement_names;
@@ -320,6 +326,9 @@ Observations means_of(const Observations& data, const std::vector<std::size_t>& 
   for (std::size_t j = 0; j < data.signals.size(); ++j) {
     average(data.signals[j].values, out.signals[j].values);
   }
+  for (std::size_t j = 0; j < data.unused.size(); ++j) {
+    average(data.unused[j].values, out.unused[j].values);
+  }
   for (Signal& signal : out.signals) {
     const Signal* of = signal.name.starts_with("sgn_") ? out.find(signal.name.substr(4)) : nullptr;
     for (std::size_t k = 0; of != nullptr && k < signal.values.size(); ++k) {
@@ -361,7 +370,17 @@ Shortened Observations::averaged(std::size_t most) const {
 
 namespace {
 
-// A channel that effects are written in, or that is rigid; the first where there are two of a role.
+// Without a role, varying, and not another torque.
+bool is_spare(const Channel& channel) {
+  const std::vector<double>& values = channel.values;
+  const Unit* unit = find_unit(channel.unit);
+  return channel.role == Role::none && (unit == nullptr || !measures_effort(*unit)) &&
+         std::ranges::all_of(values, [](double x) { return std::isfinite(x); }) &&
+         std::ranges::adjacent_find(values, std::ranges::not_equal_to()) != values.end();
+}
+
+// A channel that effects are written in, or that is rigid, or that may be worth a role; the first
+// where there are two of a role.
 void add_signal(Observations& out, const Channel& channel, bool rigid) {
   const std::optional<DerivedSignal> derived = derived_signal(channel.name);
   const bool recorded_distance = channel.name.starts_with("distance_since_reversal");
@@ -370,7 +389,11 @@ void add_signal(Observations& out, const Channel& channel, bool rigid) {
   const std::string name = derived             ? derived->signal
                            : recorded_distance ? "d"
                                                : signal_name(channel.role, channel.name);
-  if (!(wanted || rigid || derived || recorded_distance) || out.find(name) != nullptr) return;
+  const bool taken = wanted || rigid || derived || recorded_distance;
+  if (!taken && is_spare(channel)) {
+    out.unused.push_back({name, channel.name, channel.unit, channel.role, {}, channel.values});
+  }
+  if (!taken || out.find(name) != nullptr) return;
   out.signals.push_back({name, channel.name, channel.unit, channel.role,
                          derived ? derived->recipe : std::string(), channel.values});
   if (rigid) out.rigid.push_back(name);

@@ -51,6 +51,8 @@ struct WithheldSignal {
 // Rows of one movement stand together, in the order of the campaign.
 struct Observations {
   std::vector<Signal> signals;
+  // Columns that nobody gave a role and that vary: no effect is written in them.
+  std::vector<Signal> unused;
   std::vector<double> target;  // friction, positive with velocity
   std::string target_name;
   std::string target_unit;

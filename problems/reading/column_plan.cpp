@@ -346,6 +346,13 @@ void take_roles_by_unit(const CsvLayout& layout, std::vector<ColumnPlan>& plans,
   }
 }
 
+// What a user has looked at and left without a role is no question any more; another torque is no
+// cause of this one.
+bool is_spare(const CsvOptions& options, const ColumnPlan& plan) {
+  const bool effort = plan.unit.unit != nullptr && measures_effort(*plan.unit.unit);
+  return options.spare && !plan.role_given && !effort;
+}
+
 }  // namespace
 
 std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& options,
@@ -376,6 +383,7 @@ std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& 
                 : role == Role::time                  ? ColumnKind::time
                 : role != Role::none || plan.in_chain ? ColumnKind::number
                 : plan.used                           ? ColumnKind::found
+                : is_spare(options, plan)             ? ColumnKind::spare
                                                       : ColumnKind::unused;
   }
   return plans;

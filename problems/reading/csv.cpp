@@ -228,7 +228,7 @@ void count_time(const Reading& in, double rate, DataFile& out) {
 
 // Columns that no name tells are not even read: they may well hold numbers.
 [[noreturn]] void refuse_no_channel(const Reading& in) {
-  if (std::ranges::count(in.plans, ColumnKind::unused, &ColumnPlan::kind) == 0) {
+  if (std::ranges::all_of(in.plans, &ColumnPlan::used)) {
     throw_bad_input("no column holds numbers", in.file, "give at least one column of numbers");
   }
   constexpr std::size_t kShown = 40;
@@ -240,6 +240,13 @@ void count_time(const Reading& in, double rate, DataFile& out) {
                   fmt::format("say what they are, with --roles '{}=time[s],COLUMN=position[UNIT],"
                               "COLUMN=motor_current[A]'",
                               in.layout.header.front()));
+}
+
+void add_spare_channel(Reading& in, std::size_t j, DataFile& out) {
+  std::vector<double>& numbers = in.columns.columns[j].numbers;
+  if (std::ranges::any_of(numbers, [](double x) { return std::abs(x) > kLargestMeasured; })) return;
+  out.spare.push_back(in.layout.header[j]);
+  out.data.channels.push_back({in.layout.header[j], {}, Role::none, kept(numbers, in.rows)});
 }
 
 void fill_channels(Reading& in, DataFile& out) {
@@ -254,10 +261,12 @@ void fill_channels(Reading& in, DataFile& out) {
       out.data.channels.push_back(std::move(channel));
     } else if (plan.reading.role != Role::movement && column.kind == ColumnKind::text) {
       out.texts.push_back({in.layout.header[j], kept(column.texts, in.rows)});
+    } else if (column.kind == ColumnKind::spare) {
+      add_spare_channel(in, j, out);
     }
     out.readings.push_back(plan.reading);
   }
-  if (out.data.channels.empty()) refuse_no_channel(in);
+  if (out.data.channels.size() == out.spare.size()) refuse_no_channel(in);
   add_to_time(in, out);
   if (in.options.sample_rate) count_time(in, *in.options.sample_rate, out);
 }
@@ -328,7 +337,18 @@ void check_same_channels(const DataFile& all, const DataFile& next, std::string_
                   file, "give files with the same columns in the same order");
 }
 
+void drop_spare_channels(DataFile& file) {
+  std::erase_if(file.data.channels, [&](const Channel& channel) {
+    return std::ranges::count(file.spare, channel.name) > 0;
+  });
+  file.spare.clear();
+}
+
 void append(DataFile& all, DataFile next, std::string_view file) {
+  if (all.spare != next.spare) {
+    drop_spare_channels(all);
+    drop_spare_channels(next);
+  }
   check_same_channels(all, next, file);
   const auto first = static_cast<int>(all.data.movement_names.size());
   for (std::string& name : next.data.movement_names) {

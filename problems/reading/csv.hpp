@@ -45,6 +45,9 @@ struct CsvOptions {
   Drive drive = {};
   bool all_positions = false;              // the other joints' positions are channels too
   std::optional<double> sample_rate = {};  // rows a second, of a file without a time
+  // What is not used is read where it holds a number in every row of every file (and --roles do not
+  // say that it is nothing), and becomes a channel without a role.
+  bool spare = false;
 };
 
 struct TextColumn {
@@ -78,7 +81,8 @@ struct DataFile {
   // "joint = 1, 2": a column in which several joints take turns, and what it calls them; else
   // empty.
   std::string in_turn;
-  bool has_movements = false;  // a column tells them
+  std::vector<std::string> spare;  // channels that nobody asked for
+  bool has_movements = false;      // a column tells them
   std::size_t dropped_rows = 0;
   std::vector<std::string> warnings;  // one sentence each
 };

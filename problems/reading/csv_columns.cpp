@@ -102,7 +102,7 @@ class ColumnReader {
     const auto rows = static_cast<std::size_t>(std::min(110 * share, 1e8));
     out_.places.reserve(rows);
     for (CsvColumn& column : out_.columns) {
-      if (column.kind == ColumnKind::number) column.numbers.reserve(rows);
+      if (holds_numbers(column.kind)) column.numbers.reserve(rows);
     }
   }
 
@@ -145,7 +145,7 @@ class ColumnReader {
   }
 
   void read_next(CsvColumn& column) {
-    if (column.kind == ColumnKind::number && read_number_in_place(column)) return;
+    if (holds_numbers(column.kind) && read_number_in_place(column)) return;
     const std::string_view cell = scanner_.next_cell();
     switch (column.kind) {
       case ColumnKind::unused:
@@ -158,6 +158,9 @@ class ColumnReader {
         return;
       case ColumnKind::number:
         add_number(column, cell);
+        return;
+      case ColumnKind::spare:
+        add_spare(column, cell);
         return;
       case ColumnKind::time:
         add_time(column, cell);
@@ -200,6 +203,20 @@ class ColumnReader {
     const CellKind kind = read_cell(cell, layout_.decimal_comma, value);
     if (kind == CellKind::text && column.first_text == kNoRow) column.first_text = out_.rows();
     column.numbers.push_back(kind == CellKind::number ? value : kMissing);
+  }
+
+  static bool holds_numbers(ColumnKind kind) {
+    return kind == ColumnKind::number || kind == ColumnKind::spare;
+  }
+
+  void add_spare(CsvColumn& column, std::string_view cell) {
+    double value = 0;
+    if (read_cell(cell, layout_.decimal_comma, value) == CellKind::number) {
+      column.numbers.push_back(value);
+      return;
+    }
+    column.kind = ColumnKind::unused;
+    column.numbers = {};
   }
 
   void add_time(CsvColumn& column, std::string_view cell) {

@@ -21,6 +21,7 @@ enum class ColumnKind {
   number,
   time,  // numbers, or times written as text (time_text.hpp): the first cell decides
   text,
+  spare,   // numbers; unused, where a cell is none
   unused,  // not looked at
 };
 

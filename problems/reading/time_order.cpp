@@ -38,7 +38,10 @@ std::string column_of_recordings(const DataFile& reading, const Channel& time) {
     if (changes_with(column.values, restarts)) return column.name;
   }
   for (const Channel& channel : reading.data.channels) {
-    if (&channel != &time && changes_with(channel.values, restarts)) return channel.name;
+    const bool asked_for = std::ranges::count(reading.spare, channel.name) == 0;
+    if (&channel != &time && asked_for && changes_with(channel.values, restarts)) {
+      return channel.name;
+    }
   }
   return {};
 }

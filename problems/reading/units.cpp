@@ -199,6 +199,11 @@ WrittenUnit find_written_unit(std::string_view text) {
   return written.unit != nullptr ? written : WrittenUnit{};
 }
 
+bool measures_effort(const Unit& unit) {
+  return unit.dimension == Dimension::torque || unit.dimension == Dimension::force ||
+         unit.dimension == Dimension::current || unit.dimension == Dimension::voltage;
+}
+
 bool suits(const Unit& unit, Role role) {
   const std::vector<Dimension> dimensions = dimensions_of(role);
   return dimensions.empty() || std::ranges::count(dimensions, unit.dimension) > 0;

@@ -60,6 +60,9 @@ WrittenUnit find_written_unit(std::string_view text);
 // Whether a channel of this role can be measured in the unit; true for a role that says nothing.
 bool suits(const Unit& unit, Role role);
 
+// A torque, a force, or what a drive puts in for one.
+bool measures_effort(const Unit& unit);
+
 // "rad, deg, rev, counts, m, mm": what `suits` takes, for messages.
 std::string units_of(Role role);
 

@@ -292,6 +292,7 @@ Json words_json(const LoopWords& words) {
           {"next", words.next},
           {"detectable", words.detectable},
           {"needed", words.needed},
+          {"unused", words.unused},
           {"untestable", words.untestable},
           {"aliased", words.aliased},
           {"bursts", words.bursts},

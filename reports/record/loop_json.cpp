@@ -145,6 +145,11 @@ void add_lists(Json& json, const LoopRecord& record) {
                                   {"detectable", json_number(one.detectable)}});
   }
   json["needed"] = record.needed;
+  json["unused_columns"] = Json::array();
+  for (const LoopUnusedColumn& one : record.unused_columns) {
+    json["unused_columns"].push_back(
+        {{"column", one.column}, {"explains", json_number(one.share)}});
+  }
 }
 
 void add_extras(Json& json, const LoopRecord& record) {

@@ -244,6 +244,12 @@ struct LoopDataStep {
   std::size_t rows = 0;  // that were left
 };
 
+// A column without a role, and how much of what is left over a smooth function of it explains.
+struct LoopUnusedColumn {
+  std::string column;
+  double share = kNoFigure;
+};
+
 struct LoopRecord {
   std::string title;  // the data's name
   LoopVerdict verdict = LoopVerdict::none;
@@ -262,6 +268,7 @@ struct LoopRecord {
   std::vector<LoopBurst> bursts;
   std::vector<LoopCandidate> candidates;
   std::vector<std::string> needed;  // where it cannot tell: what would be
+  std::vector<LoopUnusedColumn> unused_columns;
   LoopError error;
   LoopMotion motion;
   std::string base;

@@ -174,10 +174,10 @@ TEST(LoopReport, IsTwoScreensHoweverMuchThereIs) {
 TEST(LoopJson, KeepsTheKeysThatProgramsRead) {
   const json loop = json::parse(write_loop_json(sample_loop()));
   for (const char* key :
-       {"verdict", "confirmed", "target",     "alpha",          "seed",    "noise",
-        "effects", "leftover",  "untestable", "aliased",        "events",  "candidates",
-        "needed",  "error",     "base",       "base_formula",   "formula", "symbols",
-        "notes",   "warnings",  "learned",    "next_movements", "pictures"}) {
+       {"verdict", "confirmed",      "target",     "alpha",   "seed",           "noise",
+        "effects", "leftover",       "untestable", "aliased", "events",         "candidates",
+        "needed",  "unused_columns", "error",      "base",    "base_formula",   "formula",
+        "symbols", "notes",          "warnings",   "learned", "next_movements", "pictures"}) {
     EXPECT_TRUE(loop.contains(key)) << key;
   }
   EXPECT_EQ(loop["verdict"], "UNKNOWN");

@@ -267,6 +267,7 @@ LoopRecord sample_loop() {
   loop.effects = sample_effects();
   loop.leftover.p = 0.001;
   loop.leftover.inputs = {"position"};
+  loop.unused_columns = {{"toolload", 0.31}};
   loop.untestable = {{"inertia", "no acceleration in the data", 0, 0, "R4"}};
   loop.bursts = {{17, "up slow", 1.2, 1.3, 4.1}};
   loop.error = sample_error();

@@ -121,6 +121,7 @@ function traceChooser(picture) {
 function nextCard() {
   const lines = [el("h3", {}, "What next"), el("p", {class: "next"}, words.next)];
   if (words.needed.length > 1) lines.push(el("ul", {}, words.needed.slice(1).map((n) => el("li", {}, n + "."))));
+  if (words.unused) lines.push(el("p", {class: "next"}, words.unused));
   if (words.detectable) lines.push(el("p", {class: "next"}, words.detectable));
   if (words.leftover && words.cards.length) lines.push(el("p", {class: "next"}, words.leftover));
   return el("section", {class: "card answer"}, lines);

@@ -37,9 +37,26 @@ void try_data(std::string_view text, bool drop_missing) {
   expect_same(file.data, parse_csv(written.str(), "written.csv", options).data);
 }
 
+// Columns that nobody asked for never make a file wrong that is right without them.
+void try_spare_columns(std::string_view text) {
+  CsvOptions options;
+  options.used = std::vector<std::string>();
+  DataFile file;
+  if (!fuzz::reads([&] { file = parse_csv(text, "data.csv", options); })) return;
+  options.spare = true;
+  const DataFile whole = parse_csv(text, "data.csv", options);
+  fuzz::expect(whole.data.channels.size() == file.data.channels.size() + whole.spare.size(),
+               "a channel is lost");
+  fuzz::expect(whole.data.rows() == file.data.rows(), "a row is lost");
+  for (const Channel& channel : file.data.channels) {
+    fuzz::expect(whole.data.at(channel.name).values == channel.values, "a number changes");
+  }
+}
+
 }  // namespace
 
 TRIBENCH_FUZZ_TARGET(csv) {
   try_data(input, false);
   try_data(input, true);
+  try_spare_columns(input);
 }

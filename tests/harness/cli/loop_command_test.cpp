@@ -332,6 +332,34 @@ TEST(LoopCommand, WritesItsThreeFilesAndTheNextMovements) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out/next_movements.csv"));
 }
 
+// A log that holds what is missing under a name that nobody knows.
+TEST(LoopCommand, AColumnWithoutARoleThatExplainsWhatIsLeftIsPointedAt) {
+  const testing::TemporaryFolder folder;
+  const std::string data = generated(folder, "undeclared/coupling/2", "3");
+  std::string text = testing::read_text(data);
+  for (const auto& [name, other] : {std::pair("other_velocity_rad_s", "neighbour"),
+                                    std::pair("other_acceleration_rad_s2", "second")}) {
+    ASSERT_NE(text.find(name), std::string::npos);
+    text.replace(text.find(name), std::string_view(name).size(), other);
+  }
+  testing::write_text(data, text);
+  const std::string out = (folder / "out").string();
+  const testing::ProgramRun bare = run_tribench({"loop", data, "--any-sign", "--out", out});
+  EXPECT_THAT(bare.output, HasSubstr("'neighbour' ("));
+  EXPECT_THAT(bare.output, HasSubstr("--roles 'neighbour=ROLE'"));
+  const Json record = Json::parse(testing::read_text(out + "/loop.json"));
+  EXPECT_EQ(record["unused_columns"][0]["column"], "neighbour");
+  EXPECT_GT(record["unused_columns"][0]["explains"], 0.05);
+  EXPECT_THAT(testing::read_text(out + "/loop.md"), HasSubstr("'neighbour' ("));
+  // Told to be nothing it is no question any more; told what it is, it is an effect.
+  const testing::ProgramRun none =
+      run_tribench({"loop", data, "--any-sign", "--roles", "neighbour=none"});
+  EXPECT_THAT(none.output, Not(HasSubstr("neighbour")));
+  const testing::ProgramRun told =
+      run_tribench({"loop", data, "--any-sign", "--json", "--roles", "neighbour=other_velocity"});
+  EXPECT_EQ(families(Json::parse(told.output)), std::vector<std::string>{"coupling"});
+}
+
 // derived_channels_test.cpp compiles such code and holds it to the loop's own values.
 TEST(LoopCommand, WhatItFoundIsExportedAsCWithTheHistoryItNeeds) {
   const testing::TemporaryFolder folder;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <sstream>
 
@@ -354,6 +355,51 @@ TEST(Csv, NamesTellNothingWhereTheyAreNotAsked) {
   ASSERT_EQ(file.data.channels.size(), 2U);
   EXPECT_EQ(file.data.at("t").role, Role::none);
   EXPECT_EQ(file.data.at("movement").values, (std::vector<double>{1, 2, 1}));
+}
+
+TEST(Csv, SpareColumnsAreThoseWithANumberInEveryRow) {
+  CsvOptions options;
+  options.used = std::vector<std::string>();
+  options.spare = true;
+  options.roles = parse_roles("known=none", "--roles");
+  const std::string text =
+      "time_s,load,gap,word,huge,known,target_current_A,kg\n"
+      "0,1,1,1,1,1,1,5e-1\n"
+      "1,+2,,2,1e200,2,2,6\n"
+      "2,\"3\",3,x,1,3,3,7\n";
+  const DataFile file = parse_csv(text, "d.csv", options);
+  EXPECT_EQ(file.spare, (std::vector<std::string>{"load", "kg"}));
+  ASSERT_EQ(file.data.channels.size(), 3U);
+  EXPECT_EQ(file.data.at("load").values, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(file.data.at("load").role, Role::none);
+  EXPECT_EQ(file.data.at("kg").values, (std::vector<double>{0.5, 6, 7}));
+  options.spare = false;
+  EXPECT_EQ(parse_csv(text, "d.csv", options).data.channels.size(), 1U);
+  // They are no data by themselves.
+  options.spare = true;
+  options.roles = {};
+  EXPECT_THAT(complaint("c0,c1\n1,2\n2,4\n", options), HasSubstr("no column's name is known"));
+}
+
+TEST(Csv, SpareColumnsThatNotAllFilesHaveAreLeftOut) {
+  const std::filesystem::path folder =
+      std::filesystem::path(::testing::TempDir()) / "spare_columns";
+  std::filesystem::create_directories(folder);
+  const auto write = [&](const char* name, const char* text) {
+    std::ofstream(folder / name) << text;
+    return folder / name;
+  };
+  const std::vector<std::filesystem::path> files = {write("a.csv", "time_s,load\n0,1\n1,2\n"),
+                                                    write("b.csv", "time_s,load\n0,x\n1,2\n")};
+  CsvOptions options;
+  options.used = std::vector<std::string>();
+  options.spare = true;
+  EXPECT_EQ(read_csv(files[0], options).spare.size(), 1U);
+  const DataFile both = read_csv_files(files, options);
+  EXPECT_TRUE(both.spare.empty());
+  EXPECT_EQ(both.data.channels.size(), 1U);
+  EXPECT_EQ(both.data.rows(), 4U);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Csv, ColumnsThatNoNameTellsAreNotSaidToHoldNoNumbers) {
