@@ -285,18 +285,10 @@ Json words_json(const LoopWords& words) {
                      {"bristles", card.bristles},
                      {"settle", card.settle}});
   }
-  return {{"headline", words.headline},
-          {"error", words.error},
-          {"cards", cards},
-          {"leftover", words.leftover},
-          {"next", words.next},
-          {"detectable", words.detectable},
-          {"needed", words.needed},
-          {"unused", words.unused},
-          {"untestable", words.untestable},
-          {"aliased", words.aliased},
-          {"bursts", words.bursts},
-          {"remarks", words.remarks}};
+  return {{"headline", words.headline}, {"error", words.error},   {"cards", cards},
+          {"leftover", words.leftover}, {"next", words.next},     {"detectable", words.detectable},
+          {"needed", words.needed},     {"unused", words.unused}, {"untestable", words.untestable},
+          {"aliased", words.aliased},   {"bursts", words.bursts}, {"remarks", words.remarks}};
 }
 
 Json model_json(const LoopRecord& record) {
