@@ -456,7 +456,7 @@ std::string closed_share(const LoopError& error) {
   return fmt::format("{:.0f} .. {}", 100 * low, percent(high));
 }
 
-// "Column 'v_other' has no role and explains 43 % of what is left: ..."
+// "One column without a role explains part of what is left: 'v_other' (43 %). ..."
 std::string unused_of(const LoopRecord& record) {
   constexpr std::size_t kNamed = 3;
   const std::vector<LoopUnusedColumn>& columns = record.unused_columns;
@@ -467,9 +467,9 @@ std::string unused_of(const LoopRecord& record) {
   }
   const bool one = columns.size() == 1;
   return fmt::format(
-      "{} no role and explain{} what is left: {}{}. Say what {} (--roles '{}=ROLE'), unless {} "
-      "the torque told otherwise.",
-      one ? "One column has" : fmt::format("{} columns have", columns.size()), one ? "s" : "",
+      "{} without a role explain{} part of what is left: {}{}. Say what {} (--roles '{}=ROLE'), "
+      "unless {} the torque told otherwise.",
+      one ? "One column" : fmt::format("{} columns", columns.size()), one ? "s" : "",
       fmt::join(named, ", "), columns.size() > kNamed ? ", ..." : "", one ? "it is" : "they are",
       columns.front().column, one ? "it is" : "they are");
 }

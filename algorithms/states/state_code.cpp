@@ -17,7 +17,8 @@ struct Piece {
 };
 
 // e^x, the bits of foundation/elementary: Cody and Waite's reduction, a minimax polynomial. Where
-// 2^n is a normal number one factor gives the bits of the two, a fifth faster.
+// 2^n is a normal number one factor gives the bits of the two: a step of LuGre takes a seventh
+// less.
 constexpr std::string_view kDoubleExp = R"(static inline double $Npower(double n) {
   uint64_t bits;
   double power;

@@ -138,7 +138,8 @@ DataFile read_files(const LoopArguments& arguments) {
   const std::vector<std::filesystem::path> files(arguments.files.begin(), arguments.files.end());
   std::vector<std::string> used = arguments.rigid;
   if (!arguments.leave_out.empty()) used.push_back(arguments.leave_out);
-  DataFile file = read_data(files, *arguments.reading, used, true);
+  constexpr bool kSpareColumnsToo = true;
+  DataFile file = read_data(files, *arguments.reading, used, kSpareColumnsToo);
   if (!arguments.leave_out.empty()) code_column(file, arguments.leave_out);
   return file;
 }

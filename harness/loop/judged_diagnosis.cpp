@@ -177,8 +177,8 @@ class LoopJudge {
   void add_predictions(LeftOut& all, const Diagnosis& fitted,
                        const std::optional<Bristles>& bristles, const RandomStream& random) const;
   // Errors on the rows with rows[i] != 0. unit: of those rows.
-  void judge_rows(JudgedDiagnosis& whole, const std::vector<char>& rows, const LeftOut& models,
-                  const std::vector<int>& unit) const;
+  ErrorFinding judged(const std::vector<char>& rows, const LeftOut& models,
+                      std::span<const int> unit) const;
   void point_at_unused_columns(JudgedDiagnosis& whole) const;
 
   const Observations& data_;
@@ -261,27 +261,29 @@ void LoopJudge::add_predictions(LeftOut& all, const Diagnosis& fitted,
   }
 }
 
-void LoopJudge::judge_rows(JudgedDiagnosis& whole, const std::vector<char>& rows,
-                           const LeftOut& models, const std::vector<int>& unit) const {
+ErrorFinding LoopJudge::judged(const std::vector<char>& rows, const LeftOut& models,
+                               std::span<const int> unit) const {
   std::vector<Eigen::Index> kept;
   for (std::size_t i = 0; i < data_.rows(); ++i) {
     if (rows[i] != 0) kept.push_back(static_cast<Eigen::Index>(i));
   }
   const Observations part = data_.select(rows);
-  const Eigen::VectorXd y = target_vector(part);
   const Eigen::VectorXd before = models.before(kept);
   const Eigen::VectorXd after = models.after(kept);
-  ErrorFinding& error = whole.error;
-  error = judge(part, before, after, unit, random_.split("bootstrap"));
-  if (!kept.empty()) error.mae_state = (y - models.with_state(kept)).cwiseAbs().mean();
-  if (!judging_.bounds) return;
-  bound_noise(error, part, y - before, y - after, y - models.corrected(kept), unit,
-              random_.split("bounds"));
-  point_at_unused_columns(whole);
+  ErrorFinding error = judge(part, before, after, unit, random_.split("bootstrap"));
+  if (!kept.empty()) {
+    error.mae_state = (target_vector(part) - models.with_state(kept)).cwiseAbs().mean();
+  }
+  if (judging_.bounds) {
+    const auto y = target_vector(part);
+    bound_noise(error, part, y - before, y - after, y - models.corrected(kept), unit,
+                random_.split("bounds"));
+  }
+  return error;
 }
 
 void LoopJudge::point_at_unused_columns(JudgedDiagnosis& whole) const {
-  if (data_.unused.empty()) return;
+  if (!judging_.bounds || data_.unused.empty()) return;
   const std::vector<char> rows = usable_rows(data_, {}, false, whole.masked);
   const Observations part = data_.select(rows);
   const RandomStream random = random_.split("unused columns");
@@ -307,7 +309,8 @@ JudgedDiagnosis LoopJudge::in_turn() {
   JudgedDiagnosis whole{std::move(searches.whole()), {}, {}, {}};
   whole.bristles = bristles_of(whole, data_);
   const std::vector<char> usable = usable_rows(data_, {}, false, whole.masked);
-  judge_rows(whole, usable, all, pieces(data_.select(usable), whole.correlation_rows));
+  whole.error = judged(usable, all, pieces(data_.select(usable), whole.correlation_rows));
+  point_at_unused_columns(whole);
   whole.error.how =
       !data_.group.empty() ? fmt::format("movements of one '{}' left out in turn", data_.group_name)
       : data_.movements().size() > turns ? fmt::format("the movements left out in {} turns", turns)
@@ -338,7 +341,8 @@ JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
   if (std::ranges::count(rows, 1) == 0) return whole;
   LeftOut models(data_.rows());
   add_predictions(models, whole, whole.bristles, random_);
-  judge_rows(whole, rows, models, data_.select(rows).movement);
+  whole.error = judged(rows, models, data_.select(rows).movement);
+  point_at_unused_columns(whole);
   whole.error.how = "held out";
   doubt_nothing_missing(whole, std::move(needed));
   return whole;

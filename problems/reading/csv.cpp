@@ -226,7 +226,7 @@ void count_time(const Reading& in, double rate, DataFile& out) {
       fmt::format("no column is the time: a row every {:.6g} s (--sample-rate)", 1 / rate));
 }
 
-// Columns that no name tells are not even read: they may well hold numbers.
+// Columns that no name tells may well hold numbers.
 [[noreturn]] void refuse_no_channel(const Reading& in) {
   if (std::ranges::all_of(in.plans, &ColumnPlan::used)) {
     throw_bad_input("no column holds numbers", in.file, "give at least one column of numbers");
