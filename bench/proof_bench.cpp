@@ -3,19 +3,25 @@
 // What a verdict costs: random formulas with division over the box of a joint with load, one after
 // another. Counters: median, 99th percentile and worst CPU time of one formula in milliseconds and
 // the share of formulas decided. Checks every proof at sampled points and every witness with the
-// evaluator. Also the cost of the canonical hash, a node.
+// evaluator. Also the cost of the canonical hash, a node, and of the shortest form.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <iterator>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "algorithms/expression/canonical.hpp"
+#include "algorithms/expression/complexity.hpp"
 #include "algorithms/expression/evaluate.hpp"
 #include "algorithms/expression/operator_set.hpp"
 #include "algorithms/expression/random_formula.hpp"
+#include "algorithms/expression/simplify.hpp"
 #include "algorithms/expression/singularity.hpp"
+#include "algorithms/expression/text.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench {
@@ -163,6 +169,52 @@ void hash(benchmark::State& state) {
       static_cast<double>(nodes), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(hash)->Arg(15)->Arg(31)->Unit(benchmark::kMicrosecond);
+
+// Random formulas have no common factors: next to nothing to do. What searches leave, has.
+void simplify_formulas(benchmark::State& state) {
+  constexpr std::size_t kSimplified = 200;
+  std::vector<Expression> formulas =
+      formulas_with_division(static_cast<std::size_t>(state.range(0)));
+  formulas.resize(kSimplified);
+  std::vector<double> times;
+  std::size_t shorter = 0;
+  for (auto _ : state) {
+    times.clear();
+    shorter = 0;
+    for (const Expression& formula : formulas) {
+      const double start = cpu_ms();
+      const Expression simple = simplify(formula, kBox);
+      times.push_back(cpu_ms() - start);
+      shorter += simple.size() < formula.size() ? 1 : 0;
+    }
+  }
+  std::ranges::sort(times);
+  state.counters["median_ms"] = times[times.size() / 2];
+  state.counters["p99_ms"] = times[times.size() * 99 / 100];
+  state.counters["shorter"] = static_cast<double>(shorter) / static_cast<double>(formulas.size());
+}
+BENCHMARK(simplify_formulas)->Arg(15)->Arg(31)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+// As a search printed them: each has to become as short as the law that it is.
+void simplify_printed_formulas(benchmark::State& state) {
+  const std::vector<std::string> names = {"v", "g", "t", "w"};
+  const InputBox box = {{0.5, 5}, {0.5, 5}, {0.5, 5}, {0.5, 5}};
+  const std::pair<const char*, int> forms[] = {
+      {"v^1.5*g^1.5/t^1.5/((w + v)/t + 1)^1.5", 11},
+      {"t*exp(-2*v*(g - w))*(exp(v*(g - w)) - 1)^2", 13},
+      {"sqrt(w^2 + 1/v^2/g^2 - t*(2/g - v^2*t))", 16},
+      {"0.4*exp(-0.5*v^2/t^2 + g*(v - 0.5*g)/t^2)/t", 14},
+      {"-2*v/v*(cos(g*t*1)*v*1 - v*1)", 10},
+  };
+  for (auto _ : state) {
+    for (const auto& [text, nodes] : forms) {
+      const Expression simple = simplify(parse(text, names), box);
+      if (node_count(simple) > nodes) state.SkipWithError(print(simple, names).c_str());
+    }
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(std::size(forms)) * state.iterations());
+}
+BENCHMARK(simplify_printed_formulas)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tribench

@@ -10,6 +10,7 @@
 #include "algorithms/expression/build.hpp"
 #include "algorithms/expression/edit.hpp"
 #include "algorithms/expression/evaluate.hpp"
+#include "algorithms/expression/power_rewrites.hpp"
 #include "algorithms/expression/singularity.hpp"
 #include "algorithms/expression/sum_of_products.hpp"
 
@@ -185,62 +186,6 @@ Expression parted_by_sign(const Expression& sum, const Expression& s) {
   return formula_of(even);
 }
 
-// What stands below a bar in one of two sums, with the highest power that it has there.
-std::vector<TermFactor> bases_below(const SumOfProducts& a, const SumOfProducts& b) {
-  std::vector<TermFactor> bases;
-  for (const SumOfProducts* sum : {&a, &b}) {
-    for (const SumTerm& term : *sum) {
-      for (const TermFactor& factor : term.factors) {
-        if (factor.power >= 0) continue;
-        const auto same = std::ranges::find(bases, factor.base, &TermFactor::base);
-        if (same == bases.end()) {
-          bases.push_back({factor.base, -factor.power});
-        } else {
-          same->power = std::max(same->power, -factor.power);
-        }
-      }
-    }
-  }
-  return bases;
-}
-
-SumOfProducts multiplied(SumOfProducts sum, const TermFactor& by) {
-  for (SumTerm& term : sum) {
-    int left = by.power;
-    for (TermFactor& factor : term.factors) {
-      if (factor.base != by.base || factor.power >= 0) continue;
-      const int cancelled = std::min(left, -factor.power);
-      factor.power += cancelled;
-      left -= cancelled;
-    }
-    std::erase_if(term.factors, [](const TermFactor& factor) { return factor.power == 0; });
-    if (left > 0) multiply_by(term, {by.base, left});
-  }
-  return sum;
-}
-
-// (a/c + b) / (d/c + e) = (a + b c) / (d + e c), for every c below a bar.
-void clear_fractions(const SumTerm& term, std::vector<Expression>& out) {
-  const auto is_sum_factor = [&](const TermFactor& factor, int power) {
-    return factor.power == power && is_sum(factor.base.node(factor.base.root()).op);
-  };
-  for (std::size_t i = 0; i < term.factors.size(); ++i) {
-    for (std::size_t j = 0; j < term.factors.size(); ++j) {
-      if (!is_sum_factor(term.factors[i], 1) || !is_sum_factor(term.factors[j], -1)) continue;
-      const SumOfProducts above =
-          sum_of_products(term.factors[i].base, term.factors[i].base.root());
-      const SumOfProducts below =
-          sum_of_products(term.factors[j].base, term.factors[j].base.root());
-      for (const TermFactor& cleared : bases_below(above, below)) {
-        SumTerm result = term;
-        result.factors[i].base = formula_of(multiplied(above, cleared));
-        result.factors[j].base = formula_of(multiplied(below, cleared));
-        out.push_back(formula_of(result));
-      }
-    }
-  }
-}
-
 }  // namespace
 
 // ---- sums
@@ -259,6 +204,7 @@ void Rewriter::rewrite_sum(const SumOfProducts& sum, std::vector<Expression>& ou
   take_out_factors(sum, out);
   take_out_numbers(sum, out);
   drop_negligible(sum, out);
+  complete_squares(sum, out);
 }
 
 // ---- products
@@ -339,6 +285,9 @@ void Rewriter::rewrite_product(const SumTerm& term, std::vector<Expression>& out
   out.push_back(formula_of(term));
   multiply_out(term, out);
   clear_fractions(term, out);
+  open_denominators(term, out);
+  spread_exponentials(term, out);
+  merge_powers(term, range_, out);
   absorb_numbers(term, out);
   use_sign(term, out);
   merge_pairs(term, out);
@@ -393,6 +342,7 @@ void Rewriter::rewrite_log(const Expression& argument, std::vector<Expression>& 
 void Rewriter::rewrite_sqrt(const Expression& argument, std::vector<Expression>& out) const {
   const SumOfProducts sum = sum_of_products(argument, argument.root());
   if (sum.size() != 1) return;
+  turn_root(argument, range_, out);
   const SumTerm& inside = sum[0];
   if (inside.coefficient > 0 && inside.coefficient != 1 && !inside.factors.empty()) {
     SumTerm rest = inside;
@@ -476,6 +426,10 @@ std::vector<Expression> Rewriter::rewrites(const Expression& formula) const {
       const std::size_t parent = parent_of(formula, i);
       const bool is_inner = parent < formula.size() && is_product(formula.node(parent).op);
       if (!is_inner) rewrite_product(sum_of_products(formula, i)[0], here);
+      if (op == Op::pow) {
+        rewrite_power(subtree(formula, formula.left_child(i)),
+                      subtree(formula, formula.last_child(i)), range_, here);
+      }
     } else if (arity(op) == 1 && op != Op::neg) {
       rewrite_function(op, subtree(formula, formula.last_child(i)), here);
     }

@@ -8,11 +8,12 @@
 //              the others dropped
 //   products   a factor that is a sum multiplied out, or scaled by numbers beside it and by the
 //              constants of exponents; exponentials and roots merged; x sgn_x = |x|,
-//              |x| sgn_x = x; beside a sign its square in another factor 1; fractions within a
-//              fraction cleared
+//              |x| sgn_x = x; beside a sign its square in another factor 1
 //   functions  exp of log and of a constant term, log of exp, of roots and powers, roots of squares
 //              and of constants, |x| of what has one sign; sin, tanh, exp and cos of arguments so
 //              small, tanh of ones so large, that the difference is below 1e-12 of the value
+//
+//   powers     power_rewrites.hpp
 //
 // A rewrite that needs a fact (a range, a sign) is offered where the box proves it. Values on the
 // box change by rounding, and by kNegligible of themselves where something is left out.
@@ -23,15 +24,17 @@
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/expression/input_box.hpp"
 #include "algorithms/expression/interval.hpp"
+#include "algorithms/expression/power_rewrites.hpp"
 #include "algorithms/expression/sum_of_products.hpp"
 
 namespace tribench {
 
-inline constexpr double kNegligible = 1e-12;
-
 class Rewriter {
  public:
-  explicit Rewriter(const InputBox& box) : box_(box) {}
+  explicit Rewriter(const InputBox& box)
+      : box_(box), range_([this](const Expression& formula) { return range(formula); }) {}
+  Rewriter(const Rewriter&) = delete;
+  Rewriter& operator=(const Rewriter&) = delete;
 
   // No two orders alike: the same formula gives the same list.
   std::vector<Expression> rewrites(const Expression& formula) const;
@@ -53,6 +56,7 @@ class Rewriter {
   bool is_sign_of(const Expression& sign, const Expression& whole) const;
 
   const InputBox& box_;
+  const RangeOf range_;
 };
 
 }  // namespace tribench

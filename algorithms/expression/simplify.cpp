@@ -2,6 +2,8 @@
 #include "algorithms/expression/simplify.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -18,6 +20,11 @@ constexpr ProofLimits kVerdictLimits = {.node_boxes = 50'000};
 constexpr int kRounds = 40;
 // Larger ones are left as they are: the rewrites of a long sum are many.
 constexpr std::size_t kLargest = 200;
+
+// Two rewrites at once: of formulas of so many nodes, over so many more, by so many ways.
+constexpr std::size_t kLargestLeap = 60;
+constexpr int kDetour = 8;
+constexpr std::size_t kMostBetween = 24;
 
 using Size = std::pair<int, int>;
 
@@ -36,7 +43,7 @@ class Descent {
 
   Expression run(Expression formula) {
     verdict_ = verdict_of(formula);
-    for (int round = 0; round < kRounds && step(formula); ++round) {
+    for (int round = 0; round < kRounds && (step(formula) || leap(formula)); ++round) {
     }
     return formula;
   }
@@ -49,27 +56,59 @@ class Descent {
     return prove_free(formula, box_, kVerdictLimits).verdict;
   }
 
-  // To the shortest form one rewrite away, if it is shorter.
-  bool step(Expression& formula) {
-    std::vector<std::pair<Size, Expression>> shorter;
-    const Size now = size_of(formula);
+  using Candidates = std::vector<std::pair<Size, Expression>>;
+
+  // Those that are shorter, as they are and in canonical form.
+  void add_shorter(const std::vector<Expression>& rewrites, Size than, Candidates& out) {
     const auto consider = [&](Expression candidate) {
       const Size size = size_of(candidate);
-      if (size < now) shorter.emplace_back(size, std::move(candidate));
+      if (size < than) out.emplace_back(size, std::move(candidate));
     };
-    consider(canonicalizer_.canonical(formula));
-    for (Expression& candidate : rewriter_.rewrites(formula)) {
+    for (const Expression& candidate : rewrites) {
       consider(canonicalizer_.canonical(candidate));
-      consider(std::move(candidate));
+      consider(candidate);
     }
-    std::ranges::stable_sort(shorter, {}, &std::pair<Size, Expression>::first);
-    for (auto& [size, candidate] : shorter) {
+  }
+
+  // The shortest that may be used.
+  bool take_shortest(Candidates candidates, Expression& formula) {
+    std::ranges::stable_sort(candidates, {}, &std::pair<Size, Expression>::first);
+    for (auto& [size, candidate] : candidates) {
       if (admits_ && !admits_(candidate)) continue;
       if (verdict_of(candidate) != verdict_) continue;
       formula = std::move(candidate);
       return true;
     }
     return false;
+  }
+
+  // To the shortest form one rewrite away, if it is shorter.
+  bool step(Expression& formula) {
+    Candidates shorter;
+    add_shorter({canonicalizer_.canonical(formula)}, size_of(formula), shorter);
+    add_shorter(rewriter_.rewrites(formula), size_of(formula), shorter);
+    return take_shortest(std::move(shorter), formula);
+  }
+
+  // To the shortest form two rewrites away, over one that is a little longer.
+  bool leap(Expression& formula) {
+    if (formula.size() > kLargestLeap) return false;
+    const Size now = size_of(formula);
+    std::set<std::uint64_t> seen = {canonicalizer_.hash(formula).exact};
+    Candidates between;
+    for (const Expression& rewrite : rewriter_.rewrites(formula)) {
+      if (!seen.insert(canonicalizer_.hash(rewrite).exact).second) continue;
+      Expression canonical = canonicalizer_.canonical(rewrite);
+      const Size size = size_of(canonical);
+      if (size.second <= now.second + kDetour) between.emplace_back(size, std::move(canonical));
+    }
+    std::ranges::stable_sort(between, {}, &std::pair<Size, Expression>::first);
+    if (between.size() > kMostBetween) between.resize(kMostBetween);
+    Candidates shorter;
+    for (const auto& [size, candidate] : between) {
+      add_shorter(rewriter_.rewrites(candidate), now, shorter);
+    }
+    return take_shortest(std::move(shorter), formula);
   }
 
   const InputBox& box_;

@@ -229,6 +229,16 @@ TEST(Simplify, FindsTheShortForm) {
       {"exp(1e-14*v)*g", "g"},
       {"v + 1e-15*g", "v"},
       {"tanh(v + 20)*g", "g"},
+      {"v^1.5*g^1.5/t^1.5/((v + g)/t + 1)^1.5", "(v*g/(v + g + t))^1.5"},
+      {"v^0.3*(g/t)^0.3", "(v*g/t)^0.3"},
+      {"g*exp(v - 0.2*t^-8e-14)", "g*exp(v - 0.2)"},
+      {"t + 1/v^2 - g*(2/v - g)", "t + (1/v - g)^2"},
+      {"exp(-0.5*v^2/t^2 + g*(v - 0.5*g)/t^2)", "exp(-0.5*(v - g)^2/t^2)"},
+      {"0.4*exp(-0.5*v^2/t^2 + g*(v - 0.5*g)/t^2)/t", "0.4*exp(-0.5*(v - g)^2/t^2)/t"},
+      {"sqrt(exp(t) + 1/v^2/g^2 - t*(2/g - v^2*t))", "sqrt(exp(t) + (v*t - 1/(v*g))^2)"},
+      {"t*exp(-2*v*(g - 1))*(exp(v*(g - 1)) - 1)^2", "t*(1 - exp(v*(1 - g)))^2"},
+      {"g*sqrt(1/v)", "g/sqrt(v)"},
+      {"(3/v)^2.5", "15.588457268119896*v^-2.5"},
   };
   for (const auto& [formula, expected] : forms) {
     const Expression given = formula_of(formula);
@@ -239,7 +249,8 @@ TEST(Simplify, FindsTheShortForm) {
   }
   // Where the box does not prove it, nothing of the kind happens.
   const InputBox across = {{-5, 5}, {-5, 5}, {-5, 5}};
-  for (const char* formula : {"abs(v)*g", "sin(v)", "exp(v)", "tanh(g)", "sqrt(v^2)*g + v*t"}) {
+  for (const char* formula : {"abs(v)*g", "sin(v)", "exp(v)", "tanh(g)", "sqrt(v^2)*g + v*t",
+                              "v^1.5*g^1.5", "sqrt(1/v)", "v^1e-15", "v^2 + g^2 + 2.0001*v*g"}) {
     EXPECT_GE(paper_complexity(simplify(formula_of(formula), across)),
               paper_complexity(formula_of(formula)) - 1)
         << formula;

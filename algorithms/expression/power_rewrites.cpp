@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/expression/power_rewrites.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "algorithms/expression/apply.hpp"
+#include "algorithms/expression/build.hpp"
+#include "algorithms/expression/edit.hpp"
+
+namespace tribench {
+namespace {
+
+using build::operator*;
+
+Op op_of(const Expression& formula) { return formula.node(formula.root()).op; }
+bool is_a_sum(const Expression& formula) {
+  return op_of(formula) == Op::add || op_of(formula) == Op::sub;
+}
+bool is_exp(const TermFactor& factor) { return op_of(factor.base) == Op::exp; }
+Expression inside_of(const Expression& formula) {
+  return subtree(formula, formula.last_child(formula.root()));
+}
+
+SumTerm without(const SumTerm& term, std::size_t i) {
+  SumTerm rest = term;
+  rest.factors.erase(rest.factors.begin() + static_cast<std::ptrdiff_t>(i));
+  return rest;
+}
+
+// The root of a term without its coefficient; none where a power is odd.
+std::optional<SumTerm> root_of(const SumTerm& term) {
+  SumTerm root{1, {}};
+  for (const TermFactor& factor : term.factors) {
+    if (factor.power % 2 != 0) return std::nullopt;
+    root.factors.push_back({factor.base, factor.power / 2});
+  }
+  return root;
+}
+
+SumTerm product_of(const SumTerm& a, const SumTerm& b) {
+  SumTerm product = a;
+  product.coefficient *= b.coefficient;
+  for (const TermFactor& factor : b.factors) multiply_by(product, factor);
+  return product;
+}
+
+// The power of a base above the bar less that below it.
+int net_power(const SumTerm& term, const Expression& base) {
+  int power = 0;
+  for (const TermFactor& factor : term.factors) power += factor.base == base ? factor.power : 0;
+  return power;
+}
+
+// In any order, where no base is 0.
+bool same_factors(const SumTerm& a, const SumTerm& b) {
+  const auto agree = [&](const TermFactor& factor) {
+    return net_power(a, factor.base) == net_power(b, factor.base);
+  };
+  return std::ranges::all_of(a.factors, agree) && std::ranges::all_of(b.factors, agree);
+}
+
+// What stands below a bar in one of two sums, with the highest power that it has there.
+std::vector<TermFactor> bases_below(const SumOfProducts& a, const SumOfProducts& b) {
+  std::vector<TermFactor> bases;
+  for (const SumOfProducts* sum : {&a, &b}) {
+    for (const SumTerm& term : *sum) {
+      for (const TermFactor& factor : term.factors) {
+        if (factor.power >= 0) continue;
+        const auto same = std::ranges::find(bases, factor.base, &TermFactor::base);
+        if (same == bases.end()) {
+          bases.push_back({factor.base, -factor.power});
+        } else {
+          same->power = std::max(same->power, -factor.power);
+        }
+      }
+    }
+  }
+  return bases;
+}
+
+SumOfProducts multiplied(SumOfProducts sum, const TermFactor& by) {
+  for (SumTerm& term : sum) {
+    int left = by.power;
+    for (TermFactor& factor : term.factors) {
+      if (factor.base != by.base || factor.power >= 0) continue;
+      const int cancelled = std::min(left, -factor.power);
+      factor.power += cancelled;
+      left -= cancelled;
+    }
+    std::erase_if(term.factors, [](const TermFactor& factor) { return factor.power == 0; });
+    if (left > 0) multiply_by(term, {by.base, left});
+  }
+  return sum;
+}
+
+// The factors that stand together above the bar where all of the term stands below it.
+std::optional<SumTerm> turned(const SumTerm& term) {
+  SumTerm out{1, {}};
+  for (const TermFactor& factor : term.factors) {
+    if (factor.power >= 0) return std::nullopt;
+    out.factors.push_back({factor.base, -factor.power});
+  }
+  if (out.factors.empty()) return std::nullopt;
+  return out;
+}
+
+}  // namespace
+
+// (a/c + b) / (d/c + e) = (a + b c) / (d + e c), for every c below a bar.
+void clear_fractions(const SumTerm& term, std::vector<Expression>& out) {
+  const auto is_sum_factor = [&](const TermFactor& factor, int power) {
+    return factor.power == power && is_a_sum(factor.base);
+  };
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    for (std::size_t j = 0; j < term.factors.size(); ++j) {
+      if (!is_sum_factor(term.factors[i], 1) || !is_sum_factor(term.factors[j], -1)) continue;
+      const SumOfProducts above =
+          sum_of_products(term.factors[i].base, term.factors[i].base.root());
+      const SumOfProducts below =
+          sum_of_products(term.factors[j].base, term.factors[j].base.root());
+      for (const TermFactor& cleared : bases_below(above, below)) {
+        SumTerm result = term;
+        result.factors[i].base = formula_of(multiplied(above, cleared));
+        result.factors[j].base = formula_of(multiplied(below, cleared));
+        out.push_back(formula_of(result));
+      }
+    }
+  }
+}
+
+void complete_squares(const SumOfProducts& sum, std::vector<Expression>& out) {
+  constexpr double kSameNumber = 1e-14;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const std::optional<SumTerm> first = root_of(sum[i]);
+    for (std::size_t j = i + 1; first && j < sum.size(); ++j) {
+      const std::optional<SumTerm> second = root_of(sum[j]);
+      if (!second || !(sum[i].coefficient * sum[j].coefficient > 0)) continue;
+      const double ratio = std::sqrt(sum[j].coefficient / sum[i].coefficient);
+      const double twice = 2 * ratio * std::abs(sum[i].coefficient);
+      const SumTerm both = product_of(*first, *second);
+      for (std::size_t k = 0; k < sum.size(); ++k) {
+        const double size = std::abs(sum[k].coefficient);
+        if (k == i || k == j || !(std::abs(size - twice) <= kSameNumber * twice)) continue;
+        if (!same_factors(sum[k], both)) continue;
+        SumTerm other = *second;
+        other.coefficient = sum[k].coefficient * sum[i].coefficient > 0 ? ratio : -ratio;
+        SumOfProducts rest;
+        for (std::size_t m = 0; m < sum.size(); ++m) {
+          if (m != i && m != j && m != k) rest.push_back(sum[m]);
+        }
+        rest.push_back({sum[i].coefficient, {{formula_of(SumOfProducts{*first, other}), 2}}});
+        out.push_back(formula_of(rest));
+      }
+    }
+  }
+}
+
+void merge_powers(const SumTerm& term, const RangeOf& range, std::vector<Expression>& out) {
+  const auto is_power = [](const TermFactor& factor) {
+    return op_of(factor.base) == Op::pow && std::abs(factor.power) == 1;
+  };
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    if (!is_power(term.factors[i])) continue;
+    const Expression exponent = inside_of(term.factors[i].base);
+    const auto belongs = [&](const TermFactor& factor) {
+      return is_power(factor) && inside_of(factor.base) == exponent &&
+             range(subtree(factor.base, factor.base.left_child(factor.base.root()))).low > 0;
+    };
+    // Once for every exponent: by its first.
+    const auto first = std::ranges::find_if(term.factors, belongs);
+    if (first != term.factors.begin() + static_cast<std::ptrdiff_t>(i)) continue;
+    if (std::ranges::count_if(term.factors, belongs) < 2) continue;
+    SumTerm base;
+    SumTerm result{term.coefficient, {}};
+    for (const TermFactor& factor : term.factors) {
+      if (belongs(factor)) {
+        const Expression of = subtree(factor.base, factor.base.left_child(factor.base.root()));
+        multiply_by(base, {of, factor.power});
+      } else {
+        result.factors.push_back(factor);
+      }
+    }
+    multiply_by(result, {Expression::binary(Op::pow, formula_of(base), exponent), 1});
+    out.push_back(formula_of(result));
+  }
+}
+
+void open_denominators(const SumTerm& term, std::vector<Expression>& out) {
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    const TermFactor& factor = term.factors[i];
+    if (factor.power != -1 || !is_a_sum(factor.base)) continue;
+    const SumOfProducts below = sum_of_products(factor.base, factor.base.root());
+    for (const TermFactor& cleared : bases_below(below, {})) {
+      const auto beside = std::ranges::find_if(term.factors, [&](const TermFactor& other) {
+        return other.base == cleared.base && other.power <= -cleared.power;
+      });
+      if (beside == term.factors.end()) continue;
+      SumTerm result = without(term, i);
+      multiply_by(result, cleared);
+      multiply_by(result, {formula_of(multiplied(below, cleared)), -1});
+      out.push_back(formula_of(result));
+    }
+  }
+}
+
+void spread_exponentials(const SumTerm& term, std::vector<Expression>& out) {
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    if (!is_exp(term.factors[i])) continue;
+    for (std::size_t j = 0; j < term.factors.size(); ++j) {
+      const TermFactor& power = term.factors[j];
+      if (power.power < 2 || !is_a_sum(power.base)) continue;
+      const Expression part =
+          build::constant(static_cast<double>(term.factors[i].power) / power.power) *
+          inside_of(term.factors[i].base);
+      SumOfProducts sum = sum_of_products(power.base, power.base.root());
+      if (std::ranges::none_of(
+              sum, [](const SumTerm& each) { return std::ranges::any_of(each.factors, is_exp); })) {
+        continue;
+      }
+      for (SumTerm& each : sum) {
+        const auto own = std::ranges::find_if(each.factors, is_exp);
+        Expression argument = part;
+        if (own != each.factors.end()) {
+          argument = build::sum_of(build::constant(own->power) * inside_of(own->base), part);
+          each.factors.erase(own);
+        }
+        multiply_by(each, {Expression::unary(Op::exp, argument), 1});
+      }
+      SumTerm result = term;
+      result.factors[j].base = formula_of(sum);
+      out.push_back(formula_of(without(result, i)));
+    }
+  }
+}
+
+void turn_root(const Expression& argument, const RangeOf& range, std::vector<Expression>& out) {
+  const SumOfProducts sum = sum_of_products(argument, argument.root());
+  if (sum.size() != 1 || !(sum[0].coefficient > 0)) return;
+  const std::optional<SumTerm> below = turned(sum[0]);
+  if (!below || !(range(formula_of(*below)).low > 0)) return;
+  SumTerm result{std::sqrt(sum[0].coefficient), {}};
+  multiply_by(result, {Expression::unary(Op::sqrt, formula_of(*below)), -1});
+  out.push_back(formula_of(result));
+}
+
+void rewrite_power(const Expression& base, const Expression& exponent, const RangeOf& range,
+                   std::vector<Expression>& out) {
+  const Interval x = range(base);
+  if (!(x.low > 0) || !x.is_bounded()) return;
+  const double largest_log = std::max(std::abs(std::log(x.low)), std::abs(std::log(x.high)));
+  if (range(exponent).magnitude() * largest_log <= kNegligible) {
+    out.push_back(build::constant(1));
+  }
+  const SumOfProducts sum = sum_of_products(base, base.root());
+  const Node& k = exponent.node(exponent.root());
+  if (sum.size() != 1 || !k.is_constant() || !(sum[0].coefficient > 0)) return;
+  const std::optional<SumTerm> below = turned(sum[0]);
+  const double scale = apply(Op::pow, sum[0].coefficient, k.value);
+  if (!below || !(scale > 1e-300 && scale < 1e300)) return;
+  SumTerm result{scale, {}};
+  multiply_by(result,
+              {Expression::binary(Op::pow, formula_of(*below), build::constant(-k.value)), 1});
+  out.push_back(formula_of(result));
+}
+
+}  // namespace tribench
