@@ -8,6 +8,7 @@
 #include "algorithms/expression/apply.hpp"
 #include "algorithms/expression/build.hpp"
 #include "algorithms/expression/edit.hpp"
+#include "foundation/elementary.hpp"
 
 namespace tribench {
 namespace {
@@ -23,9 +24,11 @@ Expression inside_of(const Expression& formula) {
   return subtree(formula, formula.last_child(formula.root()));
 }
 
+std::ptrdiff_t index_of(std::size_t i) { return static_cast<std::ptrdiff_t>(i); }
+
 SumTerm without(const SumTerm& term, std::size_t i) {
   SumTerm rest = term;
-  rest.factors.erase(rest.factors.begin() + static_cast<std::ptrdiff_t>(i));
+  rest.factors.erase(rest.factors.begin() + index_of(i));
   return rest;
 }
 
@@ -170,7 +173,7 @@ void merge_powers(const SumTerm& term, const RangeOf& range, std::vector<Express
     };
     // Once for every exponent: by its first.
     const auto first = std::ranges::find_if(term.factors, belongs);
-    if (first != term.factors.begin() + static_cast<std::ptrdiff_t>(i)) continue;
+    if (first != term.factors.begin() + index_of(i)) continue;
     if (std::ranges::count_if(term.factors, belongs) < 2) continue;
     SumTerm base;
     SumTerm result{term.coefficient, {}};
@@ -183,6 +186,36 @@ void merge_powers(const SumTerm& term, const RangeOf& range, std::vector<Express
       }
     }
     multiply_by(result, {Expression::binary(Op::pow, formula_of(base), exponent), 1});
+    out.push_back(formula_of(result));
+  }
+}
+
+void merge_whole_powers(const SumTerm& term, std::vector<Expression>& out) {
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    const int power = std::abs(term.factors[i].power);
+    const auto belongs = [&](const TermFactor& factor) { return std::abs(factor.power) == power; };
+    // Once for every power: by its first.
+    if (power < 2 ||
+        std::any_of(term.factors.begin(), term.factors.begin() + index_of(i), belongs)) {
+      continue;
+    }
+    SumTerm result{term.coefficient, {}};
+    SumTerm merged;
+    int above = 0;
+    for (const TermFactor& factor : term.factors) {
+      if (belongs(factor)) {
+        merged.factors.push_back({factor.base, factor.power / power});
+        above += factor.power > 0 ? 1 : 0;
+      } else {
+        result.factors.push_back(factor);
+      }
+    }
+    if (merged.factors.size() < 2) continue;
+    // Below the bar alone: the bar stays outside.
+    if (above == 0) {
+      for (TermFactor& factor : merged.factors) factor.power = 1;
+    }
+    multiply_by(result, {formula_of(merged), above == 0 ? -power : power});
     out.push_back(formula_of(result));
   }
 }
@@ -249,7 +282,8 @@ void rewrite_power(const Expression& base, const Expression& exponent, const Ran
                    std::vector<Expression>& out) {
   const Interval x = range(base);
   if (!(x.low > 0) || !x.is_bounded()) return;
-  const double largest_log = std::max(std::abs(std::log(x.low)), std::abs(std::log(x.high)));
+  const double largest_log =
+      std::max(std::abs(elementary::log(x.low)), std::abs(elementary::log(x.high)));
   if (range(exponent).magnitude() * largest_log <= kNegligible) {
     out.push_back(build::constant(1));
   }

@@ -288,6 +288,7 @@ void Rewriter::rewrite_product(const SumTerm& term, std::vector<Expression>& out
   open_denominators(term, out);
   spread_exponentials(term, out);
   merge_powers(term, range_, out);
+  merge_whole_powers(term, out);
   absorb_numbers(term, out);
   use_sign(term, out);
   merge_pairs(term, out);

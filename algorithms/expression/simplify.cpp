@@ -75,7 +75,12 @@ class Descent {
     std::ranges::stable_sort(candidates, {}, &std::pair<Size, Expression>::first);
     for (auto& [size, candidate] : candidates) {
       if (admits_ && !admits_(candidate)) continue;
-      if (verdict_of(candidate) != verdict_) continue;
+      const Verdict verdict = verdict_of(candidate);
+      if (verdict != verdict_ &&
+          !(verdict_ == Verdict::undecided && verdict == Verdict::proved_free)) {
+        continue;
+      }
+      verdict_ = verdict;
       formula = std::move(candidate);
       return true;
     }
