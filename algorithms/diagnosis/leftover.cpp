@@ -75,6 +75,7 @@ class LeftoverSearch {
     const Place* place;
     double nats;  // what it adds
   };
+  bool beats_its_sum(const Place& product, const Eigen::VectorXd& losses) const;
   std::optional<Home> best_place(const std::vector<Place>& places,
                                  const std::vector<BlockScores>& blocks,
                                  const std::vector<double>& maxima) const;
@@ -175,8 +176,21 @@ void LeftoverSearch::test_residual() {
   if (const std::optional<Home> home = best_place(looked_at, blocks, maxima)) locate(*home);
 }
 
-// Where it lives: what predicts best; a product only if it beats every single input. None where no
-// place is significant by itself.
+// Whether a product predicts clearly better than a function of its one input and one of its other,
+// as smooth as it is itself: what is smoother than the rest predicts better where the truth is.
+bool LeftoverSearch::beats_its_sum(const Place& product, const Eigen::VectorXd& losses) const {
+  Eigen::MatrixXd sum(campaign_.data.rows(), 0);
+  for (const std::string& signal : product.signals) {
+    sum = beside(sum, with_direction(smooth_single(campaign_.data, signal), campaign_.data));
+  }
+  const Eigen::MatrixXd features = whitened(sum, campaign_.clusters, model().noise);
+  const Eigen::VectorXd of_sum = losses_beside(model(), features, campaign_, kSmootherRidge);
+  const Gain lead = paired_gain(of_sum, losses);
+  return lead.nats > lead.error;
+}
+
+// Where it lives: what predicts best; a product only if it beats every single input and both of its
+// own together. None where no place is significant by itself.
 std::optional<LeftoverSearch::Home> LeftoverSearch::best_place(
     const std::vector<Place>& places, const std::vector<BlockScores>& blocks,
     const std::vector<double>& maxima) const {
@@ -194,6 +208,7 @@ std::optional<LeftoverSearch::Home> LeftoverSearch::best_place(
       const bool clearly = lead.nats > (places[k].is_product() ? lead.error : 0.0);
       if (!(gain.nats > best->nats && clearly)) continue;
     }
+    if (places[k].signals.size() > 1 && !beats_its_sum(places[k], losses)) continue;
     best = Home{&places[k], gain.nats};
     best_losses = losses;
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "algorithms/diagnosis/round.hpp"
+#include "algorithms/diagnosis/worth.hpp"
 #include "algorithms/inference/whitening.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
 #include "foundation/elementary.hpp"
@@ -16,36 +17,83 @@ namespace {
 constexpr double kFewestWaves = 2;      // over the travel: less is no repetition
 constexpr double kShortestInMeans = 5;  // a mean over a fifth of a wave keeps 93 % of it
 constexpr int kRefinements = 24;        // of a wavenumber: to 1e-5 of a step
+constexpr int kMostWaves = 3;           // one beside another: a ripple and two of its harmonics
 
-// What a wave of this length explains of the residual beside the model.
-double explained(Wave wave, double wavenumber, const FittedModel& model, const Campaign& campaign) {
-  wave.wavenumber = wavenumber;
-  const Eigen::MatrixXd z =
-      whitened(wave_columns(wave, campaign.data), campaign.clusters, model.noise);
-  return score_block(z, model.basis, model.residual, campaign.clusters).test.statistic;
-}
+// What the model and the waves found so far leave over.
+class WaveSearch {
+ public:
+  WaveSearch(const FittedModel& model, const Campaign& campaign, const WaveRange& range)
+      : campaign_(campaign),
+        noise_(model.noise),
+        range_(range),
+        whitening_(campaign.clusters, model.noise),
+        basis_(model.basis),
+        residual_(model.residual) {}
 
-// Golden section between the neighbours of one of the range.
-double between_steps(const Wave& wave, double step, const FittedModel& model,
-                     const Campaign& campaign) {
-  constexpr double kGolden = std::numbers::phi - 1;
-  double low = wave.wavenumber - step;
-  double high = wave.wavenumber + step;
-  const auto inner = [&](double from, double to) { return to - kGolden * (to - from); };
-  const auto at = [&](double k) { return std::pair(k, explained(wave, k, model, campaign)); };
-  auto left = at(inner(low, high));
-  auto right = at(inner(high, low));
-  for (int n = 0; n < kRefinements; ++n) {
-    if (left.second > right.second) {
-      high = std::exchange(right, left).first;
-      left = at(inner(low, high));
-    } else {
-      low = std::exchange(left, right).first;
-      right = at(inner(high, low));
-    }
+  // None at the level of what is left over.
+  std::optional<Wave> next(RandomStream random) const {
+    const double alpha = campaign_.options.alpha_leftover;
+    Wave wave = strongest_wave(campaign_.data.find("q")->values, whitening_.adjoint(residual_),
+                               direction_of(campaign_.data), campaign_.clusters, range_,
+                               campaign_.options.flips, alpha, random);
+    if (wave.p > alpha) return {};
+    wave.wavenumber = top_of(wave);
+    return wave;
   }
-  return (low + high) / 2;
-}
+
+  void put_beside(const Wave& wave) {
+    basis_ = orthonormal_basis(
+        beside(basis_, whitened(wave_columns(wave, campaign_.data), campaign_.clusters, noise_)));
+    residual_ = project_off(residual_, basis_);
+  }
+
+ private:
+  double explained(Wave wave, double wavenumber) const {
+    wave.wavenumber = wavenumber;
+    const Eigen::MatrixXd z =
+        whitened(wave_columns(wave, campaign_.data), campaign_.clusters, noise_);
+    return score_block(z, basis_, residual_, campaign_.clusters).test.statistic;
+  }
+
+  // Up the hill, step by step, then golden section. What is most certain stands beside the top:
+  // where every stretch agrees a wave cannot become more certain.
+  double top_of(const Wave& wave) const {
+    constexpr double kGolden = std::numbers::phi - 1;
+    double top = wave.wavenumber;
+    for (const double step : {-range_.step, range_.step}) {
+      double here = explained(wave, top);
+      for (double next = top + step; next >= range_.low && next <= range_.high; next += step) {
+        const double there = explained(wave, next);
+        if (there <= here) break;
+        here = there;
+        top = next;
+      }
+    }
+    double low = top - range_.step;
+    double high = top + range_.step;
+    const auto inner = [&](double from, double to) { return to - kGolden * (to - from); };
+    const auto at = [&](double k) { return std::pair(k, explained(wave, k)); };
+    auto left = at(inner(low, high));
+    auto right = at(inner(high, low));
+    for (int n = 0; n < kRefinements; ++n) {
+      if (left.second > right.second) {
+        high = std::exchange(right, left).first;
+        left = at(inner(low, high));
+      } else {
+        low = std::exchange(left, right).first;
+        right = at(inner(high, low));
+      }
+    }
+    return (low + high) / 2;
+  }
+
+  const Campaign& campaign_;
+  const Noise& noise_;
+  WaveRange range_;
+  Whitening whitening_;
+  Eigen::MatrixXd basis_;
+  Eigen::VectorXd residual_;
+};
 
 }  // namespace
 
@@ -66,14 +114,22 @@ std::optional<Wave> unknown_ripple(const FittedModel& model, const Campaign& cam
       waves_over(position->values, kFewestWaves, kShortestInMeans * mean);
   if (range && !is_linear) range->low = std::max(range->low, kMostWavesOfOutput + 0.5);
   if (!range || range->low >= range->high) return {};
-  const Whitening whitening(campaign.clusters, model.noise);
-  const double alpha = campaign.options.alpha_leftover;
-  Wave wave = strongest_wave(position->values, whitening.adjoint(model.residual),
-                             direction_of(campaign.data), campaign.clusters, *range,
-                             campaign.options.flips, alpha, random);
-  if (wave.p > alpha) return {};
-  wave.wavenumber = between_steps(wave, range->step, model, campaign);
-  return wave;
+  // The most certain wave need not be the largest: the noise takes a large one for correlation of
+  // its own, so that a harmonic of it stands out.
+  WaveSearch search(model, campaign, *range);
+  std::optional<Wave> largest;
+  double most = 0;
+  for (int k = 0; k < kMostWaves; ++k) {
+    const std::optional<Wave> wave = search.next(random.split(static_cast<std::uint64_t>(k)));
+    if (!wave) break;
+    const double worth = worth_of(wave_columns(*wave, campaign.data), model.model, campaign);
+    if (!largest || worth > most) {
+      most = worth;
+      largest = wave;
+    }
+    search.put_beside(*wave);
+  }
+  return largest;
 }
 
 Eigen::MatrixXd wave_columns(const Wave& wave, const Observations& data) {

@@ -28,6 +28,8 @@ constexpr std::array<SignalPair, 5> kPairs = {
 constexpr Eigen::Index kFourierFeatures = 30;
 // Of the unit interval into which a signal is mapped.
 constexpr double kFourierLength = 0.22;
+// Radial functions as wide as that.
+constexpr int kSmoothCentres = 6;
 
 // Of a radial function, in widths: 1e-10 is nothing, but products of such numbers are denormal,
 // which takes the processor thirty times as long.
@@ -126,6 +128,12 @@ Eigen::MatrixXd with_direction(const Smoother& smoother, const Observations& dat
   Eigen::MatrixXd out(features.rows(), 2 * features.cols());
   out << features, s.asDiagonal() * features;
   return out;
+}
+
+Smoother smooth_single(const Observations& data, std::string_view signal) {
+  return {{std::string(signal)},
+          {input_name(data, signal)},
+          radial(unit_values(data, signal), kSmoothCentres)};
 }
 
 std::vector<Smoother> make_smoothers(const Observations& data, RandomStream random) {

@@ -27,6 +27,9 @@ struct Smoother {
 // All smoothers that the data have the signals for.
 std::vector<Smoother> make_smoothers(const Observations& data, RandomStream random);
 
+// In one signal that varies, as smooth as those in two.
+Smoother smooth_single(const Observations& data, std::string_view signal);
+
 // The direction of motion, a row, the first one positive (mirror_sign); empty where the data have
 // none.
 Eigen::VectorXf direction_of(const Observations& data);

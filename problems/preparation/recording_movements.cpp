@@ -83,6 +83,13 @@ std::vector<ChainedStroke> without_ends(const std::vector<ChainedStroke>& stroke
   return inner;
 }
 
+// At rest, or it was one row earlier, as it accelerates: rows far apart miss the rest itself.
+bool starts_from_rest(const RowRange& stroke, const std::vector<double>& v, double standstill) {
+  const double first = std::abs(v[stroke.begin]);
+  const double second = stroke.begin + 1 < stroke.end ? std::abs(v[stroke.begin + 1]) : first;
+  return std::min(first, 2 * first - second) < standstill;
+}
+
 bool knows_distance(const Dataset& data) {
   return std::ranges::any_of(data.channels, [](const Channel& channel) {
     return channel.name.starts_with("distance_since_reversal") ||
@@ -115,7 +122,7 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
     const bool goes_on = follows && same_way;
     if (!goes_on) path.start_movement();
     const bool turned =
-        follows || std::abs(v[stroke.begin]) < loop::kStandstill * std::abs(v[middle]);
+        follows || starts_from_rest(stroke, v, loop::kStandstill * std::abs(v[middle]));
     const bool still_bent =
         same_way &&
         std::abs(q->values[stroke.begin] - q->values[before->end - 1]) < kSamePlace * (high - low);
@@ -278,7 +285,7 @@ void settle_strokes(PreparedRecording& out, double noise) {
   Slow slow(strokes, t->values, v->values, noise);
   slow.way = 0;  // somebody has told them apart: each small stroke is wanted
   const bool from_rest = std::ranges::any_of(strokes, [&](const RowRange& stroke) {
-    return std::abs(v->values[stroke.begin]) < slow.speed;
+    return starts_from_rest(stroke, v->values, slow.speed);
   });
   if (from_rest) add_distance(out, strokes);  // else nobody knows how far back the last one lies
   std::vector<std::size_t> rows;

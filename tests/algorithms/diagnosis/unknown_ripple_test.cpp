@@ -59,6 +59,21 @@ TEST(UnknownRipple, IsTheLargestOfWhatRepeats) {
   EXPECT_NEAR(ratio_of(diagnosis.effects[0]), 40.3, 0.1);
 }
 
+// A strong wave over many rows each passes for correlation of the noise, and its harmonic is what
+// is most certain; where every stretch agrees that is beside the top of the wave.
+TEST(UnknownRipple, IsFoundThoughTheNoiseHasTakenMostOfIt) {
+  for (const double wavenumber : {10.4, 13.7, 20.0}) {
+    const Diagnosis diagnosis = diagnose_strokes([&](double q) {
+      return 8 * kHalfSinesNoise *
+             (std::sin(wavenumber * q + 0.9) + 0.3 * std::sin(2 * wavenumber * q));
+    });
+    EXPECT_EQ(diagnosis.verdict, Verdict::effects) << wavenumber;
+    ASSERT_EQ(diagnosis.effects.size(), 1U) << wavenumber;
+    EXPECT_EQ(diagnosis.effects[0].family, "gear_ripple");
+    EXPECT_NEAR(ratio_of(diagnosis.effects[0]), wavenumber, 0.1);
+  }
+}
+
 // What is there at one place alone has waves of all lengths.
 TEST(UnknownRipple, IsNoNotch) {
   const auto notch = [](double q) {

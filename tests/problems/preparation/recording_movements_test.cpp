@@ -86,6 +86,35 @@ TEST(RecordingMovements, AMovementDoesNotGoOnWhereAnotherHasEnded) {
   for (const int m : {0, 1, 2}) EXPECT_EQ(distances_in(one, m), distances_in(other, m)) << m;
 }
 
+// The slowest row of a fast start may be fast: at rest it was a row before.
+TEST(RecordingMovements, AStrokeStartsFromRestWhereItsRowsAreTooFarApartToShowIt) {
+  PreparedRecording out;
+  Channel time{"t", "s", Role::time, {}};
+  Channel position{"q", "rad", Role::position, {}};
+  Channel velocity{"v", "rad/s", Role::velocity, {}};
+  for (int m = 0; m < 4; ++m) {
+    const double s = m % 2 == 0 ? 1 : -1;
+    double q = -s;
+    for (int i = 0; i < 200; ++i) {
+      const double v = s * std::min(1.0, 0.06 * (i + 1));
+      time.values.push_back(kStep * (i + 300 * m));
+      position.values.push_back(q);
+      velocity.values.push_back(v);
+      q += kStep * v;
+      out.data.movement.push_back(m);
+    }
+    out.data.movement_names.push_back("stroke");
+  }
+  out.data.channels = {time, position, velocity};
+  settle_strokes(out, 0);
+  for (int m = 0; m < 4; ++m) {
+    const std::vector<double> distances = distances_in(out, m);
+    ASSERT_LT(distances.size(), 200U);  // without the first, nearer than bristles may need
+    EXPECT_LT(distances.front(), 0.01);
+    EXPECT_NEAR(distances.back(), 1.9, 0.1);
+  }
+}
+
 // Six movements; the fourth alone has more than a touch of acceleration, in 40 of its rows.
 TEST(RecordingMovements, AnAccelerationThatOneMovementAloneHoldsIsLeftOut) {
   PreparedRecording out;
