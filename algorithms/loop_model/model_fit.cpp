@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
@@ -18,6 +20,7 @@ constexpr double kStepTolerance = 1e-6;
 constexpr double kRelativeStep = 1e-5;  // of the central differences
 // Of a column's square: less beside the others is rounding.
 constexpr double kDependent = 1e-11;
+constexpr double kSameShape = 1.5;  // one within that factor of another
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // One non-linear parameter: where it is, its value and its bounds.
@@ -195,6 +198,32 @@ NonlinearNormal nonlinear_normal(LoopModel& model, const std::vector<Nonlinear>&
   return out;
 }
 
+bool is_close(const Shape& a, const Shape& b) {
+  const double ratio = a.value / b.value;
+  return a.value == b.value || (ratio > 1 / kSameShape && ratio < kSameShape);
+}
+
+// The same columns, and nearly the same shapes.
+bool are_one(const Atom& a, Atom b) {
+  if (a.family != b.family || !std::ranges::equal(a.shapes, b.shapes, is_close)) return false;
+  for (std::size_t s = 0; s < a.shapes.size(); ++s) b.set_shape(s, a.shapes[s].value);
+  return a.columns == b.columns;
+}
+
+// What is left of two effects that have become one is a derivative, whose huge coefficients are no
+// effect's size.
+bool has_merged_atoms(const LoopModel& model) {
+  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
+    const Atom& one = model.atoms[k];
+    if (std::ranges::none_of(one.shapes, &Shape::refined)) continue;
+    const auto others = std::span(model.atoms).subspan(k + 1);
+    if (std::ranges::any_of(others, [&](const Atom& other) { return are_one(one, other); })) {
+      return true;
+    }
+  }
+  return false;
+}
+
 // A damped step; parameters that would leave their bounds stop at them. Returns its relative size.
 double take_step(LoopModel& model, const std::vector<Nonlinear>& parameters,
                  const NonlinearNormal& normal, double damping) {
@@ -262,7 +291,7 @@ void fit_model(LoopModel& model, const Observations& data, const Clusters& clust
       LoopModel trial = model;
       step = take_step(trial, parameters, normal, damping);
       trial_fit.renew(trial);
-      improved = trial_fit.sum_squares() < fit.sum_squares();
+      improved = trial_fit.sum_squares() < fit.sum_squares() && !has_merged_atoms(trial);
       damping *= improved ? 0.2 : 8;
       if (!improved) continue;
       decrease = 1 - trial_fit.sum_squares() / fit.sum_squares();

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "algorithms/loop_model/model_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "tests/algorithms/diagnosis/half_sines.hpp"
+
+namespace tribench::loop {
+namespace {
+
+// Every presliding of the library in one column, however many lengths its grid has.
+std::vector<Atom> presliding_atoms(const Observations& data) {
+  const std::vector<EffectFamily>& library = builtin_effects();
+  const auto family = std::ranges::find(library, "hysteresis", &EffectFamily::name);
+  const auto number = static_cast<std::size_t>(family - library.begin());
+  std::vector<std::string> missing;
+  std::vector<Atom> atoms = instantiate(*family, number, data, {}, missing);
+  std::erase_if(atoms, [&](const Atom& atom) {
+    return atom.coefficients != atoms[0].coefficients ||
+           atom.columns.size() != atoms[0].columns.size();
+  });
+  return atoms;
+}
+
+// The difference of two lengths that come together is a derivative: it comes nearest to this
+// friction, which is greatest some way after a reversal, with 4 500 N m on either side.
+TEST(ModelFit, TwoEffectsOfOneKindDoNotBecomeOne) {
+  Observations data =
+      half_sines_over({.movements = 12, .rows = 200, .seed = 7}, [](double) { return 0; });
+  const std::vector<double>& v = data.find("v")->values;
+  const std::vector<double>& d = data.find("d")->values;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    const double way = d[i] / 0.1;
+    data.target[i] -= std::copysign(6 * way * way * way * std::exp(-way), v[i]);
+  }
+  const std::vector<Atom> atoms = presliding_atoms(data);
+  ASSERT_GE(atoms.size(), 2U);
+  LoopModel model{coulomb_viscous_base(data), {}, {}};
+  model.coefficients =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.base.linear_terms.size()));
+  model.add(atoms.front());
+  model.add(atoms.back());
+  Noise noise;
+  noise.within_sd = kHalfSinesNoise;
+  fit_model(model, data, make_clusters(data.movement, 1), noise, FitScope::everything);
+  const double ratio = model.atoms[0].shapes[0].value / model.atoms[1].shapes[0].value;
+  EXPECT_GE(std::max(ratio, 1 / ratio), 1.5);
+  EXPECT_LT(model.coefficients.cwiseAbs().maxCoeff(), 20);
+}
+
+}  // namespace
+}  // namespace tribench::loop
