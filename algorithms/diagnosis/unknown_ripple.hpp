@@ -15,8 +15,8 @@ namespace tribench::loop {
 // Whether a family has its period from the gear's ratio.
 bool repeats_with_the_gear(const EffectFamily& family);
 
-// Shorter than the output's own ripples alone. None where nothing repeats at the level of what is
-// left over, or no family of the library would with the gear.
+// The largest of what repeats, shorter than the output's own ripples. None where nothing repeats
+// at the level of what is left over, or no family of the library would with the gear.
 std::optional<Wave> unknown_ripple(const FittedModel& model, const Campaign& campaign,
                                    RandomStream random);
 
