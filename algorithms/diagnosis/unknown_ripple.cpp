@@ -2,6 +2,8 @@
 #include "algorithms/diagnosis/unknown_ripple.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <utility>
 
@@ -33,9 +35,12 @@ class WaveSearch {
   // None at the level of what is left over.
   std::optional<Wave> next(RandomStream random) const {
     const double alpha = campaign_.options.alpha_leftover;
+    // As many as that level takes: each looks at every wavenumber.
+    const auto flips =
+        std::min(campaign_.options.flips, static_cast<std::size_t>(std::ceil(1 / alpha)));
     Wave wave = strongest_wave(campaign_.data.find("q")->values, whitening_.adjoint(residual_),
-                               direction_of(campaign_.data), campaign_.clusters, range_,
-                               campaign_.options.flips, alpha, random);
+                               direction_of(campaign_.data), campaign_.clusters, range_, flips,
+                               alpha, random);
     if (wave.p > alpha) return {};
     wave.wavenumber = top_of(wave);
     return wave;
