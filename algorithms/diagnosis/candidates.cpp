@@ -13,7 +13,6 @@ namespace tribench::loop {
 namespace {
 
 // The rescue rule for families carried by few clusters (specification, 6.4).
-constexpr double kFewClusters = 25;
 constexpr double kRescueGain = 12;      // nats
 constexpr std::size_t kAtomsTried = 3;  // of a family, those that explain most
 

@@ -147,13 +147,7 @@ std::vector<CandidateFinding> candidate_findings(const Round& round, const Fitte
     finding.family = campaign.families[f].name;
     finding.adjusted_p = round.family_p[f];
     finding.score = round.family_score[f];
-    for (std::size_t k = 0; k < campaign.library.atoms.size() && finding.atom.empty(); ++k) {
-      const Atom& atom = campaign.library.atoms[k];
-      const BlockTest& test = round.blocks[k].test;
-      if (atom.family == f && test.testable && test.score == finding.score) {
-        finding.atom = atom.label;
-      }
-    }
+    finding.atom = campaign.library.atoms[round.family_atom[f]].label;
     if (finding.adjusted_p < kNearAliasP) {
       const std::optional<Candidate> best = best_atom(f, round, base, campaign);
       if (best) finding.gain = best->gain.nats;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 
 #include "algorithms/inference/whitening.hpp"
@@ -36,6 +37,49 @@ void count_carriers(Round& round, const Campaign& campaign) {
   }
 }
 
+// Tests of atoms, several of one atom among them.
+struct Tests {
+  std::vector<BlockScores> scores;
+  std::vector<std::size_t> atoms;
+};
+
+// Every atom once more with all stretches counting alike where few carry it: the many may tell what
+// the signs of those few cannot.
+Tests all_tests(const Round& round, const FittedModel& model, const Campaign& campaign) {
+  Tests tests{round.blocks, std::vector<std::size_t>(round.blocks.size())};
+  std::iota(tests.atoms.begin(), tests.atoms.end(), std::size_t{0});
+  for (std::size_t k = 0; k < round.blocks.size(); ++k) {
+    const BlockTest& test = round.blocks[k].test;
+    if (!test.testable || !(test.effective_clusters < kFewClusters)) continue;
+    tests.scores.push_back(score_block_evenly(campaign.library.block_of(round.columns, k),
+                                              model.basis, model.residual, campaign.clusters));
+    tests.atoms.push_back(k);
+  }
+  return tests;
+}
+
+// What the best test of each family says, among all of them.
+void score_families(Round& round, Tests tests, const Campaign& campaign) {
+  round.maxima = flip_maxima(tests.scores, campaign.flips);
+  round.family_p.assign(campaign.families.size(), 1);
+  round.family_score.assign(campaign.families.size(), 0);
+  round.family_atom.assign(campaign.families.size(), 0);
+  round.counted_alike.assign(campaign.families.size(), 0);
+  for (std::size_t i = 0; i < tests.atoms.size(); ++i) {
+    const BlockTest& test = tests.scores[i].test;
+    const std::size_t family = campaign.library.atoms[tests.atoms[i]].family;
+    if (!test.testable || !(test.score > round.family_score[family])) continue;
+    round.family_score[family] = test.score;
+    round.family_atom[family] = tests.atoms[i];
+    round.counted_alike[family] = i < round.blocks.size() ? 0 : 1;
+  }
+  for (std::size_t f = 0; f < campaign.families.size(); ++f) {
+    if (round.family_score[f] > 0) {
+      round.family_p[f] = adjusted_p(round.family_score[f], round.maxima);
+    }
+  }
+}
+
 }  // namespace
 
 Round test_library(const FittedModel& model, const Campaign& campaign) {
@@ -50,19 +94,7 @@ Round test_library(const FittedModel& model, const Campaign& campaign) {
     if (library.usable[k] == 0 || lonely) round.blocks[k].test.testable = false;
   }
   count_carriers(round, campaign);
-  round.maxima = flip_maxima(round.blocks, campaign.flips);
-  round.family_p.assign(campaign.families.size(), 1);
-  round.family_score.assign(campaign.families.size(), 0);
-  for (std::size_t k = 0; k < library.atoms.size(); ++k) {
-    if (!round.blocks[k].test.testable) continue;
-    double& score = round.family_score[library.atoms[k].family];
-    score = std::max(score, round.blocks[k].test.score);
-  }
-  for (std::size_t f = 0; f < campaign.families.size(); ++f) {
-    if (round.family_score[f] > 0) {
-      round.family_p[f] = adjusted_p(round.family_score[f], round.maxima);
-    }
-  }
+  score_families(round, all_tests(round, model, campaign), campaign);
   return round;
 }
 
@@ -76,16 +108,19 @@ bool tells_beside(const FittedModel& rest, std::size_t family, const FittedModel
   const double alpha = campaign.options.alpha_library;
   const Eigen::MatrixXd z =
       whitened(evaluate_columns(formulas, campaign.data), campaign.clusters, rest.noise);
-  BlockScores block = score_block(z, rest.basis, rest.residual, campaign.clusters);
-  if (!block.test.testable) return false;
+  std::vector<BlockScores> tests;
+  tests.push_back(score_block(z, rest.basis, rest.residual, campaign.clusters));
+  if (!tests.front().test.testable) return false;
+  if (tests.front().test.effective_clusters < kFewClusters) {
+    tests.push_back(score_block_evenly(z, rest.basis, rest.residual, campaign.clusters));
+  }
   // What is not told by itself is not told among the whole library, which costs a hundred times as
   // much to look at.
-  const double score = block.test.score;
+  double score = 0;
+  for (const BlockScores& one : tests) score = std::max(score, one.test.score);
   const auto stop =
       static_cast<std::size_t>(std::ceil(alpha * static_cast<double>(campaign.flips.count() + 1)));
-  if (adjusted_p(score, flip_maxima(std::span(&block, 1), campaign.flips, score, stop)) > alpha) {
-    return false;
-  }
+  if (adjusted_p(score, flip_maxima(tests, campaign.flips, score, stop)) > alpha) return false;
   return adjusted_p(score, test_library(rest, campaign).maxima) <= alpha;
 }
 

@@ -48,8 +48,9 @@ bool add(SearchState& state, const Candidate& winner, const Round& round,
   }
   if (stands_for_another_cause(extended.model, campaign)) return false;
   if (known == 0) {
-    state.found.push_back({winner.family, round.family_p[winner.family], winner.gain,
-                           winner.rescued, aliases_of(winner, round, state.model, campaign)});
+    const bool few = winner.rescued || round.counted_alike[winner.family] != 0;
+    state.found.push_back({winner.family, round.family_p[winner.family], winner.gain, few,
+                           aliases_of(winner, round, state.model, campaign)});
   }
   state.model = std::move(extended);
   return true;

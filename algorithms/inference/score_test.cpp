@@ -7,12 +7,17 @@
 
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/column_products.hpp"
+#include "foundation/order_statistics.hpp"
 
 namespace tribench::loop {
 namespace {
 
 constexpr double kSmallestShare = 1e-3;  // of the sum of squares
 constexpr std::size_t kFlipsAtOnce = 250;
+// Of the mean over the stretches: one that holds less of a block's squares has no say of its own.
+constexpr double kHoldsLittle = 0.01;
+// What a stretch may say at most, of the median one.
+constexpr double kTimesTheMedian = 2;
 // Of a column's square: less beside the others is rounding.
 constexpr double kDependent = 1e-11;
 
@@ -33,12 +38,8 @@ void count_clusters(BlockTest& test, const Eigen::VectorXd& h) {
   test.carrying = static_cast<std::size_t>((h.array() > threshold).count());
 }
 
-// The sums in the coordinates of the statistic, its matched null and the score.
-void finish_scores(BlockScores& block, const Eigen::MatrixXd& gram, const Eigen::MatrixXd& raw,
-                   double ridge) {
-  const Eigen::MatrixXd factor = factor_of(gram, ridge);
-  const Eigen::MatrixXd sums =
-      factor.triangularView<Eigen::Lower>().solve(raw.transpose()).transpose();
+// The statistic of these sums of clusters, its matched null and the score.
+void score_of_sums(BlockScores& block, const Eigen::MatrixXd& sums) {
   block.whitened_sums = sums.cast<float>();
   block.test.statistic = sums.colwise().sum().squaredNorm();
   // Moments of the flipped statistic |sum eps_c v_c|^2 over all flips.
@@ -47,6 +48,13 @@ void finish_scores(BlockScores& block, const Eigen::MatrixXd& gram, const Eigen:
   const double variance = 2 * ((sums.transpose() * sums).squaredNorm() - lengths.squaredNorm());
   block.gamma = MatchedGamma(mean, variance);
   block.test.score = block.gamma.score(block.test.statistic);
+}
+
+// The same of raw sums, in the coordinates of the statistic.
+void finish_scores(BlockScores& block, const Eigen::MatrixXd& gram, const Eigen::MatrixXd& raw,
+                   double ridge) {
+  const Eigen::MatrixXd factor = factor_of(gram, ridge);
+  score_of_sums(block, factor.triangularView<Eigen::Lower>().solve(raw.transpose()).transpose());
 }
 
 // The sums of all testable blocks: one product with the flips serves them all.
@@ -179,6 +187,30 @@ BlockScores score_block(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
                         const Eigen::VectorXd& residual, const Clusters& clusters) {
   const Block whole{0, static_cast<std::size_t>(z.cols())};
   return score_blocks(z, std::span(&whole, 1), basis, residual, clusters).front();
+}
+
+BlockScores score_block_evenly(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
+                               const Eigen::VectorXd& residual, const Clusters& clusters) {
+  const Eigen::MatrixXd off = project_off(z, basis);
+  const double least =
+      kHoldsLittle * off.squaredNorm() / static_cast<double>(clusters.stretches.size());
+  Eigen::MatrixXd even = z;
+  for (const RowRange& stretch : clusters.stretches) {
+    const auto begin = static_cast<Eigen::Index>(stretch.begin);
+    const auto size = static_cast<Eigen::Index>(stretch.size());
+    even.middleRows(begin, size) /=
+        std::sqrt(std::max(off.middleRows(begin, size).squaredNorm(), least));
+  }
+  BlockScores out = score_block(even, basis, residual, clusters);
+  if (!out.test.testable) return out;
+  Eigen::MatrixXd sums = out.whitened_sums.cast<double>();
+  const Eigen::VectorXd lengths = sums.rowwise().norm();
+  const double most = kTimesTheMedian * median(std::vector(lengths.begin(), lengths.end()));
+  for (Eigen::Index c = 0; c < sums.rows(); ++c) {
+    if (lengths[c] > most) sums.row(c) *= most / lengths[c];
+  }
+  score_of_sums(out, sums);
+  return out;
 }
 
 BlockScores score_sums(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& sums, double ridge) {

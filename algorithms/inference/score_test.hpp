@@ -58,6 +58,11 @@ std::vector<BlockScores> score_blocks(const Eigen::MatrixXd& z, std::span<const 
 // All columns as one block.
 BlockScores score_block(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
                         const Eigen::VectorXd& residual, const Clusters& clusters);
+// The same with every stretch counting alike, whatever it holds of the block. For a block that a
+// few stretches hold nearly all of: k of them have 2^k signs, so that its plain p stays above 2^-k
+// whatever the many others say.
+BlockScores score_block_evenly(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
+                               const Eigen::VectorXd& residual, const Clusters& clusters);
 
 // [a b]
 Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "algorithms/inference/cross_validation.hpp"
@@ -71,6 +72,56 @@ TEST(ScoreTest, RejectsTrueNullsAtTheNominalRateDespiteCorrelationWithinMovement
   }
   // 5 % of 300 are 15; three binomial standard errors are 11.
   EXPECT_LE(rejected, 26);
+  EXPECT_GE(rejected, 4);
+}
+
+// p of one column, 30 times as large in two movements as in the others: as it stands, and with
+// every stretch counting alike.
+struct TwoLoudMovements {
+  double as_it_stands;
+  double evenly;
+};
+
+TwoLoudMovements two_loud_movements(std::uint64_t seed, double planted) {
+  Example e = clustered_example(seed, 0);
+  RandomStream random(seed + 50'000);
+  Eigen::VectorXd column(e.y.size());
+  for (Eigen::Index i = 0; i < column.size(); ++i) {
+    const double loud = i < 2 * static_cast<Eigen::Index>(kRows) ? 30 : 1;
+    column[i] = loud * random.normal();
+    e.y[i] = planted * column[i] + (loud > 1 ? 60 : 1) * random.normal();
+  }
+  const Eigen::MatrixXd basis = orthonormal_basis(e.x);
+  const Eigen::VectorXd residual = project_off(e.y, basis);
+  const Flips flips(399, kMovements, RandomStream(seed + 90'000));
+  const auto p_of = [&](BlockScores block) {
+    const double score = block.test.score;
+    return adjusted_p(score, flip_maxima(std::span(&block, 1), flips));
+  };
+  return {p_of(score_block(column, basis, residual, e.clusters)),
+          p_of(score_block_evenly(column, basis, residual, e.clusters))};
+}
+
+// The noise decides what the two say; the other 58 agree.
+TEST(ScoreTest, WhatFewMovementsHoldMostOfIsToldByTheMany) {
+  constexpr int kRuns = 40;
+  int as_it_stands = 0;
+  int evenly = 0;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    const TwoLoudMovements p = two_loud_movements(seed, 0.2);
+    if (p.as_it_stands <= 0.005) ++as_it_stands;
+    if (p.evenly <= 0.005) ++evenly;
+  }
+  EXPECT_LE(as_it_stands, kRuns / 2);
+  EXPECT_EQ(evenly, kRuns);
+}
+
+TEST(ScoreTest, CountingAlikeKeepsTheLevel) {
+  int rejected = 0;
+  for (std::uint64_t run = 0; run < 300; ++run) {
+    if (two_loud_movements(1000 + run, 0).evenly <= 0.05) ++rejected;
+  }
+  EXPECT_LE(rejected, 26);  // 15, and three binomial standard errors
   EXPECT_GE(rejected, 4);
 }
 
