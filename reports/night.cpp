@@ -142,7 +142,11 @@ std::size_t read_header(std::string_view line, Night& night, const std::string& 
     night.data = header.value("data", "");
     night.outcome = header.value("outcome", "");
     night.bench_conditions = header.value("bench_conditions", "");
-    return header.value("benches", std::size_t{0});
+    const auto benches = header.find("benches");
+    if (benches == header.end()) return 0;
+    // Of a number beyond the type's range the library makes any other.
+    if (!benches->is_number_unsigned()) throw_damaged(place);
+    return benches->get<std::size_t>();
   } catch (const ordered_json::exception&) {  // another type
     throw_damaged(place);
   }

@@ -167,10 +167,20 @@ Json score_json(const ChallengeScore& score) {
           {"results", worlds}};
 }
 
+// Any other JSON may lie in the folder too.
+bool is_score(const Json& json) {
+  if (!json.is_object() || !json.contains("name") || !json["name"].is_string()) return false;
+  const auto is_count = [&](const char* key) {
+    return json.contains(key) && json[key].is_number_unsigned();
+  };
+  return is_count("worlds") && is_count("right") && is_count("wrong") &&
+         json.contains("median_seconds") && json["median_seconds"].is_number() &&
+         json.contains("results") && json["results"].is_array();
+}
+
 bool is_of_worlds(const Json& score, const Json& seals) {
-  const Json results = score.value("results", Json::array());
-  return std::ranges::all_of(results, [&](const Json& one) {
-    return std::ranges::count(seals, one.value("seal", Json())) > 0;
+  return std::ranges::all_of(score["results"], [&](const Json& one) {
+    return one.is_object() && std::ranges::count(seals, one.value("seal", Json())) > 0;
   });
 }
 
@@ -182,7 +192,7 @@ std::string leaderboard_of(const std::filesystem::path& folder, const Json& seal
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".json" || entry.path().stem() == "seals") continue;
     const Json score = read_json<Json>(read_file_if_there(entry.path()).value_or(""));
-    if (!score.is_object() || !score.contains("median_seconds")) continue;
+    if (!is_score(score)) continue;
     if (is_of_worlds(score, seals)) {
       scores.push_back(score);
     } else {

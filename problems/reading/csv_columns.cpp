@@ -176,7 +176,9 @@ class ColumnReader {
     double value = 0;
     const auto [stop, code] = std::from_chars(text_.data() + place, end, value);
     if (code != std::errc() || !std::isfinite(value)) return false;
-    if (stop != end && *stop != layout_.delimiter && *stop != '\n' && *stop != '\r') return false;
+    const bool ends_line =
+        stop == end || *stop == '\n' || (*stop == '\r' && (stop + 1 == end || stop[1] == '\n'));
+    if (!ends_line && *stop != layout_.delimiter) return false;
     column.numbers.push_back(value);
     scanner_.move_to(static_cast<std::size_t>(stop - text_.data()));
     return true;

@@ -428,6 +428,15 @@ TEST(Csv, ALastLineThatIsCutOffIsLeftOutAndNoted) {
   EXPECT_THAT(file.warnings[0], HasSubstr("cut off"));
 }
 
+// The digit behind it went with it, as if it were a delimiter.
+TEST(Csv, ACarriageReturnWithinARowIsNoEndOfACell) {
+  const auto rows_of = [](const char* text) { return parse_csv(text, "data.csv").data; };
+  EXPECT_THROW(rows_of("t,y\n1,2\n4,5\r3\n"), Error);
+  EXPECT_THROW(rows_of("t,y\n1,2\n4\r3,5\n"), Error);
+  EXPECT_EQ(rows_of("t,y\r\n1,2\r\n4,5\r").at("y").values, (std::vector<double>{2, 5}));
+  EXPECT_EQ(rows_of("t,y\r\r\n1,2\r\r\n4,5\r\r\n").at("y").values, (std::vector<double>{2, 5}));
+}
+
 TEST(Csv, AHundredThousandColumnsAreReadInTimeThatGrowsWithTheirNumber) {
   std::string names = "c0";
   std::string row = "0";
