@@ -15,6 +15,9 @@ namespace {
 // The rescue rule for families carried by few clusters (specification, 6.4).
 constexpr double kRescueGain = 12;      // nats
 constexpr std::size_t kAtomsTried = 3;  // of a family, those that explain most
+// A family that lags by less is one that the data cannot tell from the winner.
+constexpr double kAliasErrors = 2;   // standard errors
+constexpr double kCloseRival = 0.5;  // of the winner's gain, on the library's grid of shapes
 
 // How many independent pieces of data carry an atom, as an effective number: movements where it
 // differs between them rather than within them, else stretches.
@@ -260,8 +263,27 @@ std::vector<std::size_t> better_atoms(std::size_t family, const Round& round,
   return best;
 }
 
-std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round,
-                                     const FittedModel& model, const Campaign& campaign) {
+namespace {
+
+// What the winner predicts better than a rival whose shapes are fitted as its own are: those of the
+// library's grid fit one of two causes better by chance. Of a rival that is far behind on the grid
+// as it stands there.
+Gain lead_of(const Candidate& winner, const FittedModel& extended, const Candidate& rival,
+             const FittedModel& model, const Campaign& campaign) {
+  const Gain lead = paired_gain(rival.losses, winner.losses);
+  const bool is_close = rival.gain.nats > kCloseRival * winner.gain.nats;
+  if (!is_close || lead.nats < kAliasErrors * lead.error) return lead;
+  LoopModel other = model.model;
+  other.add(campaign.library.atoms[rival.atom]);
+  const FittedModel fitted = fit_in_its_noise(std::move(other), campaign, FitScope::everything);
+  return fitted.losses.allFinite() ? lead_over(fitted, extended, campaign) : lead;
+}
+
+}  // namespace
+
+std::vector<AliasFinding> aliases_of(const Candidate& winner, const FittedModel& extended,
+                                     const Round& round, const FittedModel& model,
+                                     const Campaign& campaign) {
   std::vector<AliasFinding> aliases;
   const EffectFamily& taken = campaign.families[winner.family];
   const auto columns = [&](std::size_t atom) {
@@ -275,9 +297,9 @@ std::vector<AliasFinding> aliases_of(const Candidate& winner, const Round& round
     if (!rival) rival = best_atom(f, round, model, campaign);
     if (!rival) continue;
     const double r = canonical_correlation(columns(winner.atom), columns(rival->atom));
-    const Gain lead = paired_gain(rival->losses, winner.losses);
+    const Gain lead = lead_of(winner, extended, *rival, model, campaign);
     const bool exact = r > kExactCorrelation;
-    if (!exact && lead.nats >= 2 * lead.error) continue;
+    if (!exact && lead.nats >= kAliasErrors * lead.error) continue;
     aliases.push_back(
         {campaign.families[f].name, r, lead.nats, lead.error, exact, taken.first_experiment()});
   }

@@ -81,8 +81,8 @@ struct EffectFinding {
   std::string objection;  // why it is not physical; empty where it is
   // This cause, but a curve that the library does not have: more is left over in its own inputs.
   bool another_shape = false;
-  // Share of the searches with some movements left out that choose it too; NaN where there are
-  // none.
+  // Share of the searches with some movements left out that choose it, or an alias, too; NaN where
+  // there are none.
   double chosen_share = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::string> notes;
 };

@@ -50,7 +50,7 @@ bool add(SearchState& state, const Candidate& winner, const Round& round,
   if (known == 0) {
     const bool few = winner.rescued || round.counted_alike[winner.family] != 0;
     state.found.push_back({winner.family, round.family_p[winner.family], winner.gain, few,
-                           aliases_of(winner, round, state.model, campaign)});
+                           aliases_of(winner, extended, round, state.model, campaign)});
   }
   state.model = std::move(extended);
   return true;

@@ -7,7 +7,6 @@
 
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/column_products.hpp"
-#include "foundation/order_statistics.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -16,8 +15,6 @@ constexpr double kSmallestShare = 1e-3;  // of the sum of squares
 constexpr std::size_t kFlipsAtOnce = 250;
 // Of the mean over the stretches: one that holds less of a block's squares has no say of its own.
 constexpr double kHoldsLittle = 0.01;
-// What a stretch may say at most, of the median one.
-constexpr double kTimesTheMedian = 2;
 // Of a column's square: less beside the others is rounding.
 constexpr double kDependent = 1e-11;
 
@@ -38,8 +35,12 @@ void count_clusters(BlockTest& test, const Eigen::VectorXd& h) {
   test.carrying = static_cast<std::size_t>((h.array() > threshold).count());
 }
 
-// The statistic of these sums of clusters, its matched null and the score.
-void score_of_sums(BlockScores& block, const Eigen::MatrixXd& sums) {
+// The sums in the coordinates of the statistic, its matched null and the score.
+void finish_scores(BlockScores& block, const Eigen::MatrixXd& gram, const Eigen::MatrixXd& raw,
+                   double ridge) {
+  const Eigen::MatrixXd factor = factor_of(gram, ridge);
+  const Eigen::MatrixXd sums =
+      factor.triangularView<Eigen::Lower>().solve(raw.transpose()).transpose();
   block.whitened_sums = sums.cast<float>();
   block.test.statistic = sums.colwise().sum().squaredNorm();
   // Moments of the flipped statistic |sum eps_c v_c|^2 over all flips.
@@ -48,13 +49,6 @@ void score_of_sums(BlockScores& block, const Eigen::MatrixXd& sums) {
   const double variance = 2 * ((sums.transpose() * sums).squaredNorm() - lengths.squaredNorm());
   block.gamma = MatchedGamma(mean, variance);
   block.test.score = block.gamma.score(block.test.statistic);
-}
-
-// The same of raw sums, in the coordinates of the statistic.
-void finish_scores(BlockScores& block, const Eigen::MatrixXd& gram, const Eigen::MatrixXd& raw,
-                   double ridge) {
-  const Eigen::MatrixXd factor = factor_of(gram, ridge);
-  score_of_sums(block, factor.triangularView<Eigen::Lower>().solve(raw.transpose()).transpose());
 }
 
 // The sums of all testable blocks: one product with the flips serves them all.
@@ -201,16 +195,7 @@ BlockScores score_block_evenly(const Eigen::MatrixXd& z, const Eigen::MatrixXd& 
     even.middleRows(begin, size) /=
         std::sqrt(std::max(off.middleRows(begin, size).squaredNorm(), least));
   }
-  BlockScores out = score_block(even, basis, residual, clusters);
-  if (!out.test.testable) return out;
-  Eigen::MatrixXd sums = out.whitened_sums.cast<double>();
-  const Eigen::VectorXd lengths = sums.rowwise().norm();
-  const double most = kTimesTheMedian * median(std::vector(lengths.begin(), lengths.end()));
-  for (Eigen::Index c = 0; c < sums.rows(); ++c) {
-    if (lengths[c] > most) sums.row(c) *= most / lengths[c];
-  }
-  score_of_sums(out, sums);
-  return out;
+  return score_block(even, basis, residual, clusters);
 }
 
 BlockScores score_sums(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& sums, double ridge) {

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -29,6 +30,9 @@ namespace {
 constexpr std::size_t kFewMovements = 40;     // a fifth of them is too few to judge by
 constexpr std::size_t kWantedMovements = 30;  // R9
 constexpr std::size_t kPiecesOfOneMovement = 5;
+// Correlation of the columns of two names of one cause. Two slight effects cannot be told from each
+// other either, however little they have in common.
+constexpr double kAlike = 0.9;
 // Movements are left out in at least so many turns; in more, one movement each, where the rows of
 // all turns together stay below the second figure.
 constexpr std::size_t kFewestTurns = 10;
@@ -104,30 +108,64 @@ struct LeftOut {
         corrected(before) {}
 };
 
+std::set<std::string> families_of(const Diagnosis& diagnosis) {
+  std::set<std::string> families;
+  for (const EffectFinding& effect : diagnosis.effects) families.insert(effect.family);
+  return families;
+}
+
 // How often searches on parts of the data choose the same effects.
 class ChosenShares {
  public:
-  void count(const Diagnosis& part) {
-    ++searches_;
-    for (const EffectFinding& effect : part.effects) ++times_[effect.family];
+  explicit ChosenShares(std::span<const Diagnosis> parts) {
+    for (const Diagnosis& part : parts) chosen_.push_back(families_of(part));
   }
-  void write(Diagnosis& whole) const {
-    if (searches_ == 0) return;
-    for (EffectFinding& effect : whole.effects) effect.chosen_share = of(effect.family);
-  }
-  // Whether so few of the searches choose it that it is not named.
-  bool is_unstable(const std::string& family) const {
-    return searches_ > 0 && of(family) < kStableShare;
-  }
-  double of(const std::string& family) const {
-    const auto found = times_.find(family);
-    return found == times_.end() ? 0 : found->second / searches_;
+
+  // NaN where there are no searches.
+  double of(const std::string& family) const { return of_any({family}); }
+  double of_any(const std::set<std::string>& families) const {
+    const auto share = std::ranges::count_if(chosen_, [&](const std::set<std::string>& one) {
+      return std::ranges::any_of(families, [&](const auto& name) { return one.contains(name); });
+    });
+    return chosen_.empty() ? std::numeric_limits<double>::quiet_NaN()
+                           : static_cast<double>(share) / static_cast<double>(chosen_.size());
   }
 
  private:
-  double searches_ = 0;
-  std::map<std::string, double> times_;
+  std::vector<std::set<std::string>> chosen_;
 };
+
+// The effect and what looks like it in these data, but for what stands beside it: searches on
+// parts call one cause by one of these names or another (correlated candidates share their votes;
+// Shah and Samworth 2013, section 3.4).
+std::set<std::string> names_of(const EffectFinding& effect, const Diagnosis& whole) {
+  std::set<std::string> names{effect.family};
+  const std::set<std::string> beside = families_of(whole);
+  for (const AliasFinding& alias : effect.aliases) {
+    const bool is_alike = alias.correlation >= kAlike;
+    if (is_alike && !beside.contains(alias.family)) names.insert(alias.family);
+  }
+  return names;
+}
+
+// Each effect's share; where most searches call it by another name, which.
+void write_shares(Diagnosis& whole, const ChosenShares& shares) {
+  const Diagnosis as_found = whole;
+  for (EffectFinding& effect : whole.effects) {
+    const std::set<std::string> names = names_of(effect, as_found);
+    effect.chosen_share = shares.of_any(names);
+    if (!(shares.of(effect.family) < kStableShare)) continue;
+    std::vector<std::string> others;
+    for (const std::string& name : names) {
+      if (name == effect.family || !(shares.of(name) > 0)) continue;
+      others.push_back(fmt::format("'{}' in {:.0f} %", name, 100 * shares.of(name)));
+    }
+    if (others.empty()) continue;
+    effect.notes.push_back(
+        fmt::format("in {:.0f} % of the searches without some of the movements by this name; {}",
+                    100 * shares.of(effect.family), fmt::join(others, ", ")));
+  }
+}
 
 // ": how", or nothing where no rule of experiment is known.
 std::string experiments_of(const std::vector<std::string>& rules) {
@@ -203,15 +241,20 @@ void LoopJudge::search(Searches& all, const std::vector<std::size_t>& which,
 }
 
 // Stability selection (Meinshausen and Buehlmann 2010): what too few of the searches on parts
-// choose hangs on a movement or two. Where the whole names such an effect, all are asked anew for
-// what most of them choose, but those that had nothing else. Returns what to record to be sure of
-// what is not named.
+// choose, by whatever name the data allow, hangs on a movement or two. Where the whole names such
+// an effect, all are asked anew for what most of them choose, but those that had nothing else.
+// Returns what to record to be sure of what is not named.
 std::vector<std::string> LoopJudge::name_the_stable(Searches& all) {
-  ChosenShares shares;
-  for (std::size_t k = 1; k < all.found.size(); ++k) shares.count(all.found[k]);
+  const ChosenShares shares(std::span(all.found).subspan(1));
+  std::set<std::string> stable;
+  for (const EffectFinding& effect : all.whole().effects) {
+    const std::set<std::string> names = names_of(effect, all.whole());
+    if (shares.of_any(names) >= kStableShare) stable.insert(names.begin(), names.end());
+  }
   DiagnosisOptions options = options_;
   for (const EffectFamily& family : all.whole().families) {
-    if (shares.is_unstable(family.name)) options.unnamed.push_back(family.name);
+    const bool is_rare = shares.of(family.name) < kStableShare;
+    if (is_rare && !stable.contains(family.name)) options.unnamed.push_back(family.name);
   }
   const auto is_unnamed = [&](const std::string& family) {
     return std::ranges::count(options.unnamed, family) > 0;
@@ -235,7 +278,7 @@ std::vector<std::string> LoopJudge::name_the_stable(Searches& all) {
   }
   Diagnosis& whole = all.whole();
   whole.notes.insert(whole.notes.end(), notes.begin(), notes.end());
-  shares.write(whole);
+  write_shares(whole, shares);
   return needed;
 }
 

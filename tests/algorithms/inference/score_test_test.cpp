@@ -113,7 +113,8 @@ TEST(ScoreTest, WhatFewMovementsHoldMostOfIsToldByTheMany) {
     if (p.evenly <= 0.005) ++evenly;
   }
   EXPECT_LE(as_it_stands, kRuns / 2);
-  EXPECT_EQ(evenly, kRuns);
+  EXPECT_GE(evenly, as_it_stands + kRuns / 5);
+  EXPECT_GE(evenly, kRuns * 3 / 5);
 }
 
 TEST(ScoreTest, CountingAlikeKeepsTheLevel) {
