@@ -37,6 +37,8 @@ void count_carriers(Round& round, const Campaign& campaign) {
   }
 }
 
+bool few_carry(const BlockTest& test) { return test.effective_clusters < kFewClusters; }
+
 // Tests of atoms, several of one atom among them.
 struct Tests {
   std::vector<BlockScores> scores;
@@ -50,7 +52,7 @@ Tests all_tests(const Round& round, const FittedModel& model, const Campaign& ca
   std::iota(tests.atoms.begin(), tests.atoms.end(), std::size_t{0});
   for (std::size_t k = 0; k < round.blocks.size(); ++k) {
     const BlockTest& test = round.blocks[k].test;
-    if (!test.testable || !(test.effective_clusters < kFewClusters)) continue;
+    if (!test.testable || !few_carry(test)) continue;
     tests.scores.push_back(score_block_evenly(campaign.library.block_of(round.columns, k),
                                               model.basis, model.residual, campaign.clusters));
     tests.atoms.push_back(k);
@@ -111,7 +113,7 @@ bool tells_beside(const FittedModel& rest, std::size_t family, const FittedModel
   std::vector<BlockScores> tests;
   tests.push_back(score_block(z, rest.basis, rest.residual, campaign.clusters));
   if (!tests.front().test.testable) return false;
-  if (tests.front().test.effective_clusters < kFewClusters) {
+  if (few_carry(tests.front().test)) {
     tests.push_back(score_block_evenly(z, rest.basis, rest.residual, campaign.clusters));
   }
   // What is not told by itself is not told among the whole library, which costs a hundred times as

@@ -136,8 +136,8 @@ class ChosenShares {
 };
 
 // The effect and what looks like it in these data, but for what stands beside it: searches on
-// parts call one cause by one of these names or another (correlated candidates share their votes;
-// Shah and Samworth 2013, section 3.4).
+// parts call one cause by one of these names or another, and correlated candidates share their
+// votes (cluster stability selection; Faletto and Bien 2022).
 std::set<std::string> names_of(const EffectFinding& effect, const Diagnosis& whole) {
   std::set<std::string> names{effect.family};
   const std::set<std::string> beside = families_of(whole);
