@@ -18,6 +18,8 @@ constexpr std::size_t kAtomsTried = 3;  // of a family, those that explain most
 // A family that lags by less is one that the data cannot tell from the winner.
 constexpr double kAliasErrors = 2;   // standard errors
 constexpr double kCloseRival = 0.5;  // of the winner's gain, on the library's grid of shapes
+// Least correlation of an alias: of two effects that have less in common, each may be there.
+constexpr double kLeastLikeness = 0.5;
 
 // How many independent pieces of data carry an atom, as an effective number: movements where it
 // differs between them rather than within them, else stretches.
@@ -297,6 +299,7 @@ std::vector<AliasFinding> aliases_of(const Candidate& winner, const FittedModel&
     if (!rival) rival = best_atom(f, round, model, campaign);
     if (!rival) continue;
     const double r = canonical_correlation(columns(winner.atom), columns(rival->atom));
+    if (!(r >= kLeastLikeness)) continue;
     const Gain lead = lead_of(winner, extended, *rival, model, campaign);
     const bool exact = r > kExactCorrelation;
     if (!exact && lead.nats >= kAliasErrors * lead.error) continue;

@@ -45,8 +45,8 @@ std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
 std::vector<std::size_t> better_atoms(std::size_t family, const Round& round,
                                       const FittedModel& model, const Campaign& campaign);
 
-// The families that explain nearly the same, and the causes that always do. extended: the model
-// with the winner, fitted.
+// The families that look like the winner and explain nearly the same, and the causes that always
+// do. extended: the model with the winner, fitted.
 std::vector<AliasFinding> aliases_of(const Candidate& winner, const FittedModel& extended,
                                      const Round& round, const FittedModel& model,
                                      const Campaign& campaign);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "algorithms/diagnosis/plausibility.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
@@ -120,7 +121,13 @@ EffectFinding effect_finding(const Found& found, const FittedModel& fit,
   finding.adjusted_p = found.p;
   finding.gain = found.gain.nats;
   finding.gain_error = found.gain.error;
-  finding.aliases = found.aliases;
+  // What is named beside it is no other name of it.
+  std::ranges::copy_if(
+      found.aliases, std::back_inserter(finding.aliases), [&](const AliasFinding& alias) {
+        return alias.exact || std::ranges::none_of(fit.model.atoms, [&](const Atom& atom) {
+                 return campaign.families[atom.family].name == alias.family;
+               });
+      });
   finding.few_movements = found.few;
   finding.another_shape = found.another_shape;
   finding.separate_by = family.separate_by;
