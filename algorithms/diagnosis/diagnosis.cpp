@@ -130,7 +130,8 @@ void find_events(Diagnosis& out, const Observations& data, const Eigen::VectorXd
 
 // data: the movements held out stand last.
 Diagnosis diagnose_canonical(const Observations& data, const std::vector<int>& held_out,
-                             const BaseMaker& make_base, const DiagnosisOptions& options) {
+                             const BaseMaker& make_base, const DiagnosisOptions& options,
+                             KnownSearch& known) {
   const RandomStream random(key_of("diagnosis"));
   Diagnosis out;
   out.options = options;
@@ -164,7 +165,7 @@ Diagnosis diagnose_canonical(const Observations& data, const std::vector<int>& h
   out.movements = clusters.movements.size();
   const RandomStream own = random.split("search");
   const Campaign campaign(train, out.families, options, clusters, own.split("flips"));
-  write_findings(out, search(base, campaign, own), campaign);
+  write_findings(out, search(base, campaign, own, known), campaign);
   return out;
 }
 
@@ -182,12 +183,15 @@ double named_ripple(const Diagnosis& diagnosis) {
 // The same once more, what repeats taken for a turn of the motor. As it was where that names no
 // ripple, where something still lives in the position or where what else repeats is nearly as
 // large: a notch has a spectrum, too.
-Diagnosis knowing_the_ripple(Diagnosis first, const Observations& data, const BaseMaker& base) {
+Diagnosis knowing_the_ripple(Diagnosis first, const Observations& data, const BaseMaker& base,
+                             KnownSearch& known) {
   constexpr double kNearlyAsLarge = 0.5;
   const RepeatingFinding& ripple = *first.leftover.repeating;
   DiagnosisOptions options = first.options;
   options.gear_ratios = {ripple.wavenumber};
-  Diagnosis again = diagnose_canonical(data, first.held_out, base, options);
+  // Another may be left over once something has been taken out.
+  if (known.gear_ratios != options.gear_ratios) known = {options.gear_ratios, {}, {}};
+  Diagnosis again = diagnose_canonical(data, first.held_out, base, options, known);
   const auto& more = again.leftover.repeating;
   const bool explains_it = named_ripple(again) > 0 &&
                            std::ranges::count(again.leftover.signals, "q") == 0 &&
@@ -203,14 +207,17 @@ Diagnosis knowing_the_ripple(Diagnosis first, const Observations& data, const Ba
 }  // namespace
 
 Diagnosis diagnose(const Observations& data, const BaseMaker& base, const DiagnosisOptions& options,
-                   const std::vector<int>& held_out) {
+                   const std::vector<int>& held_out, SearchMemory* memory) {
+  SearchMemory own;
+  SearchMemory& known = memory != nullptr ? *memory : own;
+  if (!known) known = std::make_shared<KnownSearches>();
   const Canonical told = canonical(data, held_out);
-  Diagnosis out = diagnose_canonical(told.data, held_out, base, options);
+  Diagnosis out = diagnose_canonical(told.data, held_out, base, options, known->plain);
   // What repeats more than a ripple at a usual ratio is the ripple; one at the ratio told stays.
   const double named = named_ripple(out);
   const auto& more = out.leftover.repeating;
   if (more && (named == 0 || (options.gear_ratios.empty() && more->mean_square > named))) {
-    out = knowing_the_ripple(std::move(out), told.data, base);
+    out = knowing_the_ripple(std::move(out), told.data, base, known->with_ripple);
   }
   out.masked = told.as_told(out.masked);
   return out;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -180,11 +181,18 @@ struct Diagnosis {
 std::vector<char> usable_rows(const Observations& data, const std::vector<int>& movements,
                               bool in_them, const std::vector<char>& masked);
 
+// What the searches of one diagnosis ended with, before anything was taken out of them. Filled by
+// diagnose(), a few model matrices a search.
+struct KnownSearches;
+using SearchMemory = std::shared_ptr<KnownSearches>;
+
 // held_out: movements to which nothing is fitted and by which nothing is chosen, ascending; bursts
-// in them are listed too. Deterministic: no seed decides anything.
+// in them are listed too. Deterministic: no seed decides anything. memory: of an earlier call with
+// the same arguments but for DiagnosisOptions::unnamed, or empty; its searches are not made again,
+// and the answer is the same.
 // Cost: some tens of milliseconds for 6 000 rows. Throws Error (bad_input) where there are too few
 // rows to fit the base.
 Diagnosis diagnose(const Observations& data, const BaseMaker& base, const DiagnosisOptions& options,
-                   const std::vector<int>& held_out = {});
+                   const std::vector<int>& held_out = {}, SearchMemory* memory = nullptr);
 
 }  // namespace tribench::loop

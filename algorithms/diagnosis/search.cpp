@@ -19,6 +19,10 @@ constexpr std::size_t kMostAtoms = 2;  // of a family: more is a sign of somethi
 // Of the target: what the base leaves is rounding.
 constexpr double kNothingLeft = 1e-9;
 
+bool leaves_nothing(const FittedModel& base, const Campaign& campaign) {
+  return !(base.raw_residual.norm() > kNothingLeft * target_vector(campaign.data).norm());
+}
+
 bool was_given_up(const Atom& atom, const SearchState& state) {
   return std::ranges::count(state.given_up, atom.label) > 0;
 }
@@ -135,35 +139,87 @@ void take_out_unnamed(SearchState& state, const Campaign& campaign) {
   state.model = fit_in_its_noise(std::move(model), campaign, FitScope::everything);
 }
 
-// In and out until neither changes anything, and what is left over then. A second column of a
-// family is no addition.
-SearchResult take_effects(SearchResult out, Round round, const Campaign& campaign,
-                          RandomStream random) {
-  while (choose_anew(out.state, round, campaign) || add_best(out.state, round, campaign) ||
-         leave_out_slight(out.state, campaign)) {
-    round = test_library(out.state.model, campaign);
+// The searches that begin with the base, each without some families.
+class Searches {
+ public:
+  Searches(const BaseModel& base, const Campaign& campaign, KnownSearch& known)
+      : campaign_(campaign), known_(known) {
+    if (!known_.start) begin(base);
   }
+
+  const SearchResult& start() const { return *known_.start; }
+  // With what was taken, but for what is not to be named.
+  SearchResult end_without(const std::vector<std::size_t>& families);
+
+ private:
+  void begin(const BaseModel& base);
+  const Round& round_at_base();
+  SearchResult take_effects(const std::vector<std::size_t>& left_out);
+
+  const Campaign& campaign_;
+  KnownSearch& known_;
+  std::optional<Round> round_;
+};
+
+void Searches::begin(const BaseModel& base) {
+  known_.start = SearchResult();
+  SearchResult& start = *known_.start;
+  LoopModel model;
+  model.base = base;
+  model.coefficients.setZero(static_cast<Eigen::Index>(base.linear_terms.size()));
+  start.base = fit_in_its_noise(std::move(model), campaign_, FitScope::everything);
+  start.state.model = start.base;
+  if (leaves_nothing(start.base, campaign_)) return;
+  start.first = first_look(round_at_base(), start.base, campaign_);
+}
+
+const Round& Searches::round_at_base() {
+  if (!round_) round_ = test_library(start().base, campaign_);
+  return *round_;
+}
+
+// In and out until neither changes anything. A second column of a family is no addition.
+SearchResult Searches::take_effects(const std::vector<std::size_t>& left_out) {
+  SearchResult out = start();
+  out.state.left_out = left_out;
+  Round round = round_at_base();
+  while (choose_anew(out.state, round, campaign_) || add_best(out.state, round, campaign_) ||
+         leave_out_slight(out.state, campaign_)) {
+    round = test_library(out.state.model, campaign_);
+  }
+  return out;
+}
+
+SearchResult Searches::end_without(const std::vector<std::size_t>& families) {
+  auto known = known_.ends.find(families);
+  if (known == known_.ends.end()) {
+    known = known_.ends.emplace(families, take_effects(families)).first;
+  }
+  SearchResult out = known->second;
   const std::vector<std::size_t> found = out.state.families();
   out.tried.insert(found.begin(), found.end());
-  take_out_unnamed(out.state, campaign);
+  take_out_unnamed(out.state, campaign_);
   out.taken = out.state.families();
   out.whole = out.state.model;
-  find_leftover(out, campaign, random.split("smoothers"));
   return out;
 }
 
 // The effect that is taken first stands for what others share with it, and the right ones may find
 // too little left. Where something is left over in the end, the search begins again without it:
-// what then leaves nothing over and predicts better is taken.
-SearchResult begin_otherwise(SearchResult one, SearchResult start, const Round& round,
-                             const Campaign& campaign, RandomStream random) {
+// what then predicts better and leaves nothing over is taken.
+SearchResult begin_otherwise(SearchResult one, Searches& searches, const Campaign& campaign,
+                             RandomStream smoothers) {
   if (one.leftover.inputs.empty() || one.taken.empty()) return one;
-  start.state.left_out.push_back(one.taken.front());
-  SearchResult other = take_effects(std::move(start), round, campaign, random);
+  SearchResult other = searches.end_without({one.taken.front()});
   one.tried.insert(other.tried.begin(), other.tried.end());
+  const auto predicts_better = [&](const FittedModel& model) {
+    return lead_over(one.whole, model, campaign).nats > 0;
+  };
+  // What gives way to its leftover makes it no better: most need not be asked for that.
+  if (!predicts_better(other.whole)) return one;
+  find_leftover(other, campaign, smoothers);
   if (!other.leftover.inputs.empty() || other.state.found.empty()) return one;
-  const Gain lead = lead_over(one.whole, other.state.model, campaign);
-  if (!(lead.nats > 0)) return one;
+  if (!predicts_better(other.state.model)) return one;
   other.tried = one.tried;
   return other;
 }
@@ -180,22 +236,20 @@ void SearchState::note(std::string text) {
   if (std::ranges::count(notes, text) == 0) notes.push_back(std::move(text));
 }
 
-SearchResult search(const BaseModel& base, const Campaign& campaign, RandomStream random) {
-  SearchResult out;
-  LoopModel model;
-  model.base = base;
-  model.coefficients.setZero(static_cast<Eigen::Index>(base.linear_terms.size()));
-  out.base = fit_in_its_noise(std::move(model), campaign, FitScope::everything);
-  out.state.model = out.base;
-  if (!(out.base.raw_residual.norm() > kNothingLeft * target_vector(campaign.data).norm())) {
+SearchResult search(const BaseModel& base, const Campaign& campaign, RandomStream random,
+                    KnownSearch& known) {
+  Searches searches(base, campaign, known);
+  if (leaves_nothing(searches.start().base, campaign)) {
+    SearchResult out = searches.start();
     out.state.note("the base model leaves no residual");
     out.first.untestable = campaign.library.missing;
     out.leftover_tested = true;
     return out;
   }
-  const Round round = test_library(out.base, campaign);
-  out.first = first_look(round, out.base, campaign);
-  out = begin_otherwise(take_effects(out, round, campaign, random), out, round, campaign, random);
+  const RandomStream smoothers = random.split("smoothers");
+  SearchResult out = searches.end_without({});
+  find_leftover(out, campaign, smoothers);
+  out = begin_otherwise(std::move(out), searches, campaign, smoothers);
   // As they stand beside each other, whatever way the search has come.
   for (Found& one : out.state.found) {
     one.gain = gain_of({one.family}, out.state.model, campaign);

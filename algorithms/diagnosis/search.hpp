@@ -5,6 +5,8 @@
 // Internal to the room.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -48,7 +50,21 @@ struct SearchResult {
   FittedModel whole;  // the model with all of them
 };
 
+// What a search of a campaign began with and ended with, before anything was taken out.
+struct KnownSearch {
+  std::vector<double> gear_ratios;  // of the campaign, where they are not the ones told
+  std::optional<SearchResult> start;
+  std::map<std::vector<std::size_t>, SearchResult> ends;  // by the families left out
+};
+
+struct KnownSearches {
+  KnownSearch plain;
+  KnownSearch with_ripple;  // the same once more, what repeats taken for a turn of the motor
+};
+
+// known: of the same campaign, or empty; it is added to.
 // Cost: a round of tests an effect found, some fits each, and one of the smoothers.
-SearchResult search(const BaseModel& base, const Campaign& campaign, RandomStream random);
+SearchResult search(const BaseModel& base, const Campaign& campaign, RandomStream random,
+                    KnownSearch& known);
 
 }  // namespace tribench::loop

@@ -206,6 +206,7 @@ class LoopJudge {
   struct Searches {
     std::vector<std::vector<int>> without;
     std::vector<Diagnosis> found;
+    std::vector<SearchMemory> memories;
     Diagnosis& whole() { return found.front(); }
   };
   void search(Searches& all, const std::vector<std::size_t>& which,
@@ -232,9 +233,11 @@ void LoopJudge::search(Searches& all, const std::vector<std::size_t>& which,
                        const DiagnosisOptions& options) {
   std::mutex mutex;
   all.found.resize(all.without.size());
+  all.memories.resize(all.without.size());
   asked_ += which.size();
   parallel_for(which.size(), judging_.threads, [&](std::size_t k) {
-    all.found[which[k]] = diagnose(data_, base_, options, all.without[which[k]]);
+    const std::size_t one = which[k];
+    all.found[one] = diagnose(data_, base_, options, all.without[one], &all.memories[one]);
     const std::lock_guard lock(mutex);
     if (judging_.progress) judging_.progress(++ended_, asked_);
   });
@@ -338,7 +341,7 @@ void LoopJudge::point_at_unused_columns(JudgedDiagnosis& whole) const {
 // Few movements: the whole procedure again for each, without it, and all of them judged together.
 // Says of each effect how many of them choose it too.
 JudgedDiagnosis LoopJudge::in_turn() {
-  Searches searches{left_out_together(data_), {}};
+  Searches searches{left_out_together(data_), {}, {}};
   const std::size_t turns = searches.without.size();
   searches.without.insert(searches.without.begin(), std::vector<int>());
   search(searches, numbers(0, turns + 1), options_);
@@ -363,7 +366,7 @@ JudgedDiagnosis LoopJudge::in_turn() {
 }
 
 JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
-  Searches searches{{test}, {}};
+  Searches searches{{test}, {}, {}};
   search(searches, {0}, options_);
   std::vector<std::string> needed;
   if (judging_.resample && !searches.whole().effects.empty()) {

@@ -21,35 +21,11 @@
 #include "problems/kuka/planted.hpp"
 #include "problems/preparation/test_movements.hpp"
 #include "problems/reading/csv.hpp"
+#include "tests/algorithms/diagnosis/planted_diagnosis.hpp"
 #include "tests/support/paths.hpp"
 
 namespace tribench::loop {
 namespace {
-
-// Signs of planted effects are random: the vetoes, which know which sign is physical, stay out.
-DiagnosisOptions options_of_planted() {
-  DiagnosisOptions options;
-  options.physical_vetoes = false;
-  options.gear_ratios = {160};
-  return options;
-}
-
-// Of a campaign, a fifth is left to judges: it is not looked at. Of a few movements all are.
-Diagnosis diagnose_most(const Observations& data, const DiagnosisOptions& options) {
-  const bool few = data.movements().size() < 40;
-  return diagnose(data, coulomb_viscous_base, options,
-                  few ? std::vector<int>() : choose_test_movements(data, 0.2));
-}
-
-Diagnosis diagnose_planted(const kuka::PlantedCase& planted, std::uint64_t seed) {
-  return diagnose_most(observe(kuka::make_planted(planted, seed).data), options_of_planted());
-}
-
-std::vector<std::string> families(const Diagnosis& diagnosis) {
-  std::vector<std::string> names;
-  for (const EffectFinding& effect : diagnosis.effects) names.push_back(effect.family);
-  return names;
-}
 
 TEST(Diagnosis, SaysNothingWhereNothingIsMissing) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
@@ -257,25 +233,6 @@ TEST(Diagnosis, NamesTwoEffects) {
   std::vector<std::string> names = families(diagnosis);
   std::ranges::sort(names);
   EXPECT_EQ(names, (std::vector<std::string>{"hysteresis", "load_coulomb"}));
-}
-
-TEST(Diagnosis, WhatLooksOtherwiseOrStandsBesideAnEffectIsNoAliasOfIt) {
-  using Pair = std::pair<const char*, const char*>;
-  for (const Pair& pair : {Pair{"hysteresis", "power_quadrant_step"}, Pair{"payload", "coupling"},
-                           Pair{"stribeck", "power_quadrant_gain"}}) {
-    for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
-      const Diagnosis diagnosis =
-          diagnose_planted({.effects = {{pair.first, 1.0}, {pair.second, 1.0}}}, seed);
-      const std::vector<std::string> named = families(diagnosis);
-      for (const EffectFinding& effect : diagnosis.effects) {
-        for (const AliasFinding& alias : effect.aliases) {
-          if (alias.exact) continue;
-          EXPECT_GE(alias.correlation, 0.5) << effect.family << " and " << alias.family;
-          EXPECT_THAT(named, ::testing::Not(::testing::Contains(alias.family))) << effect.family;
-        }
-      }
-    }
-  }
 }
 
 TEST(Diagnosis, ListsWhatConstantVelocityCannotShow) {
