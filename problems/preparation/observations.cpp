@@ -13,12 +13,15 @@
 #include "foundation/sign.hpp"
 #include "problems/preparation/derived_channels.hpp"
 #include "problems/preparation/observation_rows.hpp"
+#include "problems/preparation/slow_temperature.hpp"
 #include "problems/reading/units.hpp"
 
 namespace tribench::loop {
 namespace {
 
 constexpr double kFewestAveraged = 1.2;  // rows of a mean; fewer gain nothing
+
+constexpr double kThermometer = 1e-3;  // K: less of noise and steps is not spoken of
 
 constexpr std::array<std::pair<Role, std::string_view>, 10> kSignalNames = {{
     {Role::velocity, "v"},
@@ -82,6 +85,25 @@ std::vector<char> reversal_is_seen(const Observations& data, const std::vector<d
               seen.begin() + static_cast<std::ptrdiff_t>(end), char{1});
   }
   return seen;
+}
+
+void smooth_temperature(Observations& data) {
+  const auto temperature = std::ranges::find(data.signals, "T", &Signal::name);
+  const Signal* t = data.find("t");
+  if (temperature == data.signals.end() || t->unit != "s") return;
+  std::vector<double> slow = slow_temperature(temperature->values, t->values, data.movement);
+  double squares = 0;
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    const double change = temperature->values[i] - slow[i];
+    squares += change * change;
+  }
+  temperature->values = std::move(slow);
+  const double noise = std::sqrt(squares / static_cast<double>(data.rows()));
+  if (noise < kThermometer) return;
+  data.warnings.push_back(
+      fmt::format("'{}' is a straight line over any {:.0f} s of a movement: what its readings have "
+                  "beside it, {:.2g} {}, is the thermometer's",
+                  temperature->channel, kThermalSeconds, noise, temperature->unit));
 }
 
 // Path since the velocity last changed its sign; starts at 0 with every movement. None where no
@@ -419,6 +441,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   for (const std::string& name : options.rigid) data.at(name);
   complete_signals(out);
   add_campaign_time(out);
+  smooth_temperature(out);
   add_distance(out);
   add_lagged_velocities(out);
   out.time = out.find("t")->values;
