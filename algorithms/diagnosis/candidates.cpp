@@ -267,42 +267,18 @@ std::vector<std::size_t> better_atoms(std::size_t family, const Round& round,
 
 namespace {
 
-// The columns of a family beside the rest of the model, whitened.
-Eigen::MatrixXd columns_of(std::size_t family, const LoopModel& from, const FittedModel& rest,
-                           const Campaign& campaign) {
-  std::vector<Expression> formulas;
-  for (const Atom& atom : from.atoms) {
-    if (atom.family != family) continue;
-    formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
-  }
-  const Eigen::MatrixXd columns = evaluate_columns(formulas, campaign.data);
-  return project_off(whitened(columns, campaign.clusters, rest.noise), rest.basis);
-}
-
-struct Resemblance {
-  double correlation;  // canonical, of the columns
-  Gain lead;           // what the winner predicts better
-};
-
-// With the rival's shapes fitted as the winner's are, where it comes close: those of the library's
-// grid fit one of two causes better by chance, and look less alike than they are.
-Resemblance compare(const Candidate& winner, const FittedModel& extended, const Candidate& rival,
-                    const Round& round, const FittedModel& model, const Campaign& campaign) {
-  const auto on_grid = [&](std::size_t atom) {
-    return project_off(campaign.library.block_of(round.columns, atom), model.basis);
-  };
-  const Resemblance plain{canonical_correlation(on_grid(winner.atom), on_grid(rival.atom)),
-                          paired_gain(rival.losses, winner.losses)};
+// What the winner predicts better than a rival whose shapes are fitted as its own are: those of the
+// library's grid fit one of two causes better by chance. Of a rival that is far behind on the grid
+// as it stands there.
+Gain lead_of(const Candidate& winner, const FittedModel& extended, const Candidate& rival,
+             const FittedModel& model, const Campaign& campaign) {
+  const Gain lead = paired_gain(rival.losses, winner.losses);
   const bool is_close = rival.gain.nats > kCloseRival * winner.gain.nats;
-  const bool is_told = plain.lead.nats >= kAliasErrors * plain.lead.error;
-  if (!(plain.correlation >= kLeastLikeness) || !is_close || !is_told) return plain;
+  if (!is_close || lead.nats < kAliasErrors * lead.error) return lead;
   LoopModel other = model.model;
   other.add(campaign.library.atoms[rival.atom]);
   const FittedModel fitted = fit_in_its_noise(std::move(other), campaign, FitScope::everything);
-  if (!fitted.losses.allFinite()) return plain;
-  const double r = canonical_correlation(columns_of(winner.family, extended.model, model, campaign),
-                                         columns_of(rival.family, fitted.model, model, campaign));
-  return {std::max(plain.correlation, r), lead_over(fitted, extended, campaign)};
+  return fitted.losses.allFinite() ? lead_over(fitted, extended, campaign) : lead;
 }
 
 }  // namespace
@@ -312,6 +288,9 @@ std::vector<AliasFinding> aliases_of(const Candidate& winner, const FittedModel&
                                      const Campaign& campaign) {
   std::vector<AliasFinding> aliases;
   const EffectFamily& taken = campaign.families[winner.family];
+  const auto columns = [&](std::size_t atom) {
+    return project_off(campaign.library.block_of(round.columns, atom), model.basis);
+  };
   const double largest_p = winner.rescued ? kRescueP : kNearAliasP;
   for (std::size_t f = 0; f < campaign.families.size(); ++f) {
     if (f == winner.family || round.family_p[f] > largest_p) continue;
@@ -319,9 +298,10 @@ std::vector<AliasFinding> aliases_of(const Candidate& winner, const FittedModel&
     if (winner.rescued) rival = rescue(f, round, model, campaign);
     if (!rival) rival = best_atom(f, round, model, campaign);
     if (!rival) continue;
-    const auto [r, lead] = compare(winner, extended, *rival, round, model, campaign);
-    const bool exact = r > kExactCorrelation;
+    const double r = canonical_correlation(columns(winner.atom), columns(rival->atom));
     if (!(r >= kLeastLikeness)) continue;
+    const Gain lead = lead_of(winner, extended, *rival, model, campaign);
+    const bool exact = r > kExactCorrelation;
     if (!exact && lead.nats >= kAliasErrors * lead.error) continue;
     aliases.push_back(
         {campaign.families[f].name, r, lead.nats, lead.error, exact, taken.first_experiment()});
