@@ -122,12 +122,12 @@ EffectFinding effect_finding(const Found& found, const FittedModel& fit,
   finding.gain = found.gain.nats;
   finding.gain_error = found.gain.error;
   // What is named beside it is no other name of it.
-  std::ranges::copy_if(
-      found.aliases, std::back_inserter(finding.aliases), [&](const AliasFinding& alias) {
-        return alias.exact || std::ranges::none_of(fit.model.atoms, [&](const Atom& atom) {
-                 return campaign.families[atom.family].name == alias.family;
-               });
-      });
+  std::ranges::copy_if(found.aliases, std::back_inserter(finding.aliases),
+                       [&](const AliasFinding& alias) {
+                         return std::ranges::none_of(fit.model.atoms, [&](const Atom& atom) {
+                           return campaign.families[atom.family].name == alias.family;
+                         });
+                       });
   finding.few_movements = found.few;
   finding.another_shape = found.another_shape;
   finding.separate_by = family.separate_by;

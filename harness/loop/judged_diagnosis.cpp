@@ -135,24 +135,21 @@ class ChosenShares {
   std::vector<std::set<std::string>> chosen_;
 };
 
-// The effect and what looks like it in these data, but for what stands beside it: searches on
-// parts call one cause by one of these names or another, and correlated candidates share their
-// votes (cluster stability selection; Faletto and Bien 2022).
-std::set<std::string> names_of(const EffectFinding& effect, const Diagnosis& whole) {
+// The effect and what looks like it in these data: searches on parts call one cause by one of these
+// names or another, and correlated candidates share their votes (cluster stability selection;
+// Faletto and Bien 2022).
+std::set<std::string> names_of(const EffectFinding& effect) {
   std::set<std::string> names{effect.family};
-  const std::set<std::string> beside = families_of(whole);
   for (const AliasFinding& alias : effect.aliases) {
-    const bool is_alike = alias.correlation >= kAlike;
-    if (is_alike && !beside.contains(alias.family)) names.insert(alias.family);
+    if (alias.correlation >= kAlike) names.insert(alias.family);
   }
   return names;
 }
 
 // Each effect's share; where most searches call it by another name, which.
 void write_shares(Diagnosis& whole, const ChosenShares& shares) {
-  const Diagnosis as_found = whole;
   for (EffectFinding& effect : whole.effects) {
-    const std::set<std::string> names = names_of(effect, as_found);
+    const std::set<std::string> names = names_of(effect);
     effect.chosen_share = shares.of_any(names);
     if (!(shares.of(effect.family) < kStableShare)) continue;
     std::vector<std::string> others;
@@ -251,7 +248,7 @@ std::vector<std::string> LoopJudge::name_the_stable(Searches& all) {
   const ChosenShares shares(std::span(all.found).subspan(1));
   std::set<std::string> stable;
   for (const EffectFinding& effect : all.whole().effects) {
-    const std::set<std::string> names = names_of(effect, all.whole());
+    const std::set<std::string> names = names_of(effect);
     if (shares.of_any(names) >= kStableShare) stable.insert(names.begin(), names.end());
   }
   DiagnosisOptions options = options_;

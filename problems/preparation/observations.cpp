@@ -87,6 +87,7 @@ std::vector<char> reversal_is_seen(const Observations& data, const std::vector<d
   return seen;
 }
 
+// Without its thermometer's noise and steps, and says how large they were.
 void smooth_temperature(Observations& data) {
   const auto temperature = std::ranges::find(data.signals, "T", &Signal::name);
   const Signal* t = data.find("t");

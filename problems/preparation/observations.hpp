@@ -4,7 +4,7 @@
 // written, with those that follow from others (signs, distance since reversal, campaign time)
 // computed here and nowhere else.
 //
-//   v sgn_v  velocity and its sign        T       temperature
+//   v sgn_v  velocity and its sign        T       temperature (slow_temperature.hpp)
 //   a        acceleration                 t       time through the campaign
 //   q        position                     v2 a2   the other joint's velocity and acceleration
 //   g sgn_g  gravity torque and its sign  d       distance since the last reversal

@@ -23,7 +23,6 @@ TEST(Aliases, WhatLooksOtherwiseOrStandsBesideAnEffectIsNoAliasOfIt) {
       const std::vector<std::string> named = families(diagnosis);
       for (const EffectFinding& effect : diagnosis.effects) {
         for (const AliasFinding& alias : effect.aliases) {
-          if (alias.exact) continue;
           EXPECT_GE(alias.correlation, 0.5) << effect.family << " and " << alias.family;
           EXPECT_THAT(named, ::testing::Not(::testing::Contains(alias.family))) << effect.family;
         }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "problems/preparation/slow_temperature.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
