@@ -242,34 +242,44 @@ void LoopJudge::search(Searches& all, const std::vector<std::size_t>& which,
 
 // Stability selection (Meinshausen and Buehlmann 2010): what too few of the searches on parts
 // choose, by whatever name the data allow, hangs on a movement or two. Where the whole names such
-// an effect, all are asked anew for what most of them choose, but those that had nothing else.
+// an effect, all are asked anew for what most of them choose, but those that had nothing else; and
+// again where the answer names one that stood for a stable alias before and now stands beside it.
 // Returns what to record to be sure of what is not named.
 std::vector<std::string> LoopJudge::name_the_stable(Searches& all) {
   const ChosenShares shares(std::span(all.found).subspan(1));
-  std::set<std::string> stable;
-  for (const EffectFinding& effect : all.whole().effects) {
-    const std::set<std::string> names = names_of(effect);
-    if (shares.of_any(names) >= kStableShare) stable.insert(names.begin(), names.end());
-  }
   DiagnosisOptions options = options_;
-  for (const EffectFamily& family : all.whole().families) {
-    const bool is_rare = shares.of(family.name) < kStableShare;
-    if (is_rare && !stable.contains(family.name)) options.unnamed.push_back(family.name);
-  }
   const auto is_unnamed = [&](const std::string& family) {
     return std::ranges::count(options.unnamed, family) > 0;
   };
   std::vector<std::string> notes;
   std::vector<std::string> needed;
-  for (const EffectFinding& effect : all.whole().effects) {
-    if (!is_unnamed(effect.family)) continue;
-    notes.push_back(fmt::format(
-        "'{}' is chosen by {:.0f} % of the searches without some of the movements: not named",
-        effect.family, 100 * shares.of(effect.family)));
-    needed.push_back(fmt::format("more movements that show '{}'{}", effect.family,
-                                 experiments_of(effect.separate_by)));
-  }
-  if (!notes.empty()) {
+  // Each turn adds to what is unnamed, which no answer names: it ends.
+  while (true) {
+    std::set<std::string> stable;
+    std::vector<EffectFinding> rare;
+    for (const EffectFinding& effect : all.whole().effects) {
+      const std::set<std::string> names = names_of(effect);
+      if (shares.of_any(names) < kStableShare) {
+        rare.push_back(effect);
+      } else {
+        stable.insert(names.begin(), names.end());
+      }
+    }
+    if (rare.empty()) break;
+    for (const EffectFinding& effect : rare) stable.erase(effect.family);
+    for (const EffectFamily& family : all.whole().families) {
+      const bool is_rare = shares.of(family.name) < kStableShare;
+      if (is_rare && !stable.contains(family.name) && !is_unnamed(family.name)) {
+        options.unnamed.push_back(family.name);
+      }
+    }
+    for (const EffectFinding& effect : rare) {
+      notes.push_back(fmt::format(
+          "'{}' is chosen by {:.0f} % of the searches without some of the movements: not named",
+          effect.family, 100 * shares.of(effect.family)));
+      needed.push_back(fmt::format("more movements that show '{}'{}", effect.family,
+                                   experiments_of(effect.separate_by)));
+    }
     std::vector<std::size_t> again;
     for (std::size_t k = 0; k < all.found.size(); ++k) {
       if (std::ranges::any_of(all.found[k].tried, is_unnamed)) again.push_back(k);

@@ -12,6 +12,7 @@
 
 #include "foundation/random.hpp"
 #include "tests/harness/cli/loop_runs.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench {
@@ -388,6 +389,20 @@ TEST(LoopCommand, WhatTheMovementsLeftOutDoNotConfirmIsProvisional) {
     EXPECT_EQ(told["error"]["confirmed"].get<bool>(), is_confirmed) << problem;
     EXPECT_EQ(told["effects"][0]["provisional"].get<bool>(), !is_confirmed) << problem;
   }
+}
+
+// A fall with speed that a sixth of the searches find: it goes where it stands for a ripple that
+// most find, and where it stands beside that.
+TEST(LoopCommand, NamesNothingThatFewOfTheSearchesOnPartsChoose) {
+  const auto data = testing::shared_data();
+  if (!data) GTEST_SKIP() << testing::kNoSharedData;
+  const testing::ProgramRun run =
+      run_tribench({"loop", (*data / "ur10e-dynamic/joint1_dynamic.csv").string(), "--roles",
+                    "rigid_current_A=gravity_torque", "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const Json loop = Json::parse(run.output);
+  ASSERT_FALSE(loop["effects"].empty());
+  for (const Json& effect : loop["effects"]) EXPECT_GE(effect["chosen_share"], 0.6) << effect;
 }
 
 // As small a bump is no ripple.
