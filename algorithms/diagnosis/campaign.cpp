@@ -38,12 +38,13 @@ void scale_to_unit_rms(Eigen::MatrixXd& columns) {
 }  // namespace
 
 Library make_library(const Observations& data, const std::vector<EffectFamily>& families,
-                     const std::vector<double>& gear_ratios) {
+                     const std::vector<double>& gear_ratios, bool last_resort) {
   Library out;
   std::vector<Expression> formulas;
   for (std::size_t f = 0; f < families.size(); ++f) {
     std::vector<std::string> missing;
     for (Atom& atom : instantiate(families[f], f, data, gear_ratios, missing)) {
+      if (atom.last_resort && !last_resort) continue;
       out.blocks.push_back({formulas.size(), atom.columns.size()});
       formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
       out.atoms.push_back(std::move(atom));
@@ -75,5 +76,11 @@ Campaign::Campaign(const Observations& train, const std::vector<EffectFamily>& a
       noise_floor(quantisation_floor(train.target)),
       library(make_library(train, all_families, gear_ratios_for(train, how.gear_ratios))),
       flips(how.flips, all_clusters.stretches.size(), random) {}
+
+Campaign Campaign::with_last_resort() const {
+  Campaign out = *this;
+  out.library = make_library(data, families, gear_ratios_for(data, options.gear_ratios), true);
+  return out;
+}
 
 }  // namespace tribench::loop

@@ -31,12 +31,14 @@ struct Library {
 };
 
 Library make_library(const Observations& data, const std::vector<EffectFamily>& families,
-                     const std::vector<double>& gear_ratios);
+                     const std::vector<double>& gear_ratios, bool last_resort = false);
 
 // The references outlive the campaign.
 struct Campaign {
   Campaign(const Observations& train, const std::vector<EffectFamily>& all_families,
            const DiagnosisOptions& how, const Clusters& all_clusters, RandomStream random);
+  // The same with the atoms of last resort in the library.
+  [[nodiscard]] Campaign with_last_resort() const;
 
   const Observations& data;
   const std::vector<EffectFamily>& families;

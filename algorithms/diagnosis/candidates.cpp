@@ -310,7 +310,9 @@ std::vector<AliasFinding> aliases_of(const Candidate& winner, const FittedModel&
   for (const KnownAlias& known : taken.known_aliases) {
     const bool applies =
         known.coefficient.empty() || std::ranges::count(coefficients, known.coefficient) > 0;
-    if (applies) aliases.push_back({known.name, 1, 0, 0, true, known.separate_by});
+    const bool is_told_apart = campaign.data.find(known.unless_known) != nullptr;
+    if (applies && !is_told_apart)
+      aliases.push_back({known.name, 1, 0, 0, true, known.separate_by});
   }
   return aliases;
 }

@@ -190,7 +190,7 @@ Diagnosis knowing_the_ripple(Diagnosis first, const Observations& data, const Ba
   DiagnosisOptions options = first.options;
   options.gear_ratios = {ripple.wavenumber};
   // Another may be left over once something has been taken out.
-  if (known.gear_ratios != options.gear_ratios) known = {options.gear_ratios, {}, {}};
+  if (known.gear_ratios != options.gear_ratios) known = {options.gear_ratios, {}, {}, {}};
   Diagnosis again = diagnose_canonical(data, first.held_out, base, options, known);
   const auto& more = again.leftover.repeating;
   const bool explains_it = named_ripple(again) > 0 &&

@@ -19,7 +19,9 @@ std::vector<Expression> rich_columns(const Observations& data, const BaseModel& 
   for (std::size_t f = 0; f < families.size(); ++f) {
     std::vector<std::string> missing;
     std::vector<Atom> atoms = instantiate(families[f], f, data, gear_ratios, missing);
-    std::erase_if(atoms, [](const Atom& atom) { return atom.beside_another || atom.one_way; });
+    std::erase_if(atoms, [](const Atom& atom) {
+      return atom.beside_another || atom.one_way || atom.last_resort;
+    });
     const std::size_t step = (atoms.size() + kAtomsOfFamily - 1) / kAtomsOfFamily;
     for (std::size_t k = 0; k < atoms.size(); k += std::max<std::size_t>(1, step)) {
       formulas.insert(formulas.end(), atoms[k].columns.begin(), atoms[k].columns.end());

@@ -24,6 +24,7 @@ constexpr std::array kRules = {
     Rule{"proxies", "what a smoother of the leftover makes superfluous is dropped"},
     Rule{"shape_of_memory", "a small effect beside one that remembers the motion is its shape"},
     Rule{"shape_of_leftover", "a leftover in the inputs of a larger effect is its shape"},
+    Rule{"last_resort", "rare effects are looked for where the usual ones leave something over"},
     Rule{"unknown_ripple", "waves of any length in the position are looked for in the leftover"},
     Rule{"local_defect",
          "ripples and loads that one bump in the position predicts better are dropped"}};

@@ -150,11 +150,13 @@ class Searches {
   const SearchResult& start() const { return *known_.start; }
   // With what was taken, but for what is not to be named.
   SearchResult end_without(const std::vector<std::size_t>& families);
+  // The same of a search that has the atoms of last resort, too.
+  SearchResult end_further();
 
  private:
   void begin(const BaseModel& base);
   const Round& round_at_base();
-  SearchResult take_effects(const std::vector<std::size_t>& left_out);
+  SearchResult named(SearchResult end) const;
 
   const Campaign& campaign_;
   KnownSearch& known_;
@@ -179,23 +181,35 @@ const Round& Searches::round_at_base() {
 }
 
 // In and out until neither changes anything. A second column of a family is no addition.
-SearchResult Searches::take_effects(const std::vector<std::size_t>& left_out) {
-  SearchResult out = start();
-  out.state.left_out = left_out;
-  Round round = round_at_base();
-  while (choose_anew(out.state, round, campaign_) || add_best(out.state, round, campaign_) ||
-         leave_out_slight(out.state, campaign_)) {
-    round = test_library(out.state.model, campaign_);
+void take_effects(SearchState& state, Round round, const Campaign& campaign) {
+  while (choose_anew(state, round, campaign) || add_best(state, round, campaign) ||
+         leave_out_slight(state, campaign)) {
+    round = test_library(state.model, campaign);
   }
-  return out;
 }
 
 SearchResult Searches::end_without(const std::vector<std::size_t>& families) {
   auto known = known_.ends.find(families);
   if (known == known_.ends.end()) {
-    known = known_.ends.emplace(families, take_effects(families)).first;
+    SearchResult end = start();
+    end.state.left_out = families;
+    take_effects(end.state, round_at_base(), campaign_);
+    known = known_.ends.emplace(families, std::move(end)).first;
   }
-  SearchResult out = known->second;
+  return named(known->second);
+}
+
+SearchResult Searches::end_further() {
+  if (!known_.further) {
+    const Campaign further = campaign_.with_last_resort();
+    known_.further = start();
+    SearchState& state = known_.further->state;
+    take_effects(state, test_library(state.model, further), further);
+  }
+  return named(*known_.further);
+}
+
+SearchResult Searches::named(SearchResult out) const {
   const std::vector<std::size_t> found = out.state.families();
   out.tried.insert(found.begin(), found.end());
   take_out_unnamed(out.state, campaign_);
@@ -220,6 +234,46 @@ SearchResult begin_otherwise(SearchResult one, Searches& searches, const Campaig
   find_leftover(other, campaign, smoothers);
   if (!other.leftover.inputs.empty() || other.state.found.empty()) return one;
   if (!predicts_better(other.state.model)) return one;
+  other.tried = one.tried;
+  return other;
+}
+
+// Whether an atom of last resort reads a signal in which something is left over.
+bool has_last_resort(const LeftoverFinding& leftover, const Campaign& campaign) {
+  const std::vector<double> ratios = gear_ratios_for(campaign.data, campaign.options.gear_ratios);
+  for (std::size_t f = 0; f < campaign.families.size(); ++f) {
+    LoopModel model;
+    std::vector<std::string> missing;
+    for (Atom& atom : instantiate(campaign.families[f], f, campaign.data, ratios, missing)) {
+      if (atom.last_resort) model.add(std::move(atom));
+    }
+    for (const Signal* signal : signals_read(model, f, campaign.data)) {
+      if (std::ranges::count(leftover.signals, signal->name) > 0) return true;
+    }
+  }
+  return false;
+}
+
+// Rare effects are looked for where the usual ones leave something over, from the start: what stood
+// in for them leaves them too little. What then predicts better and leaves something over in fewer
+// inputs is taken.
+SearchResult go_further(SearchResult one, Searches& searches, const Campaign& campaign,
+                        RandomStream smoothers) {
+  if (!campaign.options.has("last_resort")) return one;
+  if (one.leftover.inputs.empty() || !has_last_resort(one.leftover, campaign)) return one;
+  SearchResult other = searches.end_further();
+  one.tried.insert(other.tried.begin(), other.tried.end());
+  const bool is_other = std::ranges::any_of(other.state.model.model.atoms, &Atom::last_resort);
+  if (!is_other) return one;
+  find_leftover(other, campaign, smoothers);
+  const std::vector<std::string>& signals = other.leftover.signals;
+  const bool leaves_less = signals.size() < one.leftover.signals.size() &&
+                           std::ranges::all_of(signals, [&](const std::string& signal) {
+                             return std::ranges::count(one.leftover.signals, signal) > 0;
+                           });
+  if (!leaves_less || !(lead_over(one.state.model, other.state.model, campaign).nats > 0)) {
+    return one;
+  }
   other.tried = one.tried;
   return other;
 }
@@ -250,6 +304,7 @@ SearchResult search(const BaseModel& base, const Campaign& campaign, RandomStrea
   SearchResult out = searches.end_without({});
   find_leftover(out, campaign, smoothers);
   out = begin_otherwise(std::move(out), searches, campaign, smoothers);
+  out = go_further(std::move(out), searches, campaign, smoothers);
   // As they stand beside each other, whatever way the search has come.
   for (Found& one : out.state.found) {
     one.gain = gain_of({one.family}, out.state.model, campaign);

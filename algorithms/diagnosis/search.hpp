@@ -55,6 +55,7 @@ struct KnownSearch {
   std::vector<double> gear_ratios;  // of the campaign, where they are not the ones told
   std::optional<SearchResult> start;
   std::map<std::vector<std::size_t>, SearchResult> ends;  // by the families left out
+  std::optional<SearchResult> further;                    // with the atoms of last resort
 };
 
 struct KnownSearches {

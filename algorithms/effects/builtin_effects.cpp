@@ -208,6 +208,15 @@ EffectFamily output_ripple() {
     if (3 * k <= 12) f.atoms.push_back(harmonics_of(angle, {}));
     f.atoms.push_back(drifting(angle, {}));
   }
+  // Of the friction itself (a bearing or seal that runs out). Under a load that nobody has told it
+  // would be load friction, too.
+  for (int k = 1; k <= kMostWavesOfOutput; ++k) {
+    const std::string angle = std::to_string(k) + "*q)";
+    f.atoms.push_back({.columns = {"sgn_v*cos(" + angle, "sgn_v*sin(" + angle},
+                       .coefficients = {"friction_cosine", "friction_sine"},
+                       .last_resort = true});
+  }
+  f.known_aliases = {{"load-dependent friction", "R3", "friction_cosine", "g"}};
   f.angular = true;
   f.separate_by = {"R2", "R3"};
   return f;

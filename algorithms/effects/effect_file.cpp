@@ -211,6 +211,7 @@ AtomTemplate read_atom(const Entry& entry) {
   atom.beside_another = entry.find<bool>("beside_another").value_or(false);
   atom.by_direction = entry.find<bool>("by_direction").value_or(false);
   atom.one_way = entry.find<bool>("one_way").value_or(false);
+  atom.last_resort = entry.find<bool>("last_resort").value_or(false);
   atom.curve = read_curve(entry);
   return atom;
 }
@@ -242,10 +243,12 @@ EffectFamily read_family(const Entry& entry) {
   for (const Entry& one : entry.entries("sanity", {"coefficient", "sign", "largest", "why"})) {
     family.sanity.push_back(read_sanity(one));
   }
-  for (const Entry& one : entry.entries("alias", {"name", "separate_by", "coefficient"})) {
+  for (const Entry& one :
+       entry.entries("alias", {"name", "separate_by", "coefficient", "unless_known"})) {
     family.known_aliases.push_back({one.needed_text("name"),
                                     one.find<std::string>("separate_by").value_or(""),
-                                    one.find<std::string>("coefficient").value_or("")});
+                                    one.find<std::string>("coefficient").value_or(""),
+                                    one.find<std::string>("unless_known").value_or("")});
   }
   return family;
 }
@@ -290,8 +293,10 @@ void insert_family(toml::table& table, const EffectFamily& family) {
   if (!sanity.empty()) table.insert("sanity", std::move(sanity));
   toml::array aliases;
   for (const KnownAlias& one : family.known_aliases) {
-    aliases.push_back(toml::table{
-        {"name", one.name}, {"separate_by", one.separate_by}, {"coefficient", one.coefficient}});
+    aliases.push_back(toml::table{{"name", one.name},
+                                  {"separate_by", one.separate_by},
+                                  {"coefficient", one.coefficient},
+                                  {"unless_known", one.unless_known}});
   }
   if (!aliases.empty()) table.insert("alias", std::move(aliases));
 }
@@ -302,6 +307,7 @@ toml::table table_of(const AtomTemplate& atom) {
   if (atom.beside_another) table.insert("beside_another", true);
   if (atom.by_direction) table.insert("by_direction", true);
   if (atom.one_way) table.insert("one_way", true);
+  if (atom.last_resort) table.insert("last_resort", true);
   if (atom.curve != SpeedCurve::any) table.insert("curve", std::string(curve_name(atom.curve)));
   toml::array shapes;
   for (const ShapeTemplate& shape : atom.shapes) {
@@ -331,7 +337,7 @@ std::vector<EffectFamily> read_effects(const std::filesystem::path& file) {
   const std::vector<Entry> effects = whole.entries(
       "effect", {"name", "id", "phrase", "summary", "source", "origin", "title", "angular", "curve",
                  "separate_by", "sanity", "alias", "columns", "coefficients", "shape",
-                 "beside_another", "by_direction", "one_way"});
+                 "beside_another", "by_direction", "one_way", "last_resort"});
   if (effects.empty()) {
     throw_bad_input("there is no [[effect]] in the file", file.string(),
                     "see --save-effect for the form");

@@ -89,6 +89,7 @@ Atom make_atom(const AtomTemplate& source, std::size_t family, const Observation
   atom.coefficients = source.coefficients;
   atom.beside_another = source.beside_another || source.by_direction;
   atom.one_way = source.one_way;
+  atom.last_resort = source.last_resort;
   atom.curve = source.curve;
   for (std::size_t k = 0; k < source.shapes.size(); ++k) {
     const ShapeTemplate& shape = source.shapes[k];

@@ -58,6 +58,9 @@ struct AtomTemplate {
   bool by_direction = false;
   // What there is in one direction alone: only in motion both ways, else it is the whole effect.
   bool one_way = false;
+  // Rare, and looked for only where the others leave something over: beside them it would make each
+  // of them harder to find.
+  bool last_resort = false;
   SpeedCurve curve = SpeedCurve::any;
 };
 
@@ -72,8 +75,9 @@ struct Sanity {
 // A cause that has the same column as this one, whatever the data.
 struct KnownAlias {
   std::string name;
-  std::string separate_by;       // R1 ... R9 and what to do
-  std::string coefficient = {};  // only of atoms that have it; empty: of all
+  std::string separate_by;        // R1 ... R9 and what to do
+  std::string coefficient = {};   // only of atoms that have it; empty: of all
+  std::string unless_known = {};  // a signal that would tell the two apart; empty: none does
 };
 
 struct EffectFamily {
@@ -133,6 +137,7 @@ struct Atom {
   std::vector<Shape> shapes;
   bool beside_another = false;
   bool one_way = false;
+  bool last_resort = false;
   SpeedCurve curve = SpeedCurve::any;
 
   void set_shape(std::size_t shape, double value);

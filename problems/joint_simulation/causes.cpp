@@ -184,6 +184,13 @@ Response output_drifting(RandomStream random) {
   const auto first = static_cast<double>(2 + random.below(4));
   return ripple(first, random.uniform(0.6, 1.8), false, random.split("wave"));
 }
+// A bearing or a seal that runs out.
+Response friction_ripple(RandomStream random) {
+  const auto waves = static_cast<double>(1 + random.below(6));
+  return [waves, phase = random.uniform(0, kTwoPi)](const Instant& now, double) {
+    return now.sign() * elementary::cos(waves * now.joint.position_rad + phase);
+  };
+}
 Response gear_harmonics(RandomStream random) {
   return ripple(kGearRatio, 0, true, random.split("wave"));
 }
@@ -341,16 +348,25 @@ std::vector<Cause> causes_of_position_and_temperature() {
 }
 
 // Told after the others were: the seeds of their runs in a study stay.
-Cause four_elements() {
-  return {"presliding_gms",
-          "four Maxwell-slip elements less Coulomb friction",
-          {"hysteresis"},
-          {"lag"},
-          {Role::position},
-          true,
-          maxwell_slip,
-          true,
-          false};
+std::vector<Cause> later_causes() {
+  return {{"presliding_gms",
+           "four Maxwell-slip elements less Coulomb friction",
+           {"hysteresis"},
+           {"lag"},
+           {Role::position},
+           true,
+           maxwell_slip,
+           true,
+           false},
+          {"friction_ripple",
+           "s cos(k q + phase)",
+           {"output_ripple"},
+           {},
+           {Role::position},
+           true,
+           friction_ripple,
+           false,
+           false}};
 }
 
 }  // namespace
@@ -360,7 +376,7 @@ const std::vector<Cause>& causes() {
     std::vector<Cause> all = causes_of_speed_and_load();
     std::ranges::move(causes_of_memory_and_wear(), std::back_inserter(all));
     std::ranges::move(causes_of_position_and_temperature(), std::back_inserter(all));
-    all.push_back(four_elements());
+    std::ranges::move(later_causes(), std::back_inserter(all));
     return all;
   }();
   return kCauses;

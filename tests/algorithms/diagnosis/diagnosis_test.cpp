@@ -91,6 +91,8 @@ INSTANTIATE_TEST_SUITE_P(
                       SimulatedCause{"lag_of_friction", "lag", few_long, 7},
                       SimulatedCause{"output_ripple_harmonics", "output_ripple", one_way, 7},
                       SimulatedCause{"output_ripple_drifting", "output_ripple", many_short, 7},
+                      SimulatedCause{"friction_ripple", "output_ripple", mixed, 7},
+                      SimulatedCause{"friction_ripple", "output_ripple", few_long, 8},
                       SimulatedCause{"gear_ripple_drifting", "gear_ripple", few_long, 7},
                       SimulatedCause{"presliding_dahl", "hysteresis", many_short, 7}));
 

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+//
+// Rare effects are looked for where the usual ones leave something over.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "problems/joint_simulation/simulated_campaign.hpp"
+#include "tests/algorithms/diagnosis/planted_diagnosis.hpp"
+
+namespace tribench::loop {
+namespace {
+
+Observations friction_that_changes_with_the_place() {
+  return observe(
+      simulation::simulate(
+          {"friction_ripple", 2, simulation::NoiseKind::gaussian, simulation::Design::mixed}, 7)
+          .data);
+}
+
+TEST(LastResort, FrictionThatChangesWithThePlaceIsUnknownWithoutIt) {
+  const Observations data = friction_that_changes_with_the_place();
+  DiagnosisOptions options;
+  const Diagnosis with = diagnose_most(data, options);
+  EXPECT_EQ(with.verdict, Verdict::effects);
+  EXPECT_EQ(families(with), std::vector<std::string>{"output_ripple"});
+  EXPECT_THAT(with.effects[0].atom, ::testing::StartsWith("sgn_v*cos("));
+  options.without = {"last_resort"};
+  const Diagnosis without = diagnose_most(data, options);
+  EXPECT_EQ(without.verdict, Verdict::unknown);
+  EXPECT_THAT(without.leftover.inputs, ::testing::Contains("position"));
+}
+
+// What the load does to the friction nobody can tell from it where nobody tells the load.
+TEST(LastResort, CouldBeLoadFrictionWhereTheLoadIsNotKnown) {
+  const auto could_be_load = [](const Observations& data) {
+    const Diagnosis diagnosis = diagnose_most(data, {});
+    EXPECT_EQ(families(diagnosis), std::vector<std::string>{"output_ripple"});
+    if (diagnosis.effects.empty()) return false;
+    return std::ranges::count(diagnosis.effects[0].aliases, "load-dependent friction",
+                              &AliasFinding::family) > 0;
+  };
+  Observations data = friction_that_changes_with_the_place();
+  EXPECT_FALSE(could_be_load(data));
+  std::erase_if(data.signals,
+                [](const Signal& one) { return one.name == "g" || one.name == "sgn_g"; });
+  EXPECT_TRUE(could_be_load(data));
+}
+
+// A campaign whose usual effects explain all of it is not looked at again: friction under a load
+// has twice the wave of the load, too.
+TEST(LastResort, TakesNothingFromTheUsualEffects) {
+  for (const char* usual : {"load_coulomb", "output_ripple", "power_quadrant_step"}) {
+    const Observations data = observe(kuka::make_planted({.effects = {{usual, 1.0}}}, 3).data);
+    DiagnosisOptions options = options_of_planted();
+    const Diagnosis with = diagnose_most(data, options);
+    options.without = {"last_resort"};
+    const Diagnosis without = diagnose_most(data, options);
+    EXPECT_EQ(families(with), std::vector<std::string>{usual});
+    EXPECT_EQ(with.after.coefficients, without.after.coefficients);
+    // No usual effect is harder to find for it.
+    EXPECT_TRUE(std::ranges::equal(with.candidates, without.candidates, {},
+                                   &CandidateFinding::adjusted_p, &CandidateFinding::adjusted_p));
+  }
+}
+
+}  // namespace
+}  // namespace tribench::loop
