@@ -19,6 +19,7 @@
 #include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/parallel_for.hpp"
 #include "harness/loop/bristles_of.hpp"
+#include "harness/loop/determined_rows.hpp"
 #include "harness/loop/noise_bounds.hpp"
 #include "problems/preparation/canonical.hpp"
 #include "problems/preparation/test_movements.hpp"
@@ -100,13 +101,42 @@ struct LeftOut {
   Eigen::VectorXd after;
   Eigen::VectorXd with_state;  // as `after` where there are no bristles
   Eigen::VectorXd corrected;   // as `after` where no bounds are asked for
+  std::vector<char> determined;
 
   explicit LeftOut(std::size_t rows)
       : before(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows))),
         after(before),
         with_state(before),
-        corrected(before) {}
+        corrected(before),
+        determined(rows, 0) {}
 };
+
+// Of the rows those that can be judged; all where none can. Says which movements hold the others.
+std::vector<char> judged_rows(std::vector<char> rows, const LeftOut& models,
+                              const Observations& data, std::vector<std::string>& notes) {
+  constexpr std::size_t kNamed = 3;
+  std::set<int> movements;
+  std::size_t undetermined = 0;
+  std::vector<char> kept = rows;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i] == 0 || models.determined[i] != 0) continue;
+    kept[i] = 0;
+    ++undetermined;
+    movements.insert(data.movement[i]);
+  }
+  if (undetermined == 0 || std::ranges::count(kept, 1) == 0) return rows;
+  std::vector<std::string> names;
+  for (const int m : movements) {
+    if (names.size() == kNamed) break;
+    names.push_back(fmt::format("'{}'", data.movement_names[static_cast<std::size_t>(m)]));
+  }
+  notes.push_back(fmt::format(
+      "{} rows of {} movements ({}{}) are not judged: the movements without them do not determine "
+      "the base model there",
+      undetermined, movements.size(), fmt::join(names, ", "),
+      movements.size() > names.size() ? ", ..." : ""));
+  return kept;
+}
 
 std::set<std::string> families_of(const Diagnosis& diagnosis) {
   std::set<std::string> families;
@@ -299,10 +329,13 @@ void LoopJudge::add_predictions(LeftOut& all, const Diagnosis& fitted,
   const Eigen::VectorXd before = predict(fitted.before, data_);
   const Eigen::VectorXd after = predict(fitted.after, data_);
   const Eigen::VectorXd with_state = bristles ? predict(*bristles, data_) : after;
+  const std::vector<char> train = usable_rows(data_, fitted.held_out, false, fitted.masked);
+  const std::vector<char> determined =
+      determined_rows(fitted.before, data_, train, fitted.correlation_rows);
   Eigen::VectorXd corrected = after;
   if (judging_.bounds) {
-    corrected += smooth_correction(data_, usable_rows(data_, fitted.held_out, false, fitted.masked),
-                                   target_vector(data_) - after, random.split("smooth"));
+    corrected +=
+        smooth_correction(data_, train, target_vector(data_) - after, random.split("smooth"));
   }
   for (std::size_t i = 0; i < data_.rows(); ++i) {
     if (!std::ranges::binary_search(fitted.held_out, data_.movement[i])) continue;
@@ -311,6 +344,7 @@ void LoopJudge::add_predictions(LeftOut& all, const Diagnosis& fitted,
     all.after[at] = after[at];
     all.with_state[at] = with_state[at];
     all.corrected[at] = corrected[at];
+    all.determined[i] = determined[i];
   }
 }
 
@@ -361,8 +395,9 @@ JudgedDiagnosis LoopJudge::in_turn() {
   }
   JudgedDiagnosis whole{std::move(searches.whole()), {}, {}, {}};
   whole.bristles = bristles_of(whole, data_);
-  const std::vector<char> usable = usable_rows(data_, {}, false, whole.masked);
-  whole.error = judged(usable, all, pieces(data_.select(usable), whole.correlation_rows));
+  const std::vector<char> rows =
+      judged_rows(usable_rows(data_, {}, false, whole.masked), all, data_, whole.notes);
+  whole.error = judged(rows, all, pieces(data_.select(rows), whole.correlation_rows));
   point_at_unused_columns(whole);
   whole.error.how =
       !data_.group.empty() ? fmt::format("movements of one '{}' left out in turn", data_.group_name)
@@ -390,10 +425,11 @@ JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
   whole.bristles = bristles_of(whole, data_);
   whole.error.judged_on = JudgedOn::rows_of_the_fit;
   whole.error.how = "none held out";
-  const std::vector<char> rows = usable_rows(data_, test, true, whole.masked);
+  std::vector<char> rows = usable_rows(data_, test, true, whole.masked);
   if (std::ranges::count(rows, 1) == 0) return whole;
   LeftOut models(data_.rows());
   add_predictions(models, whole, whole.bristles, random_);
+  rows = judged_rows(std::move(rows), models, data_, whole.notes);
   whole.error = judged(rows, models, data_.select(rows).movement);
   point_at_unused_columns(whole);
   whole.error.how = "held out";
