@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "foundation/order_statistics.hpp"
 #include "problems/preparation/effort_delay.hpp"
 #include "problems/preparation/motion_check.hpp"
 #include "problems/preparation/rigid_body.hpp"
@@ -21,6 +22,7 @@ constexpr double kUnresolved = 0.6;   // standard errors of the acceleration
 constexpr double kMatters = 0.33;     // of the acceleration that the torque's noise leaves visible
 constexpr double kLeastDelay = 0.6;   // steps of time
 constexpr double kMuchCoarser = 4;    // than the derived velocity's noise
+constexpr double kMuchNoisier = 10;   // a little: what a good controller knows beside its encoder
 
 // Shorter ones make no stroke.
 std::vector<RowRange> pieces_to_smooth(std::span<const double> time,
@@ -66,6 +68,21 @@ std::optional<DerivedMotion> derive_motion(const PreparedRecording& out) {
 
 namespace {
 
+// The noise of a velocity that has the other's motion: of their difference, what two neighbours do
+// not foretell (von Neumann et al. 1941), by its median, which a few events leave alone.
+double noise_beside(std::span<const double> velocity, std::span<const double> derived,
+                    const std::vector<RowRange>& pieces) {
+  constexpr double kMedianOfNormal = 0.6745;
+  std::vector<double> bends;
+  for (const RowRange& piece : pieces) {
+    for (std::size_t i = piece.begin + 1; i + 1 < piece.end; ++i) {
+      const auto off = [&](std::size_t at) { return velocity[at] - derived[at]; };
+      bends.push_back(std::abs(off(i - 1) - 2 * off(i) + off(i + 1)));
+    }
+  }
+  return bends.empty() ? 0 : median(bends) / (kMedianOfNormal * std::sqrt(6.0));
+}
+
 std::string motion_unit(const std::string& position, const char* per) { return position + per; }
 
 void replace_velocity(PreparedRecording& out, const DerivedMotion& derived) {
@@ -103,6 +120,14 @@ void settle_velocity(PreparedRecording& out, const DerivedMotion& derived) {
     out.notes.push_back(
         fmt::format("'{}' lags behind its position by {:.3g} ms, as a filtered velocity does",
                     v->name, 1e3 * *delay));
+    replace_velocity(out, derived);
+    return;
+  }
+  const double noise = noise_beside(v->values, derived.motion.velocity, derived.pieces);
+  if (noise > kMuchNoisier * derived.motion.velocity_noise) {
+    out.notes.push_back(
+        fmt::format("'{}' has a noise of {:.2g} {}, more than its position leaves open", v->name,
+                    noise, v->unit));
     replace_velocity(out, derived);
     return;
   }

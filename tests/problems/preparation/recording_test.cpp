@@ -175,6 +175,31 @@ TEST(PreparedRecording, ACoarseVelocityGivesWayToWhatItsPositionSays) {
   EXPECT_FALSE(told(1e-6).derived_velocity);
 }
 
+// Neighbouring counts over a millisecond: rounded as it is written, it has no steps any more.
+TEST(PreparedRecording, AVelocityFromTheDifferencesOfCountsGivesWayToo) {
+  RawLogPlan plan;
+  plan.seconds = 30;
+  plan.step = 0.001;
+  const std::vector<RawSample> truth = simulate(plan);
+  const auto told = [&](double count) {
+    const auto position = [&](std::size_t i) {
+      return count * std::round(truth[i].position / count);
+    };
+    std::string text = "time_s,position_rad,velocity_rad_s,torque_Nm\n";
+    for (std::size_t i = 1; i + 1 < truth.size(); ++i) {
+      const double rounding = 1e-6 * std::sin(static_cast<double>(i * i));
+      const double v = (position(i + 1) - position(i - 1)) / (2 * plan.step) + rounding;
+      text += fmt::format("{:.4f},{:.7f},{:.8f},{:.3f}\n", truth[i].time, position(i), v,
+                          truth[i].torque);
+    }
+    return prepared(text, {});
+  };
+  const PreparedRecording noisy = told(4e-4);
+  EXPECT_TRUE(noisy.derived_velocity);
+  EXPECT_THAT(noisy.notes, Contains(HasSubstr("has a noise of 0.")));
+  EXPECT_LT(rms_against_truth(noisy, truth, Role::velocity, &RawSample::velocity, plan.step), 0.01);
+}
+
 // Every way of telling one physics gives the same channels.
 TEST(PreparedRecording, TellingsOfOnePhysicsAgree) {
   RawLogPlan plan;
