@@ -238,8 +238,12 @@ SearchResult begin_otherwise(SearchResult one, Searches& searches, const Campaig
   return other;
 }
 
-// Whether an atom of last resort reads a signal in which something is left over.
+// Whether an atom of last resort reads a signal in which something is left over. Gravity is a
+// function of the place, and may stand for it.
 bool has_last_resort(const LeftoverFinding& leftover, const Campaign& campaign) {
+  const auto is_left = [&](const std::string& signal) {
+    return std::ranges::count(leftover.signals, signal) > 0;
+  };
   const std::vector<double> ratios = gear_ratios_for(campaign.data, campaign.options.gear_ratios);
   for (std::size_t f = 0; f < campaign.families.size(); ++f) {
     LoopModel model;
@@ -248,7 +252,8 @@ bool has_last_resort(const LeftoverFinding& leftover, const Campaign& campaign) 
       if (atom.last_resort) model.add(std::move(atom));
     }
     for (const Signal* signal : signals_read(model, f, campaign.data)) {
-      if (std::ranges::count(leftover.signals, signal->name) > 0) return true;
+      const bool is_place = signal->name == "q" && is_left("g");
+      if (is_place || is_left(signal->name)) return true;
     }
   }
   return false;

@@ -14,11 +14,12 @@
 namespace tribench::loop {
 namespace {
 
-Observations friction_that_changes_with_the_place() {
-  return observe(
-      simulation::simulate(
-          {"friction_ripple", 2, simulation::NoiseKind::gaussian, simulation::Design::mixed}, 7)
-          .data);
+Observations friction_that_changes_with_the_place(
+    double scale = 2, simulation::Design design = simulation::Design::mixed,
+    std::uint64_t seed = 7) {
+  return observe(simulation::simulate(
+                     {"friction_ripple", scale, simulation::NoiseKind::gaussian, design}, seed)
+                     .data);
 }
 
 TEST(LastResort, FrictionThatChangesWithThePlaceIsUnknownWithoutIt) {
@@ -32,6 +33,19 @@ TEST(LastResort, FrictionThatChangesWithThePlaceIsUnknownWithoutIt) {
   const Diagnosis without = diagnose_most(data, options);
   EXPECT_EQ(without.verdict, Verdict::unknown);
   EXPECT_THAT(without.leftover.inputs, ::testing::Contains("position"));
+}
+
+// Gravity is a function of the place, and may be what a smoother of it is made of.
+TEST(LastResort, IsAskedWhereGravityStandsForThePlace) {
+  for (const std::uint64_t seed : {39U, 113U}) {
+    const Observations data =
+        friction_that_changes_with_the_place(1, simulation::Design::few_long, seed);
+    DiagnosisOptions options;
+    EXPECT_EQ(families(diagnose_most(data, options)), std::vector<std::string>{"output_ripple"});
+    options.without = {"last_resort"};
+    EXPECT_EQ(diagnose_most(data, options).leftover.inputs,
+              std::vector<std::string>{"gravity_torque"});
+  }
 }
 
 // What the load does to the friction nobody can tell from it where nobody tells the load.
