@@ -311,8 +311,8 @@ std::vector<AliasFinding> aliases_of(const Candidate& winner, const FittedModel&
     const bool applies =
         known.coefficient.empty() || std::ranges::count(coefficients, known.coefficient) > 0;
     const bool is_told_apart = campaign.data.find(known.unless_known) != nullptr;
-    if (applies && !is_told_apart)
-      aliases.push_back({known.name, 1, 0, 0, true, known.separate_by});
+    if (!applies || is_told_apart) continue;
+    aliases.push_back({known.name, 1, 0, 0, true, known.separate_by});
   }
   return aliases;
 }

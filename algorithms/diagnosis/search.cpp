@@ -271,10 +271,10 @@ SearchResult go_further(SearchResult one, Searches& searches, const Campaign& ca
   const bool is_other = std::ranges::any_of(other.state.model.model.atoms, &Atom::last_resort);
   if (!is_other) return one;
   find_leftover(other, campaign, smoothers);
-  const std::vector<std::string>& signals = other.leftover.signals;
-  const bool leaves_less = signals.size() < one.leftover.signals.size() &&
-                           std::ranges::all_of(signals, [&](const std::string& signal) {
-                             return std::ranges::count(one.leftover.signals, signal) > 0;
+  const std::vector<std::string>& inputs = other.leftover.inputs;
+  const bool leaves_less = inputs.size() < one.leftover.inputs.size() &&
+                           std::ranges::all_of(inputs, [&](const std::string& input) {
+                             return std::ranges::count(one.leftover.inputs, input) > 0;
                            });
   if (!leaves_less || !(lead_over(one.state.model, other.state.model, campaign).nats > 0)) {
     return one;

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,20 @@ TEST(LastResort, FrictionThatChangesWithThePlaceIsUnknownWithoutIt) {
   const Diagnosis without = diagnose_most(data, options);
   EXPECT_EQ(without.verdict, Verdict::unknown);
   EXPECT_THAT(without.leftover.inputs, ::testing::Contains("position"));
+}
+
+// A saw's teeth are no sine: this cause, but a curve that the library does not have.
+TEST(LastResort, FrictionThatJumpsAtAPlaceIsAnotherShapeOfIt) {
+  Observations data = observe(kuka::make_planted({}, 5).data);
+  const std::vector<double>& q = data.find("q")->values;
+  const std::vector<double>& sign = data.find("sgn_v")->values;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    const double teeth = 4 * q[i] / (2 * std::numbers::pi);
+    data.target[i] += 2 * sign[i] * (teeth - std::floor(teeth));
+  }
+  const Diagnosis diagnosis = diagnose_most(data, options_of_planted());
+  ASSERT_EQ(families(diagnosis), std::vector<std::string>{"output_ripple"});
+  EXPECT_TRUE(diagnosis.effects[0].another_shape);
 }
 
 // Gravity is a function of the place, and may be what a smoother of it is made of.
