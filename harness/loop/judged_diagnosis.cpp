@@ -131,7 +131,7 @@ std::vector<char> judged_rows(std::vector<char> rows, const LeftOut& models,
     names.push_back(fmt::format("'{}'", data.movement_names[static_cast<std::size_t>(m)]));
   }
   notes.push_back(fmt::format(
-      "{} rows of {} movements ({}{}) are not judged: the movements without them do not determine "
+      "{} rows of {} movements ({}{}) are not judged: the other movements do not determine "
       "the base model there",
       undetermined, movements.size(), fmt::join(names, ", "),
       movements.size() > names.size() ? ", ..." : ""));
