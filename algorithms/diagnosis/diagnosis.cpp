@@ -109,11 +109,11 @@ std::vector<Burst> bursts_until(std::size_t end, const Observations& data,
 // Bursts are events: listed by movement and time, their rows left out of every fit. Those of the
 // rows to fit to are what stands out of them alone; those of the rows from `first_held` on, what
 // stands out of the whole recording.
-void find_events(Diagnosis& out, const Observations& data, const Eigen::VectorXd& residual,
-                 std::size_t first_held, RandomStream random) {
-  std::vector<Burst> bursts = bursts_until(first_held, data, residual, random);
+void find_events(FirstNoise& out, const Observations& data, std::size_t first_held,
+                 RandomStream random) {
+  std::vector<Burst> bursts = bursts_until(first_held, data, out.residual, random);
   if (first_held < data.rows()) {
-    for (const Burst& burst : bursts_until(data.rows(), data, residual, random)) {
+    for (const Burst& burst : bursts_until(data.rows(), data, out.residual, random)) {
       if (burst.begin >= first_held) bursts.push_back(burst);
     }
   }
@@ -128,6 +128,22 @@ void find_events(Diagnosis& out, const Observations& data, const Eigen::VectorXd
   out.masked = rows_about(bursts, data.movement);
 }
 
+// train_rows: those to fit to, bursts and all.
+FirstNoise first_noise(const Observations& data, const std::vector<char>& train_rows,
+                       const BaseModel& base, const Diagnosis& asked, RandomStream random) {
+  FirstNoise out;
+  out.residual = rich_residual(data, train_rows, base, asked.families, asked.options);
+  out.masked.assign(data.rows(), 0);
+  if (!asked.options.has("bursts")) return out;
+  const auto held = [&](int movement) {
+    return std::ranges::binary_search(asked.held_out, movement);
+  };
+  const auto first_held =
+      static_cast<std::size_t>(std::ranges::find_if(data.movement, held) - data.movement.begin());
+  find_events(out, data, first_held, random);
+  return out;
+}
+
 // data: the movements held out stand last.
 Diagnosis diagnose_canonical(const Observations& data, const std::vector<int>& held_out,
                              const BaseMaker& make_base, const DiagnosisOptions& options,
@@ -140,21 +156,16 @@ Diagnosis diagnose_canonical(const Observations& data, const std::vector<int>& h
   const std::vector<char> train_rows = usable_rows(data, held_out, false, {});
   if (std::ranges::count(train_rows, 1) == 0) check_enough(data.select(train_rows), {});
   const BaseModel base = make_base(data.select(train_rows));
-  const Eigen::VectorXd rich = rich_residual(data, train_rows, base, out.families, options);
-  out.masked.assign(data.rows(), 0);
-  if (options.has("bursts")) {
-    const auto held = [&](int movement) { return std::ranges::binary_search(held_out, movement); };
-    const auto first_held =
-        static_cast<std::size_t>(std::ranges::find_if(data.movement, held) - data.movement.begin());
-    find_events(out, data, rich, first_held, random.split("events"));
-  }
+  if (!known.noise) known.noise = first_noise(data, train_rows, base, out, random.split("events"));
+  out.events = known.noise->events;
+  out.masked = known.noise->masked;
   const std::vector<char> kept = usable_rows(data, held_out, false, out.masked);
   const Observations train = data.select(kept);
   check_enough(train, base);
   Eigen::VectorXd train_rich(static_cast<Eigen::Index>(train.rows()));
   Eigen::Index next = 0;
   for (std::size_t i = 0; i < data.rows(); ++i) {
-    if (kept[i] != 0) train_rich[next++] = rich[static_cast<Eigen::Index>(i)];
+    if (kept[i] != 0) train_rich[next++] = known.noise->residual[static_cast<Eigen::Index>(i)];
   }
   const Clusters uncut = make_clusters(train.movement, 1);
   out.correlation_rows = correlation_time(train_rich, uncut.movements);
@@ -190,7 +201,7 @@ Diagnosis knowing_the_ripple(Diagnosis first, const Observations& data, const Ba
   DiagnosisOptions options = first.options;
   options.gear_ratios = {ripple.wavenumber};
   // Another may be left over once something has been taken out.
-  if (known.gear_ratios != options.gear_ratios) known = {options.gear_ratios, {}, {}, {}};
+  if (known.gear_ratios != options.gear_ratios) known = {options.gear_ratios, {}, {}, {}, {}};
   Diagnosis again = diagnose_canonical(data, first.held_out, base, options, known);
   const auto& more = again.leftover.repeating;
   const bool explains_it = named_ripple(again) > 0 &&

@@ -37,6 +37,9 @@ struct DiagnosisOptions {
   std::vector<std::string> families;  // to be tested; empty: all
   std::vector<std::string> unnamed;   // looked for like others, but taken out in the end
   std::vector<std::string> without;   // rules left out, to see what they are worth (rules.hpp)
+  // Whether the answer says which families look alike in these data (alias_map, aliased): not for
+  // searches of which only the effects are asked.
+  bool compares_families = true;
   bool has(std::string_view rule) const { return std::ranges::count(without, rule) == 0; }
 };
 

@@ -164,7 +164,7 @@ std::vector<CandidateFinding> candidate_findings(const Round& round, const Fitte
 FirstLook first_look(const Round& round, const FittedModel& base, const Campaign& campaign) {
   FirstLook look;
   look.untestable = untestable_families(round, campaign);
-  compare_families(look, round, base, campaign);
+  if (campaign.options.compares_families) compare_families(look, round, base, campaign);
   look.candidates = candidate_findings(round, base, campaign);
   return look;
 }

@@ -246,6 +246,7 @@ bool has_last_resort(const LeftoverFinding& leftover, const Campaign& campaign) 
   };
   const std::vector<double> ratios = gear_ratios_for(campaign.data, campaign.options.gear_ratios);
   for (std::size_t f = 0; f < campaign.families.size(); ++f) {
+    if (std::ranges::none_of(campaign.families[f].atoms, &AtomTemplate::last_resort)) continue;
     LoopModel model;
     std::vector<std::string> missing;
     for (Atom& atom : instantiate(campaign.families[f], f, campaign.data, ratios, missing)) {

@@ -50,9 +50,17 @@ struct SearchResult {
   FittedModel whole;  // the model with all of them
 };
 
+// What is noise in a recording, as the rich model leaves it, and the bursts in it.
+struct FirstNoise {
+  Eigen::VectorXd residual;  // of every row
+  std::vector<EventFinding> events;
+  std::vector<char> masked;  // per row: part of an event
+};
+
 // What a search of a campaign began with and ended with, before anything was taken out.
 struct KnownSearch {
   std::vector<double> gear_ratios;  // of the campaign, where they are not the ones told
+  std::optional<FirstNoise> noise;
   std::optional<SearchResult> start;
   std::map<std::vector<std::size_t>, SearchResult> ends;  // by the families left out
   std::optional<SearchResult> further;                    // with the atoms of last resort

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "algorithms/expression/text.hpp"
@@ -40,23 +43,36 @@ double mean(std::span<const double> values) {
   return sum / static_cast<double>(values.size());
 }
 
+// Data to instantiate over, and the scales of its signals: each looks at all rows, and every atom
+// of a family asks for the same ones.
+struct ScaledData {
+  const Observations& data;
+  std::map<std::string, double, std::less<>> known = {};
+
+  double scale_of(std::string_view name) {
+    const auto found = known.find(name);
+    if (found != known.end()) return found->second;
+    return known.emplace(name, signal_scale(data, name)).first->second;
+  }
+};
+
 // The value of a shape in the data's units.
-double scaled(const ShapeTemplate& shape, double value, const Observations& data) {
+double scaled(const ShapeTemplate& shape, double value, ScaledData& over) {
   if (shape.scale.empty()) return value;
   if (const std::size_t slash = shape.scale.find('/'); slash != std::string::npos) {
-    return value * signal_scale(data, shape.scale.substr(0, slash)) /
-           signal_scale(data, shape.scale.substr(slash + 1));
+    return value * over.scale_of(shape.scale.substr(0, slash)) /
+           over.scale_of(shape.scale.substr(slash + 1));
   }
-  const Signal* signal = data.find(shape.scale);
+  const Signal* signal = over.data.find(shape.scale);
   if (signal == nullptr) return value;
   if (shape.reference) return mean(signal->values);
-  return value * signal_scale(data, shape.scale);
+  return value * over.scale_of(shape.scale);
 }
 
 // The least a shape may be in the data's units.
-double least(const ShapeTemplate& shape, const Observations& data) {
-  const double low = scaled(shape, shape.low, data);
-  const Signal* signal = data.find(shape.scale);
+double least(const ShapeTemplate& shape, ScaledData& over) {
+  const double low = scaled(shape, shape.low, over);
+  const Signal* signal = over.data.find(shape.scale);
   if (!shape.recorded || signal == nullptr) return low;
   double smallest = std::numeric_limits<double>::infinity();
   for (const double x : signal->values) smallest = std::min(smallest, std::abs(x));
@@ -80,9 +96,9 @@ std::vector<std::string> variables_of(const AtomTemplate& atom) {
   return names;
 }
 
-Atom make_atom(const AtomTemplate& source, std::size_t family, const Observations& data,
+Atom make_atom(const AtomTemplate& source, std::size_t family, ScaledData& over,
                std::span<const double> values) {
-  std::vector<std::string> names = data.names();
+  std::vector<std::string> names = over.data.names();
   const std::size_t signals = names.size();
   Atom atom;
   atom.family = family;
@@ -95,11 +111,11 @@ Atom make_atom(const AtomTemplate& source, std::size_t family, const Observation
     const ShapeTemplate& shape = source.shapes[k];
     names.push_back(shape.name);
     const bool fixed = !(shape.high > shape.low);
-    const double value = scaled(shape, values[k], data);
+    const double value = scaled(shape, values[k], over);
     atom.shapes.push_back({shape.name,
                            value,
-                           fixed ? value : least(shape, data),
-                           fixed ? value : scaled(shape, shape.high, data),
+                           fixed ? value : least(shape, over),
+                           fixed ? value : scaled(shape, shape.high, over),
                            {},
                            shape.values});
   }
@@ -120,20 +136,20 @@ Atom make_atom(const AtomTemplate& source, std::size_t family, const Observation
   return atom;
 }
 
-void expand(const AtomTemplate& source, std::size_t family, const Observations& data,
+void expand(const AtomTemplate& source, std::size_t family, ScaledData& over,
             std::span<const double> gear_ratios, std::vector<double>& values,
             std::vector<Atom>& out) {
   if (values.size() == source.shapes.size()) {
-    out.push_back(make_atom(source, family, data, values));
+    out.push_back(make_atom(source, family, over, values));
     return;
   }
   const ShapeTemplate& shape = source.shapes[values.size()];
   const std::span<const double> grid =
       shape.values == ShapeValues::gear_ratios ? gear_ratios : std::span<const double>(shape.grid);
   for (const double value : grid) {
-    if (shape.recorded && scaled(shape, value, data) < least(shape, data)) continue;
+    if (shape.recorded && scaled(shape, value, over) < least(shape, over)) continue;
     values.push_back(value);
-    expand(source, family, data, gear_ratios, values, out);
+    expand(source, family, over, gear_ratios, values, out);
     values.pop_back();
   }
 }
@@ -193,6 +209,7 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
                               std::vector<std::string>& missing) {
   missing.clear();
   std::vector<Atom> atoms;
+  ScaledData over{data};
   if (family.angular && is_linear_axis(data)) {
     missing = {"no angle: the position is in m"};
     return atoms;
@@ -210,7 +227,7 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
     }
     if (lacking.empty()) {
       std::vector<double> values;
-      expand(source, number, data, gear_ratios, values, atoms);
+      expand(source, number, over, gear_ratios, values, atoms);
       const bool faded = std::ranges::count(source.shapes, true, &ShapeTemplate::recorded) > 0;
       if (atoms.empty() && faded) missing = {"no slow rows"};
     } else if (missing.empty() || lacking.size() < missing.size()) {

@@ -415,7 +415,9 @@ bool name_the_same(const std::vector<std::string>& names, const std::vector<std:
 }
 
 DiagnosedFamilies diagnosed_families(const Observations& rows, const DiagnosisOptions& options) {
-  const Diagnosis found = diagnose(rows, coulomb_viscous_base, options);
+  DiagnosisOptions effects_alone = options;
+  effects_alone.compares_families = false;
+  const Diagnosis found = diagnose(rows, coulomb_viscous_base, effects_alone);
   DiagnosedFamilies out;
   for (const EffectFinding& effect : found.effects) out.names.push_back(effect.family);
   out.unknown = found.verdict == Verdict::unknown;

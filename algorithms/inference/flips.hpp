@@ -40,6 +40,12 @@ class Flips {
   // columns), for `rows` flips.
   FloatRows sums(const FloatRows& scores, std::size_t first, std::size_t rows) const;
 
+  // The same where columns are pairs: the largest square length of a pair of sums, by flip. A pair
+  // are columns j and j + kLanes of every 2 kLanes; their number is a multiple of that. Half as
+  // long as `sums` where columns are many, as these are not written down.
+  std::vector<float> largest_squares(const FloatRows& pairs, std::size_t first,
+                                     std::size_t rows) const;
+
  private:
   std::size_t count_ = 0;
   std::size_t clusters_ = 0;

@@ -2,6 +2,7 @@
 #include "algorithms/inference/gamma_tail.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "foundation/incomplete_gamma.hpp"
@@ -9,7 +10,7 @@
 namespace tribench::loop {
 namespace {
 
-constexpr int kKnots = 96;
+constexpr std::size_t kKnots = 96;
 
 }  // namespace
 
@@ -41,19 +42,28 @@ void MatchedGamma::tabulate(double largest) {
   table_.clear();
   if (!(shape_ > 0) || !(largest > 0)) return;
   // Even steps of the square root: the score grows like the statistic, its curvature sits at 0.
-  const double step = std::sqrt(largest) / (kKnots - 1);
-  inverse_step_ = 1 / step;
-  for (int i = 0; i < kKnots; ++i) table_.push_back(score(step * i * step * i));
+  step_ = std::sqrt(largest) / static_cast<double>(kKnots - 1);
+  inverse_step_ = 1 / step_;
+  table_.assign(kKnots, std::numeric_limits<double>::quiet_NaN());
 }
 
-double MatchedGamma::fast_score(double statistic) const {
+double MatchedGamma::knot(std::size_t k) {
+  if (std::isnan(table_[k])) {
+    const auto at = static_cast<double>(k);
+    table_[k] = score(step_ * at * step_ * at);
+  }
+  return table_[k];
+}
+
+double MatchedGamma::fast_score(double statistic) {
   if (table_.empty()) return score(statistic);
   const double place = std::sqrt(statistic) * inverse_step_;
   // Also of NaN, which is no place in a table.
   if (!(place < static_cast<double>(table_.size() - 1))) return score(statistic);
-  const auto knot = static_cast<std::size_t>(place);
-  const double part = place - static_cast<double>(knot);
-  return table_[knot] + part * (table_[knot + 1] - table_[knot]);
+  const auto below = static_cast<std::size_t>(place);
+  const double part = place - static_cast<double>(below);
+  const double low = knot(below);
+  return low + part * (knot(below + 1) - low);
 }
 
 }  // namespace tribench::loop

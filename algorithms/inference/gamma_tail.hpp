@@ -6,6 +6,7 @@
 // taken to be a Gamma's. A statistic that is NaN says nothing: its score is 0.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace tribench::loop {
@@ -23,14 +24,18 @@ class MatchedGamma {
 
   // Prepares a table for statistics up to `largest`, so that thousands of flips cost little.
   void tabulate(double largest);
-  // Interpolated in the table, error below 1e-3; exact beyond it. Monotone in the statistic.
-  double fast_score(double statistic) const;
+  // Interpolated in the table, which is filled as it is asked; error below 1e-3; exact beyond it.
+  // Monotone in the statistic.
+  double fast_score(double statistic);
 
  private:
   double shape_ = 0;
   double scale_ = 0;
-  double inverse_step_ = 0;  // of the table, in the square root of the statistic
-  std::vector<double> table_;
+  double knot(std::size_t k);
+
+  double step_ = 0;  // of the table, in the square root of the statistic
+  double inverse_step_ = 0;
+  std::vector<double> table_;  // NaN: not asked for yet
 };
 
 }  // namespace tribench::loop

@@ -71,9 +71,9 @@ FloatRows side_by_side(std::span<const BlockScores> blocks) {
 }
 
 // Over the blocks, of one flip; `sums` are its sums, block after block.
-double largest_score(std::span<const BlockScores> blocks, const float* sums) {
+double largest_score(std::span<BlockScores> blocks, const float* sums) {
   double largest = 0;
-  for (const BlockScores& block : blocks) {
+  for (BlockScores& block : blocks) {
     if (!block.test.testable) continue;
     float statistic = 0;
     for (const float* end = sums + block.whitened_sums.cols(); sums < end; ++sums) {

@@ -9,6 +9,7 @@
 
 #include "algorithms/expression/vector/each_level.hpp"
 #include "algorithms/inference/flips.hpp"
+#include "algorithms/inference/float_lanes.hpp"
 #include "algorithms/inference/score_test.hpp"
 #include "foundation/elementary.hpp"
 
@@ -113,36 +114,38 @@ std::vector<RowRange> groups_of(const Clusters& clusters) {
   return groups;
 }
 
-// Four columns a wavenumber, a row a group: without and with the direction, cos and sin each. A
-// pair of columns has unit length over the groups, so that the square of its sum is at most their
-// number and one on average over the flips.
+// Where the pair's first column stands; its second one kLanes further (Flips::largest_squares).
+std::size_t column_of(std::size_t pair) { return pair / kLanes * 2 * kLanes + pair % kLanes; }
+
+// Two pairs of columns a wavenumber, cos and sin: without and with the direction; a row a group. A
+// pair has unit length over the groups, so that the square of its sum is at most their number and
+// one on average over the flips.
 FloatRows pairs_of(const Scan& scan, std::span<const RowRange> groups) {
   const std::size_t wavenumbers = scan.wavenumbers();
   FloatRows all(static_cast<Eigen::Index>(groups.size()),
                 static_cast<Eigen::Index>(4 * wavenumbers));
   Sums sums(wavenumbers);
-  std::vector<float> squares(2 * wavenumbers);
+  Eigen::RowVectorXf squares = Eigen::RowVectorXf::Zero(all.cols());
   for (std::size_t g = 0; g < groups.size(); ++g) {
     sums.clear();
     scan.add_rows(groups[g].begin, groups[g].end, sums);
     float* row = all.data() + g * 4 * wavenumbers;
     for (std::size_t k = 0; k < wavenumbers; ++k) {
-      row[4 * k] = static_cast<float>(sums.cosine[0][k] + sums.cosine[1][k]);
-      row[4 * k + 1] = static_cast<float>(sums.sine[0][k] + sums.sine[1][k]);
-      row[4 * k + 2] = static_cast<float>(sums.cosine[0][k] - sums.cosine[1][k]);
-      row[4 * k + 3] = static_cast<float>(sums.sine[0][k] - sums.sine[1][k]);
+      for (const double sign : {1.0, -1.0}) {
+        const std::size_t column = column_of(2 * k + (sign < 0 ? 1 : 0));
+        row[column] = static_cast<float>(sums.cosine[0][k] + sign * sums.cosine[1][k]);
+        row[column + kLanes] = static_cast<float>(sums.sine[0][k] + sign * sums.sine[1][k]);
+      }
     }
-    for (std::size_t pair = 0; pair < squares.size(); ++pair) {
-      squares[pair] += row[2 * pair] * row[2 * pair] + row[2 * pair + 1] * row[2 * pair + 1];
-    }
+    squares += all.row(static_cast<Eigen::Index>(g)).cwiseAbs2();
   }
-  for (float& square : squares) square = square > 0 ? 1 / std::sqrt(square) : 0;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    float* row = all.data() + g * 4 * wavenumbers;
-    for (std::size_t column = 0; column < 4 * wavenumbers; ++column) {
-      row[column] *= squares[column / 2];
-    }
+  for (std::size_t pair = 0; pair < 2 * wavenumbers; ++pair) {
+    const auto column = static_cast<Eigen::Index>(column_of(pair));
+    const float square = squares[column] + squares[column + kLanes];
+    const float scale = square > 0 ? 1 / std::sqrt(square) : 0;
+    squares[column] = squares[column + kLanes] = scale;
   }
+  for (Eigen::Index g = 0; g < all.rows(); ++g) all.row(g).array() *= squares.array();
   return all;
 }
 
@@ -151,11 +154,13 @@ struct Peak {
   float square = 0;
 };
 
-Peak largest_square(const float* sums, std::size_t pairs) {
+Peak largest_square(const Eigen::RowVectorXf& sums) {
   Peak best;
-  for (std::size_t k = 0; k < pairs; ++k) {
-    const float square = sums[2 * k] * sums[2 * k] + sums[2 * k + 1] * sums[2 * k + 1];
-    if (square > best.square) best = {k, square};
+  for (std::size_t pair = 0; pair < static_cast<std::size_t>(sums.size()) / 2; ++pair) {
+    const auto column = static_cast<Eigen::Index>(column_of(pair));
+    const float square =
+        sums[column] * sums[column] + sums[column + kLanes] * sums[column + kLanes];
+    if (square > best.square) best = {pair, square};
   }
   return best;
 }
@@ -168,12 +173,9 @@ double flipped_p(const FloatRows& pairs, float square, std::size_t count, double
   std::size_t together = kFirstFlips;
   for (std::size_t first = 0; first < count && at_least <= most; first += together) {
     if (first > 0) together = kFlipsAtOnce;
-    const FloatRows sums = flips.sums(pairs, first, std::min(together, count - first));
-    for (Eigen::Index b = 0; b < sums.rows(); ++b) {
-      const float* row = sums.data() + b * sums.cols();
-      if (largest_square(row, static_cast<std::size_t>(sums.cols()) / 2).square >= square) {
-        ++at_least;
-      }
+    const std::size_t rows = std::min(together, count - first);
+    for (const float largest : flips.largest_squares(pairs, first, rows)) {
+      if (largest >= square) ++at_least;
     }
   }
   return at_least > most ? 1 : at_least / static_cast<double>(count + 1);
@@ -201,7 +203,7 @@ Wave strongest_wave(std::span<const double> coordinate, const Eigen::VectorXd& s
   const Scan scan(coordinate, of_unit_length, direction, range);
   const FloatRows pairs = pairs_of(scan, groups_of(clusters));
   const Eigen::RowVectorXf whole = pairs.colwise().sum();
-  const Peak peak = largest_square(whole.data(), static_cast<std::size_t>(whole.size()) / 2);
+  const Peak peak = largest_square(whole);
   return {scan.wavenumber(peak.pair / 2), peak.pair % 2 == 1,
           flipped_p(pairs, peak.square, flips, alpha, random)};
 }

@@ -239,7 +239,7 @@ class LoopJudge {
   void search(Searches& all, const std::vector<std::size_t>& which,
               const DiagnosisOptions& options);
   [[nodiscard]] std::vector<std::string> name_the_stable(Searches& all);
-  // bristles: of `fitted`.
+  // bristles: of `fitted`. Writes to the rows alone that it has not seen.
   void add_predictions(LeftOut& all, const Diagnosis& fitted,
                        const std::optional<Bristles>& bristles, const RandomStream& random) const;
   // Errors on the rows with rows[i] != 0. unit: of those rows.
@@ -258,13 +258,16 @@ class LoopJudge {
 
 void LoopJudge::search(Searches& all, const std::vector<std::size_t>& which,
                        const DiagnosisOptions& options) {
+  DiagnosisOptions effects_alone = options;  // of all but the reported one
+  effects_alone.compares_families = false;
   std::mutex mutex;
   all.found.resize(all.without.size());
   all.memories.resize(all.without.size());
   asked_ += which.size();
   parallel_for(which.size(), judging_.threads, [&](std::size_t k) {
     const std::size_t one = which[k];
-    all.found[one] = diagnose(data_, base_, options, all.without[one], &all.memories[one]);
+    all.found[one] = diagnose(data_, base_, one == 0 ? options : effects_alone, all.without[one],
+                              &all.memories[one]);
     const std::lock_guard lock(mutex);
     if (judging_.progress) judging_.progress(++ended_, asked_);
   });
@@ -389,10 +392,10 @@ JudgedDiagnosis LoopJudge::in_turn() {
   std::vector<std::string> needed = name_the_stable(searches);
   // The error is that of what is named.
   LeftOut all(data_.rows());
-  for (std::size_t k = 1; k <= turns; ++k) {
-    const Diagnosis& part = searches.found[k];
-    add_predictions(all, part, bristles_of(part, data_), random_.split(k - 1));
-  }
+  parallel_for(turns, judging_.threads, [&](std::size_t k) {
+    const Diagnosis& part = searches.found[k + 1];
+    add_predictions(all, part, bristles_of(part, data_), random_.split(k));
+  });
   JudgedDiagnosis whole{std::move(searches.whole()), {}, {}, {}};
   whole.bristles = bristles_of(whole, data_);
   const std::vector<char> rows =

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "algorithms/inference/float_lanes.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -33,6 +37,31 @@ TEST(Flips, SumsAreThoseOfTheSigns) {
           expected += sign * scores.row(static_cast<Eigen::Index>(c)).cast<double>();
         }
         EXPECT_LT((sums.row(b).cast<double>() - expected).cwiseAbs().maxCoeff(), 1e-5);
+      }
+    }
+  }
+}
+
+// Clusters that fill no group, flips that fill no pair; pairs stand kLanes apart.
+TEST(Flips, LargestSquaresAreThoseOfTheSums) {
+  for (const std::size_t clusters : {1U, 23U, 64U}) {
+    for (const Eigen::Index columns : {16, 48}) {
+      const Flips flips(31, clusters, RandomStream(clusters));
+      const FloatRows pairs =
+          random_scores(static_cast<Eigen::Index>(clusters), columns, RandomStream(9));
+      constexpr std::size_t kFirst = 6;
+      const FloatRows sums = flips.sums(pairs, kFirst, 25);
+      const std::vector<float> largest = flips.largest_squares(pairs, kFirst, 25);
+      ASSERT_EQ(largest.size(), 25U);
+      for (Eigen::Index b = 0; b < sums.rows(); ++b) {
+        float expected = 0;
+        for (Eigen::Index tile = 0; tile < columns; tile += 2 * kLanes) {
+          for (Eigen::Index j = tile; j < tile + Eigen::Index{kLanes}; ++j) {
+            expected = std::max(
+                expected, sums(b, j) * sums(b, j) + sums(b, j + kLanes) * sums(b, j + kLanes));
+          }
+        }
+        EXPECT_EQ(largest[static_cast<std::size_t>(b)], expected) << clusters << " " << b;
       }
     }
   }
