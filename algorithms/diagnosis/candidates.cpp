@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/canonical_correlation.hpp"
@@ -63,16 +64,33 @@ Eigen::VectorXd losses_with_own_offsets(std::size_t atom, const FittedModel& mod
          offset_nats(clusters, noise);
 }
 
+// The most that an atom can gain: all offsets, and what it explains of the rows it is fitted to.
+double most_gain(const BlockTest& test, const FittedModel& model, double offsets) {
+  const double left = std::max(0.0, model.residual.squaredNorm() - test.statistic);
+  return model.losses.sum() + offsets - left / model.noise.unit();
+}
+
 // The rescue rule. What is carried by few movements cannot reach a small p by flipping their signs,
 // but it can explain their offsets: how far their variance falls is a part of its gain.
 std::optional<Candidate> rescue(std::size_t family, const Round& round, const FittedModel& model,
                                 const Campaign& campaign) {
   std::optional<Candidate> best;
   if (!campaign.options.has("rescue")) return best;
-  const Eigen::VectorXd offsets = offset_nats(campaign.clusters, model.noise);
-  // All atoms: with few carriers their scores tell next to nothing.
+  // All atoms: with few carriers their scores tell next to nothing. Those that may gain most come
+  // first, so that most need not be looked at.
+  std::vector<std::size_t> atoms;
   for (std::size_t k = 0; k < campaign.library.atoms.size(); ++k) {
-    if (campaign.library.atoms[k].family != family || !round.blocks[k].test.testable) continue;
+    if (campaign.library.atoms[k].family == family && round.blocks[k].test.testable) {
+      atoms.push_back(k);
+    }
+  }
+  std::ranges::stable_sort(atoms, std::ranges::greater(),
+                           [&](std::size_t k) { return round.blocks[k].test.statistic; });
+  const Eigen::VectorXd offsets = offset_nats(campaign.clusters, model.noise);
+  const double all_offsets = offsets.sum();
+  for (const std::size_t k : atoms) {
+    const double least = best ? best->gain.nats : kRescueGain;
+    if (!(most_gain(round.blocks[k].test, model, all_offsets) > least)) break;
     if (!(carriers(round, k, model, campaign) < kFewClusters)) continue;
     Eigen::VectorXd losses = losses_with_own_offsets(k, model, campaign);
     const Gain gain = paired_gain(model.losses + offsets, losses);

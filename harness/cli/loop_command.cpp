@@ -78,9 +78,10 @@ bool is_word(const std::string& text) {
                              [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
-// The base that --model names: a method of the registry, or a formula over the columns.
+// The base that --model names: a method of the registry, which has the budget for every search
+// anew so that none waits for another, or a formula over the columns.
 loop::BaseMaker base_of(const LoopArguments& arguments, const Registry& registry,
-                        std::unique_ptr<Regressor>& method, Budget& budget) {
+                        std::unique_ptr<Regressor>& method) {
   if (arguments.model == "coulomb_viscous") return loop::coulomb_viscous_base;
   const bool known =
       std::ranges::count(registry.entries(), arguments.model, &AlgorithmEntry::name) > 0;
@@ -89,8 +90,12 @@ loop::BaseMaker base_of(const LoopArguments& arguments, const Registry& registry
     return [text](const loop::Observations& data) { return loop::formula_base(data, text); };
   }
   method = registry.make(arguments.model);  // an unknown name is answered with the nearest
-  return loop::method_base(*method, arguments.model, RandomStream(arguments.seed).split("base"),
-                           budget);
+  return [&method, name = arguments.model, random = RandomStream(arguments.seed).split("base"),
+          limits =
+              BudgetLimits{.evaluations = arguments.evaluations}](const loop::Observations& data) {
+    Budget budget(limits);
+    return loop::method_base(*method, name, random, budget)(data);
+  };
 }
 
 // A column of numbers or text as a channel of numbers, one a value: rows may then be left out and
@@ -272,13 +277,11 @@ void explain(const LoopArguments& arguments) {
              recording.data.movement_names.size());
 }
 
-// A base that is a method has one budget for all searches: they take turns.
 loop::JudgedDiagnosis diagnosed(const LoopArguments& arguments, const loop::Observations& data,
-                                const loop::BaseMaker& base, bool base_is_a_method) {
+                                const loop::BaseMaker& base) {
   constexpr double kShownFrom_s = 2;
   loop::JudgingOptions judging = judging_options();
-  const int jobs = arguments.jobs > 0 ? arguments.jobs : usable_processors();
-  judging.threads = base_is_a_method ? 1 : jobs;
+  judging.threads = arguments.jobs > 0 ? arguments.jobs : usable_processors();
   std::size_t expected = 0;
   ProgressLine line(0, 0, false, ProgressUnit{"searches", false, kShownFrom_s});
   judging.progress = [&](std::size_t, std::size_t searches) {
@@ -311,9 +314,8 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
   LoopRecording whole;
   const loop::Observations data = read_observations(arguments, extras.steps, whole);
   std::unique_ptr<Regressor> method;
-  Budget budget(BudgetLimits{.evaluations = arguments.evaluations});
-  const loop::BaseMaker base = base_of(arguments, registry, method, budget);
-  loop::JudgedDiagnosis diagnosis = diagnosed(arguments, data, base, method != nullptr);
+  const loop::BaseMaker base = base_of(arguments, registry, method);
+  loop::JudgedDiagnosis diagnosis = diagnosed(arguments, data, base);
   if (arguments.learn != "none" && !diagnosis.leftover.signals.empty()) {
     grow_library(arguments, registry, data, base, diagnosis, extras);
   }
@@ -418,7 +420,9 @@ void add_search_options(CLI::App& command, LoopArguments& arguments) {
       ->capture_default_str();
   command.add_option("--jobs", arguments.jobs, "threads; the answer is the same for any")
       ->transform(whole_number(0, 1024));
-  command.add_option("--evaluations", arguments.evaluations, "what a searched base may spend")
+  command
+      .add_option("--evaluations", arguments.evaluations,
+                  "what a searched base may spend in each search")
       ->transform(whole_number(0))
       ->capture_default_str();
   command.add_flag("--any-sign", arguments.any_sign,
