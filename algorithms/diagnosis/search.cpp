@@ -139,19 +139,19 @@ void take_out_unnamed(SearchState& state, const Campaign& campaign) {
   state.model = fit_in_its_noise(std::move(model), campaign, FitScope::everything);
 }
 
-// The searches that begin with the base, each without some families.
+// The searches that begin with the base.
 class Searches {
  public:
-  Searches(const BaseModel& base, const Campaign& campaign, KnownSearch& known)
-      : campaign_(campaign), known_(known) {
+  Searches(const BaseModel& base, const Campaign& campaign, RandomStream random, KnownSearch& known)
+      : campaign_(campaign), smoothers_(random.split("smoothers")), known_(known) {
     if (!known_.start) begin(base);
   }
 
   const SearchResult& start() const { return *known_.start; }
   // With what was taken, but for what is not to be named.
-  SearchResult end_without(const std::vector<std::size_t>& families);
-  // The same of a search that has the atoms of last resort, too.
-  SearchResult end_further();
+  SearchResult end_of(const SearchStart& how);
+  // What is left over beside what such an end has.
+  void look_for_leftover(SearchResult& end, const SearchStart& how);
 
  private:
   void begin(const BaseModel& base);
@@ -159,6 +159,7 @@ class Searches {
   SearchResult named(SearchResult end) const;
 
   const Campaign& campaign_;
+  RandomStream smoothers_;
   KnownSearch& known_;
   std::optional<Round> round_;
 };
@@ -188,25 +189,31 @@ void take_effects(SearchState& state, Round round, const Campaign& campaign) {
   }
 }
 
-SearchResult Searches::end_without(const std::vector<std::size_t>& families) {
-  auto known = known_.ends.find(families);
+SearchResult Searches::end_of(const SearchStart& how) {
+  auto known = known_.ends.find(how);
   if (known == known_.ends.end()) {
     SearchResult end = start();
-    end.state.left_out = families;
-    take_effects(end.state, round_at_base(), campaign_);
-    known = known_.ends.emplace(families, std::move(end)).first;
+    end.state.left_out = how.left_out;
+    if (how.last_resort) {
+      const Campaign further = campaign_.with_last_resort();
+      take_effects(end.state, test_library(end.state.model, further), further);
+    } else {
+      take_effects(end.state, round_at_base(), campaign_);
+    }
+    known = known_.ends.emplace(how, std::move(end)).first;
   }
   return named(known->second);
 }
 
-SearchResult Searches::end_further() {
-  if (!known_.further) {
-    const Campaign further = campaign_.with_last_resort();
-    known_.further = start();
-    SearchState& state = known_.further->state;
-    take_effects(state, test_library(state.model, further), further);
+void Searches::look_for_leftover(SearchResult& end, const SearchStart& how) {
+  const auto key = std::pair(how, end.taken);
+  const auto known = known_.leftovers.find(key);
+  if (known != known_.leftovers.end()) {
+    end = known->second;
+    return;
   }
-  return named(*known_.further);
+  find_leftover(end, campaign_, smoothers_);
+  known_.leftovers.emplace(key, end);
 }
 
 SearchResult Searches::named(SearchResult out) const {
@@ -221,17 +228,17 @@ SearchResult Searches::named(SearchResult out) const {
 // The effect that is taken first stands for what others share with it, and the right ones may find
 // too little left. Where something is left over in the end, the search begins again without it:
 // what then predicts better and leaves nothing over is taken.
-SearchResult begin_otherwise(SearchResult one, Searches& searches, const Campaign& campaign,
-                             RandomStream smoothers) {
+SearchResult begin_otherwise(SearchResult one, Searches& searches, const Campaign& campaign) {
   if (one.leftover.inputs.empty() || one.taken.empty()) return one;
-  SearchResult other = searches.end_without({one.taken.front()});
+  const SearchStart how = {.left_out = {one.taken.front()}};
+  SearchResult other = searches.end_of(how);
   one.tried.insert(other.tried.begin(), other.tried.end());
   const auto predicts_better = [&](const FittedModel& model) {
     return lead_over(one.whole, model, campaign).nats > 0;
   };
   // What gives way to its leftover makes it no better: most need not be asked for that.
   if (!predicts_better(other.whole)) return one;
-  find_leftover(other, campaign, smoothers);
+  searches.look_for_leftover(other, how);
   if (!other.leftover.inputs.empty() || other.state.found.empty()) return one;
   if (!predicts_better(other.state.model)) return one;
   other.tried = one.tried;
@@ -263,15 +270,15 @@ bool has_last_resort(const LeftoverFinding& leftover, const Campaign& campaign) 
 // Rare effects are looked for where the usual ones leave something over, from the start: what stood
 // in for them leaves them too little. What then predicts better and leaves something over in fewer
 // inputs is taken.
-SearchResult go_further(SearchResult one, Searches& searches, const Campaign& campaign,
-                        RandomStream smoothers) {
+SearchResult go_further(SearchResult one, Searches& searches, const Campaign& campaign) {
   if (!campaign.options.has("last_resort")) return one;
   if (one.leftover.inputs.empty() || !has_last_resort(one.leftover, campaign)) return one;
-  SearchResult other = searches.end_further();
+  const SearchStart how = {.left_out = {}, .last_resort = true};
+  SearchResult other = searches.end_of(how);
   one.tried.insert(other.tried.begin(), other.tried.end());
   const bool is_other = std::ranges::any_of(other.state.model.model.atoms, &Atom::last_resort);
   if (!is_other) return one;
-  find_leftover(other, campaign, smoothers);
+  searches.look_for_leftover(other, how);
   const std::vector<std::string>& inputs = other.leftover.inputs;
   const bool leaves_less = inputs.size() < one.leftover.inputs.size() &&
                            std::ranges::all_of(inputs, [&](const std::string& input) {
@@ -298,7 +305,7 @@ void SearchState::note(std::string text) {
 
 SearchResult search(const BaseModel& base, const Campaign& campaign, RandomStream random,
                     KnownSearch& known) {
-  Searches searches(base, campaign, known);
+  Searches searches(base, campaign, random, known);
   if (leaves_nothing(searches.start().base, campaign)) {
     SearchResult out = searches.start();
     out.state.note("the base model leaves no residual");
@@ -306,11 +313,10 @@ SearchResult search(const BaseModel& base, const Campaign& campaign, RandomStrea
     out.leftover_tested = true;
     return out;
   }
-  const RandomStream smoothers = random.split("smoothers");
-  SearchResult out = searches.end_without({});
-  find_leftover(out, campaign, smoothers);
-  out = begin_otherwise(std::move(out), searches, campaign, smoothers);
-  out = go_further(std::move(out), searches, campaign, smoothers);
+  SearchResult out = searches.end_of({});
+  searches.look_for_leftover(out, {});
+  out = begin_otherwise(std::move(out), searches, campaign);
+  out = go_further(std::move(out), searches, campaign);
   // As they stand beside each other, whatever way the search has come.
   for (Found& one : out.state.found) {
     one.gain = gain_of({one.family}, out.state.model, campaign);

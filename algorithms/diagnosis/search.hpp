@@ -5,10 +5,13 @@
 // Internal to the room.
 #pragma once
 
+#include <compare>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "algorithms/diagnosis/first_look.hpp"
@@ -57,13 +60,22 @@ struct FirstNoise {
   std::vector<char> masked;  // per row: part of an event
 };
 
-// What a search of a campaign began with and ended with, before anything was taken out.
+// How a search begins.
+struct SearchStart {
+  std::vector<std::size_t> left_out;  // families
+  bool last_resort = false;           // with the atoms of last resort
+
+  auto operator<=>(const SearchStart&) const = default;
+};
+
+// What the searches of a campaign began with, what they ended with before anything was taken out,
+// and what they left over by what was still in them then.
 struct KnownSearch {
   std::vector<double> gear_ratios;  // of the campaign, where they are not the ones told
   std::optional<FirstNoise> noise;
   std::optional<SearchResult> start;
-  std::map<std::vector<std::size_t>, SearchResult> ends;  // by the families left out
-  std::optional<SearchResult> further;                    // with the atoms of last resort
+  std::map<SearchStart, SearchResult> ends;
+  std::map<std::pair<SearchStart, std::vector<std::size_t>>, SearchResult> leftovers;
 };
 
 struct KnownSearches {
