@@ -27,6 +27,9 @@ class MatchedGamma {
   // Interpolated in the table, which is filled as it is asked; error below 1e-3; exact beyond it.
   // Monotone in the statistic.
   double fast_score(double statistic);
+  // A statistic below which every fast_score is less than this one, the largest in the table; 0
+  // without a table.
+  double none_below(double score);
 
  private:
   double shape_ = 0;

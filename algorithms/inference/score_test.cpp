@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/column_products.hpp"
@@ -70,19 +71,54 @@ FloatRows side_by_side(std::span<const BlockScores> blocks) {
   return all;
 }
 
-// Over the blocks, of one flip; `sums` are its sums, block after block.
-double largest_score(std::span<BlockScores> blocks, const float* sums) {
-  double largest = 0;
-  for (BlockScores& block : blocks) {
-    if (!block.test.testable) continue;
-    float statistic = 0;
-    for (const float* end = sums + block.whitened_sums.cols(); sums < end; ++sums) {
-      statistic += *sums * *sums;
+// The largest score of many blocks is hardly ever less: what scores less in one need not be known.
+constexpr double kUsualScore = 1;
+
+// The largest score over the testable blocks, flip after flip.
+class LargestScore {
+ public:
+  explicit LargestScore(std::span<BlockScores> blocks) {
+    for (BlockScores& block : blocks) {
+      if (!block.test.testable) continue;
+      const double mean = block.whitened_sums.cast<double>().squaredNorm();
+      block.gamma.tabulate(std::max(block.test.statistic, 12 * mean));
+      // Rounded down: less is looked at, and scores what it scores.
+      const auto least = static_cast<float>((1 - 1e-6) * block.gamma.none_below(kUsualScore));
+      blocks_.push_back({&block.gamma, block.whitened_sums.cols(), least});
     }
-    largest = std::max(largest, block.gamma.fast_score(static_cast<double>(statistic)));
+    statistics_.resize(blocks_.size());
   }
-  return largest;
-}
+
+  // sums: of one flip, block after block.
+  double of(const float* sums) {
+    double largest = 0;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      float statistic = 0;
+      for (const float* end = sums + blocks_[k].columns; sums < end; ++sums) {
+        statistic += *sums * *sums;
+      }
+      statistics_[k] = statistic;
+      if (!(statistic < blocks_[k].least)) largest = std::max(largest, score(k));
+    }
+    if (largest >= kUsualScore) return largest;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) largest = std::max(largest, score(k));
+    return largest;
+  }
+
+ private:
+  struct Block {
+    MatchedGamma* gamma;
+    Eigen::Index columns;
+    float least;  // statistic that may have the usual score
+  };
+
+  double score(std::size_t k) const {
+    return blocks_[k].gamma->fast_score(static_cast<double>(statistics_[k]));
+  }
+
+  std::vector<Block> blocks_;
+  std::vector<float> statistics_;
+};
 
 }  // namespace
 
@@ -210,15 +246,12 @@ std::vector<double> flip_maxima(std::span<BlockScores> blocks, const Flips& flip
   std::vector<double> maxima;
   maxima.reserve(flips.count());
   std::size_t exceeding = 0;
-  for (BlockScores& block : blocks) {
-    const double mean = block.whitened_sums.cast<double>().squaredNorm();
-    block.gamma.tabulate(std::max(block.test.statistic, 12 * mean));
-  }
+  LargestScore score(blocks);
   const FloatRows all = side_by_side(blocks);
   for (std::size_t first = 0; first < flips.count(); first += kFlipsAtOnce) {
     const FloatRows sums = flips.sums(all, first, std::min(kFlipsAtOnce, flips.count() - first));
     for (Eigen::Index b = 0; b < sums.rows(); ++b) {
-      const double largest = largest_score(blocks, sums.data() + b * sums.cols());
+      const double largest = score.of(sums.data() + b * sums.cols());
       maxima.push_back(largest);
       if (stop_count > 0 && largest >= stop_above) ++exceeding;
     }

@@ -33,6 +33,22 @@ TEST(MatchedGamma, TheTableIsExactInItsPlacesAndReadBetweenThem) {
   EXPECT_EQ(gamma.fast_score(61), gamma.score(61));
 }
 
+// The place before the first one that has the score.
+TEST(MatchedGamma, KnowsBelowWhatNothingHasAScore) {
+  MatchedGamma gamma(3.0, 7.0);
+  EXPECT_EQ(gamma.none_below(1), 0);  // without a table
+  gamma.tabulate(60);
+  const double step = std::sqrt(60.0) / 95;
+  for (const double score : {0.5, 1.0, 4.0}) {
+    const double place = gamma.none_below(score);
+    EXPECT_GT(place, 0);
+    EXPECT_LT(gamma.fast_score(place), score);
+    const double root = std::sqrt(place) + step;
+    EXPECT_GE(gamma.fast_score(root * root * (1 + 1e-14)), score);
+  }
+  EXPECT_EQ(gamma.none_below(-1), 0);
+}
+
 TEST(MatchedGamma, SaysNothingWhereTheStatisticCannotVary) {
   EXPECT_EQ(MatchedGamma(0, 0).score(5), 0);
   EXPECT_EQ(MatchedGamma(1, 0).score(5), 0);
