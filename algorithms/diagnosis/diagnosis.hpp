@@ -105,6 +105,7 @@ struct RepeatingFinding {
 
 struct LeftoverFinding {
   double p = 1;
+  double gain = 0;  // nats that the best function of its inputs adds on movements left out
   std::vector<std::string> inputs;   // role names; empty where nothing is left
   std::vector<std::string> signals;  // the same as signals
   std::optional<RepeatingFinding> repeating;

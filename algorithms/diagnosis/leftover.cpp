@@ -102,7 +102,6 @@ class LeftoverSearch {
     double leftover_nats;
   };
   std::optional<WholeModel> whole_;
-  double nats_ = 0;  // what the best place adds
 };
 
 std::vector<Place> LeftoverSearch::products_of(std::size_t family) const {
@@ -228,14 +227,14 @@ void LeftoverSearch::locate(const Home& home) {
     state().note("what is left over is next to nothing");
     return;
   }
-  nats_ = home.nats;
   LeftoverFinding& leftover = result_.leftover;
+  leftover.gain = home.nats;
   leftover.signals = home.place->signals;
   leftover.inputs.clear();
   for (const std::string& signal : leftover.signals) {
     leftover.inputs.push_back(input_name(campaign_.data, signal));
   }
-  if (!whole_) whole_ = WholeModel{model(), nats_};
+  if (!whole_) whole_ = WholeModel{model(), home.nats};
   const std::size_t before = state().found.size();
   const auto smoother = std::ranges::find(smoothers_, leftover.signals, &Smoother::signals);
   if (smoother != smoothers_.end() && campaign_.options.has("proxies")) drop_proxies(*smoother);
@@ -269,7 +268,7 @@ void LeftoverSearch::look_for_waves() {
   leftover.signals = {"q"};
   leftover.inputs = {input_name(campaign_.data, "q")};
   const Eigen::MatrixXd z = whitened(columns, campaign_.clusters, model().noise);
-  nats_ = paired_gain(model().losses, losses_beside(model(), z, campaign_)).nats;
+  leftover.gain = paired_gain(model().losses, losses_beside(model(), z, campaign_)).nats;
 }
 
 // But for learned ones: those may be of one place themselves.
@@ -397,7 +396,7 @@ void LeftoverSearch::name_shapes() {
   if (leftover.inputs.empty() || !campaign_.options.has("shape_of_leftover")) return;
   std::vector<std::string> inputs = leftover.signals;
   std::ranges::sort(inputs);
-  Found* home = home_of(inputs, found.size(), nats_);
+  Found* home = home_of(inputs, found.size(), leftover.gain);
   if (home == nullptr) return;
   home->another_shape = true;
   leftover.inputs.clear();

@@ -11,6 +11,7 @@
 #include "algorithms/diagnosis/leftover.hpp"
 #include "algorithms/diagnosis/plausibility.hpp"
 #include "algorithms/diagnosis/worth.hpp"
+#include "algorithms/inference/whitening.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 constexpr std::size_t kMostAtoms = 2;  // of a family: more is a sign of something else
 // Of the target: what the base leaves is rounding.
 constexpr double kNothingLeft = 1e-9;
+constexpr double kMostOfIt = 0.5;  // of what is left over
 
 bool leaves_nothing(const FittedModel& base, const Campaign& campaign) {
   return !(base.raw_residual.norm() > kNothingLeft * target_vector(campaign.data).norm());
@@ -245,34 +247,45 @@ SearchResult begin_otherwise(SearchResult one, Searches& searches, const Campaig
   return other;
 }
 
-// Whether an atom of last resort reads a signal in which something is left over. Gravity is a
+// Whether an atom of last resort reads a signal in which something is left over, and beside what
+// was found tells most of it: the true one tells all, whatever stands in for it. Gravity is a
 // function of the place, and may stand for it.
-bool has_last_resort(const LeftoverFinding& leftover, const Campaign& campaign) {
+bool tells_the_leftover(const Atom& atom, const SearchResult& one, const Campaign& campaign) {
+  const FittedModel& model = one.state.model;
   const auto is_left = [&](const std::string& signal) {
-    return std::ranges::count(leftover.signals, signal) > 0;
+    return std::ranges::count(one.leftover.signals, signal) > 0;
   };
+  LoopModel alone;
+  alone.add(atom);
+  const auto read = signals_read(alone, atom.family, campaign.data);
+  const bool reads_it = std::ranges::any_of(read, [&](const Signal* signal) {
+    return is_left(signal->name) || (signal->name == "q" && is_left("g"));
+  });
+  if (!reads_it) return false;
+  const Eigen::MatrixXd z =
+      whitened(evaluate_columns(atom.columns, campaign.data), campaign.clusters, model.noise);
+  const Gain gain = paired_gain(model.losses, losses_beside(model, z, campaign));
+  return gain.nats > gain.error && gain.nats > kMostOfIt * one.leftover.gain;
+}
+
+bool has_last_resort(const SearchResult& one, const Campaign& campaign) {
   const std::vector<double> ratios = gear_ratios_for(campaign.data, campaign.options.gear_ratios);
   for (std::size_t f = 0; f < campaign.families.size(); ++f) {
     if (std::ranges::none_of(campaign.families[f].atoms, &AtomTemplate::last_resort)) continue;
-    LoopModel model;
     std::vector<std::string> missing;
-    for (Atom& atom : instantiate(campaign.families[f], f, campaign.data, ratios, missing)) {
-      if (atom.last_resort) model.add(std::move(atom));
-    }
-    for (const Signal* signal : signals_read(model, f, campaign.data)) {
-      const bool is_place = signal->name == "q" && is_left("g");
-      if (is_place || is_left(signal->name)) return true;
+    for (const Atom& atom : instantiate(campaign.families[f], f, campaign.data, ratios, missing)) {
+      if (atom.last_resort && tells_the_leftover(atom, one, campaign)) return true;
     }
   }
   return false;
 }
 
-// Rare effects are looked for where the usual ones leave something over, from the start: what stood
-// in for them leaves them too little. What then predicts better and leaves something over in fewer
-// inputs is taken.
+// Rare effects are looked for where one of them tells what the usual ones leave over, from the
+// start: what stood in for them leaves them too little. What then predicts better and leaves
+// something over in fewer inputs is taken.
 SearchResult go_further(SearchResult one, Searches& searches, const Campaign& campaign) {
   if (!campaign.options.has("last_resort")) return one;
-  if (one.leftover.inputs.empty() || !has_last_resort(one.leftover, campaign)) return one;
+  if (one.leftover.inputs.empty() || !has_last_resort(one, campaign)) return one;
   const SearchStart how = {.left_out = {}, .last_resort = true};
   SearchResult other = searches.end_of(how);
   one.tried.insert(other.tried.begin(), other.tried.end());
