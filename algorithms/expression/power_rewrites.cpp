@@ -280,6 +280,10 @@ void turn_root(const Expression& argument, const RangeOf& range, std::vector<Exp
 
 void rewrite_power(const Expression& base, const Expression& exponent, const RangeOf& range,
                    std::vector<Expression>& out) {
+  const Node& power = exponent.node(exponent.root());
+  if (power.is_constant() && power.value == 0.5) {
+    out.push_back(Expression::unary(Op::sqrt, base));
+  }
   const Interval x = range(base);
   if (!(x.low > 0) || !x.is_bounded()) return;
   const double largest_log =
@@ -288,14 +292,13 @@ void rewrite_power(const Expression& base, const Expression& exponent, const Ran
     out.push_back(build::constant(1));
   }
   const SumOfProducts sum = sum_of_products(base, base.root());
-  const Node& k = exponent.node(exponent.root());
-  if (sum.size() != 1 || !k.is_constant() || !(sum[0].coefficient > 0)) return;
+  if (sum.size() != 1 || !power.is_constant() || !(sum[0].coefficient > 0)) return;
   const std::optional<SumTerm> below = turned(sum[0]);
-  const double scale = apply(Op::pow, sum[0].coefficient, k.value);
+  const double scale = apply(Op::pow, sum[0].coefficient, power.value);
   if (!below || !(scale > 1e-300 && scale < 1e300)) return;
   SumTerm result{scale, {}};
   multiply_by(result,
-              {Expression::binary(Op::pow, formula_of(*below), build::constant(-k.value)), 1});
+              {Expression::binary(Op::pow, formula_of(*below), build::constant(-power.value)), 1});
   out.push_back(formula_of(result));
 }
 

@@ -339,8 +339,12 @@ void Rewriter::rewrite_log(const Expression& argument, std::vector<Expression>& 
   if (range(base).low > 0) out.push_back(exponent * Expression::unary(Op::log, base));
 }
 
-// sqrt(c x^2 y) = sqrt(c) |x| sqrt(y).
+// sqrt(c x^2 y) = sqrt(c) |x| sqrt(y), sqrt(exp x) = exp(x / 2).
 void Rewriter::rewrite_sqrt(const Expression& argument, std::vector<Expression>& out) const {
+  using build::operator*;
+  if (is_function(argument, Op::exp)) {
+    out.push_back(Expression::unary(Op::exp, build::constant(0.5) * argument_of(argument)));
+  }
   const SumOfProducts sum = sum_of_products(argument, argument.root());
   if (sum.size() != 1) return;
   turn_root(argument, range_, out);

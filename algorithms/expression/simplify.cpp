@@ -39,7 +39,9 @@ class Descent {
         canonicalizer_({[this](const Expression& x) { return is_finite(x); },
                         [this](const Expression& x) {
                           return is_finite(Expression::binary(Op::div, Expression::constant(1), x));
-                        }}) {}
+                        }}),
+        continuer_({[this](const Expression& x) { return is_finite(x); },
+                    [this](const Expression& x) { return is_finite(x); }}) {}
 
   Expression run(Expression formula) {
     verdict_ = verdict_of(formula);
@@ -66,6 +68,7 @@ class Descent {
     };
     for (const Expression& candidate : rewrites) {
       consider(canonicalizer_.canonical(candidate));
+      consider(continuer_.canonical(candidate));
       consider(candidate);
     }
   }
@@ -76,10 +79,7 @@ class Descent {
     for (auto& [size, candidate] : candidates) {
       if (admits_ && !admits_(candidate)) continue;
       const Verdict verdict = verdict_of(candidate);
-      if (verdict != verdict_ &&
-          !(verdict_ == Verdict::undecided && verdict == Verdict::proved_free)) {
-        continue;
-      }
+      if (verdict != verdict_ && verdict != Verdict::proved_free) continue;
       verdict_ = verdict;
       formula = std::move(candidate);
       return true;
@@ -120,6 +120,7 @@ class Descent {
   const std::function<bool(const Expression&)>& admits_;
   Rewriter rewriter_;
   Canonicalizer canonicalizer_;
+  Canonicalizer continuer_;  // x/x is 1 where x is 0, too
   Verdict verdict_ = Verdict::undecided;
 };
 

@@ -2,13 +2,14 @@
 //
 // The shortest equal formula we find on a box: a descent over the rewrites of rewrite.hpp, each
 // taken as it is and in canonical form (canonical.hpp, with x - x, 0 x, x^0 and x/x removed where
-// the box proves that x is finite and, for x/x, not 0). The shortest of all one rewrite away is
+// the box proves that x is finite). The shortest of all one rewrite away is
 // taken until none is shorter, then the shortest two rewrites away, over a form that may be a
 // little longer; shorter is the paper's complexity, then nodes.
 //
 // Guarantees: the value on the box changes by rounding, and by 1e-12 of a subformula where the
-// rewrites leave something out; the verdict of prove_free stays, or an undecided formula becomes a
-// proved one, so that no singularity is made and none that was shown is hidden; neither complexity
+// rewrites leave something out, and the gap that x/x has where x is 0 is closed; the verdict of
+// prove_free stays, or the formula becomes one that is proved, so that no singularity is made, and
+// none is hidden that is still there; neither complexity
 // nor nodes grow where the other does not fall; the same formula gives the same result, and the
 // result gives itself.
 //
