@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -24,7 +25,28 @@ std::optional<Op> function_of(std::string_view name) {
   return static_cast<Op>(static_cast<int>(Op::exp) + (found - kFunctionNames.begin()));
 }
 
-std::vector<std::string> function_names() { return {kFunctionNames.begin(), kFunctionNames.end()}; }
+// Functions that are written out when they are read: x stands for the argument.
+struct Shorthand {
+  std::string_view name;
+  std::string_view formula;
+};
+constexpr std::array<Shorthand, 5> kShorthands = {{{"tan", "sin(x)/cos(x)"},
+                                                   {"sinh", "(exp(x) - exp(-x))/2"},
+                                                   {"cosh", "(exp(x) + exp(-x))/2"},
+                                                   {"log2", "log(x)/0.6931471805599453"},
+                                                   {"log10", "log(x)/2.302585092994046"}}};
+constexpr std::size_t kMostWrittenOut = 100'000;  // nodes: each may hold its argument twice
+
+const Shorthand* shorthand_of(std::string_view name) {
+  const auto* const found = std::ranges::find(kShorthands, name, &Shorthand::name);
+  return found == kShorthands.end() ? nullptr : found;
+}
+
+std::vector<std::string> function_names() {
+  std::vector<std::string> names(kFunctionNames.begin(), kFunctionNames.end());
+  for (const Shorthand& shorthand : kShorthands) names.emplace_back(shorthand.name);
+  return names;
+}
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
   return known.empty() ? "there are no names" : did_you_mean(word, known);
@@ -224,16 +246,22 @@ class Parser {
     const std::size_t start = cursor_.position();
     const std::string_view name = cursor_.name();
     const std::optional<Op> function = function_of(name);
+    const Shorthand* shorthand = shorthand_of(name);
     if (cursor_.peek() == '(') {
-      if (!function) {
+      if (!function && shorthand == nullptr) {
         if (holes_ != nullptr) return hole(name, start);
         cursor_.fail_at(start, fmt::format("'{}' is not a function", name),
                         suggestion(name, function_names()));
       }
       cursor_.take('(');
+      const std::size_t argument = tape_.size();
       sum();
       cursor_.expect_close();
-      emit(*function);
+      if (function) {
+        emit(*function);
+      } else {
+        write_out(*shorthand, argument, start);
+      }
       return;
     }
     if (function) {
@@ -241,6 +269,28 @@ class Parser {
                    fmt::format("write {}(...)", name));
     }
     variable(name, start);
+  }
+
+  // Puts the shorthand's formula in the place of its argument, which the tape ends with.
+  void write_out(const Shorthand& shorthand, std::size_t argument, std::size_t start) {
+    const std::vector<Node> inside(tape_.begin() + static_cast<std::ptrdiff_t>(argument),
+                                   tape_.end());
+    tape_.resize(argument);
+    std::vector<std::string> x = {"x"};
+    const Expression formula = Parser(shorthand.formula, x, false).run();
+    for (const Node& node : formula.nodes()) {
+      if (node.is_variable()) {
+        tape_.insert(tape_.end(), inside.begin(), inside.end());
+      } else {
+        tape_.push_back(node);
+      }
+    }
+    if (tape_.size() <= kMostWrittenOut) return;
+    cursor_.fail_at(
+        start,
+        fmt::format("'{}' is {} here, and the formula has more than {} parts written out",
+                    shorthand.name, shorthand.formula, kMostWrittenOut),
+        "nest fewer of these");
   }
 
   void variable(std::string_view name, std::size_t start) {

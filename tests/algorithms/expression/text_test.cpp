@@ -6,6 +6,9 @@
 
 #include <bit>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "algorithms/expression/evaluate.hpp"
 #include "foundation/error.hpp"
@@ -71,6 +74,8 @@ TEST(Parse, SaysWhereTheMistakeIsAndHowToMendIt) {
       {"v)", "unexpected ')'"},
       {"exp v", "the function exp needs an argument"},
       {"expp(v)", "did you mean exp?"},
+      {"log100(v)", "did you mean log10?"},
+      {"tan", "'tan' is not an input"},
       {"sgn_w*v", "did you mean sgn_v?"},
       {"v**2", "write ^"},
       {"1e999", "out of range"},
@@ -126,6 +131,32 @@ TEST(Parse, KnowsTheFunctionsThatNoInputIsCalledBy) {
   for (const std::string_view name : kFunctionNames) {
     const Expression formula = parse(std::string(name) + "(v)", kNames);
     EXPECT_EQ(op_name(formula.node(formula.root()).op), name);
+  }
+}
+
+// A name is one of these where it is called; a column may be called so.
+TEST(Parse, WritesOutWhatOperationsSay) {
+  const std::pair<const char*, const char*> forms[] = {
+      {"tan(v + g)", "sin(v + g)/cos(v + g)"},
+      {"2*sinh(v)", "2*((exp(v) - exp(-v))/2)"},
+      {"cosh(v)^2", "((exp(v) + exp(-v))/2)^2"},
+      {"g - log2(v)", "g - log(v)/0.6931471805599453"},
+      {"1/log10(tan(v))", "1/(log(sin(v)/cos(v))/2.302585092994046)"},
+  };
+  for (const auto& [text, written_out] : forms) {
+    EXPECT_EQ(parse(text, kNames), parse(written_out, kNames)) << text;
+  }
+  std::vector<std::string> names;
+  parse_collecting_names("log10*log10(x)", names);
+  EXPECT_EQ(names, (std::vector<std::string>{"log10", "x"}));
+  std::string nested = "v";
+  for (int level = 0; level < 40; ++level) nested = "tan(" + nested + ")";
+  try {
+    parse(nested, kNames);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("'tan' is sin(x)/cos(x) here"));
+    EXPECT_EQ(error.kind(), ErrorKind::bad_input);
   }
 }
 
