@@ -76,12 +76,35 @@ std::string unknown_word(const CLI::App& app) {
                      word, mend);
 }
 
+// What the command needs and was not given, all at once, each with what it is, and the example of
+// its help; empty where nothing is missing.
+std::string missing_words(const CLI::App& app) {
+  const CLI::App& command = innermost(app);
+  std::string text;
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_required() || option->count() > 0) continue;
+    text += fmt::format("tribench: {} is required: {}\n", option->get_name(),
+                        option->get_description());
+  }
+  if (text.empty()) return text;
+  // The first line of the help's example, where it is one of this command.
+  const std::string path = command_path(command);
+  const std::string example = "Example: " + path + " ";
+  const std::string footer = command.get_footer();
+  const std::size_t at = footer.find(example);
+  if (at != std::string::npos) text += footer.substr(at, footer.find('\n', at) - at) + "\n";
+  return text + fmt::format("see: {} --help\n", path);
+}
+
 // Usage errors are bad input (2); --help and --version are done (0).
 int report_usage(const CLI::App& app, const CLI::ParseError& error) {
   const bool is_usage = error.get_exit_code() != 0;
-  const std::string unknown = is_usage ? unknown_word(app) : std::string();
-  if (!unknown.empty()) {
-    print_message(unknown);
+  std::string said = is_usage ? unknown_word(app) : std::string();
+  if (is_usage && said.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    said = missing_words(app);
+  }
+  if (!said.empty()) {
+    print_message(said);
   } else {
     app.exit(error);
   }

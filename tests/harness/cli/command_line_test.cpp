@@ -147,6 +147,16 @@ TEST(CommandLine, UnknownWordsAreAnsweredWithTheNearest) {
   expect({}, "A subcommand is required");
 }
 
+TEST(CommandLine, AllThatIsMissingIsSaidAtOnceWithAnExample) {
+  const ProgramRun run = run_tribench({"fit", "joint.csv"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("tribench: --target is required: the column to explain\n"));
+  EXPECT_THAT(run.errors,
+              HasSubstr("tribench: --inputs is required: the columns to explain it by"));
+  EXPECT_THAT(run.errors, HasSubstr("Example: tribench fit "));
+  EXPECT_THAT(run.errors, HasSubstr("see: tribench fit --help\n"));
+}
+
 TEST(CommandLine, NothingIsWrittenToAPlaceWithoutAName) {
   for (const Words& words :
        {Words{"run", "quick", "--out", ""}, Words{"loop", "log.csv", "--out", ""},
