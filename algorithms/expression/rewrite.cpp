@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "algorithms/expression/apply.hpp"
@@ -184,6 +185,22 @@ Expression parted_by_sign(const Expression& sum, const Expression& s) {
   }
   if (!odd.empty()) even.push_back({1, {{s, 1}, {formula_of(odd), 1}}});
   return formula_of(even);
+}
+
+// sin(x + k pi/2) and cos(x + k pi/2) are sin x and cos x, one for the other where k is odd.
+void take_quarter_turns_out(Op op, const Expression& argument, std::vector<Expression>& out) {
+  constexpr double kQuarter = std::numbers::pi / 2;
+  SumOfProducts sum = sum_of_products(argument, argument.root());
+  const auto turned = std::ranges::find_if(sum, [](const SumTerm& t) { return t.factors.empty(); });
+  if (sum.size() < 2 || turned == sum.end()) return;
+  const double quarters = std::round(turned->coefficient / kQuarter);
+  const bool is_exact = std::abs(turned->coefficient - quarters * kQuarter) <= kNegligible;
+  if (quarters == 0 || std::abs(quarters) > 8 || !is_exact) return;
+  sum.erase(turned);
+  // A cosine is a sine that is a quarter ahead.
+  const int ahead = (static_cast<int>(quarters) + (op == Op::cos ? 1 : 0) + 8) % 4;
+  Expression wave = Expression::unary(ahead % 2 == 0 ? Op::sin : Op::cos, formula_of(sum));
+  out.push_back(ahead < 2 ? std::move(wave) : Expression::unary(Op::neg, wave));
 }
 
 }  // namespace
@@ -396,6 +413,7 @@ void Rewriter::rewrite_function(Op op, const Expression& argument,
   if (op == Op::exp) rewrite_exp(argument, out);
   if (op == Op::sqrt) rewrite_sqrt(argument, out);
   if (op == Op::log) rewrite_log(argument, out);
+  if (op == Op::sin || op == Op::cos) take_quarter_turns_out(op, argument, out);
   if (op == Op::abs) {
     const Interval x = range(argument);
     if (x.low >= 0) out.push_back(argument);

@@ -18,6 +18,7 @@
 #include "algorithms/relay/relation_search.hpp"
 #include "algorithms/relay/scaled_function.hpp"
 #include "algorithms/relay/surrogate.hpp"
+#include "algorithms/relay/waves.hpp"
 
 namespace tribench::relay {
 namespace {
@@ -241,6 +242,7 @@ void StructureSearch::solve(const ReducedProblem& problem, Width width, Budget& 
   if (problem.inputs() == 1) {
     try_g(find_function(rows, operators, budget));
     if (!answer_.is_done()) try_g(find_scaled_function(rows, operators, budget));
+    if (!answer_.is_done()) try_g(find_waves(rows, operators, budget));
   }
   if (width == Width::narrow || problem.inputs() > kFewInputs || answer_.is_done()) return;
   const std::size_t columns = problem.inputs() == 1 ? kColumns / 5 : 2 * kColumns;

@@ -244,6 +244,10 @@ TEST(Simplify, FindsTheShortForm) {
       {"sqrt(t^2 + 1/v^2/g^2 - t*(2/g - v^2*t))", "sqrt(t^2 + (v*t - 1/(v*g))^2)"},
       {"t*exp(-2*v*(g - 1))*(exp(v*(g - 1)) - 1)^2", "t*(1 - exp(v*(1 - g)))^2"},
       {"g*sqrt(1/v)", "g/sqrt(v)"},
+      {"sin(11*v + 1.5707963267948966)", "cos(11*v)"},
+      {"cos(v*g - 1.5707963267948966)", "sin(v*g)"},
+      {"g + sin(v - 3.141592653589793)", "g - sin(v)"},
+      {"cos(v + 4.71238898038469)", "sin(v)"},
       {"(3/v)^2.5", "15.588457268119896*v^-2.5"},
   };
   for (const auto& [formula, expected] : forms) {

@@ -12,6 +12,7 @@
 #include "algorithms/relay/product_search.hpp"
 #include "algorithms/relay/relation_search.hpp"
 #include "algorithms/relay/scaled_function.hpp"
+#include "algorithms/relay/waves.hpp"
 #include "tests/algorithms/relay/drawn_law.hpp"
 
 namespace tribench {
@@ -202,6 +203,28 @@ TEST(ScaledFunction, FindsWhatIsLeftOfPlanckFinsAndRates) {
   const DrawnLaw other("sin(3*x) + x", {{"x", 0.3, 5}}, 200);
   Budget budget({});
   EXPECT_FALSE(relay::find_scaled_function(*Rows(other), full(), budget));
+}
+
+TEST(Waves, FindsTwoWavesAndOneThatDecays) {
+  for (const std::string text :
+       {"1.5*sin(2.3*x + 0.4) + 0.7*sin(5.9*x - 1.1) + 0.2", "cos(10*x) + cos(11*x)",
+        "1.3*exp(-0.4*x)*cos(3.1*x + 0.3) + 0.5", "exp(0.2*x)*sin(7*x)",
+        "(0.5*cos(2*x) + 0.3*cos(5*x) - 0.7)/x^2", "x*(1 + exp(-0.3*x)*sin(4*x))"}) {
+    const DrawnLaw law(text, {{"x", 0.3, 9}}, 200);
+    Budget budget({});
+    const auto found = relay::find_waves(*Rows(law), full(), budget);
+    ASSERT_TRUE(found) << text;
+    EXPECT_LT(law.error_of(*found), 1e-8) << text << ": " << print(*found, law.names);
+  }
+  // Three waves, a chirp, and what a set of operators lacks.
+  for (const std::string text : {"sin(2*x) + sin(3.3*x) + sin(7*x)", "sin(x^2)"}) {
+    const DrawnLaw law(text, {{"x", 0.3, 9}}, 200);
+    Budget budget({});
+    EXPECT_FALSE(relay::find_waves(*Rows(law), full(), budget)) << text;
+  }
+  const DrawnLaw law("cos(10*x) + cos(11*x)", {{"x", 0.3, 9}}, 200);
+  Budget budget({});
+  EXPECT_FALSE(relay::find_waves(*Rows(law), find_operator_set("paper"), budget));
 }
 
 }  // namespace
