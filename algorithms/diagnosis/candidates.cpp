@@ -64,7 +64,8 @@ Eigen::VectorXd losses_with_own_offsets(std::size_t atom, const FittedModel& mod
          offset_nats(clusters, noise);
 }
 
-// The most that an atom can gain: all offsets, and what it explains of the rows it is fitted to.
+// The most that an atom can gain: all offsets, and what it explains of the rows it is fitted to. An
+// atom that made the offsets larger would not be rescued.
 double most_gain(const BlockTest& test, const FittedModel& model, double offsets) {
   const double left = std::max(0.0, model.residual.squaredNorm() - test.statistic);
   return model.losses.sum() + offsets - left / model.noise.unit();

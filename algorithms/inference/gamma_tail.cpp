@@ -55,13 +55,13 @@ double MatchedGamma::knot(std::size_t k) {
   return table_[k];
 }
 
-double MatchedGamma::none_below(double score) {
+double MatchedGamma::none_below(double wanted) {
   if (table_.empty()) return 0;
   std::size_t low = 0;  // a knot with less, but for the first
   std::size_t high = table_.size();
   while (high - low > 1) {
     const std::size_t middle = (low + high) / 2;
-    (knot(middle) < score ? low : high) = middle;
+    (knot(middle) < wanted ? low : high) = middle;
   }
   const double root = step_ * static_cast<double>(low);
   return root * root;
