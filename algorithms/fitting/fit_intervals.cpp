@@ -22,7 +22,7 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 // Fewer movements say too little about how movements differ.
 constexpr std::size_t kLeastMovements = 8;
 // Of the largest eigenvalue of the scaled J^T J: below it a direction is not determined.
-constexpr double kRankTolerance = 1e-11;
+constexpr double kEigenTolerance = 1e-11;
 
 Eigen::MatrixXd jacobian_of(const Expression& formula, std::span<const std::size_t> places,
                             const Inputs& inputs, std::span<double> values) {
@@ -45,7 +45,7 @@ struct PseudoInverse {
 PseudoInverse pseudo_inverse(const Eigen::MatrixXd& matrix) {
   const EigenParts parts = eigen_parts_symmetric(matrix);
   const Eigen::VectorXd& values = parts.values;
-  const double least = kRankTolerance * std::max(values.maxCoeff(), 0.0);
+  const double least = kEigenTolerance * std::max(values.maxCoeff(), 0.0);
   Eigen::Index lost = 0;
   while (lost < values.size() && !(values[lost] > least)) ++lost;
   const Eigen::MatrixXd kept = parts.vectors.rightCols(values.size() - lost);

@@ -12,6 +12,7 @@
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/fitting/linear_least_squares.hpp"
 #include "algorithms/relay/target_forms.hpp"
+#include "algorithms/relay/unit_function.hpp"
 #include "foundation/elementary.hpp"
 
 namespace tribench::relay {
@@ -22,6 +23,10 @@ using namespace build;
 constexpr int kScales = 160;  // on the logarithmic grid
 constexpr int kFrequencies = 1024;
 constexpr std::size_t kTried = 3;  // of the grid's minima, a function
+
+using Kind = UnitFunction::Kind;
+constexpr UnitFunction kLooked[] = {{Kind::exponential}, {Kind::tanh}, {Kind::logarithm},
+                                    {Kind::sine},        {Kind::cosh}, {Kind::sinh}};
 
 struct Trial {
   double scale;
@@ -45,40 +50,40 @@ class FunctionSearch {
     return std::ranges::all_of(scaled_target_, [](double v) { return std::isfinite(v); });
   }
 
-  std::optional<Expression> find(Op op) {
+  std::optional<Expression> find(const UnitFunction& f) {
     std::vector<Trial> trials;
-    for (const double scale : scales_of(op)) {
+    for (const double scale : scales_of(f.kind)) {
       if (!budget_.spend(6 * x_.size())) return std::nullopt;
-      trials.push_back({scale, left_of(op, scale)});
+      trials.push_back({scale, left_of(f, scale)});
     }
     for (const double scale : minima_of(trials)) {
       // Two phases a quarter apart: from one of them the fit finds any.
       for (const double phase : {0.8, 0.8 + std::numbers::pi / 2}) {
-        if (auto found = polished(op, scale, phase)) return found;
-        if (op != Op::sin) break;
+        if (auto found = polished(f, scale, phase)) return found;
+        if (f.kind != Kind::sine) break;
       }
     }
     return std::nullopt;
   }
 
  private:
-  std::vector<double> scales_of(Op op) const {
+  std::vector<double> scales_of(Kind kind) const {
     const auto [low, high] = std::ranges::minmax(x_);
     const double largest = std::max(std::abs(low), std::abs(high));
     std::vector<double> scales;
-    if (op == Op::sin) {
+    if (kind == Kind::sine) {
       for (int k = 1; k <= kFrequencies; ++k) {
         scales.push_back(k * std::numbers::pi / 2 / (high - low));
       }
       return scales;
     }
-    if (op == Op::exp) scales.push_back(steepest());
+    if (kind == Kind::exponential) scales.push_back(steepest());
     for (int k = 0; k < kScales; ++k) {
       // From a hundredth to thirty thousand across the range.
       const double decades = -2.0 + 6.5 * k / (kScales - 1);
       const double scale = elementary::exp(decades * std::numbers::ln10) / largest;
       scales.push_back(scale);
-      if (op == Op::exp || op == Op::log) scales.push_back(-scale);
+      if (kind == Kind::exponential || kind == Kind::logarithm) scales.push_back(-scale);
     }
     return scales;
   }
@@ -94,25 +99,12 @@ class FunctionSearch {
     return (log_at(0) - log_at(other)) / (x_[order[0]] - x_[order[other]]);
   }
 
-  // The columns beside the constant.
-  double value_of(Op op, double argument) const {
-    switch (op) {
-      case Op::exp:
-        return elementary::exp(argument);
-      case Op::log:
-        return elementary::log(1 + argument);
-      case Op::tanh:
-        return elementary::tanh(argument);
-      default:
-        return elementary::sin(argument);
-    }
-  }
-
-  double left_of(Op op, double scale) const {
+  // Of the constant and the function; of a wave with both phases.
+  double left_of(const UnitFunction& f, double scale) const {
     const std::size_t n = x_.size();
     std::vector<std::vector<double>> columns = {scale_, std::vector<double>(n)};
-    for (std::size_t r = 0; r < n; ++r) columns[1][r] = scale_[r] * value_of(op, scale * x_[r]);
-    if (op == Op::sin) {
+    for (std::size_t r = 0; r < n; ++r) columns[1][r] = scale_[r] * f.value(scale * x_[r]);
+    if (f.kind == Kind::sine) {
       columns.emplace_back(n);
       for (std::size_t r = 0; r < n; ++r) {
         columns[2][r] = scale_[r] * elementary::cos(scale * x_[r]);
@@ -147,16 +139,10 @@ class FunctionSearch {
     set_constant(formed, places[3], formed.node(places[3]).value / b);
   }
 
-  std::optional<Expression> polished(Op op, double scale, double phase) const {
+  std::optional<Expression> polished(const UnitFunction& f, double scale, double phase) const {
     const Expression argument = constant(scale) * input(0);
-    Expression formed;
-    if (op == Op::sin) {
-      formed = constant(0) + constant(1) * function(Op::sin, argument + constant(phase));
-    } else if (op == Op::log) {
-      formed = constant(0) + constant(1) * function(Op::log, constant(1) + argument);
-    } else {
-      formed = constant(0) + constant(1) * function(op, argument);
-    }
+    const Expression inside = f.kind == Kind::sine ? argument + constant(phase) : argument;
+    Expression formed = constant(0) + constant(1) * f.formula(inside);
     std::vector<double> weights = scale_;
     for (double& w : weights) w *= w;
     const double* column = x_.data();
@@ -166,7 +152,7 @@ class FunctionSearch {
     const ConstantFitResult fit =
         ConstantFitter().fit(formed, {{&column, 1}, x_.size()}, z_, weights, options);
     budget_.spend(fit.node_rows);
-    if (op == Op::log) set_inside_to_one(formed);
+    if (f.kind == Kind::logarithm) set_inside_to_one(formed);
     const double sign = rows_.target().values[0] < 0 ? -1.0 : 1.0;
     Expression formula = solved_for_target(form_, formed, sign);
     if (!explains(formula, rows_)) return std::nullopt;
@@ -193,9 +179,9 @@ std::optional<Expression> find_function(const LogRows& rows, const OperatorSet& 
     if (!keeps_sign(form) && (rows.target().changes_sign || !rows.target().has_logs())) continue;
     FunctionSearch search(rows, form, budget);
     if (!search.is_usable()) continue;
-    for (const Op op : {Op::exp, Op::tanh, Op::log, Op::sin}) {
-      if (!operators.allows(op)) continue;
-      auto found = search.find(op);
+    for (const UnitFunction& f : kLooked) {
+      if (!f.is_written_with(operators)) continue;
+      auto found = search.find(f);
       if (found && operators.admits(*found)) return found;
     }
   }

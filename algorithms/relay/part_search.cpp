@@ -23,7 +23,7 @@ namespace {
 
 using namespace build;
 
-constexpr double kRough = 0.1;          // error of a sum of polynomials that says nothing
+constexpr double kSaysNothing = 0.1;    // error of a sum of polynomials that says nothing
 constexpr double kClearly = 0.5;        // of the error of one polynomial in all inputs
 constexpr double kNearPower = 1e-4;     // of a part's square in logarithms
 constexpr std::size_t kPartRows = 300;  // that what is likely is told from
@@ -198,11 +198,11 @@ std::optional<Separation> find_separation(const LogRows& rows, Budget& budget) {
     if (!std::isfinite(whole.error())) continue;
     // Together comes what has most in common, from each input alone to two parts: by the terms of
     // `whole`, or by what the parts leave where it has too many inputs to tell.
-    const bool by_terms = whole.error() <= kRough;
+    const bool by_terms = whole.error() <= kSaysNothing;
     for (Parts parts = alone;;) {
       const Surrogate sum(rows, target, parts, whole, budget);
       if (!std::isfinite(sum.error())) break;
-      const double least = best ? best->error : std::min(kClearly * whole.error(), kRough);
+      const double least = best ? best->error : std::min(kClearly * whole.error(), kSaysNothing);
       const bool is_sum = form == TargetForm::plain;
       if (sum.error() < least && (is_sum || are_worth_it(rows, parts, sum))) {
         best = separation_of(form, target, parts, sum);

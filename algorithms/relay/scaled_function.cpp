@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "algorithms/expression/build.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/relay/target_forms.hpp"
+#include "algorithms/relay/unit_function.hpp"
 #include "foundation/elementary.hpp"
 
 namespace tribench::relay {
@@ -21,64 +23,69 @@ using namespace build;
 
 constexpr std::size_t kFewestScaledRows = 20;
 constexpr std::size_t kCoarseRows = 64;
-constexpr int kCoarseScales = 60;      // of a, from a hundredth to three thousand over the range
-constexpr std::size_t kPolished = 60;  // of the best combinations
+constexpr int kCoarseScales = 60;   // of a, from a hundredth to three thousand over the range
+constexpr double kScaleStep = 1.3;  // from one of them to the next, at most
+// Of a function the combinations that are best on the grid of scales, and of these with a finer
+// scale.
+constexpr std::size_t kRefined = 40;
+constexpr std::size_t kPolished = 6;
+constexpr int kNarrowings = 20;            // of the scale, from a step of the grid to 1e-4 of it
 constexpr double kPromisingSquare = 0.02;  // of the rows' relative square, on the coarse grid
 constexpr std::array kForms = {TargetForm::plain, TargetForm::inverse, TargetForm::square,
                                TargetForm::inverse_square};
 constexpr std::array kOuterPowers = {0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, -2.0, 3.0, -3.0};
 constexpr std::array kInnerPowers = {1.0, -1.0, 0.5, -0.5, 2.0, -2.0};
-constexpr std::array kFunctions = {Op::exp, Op::tanh, Op::log, Op::sqrt};
+using Kind = UnitFunction::Kind;
+// From one of the powers a fit finds others.
+constexpr std::array kFunctions = {UnitFunction{Kind::exponential}, UnitFunction{Kind::tanh},
+                                   UnitFunction{Kind::logarithm},   UnitFunction{Kind::power, 0.5},
+                                   UnitFunction{Kind::power, -0.5}, UnitFunction{Kind::power, 1.5},
+                                   UnitFunction{Kind::power, -1.5}, UnitFunction{Kind::power, 2.5},
+                                   UnitFunction{Kind::power, -2.5}, UnitFunction{Kind::cosh},
+                                   UnitFunction{Kind::sinh}};
 
 struct Combination {
-  TargetForm form;
-  double outer;  // p
-  double inner;  // q
-  Op function;
+  std::size_t outer;  // T and p: their place among the outers
+  double inner;       // q
+  UnitFunction function;
   double scale;  // a
   double left;
 };
 
-double function_at(Op op, double x) {
-  switch (op) {
-    case Op::exp:
-      return elementary::exp(x);
-    case Op::tanh:
-      return elementary::tanh(x);
-    case Op::log:
-      return elementary::log(1 + x);
+// |p| is one of kOuterPowers or kInnerPowers. Whole powers as products: a fit that moves exponents
+// leaves them alone.
+Expression power_of_input(double p) {
+  const Expression x = input(0);
+  switch (static_cast<int>(2 * std::abs(p))) {
+    case 1:
+      return function(Op::sqrt, x);
+    case 2:
+      return x;
+    case 3:
+      return x * function(Op::sqrt, x);
+    case 4:
+      return x * x;
     default:
-      return std::sqrt(1 + x);
+      return x * x * x;
   }
-}
-
-Expression function_of(Op op, const Expression& x) {
-  if (op == Op::log || op == Op::sqrt) return function(op, constant(1) + x);
-  return function(op, x);
 }
 
 Expression scaled_by_power(const Expression& inside, double p) {
   if (p == 0) return inside;
-  const Expression x = input(0);
-  const double size = std::abs(p);
-  const Expression power_of_x = size == 1     ? x
-                                : size == 0.5 ? function(Op::sqrt, x)
-                                              : power(x, size);
-  return p > 0 ? power_of_x * inside : inside / power_of_x;
+  return p > 0 ? power_of_input(p) * inside : inside / power_of_input(p);
 }
 
 Expression inner_argument(double scale, double q) {
-  const Expression x = input(0);
-  if (q == 1) return constant(scale) * x;
-  if (q == -1) return constant(scale) / x;
-  const Expression root = std::abs(q) == 0.5 ? function(Op::sqrt, x) : power(x, 2);
-  return q > 0 ? constant(scale) * root : constant(scale) / root;
+  return q > 0 ? constant(scale) * power_of_input(q) : constant(scale) / power_of_input(q);
 }
 
 class ScaledFunctionSearch {
  public:
   ScaledFunctionSearch(const LogRows& rows, const OperatorSet& operators)
-      : rows_(rows), operators_(operators), x_(rows.inputs()[0].values) {
+      : rows_(rows),
+        operators_(operators),
+        x_(rows.inputs()[0].values),
+        is_positive_(std::ranges::all_of(x_, [](double x) { return x > 0; })) {
     const std::size_t count = std::min(kCoarseRows, rows.rows());
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t r = i * rows.rows() / count;
@@ -89,6 +96,7 @@ class ScaledFunctionSearch {
       if (!keeps_sign(form) && rows.target().changes_sign) continue;
       const std::vector<double> z = formed_target(coarse_y_, form);
       for (const double p : kOuterPowers) {
+        if (!is_possible(p)) continue;
         Outer outer{form, p, {}};
         for (std::size_t r = 0; r < count; ++r) {
           outer.relative.push_back(elementary::pow(coarse_x_[r], p) / z[r]);
@@ -99,19 +107,25 @@ class ScaledFunctionSearch {
   }
 
   std::optional<Expression> run(Budget& budget) {
-    for (const Op op : kFunctions) {
-      if (!operators_.allows(op)) continue;
+    for (const UnitFunction& function : kFunctions) {
+      if (!function.is_written_with(operators_)) continue;
+      std::vector<Combination> best;
       for (const double q : kInnerPowers) {
+        if (!is_possible(q)) continue;
         const std::uint64_t products = kCoarseScales * outers_.size() * coarse_x_.size();
         if (!budget.spend(products / 2)) return std::nullopt;
-        look_at(op, q);
+        look_at(function, q, best);
       }
+      keep_best(best, kRefined);
+      for (Combination& each : best) refine(each);
+      keep_best(best, kPolished);
+      std::ranges::move(best, std::back_inserter(best_));
     }
     std::ranges::stable_sort(best_, {}, &Combination::left);
     std::optional<Expression> shortest;
-    for (std::size_t k = 0; k < std::min(kPolished, best_.size()); ++k) {
-      if (best_[k].left > kPromisingSquare || budget.exhausted()) break;
-      auto found = polished(best_[k], budget);
+    for (const Combination& tried : best_) {
+      if (tried.left > kPromisingSquare || budget.exhausted()) break;
+      auto found = polished(tried, budget);
       if (found && (!shortest || found->size() < shortest->size())) shortest = std::move(found);
     }
     return shortest;
@@ -125,9 +139,12 @@ class ScaledFunctionSearch {
     std::vector<double> relative;
   };
 
+  // Roots are of positive inputs.
+  bool is_possible(double power) const { return is_positive_ || power == std::trunc(power); }
+
   std::vector<double> scales(double q) const {
     double largest = 0;
-    for (const double x : x_) largest = std::max(largest, elementary::pow(x, q));
+    for (const double x : x_) largest = std::max(largest, std::abs(elementary::pow(x, q)));
     std::vector<double> result;
     for (int k = 0; k < kCoarseScales; ++k) {
       const double decades = -2.0 + 5.5 * k / (kCoarseScales - 1);
@@ -153,14 +170,15 @@ class ScaledFunctionSearch {
   }
 
   // Of one function all scales and what stands before it; the best scale of each.
-  void look_at(Op op, double q) {
+  void look_at(const UnitFunction& function, double q, std::vector<Combination>& of_all) {
     std::vector<Combination> best;
-    for (const Outer& outer : outers_)
-      best.push_back({outer.form, outer.power, q, op, 0, HUGE_VAL});
+    for (std::size_t k = 0; k < outers_.size(); ++k) best.push_back({k, q, function, 0, HUGE_VAL});
+    std::vector<double> power(coarse_x_.size());
+    for (std::size_t r = 0; r < power.size(); ++r) power[r] = elementary::pow(coarse_x_[r], q);
     std::vector<double> f(coarse_x_.size());
     const auto try_scale = [&](double scale, std::size_t from, std::size_t to) {
       for (std::size_t r = 0; r < f.size(); ++r) {
-        f[r] = function_at(op, scale * elementary::pow(coarse_x_[r], q));
+        f[r] = function.value(scale * power[r]);
       }
       for (std::size_t k = from; k < to; ++k) {
         const double left = left_of(outers_[k].relative, f);
@@ -169,14 +187,52 @@ class ScaledFunctionSearch {
         best[k].scale = scale;
       }
     };
+    const bool is_exponential = function.kind == Kind::exponential;
     for (const double size : scales(q)) {
       try_scale(size, 0, outers_.size());
-      if (op == Op::exp) try_scale(-size, 0, outers_.size());
+      if (is_exponential) try_scale(-size, 0, outers_.size());
     }
-    for (std::size_t k = 0; op == Op::exp && k < outers_.size(); ++k) {
+    for (std::size_t k = 0; is_exponential && k < outers_.size(); ++k) {
       try_scale(steepest(outers_[k], q), k, k + 1);
     }
-    best_.insert(best_.end(), best.begin(), best.end());
+    of_all.insert(of_all.end(), best.begin(), best.end());
+  }
+
+  static void keep_best(std::vector<Combination>& combinations, std::size_t most) {
+    std::ranges::stable_sort(combinations, {}, &Combination::left);
+    combinations.resize(std::min(most, combinations.size()));
+  }
+
+  // The scale between those of the grid, by golden sections.
+  void refine(Combination& combination) const {
+    const std::vector<double>& relative = outers_[combination.outer].relative;
+    std::vector<double> power(coarse_x_.size());
+    for (std::size_t r = 0; r < power.size(); ++r) {
+      power[r] = elementary::pow(coarse_x_[r], combination.inner);
+    }
+    std::vector<double> f(power.size());
+    const auto left_at = [&](double scale) {
+      for (std::size_t r = 0; r < f.size(); ++r) {
+        f[r] = combination.function.value(scale * power[r]);
+      }
+      return left_of(relative, f);
+    };
+    double low = combination.scale / kScaleStep;
+    double high = combination.scale * kScaleStep;
+    for (int k = 0; k < kNarrowings; ++k) {
+      const double part = (high - low) / std::numbers::phi;
+      if (left_at(high - part) < left_at(low + part)) {
+        high = low + part;
+      } else {
+        low = high - part;
+      }
+    }
+    const double scale = (low + high) / 2;
+    const double left = left_at(scale);
+    if (left < combination.left) {
+      combination.scale = scale;
+      combination.left = left;
+    }
   }
 
   // The mean square of 1 - s (c_0 + c_1 f) at the best c_0 and c_1.
@@ -198,22 +254,24 @@ class ScaledFunctionSearch {
   }
 
   std::optional<Expression> polished(const Combination& tried, Budget& budget) const {
+    const Outer& outer = outers_[tried.outer];
     Expression formed = scaled_by_power(
         constant(1) +
-            constant(1) * function_of(tried.function, inner_argument(tried.scale, tried.inner)),
-        tried.outer);
-    const std::vector<double> z = formed_target(rows_.target().values, tried.form);
-    std::vector<double> weights = relative_scale(z, tried.form);
+            constant(1) * tried.function.formula(inner_argument(tried.scale, tried.inner)),
+        outer.power);
+    const std::vector<double> z = formed_target(rows_.target().values, outer.form);
+    std::vector<double> weights = relative_scale(z, outer.form);
     for (double& w : weights) w *= w;
     const double* column = x_.data();
     ConstantFitOptions options;
     options.function_tolerance = 1e-15;
     options.max_iterations = 40;
+    options.fit_exponents = tried.function.kind == Kind::power;
     const ConstantFitResult fit =
         ConstantFitter().fit(formed, {{&column, 1}, x_.size()}, z, weights, options);
     budget.spend(fit.node_rows);
     const double sign = rows_.target().values[0] < 0 ? -1.0 : 1.0;
-    Expression formula = solved_for_target(tried.form, formed, sign);
+    Expression formula = solved_for_target(outer.form, formed, sign);
     if (!operators_.admits(formula) || !explains(formula, rows_)) return std::nullopt;
     return formula;
   }
@@ -221,6 +279,7 @@ class ScaledFunctionSearch {
   const LogRows& rows_;
   const OperatorSet& operators_;
   const std::vector<double>& x_;
+  const bool is_positive_;
   std::vector<double> coarse_x_;
   std::vector<double> coarse_y_;
   std::vector<Outer> outers_;
@@ -232,9 +291,7 @@ class ScaledFunctionSearch {
 std::optional<Expression> find_scaled_function(const LogRows& rows, const OperatorSet& operators,
                                                Budget& budget) {
   const Factor& x = rows.inputs()[0];
-  if (rows.rows() < kFewestScaledRows || !x.has_logs() || x.changes_sign || x.values[0] < 0) {
-    return std::nullopt;
-  }
+  if (rows.rows() < kFewestScaledRows || !x.has_logs()) return std::nullopt;
   if (!operators.allows(Op::mul) || !operators.allows(Op::div) || !operators.allows(Op::add)) {
     return std::nullopt;
   }

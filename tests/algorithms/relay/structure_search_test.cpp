@@ -182,7 +182,8 @@ TEST(Collapse, FindsNoneWhereTwoVariablesRemain) {
 
 TEST(IndexFit, FindsExponentialsWavesAndTheirReciprocals) {
   for (const std::string text : {"2*exp(-3*x) + 1", "4/(exp(2*x) - 1)", "sin(40*x)^2",
-                                 "sqrt(1 + 0.5*cos(9*x))", "3*tanh(0.7*x)", "2*log(1 + 5*x)"}) {
+                                 "sqrt(1 + 0.5*cos(9*x))", "3*tanh(0.7*x)", "2*log(1 + 5*x)",
+                                 "3*(exp(1.3*x) + exp(-1.3*x))/2", "1/(exp(x) - exp(-x))"}) {
     const DrawnLaw law(text, {{"x", 0.05, 4}}, 300);
     Budget budget({});
     const auto found = relay::find_function(*Rows(law), full(), budget);
@@ -195,6 +196,16 @@ TEST(ScaledFunction, FindsWhatIsLeftOfPlanckFinsAndRates) {
   for (const std::string text : {"3*x^3/(exp(2.5*x) - 1)", "2*sqrt(x)*tanh(1.7/sqrt(x))",
                                  "0.4*x^2*exp(-1.3/x)", "x*(sqrt(1 + 0.3*x^2) - 1)"}) {
     const DrawnLaw law(text, {{"x", 0.3, 5}}, 200);
+    Budget budget({});
+    const auto found = relay::find_scaled_function(*Rows(law), full(), budget);
+    ASSERT_TRUE(found) << text;
+    EXPECT_LT(law.error_of(*found), 1e-8) << text << ": " << print(*found, law.names);
+  }
+  // Powers of a sum, from one of which the fit finds the others, and inputs of both signs.
+  for (const std::string text :
+       {"1 - 1/sqrt(1 + 0.7/x^2)", "1.4*(1 + 0.2*x^2)^3.5", "x/(2 + x^2)^1.7",
+        "x*(exp(0.8*x) + exp(-0.8*x))", "2/x^2*(exp(x) - exp(-x))"}) {
+    const DrawnLaw law(text, {{"x", text[0] == '1' ? 0.3 : -4.0, 5}}, 200);
     Budget budget({});
     const auto found = relay::find_scaled_function(*Rows(law), full(), budget);
     ASSERT_TRUE(found) << text;
