@@ -109,6 +109,42 @@ std::optional<SumTerm> turned(const SumTerm& term) {
   return out;
 }
 
+constexpr std::size_t kMostMultipliedOut = 16;  // terms
+
+// Products with sums above the bar as sums; what has more terms than kMostMultipliedOut stays.
+SumOfProducts multiplied_out(const SumTerm& term) {
+  const auto sum = std::ranges::find_if(term.factors, [](const TermFactor& factor) {
+    return factor.power == 1 && is_a_sum(factor.base);
+  });
+  if (sum == term.factors.end()) return {term};
+  const SumTerm rest = without(term, static_cast<std::size_t>(sum - term.factors.begin()));
+  SumOfProducts out;
+  for (const SumTerm& each : sum_of_products(sum->base, sum->base.root())) {
+    for (SumTerm& product : multiplied_out(product_of(rest, each))) {
+      out.push_back(std::move(product));
+    }
+    if (out.size() > kMostMultipliedOut) return {term};
+  }
+  return out;
+}
+
+// sum - share * other, without the terms that only rounding leaves.
+SumOfProducts less_multiple(SumOfProducts sum, double share, const SumOfProducts& other) {
+  for (const SumTerm& each : other) {
+    const double taken = share * each.coefficient;
+    const auto same =
+        std::ranges::find_if(sum, [&](const SumTerm& term) { return same_factors(term, each); });
+    if (same == sum.end()) {
+      sum.push_back({-taken, each.factors});
+      continue;
+    }
+    const double size = std::abs(same->coefficient);
+    same->coefficient -= taken;
+    if (std::abs(same->coefficient) <= kNegligible * size) sum.erase(same);
+  }
+  return sum;
+}
+
 }  // namespace
 
 // (a/c + b) / (d/c + e) = (a + b c) / (d + e c), for every c below a bar.
@@ -128,6 +164,34 @@ void clear_fractions(const SumTerm& term, std::vector<Expression>& out) {
         result.factors[i].base = formula_of(multiplied(above, cleared));
         result.factors[j].base = formula_of(multiplied(below, cleared));
         out.push_back(formula_of(result));
+      }
+    }
+  }
+}
+
+// (a + k b + k c) / (b + c) = k + a / (b + c), products of sums above the bar multiplied out.
+void take_whole_part_out(const SumTerm& term, std::vector<Expression>& out) {
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    for (std::size_t j = 0; j < term.factors.size(); ++j) {
+      const TermFactor& above = term.factors[i];
+      const TermFactor& below = term.factors[j];
+      if (above.power != 1 || below.power != -1 || !is_a_sum(above.base) || !is_a_sum(below.base)) {
+        continue;
+      }
+      const SumOfProducts whole = multiplied_out({1, {above}});
+      const SumOfProducts divisor = sum_of_products(below.base, below.base.root());
+      for (const SumTerm& first : divisor) {
+        const auto same = std::ranges::find_if(
+            whole, [&](const SumTerm& each) { return same_factors(each, first); });
+        if (same == whole.end() || first.coefficient == 0) continue;
+        const double share = same->coefficient / first.coefficient;
+        const SumOfProducts rest = less_multiple(whole, share, divisor);
+        if (rest.empty() || rest.size() >= whole.size()) continue;
+        SumTerm part = without(without(term, std::max(i, j)), std::min(i, j));
+        part.coefficient *= share;
+        SumTerm left = term;
+        left.factors[i].base = formula_of(rest);
+        out.push_back(formula_of(SumOfProducts{part, left}));
       }
     }
   }
@@ -226,10 +290,6 @@ void open_denominators(const SumTerm& term, std::vector<Expression>& out) {
     if (factor.power != -1 || !is_a_sum(factor.base)) continue;
     const SumOfProducts below = sum_of_products(factor.base, factor.base.root());
     for (const TermFactor& cleared : bases_below(below, {})) {
-      const auto beside = std::ranges::find_if(term.factors, [&](const TermFactor& other) {
-        return other.base == cleared.base && other.power <= -cleared.power;
-      });
-      if (beside == term.factors.end()) continue;
       SumTerm result = without(term, i);
       multiply_by(result, cleared);
       multiply_by(result, {formula_of(multiplied(below, cleared)), -1});

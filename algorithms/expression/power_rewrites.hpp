@@ -3,9 +3,10 @@
 // Rewrites with powers, of rewrite.hpp's kind: one step, each equal to what it is made of.
 //
 //   sums       a^2 + 2ab + b^2 as (a + b)^2, whatever number stands before it
-//   products   a^c b^c = (ab)^c, a^n / b^n = (a/b)^n; a sum below the bar multiplied by what
-//              stands beside it and below a bar within it; e^x (e^y + b)^n = (e^(y + x/n) +
-//              b e^(x/n))^n; fractions within a fraction cleared
+//   products   a^c b^c = (ab)^c, a^n / b^n = (a/b)^n; 1 / (a/b + c) = b / (a + b c); (a + k b) / b
+//   =
+//              k + a / b; e^x (e^y + b)^n = (e^(y + x/n) + b e^(x/n))^n; fractions within a
+//              fraction cleared
 //   functions  sqrt(c/x) = sqrt(c)/sqrt(x), (c/x)^k = c^k x^-k; x^k = 1 where k log x is next to
 //              nothing
 #pragma once
@@ -32,6 +33,7 @@ void merge_whole_powers(const SumTerm& term, std::vector<Expression>& out);
 void open_denominators(const SumTerm& term, std::vector<Expression>& out);
 void spread_exponentials(const SumTerm& term, std::vector<Expression>& out);
 void clear_fractions(const SumTerm& term, std::vector<Expression>& out);
+void take_whole_part_out(const SumTerm& term, std::vector<Expression>& out);
 void turn_root(const Expression& argument, const RangeOf& range, std::vector<Expression>& out);
 void rewrite_power(const Expression& base, const Expression& exponent, const RangeOf& range,
                    std::vector<Expression>& out);

@@ -302,6 +302,7 @@ void Rewriter::rewrite_product(const SumTerm& term, std::vector<Expression>& out
   out.push_back(formula_of(term));
   multiply_out(term, out);
   clear_fractions(term, out);
+  take_whole_part_out(term, out);
   open_denominators(term, out);
   spread_exponentials(term, out);
   merge_powers(term, range_, out);

@@ -25,6 +25,7 @@ constexpr std::size_t kLargest = 200;
 constexpr std::size_t kLargestLeap = 60;
 constexpr int kDetour = 8;
 constexpr std::size_t kMostBetween = 24;
+constexpr int kWorthAProof = 1;  // longer
 
 using Size = std::pair<int, int>;
 
@@ -60,11 +61,14 @@ class Descent {
 
   using Candidates = std::vector<std::pair<Size, Expression>>;
 
-  // Those that are shorter, as they are and in canonical form.
+  // Those that are shorter, as they are and in canonical form; while the formula is not proved
+  // those hardly longer, too.
   void add_shorter(const std::vector<Expression>& rewrites, Size than, Candidates& out) {
+    const bool is_proved = verdict_ == Verdict::proved_free;
     const auto consider = [&](Expression candidate) {
       const Size size = size_of(candidate);
-      if (size < than) out.emplace_back(size, std::move(candidate));
+      if (size < than || (size.first <= than.first + kWorthAProof && !is_proved))
+        out.emplace_back(size, std::move(candidate));
     };
     for (const Expression& candidate : rewrites) {
       consider(canonicalizer_.canonical(candidate));
@@ -73,13 +77,15 @@ class Descent {
     }
   }
 
-  // The shortest that may be used.
+  // The shortest that may be used; one that is no shorter has to be proved.
   bool take_shortest(Candidates candidates, Expression& formula) {
+    const Size now = size_of(formula);
     std::ranges::stable_sort(candidates, {}, &std::pair<Size, Expression>::first);
     for (auto& [size, candidate] : candidates) {
-      if (admits_ && !admits_(candidate)) continue;
+      if (candidate == formula || (admits_ && !admits_(candidate))) continue;
       const Verdict verdict = verdict_of(candidate);
-      if (verdict != verdict_ && verdict != Verdict::proved_free) continue;
+      const bool is_kept = verdict == verdict_ && size < now;
+      if (!is_kept && verdict != Verdict::proved_free) continue;
       verdict_ = verdict;
       formula = std::move(candidate);
       return true;

@@ -4,14 +4,15 @@
 // taken as it is and in canonical form (canonical.hpp, with x - x, 0 x, x^0 and x/x removed where
 // the box proves that x is finite). The shortest of all one rewrite away is
 // taken until none is shorter, then the shortest two rewrites away, over a form that may be a
-// little longer; shorter is the paper's complexity, then nodes.
+// little longer; shorter is the paper's complexity, then nodes. For a formula that is not proved
+// one that is may be longer by one: t / (a + t) for 1 / (a/t + 1) where t may be 0.
 //
 // Guarantees: the value on the box changes by rounding, and by 1e-12 of a subformula where the
 // rewrites leave something out, and the gap that x/x has where x is 0 is closed; the verdict of
 // prove_free stays, or the formula becomes one that is proved, so that no singularity is made, and
 // none is hidden that is still there; neither complexity
-// nor nodes grow where the other does not fall; the same formula gives the same result, and the
-// result gives itself.
+// nor nodes grow where the other does not fall, but for a proof; the same formula gives the same
+// result, and the result gives itself.
 //
 // Equality saturation (e-graphs; Willsey et al. 2021) was weighed against it: sums and products of
 // ten parts have thousands of orders and bracketings, which flattened terms have one of, and what

@@ -8,9 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/expression/complexity.hpp"
 #include "algorithms/expression/edit.hpp"
 #include "algorithms/expression/simplify.hpp"
 #include "algorithms/expression/singularity.hpp"
+#include "algorithms/fitting/common_multiple.hpp"
 #include "algorithms/fitting/named_values.hpp"
 
 namespace tribench {
@@ -23,7 +25,8 @@ constexpr double kRounding = 1e-12;
 constexpr double kWorthNaming = 1e-5;
 // Nodes from which on rewriting costs tenths of a second, and a form is no law's.
 constexpr std::size_t kTooLong = 150;
-constexpr double kNearTogether = 1e-6;  // of the value
+// Of the value; short decimals are near to most numbers at the first.
+constexpr double kNearTogether[] = {1e-6, 1e-9};
 constexpr double kNearNothing = 1e-9;
 
 std::bitset<kOpCount> operations_of(const Expression& formula) {
@@ -35,6 +38,12 @@ std::bitset<kOpCount> operations_of(const Expression& formula) {
 bool has_a_name(double c) {
   const std::vector<double> values = named_values(c);
   return c == 0 || std::ranges::count(values, c) > 0;
+}
+
+std::ptrdiff_t numbers_without_a_name(const Expression& formula) {
+  return std::ranges::count_if(formula.nodes(), [](const Node& node) {
+    return node.is_constant() && !has_a_name(node.value);
+  });
 }
 
 }  // namespace
@@ -82,22 +91,15 @@ Expression FormulaFinisher::shortest(const Expression& formula) {
   });
 }
 
-// The others are fitted again; accepted where the rows do not mind.
-bool FormulaFinisher::try_value(Expression& formula, std::size_t place, double value) {
-  const RowErrors before = errors_of(formula);
-  Expression candidate = formula;
-  set_constant(candidate, place, value);
-  // What the others would have to make good must be small, or every constant is fitted to no end.
-  const double moved = errors_of(candidate).square;
-  if (!(moved <= kNearNamed * kNearNamed * target_square_)) return false;
+void FormulaFinisher::fit_the_others(Expression& formula, std::size_t held) {
   constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   std::vector<double> low;
   std::vector<double> high;
   bool any_free = false;
-  for (const std::size_t p : constant_positions(candidate)) {
-    if (is_exponent(candidate, p)) continue;
-    const double c = candidate.node(p).value;
-    const bool is_held = p == place || has_a_name(c);
+  for (const std::size_t p : constant_positions(formula)) {
+    if (is_exponent(formula, p)) continue;
+    const double c = formula.node(p).value;
+    const bool is_held = p == held || has_a_name(c);
     low.push_back(is_held ? c : -kUnbounded);
     high.push_back(is_held ? c : kUnbounded);
     any_free = any_free || !is_held;
@@ -105,9 +107,21 @@ bool FormulaFinisher::try_value(Expression& formula, std::size_t place, double v
   ConstantFitOptions options;
   options.max_iterations = 10;
   options.function_tolerance = 1e-14;
+  options.step_tolerance = 1e-15;  // what there is to make good is smaller than usual steps
   options.low = low;
   options.high = high;
-  if (any_free) fitter_.fit(candidate, inputs_, target_, {}, options);
+  if (any_free) fitter_.fit(formula, inputs_, target_, {}, options);
+}
+
+// Accepted where the rows do not mind.
+bool FormulaFinisher::try_value(Expression& formula, std::size_t place, double value) {
+  const RowErrors before = errors_of(formula);
+  Expression candidate = formula;
+  set_constant(candidate, place, value);
+  // What the others would have to make good must be small, or every constant is fitted to no end.
+  const double moved = errors_of(candidate).square;
+  if (!(moved <= kNearNamed * kNearNamed * target_square_)) return false;
+  fit_the_others(candidate, place);
   if (!is_no_worse(errors_of(candidate), before)) return false;
   formula = std::move(candidate);
   return true;
@@ -117,20 +131,46 @@ bool FormulaFinisher::try_value(Expression& formula, std::size_t place, double v
 // beside it. Those that are nearly nothing first go with them, then stay.
 void FormulaFinisher::name_together(Expression& formula) {
   for (const double nothing : {kNearNothing, 0.0}) {
-    Expression named = formula;
-    for (const std::size_t place : constant_positions(named)) {
-      const double c = named.node(place).value;
-      if (std::abs(c) < nothing && !is_exponent(named, place)) set_constant(named, place, 0);
-      for (const double value : named_values(c)) {
-        if (std::abs(c - value) > kNearTogether * std::abs(value)) continue;
-        set_constant(named, place, value);
-        break;
-      }
+    for (const double near : kNearTogether) {
+      if (name_all(formula, near, nothing)) return;
     }
-    if (named == formula || !is_no_worse(errors_of(named), errors_of(formula))) continue;
-    formula = std::move(named);
-    return;
   }
+}
+
+bool FormulaFinisher::name_all(Expression& formula, double near, double nothing) {
+  Expression named = formula;
+  for (const std::size_t place : constant_positions(named)) {
+    const double c = named.node(place).value;
+    if (std::abs(c) < nothing && !is_exponent(named, place)) set_constant(named, place, 0);
+    for (const double value : named_values(c)) {
+      if (std::abs(c - value) > near * std::abs(value)) continue;
+      set_constant(named, place, value);
+      break;
+    }
+  }
+  if (named == formula) return false;
+  const RowErrors before = errors_of(formula);
+  if (!is_no_worse(errors_of(named), before)) fit_the_others(named, named.size());
+  if (!is_no_worse(errors_of(named), before)) return false;
+  formula = std::move(named);
+  return true;
+}
+
+// Where the numbers of a sum are known but for a common multiple.
+bool FormulaFinisher::take_a_multiple_out(Expression& formula) {
+  for (Expression& candidate : with_common_multiple_out(formula)) {
+    name_together(candidate);
+    Expression shorter = shortest(candidate);
+    name_together(shorter);
+    if (paper_complexity(shorter) > paper_complexity(formula) ||
+        numbers_without_a_name(shorter) >= numbers_without_a_name(formula) ||
+        !is_no_worse(errors_of(shorter), errors_of(formula))) {
+      continue;
+    }
+    formula = std::move(shorter);
+    return true;
+  }
+  return false;
 }
 
 bool FormulaFinisher::name_a_constant(Expression& formula) {
@@ -153,7 +193,7 @@ Expression FormulaFinisher::finish(const Expression& formula) {
   if (before.square > kWorthNaming * kWorthNaming * target_square_) return finished;
   Expression named = finished;
   name_together(named);
-  while (name_a_constant(named)) {
+  while (take_a_multiple_out(named) || name_a_constant(named)) {
   }
   if (named == finished) return finished;
   named = shortest(named);

@@ -2,13 +2,14 @@
 //
 // The last step of every formula that leaves a method: the shortest form of the same function
 // (expression/simplify.hpp), and constants that are a whole number, a small fraction, a multiple of
-// pi or a root, or a short decimal (named_values.hpp), where the rows cannot tell them apart.
+// pi or a root, or a short decimal (named_values.hpp), where the rows cannot tell them apart; of
+// what is known but for a common multiple (common_multiple.hpp) the one with such numbers.
 //
 // Guarantees: neither the mean squared nor the mean absolute error on the rows grows (beyond 1e-9
-// of itself, and beyond 1e-12 of the target's size, which is rounding); complexity does not grow;
-// a proof that there is no singularity is not lost; deterministic; finish(finish(f)) is finish(f).
-// Under noise that leaves the constants alone: at a least-squares optimum every other value errs
-// more.
+// of itself, and beyond 1e-12 of the target's size, which is rounding); complexity does not grow,
+// but by one where that brings a proof that there is no singularity; no such proof is lost;
+// deterministic; finish(finish(f)) is finish(f). Under noise that leaves the
+// constants alone: at a least-squares optimum every other value errs more.
 //
 // Cost: a few milliseconds for 30 nodes and 1000 rows (bench/fitting_bench). Formulas of more than
 // 150 nodes, which are sums of a table's many terms, are left as they are.
@@ -44,8 +45,14 @@ class FormulaFinisher {
   Expression shortest(const Expression& formula);
   // Moves all constants that are close to a name at once, if the rows do not mind.
   void name_together(Expression& formula);
+  // Those within `near` of a name, of their value, and those smaller than `nothing`.
+  bool name_all(Expression& formula, double near, double nothing);
+  // Divides a sum by a number after which more numbers have a name; false where none does.
+  bool take_a_multiple_out(Expression& formula);
   // Moves one constant to a number that has a name; false where none will do.
   bool name_a_constant(Expression& formula);
+  // All constants but the one at `held`, those with a name and exponents.
+  void fit_the_others(Expression& formula, std::size_t held);
   bool try_value(Expression& formula, std::size_t place, double value);
 
   Inputs inputs_;
