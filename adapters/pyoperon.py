@@ -6,7 +6,7 @@ symbols of the operator set. pip install pyoperon.
 from protocol import answer, library, read_request, version
 
 SYMBOLS = {"+": "add", "-": "sub", "*": "mul", "/": "div", "exp": "exp", "log": "log",
-           "sqrt": "sqrt", "abs": "abs", "sin": "sin", "cos": "cos", "tanh": "tanh", "^": "pow"}
+           "sqrt": "sqrt", "abs": "abs", "sin": "sin", "cos": "cos", "tanh": "tanh", "atan": "atan", "^": "pow"}
 
 
 def main():

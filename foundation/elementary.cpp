@@ -35,6 +35,7 @@ double log(double x) { return tables().scalar.log(x); }
 double sin(double x) { return tables().scalar.sin(x); }
 double cos(double x) { return tables().scalar.cos(x); }
 double tanh(double x) { return tables().scalar.tanh(x); }
+double atan(double x) { return tables().scalar.atan(x); }
 double pow(double x, double y) { return tables().scalar.pow(x, y); }
 
 void sin_of_each(std::span<double> x) { tables().column.sin(x.data(), x.size()); }

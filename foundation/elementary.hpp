@@ -5,8 +5,8 @@
 // bits between processors (with and without a fused multiply-add) and between versions. A test
 // holds every room to that (tests/architecture/c_library_test.cmake).
 //
-// exp, log, sin, cos, tanh and pow are the evaluator's kernels: elementary::exp(x) is what the
-// formula exp(x) evaluates to. Some 5 ns a call. Not for columns: algorithms/expression has
+// exp, log, sin, cos, tanh, atan and pow are the evaluator's kernels: elementary::exp(x) is what
+// the formula exp(x) evaluates to. Some 5 ns a call. Not for columns: algorithms/expression has
 // kernels.
 //
 // sqrt, fma, fmod, floor, abs, ldexp and nextafter of the C library are exact by definition and
@@ -25,6 +25,7 @@ double log(double x);
 double sin(double x);
 double cos(double x);
 double tanh(double x);
+double atan(double x);
 double pow(double x, double y);
 
 // Of every number of a column, in place: the same bits in a third of the time. Not for formulas,

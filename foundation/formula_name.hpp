@@ -15,8 +15,8 @@
 namespace tribench {
 
 // The functions of formulas, by the names that no input can have.
-inline constexpr std::array<std::string_view, 8> kFunctionNames = {"exp", "log", "sqrt", "abs",
-                                                                   "sgn", "sin", "cos",  "tanh"};
+inline constexpr std::array<std::string_view, 9> kFunctionNames = {
+    "exp", "log", "sqrt", "abs", "sgn", "sin", "cos", "tanh", "atan"};
 
 bool is_identifier(std::string_view name);    // the letters alone
 bool is_formula_name(std::string_view name);  // and no function

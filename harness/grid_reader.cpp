@@ -101,8 +101,13 @@ std::vector<OperatorSet> known_operator_sets(const TomlTable& file) {
     table.read("operators", words);
     table.read("proved_free_only", proved_free_only);
     std::vector<std::string> known;
-    for (const Op op : find_operator_set("full").operators()) known.emplace_back(op_name(op));
-    known.emplace_back(op_name(Op::sgn));
+    std::vector<Op> operations;
+    for (int i = 0; i < kOpCount; ++i) {
+      const Op op = static_cast<Op>(i);
+      if (arity(op) == 0 || op == Op::neg) continue;
+      operations.push_back(op);
+      known.emplace_back(op_name(op));
+    }
     std::vector<Op> operators;
     for (const std::string& word : words) {
       const auto found = std::ranges::find(known, word);
@@ -110,11 +115,7 @@ std::vector<OperatorSet> known_operator_sets(const TomlTable& file) {
         throw_bad_input(fmt::format("there is no operation '{}'", word), table.place("operators"),
                         fmt::format("known: {}", fmt::join(known, " ")));
       }
-      for (int op = 0; op < kOpCount; ++op) {
-        if (op_name(static_cast<Op>(op)) == word && static_cast<Op>(op) != Op::neg) {
-          operators.push_back(static_cast<Op>(op));
-        }
-      }
+      operators.push_back(operations[static_cast<std::size_t>(found - known.begin())]);
     }
     sets.emplace_back(name, summary, operators, proved_free_only);
   }

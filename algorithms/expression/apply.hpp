@@ -11,7 +11,7 @@
 
 namespace tribench {
 
-double apply(Op function, double a);             // neg .. tanh
+double apply(Op function, double a);             // neg .. atan
 double apply(Op operation, double a, double b);  // + - * / ^, a whole exponent as a product
 
 }  // namespace tribench

@@ -27,6 +27,8 @@ double scalar_derivative(Op op, double a, double v) {
       return -elementary::sin(a);
     case Op::tanh:
       return 1 - v * v;
+    case Op::atan:
+      return 1 / (1 + a * a);
     default:
       return 0;
   }
@@ -225,6 +227,11 @@ void BackwardPass::unary(std::size_t place) {
     case Op::cos:
       columns::sin(a, out, n_);
       break;
+    case Op::atan:
+      columns::mul(a, a, out, n_);
+      columns::add(out, 1.0, out, n_);
+      child = over(adjoint, out, out, n_);
+      return;
     default:  // tanh; below a sgn nothing is wanted
       columns::one_minus_square(v, out, n_);
   }

@@ -10,7 +10,7 @@ constexpr int kAdd = 0;
 constexpr int kSub = 1;
 constexpr int kMul = 2;
 static_assert(static_cast<int>(Op::div) - static_cast<int>(Op::add) == kBasicOps - 1);
-static_assert(static_cast<int>(Op::tanh) - static_cast<int>(Op::neg) == kFunctions - 1);
+static_assert(static_cast<int>(Op::atan) - static_cast<int>(Op::neg) == kFunctions - 1);
 
 constexpr bool is_commutative(int basic) { return basic == kAdd || basic == kMul; }
 

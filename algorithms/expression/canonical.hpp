@@ -6,9 +6,9 @@
 // expanded.
 //
 // Nothing that can be singular disappears: x - x, 0 x, x^0 and x/x stay as they are (0 x; x/x)
-// unless x is built of + - * abs sgn sin cos tanh and integer powers alone, or the caller's guard
-// proves the needed fact (see simplify.hpp for guards from a box). Values change by rounding only;
-// inputs so large that products overflow are not looked after.
+// unless x is built of + - * abs sgn sin cos tanh atan and integer powers alone, or the caller's
+// guard proves the needed fact (see simplify.hpp for guards from a box). Values change by rounding
+// only; inputs so large that products overflow are not looked after.
 //
 // Equality up to the 64-bit hash: two different formulas share one with probability 2^-64.
 // Keeps its workspace: one Canonicalizer per thread; hardly an allocation once warm, about 40 ns a

@@ -111,7 +111,7 @@ std::uint32_t CanonicalForms::opaque(Op op, std::uint32_t left, std::uint32_t ri
   item.count = op == Op::pow ? 2 : 1;
   item.size = 1 + items_[left].size;
   item.is_total = items_[left].is_total && (op == Op::abs || op == Op::sgn || op == Op::sin ||
-                                            op == Op::cos || op == Op::tanh);
+                                            op == Op::cos || op == Op::tanh || op == Op::atan);
   const auto seed = static_cast<std::uint64_t>(op) + 16;
   item.hash = {mix(seed, items_[left].hash.exact), mix(seed, items_[left].hash.shape)};
   parts_.push_back({left, 1});

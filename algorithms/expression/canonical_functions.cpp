@@ -36,7 +36,7 @@ std::uint32_t Canonicalizer::function(Op op, std::uint32_t argument) {
     if (std::isfinite(value)) return forms_.constant(value);
   }
   const bool is_even = op == Op::cos || op == Op::abs;
-  const bool is_odd = op == Op::sin || op == Op::tanh || op == Op::sgn;
+  const bool is_odd = op == Op::sin || op == Op::tanh || op == Op::atan || op == Op::sgn;
   if ((is_even || is_odd) && forms_.leads_negative(item)) {
     const std::uint32_t flipped = function(op, scaled(argument, -1));
     return is_odd ? scaled(flipped, -1) : flipped;

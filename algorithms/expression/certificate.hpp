@@ -7,7 +7,7 @@
 // itself (certificate_formula.hpp), rounds by the processor's rounding modes, knows no derivative
 // and no mean-value form, and covers the box by construction. What it trusts: the processor's
 // rounding of
-// + - * / sqrt, the C library's exp log sin cos tanh pow to 8 ulp, and the evaluator's kernels
+// + - * / sqrt, the C library's exp log sin cos tanh atan pow to 8 ulp, and the evaluator's kernels
 // likewise.
 //
 // Not for monotony and oddness: the first needs derivatives, the second algebra, and the checker is

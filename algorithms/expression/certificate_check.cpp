@@ -101,6 +101,11 @@ Range hyperbolic_tangent(const Range& a) {
   return {std::max(y.low, a.low >= 0 ? 0.0 : -1.0), std::min(y.high, a.high <= 0 ? 0.0 : 1.0)};
 }
 
+Range arc_tangent(const Range& a) {
+  const Range y = increasing([](double x) { return std::atan(x); }, a);
+  return {a.low >= 0 ? std::max(y.low, 0.0) : y.low, a.high <= 0 ? std::min(y.high, 0.0) : y.high};
+}
+
 // Lipschitz around the middle: crude, but short; exact at the ends of [-1, 1].
 template <typename F>
 Range wave(F f, const Range& a) {
@@ -176,6 +181,8 @@ Range apply(Op op, const Range& a) {
       return wave([](double x) { return std::sin(x); }, a);
     case Op::cos:
       return wave([](double x) { return std::cos(x); }, a);
+    case Op::atan:
+      return arc_tangent(a);
     default:
       return hyperbolic_tangent(a);
   }

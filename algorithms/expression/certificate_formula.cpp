@@ -72,7 +72,7 @@ class Reading {
       ++at_;
     }
     const std::string_view word = text_.substr(start, at_ - start);
-    for (int op = static_cast<int>(Op::exp); op <= static_cast<int>(Op::tanh); ++op) {
+    for (int op = static_cast<int>(Op::exp); op <= static_cast<int>(Op::atan); ++op) {
       if (op_name(static_cast<Op>(op)) != word) continue;
       if (!take('(')) refuse("a function without an argument");
       closed_sum();

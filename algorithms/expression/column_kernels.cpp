@@ -132,6 +132,7 @@ void log(const double* a, double* out, std::size_t n) { apply(Op::log, a, out, n
 void sin(const double* a, double* out, std::size_t n) { apply(Op::sin, a, out, n); }
 void cos(const double* a, double* out, std::size_t n) { apply(Op::cos, a, out, n); }
 void tanh(const double* a, double* out, std::size_t n) { apply(Op::tanh, a, out, n); }
+void atan(const double* a, double* out, std::size_t n) { apply(Op::atan, a, out, n); }
 void pow(const double* a, const double* b, double* out, std::size_t n) {
   kernels().power[kFormVV](out, a, b, nullptr, n);
 }

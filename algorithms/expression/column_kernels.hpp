@@ -36,6 +36,7 @@ void log(const double* a, double* out, std::size_t n);
 void sin(const double* a, double* out, std::size_t n);
 void cos(const double* a, double* out, std::size_t n);
 void tanh(const double* a, double* out, std::size_t n);
+void atan(const double* a, double* out, std::size_t n);
 void pow(const double* a, const double* b, double* out, std::size_t n);
 
 // out[i] = sum_j coefficients[j] columns[j][i]; 0 where count is 0.

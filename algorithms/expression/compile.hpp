@@ -2,8 +2,8 @@
 //
 // A formula turned into machine code, for formulas that are evaluated many times with other
 // constants: fits, basin hopping, the bootstrap. Arithmetic runs as one loop over the rows with all
-// intermediate values in registers; exp, log, sin, cos, tanh, sgn and general powers run between
-// such loops by the evaluator's own block kernels. So the result has the same bits as
+// intermediate values in registers; exp, log, sin, cos, tanh, atan, sgn and general powers run
+// between such loops by the evaluator's own block kernels. So the result has the same bits as
 // `Evaluator`, which is the reference and the fallback where no code can be generated.
 //
 //   std::optional<CompiledFormula> code = CompiledFormula::compile(formula);

@@ -16,6 +16,7 @@ bool runs_in_a_kernel(const Expression& formula, std::size_t i) {
     case Op::sin:
     case Op::cos:
     case Op::tanh:
+    case Op::atan:
       return true;
     case Op::pow:
       return !is_whole_power(formula, i);

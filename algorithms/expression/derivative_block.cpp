@@ -77,6 +77,8 @@ void DerivativeBlock::forward_unary(const Step& step, double* out, std::size_t n
       return columns::cos(a, out, n);
     case Op::tanh:
       return columns::tanh(a, out, n);
+    case Op::atan:
+      return columns::atan(a, out, n);
     default:
       return columns::sgn(a, out, n);
   }

@@ -11,8 +11,8 @@
 // overflows to infinity; nothing is masked, clipped or protected.
 //
 // Accuracy: + - * / sqrt abs neg sgn are exact or correctly rounded. x^n with an integer constant
-// |n| <= 64 is a product of squares (1 / that for n < 0). exp log sin cos tanh are within 2 ulp,
-// any other power within 1 (foundation/elementary/). No function is the C library's.
+// |n| <= 64 is a product of squares (1 / that for n < 0). exp log sin cos tanh atan are within 2
+// ulp, any other power within 1 (foundation/elementary/). No function is the C library's.
 //
 // Same bits for any vector level, split of the rows, number of threads, and for one row alone.
 #pragma once

@@ -6,8 +6,8 @@
 //
 // C, Python and MATLAB compute one operation a statement, so that no compiler and no operator
 // precedence can reorder them: with + - * / and integer powers the values are the evaluator's to
-// the last bit; exp, log, sin, cos, tanh and other powers are those of the target's library (a few
-// units in the last place apart). SymPy reorders sums as it likes. MATLAB's square root and
+// the last bit; exp, log, sin, cos, tanh, atan and other powers are those of the target's library
+// (a few units in the last place apart). SymPy reorders sums as it likes. MATLAB's square root and
 // logarithm of a negative number are NaN here, not complex.
 //
 // An input named sgn_X is no argument of the code: it is computed from X as the judge does.

@@ -186,7 +186,9 @@ Dialect python_dialect() {
   python.literal = float_literal;
   python.unary = [](Op op, std::string_view a) {
     if (op == Op::neg) return fmt::format("-{}", a);
-    return fmt::format("np.{}({})", op == Op::sgn ? "sign" : op_name(op), a);
+    const std::string_view name =
+        op == Op::sgn ? "sign" : (op == Op::atan ? "arctan" : op_name(op));
+    return fmt::format("np.{}({})", name, a);
   };
   python.binary = [](Op op, std::string_view a, std::string_view b) {
     if (op == Op::pow) return fmt::format("np.power({}, {})", a, b);
@@ -258,7 +260,7 @@ std::string matlab_helpers(const CodeSource& source, const Statements& body) {
   for (const Op op : {Op::sqrt, Op::log}) {
     if (!uses(source, op)) continue;
     text += fmt::format(
-        "\nfunction y = real_{0}(x)\n  y = {0}(max(x, 0));\n  y(x < 0 | isnan(x)) = NaN;\nend\n",
+        "\nfunction y = real_{0}(x)\n  y = NaN(size(x));\n  y(x >= 0) = {0}(x(x >= 0));\nend\n",
         op_name(op));
   }
   if (body.text.find("real_power(") != std::string::npos) {

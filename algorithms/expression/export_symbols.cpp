@@ -81,7 +81,8 @@ Piece latex_unary(Op op, const Piece& a, const Node& /*child*/) {
     case Op::sgn:
       return {fmt::format("\\operatorname{{sgn}}\\left({}\\right)", a.text), kAtom};
     default:
-      return {fmt::format("\\{}\\left({}\\right)", op_name(op), a.text), kAtom};
+      return {fmt::format("\\{}\\left({}\\right)", op == Op::atan ? "arctan" : op_name(op), a.text),
+              kAtom};
   }
 }
 

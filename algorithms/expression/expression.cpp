@@ -10,8 +10,8 @@ namespace tribench {
 
 std::string_view op_name(Op op) {
   static constexpr std::array<std::string_view, kOpCount> kNames = {
-      "constant", "variable", "+",    "-",   "*",   "/",   "^",   "neg",
-      "exp",      "log",      "sqrt", "abs", "sgn", "sin", "cos", "tanh"};
+      "constant", "variable", "+",   "-",   "*",   "/",   "^",    "neg", "exp",
+      "log",      "sqrt",     "abs", "sgn", "sin", "cos", "tanh", "atan"};
   return kNames[static_cast<std::size_t>(op)];
 }
 

@@ -38,8 +38,9 @@ enum class Op : std::uint8_t {
   sin,
   cos,
   tanh,
+  atan,
 };
-inline constexpr int kOpCount = 16;
+inline constexpr int kOpCount = 17;
 
 // 0 for leaves, 1 for functions, 2 for + - * / ^.
 constexpr int arity(Op op) {

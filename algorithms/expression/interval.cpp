@@ -286,6 +286,15 @@ DecoratedInterval hyperbolic_tangent(const DecoratedInterval& x) {
   return {{low(x.range.low), -low(-x.range.high)}, x.decoration};
 }
 
+DecoratedInterval arc_tangent(const DecoratedInterval& x) {
+  constexpr double kQuarterTurn = 0x1.921fb54442d19p+0;  // pi / 2, rounded up
+  const auto low = [](double t) {
+    const double moved = std::max(kernel_down(elementary::atan(t)), -kQuarterTurn);
+    return t >= 0 ? std::max(moved, 0.0) : moved;
+  };
+  return {{low(x.range.low), -low(-x.range.high)}, x.decoration};
+}
+
 // Whether [t - guard] .. [t + guard], in quarter turns, may hold an integer = residue modulo 4.
 bool may_hold_turn(double low, double high, int residue) {
   const double first = std::ceil((low - residue) / 4.0);
@@ -344,6 +353,8 @@ DecoratedInterval apply(Op op, const DecoratedInterval& a) {
       return sine(a);
     case Op::cos:
       return cosine(a);
+    case Op::atan:
+      return arc_tangent(a);
     default:
       return hyperbolic_tangent(a);
   }

@@ -11,7 +11,7 @@
 //
 // Rounding: operations run in round-to-nearest and are moved outward by an ulp where an error-free
 // transformation (two-sum, fused remainder) shows that they were not exact, so exact results stay
-// points. exp, log, sin, cos, tanh and pow are foundation/elementary.hpp's, moved outward by
+// points. exp, log, sin, cos, tanh, atan and pow are foundation/elementary.hpp's, moved outward by
 // kKernelUlps: that holds the true value and any evaluator kernel within kKernelUlps - 2 ulp of it
 // that also keeps the function's own range and its sign at 0 (for exp and log: at 1). Tests hold
 // the evaluator to this. Needs round-to-nearest and IEEE doubles; thread safe; no allocation.

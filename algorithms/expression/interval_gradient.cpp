@@ -23,6 +23,8 @@ Interval unary_slope(Op op, const DecoratedInterval& a, const Interval& y) {
       return apply(Op::cos, a).range;
     case Op::cos:
       return negate(apply(Op::sin, a).range);
+    case Op::atan:
+      return divide({1, 1}, add({1, 1}, integer_power({a.range}, 2).range));
     default:
       return intersect(subtract({1, 1}, integer_power({y}, 2).range), {0, 1});
   }

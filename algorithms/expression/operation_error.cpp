@@ -57,7 +57,7 @@ double operand_error(Op op, const Operand& a, const Interval& result) {
     }
     case Op::sgn:
       return a.error == 0 || result.is_point() ? 0 : 2;
-    default:  // neg, abs, sin, cos, tanh: slopes of at most 1
+    default:  // neg, abs, sin, cos, tanh, atan: slopes of at most 1
       return a.error;
   }
 }
@@ -100,7 +100,7 @@ double rounding_error_of(Op op, const Interval& a, const Interval& b, bool same,
       const double exponent = std::min(b.magnitude(), 1100.0);
       return (kKernelError + 2 * exponent * kRoundoff) * magnitude + kUnderflow;
     }
-    default:  // sin, cos, tanh; the second term is the reduced argument's
+    default:  // sin, cos, tanh, atan; the second term is the reduced argument's
       return kKernelError * magnitude + 0x1p-58 * (1 + b.magnitude());
   }
 }

@@ -52,8 +52,8 @@ const std::vector<OperatorSet>& operator_sets() {
        "+ - * / exp log sin cos, the usual set of the Nguyen problems",
        {add, sub, mul, div, exp, log, sin, cos}},
       {"full",
-       "+ - * / ^ exp log sqrt abs sin cos tanh",
-       {add, sub, mul, div, pow, exp, log, sqrt, abs, sin, cos, tanh}},
+       "+ - * / ^ exp log sqrt abs sin cos tanh atan",
+       {add, sub, mul, div, pow, exp, log, sqrt, abs, sin, cos, tanh, atan}},
   };
   return kSets;
 }

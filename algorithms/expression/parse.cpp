@@ -30,11 +30,14 @@ struct Shorthand {
   std::string_view name;
   std::string_view formula;
 };
-constexpr std::array<Shorthand, 5> kShorthands = {{{"tan", "sin(x)/cos(x)"},
-                                                   {"sinh", "(exp(x) - exp(-x))/2"},
-                                                   {"cosh", "(exp(x) + exp(-x))/2"},
-                                                   {"log2", "log(x)/0.6931471805599453"},
-                                                   {"log10", "log(x)/2.302585092994046"}}};
+constexpr std::array<Shorthand, 7> kShorthands = {
+    {{"tan", "sin(x)/cos(x)"},
+     {"sinh", "(exp(x) - exp(-x))/2"},
+     {"cosh", "(exp(x) + exp(-x))/2"},
+     {"log2", "log(x)/0.6931471805599453"},
+     {"log10", "log(x)/2.302585092994046"},
+     {"asin", "2*atan(x/(1 + sqrt(1 - x*x)))"},
+     {"acos", "1.5707963267948966 - 2*atan(x/(1 + sqrt(1 - x*x)))"}}};
 constexpr std::size_t kMostWrittenOut = 100'000;  // nodes: each may hold its argument twice
 
 const Shorthand* shorthand_of(std::string_view name) {

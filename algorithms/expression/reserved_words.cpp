@@ -48,7 +48,7 @@ constexpr std::string_view kMatlab =
     " real isnan sign real_sqrt real_log real_power ";
 
 // Of formulas, and of the code around them.
-constexpr std::string_view kOwn = " exp log sqrt abs sgn sin cos tanh sign_of ";
+constexpr std::string_view kOwn = " exp log sqrt abs sgn sin cos tanh atan sign_of ";
 
 bool holds(std::string_view list, std::string_view name) {
   if (name.empty()) return false;  // what has no name; every list begins and ends with a blank

@@ -389,14 +389,15 @@ void Rewriter::rewrite_sqrt(const Expression& argument, std::vector<Expression>&
   }
 }
 
-// By the first term that is left out: x^3 / 3 of tanh, x^3 / 6 of sin, x^2 / 2 of exp and cos.
+// By the first term that is left out: x^3 / 3 of tanh and atan, x^3 / 6 of sin, x^2 / 2 of exp and
+// cos.
 void Rewriter::replace_small(Op op, const Expression& argument,
                              std::vector<Expression>& out) const {
   const Interval x = range(argument);
   const double largest = x.magnitude();
   const double square = largest * largest;
-  const bool is_linear =
-      (op == Op::tanh && square / 3 <= kNegligible) || (op == Op::sin && square / 6 <= kNegligible);
+  const bool is_linear = ((op == Op::tanh || op == Op::atan) && square / 3 <= kNegligible) ||
+                         (op == Op::sin && square / 6 <= kNegligible);
   if (is_linear) out.push_back(argument);
   if (op == Op::exp && square <= kNegligible) {
     out.push_back(Expression::binary(Op::add, argument, Expression::constant(1)));

@@ -11,8 +11,8 @@
 //              |x| sgn_x = x; beside a sign its square in another factor 1
 //   functions  exp of log and of a constant term, log of exp, of roots and powers, roots of squares
 //              and of constants, |x| of what has one sign, quarter turns in sines and cosines; sin,
-//              tanh, exp and cos of arguments so small, tanh of ones so large, that the difference
-//              is below 1e-12 of the value
+//              tanh, atan, exp and cos of arguments so small, tanh of ones so large, that the
+//              difference is below 1e-12 of the value
 //
 //   powers     power_rewrites.hpp
 //

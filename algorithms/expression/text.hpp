@@ -8,8 +8,8 @@
 //   power   = atom [ "^" factor ]                 (groups to the right, tighter than unary minus)
 //   atom    = number | name | function "(" sum ")" | "(" sum ")"
 //
-// Functions are exp log sqrt abs sgn sin cos tanh; tan, sinh, cosh, log2 and log10 are read, too,
-// and written out by them: no formula is printed so.
+// Functions are exp log sqrt abs sgn sin cos tanh atan; tan, sinh, cosh, log2, log10, asin and acos
+// are read, too, and written out by them: no formula is printed so.
 //
 // A minus directly before a number that is not the base of a power is part of the number.
 // parse(print(f)) is f, node for node and bit for bit, for every tape whose constants are finite.

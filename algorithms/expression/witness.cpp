@@ -36,6 +36,7 @@ void collect_zero_nodes(const Expression& formula, std::size_t node,
     case Op::sgn:
     case Op::sin:
     case Op::tanh:
+    case Op::atan:
       collect_zero_nodes(formula, formula.last_child(node), nodes);
       return;
     default:

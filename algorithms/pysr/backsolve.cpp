@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <unordered_set>
 
@@ -60,6 +61,8 @@ double invert_unary(Op op, double target, double current) {
       return target < 0 ? kUndefined : std::copysign(target, current);
     case Op::tanh:
       return elementary::atanh(target);
+    case Op::atan:
+      return std::abs(target) < std::numbers::pi / 2 ? elementary::tan(target) : kUndefined;
     default:
       return kUndefined;
   }

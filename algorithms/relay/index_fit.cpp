@@ -25,8 +25,9 @@ constexpr int kFrequencies = 1024;
 constexpr std::size_t kTried = 3;  // of the grid's minima, a function
 
 using Kind = UnitFunction::Kind;
-constexpr UnitFunction kLooked[] = {{Kind::exponential}, {Kind::tanh}, {Kind::logarithm},
-                                    {Kind::sine},        {Kind::cosh}, {Kind::sinh}};
+constexpr UnitFunction kLooked[] = {{Kind::exponential}, {Kind::tanh}, {Kind::atan},
+                                    {Kind::logarithm},   {Kind::sine}, {Kind::cosh},
+                                    {Kind::sinh}};
 
 struct Trial {
   double scale;

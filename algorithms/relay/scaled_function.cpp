@@ -38,11 +38,11 @@ constexpr std::array kInnerPowers = {1.0, -1.0, 0.5, -0.5, 2.0, -2.0};
 using Kind = UnitFunction::Kind;
 // From one of the powers a fit finds others.
 constexpr std::array kFunctions = {UnitFunction{Kind::exponential}, UnitFunction{Kind::tanh},
-                                   UnitFunction{Kind::logarithm},   UnitFunction{Kind::power, 0.5},
-                                   UnitFunction{Kind::power, -0.5}, UnitFunction{Kind::power, 1.5},
-                                   UnitFunction{Kind::power, -1.5}, UnitFunction{Kind::power, 2.5},
-                                   UnitFunction{Kind::power, -2.5}, UnitFunction{Kind::cosh},
-                                   UnitFunction{Kind::sinh}};
+                                   UnitFunction{Kind::atan},        UnitFunction{Kind::logarithm},
+                                   UnitFunction{Kind::power, 0.5},  UnitFunction{Kind::power, -0.5},
+                                   UnitFunction{Kind::power, 1.5},  UnitFunction{Kind::power, -1.5},
+                                   UnitFunction{Kind::power, 2.5},  UnitFunction{Kind::power, -2.5},
+                                   UnitFunction{Kind::cosh},        UnitFunction{Kind::sinh}};
 
 struct Combination {
   std::size_t outer;  // T and p: their place among the outers

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/expression/build.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/relay/index_fit.hpp"
 #include "algorithms/relay/long_sum.hpp"
@@ -214,6 +215,7 @@ void StructureSearch::find_products_and_sums(const LogRows& rows, Budget& budget
 std::optional<ReducedProblem> StructureSearch::find_structure(const LogRows& rows, Budget& budget) {
   if (round_ == 0) {
     find_products_and_sums(rows, budget);
+    if (!answer_.is_done()) find_angles(budget);
     if (answer_.is_done()) return std::nullopt;
   }
   if (!has(kCollapses)) return std::nullopt;
@@ -225,6 +227,17 @@ std::optional<ReducedProblem> StructureSearch::find_structure(const LogRows& row
   }
   if (collapses.empty() || !collapses[0].is_smooth) return std::nullopt;
   return collapsed(whole(), collapses[0]);
+}
+
+void StructureSearch::find_angles(Budget& budget) {
+  if (!context_.operators.allows(Op::atan)) return;
+  std::vector<Expression> inputs;
+  for (std::size_t j = 0; j < context_.data.inputs.size(); ++j) inputs.push_back(build::input(j));
+  for (const TargetForm form : angle_forms(answer_.rows().target)) {
+    Reduction angle{form, false, build::constant(1), inputs};
+    solve({whole(), std::move(angle)}, Width::narrow, budget);
+    if (answer_.is_done()) return;
+  }
 }
 
 // g among products, short sums and known functions.

@@ -62,6 +62,8 @@ class StructureSearch {
   void search_likely();
   // What is exact is offered; the return is a problem of fewer variables that was not solved.
   std::optional<ReducedProblem> find_structure(const LogRows& rows, Budget& budget);
+  // Where the target may be an angle: its sine, cosine and tangent.
+  void find_angles(Budget& budget);
   void find_products_and_sums(const LogRows& rows, Budget& budget);
   void search_waves();
   // A sum or a product of parts without a common input.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "algorithms/expression/build.hpp"
 #include "foundation/elementary.hpp"
@@ -10,7 +11,8 @@
 namespace tribench::relay {
 namespace {
 
-constexpr double kExplained = 1e-6;    // of the largest target
+constexpr double kExplained = 1e-6;  // of the largest target
+constexpr double kHardlyAnAngle = 0.1;
 constexpr double kSmallTarget = 1e-3;  // of the median: rows below it count for less
 
 double median_size(std::vector<double> values) {
@@ -27,15 +29,39 @@ std::vector<double> formed_target(std::span<const double> target, TargetForm for
   for (double& y : values) {
     if (form == TargetForm::logarithm) y = elementary::log(std::abs(y));
     if (is_even_power(form)) y = y * y;
+    if (form == TargetForm::sine) y = elementary::sin(y);
+    if (form == TargetForm::cosine) y = elementary::cos(y);
+    if (form == TargetForm::tangent) y = elementary::tan(y);
     if (form == TargetForm::inverse || form == TargetForm::inverse_square) y = 1 / y;
   }
   return values;
+}
+
+std::vector<TargetForm> angle_forms(std::span<const double> target) {
+  const auto [low, high] = std::ranges::minmax(target);
+  std::vector<TargetForm> forms;
+  if (std::max(std::abs(low), std::abs(high)) < kHardlyAnAngle) return forms;
+  for (const TargetForm form : kAngleForms) {
+    const bool is_told = form == TargetForm::cosine
+                             ? low >= 0 && high <= std::numbers::pi
+                             : std::max(std::abs(low), std::abs(high)) <= std::numbers::pi / 2;
+    if (is_told) forms.push_back(form);
+  }
+  return forms;
 }
 
 Expression solved_for_target(TargetForm form, const Expression& formed, double sign) {
   using namespace build;
   if (form == TargetForm::plain) return formed;
   if (form == TargetForm::inverse) return constant(1) / formed;
+  if (form == TargetForm::tangent) return function(Op::atan, formed);
+  if (form == TargetForm::sine || form == TargetForm::cosine) {
+    // tan(asin(x) / 2), finite to both ends of -1 .. 1.
+    const Expression half =
+        formed / (constant(1) + function(Op::sqrt, constant(1) - power(formed, 2)));
+    const Expression arc = constant(2) * function(Op::atan, half);
+    return form == TargetForm::sine ? arc : constant(std::numbers::pi / 2) - arc;
+  }
   const Expression size = form == TargetForm::logarithm ? function(Op::exp, formed)
                           : form == TargetForm::square  ? function(Op::sqrt, formed)
                                                         : function(Op::sqrt, constant(1) / formed);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The forms of the target that a law may be simple in: y, y^2, 1/y, 1/y^2, log y.
+// The forms of the target that a law may be simple in: y, y^2, 1/y, 1/y^2, log y; where y is an
+// angle its sine, cosine and tangent.
 #pragma once
 
 #include <array>
@@ -14,10 +15,14 @@
 
 namespace tribench::relay {
 
-enum class TargetForm { plain, square, inverse, inverse_square, logarithm };
+enum class TargetForm { plain, square, inverse, inverse_square, logarithm, sine, cosine, tangent };
 inline constexpr std::array kTargetForms = {TargetForm::plain, TargetForm::square,
                                             TargetForm::inverse, TargetForm::inverse_square,
                                             TargetForm::logarithm};
+
+// Of an angle: see angle_forms.
+inline constexpr std::array kAngleForms = {TargetForm::tangent, TargetForm::sine,
+                                           TargetForm::cosine};
 
 constexpr bool is_even_power(TargetForm form) {
   return form == TargetForm::square || form == TargetForm::inverse_square;
@@ -29,6 +34,11 @@ constexpr bool keeps_sign(TargetForm form) {
 
 // T(y); the logarithm is of |y|.
 std::vector<double> formed_target(std::span<const double> target, TargetForm form);
+
+// Those of kAngleForms that tell every target from every other: the sine and the tangent within a
+// quarter turn of 0, the cosine from 0 to half a turn. None of targets that are all so small that
+// an angle is its sine.
+std::vector<TargetForm> angle_forms(std::span<const double> target);
 
 // y of what T(y) is; times `sign` where T does not keep it.
 Expression solved_for_target(TargetForm form, const Expression& formed, double sign);

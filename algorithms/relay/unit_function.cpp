@@ -20,6 +20,8 @@ double UnitFunction::value(double z) const {
       return elementary::exp(z);
     case Kind::tanh:
       return elementary::tanh(z);
+    case Kind::atan:
+      return elementary::atan(z);
     case Kind::logarithm:
       return elementary::log(1 + z);
     case Kind::power:
@@ -40,6 +42,8 @@ Expression UnitFunction::formula(const Expression& z) const {
       return function(Op::exp, z);
     case Kind::tanh:
       return function(Op::tanh, z);
+    case Kind::atan:
+      return function(Op::atan, z);
     case Kind::logarithm:
       return function(Op::log, constant(1) + z);
     case Kind::power:

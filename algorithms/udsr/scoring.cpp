@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "foundation/elementary.hpp"
 
@@ -46,6 +47,11 @@ Inverse invert_unary(Op op, double value) {
       return {value * value, 0.5 / value};
     case Op::tanh:
       return {elementary::atanh(value), 1 - value * value};
+    case Op::atan: {
+      if (std::abs(value) >= std::numbers::pi / 2) break;
+      const double x = elementary::tan(value);
+      return {x, 1 / (1 + x * x)};
+    }
     default:
       break;
   }

@@ -13,6 +13,7 @@ struct ScalarTable {
   double (*sin)(double);
   double (*cos)(double);
   double (*tanh)(double);
+  double (*atan)(double);
   double (*pow)(double, double);
 };
 

@@ -15,6 +15,7 @@ constexpr elementary::ScalarTable kScalarTable = {
     [](double x) { return sin(splat(x))[0]; },
     [](double x) { return cos(splat(x))[0]; },
     [](double x) { return tanh(splat(x))[0]; },
+    [](double x) { return atan(splat(x))[0]; },
     [](double x, double y) { return pow(splat(x), splat(y))[0]; },
 };
 

@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 # Names of functions in formulas; a column may not be called so.
-_TAKEN = {"exp", "log", "sqrt", "abs", "sgn", "sin", "cos", "tanh"}
+_TAKEN = {"exp", "log", "sqrt", "abs", "sgn", "sin", "cos", "tanh", "atan"}
 
 
 def formula_names(labels):

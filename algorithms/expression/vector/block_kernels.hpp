@@ -4,6 +4,8 @@
 // compiled for, and the table of them. Only kernels_<level>.cpp include this.
 #pragma once
 
+#include <utility>
+
 #include "algorithms/expression/vector/elementary_float.hpp"
 #include "algorithms/expression/vector/kernels.hpp"
 
@@ -130,6 +132,7 @@ inline V apply(V x) {
   if constexpr (Function == 6) return sin(x);
   if constexpr (Function == 7) return cos(x);
   if constexpr (Function == 8) return tanh(x);
+  if constexpr (Function == 9) return atan(x);
 }
 
 template <typename T, int Function>
@@ -253,15 +256,10 @@ constexpr KernelTable<T> make_kernel_table() {
   set_forms<T, Quotients, 1>(table);
   set_forms<T, Quotients, 2>(table);
   set_forms<T, Quotients, 3>(table);
-  table.function[0] = function_kernel<T, 0>;
-  table.function[1] = function_kernel<T, 1>;
-  table.function[2] = function_kernel<T, 2>;
-  table.function[3] = function_kernel<T, 3>;
-  table.function[4] = function_kernel<T, 4>;
-  table.function[5] = function_kernel<T, 5>;
-  table.function[6] = function_kernel<T, 6>;
-  table.function[7] = function_kernel<T, 7>;
-  table.function[8] = function_kernel<T, 8>;
+  [&table]<int... Function>(std::integer_sequence<int, Function...>) {
+    ((table.function[Function] = function_kernel<T, Function>), ...);
+  }
+  (std::make_integer_sequence<int, kFunctions>{});
   table.integer_power = integer_power_kernel<T>;
   table.power[kFormVV] = power_kernel<T, kFormVV>;
   table.power[kFormVS] = power_kernel<T, kFormVS>;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// exp, log, sin, cos, tanh and pow of a vector of floats: at most 2 ulp, special points and bits as
-// in foundation/elementary/functions.hpp, whose methods these are with shorter polynomials. Angles
-// beyond kLargeAngleF are reduced in double.
+// exp, log, sin, cos, tanh, atan and pow of a vector of floats: at most 2 ulp, special points and
+// bits as in foundation/elementary/functions.hpp, whose methods these are with shorter polynomials.
+// Angles beyond kLargeAngleF are reduced in double.
 #pragma once
 
 #include "foundation/elementary/functions.hpp"
@@ -177,7 +177,8 @@ inline F32 tanh(F32 x) {
 }
 
 // In double, rounded once more: what is left out of a float's range has no float either.
-inline F32 pow(F32 x, F32 y) {
+template <typename Function, typename... Arguments>
+inline F32 in_double(Function function, const Arguments&... arguments) {
   using Half = float __attribute__((vector_size(kLaneBytes / 2)));
   constexpr std::size_t kHalf = sizeof(Half);
   F32 result;
@@ -187,9 +188,17 @@ inline F32 pow(F32 x, F32 y) {
                                      F64);
     };
     store(reinterpret_cast<char*>(&result) + part * kHalf,
-          __builtin_convertvector(pow(wide(x), wide(y)), Half));
+          __builtin_convertvector(function(wide(arguments)...), Half));
   }
   return result;
+}
+
+inline F32 pow(F32 x, F32 y) {
+  return in_double([](F64 a, F64 b) { return pow(a, b); }, x, y);
+}
+
+inline F32 atan(F32 x) {
+  return in_double([](F64 a) { return atan(a); }, x);
 }
 
 }  // namespace

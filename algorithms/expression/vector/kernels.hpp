@@ -34,8 +34,8 @@ enum OuterForm : int {
   kOuterCount
 };
 
-inline constexpr int kBasicOps = 4;   // + - * /
-inline constexpr int kFunctions = 9;  // neg .. tanh, in the order of Op
+inline constexpr int kBasicOps = 4;    // + - * /
+inline constexpr int kFunctions = 10;  // neg .. atan, in the order of Op
 
 template <typename T>
 struct KernelTable {

@@ -67,7 +67,7 @@ function parseFormula(text) {
 }
 
 const kFolded = {sqrt: Math.sqrt, exp: Math.exp, log: Math.log, abs: Math.abs, sgn: Math.sign, sin: Math.sin,
-                 cos: Math.cos, tanh: Math.tanh};
+                 cos: Math.cos, tanh: Math.tanh, atan: Math.atan};
 
 // Constants folded where that gives a number that is finite.
 function folded(tree) {
@@ -163,7 +163,7 @@ function formulaToTex(text, options) {
     if (word === "exp") return `e^{${sum(arg)}}`;
     if (word === "sgn") return `\\operatorname{sgn}${inBrackets(sum(arg))}`;
     const wave = word === "sin" || word === "cos" ? periodOf(arg) : null;
-    return `\\${word}${inBrackets(wave || sum(arg))}`;
+    return `\\${word === "atan" ? "arctan" : word}${inBrackets(wave || sum(arg))}`;
   }
   function piece(tree) {
     if ("num" in tree) return tree.num < 0 ? inBrackets(number(tree.num)) : number(tree.num);

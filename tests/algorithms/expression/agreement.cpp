@@ -23,7 +23,7 @@ const std::vector<std::string> kNames = {"v", "g", "s"};
 const RandomFormulas& formulas_of_everything() {
   static const RandomFormulas kFormulas(
       {Op::add, Op::sub, Op::mul, Op::div, Op::pow, Op::neg, Op::exp, Op::log, Op::sqrt, Op::abs,
-       Op::sgn, Op::sin, Op::cos, Op::tanh},
+       Op::sgn, Op::sin, Op::cos, Op::tanh, Op::atan},
       kVariables, {.constant_probability = 0.4, .constant_scale = 2});
   return kFormulas;
 }

@@ -87,6 +87,9 @@ class Exact {
       case Op::cos:
         mpfr_cos(y, a, MPFR_RNDN);
         return;
+      case Op::atan:
+        mpfr_atan(y, a, MPFR_RNDN);
+        return;
       default:
         mpfr_tanh(y, a, MPFR_RNDN);
     }

@@ -60,7 +60,8 @@ std::vector<T> constants_of(const Expression& formula) {
 const RandomFormulas kArithmetic({Op::add, Op::sub, Op::mul, Op::div}, kVariables,
                                  {.constant_probability = 0.3});
 const RandomFormulas kEverything({Op::add, Op::sub, Op::mul, Op::div, Op::pow, Op::neg, Op::exp,
-                                  Op::log, Op::sqrt, Op::abs, Op::sgn, Op::sin, Op::cos, Op::tanh},
+                                  Op::log, Op::sqrt, Op::abs, Op::sgn, Op::sin, Op::cos, Op::tanh,
+                                  Op::atan},
                                  kVariables, {.constant_probability = 0.4});
 
 Expression draw(RandomStream& random) {

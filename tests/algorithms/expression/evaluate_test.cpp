@@ -53,7 +53,7 @@ struct Table {
 const RandomFormulas& full_formulas() {
   static const RandomFormulas kFormulas(
       {Op::add, Op::sub, Op::mul, Op::div, Op::pow, Op::neg, Op::exp, Op::log, Op::sqrt, Op::abs,
-       Op::sgn, Op::sin, Op::cos, Op::tanh},
+       Op::sgn, Op::sin, Op::cos, Op::tanh, Op::atan},
       kVariables, {.constant_probability = 0.4, .constant_scale = 2});
   return kFormulas;
 }

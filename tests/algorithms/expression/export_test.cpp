@@ -81,7 +81,8 @@ struct Case {
 bool is_exact(const Expression& formula) {
   for (std::size_t i = 0; i < formula.size(); ++i) {
     const Op op = formula.node(i).op;
-    if (op == Op::exp || op == Op::log || op == Op::sin || op == Op::cos || op == Op::tanh) {
+    if (op == Op::exp || op == Op::log || op == Op::sin || op == Op::cos || op == Op::tanh ||
+        op == Op::atan) {
       return false;
     }
     if (op != Op::pow) continue;

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kPrecision = 200;
 constexpr std::array kUnary = {Op::neg, Op::exp, Op::log, Op::sqrt, Op::abs,
-                               Op::sgn, Op::sin, Op::cos, Op::tanh};
+                               Op::sgn, Op::sin, Op::cos, Op::tanh, Op::atan};
 constexpr std::array kBinary = {Op::add, Op::sub, Op::mul, Op::div};
 
 class Mpfi {
@@ -66,6 +66,9 @@ void apply_exactly(Op op, mpfi_ptr result, mpfi_ptr a) {
       return;
     case Op::tanh:
       mpfi_tanh(result, a);
+      return;
+    case Op::atan:
+      mpfi_atan(result, a);
       return;
     default:
       mpfi_interv_si(result, mpfr_sgn(&a->left), mpfr_sgn(&a->right));

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::array kBinary = {Op::add, Op::sub, Op::mul, Op::div, Op::add, Op::mul};
 constexpr std::array kUnary = {Op::neg, Op::exp, Op::log, Op::sqrt, Op::abs,
-                               Op::sgn, Op::sin, Op::cos, Op::tanh};
+                               Op::sgn, Op::sin, Op::cos, Op::tanh, Op::atan};
 
 Expression random_leaf(RandomStream& random, const FormulaKind& kind) {
   if (random.chance(0.6)) return Expression::variable(random.below(kind.inputs));

@@ -115,6 +115,8 @@ inline double apply_function(Op op, double x) {
       return std::sin(x);
     case Op::cos:
       return std::cos(x);
+    case Op::atan:
+      return std::atan(x);
     default:
       return std::tanh(x);
   }

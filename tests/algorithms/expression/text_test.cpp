@@ -141,6 +141,8 @@ TEST(Parse, WritesOutWhatOperationsSay) {
       {"2*sinh(v)", "2*((exp(v) - exp(-v))/2)"},
       {"cosh(v)^2", "((exp(v) + exp(-v))/2)^2"},
       {"g - log2(v)", "g - log(v)/0.6931471805599453"},
+      {"asin(v)", "2*atan(v/(1 + sqrt(1 - v*v)))"},
+      {"acos(v)", "1.5707963267948966 - 2*atan(v/(1 + sqrt(1 - v*v)))"},
       {"1/log10(tan(v))", "1/(log(sin(v)/cos(v))/2.302585092994046)"},
   };
   for (const auto& [text, written_out] : forms) {

@@ -34,6 +34,27 @@ TEST(Relay, FindsALawOfManyInputsByFewerVariables) {
   EXPECT_THAT(result.note, ::testing::HasSubstr("explained by fewer variables"));
 }
 
+// Snell's law, a bead on a turning hoop, a heading, a lag; without the operation as before.
+TEST(Relay, FindsWhatAnAngleIsTheSineCosineOrTangentOf) {
+  const DrawnLaw laws[] = {
+      {"asin(n*sin(t)/m)", {{"n", 1, 1.4}, {"t", 0.1, 1.2}, {"m", 1.4, 2.4}}, 200},
+      {"acos(g/(w^2*r))", {{"g", 1, 5}, {"w", 3, 6}, {"r", 0.7, 2}}, 200},
+      {"atan(y/x)", {{"x", 0.5, 4}, {"y", -3, 3}}, 200},
+      {"0.7 - 1.3*atan(2.5*w)", {{"w", -3, 3}}, 200},
+  };
+  for (const DrawnLaw& law : laws) {
+    const FitResult result = run_fit(law.data(), "relay", with_evaluations(300'000'000));
+    EXPECT_LT(law.error_of(result.front[result.chosen]), 1e-9)
+        << print(result.front[result.chosen], law.names);
+    EXPECT_THAT(result.note, ::testing::HasSubstr("explained by fewer variables"));
+  }
+  FitOptions koza = with_evaluations(30'000'000);
+  koza.operators = "koza";
+  for (const Expression& formula : run_fit(laws[2].data(), "relay", koza).front) {
+    EXPECT_EQ(std::ranges::count(formula.nodes(), Op::atan, &Node::op), 0);
+  }
+}
+
 TEST(Relay, StaysWithItsMembersWhereNoStructureIsExact) {
   const DrawnLaw law("2*x + 0.5", {{"x", -1, 1}}, 60, 0.05);
   const FitResult result = run_fit(law.data(), "relay", with_evaluations(30'000'000));

@@ -109,7 +109,7 @@ TEST_F(PriorTest, ShiftsLogitsByArityAndLength) {
   // At the first place an input would end the formula too early; nothing discourages operations.
   EXPECT_EQ(logits[id("x1")], kForbidden);
   EXPECT_DOUBLE_EQ(logits[id("+")], -std::log(4.0));    // + - * /
-  EXPECT_DOUBLE_EQ(logits[id("exp")], -std::log(7.0));  // exp log sqrt abs sin cos tanh
+  EXPECT_DOUBLE_EQ(logits[id("exp")], -std::log(8.0));  // exp log sqrt abs sin cos tanh atan
   EXPECT_DOUBLE_EQ(logits[id("linear")], -std::log(4.0));
   // After a dozen tokens operations are discouraged: -(12 - 10)^2 / (2 * 5).
   Traversal late(library);

@@ -33,6 +33,7 @@ const std::array kFunctionsTested = {
     Function{Op::exp, mpfr_exp, -745, 709.7},   Function{Op::log, mpfr_log, 0, 1e3},
     Function{Op::sin, mpfr_sin, -1e4, 1e4},     Function{Op::cos, mpfr_cos, -1e4, 1e4},
     Function{Op::tanh, mpfr_tanh, -20.0, 20.0}, Function{Op::sqrt, mpfr_sqrt, 0, 1e6},
+    Function{Op::atan, mpfr_atan, -50, 50},
 };
 
 template <typename T>
@@ -208,7 +209,7 @@ TYPED_TEST(ElementaryFunctions, DivideAsIeeeSaysOnEveryLevel) {
 TYPED_TEST(ElementaryFunctions, KeepTheSignOfZeroAndTheExactPoints) {
   using T = TypeParam;
   for (const VectorLevel level : available_vector_levels()) {
-    for (const Op op : {Op::sin, Op::tanh, Op::sqrt}) {
+    for (const Op op : {Op::sin, Op::tanh, Op::atan, Op::sqrt}) {
       const std::vector<T> y = apply(op, level, std::vector<T>{T{0}, -T{0}});
       EXPECT_FALSE(std::signbit(y[0])) << op_name(op);
       EXPECT_TRUE(std::signbit(y[1])) << op_name(op);
