@@ -190,15 +190,16 @@ Expression parted_by_sign(const Expression& sum, const Expression& s) {
 // sin(x + k pi/2) and cos(x + k pi/2) are sin x and cos x, one for the other where k is odd.
 void take_quarter_turns_out(Op op, const Expression& argument, std::vector<Expression>& out) {
   constexpr double kQuarter = std::numbers::pi / 2;
+  constexpr int kMostQuarters = 400;  // a multiple of 4
   SumOfProducts sum = sum_of_products(argument, argument.root());
   const auto turned = std::ranges::find_if(sum, [](const SumTerm& t) { return t.factors.empty(); });
   if (sum.size() < 2 || turned == sum.end()) return;
   const double quarters = std::round(turned->coefficient / kQuarter);
   const bool is_exact = std::abs(turned->coefficient - quarters * kQuarter) <= kNegligible;
-  if (quarters == 0 || std::abs(quarters) > 8 || !is_exact) return;
+  if (quarters == 0 || std::abs(quarters) > kMostQuarters || !is_exact) return;
   sum.erase(turned);
   // A cosine is a sine that is a quarter ahead.
-  const int ahead = (static_cast<int>(quarters) + (op == Op::cos ? 1 : 0) + 8) % 4;
+  const int ahead = (static_cast<int>(quarters) + (op == Op::cos ? 1 : 0) + kMostQuarters) % 4;
   Expression wave = Expression::unary(ahead % 2 == 0 ? Op::sin : Op::cos, formula_of(sum));
   out.push_back(ahead < 2 ? std::move(wave) : Expression::unary(Op::neg, wave));
 }

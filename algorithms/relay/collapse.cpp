@@ -18,6 +18,8 @@ constexpr std::size_t kMostOuter = 14;
 constexpr double kHardlySmooth = 0.5;
 constexpr double kOffRationalOuter = 0.03;
 constexpr double kRational = 3e-4;
+constexpr int kMostLooks = 6;
+constexpr double kMuchSmoother = 0.6;  // than the look before
 constexpr double kOutliers = 0.85;  // the share of the rows that is kept by size of the difference
 
 double root_mean_square(const std::vector<double>& values) {
@@ -152,9 +154,11 @@ OuterFit fit_outer(const LogRows& rows, const Factors& factors, const Difference
   if (!budget.spend((p * p + 20) * target.size())) return fit;
   fit.outer.assign(factors.size(), 0.0);
   // Twice: where y passes through 0 its logarithm is not smooth, and the few rows there are left
-  // out of the second look.
-  for (int look = 0; look < 2; ++look) {
+  // out of the second look. Of a wave there are many, and each look sees more of the rest.
+  double before = HUGE_VAL;
+  for (int look = 0; look < 2 || (look < kMostLooks && fit.rms < kMuchSmoother * before); ++look) {
     if (target.size() < 4 * p) return {};
+    before = fit.rms;
     std::vector<const double*> pointers;
     for (const auto& column : columns) pointers.push_back(column.data());
     const LinearFit linear = solve_least_squares(pointers, target);

@@ -171,6 +171,18 @@ TEST(Collapse, FindsWhatALawDependsOn) {
   EXPECT_LT(found[0].roughness, 0.02);
 }
 
+// The logarithm is rough at four zeros: what is smooth lies between them.
+TEST(Collapse, FindsTheProductThatAWaveIsOf) {
+  const DrawnLaw law("i*cos(3.14159265*n*d/l)^2",
+                     {{"i", 1, 5}, {"n", 1, 1.6}, {"d", 0.2, 1}, {"l", 0.4, 0.8}}, 256);
+  Budget budget({});
+  const auto found = relay::find_collapses(*Rows(law), full(), 1500, 3, budget);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(print(found[0].inner, law.names), "n*d/l");
+  EXPECT_EQ(print(found[0].outer, law.names), "i");
+  EXPECT_TRUE(found[0].is_smooth);
+}
+
 TEST(Collapse, FindsNoneWhereTwoVariablesRemain) {
   const DrawnLaw law("a*tanh(c/50)*(2 + cos(d + 0.03*e))", kFive, 400);
   Budget budget({});
