@@ -6,7 +6,7 @@ with the operators of the operator set; deterministic in one process. pip instal
 from protocol import answer, library, read_request, version
 
 BINARY = ("+", "-", "*", "/", "^")
-UNARY = ("exp", "log", "sqrt", "abs", "sin", "cos", "tanh")
+UNARY = ("exp", "log", "sqrt", "abs", "sin", "cos", "tanh", "atan")
 
 
 def main():

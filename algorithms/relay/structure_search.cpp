@@ -19,6 +19,7 @@
 #include "algorithms/relay/relation_search.hpp"
 #include "algorithms/relay/scaled_function.hpp"
 #include "algorithms/relay/surrogate.hpp"
+#include "algorithms/relay/wave_sum.hpp"
 #include "algorithms/relay/waves.hpp"
 
 namespace tribench::relay {
@@ -170,7 +171,10 @@ void StructureSearch::search_waves() {
   const LogRows rows(answer_.rows(), kFewRows);
   Budget budget = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
   const OperatorSet& operators = context_.operators;
-  answer_.offer(find_root(rows, operators, Columns::with_factors, kColumns, budget), kByRoot);
+  answer_.offer(find_wave_sum(rows, operators, budget), kBySum);
+  if (!answer_.is_done()) {
+    answer_.offer(find_root(rows, operators, Columns::with_factors, kColumns, budget), kByRoot);
+  }
   if (!answer_.is_done()) {
     answer_.offer(find_relation(rows, operators, Columns::with_factors, kMoreColumns, budget),
                   kBySum);

@@ -40,14 +40,7 @@ struct Wave {
 // Of cosine times c and sine times s.
 void set_size_and_phase(Wave& wave, double c, double s) {
   wave.size = std::sqrt(c * c + s * s);
-  // Newton's steps from the quadrant's middle to where s sin f = c cos f.
-  double phase = (c < 0 ? -1 : 1) * (s < 0 ? 0.75 : 0.25) * std::numbers::pi;
-  for (int step = 0; step < 20 && wave.size > 0; ++step) {
-    const double sine = elementary::sin(phase);
-    const double cosine = elementary::cos(phase);
-    phase -= (s * sine - c * cosine) / (s * cosine + c * sine);
-  }
-  wave.phase = phase;
+  wave.phase = phase_of(c, s);
 }
 
 class WaveSearch {
@@ -261,6 +254,11 @@ class WaveSearch {
 };
 
 }  // namespace
+
+double phase_of(double cosine, double sine) {
+  if (sine == 0) return std::copysign(std::numbers::pi / 2, cosine);
+  return elementary::atan(cosine / sine) + (sine < 0 ? std::numbers::pi : 0);
+}
 
 std::optional<Expression> find_waves(const LogRows& rows, const OperatorSet& operators,
                                      Budget& budget) {

@@ -20,4 +20,7 @@ namespace tribench::relay {
 std::optional<Expression> find_waves(const LogRows& rows, const OperatorSet& operators,
                                      Budget& budget);
 
+// f, where cosine cos x + sine sin x is a multiple of sin(x + f).
+double phase_of(double cosine, double sine);
+
 }  // namespace tribench::relay

@@ -12,6 +12,7 @@
 #include "algorithms/relay/product_search.hpp"
 #include "algorithms/relay/relation_search.hpp"
 #include "algorithms/relay/scaled_function.hpp"
+#include "algorithms/relay/wave_sum.hpp"
 #include "algorithms/relay/waves.hpp"
 #include "tests/algorithms/relay/drawn_law.hpp"
 
@@ -248,6 +249,27 @@ TEST(Waves, FindsTwoWavesAndOneThatDecays) {
   const DrawnLaw law("cos(10*x) + cos(11*x)", {{"x", 0.3, 9}}, 200);
   Budget budget({});
   EXPECT_FALSE(relay::find_waves(*Rows(law), find_operator_set("paper"), budget));
+}
+
+TEST(WaveSum, FindsWavesWhoseSizesOtherInputsSet) {
+  for (const std::string text : {"a*sin(17*x + 0.6)", "a*sin(2*x) + b*cos(2*x) + 0.3*b",
+                                 "2.1 + (0.2 + 0.05*a)*cos(31*x - 1)", "b - 0.4*x + sin(5.5*x)"}) {
+    const DrawnLaw law(text, {{"x", 0, 3}, {"a", 1, 5}, {"b", -2, 2}}, 256);
+    Budget budget({});
+    const auto found = relay::find_wave_sum(*Rows(law), full(), budget);
+    ASSERT_TRUE(found) << text;
+    EXPECT_LT(law.error_of(*found), 1e-9) << text << ": " << print(*found, law.names);
+  }
+  // A chirp, a product that is none of the sizes, noise, and what a set of operators lacks.
+  for (const std::string text : {"a*sin(x^2)", "a*b*sin(17*x)"}) {
+    const DrawnLaw law(text, {{"x", 0, 3}, {"a", 1, 5}, {"b", -2, 2}}, 256);
+    Budget budget({});
+    EXPECT_FALSE(relay::find_wave_sum(*Rows(law), full(), budget)) << text;
+  }
+  const DrawnLaw law("a*sin(17*x)", {{"x", 0, 3}, {"a", 1, 5}}, 256, 0.01);
+  Budget budget({});
+  EXPECT_FALSE(relay::find_wave_sum(*Rows(law), full(), budget));
+  EXPECT_FALSE(relay::find_wave_sum(*Rows(law), find_operator_set("paper"), budget));
 }
 
 }  // namespace
