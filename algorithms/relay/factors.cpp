@@ -70,6 +70,7 @@ class List {
     if (!rows_.is_of_order_one(i) || !rows_.is_of_order_one(j)) return;
     add(FactorKind::wave, function(Op::cos, a - b), {i, j});
     add(FactorKind::other, function(Op::sin, a - b), {i, j});
+    add(FactorKind::decay, function(Op::exp, -(a * b)), {i, j});
     add(FactorKind::angle_sum, function(Op::cos, a + b), {i, j});
     add(FactorKind::angle_sum, function(Op::sin, a + b), {i, j});
     add(FactorKind::angle_sum, function(Op::sin, a - b), {i, j});

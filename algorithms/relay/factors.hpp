@@ -24,6 +24,7 @@ enum class FactorKind {
   power,        // x^y
   logarithm,    // of a positive input
   exponential,  // of an input of order one
+  decay,        // exp(-x y) of two of them
   other,        // 1 + x, tanh x, ...
 };
 

@@ -69,15 +69,15 @@ class Search {
          std::size_t most_beside)
       : rows_(rows), operators_(operators), signs_(signs_of_target(rows)) {
     if (columns == Columns::with_factors) {
-      factors_ = known_factors(
-          rows, operators,
-          {FactorKind::wave, FactorKind::angle_sum, FactorKind::difference, FactorKind::logarithm});
+      factors_ = known_factors(rows, operators,
+                               {FactorKind::wave, FactorKind::angle_sum, FactorKind::decay,
+                                FactorKind::difference, FactorKind::logarithm});
       const std::size_t n = rows.inputs().size();
       if (n == kFewInputs + 1) {
-        factors_ =
-            known_factors(rows, operators,
-                          {FactorKind::wave, FactorKind::angle_sum, FactorKind::wave_product,
-                           FactorKind::difference, FactorKind::power, FactorKind::logarithm});
+        factors_ = known_factors(
+            rows, operators,
+            {FactorKind::wave, FactorKind::angle_sum, FactorKind::wave_product, FactorKind::decay,
+             FactorKind::difference, FactorKind::power, FactorKind::logarithm});
       } else if (n <= kFewInputs) {
         factors_ = known_factors(
             rows, operators,

@@ -96,6 +96,7 @@ void StructureSearch::search() {
   context_.budget.settle(part);
   find_parts(rows);
   const bool has_parts = parts_ && parts_->error < kSurelyExact;
+  search_wave_sum();
   if (!has_parts) search_likely();
   if (is_noise_left_) return;
   if (has(kReductions)) {
@@ -107,6 +108,15 @@ void StructureSearch::search() {
   if (round_ == 0 && has(kSums) && !answer_.is_done()) search_waves();
   if (simpler && !answer_.is_done()) search_by_solver(*simpler);
   if (simpler) search_parts();
+}
+
+// Before the rest is judged: a fast wave looks like noise.
+void StructureSearch::search_wave_sum() {
+  const LogRows rows(answer_.rows(), kFewRows);
+  if (round_ > 0 || answer_.is_done() || rows.rows() == 0 || !has(kSums)) return;
+  Budget budget = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
+  answer_.offer(find_wave_sum(rows, context_.operators, budget), kBySum);
+  context_.budget.settle(budget);
 }
 
 void StructureSearch::search_likely() {
@@ -171,10 +181,7 @@ void StructureSearch::search_waves() {
   const LogRows rows(answer_.rows(), kFewRows);
   Budget budget = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
   const OperatorSet& operators = context_.operators;
-  answer_.offer(find_wave_sum(rows, operators, budget), kBySum);
-  if (!answer_.is_done()) {
-    answer_.offer(find_root(rows, operators, Columns::with_factors, kColumns, budget), kByRoot);
-  }
+  answer_.offer(find_root(rows, operators, Columns::with_factors, kColumns, budget), kByRoot);
   if (!answer_.is_done()) {
     answer_.offer(find_relation(rows, operators, Columns::with_factors, kMoreColumns, budget),
                   kBySum);

@@ -66,6 +66,7 @@ class StructureSearch {
   void find_angles(Budget& budget);
   void find_products_and_sums(const LogRows& rows, Budget& budget);
   void search_waves();
+  void search_wave_sum();
   // A sum or a product of parts without a common input.
   void find_parts(const LogRows& rows);
   void search_parts();

@@ -19,7 +19,7 @@ namespace {
 
 using namespace build;
 
-constexpr std::size_t kMostWaveInputs = 5;
+constexpr std::size_t kMostWaveInputs = 4;
 constexpr std::size_t kRowsOfAScan = 160;
 constexpr int kGridFrequencies = 400;  // a quarter of a wave over the range apart
 constexpr std::size_t kGridTried = 3;  // of the grid's best

@@ -7,7 +7,7 @@
 // One regression for every frequency of a grid as fine as the rows can tell, on some of the rows;
 // the best are refined by golden sections, and what is exact loses the terms that it does without.
 // Finds nothing where there is noise (product_search.hpp says why). Cost: some 30 ms for two
-// inputs, 0.2 s for five; more are not looked at.
+// inputs, 0.1 s for four; more are not looked at.
 // Source of the grid: Lomb 1976, Scargle 1982; of regressions over it: generalised periodograms,
 // Zechmeister and Kuerster 2009.
 #pragma once

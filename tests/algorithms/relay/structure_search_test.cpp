@@ -109,6 +109,18 @@ TEST(RelationSearch, FindsSumsWithCosinesOnlyWhereTheyAreAskedFor) {
   EXPECT_LT(law.error_of(*found), 1e-9) << print(*found, law.names);
 }
 
+// A logistic curve and two decays, rates and times among the inputs.
+TEST(RelationSearch, FindsDecaysOfProducts) {
+  for (const std::string text : {"k/(1 + a*exp(-r*t))", "k*exp(-r*t) + 2*a"}) {
+    const DrawnLaw law(text, {{"k", 1, 9}, {"a", 1, 9}, {"r", 0.2, 2}, {"t", 0, 5}}, 300);
+    Budget budget({});
+    const auto found =
+        relay::find_relation(*Rows(law), full(), relay::Columns::with_factors, 1500, budget);
+    ASSERT_TRUE(found) << text;
+    EXPECT_LT(law.error_of(*found), 1e-9) << print(*found, law.names);
+  }
+}
+
 TEST(RelationSearch, FindsSumsOfProductsOfWaves) {
   const DrawnLaw law("sin(a)*sin(b) + cos(a)*cos(b)*cos(d)",
                      {{"a", -1.5, 1.5}, {"b", -1.5, 1.5}, {"d", -3, 3}}, 200);
