@@ -12,6 +12,7 @@
 
 #include "algorithms/expression/build.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
+#include "algorithms/relay/golden_section.hpp"
 #include "algorithms/relay/target_forms.hpp"
 #include "algorithms/relay/unit_function.hpp"
 #include "foundation/elementary.hpp"
@@ -217,17 +218,8 @@ class ScaledFunctionSearch {
       }
       return left_of(relative, f);
     };
-    double low = combination.scale / kScaleStep;
-    double high = combination.scale * kScaleStep;
-    for (int k = 0; k < kNarrowings; ++k) {
-      const double part = (high - low) / std::numbers::phi;
-      if (left_at(high - part) < left_at(low + part)) {
-        high = low + part;
-      } else {
-        low = high - part;
-      }
-    }
-    const double scale = (low + high) / 2;
+    const double scale = least_by_golden_sections(left_at, combination.scale / kScaleStep,
+                                                  combination.scale * kScaleStep, kNarrowings);
     const double left = left_at(scale);
     if (left < combination.left) {
       combination.scale = scale;

@@ -10,6 +10,7 @@
 #include "algorithms/expression/build.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/fitting/linear_least_squares.hpp"
+#include "algorithms/relay/golden_section.hpp"
 #include "algorithms/relay/target_forms.hpp"
 #include "algorithms/relay/waves.hpp"
 #include "foundation/elementary.hpp"
@@ -102,17 +103,7 @@ class WaveSumSearch {
 
   double refined(double frequency) const {
     const auto left_at = [&](double f) { return regression(f, scanned_).sum_squares; };
-    double low = frequency - step();
-    double high = frequency + step();
-    for (int k = 0; k < kSections; ++k) {
-      const double part = (high - low) / std::numbers::phi;
-      if (left_at(high - part) < left_at(low + part)) {
-        high = low + part;
-      } else {
-        low = high - part;
-      }
-    }
-    return (low + high) / 2;
+    return least_by_golden_sections(left_at, frequency - step(), frequency + step(), kSections);
   }
 
   std::optional<Expression> exact(double frequency) const {
