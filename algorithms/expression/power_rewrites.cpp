@@ -16,9 +16,7 @@ namespace {
 using build::operator*;
 
 Op op_of(const Expression& formula) { return formula.node(formula.root()).op; }
-bool is_a_sum(const Expression& formula) {
-  return op_of(formula) == Op::add || op_of(formula) == Op::sub;
-}
+bool is_a_sum(const Expression& formula) { return is_sum(op_of(formula)); }
 bool is_exp(const TermFactor& factor) { return op_of(factor.base) == Op::exp; }
 Expression inside_of(const Expression& formula) {
   return subtree(formula, formula.last_child(formula.root()));

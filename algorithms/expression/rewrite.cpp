@@ -18,7 +18,6 @@
 namespace tribench {
 namespace {
 
-bool is_sum(Op op) { return op == Op::add || op == Op::sub; }
 bool is_product(Op op) { return op == Op::mul || op == Op::div; }
 
 bool is_function(const Expression& formula, Op op) { return formula.node(formula.root()).op == op; }

@@ -35,7 +35,7 @@ void add_factors(const Expression& formula, std::size_t i, int power, SumTerm& t
 
 void add_terms(const Expression& formula, std::size_t i, double sign, SumOfProducts& sum) {
   const Node& node = formula.node(i);
-  if (node.op == Op::add || node.op == Op::sub) {
+  if (is_sum(node.op)) {
     add_terms(formula, formula.left_child(i), sign, sum);
     add_terms(formula, formula.last_child(i), node.op == Op::add ? sign : -sign, sum);
     return;

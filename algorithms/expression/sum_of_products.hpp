@@ -13,6 +13,9 @@
 
 namespace tribench {
 
+// Whether the operation joins terms.
+constexpr bool is_sum(Op op) { return op == Op::add || op == Op::sub; }
+
 struct TermFactor {
   Expression base;
   int power = 1;  // not 0

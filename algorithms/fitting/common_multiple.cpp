@@ -8,6 +8,7 @@
 #include "algorithms/expression/apply.hpp"
 #include "algorithms/expression/build.hpp"
 #include "algorithms/expression/edit.hpp"
+#include "algorithms/expression/sum_of_products.hpp"
 #include "algorithms/fitting/named_values.hpp"
 
 namespace tribench {
@@ -17,8 +18,6 @@ using namespace build;
 
 constexpr double kNearAName = 1e-6;  // of the value, and of 1: large whole numbers are near to all
 constexpr double kNextToNothing = 1e-9;
-
-bool is_a_sum(Op op) { return op == Op::add || op == Op::sub; }
 
 bool is_nearly_named(double c) {
   const auto is_near = [c](double name) {
@@ -36,7 +35,7 @@ class Multiple {
   Expression of(std::size_t i) {
     const Node& node = formula_.node(i);
     if (node.is_constant()) return number(node.value);
-    if (is_a_sum(node.op)) {
+    if (is_sum(node.op)) {
       Expression left = of(formula_.left_child(i));
       return Expression::binary(node.op, left, of(formula_.last_child(i)));
     }
@@ -63,7 +62,7 @@ class Multiple {
 
   bool holds_a_number(std::size_t i) const {
     const Op op = formula_.node(i).op;
-    if (op == Op::constant || is_a_sum(op)) return true;
+    if (op == Op::constant || is_sum(op)) return true;
     if (op == Op::neg) return holds_a_number(formula_.last_child(i));
     if (op == Op::mul) {
       return holds_a_number(formula_.left_child(i)) || holds_a_number(formula_.last_child(i));
@@ -104,9 +103,9 @@ Expression with_number_out(const Expression& formula, std::size_t i, double k,
 std::vector<Expression> with_common_multiple_out(const Expression& formula) {
   std::vector<Expression> found;
   for (std::size_t i = 0; i < formula.size(); ++i) {
-    if (!is_a_sum(formula.node(i).op)) continue;
+    if (!is_sum(formula.node(i).op)) continue;
     const std::size_t parent = parent_of(formula, i);
-    if (parent < formula.size() && is_a_sum(formula.node(parent).op)) continue;
+    if (parent < formula.size() && is_sum(formula.node(parent).op)) continue;
     Multiple itself(formula, 1);
     itself.of(i);
     if (std::ranges::all_of(itself.numbers(), is_nearly_named)) continue;
