@@ -219,6 +219,23 @@ Response notch(RandomStream random) {
              const Instant& now, double) { return bump(now.joint.position_rad - centre, width); };
 }
 
+// A tool that every second to fifth movement carries, and nobody wrote it down.
+Response load_by_movement(RandomStream random) {
+  const double share = random.uniform(0.2, 0.6);
+  return [share, first = random.uniform()](const Instant& now, double) {
+    const double turns = share * (static_cast<double>(now.movement) + first);
+    const bool is_loaded = std::floor(turns + share) > std::floor(turns);
+    return is_loaded ? elementary::sin(now.joint.position_rad + now.gravity_phase_rad) : 0;
+  };
+}
+
+// Friction that nothing recorded explains and that is another one in every movement.
+Response friction_by_movement(RandomStream random) {
+  return [random](const Instant& now, double) {
+    return now.sign() * random.split(now.movement).normal();
+  };
+}
+
 // Of the speed, the load, the acceleration and the other joint.
 std::vector<Cause> causes_of_speed_and_load() {
   using enum Role;
@@ -365,6 +382,24 @@ std::vector<Cause> later_causes() {
            {Role::position},
            true,
            friction_ripple,
+           false,
+           false},
+          {"load_by_movement",
+           "G sin(q) in some of the movements, in no library",
+           {},
+           {"payload", "power_quadrant_gain"},
+           {Role::movement},
+           false,
+           load_by_movement,
+           false,
+           false},
+          {"friction_by_movement",
+           "another s in every movement, in no library",
+           {},
+           {},
+           {Role::movement},
+           true,
+           friction_by_movement,
            false,
            false}};
 }

@@ -23,7 +23,8 @@ inline constexpr double kGearRatio = 100;
 inline constexpr double kCoolest_degc = 24;
 
 struct Instant {
-  double part = 0;  // of the campaign's time, 0 to 1
+  double part = 0;           // of the campaign's time, 0 to 1
+  std::size_t movement = 0;  // of the campaign
   MotionState joint;
   MotionState other;
   double gravity_nm = 0;

@@ -45,6 +45,7 @@ Dataset run_campaign(const SimulatedCase& wanted, const std::vector<Movement>& m
       const double t_s = static_cast<double>(i) * kStep_s;
       Instant now = instant_of(movement, t_s);
       now.part = (start_s + t_s) / campaign_s;
+      now.movement = m;
       thermal.advance(std::abs(now.joint.velocity_rad_s), kStep_s);
       now.oil_degc = thermal.oil_degc();
       const double value = response ? response(now, kStep_s) : 0;
