@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <regex>
 #include <utility>
@@ -22,6 +23,7 @@ constexpr double kVerySure = 0.95;
 constexpr double kSure = 0.8;
 constexpr std::size_t kNamedEffects = 3;  // in the headline
 constexpr std::size_t kNamedSizes = 5;    // that would have been seen
+constexpr std::size_t kNamedMovements = 3;
 
 bool known(double value) { return std::isfinite(value); }
 
@@ -132,6 +134,10 @@ std::vector<std::string> doubts_of(const LoopRecord& record, const LoopEffect& e
     all.push_back("The movements that were left out do not confirm it.");
   } else if (effect.provisional && !record.leftover.inputs.empty()) {
     all.push_back("It shares an input with what is still unexplained.");
+  } else if (effect.provisional && !record.leftover.varying.term.empty()) {
+    all.push_back(
+        fmt::format("It may stand for {}, which seems to differ from movement to movement.",
+                    varying_term(record)));
   }
   if (effect.another_shape) all.push_back("This cause, but another curve than those known.");
   if (effect.few_movements) all.push_back("Few movements carry it: record more.");
@@ -225,6 +231,29 @@ std::string leftover_inputs(const LoopRecord& record) {
   return listed(names);
 }
 
+bool differs_by_movement(const LoopRecord& record) {
+  return !record.leftover.varying.term.empty() && !record.leftover.inputs.empty();
+}
+
+// "the payload differs from movement to movement".
+std::string varying_clause(const LoopRecord& record) {
+  return fmt::format("the {} differs from movement to movement", varying_term(record));
+}
+
+// Where it differs most: "'m7' (1.2 N m), 'm9' (-0.8 N m)".
+std::string varying_movements(const LoopRecord& record) {
+  std::vector<LoopVarying::OfMovement> movements = record.leftover.varying.movements;
+  std::ranges::stable_sort(movements, std::greater{},
+                           [](const LoopVarying::OfMovement& one) { return std::abs(one.torque); });
+  std::vector<std::string> texts;
+  for (const LoopVarying::OfMovement& one : movements) {
+    if (texts.size() == kNamedMovements) break;
+    texts.push_back(
+        fmt::format("'{}' ({})", one.movement, amount(torque_unit(record), one.torque)));
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
 std::string headline_of(const LoopRecord& record) {
   switch (record.verdict) {
     case LoopVerdict::cannot_tell:
@@ -241,6 +270,9 @@ std::string headline_of(const LoopRecord& record) {
       break;
   }
   const std::string inputs = leftover_inputs(record);
+  if (record.effects.empty() && differs_by_movement(record)) {
+    return fmt::format("Something is missing that no column tells: {}.", varying_clause(record));
+  }
   if (record.effects.empty()) {
     return inputs.empty() ? "Something is missing that is none of the known effects."
                           : fmt::format(
@@ -255,6 +287,11 @@ std::string headline_of(const LoopRecord& record) {
 std::string leftover_of(const LoopRecord& record) {
   const std::string inputs = leftover_inputs(record);
   if (record.verdict != LoopVerdict::unknown || inputs.empty()) return {};
+  if (differs_by_movement(record)) {
+    return fmt::format(
+        "Still unexplained: {}, and no column says why; most in {}. It tells {} of what is left.",
+        varying_clause(record), varying_movements(record), percent(record.leftover.varying.share));
+  }
   // An effect whose parameters are not physical fits there, and so leaves nothing to be tested.
   if (record.leftover.p > record.alpha_leftover) {
     return fmt::format(
@@ -296,6 +333,10 @@ const LoopCard* least_sure(const LoopRecord& record, const std::vector<LoopCard>
 std::string next_of(const LoopRecord& record, const LoopWords& words) {
   if (record.verdict == LoopVerdict::cannot_tell) {
     return words.needed.empty() ? "Record more movements." : "Record " + words.needed[0] + '.';
+  }
+  if (differs_by_movement(record)) {
+    return "Say what was changed between the movements (load, grease, temperature) in a column, or "
+           "diagnose each kind alone (--where COLUMN=VALUE).";
   }
   if (!record.next_movements.empty()) {
     return fmt::format("Record {}: there the explanations left differ most.",
@@ -410,6 +451,11 @@ LoopUnit torque_unit(const LoopRecord& record) {
 std::string family_title(const LoopRecord& record, std::string_view family) {
   const LoopFamily* known_family = find_family(record, family);
   return known_family == nullptr ? spaced(std::string(family)) : known_family->title;
+}
+
+std::string varying_term(const LoopRecord& record) {
+  const std::string& term = record.leftover.varying.term;
+  return term == "coulomb_friction" ? "Coulomb friction" : spaced(term);
 }
 
 std::string plain_text(const LoopRecord& record, std::string text) {

@@ -65,6 +65,9 @@ std::string target_words(const LoopRecord& record);
 
 // "load_coulomb" -> "load-dependent Coulomb friction".
 std::string family_title(const LoopRecord& record, std::string_view family);
+// What differs from movement to movement: "Coulomb friction", "payload"; empty where nothing
+// does.
+std::string varying_term(const LoopRecord& record);
 // A text of the diagnosis without its codes: families by their titles, experiments by what they
 // ask for, options and snake_case left out.
 std::string plain_text(const LoopRecord& record, std::string text);

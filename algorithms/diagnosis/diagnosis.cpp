@@ -12,6 +12,7 @@
 #include "algorithms/diagnosis/rich_model.hpp"
 #include "algorithms/diagnosis/search.hpp"
 #include "algorithms/diagnosis/unknown_ripple.hpp"
+#include "algorithms/diagnosis/varying_terms.hpp"
 #include "algorithms/inference/bursts.hpp"
 #include "foundation/error.hpp"
 #include "foundation/suggestion.hpp"
@@ -119,11 +120,8 @@ void find_events(FirstNoise& out, const Observations& data, std::size_t first_he
   }
   for (const Burst& burst : bursts) {
     const int movement = data.movement[burst.begin];
-    out.events.push_back({movement,
-                          data.movement_names.empty()
-                              ? std::to_string(movement)
-                              : data.movement_names[static_cast<std::size_t>(movement)],
-                          data.time[burst.begin], data.time[burst.end - 1], burst.peak});
+    out.events.push_back({movement, data.name_of(movement), data.time[burst.begin],
+                          data.time[burst.end - 1], burst.peak});
   }
   out.masked = rows_about(bursts, data.movement);
 }
@@ -176,7 +174,9 @@ Diagnosis diagnose_canonical(const Observations& data, const std::vector<int>& h
   out.movements = clusters.movements.size();
   const RandomStream own = random.split("search");
   const Campaign campaign(train, out.families, options, clusters, own.split("flips"));
-  write_findings(out, search(base, campaign, own, known), campaign);
+  SearchResult found = search(base, campaign, own, known);
+  find_varying_term(found, train_rich, campaign, own.split("random slopes"));
+  write_findings(out, found, campaign);
   return out;
 }
 

@@ -103,11 +103,29 @@ struct RepeatingFinding {
   double mean_square = 0;  // of its torque, told on movements left out
 };
 
+// A term whose coefficient differs from movement to movement though no signal says why.
+struct VaryingFinding {
+  struct OfMovement {
+    int movement = 0;
+    std::string movement_name;
+    // Root mean square of its own part of the term, with the sign of the coefficient where the term
+    // has but one; in the target's unit.
+    double torque = 0;
+  };
+  std::string term;  // "coulomb_friction", "viscous_friction" or a family
+  double share = 0;  // of what is left about the movements' means: what it foretells of it
+  std::vector<OfMovement> movements;
+};
+
 struct LeftoverFinding {
   double p = 1;
   double gain = 0;  // nats that the best function of its inputs adds on movements left out
-  std::vector<std::string> inputs;   // role names; empty where nothing is left
-  std::vector<std::string> signals;  // the same as signals
+  // Role names, or "movement" where it lives in no signal (varying); empty where nothing is left.
+  std::vector<std::string> inputs;
+  std::vector<std::string> signals;  // the same as signals; empty beside "movement"
+  // Without inputs it is a doubt: too few movements to be sure, too much to be passed over.
+  std::optional<VaryingFinding> varying;
+  bool is_in_doubt() const { return varying && inputs.empty(); }
   std::optional<RepeatingFinding> repeating;
   std::vector<std::string> proxies_removed;
   std::vector<CurvePoint> curve;  // over the one input

@@ -193,7 +193,9 @@ std::vector<std::string> roles_read(std::size_t family, const LoopModel& model,
 bool shares_a_signal(std::size_t family, const LoopModel& model, const LeftoverFinding& leftover,
                      const Observations& data) {
   return std::ranges::any_of(signals_read(model, family, data), [&](const Signal* signal) {
-    return std::ranges::count(leftover.signals, signal->name) > 0;
+    // What differs from movement to movement may pass for something that follows their order.
+    const bool is_slow = signal->role == Role::time || signal->role == Role::temperature;
+    return std::ranges::count(leftover.signals, signal->name) > 0 || (leftover.varying && is_slow);
   });
 }
 
@@ -209,9 +211,21 @@ void veto(Diagnosis& out, EffectFinding& finding, std::size_t family, const Camp
   if (out.leftover.inputs.empty()) out.leftover.inputs = {"velocity"};
 }
 
+// What is found may stand for what too few movements tell to differ between them.
+void doubt_effects(Diagnosis& out) {
+  if (!out.leftover.is_in_doubt()) return;
+  for (EffectFinding& effect : out.effects) {
+    effect.provisional = true;
+    effect.notes.push_back(
+        fmt::format("may stand for '{}', which seems to differ from movement to movement",
+                    out.leftover.varying->term));
+  }
+}
+
 Verdict verdict_of(const Diagnosis& diagnosis, bool leftover_tested) {
   if (!diagnosis.leftover.inputs.empty()) return Verdict::unknown;
   if (!diagnosis.effects.empty()) return Verdict::effects;
+  if (diagnosis.leftover.is_in_doubt()) return Verdict::cannot_tell;
   const bool tested = leftover_tested || !diagnosis.candidates.empty();
   return tested ? Verdict::none : Verdict::cannot_tell;
 }
@@ -219,6 +233,14 @@ Verdict verdict_of(const Diagnosis& diagnosis, bool leftover_tested) {
 // What would make the data tell.
 std::vector<std::string> needed_to_tell(const Diagnosis& diagnosis) {
   std::vector<std::string> needed;
+  if (const auto& varying = diagnosis.leftover.varying) {
+    needed.push_back(
+        fmt::format("more movements: '{}' seems to differ from one to the next ({:.0f} % of what "
+                    "is left), which "
+                    "{} cannot tell; or a column that says what was changed",
+                    varying->term, 100 * varying->share, diagnosis.movements));
+    return needed;
+  }
   needed.push_back(fmt::format(
       "{} stretches of movement that say something of their own: here are {}, since the residual "
       "keeps its sign for {:.0f} rows; record {} times as much",
@@ -255,6 +277,7 @@ void write_findings(Diagnosis& out, const SearchResult& result, const Campaign& 
   for (std::size_t k = 0; k < state.found.size() && campaign.options.physical_vetoes; ++k) {
     veto(out, out.effects[k], state.found[k].family, campaign);
   }
+  doubt_effects(out);
   out.verdict = verdict_of(out, result.leftover_tested);
   if (out.verdict == Verdict::cannot_tell) out.needed = needed_to_tell(out);
 }

@@ -17,9 +17,6 @@
 namespace tribench::loop {
 namespace {
 
-// Of what is left, by root mean square a tenth of it: what has no name has nothing else to show.
-constexpr double kLeastWorth = 0.01;
-
 constexpr double kSmootherRidge = 0.02;  // of the mean diagonal (specification, 3.8)
 // Of what an effect adds: what adds less in the same inputs is its shape.
 constexpr double kShapeShare = 0.1;
@@ -216,8 +213,7 @@ std::optional<LeftoverSearch::Home> LeftoverSearch::best_place(
 
 // Less of the squared error than what is left over has to be worth.
 bool LeftoverSearch::is_next_to_nothing(double worth) {
-  const std::vector<double> found = worths(model().model, state().families(), campaign_);
-  return worth < std::max(kLeastWorth, least_worth(found, campaign_.options));
+  return worth < least_worth_of_leftover(model().model, state().families(), campaign_);
 }
 
 void LeftoverSearch::locate(const Home& home) {

@@ -10,11 +10,11 @@ namespace {
 
 constexpr std::size_t kAtomsOfFamily = 4;
 
-// The base's linear terms and the library, without what differs by direction or stands beside
-// another. Neighbours on a grid of shapes say nearly the same: some of them will do.
-std::vector<Expression> rich_columns(const Observations& data, const BaseModel& base,
-                                     const std::vector<EffectFamily>& families,
-                                     const std::vector<double>& gear_ratios) {
+}  // namespace
+
+Eigen::MatrixXd rich_columns(const Observations& data, const BaseModel& base,
+                             const std::vector<EffectFamily>& families,
+                             const std::vector<double>& gear_ratios) {
   std::vector<Expression> formulas = base.linear_terms;
   for (std::size_t f = 0; f < families.size(); ++f) {
     std::vector<std::string> missing;
@@ -27,10 +27,8 @@ std::vector<Expression> rich_columns(const Observations& data, const BaseModel& 
       formulas.insert(formulas.end(), atoms[k].columns.begin(), atoms[k].columns.end());
     }
   }
-  return formulas;
+  return evaluate_columns(formulas, data);
 }
-
-}  // namespace
 
 Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>& train_rows,
                               const BaseModel& base, const std::vector<EffectFamily>& families,
@@ -45,8 +43,7 @@ Eigen::VectorXd rich_residual(const Observations& data, const std::vector<char>&
   for (std::size_t i = 0; i < data.rows(); ++i) {
     if (train_rows[i] != 0) train.push_back(static_cast<Eigen::Index>(i));
   }
-  return robust_ridge_residual(
-      evaluate_columns(rich_columns(data, base, families, options.gear_ratios), data), y, train);
+  return robust_ridge_residual(rich_columns(data, base, families, options.gear_ratios), y, train);
 }
 
 }  // namespace tribench::loop

@@ -27,7 +27,9 @@ constexpr std::array kRules = {
     Rule{"last_resort", "rare effects are looked for where the usual ones leave something over"},
     Rule{"unknown_ripple", "waves of any length in the position are looked for in the leftover"},
     Rule{"local_defect",
-         "ripples and loads that one bump in the position predicts better are dropped"}};
+         "ripples and loads that one bump in the position predicts better are dropped"},
+    Rule{"random_slopes",
+         "what differs from movement to movement is told though no signal says why"}};
 
 }  // namespace
 

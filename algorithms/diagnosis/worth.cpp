@@ -10,6 +10,8 @@ namespace {
 
 // No more than the error of the other effects' shapes may be (docs/decisions.md).
 constexpr double kSlight = 0.03;
+// Of what is left, by root mean square a tenth of it: what has no name has nothing else to show.
+constexpr double kLeastWorthOfLeftover = 0.01;
 
 double squared_error(const LoopModel& model, const Campaign& campaign,
                      const Eigen::MatrixXd& columns = {}, double ridge = 0) {
@@ -39,6 +41,12 @@ std::vector<double> worths(const LoopModel& model, const std::vector<std::size_t
 double least_worth(const std::vector<double>& beside, const DiagnosisOptions& options) {
   if (!options.has("slight") || beside.empty()) return -1;
   return kSlight * std::min(1.0, std::ranges::max(beside));
+}
+
+double least_worth_of_leftover(const LoopModel& model, const std::vector<std::size_t>& families,
+                               const Campaign& campaign) {
+  const std::vector<double> found = worths(model, families, campaign);
+  return std::max(kLeastWorthOfLeftover, least_worth(found, campaign.options));
 }
 
 double worth_of(const Eigen::MatrixXd& columns, const LoopModel& model, const Campaign& campaign,

@@ -22,6 +22,10 @@ std::vector<double> worths(const LoopModel& model, const std::vector<std::size_t
 // largest of them. -1 beside none, where everything counts.
 double least_worth(const std::vector<double>& beside, const DiagnosisOptions& options);
 
+// Less is next to nothing of what no family explains, beside a model with these.
+double least_worth_of_leftover(const LoopModel& model, const std::vector<std::size_t>& families,
+                               const Campaign& campaign);
+
 // By how much columns beside the model make the squared error smaller, as a share. ridge: on them.
 double worth_of(const Eigen::MatrixXd& columns, const LoopModel& model, const Campaign& campaign,
                 double ridge = 0);

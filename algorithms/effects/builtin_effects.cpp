@@ -158,6 +158,7 @@ EffectFamily payload() {
                  {}};
   f.atoms = {{{"sin(q)", "cos(q)"}, {"sine", "cosine"}}};
   f.angular = true;
+  f.changeable = true;
   f.known_aliases = {{"output_ripple (once a turn)", "a known payload (R3)"}};
   f.separate_by = {"R3"};
   return f;
@@ -349,6 +350,7 @@ EffectFamily inertia() {
                  "rigid-body mechanics",
                  {}};
   f.atoms = {{{"a"}, {"inertia"}}};
+  f.changeable = true;
   f.known_aliases = {{"lag of viscous friction", "change the inertia with a payload (R3, R4)"}};
   f.separate_by = {"R4", "R3"};
   return f;

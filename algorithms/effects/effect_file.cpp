@@ -239,6 +239,7 @@ EffectFamily read_family(const Entry& entry) {
   family.origin = entry.find<std::string>("origin").value_or("");
   family.title = entry.find<std::string>("title").value_or("");
   family.angular = entry.find<bool>("angular").value_or(false);
+  family.changeable = entry.find<bool>("changeable").value_or(false);
   family.separate_by = entry.list<std::string>("separate_by");
   for (const Entry& one : entry.entries("sanity", {"coefficient", "sign", "largest", "why"})) {
     family.sanity.push_back(read_sanity(one));
@@ -282,6 +283,7 @@ void insert_family(toml::table& table, const EffectFamily& family) {
   table.insert("origin", family.origin);
   if (!family.title.empty()) table.insert("title", family.title);
   table.insert("angular", family.angular);
+  if (family.changeable) table.insert("changeable", true);
   table.insert("separate_by", array_of(family.separate_by));
   toml::array sanity;
   for (const Sanity& one : family.sanity) {
@@ -334,10 +336,12 @@ toml::table table_of(const AtomTemplate& atom) {
 std::vector<EffectFamily> read_effects(const std::filesystem::path& file) {
   const toml::table table = parse_file(file);
   const Entry whole(table, file.string(), {"effect"});
-  const std::vector<Entry> effects = whole.entries(
-      "effect", {"name", "id", "phrase", "summary", "source", "origin", "title", "angular", "curve",
-                 "separate_by", "sanity", "alias", "columns", "coefficients", "shape",
-                 "beside_another", "by_direction", "one_way", "last_resort"});
+  const std::vector<Entry> effects =
+      whole.entries("effect", {"name",           "id",           "phrase",       "summary",
+                               "source",         "origin",       "title",        "angular",
+                               "changeable",     "curve",        "separate_by",  "sanity",
+                               "alias",          "columns",      "coefficients", "shape",
+                               "beside_another", "by_direction", "one_way",      "last_resort"});
   if (effects.empty()) {
     throw_bad_input("there is no [[effect]] in the file", file.string(),
                     "see --save-effect for the form");

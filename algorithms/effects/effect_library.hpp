@@ -91,6 +91,7 @@ struct EffectFamily {
   std::vector<KnownAlias> known_aliases = {};
   std::vector<std::string> separate_by = {};  // experiments: "R3", ...
   bool angular = false;     // makes sense for an angle only, not for a position in m
+  bool changeable = false;  // may differ from movement to movement and leave no trace in any signal
   std::string origin = {};  // of a learned effect: the movements it was found on, as text
   std::string title = {};   // a short noun for tables and cards; empty: the name
   std::string first_experiment() const { return separate_by.empty() ? "" : separate_by[0]; }

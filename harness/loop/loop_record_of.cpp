@@ -97,10 +97,19 @@ LoopError error_of(const ErrorFinding& from) {
   return to;
 }
 
+LoopVarying varying_of(const VaryingFinding& from) {
+  LoopVarying to{from.term, from.share, {}};
+  for (const VaryingFinding::OfMovement& one : from.movements) {
+    to.movements.push_back({one.movement_name, one.torque});
+  }
+  return to;
+}
+
 void add_lists(LoopRecord& record, const JudgedDiagnosis& diagnosis) {
   for (const EffectFinding& one : diagnosis.effects) record.effects.push_back(effect_of(one));
   const LeftoverFinding& left = diagnosis.leftover;
-  record.leftover = {left.p, left.inputs, left.proxies_removed, {}};
+  record.leftover = {left.p, left.inputs, left.proxies_removed, {}, {}};
+  if (left.varying) record.leftover.varying = varying_of(*left.varying);
   for (const CurvePoint& p : left.curve) record.leftover.curve.push_back({p.x, p.y, p.error});
   for (const UntestableFinding& one : diagnosis.untestable) {
     record.untestable.push_back({one.family, one.reason, one.share, one.clusters, one.ask});

@@ -95,6 +95,22 @@ LoopTrace trace_of(const LoopRows& all, int movement, const char* why) {
   return trace;
 }
 
+// What differs from movement to movement, in the order of the recording.
+LoopInputPicture varying_picture(const VaryingFinding& varying) {
+  std::vector<VaryingFinding::OfMovement> movements = varying.movements;
+  std::ranges::sort(movements, {}, &VaryingFinding::OfMovement::movement);
+  LoopInputPicture picture;
+  picture.x = {"movement", "", false, 0};
+  picture.leftover = true;
+  LoopSeries series;
+  for (const VaryingFinding::OfMovement& one : movements) {
+    series.x.push_back(one.movement + 1);
+    series.measured.push_back(one.torque);
+  }
+  picture.series.push_back(std::move(series));
+  return picture;
+}
+
 }  // namespace
 
 LoopFrictionPicture friction_picture(const LoopRows& all) {
@@ -133,6 +149,9 @@ std::vector<LoopInputPicture> input_pictures(const LoopRows& all) {
   const Eigen::VectorXd after = y - all.after;
   const Eigen::VectorXd way = direction(all.data);
   std::vector<LoopInputPicture> pictures;
+  if (const auto& varying = all.diagnosis.leftover.varying) {
+    pictures.push_back(varying_picture(*varying));
+  }
   for (const Signal& signal : all.data.signals) {
     if (!worth_a_look(signal)) continue;
     LoopInputPicture picture;

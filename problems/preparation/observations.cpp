@@ -213,6 +213,11 @@ void Observations::take_away(std::string_view name, std::string why) {
   }
 }
 
+std::string Observations::name_of(int number) const {
+  return movement_names.empty() ? std::to_string(number)
+                                : movement_names[static_cast<std::size_t>(number)];
+}
+
 std::vector<int> Observations::movements() const {
   std::vector<int> numbers;
   for (const int m : movement) {

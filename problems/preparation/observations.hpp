@@ -87,6 +87,8 @@ struct Observations {
   struct Shortened averaged(std::size_t rows) const;
   // The numbers of the movements that occur, in order.
   std::vector<int> movements() const;
+  // Of a movement; its number where movements have no names.
+  std::string name_of(int number) const;
 };
 
 struct Shortened {

@@ -131,8 +131,27 @@ Json effect_picture(const LoopRecord& record, const LoopEffectPicture& from,
   return json;
 }
 
+// What differs from movement to movement: a figure a movement, and no mean of rows.
+Json varying_picture(const LoopRecord& record, const LoopInputPicture& from) {
+  const LoopUnit unit = torque_unit(record);
+  Json json = picture(
+      "leftover-movements", "input",
+      fmt::format("{}: {}",
+                  record.leftover.inputs.empty() ? "Movements seem to differ" : "Still unexplained",
+                  varying_term(record)),
+      "What each movement has of it beyond all of them together, fitted to the "
+      "movement alone.");
+  json["leftover"] = true;
+  json["x"] = "movement, in the recording's order";
+  json["y"] = fmt::format("torque, root mean square ({})", unit.name);
+  json["changed"] = false;
+  json["series"] = series_json(from.series, 1, unit.factor, {});
+  return json;
+}
+
 Json input_picture(const LoopRecord& record, const LoopInputPicture& from, std::size_t number_of) {
   const LoopUnit unit = torque_unit(record);
+  if (from.x.channel == "movement") return varying_picture(record, from);
   const LoopUnit x = axis_unit(from.x, from.series);
   const std::string words = axis_title(from.x, {1, {}});
   Json json = picture(

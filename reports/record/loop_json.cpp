@@ -62,6 +62,15 @@ Json effect_json(const LoopEffect& effect) {
   return json;
 }
 
+Json varying_json(const LoopVarying& varying) {
+  if (varying.term.empty()) return nullptr;
+  Json movements = Json::array();
+  for (const LoopVarying::OfMovement& one : varying.movements) {
+    movements.push_back({{"movement", one.movement}, {"torque", json_number(one.torque)}});
+  }
+  return {{"term", varying.term}, {"share", json_number(varying.share)}, {"movements", movements}};
+}
+
 Json leftover_json(const LoopLeftover& leftover) {
   Json curve = Json::array();
   for (const LoopLeftover::Point& point : leftover.curve) {
@@ -70,7 +79,8 @@ Json leftover_json(const LoopLeftover& leftover) {
   return {{"p", json_number(leftover.p)},
           {"inputs", leftover.inputs},
           {"proxies_removed", leftover.proxies_removed},
-          {"curve", curve}};
+          {"curve", curve},
+          {"varying", varying_json(leftover.varying)}};
 }
 
 Json error_json(const LoopError& error) {

@@ -96,9 +96,22 @@ struct LoopEffect {
   LoopBristles bristles;
 };
 
+// A term whose coefficient differs from movement to movement though no column says why.
+struct LoopVarying {
+  struct OfMovement {
+    std::string movement;
+    double torque = 0;  // of its own part: root mean square, with a sign where there is one
+  };
+  // "coulomb_friction", "viscous_friction" or a family; empty: none. Without inputs it is a doubt.
+  std::string term;
+  double share = kNoFigure;  // of what is left: what it foretells in other parts of a movement
+  std::vector<OfMovement> movements;
+};
+
 struct LoopLeftover {
   double p = kNoFigure;
-  std::vector<std::string> inputs;  // role names; empty where nothing is left
+  // Role names, or "movement" (varying); empty where nothing is left.
+  std::vector<std::string> inputs;
   std::vector<std::string> proxies_removed;
   struct Point {
     double x = 0;
@@ -106,6 +119,7 @@ struct LoopLeftover {
     double error = 0;
   };
   std::vector<Point> curve;  // over the one input
+  LoopVarying varying;
 };
 
 struct LoopUntestable {

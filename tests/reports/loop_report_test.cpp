@@ -112,6 +112,25 @@ TEST(LoopWords, SayWhatSpeaksAgainstAFinding) {
   EXPECT_THAT(words.leftover, HasSubstr("cannot be physical"));
 }
 
+TEST(LoopWords, SayWhatDiffersFromMovementToMovement) {
+  LoopRecord record = with(LoopVerdict::unknown);
+  record.effects.clear();
+  record.leftover.inputs = {"movement"};
+  record.leftover.varying = {
+      "coulomb_friction", 0.62, {{"m1", 0.5}, {"m2", -2}, {"m3", 0.1}, {"m4", 1}}};
+  const LoopWords words = loop_words(record);
+  EXPECT_THAT(words.headline, HasSubstr("Coulomb friction differs from movement to movement"));
+  EXPECT_THAT(words.leftover, HasSubstr("most in 'm2' (-2"));
+  EXPECT_THAT(words.leftover, HasSubstr("'m4' (1"));
+  EXPECT_THAT(words.leftover, HasSubstr("'m1' (0.5"));
+  EXPECT_THAT(words.leftover, ::testing::Not(HasSubstr("'m3'")));
+  EXPECT_THAT(words.leftover, HasSubstr("62 % of what is left"));
+  EXPECT_THAT(words.next, HasSubstr("what was changed between the movements"));
+  const auto json = nlohmann::json::parse(write_loop_json(record));
+  EXPECT_EQ(json["leftover"]["varying"]["term"], "coulomb_friction");
+  EXPECT_EQ(json["leftover"]["varying"]["movements"][1]["torque"], -2);
+}
+
 TEST(LoopWords, HoldNoNameOfTheProgramAndNoCode) {
   for (const LoopVerdict verdict :
        {LoopVerdict::none, LoopVerdict::effects, LoopVerdict::unknown, LoopVerdict::cannot_tell}) {

@@ -126,7 +126,7 @@ function inputPlot(picture, look) {
   const before = picture.changed
     ? picture.series.flatMap((s, i) => lineRows(s, "before", look.soft, kGroupDashes[i % 3], "before " + s.name)) : [];
   return binnedPlot(picture, look, dots, before.concat(after),
-    lineLegend(picture.series.map((s, i) => ({label: s.name, colour: colourOf(i), dash: kGroupDashes[i % 3]}))
+    lineLegend(picture.series.map((s, i) => ({label: s.name, colour: colourOf(i), dash: kGroupDashes[i % 3]})).filter((s) => s.label)
       .concat(picture.changed ? [{label: "before", colour: look.soft}] : [])));
 }
 

@@ -131,8 +131,8 @@ bool same(const EffectFamily& a, const EffectFamily& b) {
   };
   const auto same_atom = [](const AtomTemplate& x, const AtomTemplate& y) { return same(x, y); };
   return a.name == b.name && a.id == b.id && a.summary == b.summary && a.phrase == b.phrase &&
-         a.source == b.source && a.angular == b.angular && a.separate_by == b.separate_by &&
-         std::ranges::equal(a.atoms, b.atoms, same_atom) &&
+         a.source == b.source && a.angular == b.angular && a.changeable == b.changeable &&
+         a.separate_by == b.separate_by && std::ranges::equal(a.atoms, b.atoms, same_atom) &&
          std::ranges::equal(a.sanity, b.sanity, same_sanity) &&
          std::ranges::equal(a.known_aliases, b.known_aliases, same_alias);
 }

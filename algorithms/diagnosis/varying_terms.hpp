@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+//
+// What differs from movement to movement though no signal says why: a load that was changed and not
+// written down, friction that another grease or an unknown temperature made higher. The last thing
+// that is asked: whatever follows a signal is found and named before. Internal to the room.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "algorithms/diagnosis/search.hpp"
+
+namespace tribench::loop {
+
+// Where nothing is left over in any signal: the term of the base's friction or of the library whose
+// coefficient differs most, if one does at the level of what is left over, or by so much that it
+// may stand behind all else (varying without inputs). rich_residual: what the rich model leaves of
+// the campaign's rows.
+void find_varying_term(SearchResult& result, const Eigen::VectorXd& rich_residual,
+                       const Campaign& campaign, RandomStream random);
+
+}  // namespace tribench::loop
