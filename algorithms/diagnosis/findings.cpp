@@ -211,6 +211,16 @@ void veto(Diagnosis& out, EffectFinding& finding, std::size_t family, const Camp
   if (out.leftover.inputs.empty()) out.leftover.inputs = {"velocity"};
 }
 
+// A random intercept is noise, whatever its size. But nobody expects it to be most of what is left.
+void tell_offsets(Diagnosis& out, const std::string& unit) {
+  if (!(out.noise.between_sd > out.noise.within_sd)) return;
+  out.notes.push_back(
+      fmt::format("the offsets of the movements differ by {:.2g} {} (standard deviation), rows of "
+                  "one movement by "
+                  "{:.2g}: a load, a temperature or a sensor's zero that no column tells",
+                  out.noise.between_sd, unit, out.noise.within_sd));
+}
+
 // What is found may stand for what too few movements tell to differ between them.
 void doubt_effects(Diagnosis& out) {
   if (!out.leftover.is_in_doubt()) return;
@@ -278,6 +288,7 @@ void write_findings(Diagnosis& out, const SearchResult& result, const Campaign& 
     veto(out, out.effects[k], state.found[k].family, campaign);
   }
   doubt_effects(out);
+  tell_offsets(out, campaign.data.target_unit);
   out.verdict = verdict_of(out, result.leftover_tested);
   if (out.verdict == Verdict::cannot_tell) out.needed = needed_to_tell(out);
 }

@@ -79,6 +79,21 @@ TEST(VaryingTerms, TooMuchToBePassedOverIsADoubt) {
   EXPECT_NE(diagnosis.needed[0].find("'payload'"), std::string::npos);
 }
 
+// Offsets are noise, but are told where they are most of it.
+TEST(VaryingTerms, LargeOffsetsAreARemark) {
+  Observations data = simulated("", 1, 23);
+  const auto has_remark = [](const Diagnosis& diagnosis) {
+    return std::ranges::any_of(diagnosis.notes, [](const std::string& note) {
+      return note.find("offsets of the movements") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(has_remark(diagnose_most(data, {})));
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    data.target[i] += data.movement[i] % 3 == 0 ? 2 : 0;
+  }
+  EXPECT_TRUE(has_remark(diagnose_most(data, {})));
+}
+
 // A cause that a signal follows is told by that signal.
 TEST(VaryingTerms, WhatFollowsASignalIsNoneOfThem) {
   for (const char* cause : {"temperature_lagged", "run_in_exponential", "load", "gravity_wrong"}) {
