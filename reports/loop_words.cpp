@@ -232,7 +232,7 @@ std::string leftover_inputs(const LoopRecord& record) {
 }
 
 bool differs_by_movement(const LoopRecord& record) {
-  return !record.leftover.varying.term.empty() && !record.leftover.inputs.empty();
+  return record.leftover.inputs == std::vector<std::string>{"movement"};
 }
 
 // "the payload differs from movement to movement".

@@ -215,9 +215,9 @@ void veto(Diagnosis& out, EffectFinding& finding, std::size_t family, const Camp
 void tell_offsets(Diagnosis& out, const std::string& unit) {
   if (!(out.noise.between_sd > out.noise.within_sd)) return;
   out.notes.push_back(
-      fmt::format("the offsets of the movements differ by {:.2g} {} (standard deviation), rows of "
-                  "one movement by "
-                  "{:.2g}: a load, a temperature or a sensor's zero that no column tells",
+      fmt::format("the offsets of the movements differ by {:.2g} {} (standard deviation), rows "
+                  "of one movement by {:.2g}: a load, a temperature or a sensor's zero that no "
+                  "column tells",
                   out.noise.between_sd, unit, out.noise.within_sd));
 }
 
@@ -246,8 +246,7 @@ std::vector<std::string> needed_to_tell(const Diagnosis& diagnosis) {
   if (const auto& varying = diagnosis.leftover.varying) {
     needed.push_back(
         fmt::format("more movements: '{}' seems to differ from one to the next ({:.0f} % of what "
-                    "is left), which "
-                    "{} cannot tell; or a column that says what was changed",
+                    "is left), which {} cannot tell; or a column that says what was changed",
                     varying->term, 100 * varying->share, diagnosis.movements));
     return needed;
   }

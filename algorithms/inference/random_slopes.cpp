@@ -54,7 +54,7 @@ double squared_error(const Moments& moments, const Eigen::VectorXd& coefficients
   return weights.dot(moments * weights);
 }
 
-// Rows [1 columns residual], the columns of unit root mean square.
+// Each movement's own fit of a term, offset and slopes.
 class MovementFits {
  public:
   MovementFits(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual,
@@ -81,7 +81,7 @@ class MovementFits {
         rows_.middleRows(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)));
   }
 
-  Eigen::MatrixXd rows_;
+  Eigen::MatrixXd rows_;  // [1 columns residual], the columns of unit root mean square
   Eigen::MatrixXd slopes_;
   Eigen::VectorXd left_;
 };

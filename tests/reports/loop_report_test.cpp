@@ -131,6 +131,20 @@ TEST(LoopWords, SayWhatDiffersFromMovementToMovement) {
   EXPECT_EQ(json["leftover"]["varying"]["movements"][1]["torque"], -2);
 }
 
+// Beside an effect that is not physical what seems to differ is a doubt, and no verdict.
+TEST(LoopWords, ADoubtIsNoVerdict) {
+  LoopRecord record = with(LoopVerdict::unknown);
+  record.effects.resize(1);
+  record.effects[0].provisional = true;
+  record.leftover.inputs = {"velocity"};
+  record.leftover.varying = {"payload", 0.3, {{"m1", 0.5}}};
+  const LoopWords words = loop_words(record);
+  EXPECT_THAT(words.leftover, HasSubstr("depends on velocity"));
+  record.leftover.inputs.clear();
+  EXPECT_THAT(loop_words(record).cards[0].doubts,
+              ::testing::Contains(HasSubstr("It may stand for payload")));
+}
+
 TEST(LoopWords, HoldNoNameOfTheProgramAndNoCode) {
   for (const LoopVerdict verdict :
        {LoopVerdict::none, LoopVerdict::effects, LoopVerdict::unknown, LoopVerdict::cannot_tell}) {
