@@ -36,14 +36,15 @@ struct Place {
 };
 
 // The signals that a family's columns are functions of, signs left out. What has a memory of the
-// motion is a function of all of it: near a reversal the path since, the speed and the acceleration
-// tell the same.
+// motion is a function of all of it: near a reversal the path since, the speed, the acceleration
+// and, where movements begin there, the time tell the same.
 std::vector<std::string> inputs_of(std::size_t family, const LoopModel& model,
                                    const Observations& data) {
   std::set<std::string> names;
   for (const Signal* signal : signals_read(model, family, data)) {
-    for (const char* name : {"v", "a", "d"}) {
-      if (signal->has_memory() && data.find(name) != nullptr) names.insert(name);
+    for (const std::string_view name : {std::string_view("v"), std::string_view("a"),
+                                        std::string_view("d"), Signal::kSinceStart}) {
+      if (signal->has_memory() && data.find(name) != nullptr) names.emplace(name);
     }
     const bool is_told = signal->has_memory() || signal->name.starts_with("sgn_");
     if (!is_told) names.insert(signal->name);

@@ -16,13 +16,20 @@ namespace tribench::loop {
 namespace {
 
 struct OneSignal {
-  const char* signal;
+  std::string_view signal;
   int centres;
 };
 
-// Specification, section 3.8.
-constexpr std::array<OneSignal, 8> kSingles = {
-    {{"v", 16}, {"q", 28}, {"g", 10}, {"T", 8}, {"t", 24}, {"d", 8}, {"a", 8}, {"v2", 8}}};
+// Specification, section 3.8, but for the time since a movement began.
+constexpr std::array<OneSignal, 9> kSingles = {{{"v", 16},
+                                                {"q", 28},
+                                                {"g", 10},
+                                                {"T", 8},
+                                                {"t", 24},
+                                                {"d", 8},
+                                                {"a", 8},
+                                                {"v2", 8},
+                                                {Signal::kSinceStart, 8}}};
 constexpr std::array<SignalPair, 5> kPairs = {
     {{"v", "q"}, {"q", "T"}, {"v", "T"}, {"v", "g"}, {"g", "T"}}};
 constexpr Eigen::Index kFourierFeatures = 30;
@@ -36,8 +43,8 @@ constexpr int kSmoothCentres = 6;
 constexpr float kReach = 6.8F;
 constexpr float kNothing = -1000;  // its exponential is 0
 
-// The signal mapped to [0, 1]: |v|, log of the distance, anything else as it is, in the direction
-// that is the first (mirror_sign). Empty where it does not vary.
+// The signal mapped to [0, 1]: |v|, log of the distance and of the time since the start, anything
+// else as it is, in the direction that is the first (mirror_sign). Empty where it does not vary.
 Eigen::ArrayXf unit_values(const Observations& data, std::string_view name) {
   const Signal* signal = data.find(name);
   if (signal == nullptr || signal->values.empty()) return {};
@@ -46,7 +53,8 @@ Eigen::ArrayXf unit_values(const Observations& data, std::string_view name) {
   if (name == "v") x = x.abs();
   constexpr std::array<std::string_view, 4> kSigned = {"q", "g", "a", "v2"};
   if (std::ranges::count(kSigned, name) > 0) x *= mirror_sign(data);
-  if (name == "d" && x.maxCoeff() > 0) x = (x / x.maxCoeff() + 1e-3).unaryExpr(&elementary::log);
+  const bool fades = name == "d" || name == Signal::kSinceStart;
+  if (fades && x.maxCoeff() > 0) x = (x / x.maxCoeff() + 1e-3).unaryExpr(&elementary::log);
   // The bulk of the values spans the interval: one far-off row must not flatten the rest.
   std::vector<double> values(x.begin(), x.end());
   const auto edge = static_cast<std::ptrdiff_t>(values.size() / 200);
@@ -108,6 +116,7 @@ Eigen::VectorXd unit_signal(const Observations& data, std::string_view name) {
 
 std::string input_name(const Observations& data, std::string_view signal) {
   if (signal == "d") return "distance_since_reversal";
+  if (signal == Signal::kSinceStart) return "time_since_start";
   const Signal* found = data.find(signal);
   if (found == nullptr) return std::string(signal);
   return found->role == Role::none ? found->channel : std::string(role_name(found->role));
@@ -141,7 +150,9 @@ std::vector<Smoother> make_smoothers(const Observations& data, RandomStream rand
   for (const OneSignal& single : kSingles) {
     const Eigen::ArrayXf x = unit_values(data, single.signal);
     if (x.size() == 0) continue;
-    all.push_back({{single.signal}, {input_name(data, single.signal)}, radial(x, single.centres)});
+    all.push_back({{std::string(single.signal)},
+                   {input_name(data, single.signal)},
+                   radial(x, single.centres)});
   }
   for (const auto& [first, second] : kPairs) {
     const Eigen::ArrayXf x = unit_values(data, first);

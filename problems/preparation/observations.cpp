@@ -136,6 +136,20 @@ void add_distance(Observations& data) {
   data.signals.push_back(std::move(signal));
 }
 
+// Of several movements: within one it is the time of the recording.
+void add_time_since_start(Observations& data) {
+  const Signal& t = *data.find("t");
+  if (t.unit != "s" || data.movements().size() < 2) return;
+  Signal since{std::string(Signal::kSinceStart),         t.channel, "s", Role::none,
+               "seconds since the movement's first row", {}};
+  double start = 0;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    if (i == 0 || data.movement[i] != data.movement[i - 1]) start = t.values[i];
+    since.values.push_back(t.values[i] - start);
+  }
+  data.signals.push_back(std::move(since));
+}
+
 // To first order a late velocity differs from the velocity by the acceleration: without one, an
 // inertia that the data do not hold would pass for late friction.
 void add_lagged_velocities(Observations& data) {
@@ -449,6 +463,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   add_campaign_time(out);
   smooth_temperature(out);
   add_distance(out);
+  if (!options.steady) add_time_since_start(out);
   add_lagged_velocities(out);
   out.time = out.find("t")->values;
   check_moving(out);

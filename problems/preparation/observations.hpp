@@ -38,6 +38,8 @@ struct Signal {
   // A velocity after a filter, a distance read otherwise: nothing to look at beside the signal
   // itself.
   bool is_variant() const { return name.starts_with("v_lag") || name == kSeenDistance; }
+  // Seconds since a movement began: what a joint does differently after a rest.
+  static constexpr std::string_view kSinceStart = "t_start";
   // It follows from the motion before (a distance since reversal, a filtered velocity).
   bool has_memory() const { return name == "d" || is_variant(); }
 };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "algorithms/diagnosis/diagnosis.hpp"
+#include "problems/joint_simulation/simulated_campaign.hpp"
 #include "tests/algorithms/diagnosis/half_sines.hpp"
 
 namespace tribench::loop {
@@ -26,6 +27,22 @@ TEST(LeftoverPlace, IsOneInputWhereAnotherAddsNothing) {
     EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
     EXPECT_EQ(diagnosis.leftover.inputs, std::vector<std::string>{"position"}) << seed;
   }
+}
+
+// Grease that stands still is stiff for the first moments of every movement.
+TEST(LeftoverPlace, IsTheTimeSinceTheStartWhereFrictionFadesAfterARest) {
+  Observations data = observe(
+      simulation::simulate({"", 1, simulation::NoiseKind::gaussian, simulation::Design::mixed}, 51)
+          .data);
+  EXPECT_EQ(diagnose(data, coulomb_viscous_base, {}).verdict, Verdict::none);
+  const std::vector<double>& since = data.find(Signal::kSinceStart)->values;
+  const std::vector<double>& sign = data.find("sgn_v")->values;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    data.target[i] += sign[i] * std::exp(-since[i] / 0.5);
+  }
+  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, {});
+  EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
+  EXPECT_EQ(diagnosis.leftover.inputs, std::vector<std::string>{"time_since_start"});
 }
 
 }  // namespace

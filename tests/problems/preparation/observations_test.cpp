@@ -120,6 +120,22 @@ TEST(Observations, TheDistanceSinceAReversalIsThePathTravelledSince) {
 }
 
 // Gravity of a joint whose axis is free of it: a model's rounding, and no load.
+TEST(Observations, TheTimeSinceAMovementBeganIsTheMovementsOwn) {
+  Dataset data = movements_of(3, 40, steady_speed);
+  for (double& t : data.channels[3].values) t += 1.7e9;
+  const Observations timed = observe(data);
+  const Signal* since = timed.find(Signal::kSinceStart);
+  ASSERT_NE(since, nullptr);
+  EXPECT_EQ(since->unit, "s");
+  for (std::size_t i = 0; i < since->values.size(); ++i) {
+    EXPECT_NEAR(since->values[i], 0.01 * static_cast<double>(i % 40), 1e-6) << i;
+  }
+  EXPECT_EQ(observe(data, {.steady = true}).find(Signal::kSinceStart), nullptr);
+  EXPECT_EQ(observe(movements_of(1, 40, steady_speed)).find(Signal::kSinceStart), nullptr);
+  data.channels.pop_back();
+  EXPECT_EQ(observe(data).find(Signal::kSinceStart), nullptr);
+}
+
 TEST(Observations, ALoadBelowWhatTheRowsCanShowIsLeftOutAndSaid) {
   Dataset data = movements_of(6, 50, steady_speed);
   data.channels[1].role = Role::motor_torque;
