@@ -37,7 +37,8 @@ struct Place {
 
 // The signals that a family's columns are functions of, signs left out. What has a memory of the
 // motion is a function of all of it: near a reversal the path since, the speed, the acceleration
-// and, where movements begin there, the time tell the same.
+// and, where movements begin there, the time tell the same. Oil warms ahead of its thermometer from
+// the start of a movement on.
 std::vector<std::string> inputs_of(std::size_t family, const LoopModel& model,
                                    const Observations& data) {
   std::set<std::string> names;
@@ -45,6 +46,9 @@ std::vector<std::string> inputs_of(std::size_t family, const LoopModel& model,
     for (const std::string_view name : {std::string_view("v"), std::string_view("a"),
                                         std::string_view("d"), Signal::kSinceStart}) {
       if (signal->has_memory() && data.find(name) != nullptr) names.emplace(name);
+    }
+    if (signal->role == Role::temperature && data.find(Signal::kSinceStart) != nullptr) {
+      names.emplace(Signal::kSinceStart);
     }
     const bool is_told = signal->has_memory() || signal->name.starts_with("sgn_");
     if (!is_told) names.insert(signal->name);
