@@ -91,18 +91,21 @@ void find_varying_term(SearchResult& result, const Eigen::VectorXd& rich_residua
   const std::vector<VaryingTerm> terms = varying_terms(campaign);
   std::vector<Eigen::MatrixXd> columns;
   for (const VaryingTerm& term : terms) columns.push_back(term.columns);
-  const std::vector<RowRange>& movements = campaign.clusters.movements;
-  const auto found = random_slopes(columns, unexplained(result, rich_residual, campaign), movements,
-                                   campaign.options.flips, std::move(random));
-  if (!found) return;
-  const bool is_sure = found->p <= campaign.options.alpha_leftover;
-  if (!is_sure && found->share < kMuch) return;
-  const double worth = found->share / (1 - found->share);
+  const std::vector<RandomSlopes> all =
+      random_slopes(columns, unexplained(result, rich_residual, campaign),
+                    campaign.clusters.movements, campaign.options.flips, std::move(random));
+  if (all.empty()) return;
+  auto told = std::ranges::max_element(all, {}, &RandomSlopes::mean_share);
+  const bool is_sure = told->p <= campaign.options.alpha_leftover;
+  if (!is_sure) told = std::ranges::max_element(all, {}, &RandomSlopes::share);
+  if (!is_sure && told->share < kMuch) return;
+  const double worth = told->share / (1 - told->share);
   const SearchState& state = result.state;
   if (worth < least_worth_of_leftover(state.model.model, state.families(), campaign)) return;
-  leftover.varying = finding_of(terms[found->term], *found, campaign);
+  const VaryingTerm& term = terms[static_cast<std::size_t>(told - all.begin())];
+  leftover.varying = finding_of(term, *told, campaign);
   if (!is_sure) return;
-  leftover.p = found->p;
+  leftover.p = told->p;
   leftover.inputs = {"movement"};
 }
 

@@ -126,38 +126,38 @@ MovementFits::Foretold MovementFits::foretold(const RowRange& movement, std::siz
 
 }  // namespace
 
-std::optional<RandomSlopes> random_slopes(std::span<const Eigen::MatrixXd> terms,
-                                          const Eigen::VectorXd& residual,
-                                          std::span<const RowRange> movements, std::size_t flips,
-                                          RandomStream random) {
-  std::optional<RandomSlopes> best;
-  double largest = 0;
+std::vector<RandomSlopes> random_slopes(std::span<const Eigen::MatrixXd> terms,
+                                        const Eigen::VectorXd& residual,
+                                        std::span<const RowRange> movements, std::size_t flips,
+                                        RandomStream random) {
+  std::vector<RandomSlopes> all;
   FloatRows shares(static_cast<Eigen::Index>(movements.size()),
                    static_cast<Eigen::Index>(terms.size()));
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const MovementFits fits(terms[k], residual, movements);
     const auto gap =
         static_cast<std::size_t>(std::ceil(kGap * correlation_time(fits.left(), movements)));
-    MovementFits::Foretold all;
+    MovementFits::Foretold whole;
     double sum = 0;
     for (std::size_t m = 0; m < movements.size(); ++m) {
       const MovementFits::Foretold one = fits.foretold(movements[m], gap);
       shares(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(k)) =
           static_cast<float>(one.share());
       sum += one.share();
-      all.gain += one.gain;
-      all.squares += one.squares;
+      whole.gain += one.gain;
+      whole.squares += one.squares;
     }
-    if (!(sum > largest)) continue;
-    largest = sum;
-    best = RandomSlopes{k, 1, all.share(), fits.slopes()};
+    all.push_back({sum / static_cast<double>(movements.size()), whole.share(), 1, fits.slopes()});
   }
-  if (!best) return best;
+  if (terms.empty()) return all;
   const FloatRows sums = Flips(flips, movements.size(), std::move(random)).sums(shares, 0, flips);
-  const Eigen::VectorXf maxima = sums.rowwise().maxCoeff();
+  const Eigen::VectorXf largest = sums.rowwise().maxCoeff() / static_cast<float>(movements.size());
+  const std::vector<double> maxima(largest.begin(), largest.end());
   constexpr double kTie = 1 - 1e-5;  // the flips' sums are rounded
-  best->p = adjusted_p(kTie * largest, std::vector<double>(maxima.begin(), maxima.end()));
-  return best;
+  for (RandomSlopes& one : all) {
+    if (one.mean_share > 0) one.p = adjusted_p(kTie * one.mean_share, maxima);
+  }
+  return all;
 }
 
 }  // namespace tribench::loop

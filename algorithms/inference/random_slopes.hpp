@@ -20,7 +20,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,21 +28,24 @@
 
 namespace tribench::loop {
 
+// Of one term.
 struct RandomSlopes {
-  std::size_t term = 0;  // the one that foretells most
-  double p = 1;          // of the largest of all terms
-  double share = 0;      // of the squared error about the movements' own means: what is foretold
+  // Of the squared error about the movements' own means, what is foretold: the mean of the
+  // movements' shares, which is tested, and the share of all squares.
+  double mean_share = 0;
+  double share = 0;
+  double p = 1;  // against the largest mean share of all terms
   // movements x columns of the term: each movement's own coefficients, less nothing that is common
   // to them (the residual's model has that).
   Eigen::MatrixXd slopes;
 };
 
 // terms: of each the columns, rows x a few, finite. residual: of a model that has all terms
-// already. flips: how many. Movements that leave fewer than ten rows to fit to gain nothing. None
-// where no term gains anything. Cost: rows x columns^2 of each term.
-std::optional<RandomSlopes> random_slopes(std::span<const Eigen::MatrixXd> terms,
-                                          const Eigen::VectorXd& residual,
-                                          std::span<const RowRange> movements, std::size_t flips,
-                                          RandomStream random);
+// already. flips: how many. Movements that leave fewer than ten rows to fit to gain nothing. As
+// many as there are terms. Cost: rows x columns^2 of each term.
+std::vector<RandomSlopes> random_slopes(std::span<const Eigen::MatrixXd> terms,
+                                        const Eigen::VectorXd& residual,
+                                        std::span<const RowRange> movements, std::size_t flips,
+                                        RandomStream random);
 
 }  // namespace tribench::loop
