@@ -26,8 +26,7 @@ LoopUnit length_unit(std::string_view unit, double size) {
 }
 
 std::string axis_title(const LoopAxis& axis, const LoopUnit& unit) {
-  std::string words = axis.channel;
-  std::ranges::replace(words, '_', ' ');
+  std::string words = spaced(axis.channel);
   if (axis.channel == "gravity_torque") words = "load";
   if (axis.channel == "time") words = "time";
   const bool formula = axis.channel.find_first_of("+*-/") != std::string::npos;

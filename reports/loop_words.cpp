@@ -5,11 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <functional>
 #include <map>
-#include <regex>
 #include <utility>
 
 #include "foundation/text.hpp"
@@ -27,11 +25,6 @@ constexpr std::size_t kNamedMovements = 3;
 
 bool known(double value) { return std::isfinite(value); }
 
-std::string spaced(std::string text) {
-  std::ranges::replace(text, '_', ' ');
-  return text;
-}
-
 // "a", "a and b", "a, b and c".
 std::string listed(const std::vector<std::string>& items, std::string_view last = "and") {
   if (items.empty()) return {};
@@ -41,16 +34,6 @@ std::string listed(const std::vector<std::string>& items, std::string_view last 
     text += items[i];
   }
   return text;
-}
-
-const LoopFamily* find_family(const LoopRecord& record, std::string_view name) {
-  const auto found = std::ranges::find(record.families, name, &LoopFamily::name);
-  return found == record.families.end() ? nullptr : &*found;
-}
-
-std::string phrase_of(const LoopRecord& record, std::string_view name) {
-  const LoopFamily* family = find_family(record, name);
-  return family == nullptr || family->phrase.empty() ? family_title(record, name) : family->phrase;
 }
 
 // What an experiment's code, or a sentence that stands for one, asks for.
@@ -195,7 +178,8 @@ std::string bristles_of(const LoopRecord& record, const LoopEffect& effect) {
 LoopCard card_of(const LoopRecord& record, const LoopEffect& effect) {
   LoopCard card;
   card.family = effect.family;
-  card.title = capitalised(phrase_of(record, effect.family)) + period_words(record, effect.family);
+  card.title =
+      capitalised(family_phrase(record, effect.family)) + period_words(record, effect.family);
   card.noun = family_title(record, effect.family);
   if (known(effect.rms)) {
     card.amount = amount(torque_unit(record), effect.rms);
@@ -217,7 +201,7 @@ std::string effects_clause(const LoopRecord& record) {
   std::vector<std::string> phrases;
   for (const LoopEffect& effect : record.effects) {
     if (phrases.size() == kNamedEffects && record.effects.size() > kNamedEffects + 1) break;
-    phrases.push_back(phrase_of(record, effect.family));
+    phrases.push_back(family_phrase(record, effect.family));
   }
   if (phrases.size() < record.effects.size()) {
     phrases.push_back(fmt::format("{} more effects", record.effects.size() - phrases.size()));
@@ -418,81 +402,7 @@ std::vector<std::string> burst_lines(const LoopRecord& record) {
   return lines;
 }
 
-std::string replaced(const std::string& text, const std::string& pattern, const std::string& by) {
-  return std::regex_replace(text, std::regex(pattern), by);
-}
-
-std::string with_titles(const LoopRecord& record, std::string text) {
-  for (const LoopFamily& family : record.families) {
-    const std::string quoted = '\'' + family.name + '\'';
-    for (std::size_t at = 0; (at = text.find(quoted, at)) != std::string::npos;) {
-      text.replace(at, quoted.size(), family.title);
-      at += family.title.size();
-    }
-    if (family.name.find('_') == std::string::npos) continue;
-    text = replaced(text, "\\b" + family.name + "\\b", family.title);
-  }
-  return text;
-}
-
 }  // namespace
-
-std::string target_words(const LoopRecord& record) {
-  std::string unit = record.unit;
-  std::erase_if(unit, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; });
-  if (unit.empty()) return spaced(record.target);
-  return spaced(replaced(record.target, '_' + unit + "\\b", ""));
-}
-
-LoopUnit torque_unit(const LoopRecord& record) {
-  return readable_unit(record.unit.empty() ? "N m" : record.unit, record.error.mae_before);
-}
-
-std::string family_title(const LoopRecord& record, std::string_view family) {
-  const LoopFamily* known_family = find_family(record, family);
-  return known_family == nullptr ? spaced(std::string(family)) : known_family->title;
-}
-
-std::string varying_term(const LoopRecord& record) {
-  const std::string& term = record.leftover.varying.term;
-  return term == "coulomb_friction" ? "Coulomb friction" : spaced(term);
-}
-
-std::string plain_text(const LoopRecord& record, std::string text) {
-  text = replaced(text, R"( \((R[1-9](, )?)+\))", "");
-  text = replaced(text, R"( \(--[^)]*\))", "");
-  text = with_titles(record, std::move(text));
-  for (const LoopExperiment& one : record.experiments) {
-    text = replaced(text, "\\b" + one.code + "\\b", one.text);
-  }
-  // What is quoted or an option is the user's own and stays.
-  std::string out;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\'') quoted = !quoted && text.find('\'', i + 1) != std::string::npos;
-    const bool inside = i > 0 && i + 1 < text.size() &&
-                        std::isalnum(static_cast<unsigned char>(text[i - 1])) != 0 &&
-                        std::isalnum(static_cast<unsigned char>(text[i + 1])) != 0;
-    out += text[i] == '_' && inside && !quoted ? ' ' : text[i];
-  }
-  return out;
-}
-
-std::string readable_formula(std::string formula) {
-  formula = replaced(formula, R"(\bsgn_([A-Za-z0-9_]+))", "sgn($1)");
-  return replaced(formula, R"(\+ -)", "- ");
-}
-
-std::string parameter_words(const LoopEffect& effect) {
-  std::vector<std::string> parts;
-  for (const LoopParameter& p : effect.parameters) {
-    parts.push_back(p.low < p.high
-                        ? fmt::format("{} = {} ({} .. {})", spaced(p.name),
-                                      figure(p.value, kLoopDigits), figure(p.low), figure(p.high))
-                        : fmt::format("{} = {}", spaced(p.name), figure(p.value, kLoopDigits)));
-  }
-  return fmt::format("{}", fmt::join(parts, ", "));
-}
 
 std::string closed_share(const LoopError& error) {
   const double low = error.closed_fraction;

@@ -60,11 +60,16 @@ LoopWords loop_words(const LoopRecord& record);
 // The unit in which the record's torques are written.
 LoopUnit torque_unit(const LoopRecord& record);
 
+// "gravity_torque" -> "gravity torque".
+std::string spaced(std::string text);
 // The target without its unit: "motor force".
 std::string target_words(const LoopRecord& record);
 
 // "load_coulomb" -> "load-dependent Coulomb friction".
 std::string family_title(const LoopRecord& record, std::string_view family);
+// What it does: "friction falls with speed from standstill (Stribeck)"; the title where it has
+// none.
+std::string family_phrase(const LoopRecord& record, std::string_view family);
 // What differs from movement to movement: "Coulomb friction", "payload"; empty where nothing
 // does.
 std::string varying_term(const LoopRecord& record);
