@@ -8,9 +8,13 @@
 // methods, weights, parameters) is read here.
 #pragma once
 
+#include <concepts>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace tribench {
 
@@ -24,6 +28,18 @@ Json read_json(std::string_view text, std::string* reason = nullptr);
 // As above; throws Error (bad_input) with the place instead.
 template <typename Json>
 Json read_json_or_throw(std::string_view text, std::string_view place);
+
+// The whole number, where the value is one that Whole holds. get<Whole>() makes any number of 1e77,
+// of 2.5 and of one with more digits.
+template <std::integral Whole, typename Json>
+std::optional<Whole> json_whole_number(const Json& value) {
+  const auto held = [](auto number) {
+    return std::in_range<Whole>(number) ? std::optional(static_cast<Whole>(number)) : std::nullopt;
+  };
+  if (value.is_number_unsigned()) return held(value.template get<std::uint64_t>());
+  if (value.is_number_integer()) return held(value.template get<std::int64_t>());
+  return std::nullopt;
+}
 
 // null where the value is not finite.
 nlohmann::ordered_json json_number(double value);

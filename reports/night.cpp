@@ -144,9 +144,9 @@ std::size_t read_header(std::string_view line, Night& night, const std::string& 
     night.bench_conditions = header.value("bench_conditions", "");
     const auto benches = header.find("benches");
     if (benches == header.end()) return 0;
-    // Of a number beyond the type's range the library makes any other.
-    if (!benches->is_number_unsigned()) throw_damaged(place);
-    return benches->get<std::size_t>();
+    const auto count = json_whole_number<std::size_t>(*benches);
+    if (!count) throw_damaged(place);
+    return *count;
   } catch (const ordered_json::exception&) {  // another type
     throw_damaged(place);
   }

@@ -37,11 +37,11 @@ std::string last_line(std::string_view text) {
   return excerpt(start == std::string_view::npos ? text : text.substr(start + 1));
 }
 
-// A count in the program's answer; json would read -5 and 1e300 as something.
+// A count in the program's answer.
 std::uint64_t count_in(const json& object, const char* key, std::uint64_t otherwise) {
   if (!object.contains(key)) return otherwise;
   const json& value = object.at(key);
-  if (value.is_number_unsigned()) return value.get<std::uint64_t>();
+  if (const auto count = json_whole_number<std::uint64_t>(value)) return *count;
   constexpr double kExact = 0x1p53;  // a program may count in doubles
   const double number = value.is_number_float() ? value.get<double>() : -1;
   if (number >= 0 && number <= kExact && number == std::floor(number)) {

@@ -49,14 +49,25 @@ std::optional<std::size_t> place_of(const std::vector<std::string>& names,
   return static_cast<std::size_t>(found - names.begin());
 }
 
+[[noreturn]] void throw_damaged(std::string_view what, std::string_view place) {
+  throw_bad_input(fmt::format("the weight file is damaged: {}", what), place, kMend);
+}
+
 // What `read` reads of a file; a value of another type than it has to be is a damage.
 template <typename Read>
 auto undamaged(std::string_view place, const Read& read) {
   try {
     return read();
   } catch (const Json::exception&) {
-    throw_bad_input("the weight file is damaged: a value is not of its type", place, kMend);
+    throw_damaged("a value is not of its type", place);
   }
+}
+
+template <typename Whole>
+Whole count_in(const Json& file, const char* key, std::string_view place) {
+  const auto count = json_whole_number<Whole>(file.at(key));
+  if (!count) throw_damaged("a value is not of its type", place);
+  return *count;
 }
 
 // A weight file whose hash matches. Throws Json::exception where a value is of another type.
@@ -65,7 +76,7 @@ Json parse_checked(std::string_view text, std::string_view place) {
   if (!file.is_object() || file.value("format", "") != kFormat) {
     throw_bad_input("this is not a policy's weight file", place, kMend);
   }
-  const int version = file.value("version", 0);
+  const auto version = count_in<int>(file, "version", place);
   if (version != kWeightsVersion && version != kWeightsVersionWithEncoder) {
     throw_bad_input(fmt::format("weight files of version {} are not read, only versions {} and {}",
                                 version, kWeightsVersion, kWeightsVersionWithEncoder),
@@ -75,7 +86,7 @@ Json parse_checked(std::string_view text, std::string_view place) {
       file.contains("encoder") != (version == kWeightsVersionWithEncoder) ||
       file.value("hash", "") !=
           weights_hash(file["tokens"], file["parameters"], file.value("encoder", Json()))) {
-    throw_bad_input("the weight file is damaged: its hash does not match", place, kMend);
+    throw_damaged("its hash does not match", place);
   }
   return file;
 }
@@ -83,8 +94,8 @@ Json parse_checked(std::string_view text, std::string_view place) {
 Stored parse_stored(std::string_view text, std::string_view place) {
   return undamaged(place, [&]() -> Stored {
     const Json file = parse_checked(text, place);
-    return {file["tokens"].get<std::vector<std::string>>(), file["operations"].get<std::size_t>(),
-            read_numbers(file["parameters"])};
+    return {file["tokens"].get<std::vector<std::string>>(),
+            count_in<std::size_t>(file, "operations", place), read_numbers(file["parameters"])};
   });
 }
 

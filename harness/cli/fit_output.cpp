@@ -144,7 +144,8 @@ FitIntervals read_fit_intervals(const nlohmann::json& model, const Expression& f
     intervals.quantile = kept.at("quantile");
     intervals.covariance = kept.at("covariance").get<std::vector<double>>();
     for (const nlohmann::json& one : kept.at("constants")) {
-      intervals.places.push_back(one.at("place"));
+      const auto place = json_whole_number<std::size_t>(one.at("place"));
+      intervals.places.push_back(place.value_or(formula.size()));  // no constant's: refused below
     }
   } catch (const nlohmann::json::exception&) {
     throw_bad_input("this model has no intervals", file, "save one by: tribench fit --save FILE");

@@ -71,8 +71,9 @@ simulation::WorldPlan read_plan(const std::filesystem::path& file) {
   };
   simulation::WorldPlan plan;
   try {
-    if (!json.at("seed").is_number_unsigned()) refuse("its seed is no whole number from 0 on");
-    plan.seed = json.at("seed").get<std::uint64_t>();
+    const auto seed = json_whole_number<std::uint64_t>(json.at("seed"));
+    if (!seed) refuse("its seed is no whole number from 0 on");
+    plan.seed = *seed;
     const auto level = named(simulation::kWorldLevels, simulation::world_level_name,
                              json.at("level").get<std::string>());
     if (!level) refuse("its level is not known");

@@ -339,7 +339,9 @@ void take_roles_by_unit(const CsvLayout& layout, std::vector<ColumnPlan>& plans,
     ColumnPlan& plan = plans[columns.front()];
     plan.reading.role = role_of(plan.unit.unit->dimension);
     plan.reading.role_from = "the only one in such a unit";
-    plan.unit.at_motor = plan.unit.at_motor || names_motor(plan.reading.column);
+    WrittenUnit unit = plan.unit;
+    unit.at_motor = unit.at_motor || names_motor(plan.reading.column);
+    take_unit(plan, unit, plan.reading.unit_from);
     out.warnings.push_back(fmt::format(
         "column '{}' is taken for the {}: it is the only one in {} (--roles says otherwise)",
         plan.reading.column, role_name(plan.reading.role), plan.unit.unit->symbol));

@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <type_traits>
-#include <utility>
 
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "reports/record/record_columns.hpp"
 
 namespace tribench {
@@ -38,19 +37,6 @@ Json field_json(const Row& row, const RecordColumn<Row>& column) {
   throw Error(ErrorKind::failed, fmt::format("{} is not a value of {}", field.dump(), name));
 }
 
-// Of a number beyond the type's range the library makes any other.
-template <typename Value>
-Value whole_number(const json& field, const char* name) {
-  if (field.is_number_unsigned()) {
-    const auto value = field.get<std::uint64_t>();
-    if (std::in_range<Value>(value)) return static_cast<Value>(value);
-  } else if (field.is_number_integer()) {
-    const auto value = field.get<std::int64_t>();
-    if (std::in_range<Value>(value)) return static_cast<Value>(value);
-  }
-  refuse(field, name);
-}
-
 template <typename Value>
 void read_value(const json& object, const char* name, Value& value) {
   const json& field = object.at(name);
@@ -59,7 +45,9 @@ void read_value(const json& object, const char* name, Value& value) {
   } else if constexpr (std::is_same_v<Value, bool>) {
     value = field.get<bool>();
   } else if constexpr (std::is_arithmetic_v<Value>) {
-    value = whole_number<Value>(field, name);
+    const auto whole = json_whole_number<Value>(field);
+    if (!whole) refuse(field, name);
+    value = *whole;
   } else if (!read_field_text(field.get_ref<const std::string&>(), value)) {
     refuse(field, name);
   }

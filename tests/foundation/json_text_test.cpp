@@ -39,6 +39,19 @@ TEST(JsonText, SaysWhereItIsNoJsonInPrintableText) {
   EXPECT_EQ(read_json_or_throw<Json>("[1, 2]", "a file").size(), 2U);
 }
 
+TEST(JsonText, ANumberIsWholeWhereItsTypeHoldsIt) {
+  const auto held = [](const char* text) { return json_whole_number<int>(read_json<Json>(text)); };
+  EXPECT_EQ(held("7"), 7);
+  EXPECT_EQ(held("-7"), -7);
+  for (const char* other : {"2147483648", "-2147483649", "99999999999999999999", "1e77", "7.0",
+                            "2.5", "\"7\"", "null", "true"}) {
+    EXPECT_EQ(held(other), std::nullopt) << other;
+  }
+  EXPECT_EQ(json_whole_number<std::uint64_t>(read_json<Json>("18446744073709551615")),
+            18446744073709551615U);
+  EXPECT_EQ(json_whole_number<std::uint64_t>(read_json<Json>("-1")), std::nullopt);
+}
+
 TEST(JsonText, WritesBytesThatAreNoUtf8AsTheReplacementCharacter) {
   EXPECT_EQ(write_json(Json({{"a", "\xff"}})), "{\"a\":\"\xef\xbf\xbd\"}");
 }

@@ -32,6 +32,12 @@ void try_data(std::string_view text, bool drop_missing) {
     if (channel.role != Role::none) role.in.unit = find_unit(channel.unit);
     options.roles[channel.name] = role;
   }
+  // What could not be converted (a motor's angle, and no gear ratio) is written as it was.
+  for (const ColumnReading& reading : file.readings) {
+    const auto role = options.roles.find(reading.column);
+    if (reading.needs.empty() || role == options.roles.end()) continue;
+    role->second.in = find_written_unit(reading.unit);
+  }
   std::ostringstream written;
   write_csv(file.data, written);
   expect_same(file.data, parse_csv(written.str(), "written.csv", options).data);

@@ -310,6 +310,9 @@ TEST(VendorLogs, AColumnAloneInItsUnitIsWhatTheUnitSays) {
   // Beside a velocity an angle may be anything that was travelled.
   EXPECT_EQ(roles_line(parse_csv("t,dq,travel_rad\n0,1,2\n", "log.csv", told(""))),
             "t=time[s],dq=velocity[rad/s]");
+  // The motor's angle stays the motor's in the line to copy.
+  const DataFile geared = parse_csv("t,mot shoulder [deg],i_A\n0,90,1\n", "log.csv", told(""));
+  EXPECT_THAT(roles_line(geared), HasSubstr("\"mot shoulder [deg]\"=position[deg@motor]"));
   // Two of a kind are for the user to tell apart; one letter behind a line is no unit.
   const DataFile two =
       parse_csv("t,elbow [deg],wrist [deg],line_A\n0,1,2,3\n", "log.csv", told(""));
