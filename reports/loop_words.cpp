@@ -115,12 +115,12 @@ std::vector<std::string> doubts_of(const LoopRecord& record, const LoopEffect& e
                               plain_text(record, effect.objection)));
   } else if (!record.error.confirmed) {
     all.push_back("The movements that were left out do not confirm it.");
+  } else if (effect.provisional && !record.leftover.varying.term.empty()) {
+    all.push_back(fmt::format(
+        "It shows between movements only, and may stand for the {}, which differs between them.",
+        varying_term(record)));
   } else if (effect.provisional && !record.leftover.inputs.empty()) {
     all.push_back("It shares an input with what is still unexplained.");
-  } else if (effect.provisional && !record.leftover.varying.term.empty()) {
-    all.push_back(
-        fmt::format("It may stand for {}, which seems to differ from movement to movement.",
-                    varying_term(record)));
   }
   if (effect.another_shape) all.push_back("This cause, but another curve than those known.");
   if (effect.few_movements) all.push_back("Few movements carry it: record more.");

@@ -83,6 +83,8 @@ struct EffectFinding {
   // by the movements left out.
   bool provisional = false;
   std::string objection;  // why it is not physical; empty where it is
+  // Shows between movements only, beside something that differs between them: may stand for it.
+  bool stands_in = false;
   // This cause, but a curve that the library does not have: more is left over in its own inputs.
   bool another_shape = false;
   // Share of the searches with some movements left out that choose it, or an alias, too; NaN where

@@ -193,9 +193,7 @@ std::vector<std::string> roles_read(std::size_t family, const LoopModel& model,
 bool shares_a_signal(std::size_t family, const LoopModel& model, const LeftoverFinding& leftover,
                      const Observations& data) {
   return std::ranges::any_of(signals_read(model, family, data), [&](const Signal* signal) {
-    // What differs from movement to movement may pass for something that follows their order.
-    const bool is_slow = signal->role == Role::time || signal->role == Role::temperature;
-    return std::ranges::count(leftover.signals, signal->name) > 0 || (leftover.varying && is_slow);
+    return std::ranges::count(leftover.signals, signal->name) > 0;
   });
 }
 
@@ -221,20 +219,20 @@ void tell_offsets(Diagnosis& out, const std::string& unit) {
                   out.noise.between_sd, unit, out.noise.within_sd));
 }
 
-// What is found may stand for what too few movements tell to differ between them.
-void doubt_effects(Diagnosis& out) {
-  if (!out.leftover.is_in_doubt()) return;
+void doubt_stand_ins(Diagnosis& out) {
   for (EffectFinding& effect : out.effects) {
+    if (!effect.stands_in) continue;
     effect.provisional = true;
     effect.notes.push_back(
-        fmt::format("may stand for '{}', which seems to differ from movement to movement",
+        fmt::format("shows between movements only: may stand for '{}', which seems to differ from "
+                    "one to the next",
                     out.leftover.varying->term));
   }
 }
 
 Verdict verdict_of(const Diagnosis& diagnosis, bool leftover_tested) {
   if (!diagnosis.leftover.inputs.empty()) return Verdict::unknown;
-  if (!diagnosis.effects.empty()) return Verdict::effects;
+  if (!std::ranges::all_of(diagnosis.effects, &EffectFinding::stands_in)) return Verdict::effects;
   if (diagnosis.leftover.is_in_doubt()) return Verdict::cannot_tell;
   const bool tested = leftover_tested || !diagnosis.candidates.empty();
   return tested ? Verdict::none : Verdict::cannot_tell;
@@ -245,7 +243,7 @@ std::vector<std::string> needed_to_tell(const Diagnosis& diagnosis) {
   std::vector<std::string> needed;
   if (const auto& varying = diagnosis.leftover.varying) {
     needed.push_back(
-        fmt::format("more movements: '{}' seems to differ from one to the next ({:.0f} % of what "
+        fmt::format("more movements: '{}' seems to differ from one to the next ({:.2g} % of what "
                     "is left), which {} cannot tell; or a column that says what was changed",
                     varying->term, 100 * varying->share, diagnosis.movements));
     return needed;
@@ -281,12 +279,13 @@ void write_findings(Diagnosis& out, const SearchResult& result, const Campaign& 
     EffectFinding& finding =
         out.effects.emplace_back(effect_finding(one, state.model, covariance, campaign));
     finding.order = static_cast<int>(out.effects.size());
+    finding.stands_in = one.stands_in;
     finding.provisional = shares_a_signal(one.family, out.after, out.leftover, campaign.data);
   }
   for (std::size_t k = 0; k < state.found.size() && campaign.options.physical_vetoes; ++k) {
     veto(out, out.effects[k], state.found[k].family, campaign);
   }
-  doubt_effects(out);
+  doubt_stand_ins(out);
   tell_offsets(out, campaign.data.target_unit);
   out.verdict = verdict_of(out, result.leftover_tested);
   if (out.verdict == Verdict::cannot_tell) out.needed = needed_to_tell(out);

@@ -26,6 +26,7 @@ struct Found {
   bool few = false;  // carried by few movements
   std::vector<AliasFinding> aliases;
   bool another_shape = false;  // this cause, a curve that the library does not have
+  bool stands_in = false;      // maybe, for what differs from movement to movement
 };
 
 // A model and the families in it.

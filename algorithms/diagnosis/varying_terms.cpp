@@ -2,8 +2,10 @@
 #include "algorithms/diagnosis/varying_terms.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +14,8 @@
 #include "algorithms/diagnosis/worth.hpp"
 #include "algorithms/inference/random_slopes.hpp"
 #include "algorithms/inference/robust_ridge.hpp"
+#include "algorithms/inference/whitening.hpp"
+#include "algorithms/inference/within_movements.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -24,16 +28,22 @@ struct VaryingTerm {
   Eigen::MatrixXd columns;
 };
 
+// The base's friction: of a term the name and the signal.
+constexpr std::array<std::pair<const char*, const char*>, 2> kFriction = {
+    {{"coulomb_friction", "sgn_v"}, {"viscous_friction", "v"}}};
+
+std::optional<Eigen::VectorXd> column_of(const char* signal, const Campaign& campaign) {
+  const Signal* found = campaign.data.find(signal);
+  if (found == nullptr) return std::nullopt;
+  return Eigen::Map<const Eigen::VectorXd>(found->values.data(),
+                                           static_cast<Eigen::Index>(found->values.size()));
+}
+
 // Coulomb and viscous friction, and what an arm carries.
 std::vector<VaryingTerm> varying_terms(const Campaign& campaign) {
   std::vector<VaryingTerm> terms;
-  for (const auto& [name, signal] :
-       {std::pair{"coulomb_friction", "sgn_v"}, std::pair{"viscous_friction", "v"}}) {
-    if (const Signal* found = campaign.data.find(signal)) {
-      terms.push_back(
-          {name, Eigen::Map<const Eigen::VectorXd>(
-                     found->values.data(), static_cast<Eigen::Index>(found->values.size()))});
-    }
+  for (const auto& [name, signal] : kFriction) {
+    if (const auto found = column_of(signal, campaign)) terms.push_back({name, *found});
   }
   const Library& library = campaign.library;
   for (std::size_t k = 0; k < library.atoms.size(); ++k) {
@@ -82,10 +92,46 @@ VaryingFinding finding_of(const VaryingTerm& term, const RandomSlopes& slopes,
   return finding;
 }
 
+// An offset and the terms that are no part of this family.
+Eigen::MatrixXd own_terms(const std::vector<VaryingTerm>& terms, const std::string& family,
+                          const Campaign& campaign) {
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(campaign.data.rows()), 1);
+  for (const VaryingTerm& term : terms) {
+    if (term.name != family) columns = beside(columns, term.columns);
+  }
+  return columns;
+}
+
+// The effects that may stand for what varies: that is not next to nothing beside them, and they
+// show neither within movements that have terms of their own nor by whole movements.
+void doubt_stand_ins(SearchState& state, double varying, const std::vector<VaryingTerm>& terms,
+                     const Campaign& campaign, const RandomStream& random) {
+  const FittedModel& model = state.model;
+  const auto white = [&](Eigen::MatrixXd columns) {
+    return whitened(std::move(columns), campaign.clusters, model.noise);
+  };
+  const DiagnosisOptions& options = campaign.options;
+  const std::vector<double> worth = worths(model.model, state.families(), campaign);
+  for (std::size_t k = 0; k < worth.size(); ++k) {
+    if (varying < least_worth({worth[k]}, options)) continue;
+    Found& found = state.found[k];
+    const Eigen::VectorXd torque = contribution(model.model, found.family, campaign.data);
+    const AskedColumn asked = {white(torque),
+                               white(tangent(model.model.without(found.family), campaign.data)),
+                               white(model.raw_residual + torque)};
+    const Eigen::MatrixXd own =
+        white(own_terms(terms, campaign.families[found.family].name, campaign));
+    const double within = p_within_movements(asked, own, campaign.clusters, campaign.flips);
+    const double whole = p_of_movements(asked, campaign.clusters, options.flips, random);
+    found.stands_in = std::min(within, whole) > options.alpha_library;
+  }
+}
+
 }  // namespace
 
 void find_varying_term(SearchResult& result, const Eigen::VectorXd& rich_residual,
-                       const Campaign& campaign, RandomStream random) {
+                       const Campaign& campaign, const RandomStream& random) {
   LeftoverFinding& leftover = result.leftover;
   if (!leftover.inputs.empty() || !campaign.options.has("random_slopes")) return;
   const std::vector<VaryingTerm> terms = varying_terms(campaign);
@@ -93,18 +139,22 @@ void find_varying_term(SearchResult& result, const Eigen::VectorXd& rich_residua
   for (const VaryingTerm& term : terms) columns.push_back(term.columns);
   const std::vector<RandomSlopes> all =
       random_slopes(columns, unexplained(result, rich_residual, campaign),
-                    campaign.clusters.movements, campaign.options.flips, std::move(random));
+                    campaign.clusters.movements, campaign.options.flips, random);
   if (all.empty()) return;
   auto told = std::ranges::max_element(all, {}, &RandomSlopes::mean_share);
   const bool is_sure = told->p <= campaign.options.alpha_leftover;
   if (!is_sure) told = std::ranges::max_element(all, {}, &RandomSlopes::share);
-  if (!is_sure && told->share < kMuch) return;
+  if (!(told->share > 0)) return;
   const double worth = told->share / (1 - told->share);
-  const SearchState& state = result.state;
-  if (worth < least_worth_of_leftover(state.model.model, state.families(), campaign)) return;
+  SearchState& state = result.state;
+  doubt_stand_ins(state, worth, terms, campaign, random.split("whole movements"));
+  const bool is_much =
+      (is_sure || told->share >= kMuch) &&
+      worth >= least_worth_of_leftover(state.model.model, state.families(), campaign);
+  if (!is_much && std::ranges::none_of(state.found, &Found::stands_in)) return;
   const VaryingTerm& term = terms[static_cast<std::size_t>(told - all.begin())];
   leftover.varying = finding_of(term, *told, campaign);
-  if (!is_sure) return;
+  if (!is_sure || !is_much) return;
   leftover.p = told->p;
   leftover.inputs = {"movement"};
 }

@@ -16,6 +16,6 @@ namespace tribench::loop {
 // may stand behind all else (varying without inputs). rich_residual: what the rich model leaves of
 // the campaign's rows.
 void find_varying_term(SearchResult& result, const Eigen::VectorXd& rich_residual,
-                       const Campaign& campaign, RandomStream random);
+                       const Campaign& campaign, const RandomStream& random);
 
 }  // namespace tribench::loop

@@ -159,7 +159,7 @@ std::vector<LoopAnswer::Burst> bursts_in(const json& object,
 
 LoopAnswer answer_in(const json& object, const AskedDiagnosis& asked) {
   LoopAnswer answer;
-  answer.effects = effects_in(object);
+  if (object.at("verdict") != "CANNOT_TELL") answer.effects = effects_in(object);
   answer.bursts = bursts_in(object, asked.movement_names);
   answer.unknown = object.at("verdict") == "UNKNOWN";
   if (object.contains("leftover")) {

@@ -26,6 +26,7 @@ LoopAnswer diagnose(const LoopCase& one, const PlantedData& planted,
   const std::optional<loop::Bristles> bristles = loop::bristles_of(diagnosis, data);
   LoopAnswer answer;
   for (const loop::EffectFinding& effect : diagnosis.effects) {
+    if (diagnosis.verdict == loop::Verdict::cannot_tell) break;  // named as what might be
     answer.effects.push_back({effect.family, {}, effect.another_shape, 0});
     if (bristles && effect.family == diagnosis.families[bristles->family].name) {
       answer.effects.back().stiffness = bristles->stiffness;

@@ -142,7 +142,7 @@ TEST(LoopWords, ADoubtIsNoVerdict) {
   EXPECT_THAT(words.leftover, HasSubstr("depends on velocity"));
   record.leftover.inputs.clear();
   EXPECT_THAT(loop_words(record).cards[0].doubts,
-              ::testing::Contains(HasSubstr("It may stand for payload")));
+              ::testing::Contains(HasSubstr("may stand for the payload")));
 }
 
 TEST(LoopWords, HoldNoNameOfTheProgramAndNoCode) {

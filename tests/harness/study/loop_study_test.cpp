@@ -206,6 +206,22 @@ TEST(LoopStudy, AProgramIsJudgedLikeTheLoop) {
   EXPECT_EQ(figure(run_loop_study(options, program), "false alarm, any").hits, 0U);
 }
 
+TEST(LoopStudy, WhatAProgramCannotTellIsNoClaim) {
+  LoopStudyOptions options{.null_runs = 1, .runs_per_cell = 1, .first_seed = 922};
+  options.only = "single/stribeck/4";
+  const auto claimed_with = [&](const std::string& verdict) {
+    const std::string answer = "{\"verdict\": \"" + verdict +
+                               "\", \"effects\": [{\"family\": \"drift\"}], \"held_out\": [";
+    const std::string script =
+        "printf '%s' '" + answer +
+        "'; sed '1d;s/.*/0/' \"${0%/*}\"/held_out.csv | tr '\\n' ',' | sed 's/,$//'; echo ']}'";
+    const LoopStudy study = run_loop_study(options, make_external_diagnosis({"sh", "-c", script}));
+    return study.outcomes.at(0).claimed;
+  };
+  EXPECT_EQ(claimed_with("EFFECTS"), std::vector<std::string>{"drift"});
+  EXPECT_EQ(claimed_with("CANNOT_TELL"), std::vector<std::string>{});
+}
+
 TEST(LoopStudy, AProgramThatFailsIsNamedWithItsCase) {
   LoopStudyOptions options{.null_runs = 1, .runs_per_cell = 1, .first_seed = 921};
   options.only = "null";
