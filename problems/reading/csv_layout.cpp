@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "foundation/error.hpp"
 #include "problems/reading/csv_cells.hpp"
@@ -178,16 +179,20 @@ Found try_delimiter(const std::vector<HeadLine>& lines, char delimiter) {
 }
 
 // Where no layout fits: the first line that is no comment names the columns, and what is wrong
-// with the rows is said there.
+// with the rows is said there. What parts it into most cells parts them, or rather what parts the
+// next line into as many: a name may hold the others.
 Found plain_layout(const std::vector<HeadLine>& lines) {
   Found found;
   std::size_t first = 0;
   while (first + 1 < lines.size() && lines[first].comment) ++first;
-  std::ptrdiff_t most = 0;
+  std::pair<bool, std::size_t> best = {false, 1};
   for (const char candidate : {',', ';', '\t', '|'}) {
-    const std::ptrdiff_t count = std::ranges::count(lines[first].text, candidate);
-    if (count <= most) continue;
-    most = count;
+    const Cells header = cells_of(lines[first], candidate);
+    const bool agrees = header.size() > 1 && first + 1 < lines.size() &&
+                        same_width(header, cells_of(lines[first + 1], candidate));
+    const std::pair cells(agrees, header.size());
+    if (cells <= best) continue;
+    best = cells;
     found.delimiter = candidate;
   }
   found.header = first;

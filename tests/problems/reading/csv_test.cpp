@@ -74,6 +74,14 @@ TEST(Csv, AcceptsDelimitersByteOrderMarkCrlfAndAMissingLastNewline) {
   }
 }
 
+TEST(Csv, WhatPartsTheRowsPartsTheNamesWhateverTheseHold) {
+  // A name that is a number, and semicolons in a quoted one.
+  const DataFile file = parse_csv("0.31,\"a;b;c;d\",e\n1,2,3\n4,5,6\n", "log.csv");
+  ASSERT_EQ(file.data.channels.size(), 3U);
+  EXPECT_EQ(file.data.channels[1].name, "a;b;c;d");
+  EXPECT_EQ(file.data.channels[1].values, (std::vector<double>{2, 5}));
+}
+
 TEST(Csv, WithoutAMovementColumnTheFileIsOne) {
   const Dataset data = parse_csv("v,y\n1,2\n3,4\n", "runs/fast.csv").data;
   EXPECT_EQ(data.movement_names, (std::vector<std::string>{"fast"}));
