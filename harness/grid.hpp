@@ -24,6 +24,9 @@ namespace tribench {
 // What one cell may spend. `evaluations` and `seconds` are told to the method, which stops by
 // itself; the others are enforced from outside and cost the cell.
 struct CellLimits {
+  // More than any machine gets done: where seconds alone are to be spent.
+  static constexpr std::uint64_t kAmple = 9'000'000'000'000'000;
+
   std::uint64_t evaluations = 20'000'000'000;  // node-rows
   double seconds = 60;                         // CPU seconds of the fit
   double wall_seconds = 180;                   // of the whole cell

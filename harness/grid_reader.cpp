@@ -52,6 +52,11 @@ CellLimits read_limits(const TomlTable& table, CellLimits limits) {
   table.read("cpu_limit_seconds", limits.cpu_limit_seconds, 0.01, kMaxSeconds);
   table.read("memory_mib", limits.memory_mib, 16, 1 << 24);
   table.read("spend", limits.spend);
+  const bool named_seconds = table.has("seconds") && !table.has("evaluations");
+  // What nobody named shall not end what is to be spent.
+  if (limits.spend && named_seconds && limits.evaluations == CellLimits().evaluations) {
+    limits.evaluations = CellLimits::kAmple;
+  }
   return limits;
 }
 

@@ -13,8 +13,9 @@ namespace tribench::loop {
 
 // Where nothing is left over in any signal: the term of the base's friction or of the library whose
 // coefficient differs most, if one does at the level of what is left over, or by so much that it
-// may stand behind all else (varying without inputs). rich_residual: what the rich model leaves of
-// the campaign's rows.
+// may stand behind all else (varying without inputs). Effects that may stand for it are marked, and
+// it is told beside them however small it is. rich_residual: what the rich model leaves of the
+// campaign's rows.
 void find_varying_term(SearchResult& result, const Eigen::VectorXd& rich_residual,
                        const Campaign& campaign, const RandomStream& random);
 

@@ -420,10 +420,10 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
   command->callback([arguments, &registry, budget] {
     if (arguments->external.empty() && arguments->method.empty()) arguments->method = "relay";
     arguments->words = own_words();
-    constexpr std::uint64_t kNoLimit = 1'000'000'000'000'000'000;
     arguments->spends_all = budget.seconds->count() > 0;
-    if (arguments->spends_all && budget.evaluations->count() == 0)
-      arguments->evaluations = kNoLimit;
+    if (arguments->spends_all && budget.evaluations->count() == 0) {
+      arguments->evaluations = CellLimits::kAmple;
+    }
     fit(*arguments, registry);
   });
 }

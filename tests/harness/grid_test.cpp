@@ -233,6 +233,21 @@ operators = ["+", "*", "tanh"]
   EXPECT_EQ(again.retry.crashed, 2);
 }
 
+TEST(Grid, SecondsThatAreToBeSpentAreNotEndedByEvaluationsThatNobodyNamed) {
+  const auto evaluations = [](const std::string& budget) {
+    const Grid grid = parse_text(
+        "[grid]\nname = \"g\"\nproblems = [\"A/*\"]\nmethods = "
+        "[\"grid_alpha\"]\noperators = [\"paper\"]\n[budget]\n" +
+        budget);
+    EXPECT_EQ(parse_text(print_grid(grid)).limits, grid.limits);
+    return grid.limits.evaluations;
+  };
+  EXPECT_EQ(evaluations("seconds = 30\nspend = true\n"), CellLimits::kAmple);
+  EXPECT_EQ(evaluations("seconds = 30\n"), CellLimits().evaluations);
+  EXPECT_EQ(evaluations("seconds = 30\nspend = true\nevaluations = 1e7\n"), 10'000'000U);
+  EXPECT_EQ(evaluations("spend = true\n"), CellLimits().evaluations);
+}
+
 TEST(Grid, ANewCellKeyIsANewStream) {
   std::set<std::string> keys;
   for (const Cell& cell : parse_text(std::string(kAxes) + "operators = [\"*\"]\n").cells()) {
