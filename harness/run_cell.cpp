@@ -233,8 +233,8 @@ class StageFits {
   FitResult fit(const Regressor& method, const RandomStream& random, std::size_t stage,
                 const WidenedMethod& widened, Trace& trace) {
     const BudgetLimits before = left();
-    FitResult first = once(method, random.split(stage), &trace);
-    if (!task_.limits.spend) return first;
+    if (!task_.limits.spend) return once(method, random.split(stage), &trace);
+    FitResult first = once(method, random.split(stage), &trace, share_of_first());
     std::optional<Bearable> bearable;
     if (data_.rows() <= kFewRows && is_enough_for_searches_anew(before, left())) {
       const auto search = [&](const TrainingData& rows, RandomStream anew, Budget& part) {
@@ -259,9 +259,17 @@ class StageFits {
  private:
   BudgetLimits left() const { return {budget_.remaining(), budget_.remaining_seconds()}; }
 
-  FitResult once(const Regressor& method, RandomStream stream, Progress* progress) {
+  // Of few rows the search leaves seconds to be made again, where it has enough of them by itself.
+  double share_of_first() const {
+    const bool leaves = data_.rows() <= kFewRows &&
+                        kShareBesideSearchesAnew * budget_.remaining_seconds() >= kSecondsOfSearch;
+    return leaves ? kShareBesideSearchesAnew : 1;
+  }
+  // share: of the seconds.
+  FitResult once(const Regressor& method, RandomStream stream, Progress* progress,
+                 double share = 1) {
     const TrainingData seen = scaled_.data();
-    Budget part = search_part();
+    Budget part = search_part(share);
     FitContext context{seen, task_.operators, part, stream, task_.threads, progress};
     FitResult result = fit_or_refuse(method, context);
     settle(part);
@@ -271,9 +279,9 @@ class StageFits {
     return result;
   }
   // The whole budget but for its seconds: what has been refused to one is refused to the other.
-  Budget search_part() const {
-    const bool few = data_.target.size() <= kFewRows;
-    Budget part = budget_.share(budget_.remaining(), few ? kSearchShareOfFewRows : 1);
+  Budget search_part(double share) const {
+    if (data_.target.size() <= kFewRows) share *= kSearchShareOfFewRows;
+    Budget part = budget_.share(budget_.remaining(), share);
     if (budget_.exhausted()) part.spend(part.remaining() + 1);
     return part;
   }

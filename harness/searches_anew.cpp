@@ -18,9 +18,8 @@
 namespace tribench {
 namespace {
 
-constexpr int kFolds = 5;
+constexpr int kFolds = kSearchesAnew;
 constexpr std::size_t kFewestRows = 20;  // four of them held out
-constexpr double kOfTheFirst = 0.25;     // what the first search spent
 
 bool is_worth_a_look(const FitResult& fit, const FiniteRows& rows) {
   return fit.front.size() > 1 && fit.states.empty() && !fit.keeps_form &&

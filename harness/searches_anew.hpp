@@ -14,6 +14,14 @@
 
 namespace tribench {
 
+// Five searches that may spend a quarter of what the first one did.
+inline constexpr int kSearchesAnew = 5;
+inline constexpr double kOfTheFirst = 0.25;
+// What the first one may spend of a budget so that they can be made.
+inline constexpr double kShareBesideSearchesAnew = 1 / (1 + kSearchesAnew * kOfTheFirst);
+// CPU seconds in which a search of few rows has mostly come to its end: less is not shared.
+inline constexpr double kSecondsOfSearch = 10;
+
 // A fit of other rows with a part of the budget; its front finished (finished_front.hpp).
 using SearchOfRows = std::function<FitResult(const TrainingData&, RandomStream, Budget&)>;
 

@@ -7,7 +7,7 @@
 // of such a form anew do not see it (held_out_choice.hpp): the form itself was chosen with the rows
 // held out. So the whole search is made again without each fold, and its fronts are judged there.
 //
-// The choice stands unless the folds' choices err more than the mean would, or plainly more than
+// The choice stands unless the folds' choices err more than the mean would, or half more than
 // their formulas of some bounded complexity do: then nothing is chosen beyond the simplest bound
 // that is as good as any. Where it stands, what more searching finds may be as complex as it is.
 //

@@ -136,6 +136,38 @@ TEST(FitAndJudge, FurtherRoundsOnFewRowsCountByExactFormulasAlone) {
   EXPECT_THAT(formula_after("2*v + 1 + 0.3*cos(31.41592653589793*v)"), HasSubstr("cos"));
 }
 
+// Notes the seconds that each search was given.
+class NotingMethod : public LineMethod {
+ public:
+  FitResult fit(FitContext& context) const override {
+    given_.push_back(context.budget.remaining_seconds());
+    return LineMethod::fit(context);
+  }
+  double first() const { return given_.at(0); }
+
+ private:
+  mutable std::vector<double> given_;
+};
+
+TEST(FitAndJudge, AFirstSearchOfFewRowsLeavesSecondsToBeMadeAgain) {
+  Problem problem = two_stage_problem();
+  problem.stages.pop_back();
+  CellTask task;
+  task.cell = {problem.name, "line", "full", 1};
+  task.operators = find_operator_set("full");
+  task.limits.evaluations = 200;
+  const auto share = [&](double seconds, bool spend) {
+    task.limits.seconds = seconds;
+    task.limits.spend = spend;
+    const NotingMethod method;
+    fit_and_judge(problem, method, task);
+    return method.first() / seconds;
+  };
+  EXPECT_NEAR(share(60, true), 0.4, 0.01);
+  EXPECT_NEAR(share(10, true), 0.9, 0.01);  // a search has too little of that already
+  EXPECT_NEAR(share(60, false), 0.9, 0.01);
+}
+
 // Refuses data of which the first input has another name.
 class ParticularMethod : public LineMethod {
  public:

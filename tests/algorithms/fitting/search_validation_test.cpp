@@ -55,6 +55,15 @@ TEST_F(SearchValidationTest, WhereTheFoldsChooseBadlyTheSimplestThatIsAsGoodStan
   EXPECT_EQ(bound(3), 2);
 }
 
+TEST_F(SearchValidationTest, AThirdMoreErrorIsNoReasonToChooseAnotherAndFourFifthsAre) {
+  // Of squares of 0.01 an offset of 0.06 makes 0.0136, one of 0.09 makes 0.0181.
+  for (const auto& [offset, bound_of_it] : {std::pair{"0.06", 8}, std::pair{"0.09", 2}}) {
+    validation_ = {};
+    add({"1", "2*v", std::string("2*v + ") + offset}, 2);
+    EXPECT_EQ(bound(3), bound_of_it) << offset;
+  }
+}
+
 TEST_F(SearchValidationTest, WhatIsWorseThanTheMeanGivesWay) {
   add({"0.9", "9*v^9"}, 1);  // on rows of the mean 0.9
   EXPECT_EQ(bound(3), 0);
