@@ -18,7 +18,6 @@
 namespace tribench {
 namespace {
 
-constexpr int kFolds = kSearchesAnew;
 constexpr std::size_t kFewestRows = 20;  // four of them held out
 
 bool is_worth_a_look(const FitResult& fit, const FiniteRows& rows) {
@@ -31,7 +30,7 @@ bool is_worth_a_look(const FitResult& fit, const FiniteRows& rows) {
 
 bool is_enough_for_searches_anew(const BudgetLimits& before, const BudgetLimits& after) {
   const auto is_enough = [](double had, double has) {
-    return !std::isfinite(had) || has / kFolds >= kOfTheFirst * (had - has);
+    return !std::isfinite(had) || has / kSearchesAnew >= kOfTheFirst * (had - has);
   };
   return is_enough(static_cast<double>(before.evaluations),
                    static_cast<double>(after.evaluations)) &&
@@ -45,13 +44,13 @@ std::optional<Bearable> bearable_search(const FitResult& fit, const SearchOfRows
   if (!is_worth_a_look(fit, rows)) return std::nullopt;
   const std::span<const int> movements =
       data.movement.empty() ? std::span<const int>() : rows.movement;
-  const std::vector<int> fold_of = held_out_folds(movements, rows.rows(), kFolds);
+  const std::vector<int> fold_of = held_out_folds(movements, rows.rows(), kSearchesAnew);
   SearchValidation validation;
-  for (int fold = 0; fold < kFolds; ++fold) {
+  for (int fold = 0; fold < kSearchesAnew; ++fold) {
     const FiniteRows held_out(rows, [&](std::size_t row) { return fold_of[row] == fold; });
     if (held_out.rows() == 0) continue;  // fewer movements than folds
     const FiniteRows kept(rows, [&](std::size_t row) { return fold_of[row] != fold; });
-    const auto left = static_cast<std::uint64_t>(kFolds - fold);
+    const auto left = static_cast<std::uint64_t>(kSearchesAnew - fold);
     Budget part = budget.share(budget.remaining() / left, 1.0 / static_cast<double>(left));
     const FitResult anew =
         search(kept.as_data(data.inputs), random.split(static_cast<std::uint64_t>(fold)), part);

@@ -74,6 +74,8 @@ std::string plain_text(const LoopRecord& record, std::string text) {
   text = replaced(text, R"( \((R[1-9](, )?)+\))", "");
   text = replaced(text, R"( \(--[^)]*\))", "");
   text = with_titles(record, std::move(text));
+  const std::string& varying = record.leftover.varying.term;
+  if (!varying.empty()) text = replaced(text, '\'' + varying + '\'', varying_term(record));
   for (const LoopExperiment& one : record.experiments) {
     text = replaced(text, "\\b" + one.code + "\\b", one.text);
   }

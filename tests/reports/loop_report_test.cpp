@@ -143,6 +143,9 @@ TEST(LoopWords, ADoubtIsNoVerdict) {
   record.leftover.inputs.clear();
   EXPECT_THAT(loop_words(record).cards[0].doubts,
               ::testing::Contains(HasSubstr("may stand for the payload")));
+  record.leftover.varying.term = "coulomb_friction";
+  EXPECT_EQ(plain_text(record, "'coulomb_friction' seems to differ"),
+            "Coulomb friction seems to differ");
 }
 
 TEST(LoopWords, HoldNoNameOfTheProgramAndNoCode) {
