@@ -12,6 +12,7 @@
 
 #include "algorithms/expression/build.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
+#include "algorithms/relay/function_sum.hpp"
 #include "algorithms/relay/index_fit.hpp"
 #include "algorithms/relay/long_sum.hpp"
 #include "algorithms/relay/part_search.hpp"
@@ -52,6 +53,7 @@ constexpr std::size_t kFewInputs = 3;  // with which waves and differences are t
 
 constexpr std::string_view kByProduct = "a product of powers";
 constexpr std::string_view kBySum = "a sum of products";
+constexpr std::string_view kByFunctionSum = "a function whose sizes inputs set";
 constexpr std::string_view kByRoot = "a root of a quadratic equation";
 constexpr std::string_view kByReduction = "fewer variables";
 constexpr std::string_view kByParts = "parts without a common input";
@@ -97,6 +99,7 @@ void StructureSearch::search() {
   find_parts(rows);
   const bool has_parts = parts_ && parts_->error < kSurelyExact;
   search_wave_sum();
+  search_function_sum(SumTerms::few);
   if (!has_parts) search_likely();
   if (is_noise_left_) return;
   if (has(kReductions)) {
@@ -119,12 +122,24 @@ void StructureSearch::search_wave_sum() {
   context_.budget.settle(budget);
 }
 
+void StructureSearch::search_function_sum(SumTerms terms) {
+  const LogRows rows(answer_.rows(), kFewRows);
+  if (round_ > 0 || answer_.is_done() || rows.rows() == 0 || !has(kFunctionSums)) return;
+  Budget budget = context_.budget.share(context_.budget.remaining() / 4, kHalf);
+  answer_.offer(find_function_sum(rows, context_.operators, terms, budget), kByFunctionSum);
+  context_.budget.settle(budget);
+}
+
 void StructureSearch::search_likely() {
   const LogRows rows(answer_.rows(), kFewRows);
   if (round_ > 0 || answer_.is_done() || rows.rows() == 0 || !has(kLikely)) return;
   if (roughness_of(rows, rows.target().values, context_.budget) < kSurelyExact) return;
   Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
   std::vector<Expression> likely = likely_products(rows, context_.operators, part);
+  if (has(kFunctionSums)) {
+    std::ranges::move(likely_function_sums(rows, context_.operators, part),
+                      std::back_inserter(likely));
+  }
   for (const auto& [columns, most] : {std::pair(Columns::powers_alone, kLikelyColumns),
                                       std::pair(Columns::with_factors, kLikelyWaves)}) {
     std::ranges::move(likely_relations(rows, context_.operators, columns, most, part),
@@ -163,6 +178,7 @@ void StructureSearch::search_guesses() {
 }
 
 void StructureSearch::search_wide_sums() {
+  search_function_sum(SumTerms::many);
   const LogRows rows(answer_.rows(), kSearchedRows);
   if (rows.rows() == 0 || round_ > kLastRound || !has(kWideSums)) return;
   Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);

@@ -17,6 +17,7 @@
 #include "algorithms/regressor.hpp"
 #include "algorithms/relay/answer.hpp"
 #include "algorithms/relay/collapse.hpp"
+#include "algorithms/relay/function_sum.hpp"
 #include "algorithms/relay/log_rows.hpp"
 #include "algorithms/relay/part_search.hpp"
 #include "algorithms/relay/reduced_problem.hpp"
@@ -27,6 +28,7 @@ namespace tribench::relay {
 // Searches that can be left out by their names, to see what each is worth.
 inline constexpr std::string_view kProducts = "products";
 inline constexpr std::string_view kSums = "sums";
+inline constexpr std::string_view kFunctionSums = "function_sums";
 inline constexpr std::string_view kCollapses = "collapses";
 inline constexpr std::string_view kReductions = "reductions";
 inline constexpr std::string_view kParts = "parts";
@@ -34,8 +36,9 @@ inline constexpr std::string_view kGuesses = "guesses";
 inline constexpr std::string_view kWideSums = "wide_sums";
 inline constexpr std::string_view kLikely = "likely";
 inline constexpr std::string_view kLongSums = "long_sums";
-inline constexpr std::array kSearches = {kProducts, kSums,     kCollapses, kReductions, kParts,
-                                         kGuesses,  kWideSums, kLikely,    kLongSums};
+inline constexpr std::array kSearches = {kProducts,   kSums,    kFunctionSums, kCollapses,
+                                         kReductions, kParts,   kGuesses,      kWideSums,
+                                         kLikely,     kLongSums};
 
 class StructureSearch {
  public:
@@ -67,6 +70,7 @@ class StructureSearch {
   void find_products_and_sums(const LogRows& rows, Budget& budget);
   void search_waves();
   void search_wave_sum();
+  void search_function_sum(SumTerms terms);
   // A sum or a product of parts without a common input.
   void find_parts(const LogRows& rows);
   void search_parts();

@@ -32,6 +32,8 @@ double UnitFunction::value(double z) const {
       return elementary::exp(z) - elementary::exp(-z);
     case Kind::sine:
       return elementary::sin(z);
+    case Kind::cosine:
+      return elementary::cos(z);
   }
   return NAN;
 }
@@ -55,6 +57,8 @@ Expression UnitFunction::formula(const Expression& z) const {
       return function(Op::exp, z) - function(Op::exp, -z);
     case Kind::sine:
       return function(Op::sin, z);
+    case Kind::cosine:
+      return function(Op::cos, z);
   }
   return {};
 }

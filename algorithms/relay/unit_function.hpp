@@ -9,9 +9,9 @@
 
 namespace tribench::relay {
 
-// exp z, tanh z, atan z, log(1 + z), (1 + z)^exponent, e^z + e^-z, e^z - e^-z, sin z.
+// exp z, tanh z, atan z, log(1 + z), (1 + z)^exponent, e^z + e^-z, e^z - e^-z, sin z, cos z.
 struct UnitFunction {
-  enum class Kind { exponential, tanh, atan, logarithm, power, cosh, sinh, sine };
+  enum class Kind { exponential, tanh, atan, logarithm, power, cosh, sinh, sine, cosine };
   Kind kind;
   double exponent = 1;  // of a power
 
