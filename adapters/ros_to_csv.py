@@ -176,7 +176,7 @@ def bag_files(bag):
 
 def joint_states(bag, topic):
     """(stamp, joints) of the topic's messages; of any topic of joint states where it is None."""
-    seen, chosen = set(), topic
+    seen, chosen, is_there = set(), topic, False
     for file in bag_files(bag):
         messages = mcap_messages(file) if file.suffix == ".mcap" else sqlite_messages(file)
         for name, kind, recorded, data in messages:
@@ -185,11 +185,12 @@ def joint_states(bag, topic):
                 if kind in JOINT_STATE and topic is None:
                     raise BadInput(f"several topics have joint states: --topic {chosen} or {name}")
                 continue
-            chosen = name
+            chosen, is_there = name, True
             stamp, joints = joint_state(data)
             yield (stamp if stamp > 0 else recorded), joints
-    if chosen is None or (topic is not None and not any(s.startswith(topic + " ") for s in seen)):
-        raise BadInput(f"there are no joint states; topics: {', '.join(sorted(seen)) or 'none'}")
+    if not is_there:
+        where = "" if topic is None else f" in {topic}"
+        raise BadInput(f"there are no joint states{where}; topics: {', '.join(sorted(seen)) or 'none'}")
 
 
 def chosen_joint(names, wanted):

@@ -228,6 +228,8 @@ class Searches {
   Record search(const Problem& problem, CategoryFit& all) {
     CellResult result = fit_and_judge(problem, method_, task_, widened_);
     all.evaluations += result.record.evaluations;
+    all.fit_cpu_s += result.record.fit_cpu_s;
+    all.peak_memory_mib = std::max(all.peak_memory_mib, result.record.peak_memory_mib);
     all.was_ended_by_clock = all.was_ended_by_clock || was_ended_by_clock(result.record);
     if (failure_.kind == FailureKind::none) failure_ = result.record.reason;
     for (const FrontRecord& entry : result.front) {
@@ -347,7 +349,6 @@ CategoryFit fit_by_category(const Problem& problem, const CategoryColumn& column
                             const Regressor& method, const CellTask& task,
                             const WidenedMethod& widened) {
   const std::vector<double> categories = distinct(column);
-  const double cpu_start = process_cpu_seconds();
   CategoryFit result;
   Searches searches(method, task, widened, categories.size() + 1);
   searches.search(pooled(problem, column, categories), result);
@@ -357,8 +358,9 @@ CategoryFit fit_by_category(const Problem& problem, const CategoryColumn& column
     result.categories.push_back({category, {}, empty_record(task.cell), {}});
     result.categories.back().own = searches.search(parts.back(), result);
   }
+  const double cpu_start = process_cpu_seconds();
   const std::optional<Candidate> best = ShapeFits(parts).best_of(searches.shapes());
-  result.fit_cpu_s = process_cpu_seconds() - cpu_start;
+  result.fit_cpu_s += process_cpu_seconds() - cpu_start;
   if (!best) {
     result.failure = searches.failure();
     return result;
@@ -392,7 +394,7 @@ CellResult fit_and_judge_by_category(const Problem& problem, const CategoryColum
   record.fit_cpu_s = fit.fit_cpu_s;
   record.fit_wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  record.peak_memory_mib = peak_memory_mib();
+  record.peak_memory_mib = std::max(fit.peak_memory_mib, peak_memory_mib());
   record.evaluations = fit.evaluations;
   if (fit.failure.kind != FailureKind::none) {
     mark_failed(record, fit.failure.kind, std::move(fit.failure.detail));

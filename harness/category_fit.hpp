@@ -36,7 +36,8 @@ struct CategoryFit {
   int complexity = 0;                      // of the shape
   std::vector<CategoryResult> categories;  // by increasing value
   std::uint64_t evaluations = 0;           // of all searches
-  double fit_cpu_s = 0;                    // of all searches and fits
+  double fit_cpu_s = 0;                    // of all searches and fits, their programs included
+  double peak_memory_mib = 0;              // of the search that took most
   bool was_ended_by_clock = false;
 };
 

@@ -19,6 +19,12 @@ void set_seconds(CellLimits& limits, double seconds) {
   limits.wall_seconds = 3 * seconds + 60;
 }
 
+void spend_seconds_alone(CellLimits& limits) {
+  if (limits.spend && limits.evaluations == CellLimits().evaluations) {
+    limits.evaluations = CellLimits::kAmple;
+  }
+}
+
 void apply_prior(const Prior& prior, Problem& problem) {
   for (Input& input : problem.inputs) {
     const auto found = prior.max_degree.find(input.name);

@@ -41,6 +41,10 @@ struct CellLimits {
 // The fit stops by itself; judging and slack come on top, in CPU and in wall time.
 void set_seconds(CellLimits& limits, double seconds);
 
+// For seconds that somebody named and evaluations that nobody did: where they are to be spent, no
+// number of evaluations ends that.
+void spend_seconds_alone(CellLimits& limits);
+
 // How often a cell that failed is tried again, by the reason. A cell that failed in a worker that
 // had run other cells before is always tried once more in a fresh one, which is not counted here.
 struct RetryPolicy {

@@ -52,11 +52,7 @@ CellLimits read_limits(const TomlTable& table, CellLimits limits) {
   table.read("cpu_limit_seconds", limits.cpu_limit_seconds, 0.01, kMaxSeconds);
   table.read("memory_mib", limits.memory_mib, 16, 1 << 24);
   table.read("spend", limits.spend);
-  const bool named_seconds = table.has("seconds") && !table.has("evaluations");
-  // What nobody named shall not end what is to be spent.
-  if (limits.spend && named_seconds && limits.evaluations == CellLimits().evaluations) {
-    limits.evaluations = CellLimits::kAmple;
-  }
+  if (table.has("seconds") && !table.has("evaluations")) spend_seconds_alone(limits);
   return limits;
 }
 
@@ -329,11 +325,11 @@ void read_axes(const TomlTable& file, const TomlTable& table, const Registry& re
   const std::vector<std::string> chosen =
       pick(table, "methods", names_of(known, [](const Method& method) { return method.name; }),
            "method");
+  sweep.require_methods(chosen);
   for (const Method& method : known) {
     if (std::ranges::count(chosen, method.name) == 0) continue;
     for (Method& one : sweep.over_method(method)) grid.methods.push_back(std::move(one));
   }
-  sweep.refuse_unused(grid.methods);
 }
 
 }  // namespace

@@ -85,16 +85,9 @@ std::vector<Method> Sweep::over_method(const Method& method) const {
   return all;
 }
 
-void Sweep::refuse_unused(const std::vector<Method>& methods) const {
+void Sweep::require_methods(const std::vector<std::string>& names) const {
   for (const Parameter& parameter : parameters_) {
-    const bool used = std::ranges::any_of(methods, [&](const Method& method) {
-      return method.name.starts_with(parameter.method + "-" + parameter.name + "-") ||
-             (method.name.starts_with(parameter.method + "-") &&
-              method.parameters.contains(parameter.name));
-    });
-    if (used) continue;
-    std::vector<std::string> names;
-    for (const Method& method : methods) names.push_back(method.name);
+    if (std::ranges::count(names, parameter.method) > 0) continue;
     throw_bad_input(fmt::format("'{}' is swept, and the grid does not run it", parameter.method),
                     parameter.place, fmt::format("methods: {}", fmt::join(names, ", ")));
   }

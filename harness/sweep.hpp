@@ -23,8 +23,8 @@ class Sweep {
   std::vector<std::string> over_problems(const std::vector<std::string>& problems) const;
   // "pysr" with populations 8 is "pysr-populations-8".
   std::vector<Method> over_method(const Method& method) const;
-  // Throws Error (bad_input) where a method is swept that the grid does not run.
-  void refuse_unused(const std::vector<Method>& methods) const;
+  // Throws Error (bad_input) where a method is swept that is not among these.
+  void require_methods(const std::vector<std::string>& names) const;
 
  private:
   struct Parameter {

@@ -64,6 +64,18 @@ std::vector<Input> make_inputs(const Dataset& data, const std::string& target,
   return inputs;
 }
 
+void widen_box(std::vector<Input>& inputs, const std::vector<Input>& others) {
+  for (std::size_t j = 0; j < inputs.size(); ++j) {
+    inputs[j].low = std::min(inputs[j].low, others[j].low);
+    inputs[j].high = std::max(inputs[j].high, others[j].high);
+  }
+}
+
+void check_target(const Dataset& data, const std::string& target) {
+  require_squares(data.at(target), data.name);
+  refuse_opposing_friction(data, target);
+}
+
 Table whole_table(const Dataset& data, std::span<const Input> inputs, const std::string& target) {
   const std::vector<char> all(data.movement_names.size(), 1);
   return make_table({data, {}}, inputs, target, all);
@@ -89,20 +101,22 @@ void flip_torques(Dataset& data) {
 
 Problem make_data_problem(const Dataset& train, const Dataset* test, const std::string& target,
                           std::span<const std::string> inputs) {
-  const Channel& judged = train.at(target);
-  require_squares(judged, train.name);
-  refuse_opposing_friction(train, target);
+  check_target(train, target);
   Problem problem;
   problem.name = train.name;
   problem.summary = fmt::format("{} from {}", target, fmt::join(inputs, ", "));
   problem.dataset = train.name;
   problem.target = target;
-  problem.target_unit = judged.unit;
+  problem.target_unit = train.at(target).unit;
   problem.inputs = make_inputs(train, target, inputs);
   std::vector<std::size_t> places(problem.inputs.size());
   for (std::size_t j = 0; j < places.size(); ++j) places[j] = j;
   problem.stages.push_back({"fit", std::move(places), whole_table(train, problem.inputs, target)});
-  if (test != nullptr) problem.test = whole_table(*test, problem.inputs, target);
+  if (test != nullptr) {
+    check_target(*test, target);
+    widen_box(problem.inputs, make_inputs(*test, target, inputs));
+    problem.test = whole_table(*test, problem.inputs, target);
+  }
   problem.test.columns.resize(problem.inputs.size());
   return problem;
 }

@@ -15,7 +15,8 @@
 namespace tribench {
 
 // One stage on all rows of `train`; the test table holds all rows of `test`, or stays empty where
-// there is none. The input box is the range of the training rows. A missing input sgn_X is derived
+// there is none. The input box is the range of all these rows: a formula has to be free of poles
+// where it is tested, too. A missing input sgn_X is derived
 // from X. Throws Error (bad_input) with the nearest name for an unknown column, for an input that
 // is the target, is named twice or cannot stand in a formula, for a target too small to be squared,
 // and where friction opposes velocity (see below).

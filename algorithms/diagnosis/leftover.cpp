@@ -289,7 +289,9 @@ std::vector<std::size_t> LeftoverSearch::families_along_the_position() const {
 void LeftoverSearch::look_for_defect() {
   if (!result_.leftover_tested || !campaign_.options.has("local_defect")) return;
   const std::vector<std::size_t> families = families_along_the_position();
-  if (families.empty() || !predicts_better_as_a_defect(families, model(), campaign_)) return;
+  if (families.empty()) return;
+  const std::optional<double> gain = gain_as_a_defect(families, model(), campaign_);
+  if (!gain) return;
   LoopModel rest = model().model;
   for (const std::size_t family : families) {
     result_.leftover.proxies_removed.push_back(campaign_.families[family].name);
@@ -298,6 +300,7 @@ void LeftoverSearch::look_for_defect() {
   }
   state().model = fit_in_its_noise(std::move(rest), campaign_, FitScope::everything);
   test_residual();
+  result_.leftover.gain = *gain;
   result_.leftover.signals = {"q"};
   result_.leftover.inputs = {input_name(campaign_.data, "q")};
 }

@@ -102,15 +102,15 @@ Bump BesideTheRest::best() const {
 
 }  // namespace
 
-bool predicts_better_as_a_defect(const std::vector<std::size_t>& families,
-                                 const FittedModel& present, const Campaign& campaign) {
-  if (campaign.data.find("q") == nullptr) return false;
+std::optional<double> gain_as_a_defect(const std::vector<std::size_t>& families,
+                                       const FittedModel& present, const Campaign& campaign) {
+  if (campaign.data.find("q") == nullptr) return std::nullopt;
   LoopModel model = present.model;
   for (const std::size_t family : families) model = model.without(family);
   const FittedModel rest = fit_in_its_noise(std::move(model), campaign, FitScope::linear);
   const BesideTheRest without(rest, present, campaign);
   const Gain lead = paired_gain(present.losses, without.losses(without.best()));
-  return lead.nats > lead.error;
+  return lead.nats > lead.error ? std::optional(lead.nats) : std::nullopt;
 }
 
 }  // namespace tribench::loop

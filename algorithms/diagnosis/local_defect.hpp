@@ -6,15 +6,17 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "algorithms/diagnosis/fitted_model.hpp"
 
 namespace tribench::loop {
 
-// Whether one bump in place of these families predicts movements left out better than they do, by
-// more than a standard error. False without a position. Cost: rows x columns x 240 bumps.
-bool predicts_better_as_a_defect(const std::vector<std::size_t>& families,
-                                 const FittedModel& present, const Campaign& campaign);
+// By how many nats one bump in place of these families predicts movements left out better than they
+// do; none where that is no more than a standard error, and without a position. Cost: rows x
+// columns x 240 bumps.
+std::optional<double> gain_as_a_defect(const std::vector<std::size_t>& families,
+                                       const FittedModel& present, const Campaign& campaign);
 
 }  // namespace tribench::loop

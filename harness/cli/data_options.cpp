@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "harness/cli/data_options.hpp"
 
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/cli/number_options.hpp"
 
 namespace tribench {
@@ -47,6 +53,22 @@ CLI::Option* add_data_options(CLI::App& command, std::shared_ptr<DataOptions> op
   return command
       .add_option("--gear-ratio", options->drive.gear_ratio, "motor turns per turn of the joint")
       ->transform(real_number(0, kLargestGearRatio, LowEnd::above));
+}
+
+Dataset read_columns(const std::string& file, const DataOptions& options,
+                     std::vector<std::string> used) {
+  const std::vector<std::filesystem::path> files = {file};
+  const bool is_any = used.empty();
+  DataFile reading =
+      read_named_columns(files, options, is_any ? std::nullopt : std::optional(std::move(used)));
+  for (const std::string& warning : reading.warnings) {
+    print_message(fmt::format("tribench: {}\n", warning));
+  }
+  if (reading.dropped_rows > 0) {
+    print_message(fmt::format("tribench: {}: {} rows with missing values dropped\n", file,
+                              reading.dropped_rows));
+  }
+  return std::move(reading.data);
 }
 
 }  // namespace tribench

@@ -73,23 +73,13 @@ std::pair<std::string, std::string> name_and_value(const std::string& text, cons
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-// A column is what --inputs and --target say; its name means nothing.
-Dataset read_columns(const std::string& file, const FitArguments& arguments) {
+std::vector<std::string> used_columns(const FitArguments& arguments) {
   std::vector<std::string> used = arguments.inputs;
   for (const std::string* more :
        {&arguments.target, &arguments.weights, &arguments.sigma, &arguments.category}) {
     if (!more->empty()) used.push_back(*more);
   }
-  const std::vector<std::filesystem::path> files = {file};
-  DataFile reading = read_named_columns(files, *arguments.reading, std::move(used));
-  for (const std::string& warning : reading.warnings) {
-    print_message(fmt::format("tribench: {}\n", warning));
-  }
-  if (reading.dropped_rows > 0) {
-    print_message(fmt::format("tribench: {}: {} rows with missing values dropped\n", file,
-                              reading.dropped_rows));
-  }
-  return std::move(reading.data);
+  return used;
 }
 
 CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fixed_form) {
@@ -174,9 +164,10 @@ constexpr const char* kProblemName = "data";
 // Nothing is held out unless it is asked for; then, as in a grid, by groups or single rows.
 Problem make_problem(const FitArguments& arguments, const std::vector<std::string>& inputs) {
   if (!arguments.held_out && arguments.group.empty()) {
-    const Dataset train = read_columns(arguments.data, arguments);
+    const Dataset train = read_columns(arguments.data, *arguments.reading, used_columns(arguments));
     std::optional<Dataset> test;
-    if (!arguments.test.empty()) test = read_columns(arguments.test, arguments);
+    if (!arguments.test.empty())
+      test = read_columns(arguments.test, *arguments.reading, used_columns(arguments));
     Problem problem = make_data_problem(train, test ? &*test : nullptr, arguments.target, inputs);
     problem.name = kProblemName;
     return problem;
@@ -219,7 +210,8 @@ std::string reproducing(const FitArguments& arguments, const Record& record, boo
   // A program need not say what it has spent: with no evaluations it would be asked for nothing.
   if ((by_clock || arguments.spends_all) && record.evaluations > 0) {
     constexpr const char* kAmple = "1e6";
-    for (const char* option : {"--seconds", "--evaluations"}) {
+    for (const std::string option : {"--seconds", "--evaluations"}) {
+      std::erase_if(words, [&](const std::string& word) { return word.starts_with(option + "="); });
       const auto found = std::ranges::find(words, option);
       if (found != words.end()) words.erase(found, std::min(found + 2, words.end()));
     }
@@ -302,6 +294,7 @@ void fit(const FitArguments& arguments, const Registry& registry) {
   answer.reproduce = reproducing(arguments, record, by_clock);
   answer.inputs = problem.input_names();
   answer.target = problem.target;
+  answer.reading = *arguments.reading;
   add_intervals(arguments, problem, weights, answer);
   if (!arguments.save.empty()) write_file(arguments.save, fit_json(answer).dump(2) + "\n");
   if (arguments.json) {

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "foundation/toml_table.hpp"
+#include "problems/preparation/data_options_toml.hpp"
 
 namespace tribench {
 namespace {
@@ -35,6 +38,15 @@ Json intervals_json(const FitIntervals& intervals) {
           {"covariance", intervals.covariance}};
 }
 
+// The keys of a grid's problem (data_options_toml.hpp).
+Json reading_json(const DataOptions& reading) {
+  toml::table table;
+  insert_data_options(table, reading);
+  std::ostringstream text;
+  text << toml::json_formatter(table);
+  return Json::parse(text.str());
+}
+
 }  // namespace
 
 Json fit_json(const FitAnswer& answer) {
@@ -59,6 +71,7 @@ Json fit_json(const FitAnswer& answer) {
   if (!record.note.empty()) all["note"] = record.note;
   all["target"] = answer.target;
   all["inputs"] = answer.inputs;
+  if (Json reading = reading_json(answer.reading); !reading.empty()) all["reading"] = reading;
   all["ended"] = answer.ended;
   all["reproduce"] = answer.reproduce;
   if (answer.intervals) all["intervals"] = intervals_json(*answer.intervals);
@@ -134,6 +147,16 @@ void print_category_fit(const CategoryFit& fit) {
   }
   fmt::print("{} node-rows, {:.3g} CPU seconds; ended by: {}\n", fit.evaluations, fit.fit_cpu_s,
              fit.was_ended_by_clock ? "seconds" : "finished");
+}
+
+DataOptions read_fit_reading(const nlohmann::json& model, const std::string& file) {
+  if (!model.contains("reading")) return {};
+  std::string text;
+  for (const auto& [key, value] : model["reading"].items()) {
+    if (value.is_primitive() && !value.is_null()) text += key + " = " + value.dump() + "\n";
+  }
+  const toml::table table = parse_toml(text, file);
+  return read_data_options(TomlTable(table, file, "reading", data_option_keys()));
 }
 
 FitIntervals read_fit_intervals(const nlohmann::json& model, const Expression& formula,

@@ -10,6 +10,7 @@
 #include "algorithms/fitting/fit_intervals.hpp"
 #include "harness/category_fit.hpp"
 #include "harness/cell_task.hpp"
+#include "problems/preparation/data_options.hpp"
 
 namespace tribench {
 
@@ -21,10 +22,15 @@ struct FitAnswer {
   std::string reproduce;     // the command that gives the same again
   std::vector<std::string> inputs;
   std::string target;
+  DataOptions reading;  // of the data
 };
 
 nlohmann::ordered_json fit_json(const FitAnswer& answer);
 void print_fit(const FitAnswer& answer);
+
+// How the data of such a fit were read; the default where the JSON does not say. Throws Error
+// (bad_input) with the file.
+DataOptions read_fit_reading(const nlohmann::json& model, const std::string& file);
 
 // Of one shape for several categories.
 nlohmann::ordered_json category_json(const CategoryFit& fit);

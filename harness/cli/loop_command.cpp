@@ -197,6 +197,22 @@ void print_extras(const LoopArguments& arguments, const loop::LoopExtras& extras
   }
 }
 
+loop::JudgedDiagnosis diagnosed(const LoopArguments& arguments, const loop::Observations& data,
+                                const loop::BaseMaker& base,
+                                const loop::DiagnosisOptions& options) {
+  constexpr double kShownFrom_s = 2;
+  loop::JudgingOptions judging = judging_options();
+  judging.threads = arguments.jobs > 0 ? arguments.jobs : usable_processors();
+  std::size_t expected = 0;
+  ProgressLine line(0, 0, false, ProgressUnit{"searches", false, kShownFrom_s});
+  judging.progress = [&](std::size_t, std::size_t searches) {
+    line.expect_more(searches - expected, static_cast<double>(searches - expected));
+    expected = searches;
+    line.cell_ended(1, false);
+  };
+  return loop::diagnose_and_judge(data, base, options, judging);
+}
+
 // Something is left over: lets a method grow the library, and where its formula holds on movements
 // it was not found on, runs the loop again with it.
 void grow_library(const LoopArguments& arguments, const Registry& registry,
@@ -209,9 +225,9 @@ void grow_library(const LoopArguments& arguments, const Registry& registry,
   if (!learned) return;
   extras.learned.push_back(*learned);
   if (!learned->accepted) return;
-  loop::DiagnosisOptions options = diagnosis.options;
+  loop::DiagnosisOptions options = diagnosis_options(arguments);
   options.learned.push_back(learned->family);
-  diagnosis = loop::diagnose_and_judge(data, base, options, judging_options());
+  diagnosis = diagnosed(arguments, data, base, options);
   for (loop::EffectFinding& effect : diagnosis.effects) {
     if (effect.family != learned->family.name) continue;
     // Its p on movements it was not found on; the search's own would flatter it.
@@ -277,21 +293,6 @@ void explain(const LoopArguments& arguments) {
              recording.data.movement_names.size());
 }
 
-loop::JudgedDiagnosis diagnosed(const LoopArguments& arguments, const loop::Observations& data,
-                                const loop::BaseMaker& base) {
-  constexpr double kShownFrom_s = 2;
-  loop::JudgingOptions judging = judging_options();
-  judging.threads = arguments.jobs > 0 ? arguments.jobs : usable_processors();
-  std::size_t expected = 0;
-  ProgressLine line(0, 0, false, ProgressUnit{"searches", false, kShownFrom_s});
-  judging.progress = [&](std::size_t, std::size_t searches) {
-    line.expect_more(searches - expected, static_cast<double>(searches - expected));
-    expected = searches;
-    line.cell_ended(1, false);
-  };
-  return loop::diagnose_and_judge(data, base, diagnosis_options(arguments), judging);
-}
-
 ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) {
   if (arguments.explain) {
     explain(arguments);
@@ -315,7 +316,7 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
   const loop::Observations data = read_observations(arguments, extras.steps, whole);
   std::unique_ptr<Regressor> method;
   const loop::BaseMaker base = base_of(arguments, registry, method);
-  loop::JudgedDiagnosis diagnosis = diagnosed(arguments, data, base);
+  loop::JudgedDiagnosis diagnosis = diagnosed(arguments, data, base, diagnosis_options(arguments));
   if (arguments.learn != "none" && !diagnosis.leftover.signals.empty()) {
     grow_library(arguments, registry, data, base, diagnosis, extras);
   }

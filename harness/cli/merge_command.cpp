@@ -20,6 +20,7 @@
 #include "problems/user/user_problem_text.hpp"
 #include "reports/published.hpp"
 #include "reports/run_reports.hpp"
+#include "reports/suite_view.hpp"
 
 namespace tribench {
 namespace {
@@ -47,8 +48,9 @@ void merge(const MergeArguments& arguments) {
              user::moved_grid_text(read_file(grid), grid.string(), folders.front(), out));
   std::filesystem::copy_file(folders.front() / "planned.csv", out / "planned.csv",
                              std::filesystem::copy_options::overwrite_existing);
-  if (std::filesystem::exists(folders.front() / kPublishedFile)) {
-    std::filesystem::copy_file(folders.front() / kPublishedFile, out / kPublishedFile,
+  for (const char* file : {kPublishedFile, kSuiteFile}) {
+    if (!std::filesystem::exists(folders.front() / file)) continue;
+    std::filesystem::copy_file(folders.front() / file, out / file,
                                std::filesystem::copy_options::overwrite_existing);
   }
   write_result_files(out, merged.results);

@@ -18,9 +18,10 @@
 #include "foundation/error.hpp"
 #include "foundation/output_file.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/data_options.hpp"
 #include "harness/cli/fit_output.hpp"
 #include "harness/cli/model_argument.hpp"
-#include "problems/reading/csv.hpp"
+#include "problems/preparation/data_options.hpp"
 #include "problems/table.hpp"
 #include "reports/csv.hpp"
 
@@ -47,11 +48,30 @@ void add_state_columns(const StatefulFormula& formula, const Dataset& data,
   std::ranges::move(states, std::back_inserter(columns));
 }
 
-std::string predictions(const std::string& file, const Dataset& data, bool intervals) {
+struct PredictArguments {
+  std::string model;
+  std::string data;
+  std::string out;
+  std::string time;
+  bool intervals = false;
+  bool is_told = false;  // how the data are to be read; else as those of the fit
+  std::shared_ptr<DataOptions> reading = std::make_shared<DataOptions>();
+};
+
+std::string predictions(const PredictArguments& arguments) {
+  const std::string& file = arguments.model;
+  const bool intervals = arguments.intervals;
   const nlohmann::json model = model_argument(file);
   std::vector<std::string> names;
   const StatefulFormula read =
       parse_stateful_collecting(model["formula"].get<std::string>(), names);
+  DataOptions options = arguments.is_told ? *arguments.reading : read_fit_reading(model, file);
+  if (!arguments.time.empty()) options.roles[arguments.time] = Role::time;
+  std::vector<std::string> used = names;
+  for (const auto& [column, given] : options.roles) {
+    if (given.role == Role::time) used.push_back(column);
+  }
+  const Dataset data = read_columns(arguments.data, options, std::move(used));
   const Expression& formula = read.formula;
   std::vector<std::vector<double>> columns;
   std::vector<const double*> pointers;
@@ -84,28 +104,33 @@ void add_predict_command(CLI::App& app, ExitStatus& /*status*/) {
   command->footer(
       "Example: tribench fit joint.csv --target tau_f --inputs v,sgn_v --method pysr --save "
       "m.json"
-      "\n         tribench predict m.json later.csv --out predicted.csv");
-  auto model = std::make_shared<std::string>();
-  auto data = std::make_shared<std::string>();
-  auto out = std::make_shared<std::string>();
-  command->add_option("MODEL", *model, "what `fit --json` printed, in a file; or a formula")
+      "\n         tribench predict m.json later.csv --out predicted.csv"
+      "\nThe data are read as those that a model was fitted to, its --roles and all, unless "
+      "options "
+      "here say how.");
+  auto arguments = std::make_shared<PredictArguments>();
+  command
+      ->add_option("MODEL", arguments->model, "what `fit --json` printed, in a file; or a formula")
       ->required();
-  command->add_option("DATA", *data, "a CSV file with the formula's columns")->required();
-  command->add_option("--out", *out, "the file to write; else to the terminal");
-  auto intervals = std::make_shared<bool>(false);
-  command->add_flag("--intervals", *intervals,
+  command->add_option("DATA", arguments->data, "a CSV file with the formula's columns")->required();
+  command->add_option("--out", arguments->out, "the file to write; else to the terminal");
+  command->add_flag("--intervals", arguments->intervals,
                     "with a model of `fit --save`: 95 % of the curve, as columns low and high");
-  auto time = std::make_shared<std::string>();
-  command->add_option("--time", *time, "the column of time (s), for a formula with states");
-  command->callback([model, data, out, intervals, time] {
-    CsvOptions options;
-    options.names_tell = false;
-    if (!time->empty()) options.roles[*time] = Role::time;
-    const std::string text = predictions(*model, read_csv(*data, options).data, *intervals);
-    if (out->empty()) {
+  command->add_option("--time", arguments->time,
+                      "the column of time (s), for a formula with states");
+  const std::size_t own = command->get_options().size();
+  add_data_options(*command, arguments->reading);
+  const std::vector<CLI::Option*> options = command->get_options();
+  const std::vector<CLI::Option*> telling(options.begin() + static_cast<std::ptrdiff_t>(own),
+                                          options.end());
+  command->callback([arguments, telling] {
+    arguments->is_told =
+        std::ranges::any_of(telling, [](const CLI::Option* option) { return option->count() > 0; });
+    const std::string text = predictions(*arguments);
+    if (arguments->out.empty()) {
       std::fputs(text.c_str(), stdout);
     } else {
-      write_file(*out, text);
+      write_file(arguments->out, text);
     }
   });
 }

@@ -119,7 +119,11 @@ std::string resuming(const RunArguments& arguments, const std::filesystem::path&
   if (!arguments.data.empty()) add("--data", arguments.data);
   if (arguments.shard != "1/1") add("--shard", arguments.shard);
   if (arguments.jobs > 0) add("--jobs", std::to_string(arguments.jobs));
-  if (!arguments.quarantine.empty()) add("--quarantine", arguments.quarantine);
+  // A folder's own grid has it.
+  if (!arguments.quarantine.empty() && !arguments.changes_grid()) {
+    add("--quarantine", arguments.quarantine);
+  }
+  if (arguments.timing) words.emplace_back("--timing");
   words.emplace_back("--resume");
   std::string line;
   for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
@@ -201,7 +205,10 @@ void run(const RunArguments& arguments, const Registry& registry, ExitStatus& st
                   : make_data_grid(*arguments.own, registry);
   if (arguments.seeds) grid.seed_count = *arguments.seeds;
   if (arguments.evaluations) grid.limits.evaluations = *arguments.evaluations;
-  if (arguments.seconds) set_seconds(grid.limits, *arguments.seconds);
+  if (arguments.seconds) {
+    set_seconds(grid.limits, *arguments.seconds);
+    if (!arguments.evaluations) spend_seconds_alone(grid.limits);
+  }
   for (const std::string& note : reading_notes(grid))
     print_message(fmt::format("tribench: {}\n", note));
   if (!arguments.quarantine.empty()) {

@@ -201,8 +201,14 @@ std::vector<char> held_out_movements(const SimulateArguments& arguments, const D
     return draw_test_movements(data, wanted.share, RandomStream(arguments.seed).split("split"));
   }
   const RowsWith rows(file, wanted);
+  std::vector<char> kept(held_out.size(), 0);
   for (std::size_t row = 0; row < data.rows(); ++row) {
-    if (rows.has(row)) held_out[static_cast<std::size_t>(data.movement[row])] = 1;
+    const auto movement = static_cast<std::size_t>(data.movement[row]);
+    (rows.has(row) ? held_out : kept)[movement] = 1;
+    if (held_out[movement] == 0 || kept[movement] == 0) continue;
+    throw_bad_input(fmt::format("'{}' changes within movement '{}' (row {})", wanted.column,
+                                data.movement_names[movement], row + 1),
+                    "--split", "name a column that is the same all through a movement");
   }
   const auto count = static_cast<std::size_t>(std::ranges::count(held_out, 1));
   if (count == 0 || count == held_out.size()) {

@@ -214,10 +214,14 @@ RecordedWorld::RecordedWorld(const std::filesystem::path& folder) : folder_(fold
   const std::filesystem::path asked = folder / "executed.csv";
   if (!std::filesystem::exists(asked)) return;
   Answer answer;
-  for (const PlannedMovement& one :
-       read_movements(read_file_text(asked.string()), asked.string())) {
-    give(one, answer);
+  const std::vector<PlannedMovement> given =
+      read_movements(read_file_text(asked.string()), asked.string());
+  if (given.size() > recorded_.size()) {
+    throw_bad_input(fmt::format("{} movements were asked for, and there are {} recordings",
+                                given.size(), recorded_.size()),
+                    asked.string(), "make the world again");
   }
+  for (const PlannedMovement& one : given) give(one, answer);
 }
 
 void RecordedWorld::take_over(const Dataset& recordings) {

@@ -20,8 +20,7 @@ struct JudgingOptions {
   double test_share = 0.2;  // of the movements
   bool resample = false;    // search again with movements left out: how sure each effect is
   bool bounds = false;      // bound the noise too: what else could be had (noise_bounds.hpp)
-  // The searches without some movements run side by side, with the same answer; a base that is a
-  // method takes one thread (its budget is one).
+  // The searches without some movements run side by side, with the same answer.
   int threads = 1;
   // Told after each search: how many have ended, of how many; these may become more on the way.
   // Empty: nobody. From any thread, one at a time.

@@ -14,13 +14,14 @@ namespace {
 constexpr double kNormalQuantile = 1.959964;  // of 97.5 %
 constexpr std::size_t kResidualRows = 1500;
 
-// The model without what a rigid body does: its rigid signals and the acceleration at 0.
 Eigen::VectorXd base_prediction(const LoopModel& model, const Observations& data) {
   LoopModel base = model;
   while (!base.atoms.empty()) base.remove(base.atoms.size() - 1);
   return predict(base, data);
 }
 
+// What the base has of a rigid body: all that is gone where its rigid signals and the acceleration
+// are 0. 0 where there are none, or where it is not finite.
 Eigen::VectorXd rigid_part(const LoopModel& model, const Observations& data) {
   Observations still = data;
   bool any = false;

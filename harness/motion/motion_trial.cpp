@@ -242,9 +242,8 @@ class Trial {
     }
     const double left = forward::fit_rigid_body(model_, terms, rows, acceleration, "--inertia fit");
     record_.notes.push_back(
-        fmt::format("fitted to the equation of motion on {} training movements' rows: what is left "
-                    "is {:.4g} {} "
-                    "rms",
+        fmt::format("fitted to the equation of motion on {} stretches of training movements: what "
+                    "is left is {:.4g} {} rms",
                     rows.size(), left, data.find(Role::motor_torque)->unit));
   }
 

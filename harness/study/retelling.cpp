@@ -51,16 +51,14 @@ bool is_signed(Role role) {
   return is_torque_like(role) || std::ranges::count(kSigned, role) > 0;
 }
 
-// Changes the numbers of a column; false where there is no such column.
-bool change_column(CsvCells& cells, std::size_t column,
-                   const std::function<double(double)>& change) {
+void change_numbers(CsvCells& cells, std::size_t column,
+                    const std::function<double(double)>& change) {
   for (CsvLine& line : cells.lines) {
     if (line.blank()) continue;
     double value = 0;
     if (read_cell(line.cells[column], false, value) != CellKind::number) continue;
     line.cells[column] = fmt::format("{}", change(value));
   }
-  return true;
 }
 
 // Changes the numbers of every column of a role; false where there is none.
@@ -69,9 +67,9 @@ bool change_roles(RecordingToTell& recording, const std::function<bool(Role)>& w
   bool any = false;
   for (RecordingFile& file : recording.files) {
     for (std::size_t c = 0; c < file.cells.header.size(); ++c) {
-      if (which(role_of(recording, file.cells.header[c]))) {
-        any = change_column(file.cells, c, change) || any;
-      }
+      if (!which(role_of(recording, file.cells.header[c]))) continue;
+      change_numbers(file.cells, c, change);
+      any = true;
     }
   }
   return any;
@@ -149,7 +147,8 @@ std::optional<RecordingToTell> in_degrees(const RecordingToTell& recording,
         continue;
       }
       name.replace(unit, 4, "_deg");
-      any = change_column(file.cells, c, [](double x) { return x * 180 / std::numbers::pi; });
+      change_numbers(file.cells, c, [](double x) { return x * 180 / std::numbers::pi; });
+      any = true;
     }
   }
   return any ? std::optional(told) : std::nullopt;

@@ -71,26 +71,26 @@ MotionCase motion_case(const Manifest& manifest, const ProblemPlan& plan, const 
   return {select_rows({rows, {}}, kept).data, *plan.motion};
 }
 
-void widen_box(std::vector<Input>& inputs, const std::vector<Input>& others) {
-  for (std::size_t j = 0; j < inputs.size(); ++j) {
-    inputs[j].low = std::min(inputs[j].low, others[j].low);
-    inputs[j].high = std::max(inputs[j].high, others[j].high);
-  }
-}
-
 }  // namespace
 
 Problem make_measured_problem(const Manifest& manifest, const ProblemPlan& plan,
                               const DataFolder& data, std::uint64_t seed) {
   const Dataset whole = read_recording(plan, verified_file(manifest, plan.file, data));
   const Dataset recording = thinned(whole, plan);
-  Problem problem = make_data_problem(recording, nullptr, plan.target, plan.inputs);
+  std::optional<Dataset> whole_other;
+  std::optional<Dataset> other;
+  if (!plan.test_file.empty()) {
+    whole_other = read_recording(plan, verified_file(manifest, plan.test_file, data));
+    other = thinned(*whole_other, plan);
+  }
+  Problem problem =
+      make_data_problem(recording, other ? &*other : nullptr, plan.target, plan.inputs);
   problem.name = plan.name;
   problem.summary = plan.summary;
   problem.dataset = manifest.name;
   problem.joint = plan.joint;
   problem.load = plan.load;
-  if (plan.test_file.empty()) {
+  if (!other) {
     const std::vector<char> test = draw_test_movements(
         recording, plan.test_share, RandomStream(key_of(plan.name)).split(seed).split("split"));
     std::vector<char> train(test);
@@ -105,12 +105,7 @@ Problem make_measured_problem(const Manifest& manifest, const ProblemPlan& plan,
     return problem;
   }
   lay_trails(whole, recording, problem);
-  const Dataset whole_other = read_recording(plan, verified_file(manifest, plan.test_file, data));
-  const Dataset other = thinned(whole_other, plan);
-  Problem tested = make_data_problem(other, nullptr, plan.target, plan.inputs);
-  lay_trails(whole_other, other, tested);
-  widen_box(problem.inputs, tested.inputs);
-  problem.test = tested.stages.front().train;
+  lay_trail(*whole_other, *other, problem.inputs, problem.test);
   if (plan.motion) {
     problem.motion = [=] { return motion_case(manifest, plan, data, {}); };
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "problems/preparation/data_options_toml.hpp"
 
+#include <fmt/format.h>
+
 #include <limits>
 #include <optional>
 
@@ -18,6 +20,11 @@ std::string text(const TomlTable& table, std::string_view key) {
   std::string value;
   table.read(key, value);
   return value;
+}
+
+std::string role_text(const GivenRole& given) {
+  if (given.in.unit == nullptr) return std::string(role_name(given.role));
+  return fmt::format("{}[{}]", role_name(given.role), given.in.symbol());
 }
 
 }  // namespace
@@ -48,6 +55,29 @@ DataOptions read_data_options(const TomlTable& table) {
         parse_torque_constant(text(table, "torque_constant"), table.place("torque_constant"));
   }
   return options;
+}
+
+void insert_data_options(toml::table& table, const DataOptions& options) {
+  std::string roles;
+  for (const auto& [column, given] : options.roles) {
+    const bool quoted = column.find_first_of(",=[]\"") != std::string::npos;
+    roles += fmt::format("{}{}={}", roles.empty() ? "" : ",",
+                         quoted ? fmt::format("\"{}\"", column) : column, role_text(given));
+  }
+  if (!roles.empty()) table.insert("roles", roles);
+  if (!options.where.empty()) table.insert("where", options.where);
+  if (options.joint) table.insert("joint", *options.joint);
+  if (options.drop_missing) table.insert("drop_missing", true);
+  if (options.flip_sign) table.insert("flip_sign", true);
+  if (options.drive.gear_ratio) table.insert("gear_ratio", *options.drive.gear_ratio);
+  if (options.drive.counts_per_turn) {
+    table.insert("counts_per_turn", *options.drive.counts_per_turn);
+  }
+  if (options.sample_rate) table.insert("sample_rate", *options.sample_rate);
+  if (options.torque_constant) {
+    table.insert("torque_constant", fmt::format("{}{}", options.torque_constant->value,
+                                                options.torque_constant->at_motor ? "@motor" : ""));
+  }
 }
 
 }  // namespace tribench

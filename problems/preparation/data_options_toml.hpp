@@ -22,4 +22,7 @@ const std::vector<std::string>& data_option_keys();
 // Keys that are missing leave their default. Throws Error (bad_input) with the key's place.
 DataOptions read_data_options(const TomlTable& table);
 
+// What is not the default, so that reading it gives the same options.
+void insert_data_options(toml::table& table, const DataOptions& options);
+
 }  // namespace tribench

@@ -337,6 +337,32 @@ void check_same_channels(const DataFile& all, const DataFile& next, std::string_
                   file, "give files with the same columns in the same order");
 }
 
+bool knows_unit(const DataFile& file, const std::string& column) {
+  return std::ranges::any_of(file.readings, [&](const ColumnReading& reading) {
+    return reading.column == column && !reading.unit.empty() && !reading.unit_asked;
+  });
+}
+
+// Numbers of which one file knows the unit and the other does not may be 57.3 times too large.
+void check_same_units(const DataFile& all, const DataFile& next, std::string_view file) {
+  for (std::size_t j = 0; j < all.data.channels.size(); ++j) {
+    const Channel& first = all.data.channels[j];
+    const Channel& other = next.data.channels[j];
+    const bool is_same = first.unit == other.unit && first.role == other.role &&
+                         knows_unit(all, first.name) == knows_unit(next, other.name);
+    if (is_same) continue;
+    const auto meaning = [](const DataFile& of, const Channel& channel) {
+      return fmt::format("{} in {}", role_name(channel.role),
+                         knows_unit(of, channel.name) ? "'" + channel.unit + "'"
+                                                      : std::string("a unit that is not named"));
+    };
+    throw_bad_input(fmt::format("'{}' is {}, and in the first file {}", other.name,
+                                meaning(next, other), meaning(all, first)),
+                    file,
+                    fmt::format("say what it is in both: --roles '{}=ROLE[UNIT]'", other.name));
+  }
+}
+
 void drop_spare_channels(DataFile& file) {
   std::erase_if(file.data.channels, [&](const Channel& channel) {
     return std::ranges::count(file.spare, channel.name) > 0;
@@ -350,6 +376,7 @@ void append(DataFile& all, DataFile next, std::string_view file) {
     drop_spare_channels(next);
   }
   check_same_channels(all, next, file);
+  check_same_units(all, next, file);
   const auto first = static_cast<int>(all.data.movement_names.size());
   for (std::string& name : next.data.movement_names) {
     auto& names = all.data.movement_names;

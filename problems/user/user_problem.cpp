@@ -289,13 +289,6 @@ void add_category(const UserProblem& own, const DataFile& rows, std::vector<std:
   names.push_back(own.category);
 }
 
-void widen_box(std::vector<Input>& inputs, const std::vector<Input>& others) {
-  for (std::size_t j = 0; j < inputs.size(); ++j) {
-    inputs[j].low = std::min(inputs[j].low, others[j].low);
-    inputs[j].high = std::max(inputs[j].high, others[j].high);
-  }
-}
-
 }  // namespace
 
 std::string UserProblem::hash() const {
@@ -321,19 +314,17 @@ Problem make_user_problem(const UserProblem& own, const suite::LawReader& laws,
   std::vector<std::string> names = inputs_of(own, rows.data);
   add_category(own, rows, names);
   const KnownDataset known{rows.data, truth_of(own, laws, names, rows.data)};
-  Problem problem = make_data_problem(rows.data, nullptr, own.target, names);
+  std::optional<DataFile> other;
+  if (own.held_out.kind == HeldOut::Kind::files) other = read_rows(own, own.held_out.files);
+  Problem problem = make_data_problem(rows.data, other ? &other->data : nullptr, own.target, names);
   problem.name = own.name;
   problem.dataset = kDataset;
   Stage& stage = problem.stages.front();
   stage.law = own.law;
   stage.train.truth = known.truth;
-  if (own.held_out.kind == HeldOut::Kind::files) {
-    const DataFile other = read_rows(own, own.held_out.files);
-    const Problem tested = make_data_problem(other.data, nullptr, own.target, names);
-    widen_box(problem.inputs, tested.inputs);
-    problem.test = tested.stages.front().train;
-    problem.test.truth = truth_of(own, laws, names, other.data);
-    set_motion(own, other.data, {}, laws, problem);
+  if (other) {
+    problem.test.truth = truth_of(own, laws, names, other->data);
+    set_motion(own, other->data, {}, laws, problem);
   } else if (own.held_out.kind != HeldOut::Kind::nothing) {
     const std::vector<char> test = test_movements(own, rows, seed);
     std::vector<char> train(test);

@@ -230,34 +230,6 @@ void insert_sources(toml::table& table, std::span<const DataSource> sources, Fil
   table.insert("sha256", std::move(hashes));
 }
 
-std::string role_text(const GivenRole& given) {
-  if (given.in.unit == nullptr) return std::string(role_name(given.role));
-  return fmt::format("{}[{}]", role_name(given.role), given.in.symbol());
-}
-
-void insert_options(toml::table& table, const DataOptions& options) {
-  std::string roles;
-  for (const auto& [column, given] : options.roles) {
-    const bool quoted = column.find_first_of(",=[]\"") != std::string::npos;
-    roles += fmt::format("{}{}={}", roles.empty() ? "" : ",",
-                         quoted ? fmt::format("\"{}\"", column) : column, role_text(given));
-  }
-  if (!roles.empty()) table.insert("roles", roles);
-  if (!options.where.empty()) table.insert("where", options.where);
-  if (options.joint) table.insert("joint", *options.joint);
-  if (options.drop_missing) table.insert("drop_missing", true);
-  if (options.flip_sign) table.insert("flip_sign", true);
-  if (options.drive.gear_ratio) table.insert("gear_ratio", *options.drive.gear_ratio);
-  if (options.drive.counts_per_turn) {
-    table.insert("counts_per_turn", *options.drive.counts_per_turn);
-  }
-  if (options.sample_rate) table.insert("sample_rate", *options.sample_rate);
-  if (options.torque_constant) {
-    table.insert("torque_constant", fmt::format("{}{}", options.torque_constant->value,
-                                                options.torque_constant->at_motor ? "@motor" : ""));
-  }
-}
-
 toml::table split_table(const HeldOut& held_out, FileNames names, const fs::path& folder) {
   toml::table table;
   if (held_out.kind == HeldOut::Kind::values) {
@@ -280,7 +252,7 @@ toml::table problem_table(const UserProblem& own, FileNames names, const fs::pat
   toml::table table{{"name", own.name}, {"target", own.target}};
   insert_sources(table, own.files, names, folder);
   if (!own.inputs.empty()) table.insert("inputs", texts_array(own.inputs));
-  insert_options(table, own.reading);
+  insert_data_options(table, own.reading);
   if (!own.group.empty()) table.insert("group", own.group);
   if (!own.category.empty()) table.insert("category", own.category);
   table.insert("split", split_table(own.held_out, names, folder));

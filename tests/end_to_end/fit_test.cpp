@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
@@ -287,11 +288,40 @@ TEST_F(UnequalRowsTest, ASavedModelPredictsWithIntervals) {
   EXPECT_THAT(none.errors, HasSubstr("--save"));
 }
 
+TEST_F(UnequalRowsTest, AModelReadsLaterDataAsItsOwn) {
+  std::string text = "w,tau,spare\n";
+  for (int i = -50; i <= 50; ++i) {
+    text += fmt::format("{},{:.17g},{}\n", 2 * i, 0.5 + 3 * (2 * i * std::numbers::pi / 180),
+                        i == 7 ? "" : "1");
+  }
+  write_text(folder_ / "turns.csv", text);
+  const std::string data = (folder_ / "turns.csv").string();
+  const std::string model = (folder_ / "turns.json").string();
+  ASSERT_EQ(run_tribench({"fit", data, "--target", "tau", "--inputs", "w", "--roles",
+                          "w=velocity[deg/s]", "--method", "linear", "--save", model})
+                .status,
+            0);
+  const auto first = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"predict", model, data};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramRun run = run_tribench(words);
+    EXPECT_EQ(run.status, 0) << run.errors;
+    EXPECT_EQ(std::ranges::count(run.output, '\n'), 102);
+    return std::stod(run.output.substr(run.output.find('\n') + 1));
+  };
+  EXPECT_NEAR(first({}), 0.5 - 3 * 100 * std::numbers::pi / 180, 1e-6);
+  // Unless other data are said to be something else.
+  EXPECT_NEAR(first({"--roles", "w=velocity[rad/s]"}), 0.5 - 3 * 100, 1e-4);
+}
+
 TEST_F(UnequalRowsTest, TheCommandItNamesGivesTheSameAgain) {
   // Of seconds it says the evaluations that they came to.
   const json clocked = answer({"--method", "pysr", "--seconds", "0.05"});
   EXPECT_THAT(clocked.at("reproduce").get<std::string>(),
               HasSubstr("--evaluations " + clocked.at("evaluations").dump()));
+  const std::string joined =
+      answer({"--method", "pysr", "--seconds=0.05"}).at("reproduce").get<std::string>();
+  EXPECT_THAT(joined, Not(HasSubstr("0.05")));
   const json once = answer({"--method", "pysr", "--seed", "7"});
   const std::string line = once.at("reproduce");
   const ProgramRun again = run_to_end(

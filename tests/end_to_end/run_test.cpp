@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(Signals, InterruptedRunTest, ::testing::Values(SIGINT, 
 TEST_P(InterruptedRunTest, LeavesARunThatResumes) {
   ChildProcess program(
       ChildOptions{{test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
-                    (folder_ / "stopped").string(), "--jobs", "1"}});
+                    (folder_ / "stopped").string(), "--jobs", "1", "--timing"}});
   while (read_text(folder_ / "stopped" / "cells.jsonl").size() < 3000) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
@@ -165,8 +165,9 @@ TEST_P(InterruptedRunTest, LeavesARunThatResumes) {
   const ChildExit exit = program.wait();
   EXPECT_EQ(exit.signal, 0);
   EXPECT_EQ(exit.status, 3);
-  EXPECT_THAT(errors, HasSubstr("go on by: tribench run " + (folder_ / "grid.toml").string() +
-                                " --out " + (folder_ / "stopped").string() + " --jobs 1 --resume"));
+  EXPECT_THAT(errors,
+              HasSubstr("go on by: tribench run " + (folder_ / "grid.toml").string() + " --out " +
+                        (folder_ / "stopped").string() + " --jobs 1 --timing --resume"));
   const std::size_t before = column_of(folder_ / "stopped", "status").size();
   EXPECT_GT(before, 0U);
   EXPECT_LT(before, kCells);

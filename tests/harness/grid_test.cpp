@@ -282,6 +282,11 @@ TEST(Grid, RefusesASweepOfWhatIsNotThere) {
   EXPECT_THAT(swept("\"grid_alpha.island\" = [1]"), HasSubstr("islands"));
   EXPECT_THAT(swept("\"grid_alpha.islands\" = [1000]"), HasSubstr("g.toml:4"));
   EXPECT_THAT(swept("\"pysr.populations\" = [8]"), HasSubstr("does not run it"));
+  // A method whose name begins with it is another one.
+  EXPECT_THAT(refusal("[grid]\nproblems = [\"A/j2/load\"]\nmethods = [\"pysr-x\"]\n"
+                      "sweep = { \"pysr.cycles\" = [5] }\n[[method]]\nname = \"pysr-x\"\n"
+                      "algorithm = \"pysr\"\nparameters = { cycles = 7 }\n"),
+              HasSubstr("does not run it"));
 }
 
 }  // namespace

@@ -45,6 +45,17 @@ TEST(DataProblem, TakesTheColumnsAskedForAndDerivesSigns) {
   EXPECT_EQ(make_data_problem(data, nullptr, "tau_f", inputs).test.rows(), 0U);
 }
 
+TEST(DataProblem, TheBoxCoversTheRowsThatTest) {
+  const Dataset data = small();
+  Dataset other = data;
+  for (double& v : other.channels[0].values) v *= 3;
+  ASSERT_EQ(other.channels[0].name, "velocity_rad_s");
+  const std::vector<std::string> inputs = {"velocity_rad_s"};
+  const Problem problem = make_data_problem(data, &other, "tau_f", inputs);
+  EXPECT_EQ(problem.inputs[0].low, -3);
+  EXPECT_EQ(problem.inputs[0].high, 6);
+}
+
 TEST(DataProblem, RefusesFrictionThatOpposesVelocityUntilItIsFlipped) {
   Dataset data = small();
   flip_torques(data);

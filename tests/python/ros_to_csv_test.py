@@ -147,12 +147,14 @@ class RosToCsv(unittest.TestCase):
 
     def test_bad_input_names_the_mend(self):
         write_mcap(self.folder / "a.mcap", samples(), chunked=True)
+        write_sqlite(self.folder / "d.db3", samples())
         (self.folder / "b.mcap").write_bytes(b"no bag")
         (self.folder / "c.db3").write_bytes(b"no bag" * 1000)
         for name, options, said in (
             ("a.mcap", [], "--joint shoulder_pan | elbow"),
             ("a.mcap", ["--joint", "wrist"], "no joint 'wrist'"),
             ("a.mcap", ["--topic", "/other", "--joint", "elbow"], "/joint_states"),
+            ("d.db3", ["--topic", "/rosout"], "no joint states in /rosout"),
             ("b.mcap", [], "no MCAP file"),
             ("c.db3", [], "no ROS 2 bag"),
             ("missing.mcap", [], "does not exist"),

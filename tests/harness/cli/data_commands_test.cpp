@@ -52,6 +52,22 @@ TEST(GenerateCommand, ProblemsWithoutARecordingGiveTheirTables) {
   EXPECT_GE(read_csv(out).data.rows(), 20U);
 }
 
+TEST(MergeCommand, KeepsWhatTheSuitesSay) {
+  const TemporaryFolder folder;
+  const auto path = [&](const char* name) { return (folder / name).string(); };
+  write_text(folder / "grid.toml",
+             "[grid]\nproblems = [\"nguyen/1\", \"nguyen/2\"]\nmethods = [\"linear\"]\n");
+  for (const char* shard : {"1/2", "2/2"}) {
+    const char* out = shard[0] == '1' ? "first" : "second";
+    ASSERT_EQ(run_tribench({"run", path("grid.toml"), "--shard", shard, "--out", path(out)}).status,
+              0);
+  }
+  ASSERT_EQ(run_tribench({"run", path("grid.toml"), "--out", path("whole")}).status, 0);
+  ASSERT_EQ(run_tribench({"merge", path("first"), path("second"), "--out", path("all")}).status, 0);
+  EXPECT_EQ(read_text(folder / "all/suites.json"), read_text(folder / "whole/suites.json"));
+  EXPECT_THAT(read_text(folder / "all/leaderboard.md"), HasSubstr("## Suites"));
+}
+
 TEST(DataCommand, ListsWithoutDataAndFindsAChangedFile) {
   const TemporaryFolder folder;
   const auto list = run_tribench({"data", "list", "--json"});

@@ -139,6 +139,8 @@ TEST_F(SimulateCommand, ErrorsNameThePlaceAndTheMend) {
   says("'3*sgn_v' " + data_ + " --inertia 2 --limit 3", "--control");
   says("'3*sgn_v' " + data_ + " --inertia 2 --kp 3", "--reference");
   says("'3*sgn_v' " + data_ + " --inertia 2 --split movement=m9", "--split");
+  says("'3*sgn_v' " + data_ + " --inertia 2 --split time_s=0.5",
+       "'time_s' changes within movement 'm5'");
   says("'3*sgn_v' " + data_ + " --inertia 2 --refine mass", "mass");
   says("'3*sgn_v' " + (folder_ / "none.csv").string() + " --inertia 2", "none.csv");
 }

@@ -148,6 +148,12 @@ TEST(WorldCommand, RecordingsAreAWorldOfTheirOwn) {
   const ProgramRun told = run_tribench({"world", path("again"), "reveal"});
   EXPECT_EQ(told.status, 2);
   EXPECT_THAT(told.errors, HasSubstr("nobody knows what a recorded joint hides"));
+  // A list of movements that somebody lengthened.
+  const std::string list = read_text(folder / "again/executed.csv");
+  write_text(folder / "again/executed.csv", list + rows_of(list).back() + "\n");
+  const ProgramRun longer = ask();
+  EXPECT_EQ(longer.status, 2);
+  EXPECT_THAT(longer.errors, HasSubstr("3 movements were asked for, and there are 2 recordings"));
 }
 
 TEST(ExploreCommand, WritesItsPathAndSaysWhenItIsNotSure) {
