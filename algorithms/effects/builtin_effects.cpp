@@ -121,14 +121,18 @@ EffectFamily load_viscous() {
 }
 
 EffectFamily power_quadrant_gain() {
-  EffectFamily f{"power_quadrant_gain",
-                 "E5",
-                 "efficiency that differs between driving and back-driving, proportional to load",
-                 "losses differ between driving and back-driving, in proportion to the load",
-                 "Tadese et al. 2021",
-                 {}};
+  EffectFamily f{
+      "power_quadrant_gain",
+      "E5",
+      "torque in proportion to the load: efficiency that differs between driving and "
+      "back-driving, or a load or torque constant that is off",
+      "a torque follows the load: losses differ in back-driving, or the declared load or "
+      "the torque constant is off",
+      "Tadese et al. 2021",
+      {}};
   f.atoms = {{{"g"}, {"gain"}}};
-  f.sanity = {{"gain", 0, 0.2, "a share of the load above 20 %"}};
+  // Losses are some percent; a declared mass or a torque constant may well be off by a third.
+  f.sanity = {{"gain", 0, 0.5, "a load that is off by more than half"}};
   const std::string how =
       "known payload and a link-side torque sensor, or a standstill hold approached from both "
       "sides";
@@ -152,14 +156,16 @@ EffectFamily power_quadrant_step() {
 EffectFamily payload() {
   EffectFamily f{"payload",
                  "E14",
-                 "a mass or its lever that the declared gravity lacks",
-                 "the declared gravity torque lacks a mass",
+                 "a mass or its lever that the declared gravity lacks, or declares too much",
+                 "the joint carries a mass, or a spring, that nobody declared",
                  "rigid-body mechanics",
                  {}};
   f.atoms = {{{"sin(q)", "cos(q)"}, {"sine", "cosine"}}};
   f.angular = true;
   f.changeable = true;
-  f.known_aliases = {{"output_ripple (once a turn)", "a known payload (R3)"}};
+  f.known_aliases = {{"output_ripple (once a turn)", "a known payload (R3)"},
+                     {"spring or cable (torque in proportion to q)",
+                      "a range of motion over which sin q bends, a known payload (R3)"}};
   f.separate_by = {"R3"};
   return f;
 }
@@ -345,8 +351,8 @@ EffectFamily lag() {
 EffectFamily inertia() {
   EffectFamily f{"inertia",
                  "E15",
-                 "an inertia that the declared rigid body lacks",
-                 "the declared inertia is off",
+                 "an inertia that the rigid body lacks, or has too much of",
+                 "the rigid body's inertia is off",
                  "rigid-body mechanics",
                  {}};
   f.atoms = {{{"a"}, {"inertia"}}};
@@ -385,7 +391,7 @@ const std::vector<EffectFamily>& builtin_effects() {
       titled(nonlinear_viscous(), "nonlinear viscous friction"),
       titled(load_coulomb(), "load-dependent Coulomb friction"),
       titled(load_viscous(), "load-dependent viscous friction"),
-      titled(power_quadrant_gain(), "loss that differs in back-driving"),
+      titled(power_quadrant_gain(), "torque in proportion to the load"),
       titled(power_quadrant_step(), "loss step in back-driving"),
       titled(payload(), "payload error"),
       titled(output_ripple(), "ripple of the joint's turn"),

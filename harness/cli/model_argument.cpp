@@ -12,7 +12,10 @@ namespace tribench {
 
 nlohmann::json model_argument(const std::string& model) {
   std::error_code is_no_path;  // a long formula is none
-  if (!std::filesystem::is_regular_file(model, is_no_path)) return {{"formula", model}};
+  if (!std::filesystem::is_regular_file(model, is_no_path)) {
+    if (model.ends_with(".json")) throw_bad_input("there is no such file", model);
+    return {{"formula", model}};
+  }
   const nlohmann::json json = read_json<nlohmann::json>(read_file(model));
   if (json.is_discarded() || !json.is_object() || !json.contains("formula") ||
       !json["formula"].is_string()) {

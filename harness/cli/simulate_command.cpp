@@ -19,11 +19,13 @@
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/random.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/data_options.hpp"
 #include "harness/cli/model_argument.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/motion/motion_trial.hpp"
+#include "problems/preparation/motion_check.hpp"
 #include "problems/table.hpp"
 #include "problems/user/user_problem.hpp"
 #include "reports/motion_report.hpp"
@@ -79,7 +81,12 @@ DataFile read_recording(const SimulateArguments& arguments, const MotionSetup& s
                         const std::vector<std::string>& names) {
   const std::vector<std::filesystem::path> files(names.begin(), names.end());
   const DataFile first = read_data(files, *arguments.reading, std::vector<std::string>{});
-  return read_data(files, *arguments.reading, used_columns(arguments, setup, first));
+  DataFile file = read_data(files, *arguments.reading, used_columns(arguments, setup, first));
+  if (const std::string made = make_torque(file.data, *arguments.reading); !made.empty()) {
+    print_message(fmt::format("tribench: {}\n", made));
+  }
+  check_motion(file, arguments.reading->drive.gear_ratio);
+  return file;
 }
 
 // "4.9*sin(q)", "fit", "none", "1.2"

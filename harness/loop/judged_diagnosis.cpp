@@ -378,7 +378,14 @@ void LoopJudge::point_at_unused_columns(JudgedDiagnosis& whole) const {
   const Observations part = data_.select(rows);
   const RandomStream random = random_.split("unused columns");
   Eigen::VectorXd residual = target_vector(part) - predict(whole.after, part);
-  residual -= smooth_correction(part, std::vector<char>(part.rows(), 1), residual, random);
+  // What goes with time or with the movement nobody can say the cause of: there a column is a
+  // rival.
+  Observations rivals = part;
+  const LeftoverFinding& left = whole.leftover;
+  if (left.varying || std::ranges::count(left.signals, "t") > 0) {
+    std::erase_if(rivals.signals, [](const Signal& signal) { return signal.name == "t"; });
+  }
+  residual -= smooth_correction(rivals, std::vector<char>(part.rows(), 1), residual, random);
   whole.unused_columns = unused_columns_that_explain(part, residual, random);
 }
 

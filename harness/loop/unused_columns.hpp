@@ -20,7 +20,8 @@ struct UnusedColumn {
 // Of data.unused, those of which a smooth function (times 1 and the direction) takes a twentieth or
 // more off the residual on movements that it was not fitted to, beyond three standard errors over
 // the movements; the largest share first. residual: what the model and smooth functions of the
-// other inputs leave. Cost: five fits of 16 features for each column.
+// other inputs leave (not of the time, where what is left over goes with the time or the movement).
+// Cost: five fits of 16 features for each column.
 std::vector<UnusedColumn> unused_columns_that_explain(const Observations& data,
                                                       const Eigen::VectorXd& residual,
                                                       const RandomStream& random);

@@ -47,6 +47,14 @@ std::vector<std::size_t> rows_where(const DataFile& file, const Condition& condi
     }
     return rows;
   }
+  const auto reading = std::ranges::find(file.readings, condition.column, &ColumnReading::column);
+  if (reading != file.readings.end() && reading->role == Role::movement) {
+    for (std::size_t i = 0; i < file.data.rows(); ++i) {
+      const auto movement = static_cast<std::size_t>(file.data.movement[i]);
+      if (file.data.movement_names[movement] == condition.text) rows.push_back(i);
+    }
+    return rows;
+  }
   const std::vector<double>& column = file.data.at(condition.column).values;
   if (!condition.value) {
     throw_bad_input(fmt::format("'{}' is no number", condition.text), "--where",

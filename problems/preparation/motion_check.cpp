@@ -19,9 +19,15 @@ namespace {
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kTurn = 2 * std::numbers::pi;
 
-constexpr double kGood = 0.15;          // of the slope's logarithm: the same motion
-constexpr double kSameFactor = 0.08;    // a known factor explains the slope
-constexpr double kTellsMotion = 0.9;    // correlation from which the slope says something
+constexpr double kGood = 0.15;         // of the slope's logarithm: the same motion
+constexpr double kSameFactor = 0.08;   // a known factor explains the slope
+constexpr double kTellsMotion = 0.9;   // correlation from which the slope says something
+constexpr double kTellsNothing = 0.5;  // correlation of a rate that is another quantity's
+constexpr double kLongWindow = 0.8;    // s: what noise does is small beside what motion does
+// From the short window to the long one, eight times as long, noise grows by 1 (of a quantity) or
+// by the root of 8 (of a rate's integral), motion by up to 8.
+constexpr double kGrowsByMotion = 2;
+constexpr double kGrowsAsIntegral = 4;
 constexpr double kMostTurns = 2;        // of a joint, either way together
 constexpr double kLongestStep = 0.5;    // s
 constexpr double kShortestStep = 1e-5;  // s
@@ -59,6 +65,12 @@ std::vector<Suspect> suspects(std::optional<double> gear_ratio) {
     list.push_back({1 / n / kDegrees, Role::velocity, "deg/s@motor"});
     list.push_back({n * kDegrees, Role::position, "deg@motor"});
   }
+  return list;
+}
+
+std::vector<Suspect> suspects_of_acceleration(std::optional<double> gear_ratio) {
+  std::vector<Suspect> list = {{1 / kDegrees, Role::acceleration, "deg/s^2"}};
+  if (gear_ratio) list.push_back({1 / *gear_ratio, Role::acceleration, "rad/s^2@motor"});
   return list;
 }
 
@@ -114,6 +126,44 @@ void check_match(const DataFile& file, const MotionMatch& match, std::optional<d
                   suspect != nullptr ? mend_for(file, *suspect)
                                      : "check the units of position, velocity and time (--roles "
                                        "COLUMN=ROLE[UNIT]), --counts-per-turn and --gear-ratio");
+}
+
+// A rate that says nothing of how the quantity changes, though both move: another joint's, or
+// shifted in time.
+void check_related(const DataFile& file, const Channel& quantity, const Channel& rate,
+                   const MotionMatch& match, const MotionMatch& longer) {
+  const bool both_move = longer.change > kGrowsByMotion * match.change &&
+                         longer.integral > kGrowsAsIntegral * match.integral;
+  const double agreement = std::max(std::abs(match.agreement), std::abs(longer.agreement));
+  if (!both_move || agreement >= kTellsNothing) return;
+  throw_bad_input(
+      fmt::format("'{}' does not tell how '{}' changes (correlation {:.2f})", rate.name,
+                  quantity.name, longer.agreement),
+      file.data.name,
+      fmt::format("are both of the same joint and time? Without '{0}' it is derived: --roles "
+                  "'{0}=none'",
+                  rate.name));
+}
+
+// An acceleration may be filtered: only a unit or a sign is believed to be wrong.
+void check_acceleration(const DataFile& file, const MotionMatch& match,
+                        std::optional<double> gear_ratio) {
+  const ColumnReading* acceleration = reading_of(file, Role::acceleration);
+  const ColumnReading* velocity = reading_of(file, Role::velocity);
+  if (acceleration == nullptr || velocity == nullptr) return;
+  if (std::abs(match.agreement) < kTellsMotion) return;
+  const std::vector<Suspect> list = suspects_of_acceleration(gear_ratio);
+  const Suspect* suspect = find_suspect(file, list, match.slope);
+  if (match.slope > 0 && suspect == nullptr) return;
+  throw_bad_input(
+      fmt::format("'{}' changes {:.4g} times as fast as '{}' says", velocity->column, match.slope,
+                  acceleration->column),
+      file.data.name,
+      match.slope > 0
+          ? mend_for(file, *suspect)
+          : fmt::format("its sign is turned, or it is another joint's; without it it is "
+                        "derived: --roles '{}=none'",
+                        acceleration->column));
 }
 
 // A joint that turns over and over, in a unit that was only assumed or on a side of the gear that
@@ -174,11 +224,19 @@ void check_same_side(const Channel& q, const Channel& v, double slope, const std
       file, fmt::format("leave it out and the velocity is derived: --roles '{}=none'", v.name));
 }
 
-// A column of the velocity that nobody fills.
+// A column of the velocity, or of the position, that nobody fills.
 void check_not_dead(const DataFile& file, const Channel& q, const Channel& v) {
   const auto is_zero = [](double value) { return value == 0; };
   const auto [low, high] = std::ranges::minmax(q.values);
-  if (low == high || !std::ranges::all_of(v.values, is_zero)) return;
+  const bool is_still = std::ranges::all_of(v.values, is_zero);
+  if (low == high && !is_still) {
+    throw_bad_input(fmt::format("'{}' is {} in every row while '{}' moves", q.name, low, v.name),
+                    file.data.name,
+                    fmt::format("name the column that holds the position, or leave this one out: "
+                                "--roles '{}=none'",
+                                q.name));
+  }
+  if (low == high || !is_still) return;
   throw_bad_input(
       fmt::format("'{}' is 0 in every row while '{}' moves", v.name, q.name), file.data.name,
       fmt::format("leave it out and the velocity is derived: --roles '{}=none'", v.name));
@@ -186,44 +244,59 @@ void check_not_dead(const DataFile& file, const Channel& q, const Channel& v) {
 
 }  // namespace
 
-MotionMatch match_motion(std::span<const double> time, std::span<const double> position,
-                         std::span<const double> velocity, std::span<const RowRange> pieces) {
+MotionMatch match_motion(std::span<const double> time, std::span<const double> quantity,
+                         std::span<const double> rate, std::span<const RowRange> pieces,
+                         double window) {
   double qq = 0;
   double vv = 0;
   double qv = 0;
-  // Over a tenth of a second or so: an encoder's count is small beside it.
+  std::size_t count = 0;
+  // An encoder's count is small beside what changes in a tenth of a second or so.
   for (const RowRange& piece : pieces) {
     const double span = time[piece.end - 1] - time[piece.begin];
     const auto rows = static_cast<double>(piece.end - piece.begin);
     const auto stride =
-        std::clamp<std::size_t>(static_cast<std::size_t>(span > 0 ? 0.1 * rows / span : 1), 1,
+        std::clamp<std::size_t>(static_cast<std::size_t>(span > 0 ? window * rows / span : 1), 1,
                                 std::max<std::size_t>((piece.end - piece.begin) / 8, 1));
     for (std::size_t i = piece.begin; i + stride < piece.end; i += stride) {
-      double path = 0;
+      double integral = 0;
       for (std::size_t k = i; k < i + stride; ++k) {
-        path += 0.5 * (velocity[k] + velocity[k + 1]) * (time[k + 1] - time[k]);
+        integral += 0.5 * (rate[k] + rate[k + 1]) * (time[k + 1] - time[k]);
       }
-      const double dq = position[i + stride] - position[i];
-      qq += dq * dq;
-      vv += path * path;
-      qv += dq * path;
+      const double change = quantity[i + stride] - quantity[i];
+      qq += change * change;
+      vv += integral * integral;
+      qv += change * integral;
+      ++count;
     }
   }
-  if (qq <= 0 || vv <= 0) return {1, 0};
+  if (qq <= 0 || vv <= 0) return {};
+  const auto n = static_cast<double>(count);
   // Of the two slopes the one that noise in neither pulls to 0: their geometric mean.
-  return {std::copysign(std::sqrt(qq / vv), qv), qv / std::sqrt(qq * vv)};
+  return {std::copysign(std::sqrt(qq / vv), qv), qv / std::sqrt(qq * vv), std::sqrt(qq / n),
+          std::sqrt(vv / n)};
 }
 
 void check_motion(const DataFile& file, std::optional<double> gear_ratio) {
   const Channel* q = file.data.find(Role::position);
   const Channel* v = file.data.find(Role::velocity);
+  const Channel* a = file.data.find(Role::acceleration);
   const Channel* t = file.data.find(Role::time);
+  std::vector<RowRange> pieces;
+  if (t != nullptr) pieces = pieces_of(t->values, file.data.movement, {});
   if (q != nullptr && v != nullptr && t != nullptr) {
     check_not_dead(file, *q, *v);
-    const std::vector<RowRange> pieces = pieces_of(t->values, file.data.movement, {});
     const MotionMatch match = match_motion(t->values, q->values, v->values, pieces);
     check_same_side(*q, *v, match.slope, file.data.name);
     check_match(file, match, gear_ratio);
+    check_related(file, *q, *v, match,
+                  match_motion(t->values, q->values, v->values, pieces, kLongWindow));
+  }
+  if (v != nullptr && a != nullptr && t != nullptr) {
+    const MotionMatch match = match_motion(t->values, v->values, a->values, pieces);
+    check_acceleration(file, match, gear_ratio);
+    check_related(file, *v, *a, match,
+                  match_motion(t->values, v->values, a->values, pieces, kLongWindow));
   }
   check_turns(file, gear_ratio);
   check_assumed_time(file);

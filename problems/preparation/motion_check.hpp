@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Whether the story that position, velocity and time tell together is possible. Where one factor
-// (degrees for radians, milliseconds for seconds, rpm, the gear ratio, a sign) explains why not,
-// the recording is refused and the factor named; nothing is corrected silently.
+// Whether the story that position, velocity, acceleration and time tell together is possible. Where
+// one factor (degrees for radians, milliseconds for seconds, rpm, the gear ratio, a sign) explains
+// why not, the recording is refused and the factor named; so it is where one column says nothing of
+// how the other changes. Nothing is corrected silently.
 #pragma once
 
 #include <optional>
@@ -13,17 +14,22 @@
 
 namespace tribench {
 
-// How the position's change goes with the velocity's integral, row by row: 1 where both tell the
-// same motion. `agreement` is their correlation.
+// How a quantity's change over some `window` (s; shorter in short pieces) goes with its rate's
+// integral: 1 where both tell the same motion. `agreement` is their correlation; `change` and
+// `integral` are their root mean squares.
 struct MotionMatch {
   double slope = 1;
   double agreement = 0;
+  double change = 0;
+  double integral = 0;
 };
-MotionMatch match_motion(std::span<const double> time, std::span<const double> position,
-                         std::span<const double> velocity, std::span<const RowRange> pieces);
+MotionMatch match_motion(std::span<const double> time, std::span<const double> quantity,
+                         std::span<const double> rate, std::span<const RowRange> pieces,
+                         double window = 0.1);
 
-// Throws Error (bad_input) where velocity and position disagree, or where a unit that was only
-// assumed makes the motion absurd (a joint that turns many times over, steps of seconds).
+// Throws Error (bad_input) where velocity and position disagree, or acceleration and velocity, or
+// where a unit that was only assumed makes the motion absurd (a joint that turns many times over,
+// steps of seconds).
 void check_motion(const DataFile& file, std::optional<double> gear_ratio);
 
 // By how much the velocity lags behind the position's own (s; negative: it leads); nothing where

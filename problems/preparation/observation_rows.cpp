@@ -115,10 +115,11 @@ void drop_rows_at_rest(Observations& data) {
   if (moving.rows() == 0) return;  // nothing ever moves: other checks say so
   moving.warnings.push_back(fmt::format(
       "the axis stands still in {:.0f} % of the rows, where the direction of friction is not "
-      "known: "
-      "{:.0f} % of the rows, slower than {:.2g} {}, are left out (--min-speed 0 keeps them)",
+      "known: {:.0f} % of the rows, {}, are left out (--min-speed 0 keeps them)",
       100 * static_cast<double>(resting.size()) / all,
-      100 * (1 - static_cast<double>(moving.rows()) / all), speed, data.find("v")->unit));
+      100 * (1 - static_cast<double>(moving.rows()) / all),
+      speed > 0 ? fmt::format("slower than {:.2g} {}", speed, data.find("v")->unit)
+                : std::string("at rest")));
   data = std::move(moving);
 }
 

@@ -374,13 +374,13 @@ TEST(Diagnosis, LivesWithAChannelThatSaysSomethingInOneMovementOnly) {
   }
 }
 
-// A gain of the load is not physical beyond a fifth; what is missing then lives in the load, not in
-// whatever other column has a "g" in its formula.
+// A load that is off by more than half is not believed; what is missing then lives in the load, not
+// in whatever other column has a "g" in its formula.
 TEST(Diagnosis, AnUnphysicalEffectIsLeftOverInItsOwnInputs) {
   Observations data =
       observe(kuka::make_planted({.effects = {{"nonlinear_viscous", 2.0}}}, 4).data);
   const std::vector<double>& g = data.find("g")->values;
-  for (std::size_t i = 0; i < data.rows(); ++i) data.target[i] += 0.5 * g[i];
+  for (std::size_t i = 0; i < data.rows(); ++i) data.target[i] += 0.7 * g[i];
   DiagnosisOptions options = options_of_planted();
   options.physical_vetoes = true;
   options.families = {"nonlinear_viscous", "power_quadrant_gain"};
@@ -462,6 +462,18 @@ TEST(Diagnosis, ChoosesTheWavesOfAnEffectAnewOnceOthersAreKnown) {
     EXPECT_THAT(families(diagnosis),
                 ::testing::UnorderedElementsAre("output_ripple", "gear_ripple"))
         << seed;
+  }
+}
+
+// Neither a loss nor its sign: a declared load that is off by a third.
+TEST(Diagnosis, ALoadThatIsDeclaredTooSmallOrTooLargeIsATorqueInProportionToIt) {
+  for (const double off : {0.33, -0.25}) {
+    Observations data = observe(kuka::make_planted({}, 5).data);
+    const std::vector<double>& load = data.find("g")->values;
+    for (std::size_t i = 0; i < data.rows(); ++i) data.target[i] += off * load[i];
+    const Diagnosis diagnosis = diagnose_most(data, options_of_planted());
+    EXPECT_EQ(diagnosis.verdict, Verdict::effects) << off;
+    EXPECT_EQ(families(diagnosis), std::vector<std::string>{"power_quadrant_gain"}) << off;
   }
 }
 

@@ -1,12 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "problems/preparation/motion_check.hpp"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "foundation/error.hpp"
+#include "foundation/random.hpp"
+#include "problems/reading/csv.hpp"
 
 namespace tribench {
 namespace {
+
+using ::testing::HasSubstr;
 
 struct Told {
   std::vector<double> time, position, velocity;
@@ -31,6 +42,61 @@ TEST(MotionCheck, TheSlopeIsTheFactorBetweenTheUnits) {
   const MotionMatch match = match_motion(told.time, told.position, told.velocity, whole);
   EXPECT_NEAR(match.slope, -1 / 9.5, 1e-3);
   EXPECT_LT(match.agreement, -0.99);
+}
+
+// A file of q, qd and qdd as they are given, SI throughout.
+std::string complaint_about(const std::vector<double>& time, const std::vector<double>& q,
+                            const std::vector<double>& qd, const std::vector<double>& qdd) {
+  std::string text = "t,q,qd,qdd\n";
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    text += fmt::format("{},{},{},{}\n", time[i], q[i], qd[i], qdd[i]);
+  }
+  try {
+    check_motion(parse_csv(text, "d.csv"), {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(MotionCheck, ColumnsThatTellOfDifferentMotionsAreRefused) {
+  const Told told = sine(0);
+  std::vector<double> acceleration, degrees, other, late, still(told.time.size(), 0.4);
+  for (const double t : told.time) {
+    acceleration.push_back(-2.4 * std::sin(2 * t));
+    degrees.push_back(-2.4 * std::sin(2 * t) * 180 / std::numbers::pi);
+    other.push_back(0.8 * std::cos(2.9 * t + 1));
+    late.push_back(-2.4 * std::sin(2 * t - std::numbers::pi / 2));
+  }
+  const auto says = [&](const std::vector<double>& q, const std::vector<double>& qd,
+                        const std::vector<double>& qdd) {
+    return complaint_about(told.time, q, qd, qdd);
+  };
+  EXPECT_EQ(says(told.position, told.velocity, acceleration), "no error");
+  EXPECT_THAT(says(told.position, other, acceleration),
+              HasSubstr("'qd' does not tell how 'q' changes"));
+  EXPECT_THAT(says(told.position, told.velocity, late),
+              HasSubstr("'qdd' does not tell how 'qd' changes"));
+  EXPECT_THAT(says(told.position, told.velocity, degrees), HasSubstr("qdd=acceleration[deg/s^2]"));
+  for (double& a : acceleration) a = -a;
+  EXPECT_THAT(says(told.position, told.velocity, acceleration), HasSubstr("its sign is turned"));
+  EXPECT_THAT(says(still, told.velocity, late), HasSubstr("'q' is 0.4 in every row"));
+}
+
+// Noise is not another joint's motion: a joint that rests, and one whose columns are mostly noise.
+TEST(MotionCheck, NoiseIsNotRefused) {
+  RandomStream random(3);
+  for (const double swing : {0.0, 0.02}) {
+    std::vector<double> time, q, qd, qdd;
+    for (int i = 0; i < 6000; ++i) {
+      const double t = 0.002 * i;
+      time.push_back(t);
+      q.push_back(swing * std::sin(0.7 * t) + 0.003 * random.normal());
+      qd.push_back(0.7 * swing * std::cos(0.7 * t) + 0.05 * random.normal());
+      qdd.push_back(2 * random.normal());
+    }
+    EXPECT_EQ(complaint_about(time, q, qd, qdd), "no error") << swing;
+  }
 }
 
 TEST(MotionCheck, ADelayIsFoundToATenthOfAStep) {
