@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -68,6 +69,28 @@ TEST(UnusedColumns, NothingIsSaidWhereTheyExplainNothing) {
     EXPECT_THAT(hints({}, seed), IsEmpty()) << seed;
     EXPECT_THAT(hints({.effects = {{"stribeck", 2.0}}}, seed), IsEmpty()) << seed;
   }
+}
+
+// What follows the weather follows the time, too: a function of the time alone must not take it
+// off.
+TEST(UnusedColumns, AColumnIsARivalOfTheTime) {
+  Dataset data = kuka::make_planted({}, 3).data;
+  const std::vector<double> v = data.find(Role::velocity)->values;
+  Channel humidity{"humidity", "%", Role::none, {}};
+  const auto target = std::ranges::find(data.channels, Role::friction_torque, &Channel::role);
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(data.rows());
+    humidity.values.push_back(50 + 15 * std::sin(9 * share));
+    target->values[i] += std::copysign(0.2, v[i]) * (humidity.values.back() - 50);
+  }
+  data.channels.push_back(std::move(humidity));
+  JudgingOptions judging;
+  judging.bounds = true;
+  const JudgedDiagnosis diagnosis =
+      diagnose_and_judge(observe(data), coulomb_viscous_base, {.gear_ratios = {160}}, judging);
+  EXPECT_NE(diagnosis.verdict, Verdict::none);
+  ASSERT_EQ(diagnosis.unused_columns.size(), 1U);
+  EXPECT_EQ(diagnosis.unused_columns[0].column, "humidity");
 }
 
 TEST(UnusedColumns, ShareIsOfRowsThatTheCorrectionHasNotSeen) {
