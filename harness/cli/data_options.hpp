@@ -17,8 +17,9 @@ namespace tribench {
 // runs. The options must live as long as the command. Returns the option --gear-ratio.
 CLI::Option* add_data_options(CLI::App& command, std::shared_ptr<DataOptions> options);
 
-// A file's columns where their names mean nothing (problems/preparation/data_options.hpp), all where
-// none is named; what was dropped or converted is told on standard error. Throws Error (bad_input).
+// A file's columns where their names mean nothing (problems/preparation/data_options.hpp), all
+// where none is named; what was dropped or converted is told on standard error. Throws Error
+// (bad_input).
 Dataset read_columns(const std::string& file, const DataOptions& options,
                      std::vector<std::string> used);
 
