@@ -389,52 +389,6 @@ TEST(Csv, SpareColumnsAreThoseWithANumberInEveryRow) {
   EXPECT_THAT(complaint("c0,c1\n1,2\n2,4\n", options), HasSubstr("no column's name is known"));
 }
 
-TEST(Csv, SpareColumnsThatNotAllFilesHaveAreLeftOut) {
-  const std::filesystem::path folder =
-      std::filesystem::path(::testing::TempDir()) / "spare_columns";
-  std::filesystem::create_directories(folder);
-  const auto write = [&](const char* name, const char* text) {
-    std::ofstream(folder / name) << text;
-    return folder / name;
-  };
-  const std::vector<std::filesystem::path> files = {write("a.csv", "time_s,load\n0,1\n1,2\n"),
-                                                    write("b.csv", "time_s,load\n0,x\n1,2\n")};
-  CsvOptions options;
-  options.used = std::vector<std::string>();
-  options.spare = true;
-  EXPECT_EQ(read_csv(files[0], options).spare.size(), 1U);
-  const DataFile both = read_csv_files(files, options);
-  EXPECT_TRUE(both.spare.empty());
-  EXPECT_EQ(both.data.channels.size(), 1U);
-  EXPECT_EQ(both.data.rows(), 4U);
-  std::filesystem::remove_all(folder);
-}
-
-TEST(Csv, FilesThatDoNotNameTheSameUnitsAreNotJoined) {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "csv_units";
-  std::filesystem::create_directories(folder);
-  const auto joined = [&](const char* first, const char* second) -> std::string {
-    std::ofstream(folder / "a.csv") << first << "\n0,1\n1,2\n";
-    std::ofstream(folder / "b.csv") << second << "\n0,1\n1,2\n";
-    const std::vector<std::filesystem::path> files = {folder / "a.csv", folder / "b.csv"};
-    try {
-      return fmt::format("{} rows", read_csv_files(files).data.rows());
-    } catch (const Error& error) {
-      return error.what();
-    }
-  };
-  EXPECT_EQ(joined("q,tau\ndeg,N m", "q,tau\ndeg,N m"), "4 rows");
-  EXPECT_EQ(joined("q,tau\ndeg,N m", "q,tau\nrad,mN m"), "4 rows");  // both become SI
-  EXPECT_EQ(joined("q,tau", "q,tau"), "4 rows");
-  EXPECT_THAT(
-      joined("q,tau\ndeg,N m", "q,tau"),
-      AllOf(HasSubstr("b.csv: 'tau' is motor_torque in a unit that is not named, and in the first "
-                      "file motor_torque in 'N m'"),
-            HasSubstr("--roles 'tau=ROLE[UNIT]'")));
-  EXPECT_THAT(joined("q,tau\ndeg,N m", "q,tau\ndeg,A"), HasSubstr("'tau'"));
-  std::filesystem::remove_all(folder);
-}
-
 TEST(Csv, ColumnsThatNoNameTellsAreNotSaidToHoldNoNumbers) {
   CsvOptions options;
   options.used = std::vector<std::string>();
