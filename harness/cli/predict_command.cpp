@@ -106,8 +106,7 @@ void add_predict_command(CLI::App& app, ExitStatus& /*status*/) {
       "m.json"
       "\n         tribench predict m.json later.csv --out predicted.csv"
       "\nThe data are read as those that a model was fitted to, its --roles and all, unless "
-      "options "
-      "here say how.");
+      "options here say how.");
   auto arguments = std::make_shared<PredictArguments>();
   command
       ->add_option("MODEL", arguments->model, "what `fit --json` printed, in a file; or a formula")
