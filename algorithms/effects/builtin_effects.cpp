@@ -157,15 +157,26 @@ EffectFamily payload() {
   EffectFamily f{"payload",
                  "E14",
                  "a mass or its lever that the declared gravity lacks, or declares too much",
-                 "the joint carries a mass, or a spring, that nobody declared",
+                 "the joint carries a mass that nobody declared",
                  "rigid-body mechanics",
                  {}};
   f.atoms = {{{"sin(q)", "cos(q)"}, {"sine", "cosine"}}};
   f.angular = true;
   f.changeable = true;
-  f.known_aliases = {{"output_ripple (once a turn)", "a known payload (R3)"},
-                     {"spring or cable (torque in proportion to q)",
-                      "a range of motion over which sin q bends, a known payload (R3)"}};
+  f.known_aliases = {{"output_ripple (once a turn)", "a known payload (R3)"}};
+  f.separate_by = {"R3"};
+  return f;
+}
+
+// Where sin q does not bend over the range of motion, a mass pulls alike.
+EffectFamily spring() {
+  EffectFamily f{"spring",
+                 "E16",
+                 "torque that grows with the position: a spring, a cable, a hose",
+                 "a spring, a cable or a hose pulls at the joint",
+                 "mechanics; Duffing 1918 (cubic)",
+                 {}};
+  f.atoms = {{{"q"}, {"stiffness"}}, {{"q^3"}, {"stiffening"}}};
   f.separate_by = {"R3"};
   return f;
 }
@@ -394,6 +405,7 @@ const std::vector<EffectFamily>& builtin_effects() {
       titled(power_quadrant_gain(), "torque in proportion to the load"),
       titled(power_quadrant_step(), "loss step in back-driving"),
       titled(payload(), "payload error"),
+      titled(spring(), "spring"),
       titled(output_ripple(), "ripple of the joint's turn"),
       titled(gear_ripple(), "gear ripple"),
       titled(temperature(), "temperature"),

@@ -220,6 +220,14 @@ Response notch(RandomStream random) {
 }
 
 // A tool that every second to fifth movement carries, and nobody wrote it down.
+// A balancing spring, a cable or a hose: slack at one position, stiffer away from it.
+Response spring(RandomStream random) {
+  return [slack = random.uniform(-0.5, 0.5), stiffening = random.uniform(0, 0.5)](
+             const Instant& now, double) {
+    const double way = now.joint.position_rad - slack;
+    return way + stiffening * way * way * way;
+  };
+}
 Response load_by_movement(RandomStream random) {
   const double share = random.uniform(0.2, 0.6);
   return [share, first = random.uniform()](const Instant& now, double) {
@@ -400,6 +408,15 @@ std::vector<Cause> later_causes() {
            {Role::movement},
            true,
            friction_by_movement,
+           false,
+           false},
+          {"spring",
+           "q - q0, stiffer away from q0",
+           {"spring"},
+           {"payload", "asymmetry"},
+           {Role::position},
+           false,
+           spring,
            false,
            false}};
 }

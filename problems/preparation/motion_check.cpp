@@ -105,6 +105,22 @@ const Suspect* find_suspect(const DataFile& file, const std::vector<Suspect>& li
   return found;
 }
 
+// The velocity changes as the position says, and the position not as the velocity. Of one sine each
+// is the other's rate but for a factor and a sign: there the factor has to be 1.
+void check_not_exchanged(const DataFile& file, const Channel& q, const Channel& v,
+                         const MotionMatch& match, const MotionMatch& exchanged) {
+  const auto is_one = [](double slope) {
+    return slope > 0 && std::abs(elementary::log(slope)) < kGood;
+  };
+  const bool is_related = std::abs(match.agreement) >= kTellsMotion;
+  if (is_related && (match.slope > 0 || is_one(-match.slope) || !is_one(exchanged.slope))) return;
+  if (exchanged.agreement < kTellsMotion) return;
+  throw_bad_input(
+      fmt::format("'{}' changes as '{}' says: the two are exchanged", v.name, q.name),
+      file.data.name,
+      fmt::format("give --roles '{}=position,{}=velocity' (with their units)", v.name, q.name));
+}
+
 void check_match(const DataFile& file, const MotionMatch& match, std::optional<double> gear_ratio) {
   if (std::abs(match.agreement) < kTellsMotion) return;
   const std::string& velocity = reading_of(file, Role::velocity)->column;
@@ -288,6 +304,7 @@ void check_motion(const DataFile& file, std::optional<double> gear_ratio) {
     check_not_dead(file, *q, *v);
     const MotionMatch match = match_motion(t->values, q->values, v->values, pieces);
     check_same_side(*q, *v, match.slope, file.data.name);
+    check_not_exchanged(file, *q, *v, match, match_motion(t->values, v->values, q->values, pieces));
     check_match(file, match, gear_ratio);
     check_related(file, *q, *v, match,
                   match_motion(t->values, q->values, v->values, pieces, kLongWindow));

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +29,22 @@ TEST(Aliases, WhatLooksOtherwiseOrStandsBesideAnEffectIsNoAliasOfIt) {
         }
       }
     }
+  }
+}
+
+// sin q is q where the joint turns by a few degrees: there a mass pulls as a spring does.
+TEST(Aliases, AMassAndASpringAreToldApartByTheRangeOfMotionAlone) {
+  for (const bool turns_far : {true, false}) {
+    Observations data = observe(kuka::make_planted({}, 6).data);
+    const auto position = std::ranges::find(data.signals, "q", &Signal::name);
+    for (std::size_t i = 0; i < data.rows(); ++i) {
+      if (!turns_far) position->values[i] *= 0.1;
+      data.target[i] += (turns_far ? 0.5 : 5) * position->values[i];
+    }
+    const Diagnosis diagnosis = diagnose_most(data, options_of_planted());
+    ASSERT_EQ(families(diagnosis), std::vector<std::string>{"spring"}) << turns_far;
+    EXPECT_EQ(std::ranges::count(diagnosis.effects[0].aliases, "payload", &AliasFinding::family),
+              turns_far ? 0 : 1);
   }
 }
 

@@ -94,7 +94,9 @@ INSTANTIATE_TEST_SUITE_P(
                       SimulatedCause{"friction_ripple", "output_ripple", mixed, 7},
                       SimulatedCause{"friction_ripple", "output_ripple", few_long, 8},
                       SimulatedCause{"gear_ripple_drifting", "gear_ripple", few_long, 7},
-                      SimulatedCause{"presliding_dahl", "hysteresis", many_short, 7}));
+                      SimulatedCause{"presliding_dahl", "hysteresis", many_short, 7},
+                      SimulatedCause{"spring", "spring", mixed, 7},
+                      SimulatedCause{"spring", "spring", few_long, 8}));
 
 class OutsideTheLibrary
     : public ::testing::TestWithParam<std::pair<const char*, std::vector<std::string>>> {};

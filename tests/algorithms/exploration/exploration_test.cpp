@@ -98,10 +98,11 @@ std::vector<std::string> left_by(const Exploration& done) {
 }
 
 Exploration explored(std::uint64_t seed, simulation::WorldKind kind, std::string_view plan,
-                     double budget_s = 600) {
+                     double budget_s = 600, double smallest_effect = kSmallestEffect) {
   simulation::World world({seed, simulation::WorldLevel::easy, kind});
   ExplorerOptions options;
   options.budget_s = budget_s;
+  options.smallest_effect = smallest_effect;
   return explore(
       world.limits(),
       [&](const PlannedMovement& movement) { return world.execute(movement, "the plan"); }, options,
@@ -110,7 +111,8 @@ Exploration explored(std::uint64_t seed, simulation::WorldKind kind, std::string
 
 TEST(Explorer, NamesWhatAnEasyWorldHides) {
   const simulation::World world({3, simulation::WorldLevel::easy, simulation::WorldKind::single});
-  const Exploration done = explored(3, simulation::WorldKind::single, "informative");
+  const Exploration done =
+      explored(3, simulation::WorldKind::single, "informative", 600, world.smallest_effect());
   ASSERT_EQ(done.end, ExplorationEnd::sure);
   ASSERT_FALSE(done.families.empty());
   EXPECT_FALSE(done.unknown);

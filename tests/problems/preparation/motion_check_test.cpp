@@ -75,6 +75,8 @@ TEST(MotionCheck, ColumnsThatTellOfDifferentMotionsAreRefused) {
   EXPECT_EQ(says(told.position, told.velocity, acceleration), "no error");
   EXPECT_THAT(says(told.position, other, acceleration),
               HasSubstr("'qd' does not tell how 'q' changes"));
+  EXPECT_THAT(says(told.velocity, told.position, acceleration),
+              HasSubstr("give --roles 'qd=position,q=velocity'"));
   EXPECT_THAT(says(told.position, told.velocity, late),
               HasSubstr("'qdd' does not tell how 'qd' changes"));
   EXPECT_THAT(says(told.position, told.velocity, degrees), HasSubstr("qdd=acceleration[deg/s^2]"));
