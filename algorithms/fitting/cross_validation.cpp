@@ -224,23 +224,6 @@ class Refit {
   std::uint64_t node_rows_ = 0;
 };
 
-// Whether errors[f], held-out mean squares fold by fold, are larger than the best formula's by no
-// more than chance would have it.
-bool as_good(std::span<const double> errors, std::span<const double> best, double tolerance) {
-  const auto folds = static_cast<double>(best.size());
-  double mean = 0;
-  for (std::size_t f = 0; f < best.size(); ++f) {
-    if (!(errors[f] <= kFarWorse * best[f])) return false;
-    mean += (errors[f] - best[f]) / folds;
-  }
-  double variance = 0;
-  for (std::size_t f = 0; f < best.size(); ++f) {
-    const double difference = errors[f] - best[f] - mean;
-    variance += difference * difference;
-  }
-  return mean < tolerance * std::sqrt(variance / (folds * (folds - 1)));
-}
-
 // errors[k][f]: of formula k.
 std::size_t simplest_good(const std::vector<std::vector<double>>& errors,
                           std::span<const double> means, double tolerance) {
@@ -305,6 +288,21 @@ class Band {
 
 }  // namespace
 
+bool as_good(std::span<const double> errors, std::span<const double> best, double tolerance) {
+  const auto folds = static_cast<double>(best.size());
+  double mean = 0;
+  for (std::size_t f = 0; f < best.size(); ++f) {
+    if (!(errors[f] <= kFarWorse * best[f])) return false;
+    mean += (errors[f] - best[f]) / folds;
+  }
+  double variance = 0;
+  for (std::size_t f = 0; f < best.size(); ++f) {
+    const double difference = errors[f] - best[f] - mean;
+    variance += difference * difference;
+  }
+  return mean < tolerance * std::sqrt(variance / (folds * (folds - 1)));
+}
+
 bool reaches_beyond(const Inputs& inputs, const InputBox& box) {
   return !sides_beyond(inputs, box).empty();
 }
@@ -321,7 +319,8 @@ CrossValidation cross_validate(std::span<const Expression> formulas, const Input
       held_out_beyond == Beyond::edges ? edge_holdouts(inputs, box) : outer_holdout(inputs, box),
       std::back_inserter(holdouts));
   Refit refit(rounding_of(target));
-  std::vector<std::vector<double>> errors(formulas.size());
+  std::vector<std::vector<double>>& errors = result.fold_errors;
+  errors.resize(formulas.size());
   for (const Marks& marks : holdouts) {
     const Rows train = select_rows(inputs, target, marks, 0);
     const Rows held_out = select_rows(inputs, target, marks, 1);

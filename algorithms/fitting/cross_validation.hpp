@@ -36,9 +36,14 @@ enum class Beyond { edges, as_far };
 struct CrossValidation {
   std::size_t chosen = 0;  // place among the formulas
   std::vector<double>
-      mean_square;              // held-out mean squared error of each; infinite where not finite
-  std::uint64_t node_rows = 0;  // what it cost
+      mean_square;  // held-out mean squared error of each; infinite where not finite
+  std::vector<std::vector<double>> fold_errors;  // of each, a mean square a fold
+  std::uint64_t node_rows = 0;                   // what it cost
 };
+
+// Whether held-out mean squares, fold by fold, are larger than the best formula's by no more than
+// chance would have it (one standard error of the paired difference), and nowhere twice as large.
+bool as_good(std::span<const double> errors, std::span<const double> best, double tolerance = 1);
 
 // True where the box is wider than the rows' range by more than a twentieth of it, for an input
 // that varies and is not a sign.

@@ -75,25 +75,36 @@ bool JointFront::is_on_front(std::size_t place) const {
          std::ranges::none_of(before, [=](const Member& other) { return other.error <= error; });
 }
 
+// What one search stands for another may have found shorter, nearer and with more evidence: the
+// nearest of these; itself where there is none.
+std::size_t JointFront::better_than(std::size_t place) const {
+  const Member& member = members_[place];
+  std::size_t best = place;
+  for (std::size_t k = 0; k < place; ++k) {
+    const Member& other = members_[k];
+    if (other.error < members_[best].error && other.against <= member.against) best = k;
+  }
+  return best;
+}
+
 // Where no search stands for any, and beyond the rows, where none knows what it stands for, all on
 // the front are candidates.
 std::size_t JointFront::choose() const {
   const bool beyond = reaches_beyond(inputs_, box_);
   const bool any = !beyond && std::ranges::any_of(members_, &Member::is_choice);
   std::vector<std::size_t> places;
-  std::vector<Expression> candidates;
   for (std::size_t k = 0; k < members_.size(); ++k) {
     if (any ? !members_[k].is_choice : !is_on_front(k)) continue;
-    places.push_back(k);
-    candidates.push_back(members_[k].formula);
+    const std::size_t candidate = any ? better_than(k) : k;
+    if (std::ranges::count(places, candidate) == 0) places.push_back(candidate);
   }
-  if (candidates.empty()) return 0;
-  if (candidates.size() == 1) return places[0];
+  if (places.empty()) return 0;
+  if (places.size() == 1) return places[0];
   // Of equal complexity the one with fewer numbers that were fitted comes first.
   std::ranges::stable_sort(places, {}, [&](std::size_t k) {
     return std::pair(members_[k].complexity, members_[k].against);
   });
-  candidates.clear();
+  std::vector<Expression> candidates;
   for (const std::size_t k : places) candidates.push_back(members_[k].formula);
   if (beyond) {
     const CrossValidation validation = cross_validate(candidates, inputs_, target_, movement_, box_,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // One front of several searches on the same rows, and one formula to stand for it: the exact one
-// where there is one (exact_choice.hpp), else of the formulas that the searches stood for the
-// simplest that is typical of what all their fronts say together (posterior_choice.hpp), every
-// form priced alike (evidence.hpp). Where the formula will be used beyond the rows no evidence
-// speaks, nor what a search stood for: cross-validation that holds out the rows as far as the box
-// goes beyond them decides among all on the front: the simplest whose held-out mean square is at
-// most a tenth above the least.
+// where there is one (exact_choice.hpp), else of the formulas that the searches stood for (or what
+// is better than these in every respect) the simplest that is typical of what all their fronts say
+// together (posterior_choice.hpp), every form priced alike (evidence.hpp). Where the formula will
+// be used beyond the rows no evidence speaks, nor what a search stood for: cross-validation that
+// holds out the rows as far as the box goes beyond them decides among all on the front: the
+// simplest whose held-out mean square is at most a tenth above the least.
 //
 // The one with the most evidence is no good choice here: of several searches it is the one that
 // fits the noise best.
@@ -59,6 +59,7 @@ class JointFront {
 
   void settle();
   bool is_on_front(std::size_t place) const;
+  std::size_t better_than(std::size_t place) const;
   std::size_t choose() const;  // a place in members_
   void list(const std::function<bool(std::size_t)>& is_taken);
 

@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/expression/singularity.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
+#include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/evidence_pruning.hpp"
-#include "algorithms/relay/long_sum.hpp"
 
 namespace tribench::relay {
 namespace {
@@ -20,8 +21,9 @@ namespace {
 constexpr std::size_t kShort = 14;         // nodes of an exact formula
 constexpr std::size_t kLikelyFitted = 25;  // of those that structure proposes under noise
 constexpr std::size_t kLikelyTaken = 5;    // of these
-constexpr double kLate = 0.1;              // of all seconds
-constexpr double kOfPruning = 0.5;         // of the seconds that are left
+constexpr std::size_t kAskedAgainstRival = 3;
+constexpr double kLate = 0.1;       // of all seconds
+constexpr double kOfPruning = 0.5;  // of the seconds that are left
 
 // Inserts a formula where it belongs; its place.
 std::size_t place_by_complexity(const Expression& formula, std::vector<Expression>& front) {
@@ -118,24 +120,44 @@ FitResult Answer::result() && {
                    context_.budget.exhausted() ? StopReason::budget : StopReason::converged,
                    std::move(note_)};
   if (rival_) result.held_out_rows = std::min(rival_rows_, rows_.rows());
-  if (yields_to_rival(result.front[result.chosen])) {
-    result.chosen = place_by_complexity(rival_->formula, result.front);
-  } else {
+  const auto stands = best_against_rival(result.front, result.chosen);
+  if (stands) {
+    result.chosen = *stands;
     result.yields_to_plain_sum = true;
+  } else {
+    result.chosen = place_by_complexity(rival_->formula, result.front);
   }
   return result;
 }
 
-void Answer::set_rival(LinearSum sum, std::size_t rows) {
+void Answer::set_rival(LongSum sum, std::size_t rows) {
   rival_ = std::move(sum);
   rival_rows_ = rows;
 }
 
-// The chosen form was found with all rows, the rival's terms without those held out: nothing is
-// asked of it but to be nearer to them.
-bool Answer::yields_to_rival(const Expression& chosen) const {
-  return rival_ && !joint_.is_explained() &&
-         held_out_error(chosen, rows_, rival_rows_) > rival_->held_out;
+// The forms were found with all rows, the rival's terms without those held out: it need only be
+// nearer to them. A shorter form stands where that may be chance. The chosen one is asked first,
+// then those with the most evidence. None: the rival stands.
+std::optional<std::size_t> Answer::best_against_rival(std::span<const Expression> front,
+                                                      std::size_t chosen) {
+  if (!rival_ || joint_.is_explained()) return chosen;
+  std::vector<std::size_t> places = {chosen};
+  for (const Expression& formula : joint_.likeliest(kAskedAgainstRival)) {
+    const auto place = static_cast<std::size_t>(std::ranges::find(front, formula) - front.begin());
+    if (place < front.size() && place != chosen) places.push_back(place);
+  }
+  const int rival_length = paper_complexity(rival_->formula);
+  for (const std::size_t place : places) {
+    const std::vector<double> errors =
+        held_out_errors({&front[place], 1}, rows_, rival_rows_).front();
+    const double mean =
+        std::reduce(errors.begin(), errors.end()) / static_cast<double>(errors.size());
+    const bool is_shorter = paper_complexity(front[place]) < rival_length;
+    if (mean <= rival_->mean_held_out() || (is_shorter && as_good(errors, rival_->held_out))) {
+      return place;
+    }
+  }
+  return std::nullopt;
 }
 
 void Answer::say(std::string_view what) {

@@ -17,8 +17,8 @@
 #include "algorithms/admission.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/joint_front.hpp"
-#include "algorithms/fitting/linear_sum.hpp"
 #include "algorithms/regressor.hpp"
+#include "algorithms/relay/long_sum.hpp"
 
 namespace tribench::relay {
 
@@ -45,8 +45,8 @@ class Answer {
   // The formula with the most evidence so far; there is one.
   Expression likeliest() const { return joint_.likeliest(1)[0]; }
   // A sum of many terms, whose error was held out on so many rows (long_sum.hpp): it stands where
-  // what is chosen in the end is worse on these.
-  void set_rival(LinearSum sum, std::size_t rows);
+  // what is chosen in the end is worse on these, and by more than chance where it is shorter.
+  void set_rival(LongSum sum, std::size_t rows);
   // What another method found, or in the note why it found nothing.
   void add(const FitResult& result, std::string_view found_by);
   // The same formula with fewer numbers, where the rows do not mind; nothing once they are
@@ -58,14 +58,15 @@ class Answer {
 
  private:
   void say(std::string_view what);  // in the note
-  bool yields_to_rival(const Expression& chosen) const;
+  std::optional<std::size_t> best_against_rival(std::span<const Expression> front,
+                                                std::size_t chosen);
 
   FitContext& context_;
   FiniteRows rows_;
   Admission admission_;
   JointFront joint_;
   double seconds_;  // to spend, in all
-  std::optional<LinearSum> rival_;
+  std::optional<LongSum> rival_;
   std::size_t rival_rows_ = 0;
   std::string note_;
   std::string explained_by_;

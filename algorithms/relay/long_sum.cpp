@@ -310,7 +310,7 @@ double squared_error(std::span<const double> products, std::size_t size,
 
 struct Choice {
   std::vector<std::size_t> columns;  // in the order in which they were taken
-  double held_out = 0;               // mean square
+  std::vector<double> held_out;      // mean squares, fold by fold
 };
 
 // None where the time ran out.
@@ -319,12 +319,18 @@ std::optional<Choice> choose(const std::vector<Column>& columns, const Sample& s
   const Products products(columns, sample, budget);
   if (!products.is_whole()) return std::nullopt;
   const std::size_t size = products.size();
-  std::vector<double> errors(1 + std::min(kLongestSum, sample.rows() / kRowsATerm), 0.0);
+  // Of every number of terms, fold by fold.
+  std::vector<std::vector<double>> held_out(1 + std::min(kLongestSum, sample.rows() / kRowsATerm));
+  std::vector<double> errors(held_out.size(), 0.0);
   for (std::size_t f = 0; f < products.folds(); ++f) {
     const std::vector<double> rest = products.without(f);
+    const auto count = static_cast<double>(std::ranges::count(sample.folds(), static_cast<int>(f)));
     Selection selection(rest, size);
-    for (double& error : errors) {
-      error += squared_error(products.fold(f), size, selection.terms(), selection.coefficients());
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      const double error =
+          squared_error(products.fold(f), size, selection.terms(), selection.coefficients());
+      errors[k] += error;
+      held_out[k].push_back(error / count);
       selection.extend();
     }
   }
@@ -332,7 +338,7 @@ std::optional<Choice> choose(const std::vector<Column>& columns, const Sample& s
   Selection selection(products.whole(), size);
   for (auto terms = least - errors.begin(); terms > 0 && selection.extend(); --terms) {
   }
-  Choice choice{{}, *least / static_cast<double>(sample.rows())};
+  Choice choice{{}, held_out[static_cast<std::size_t>(least - errors.begin())]};
   for (const std::size_t term : selection.terms()) {
     if (term > 0) choice.columns.push_back(term - 1);
   }
@@ -391,8 +397,12 @@ Expression written(const Choice& choice, const std::vector<Column>& columns,
 
 }  // namespace
 
-std::optional<LinearSum> fit_long_sum(const FiniteRows& rows, const OperatorSet& operators,
-                                      std::size_t most_rows, Budget& budget) {
+double LongSum::mean_held_out() const {
+  return std::reduce(held_out.begin(), held_out.end()) / static_cast<double>(held_out.size());
+}
+
+std::optional<LongSum> fit_long_sum(const FiniteRows& rows, const OperatorSet& operators,
+                                    std::size_t most_rows, Budget& budget) {
   const bool is_possible =
       operators.allows(Op::add) && operators.allows(Op::sub) && operators.allows(Op::mul);
   if (rows.rows() < kFewestRowsOfSum || !is_possible) return std::nullopt;
@@ -416,14 +426,14 @@ std::optional<LinearSum> fit_long_sum(const FiniteRows& rows, const OperatorSet&
   if (!choice || choice->columns.empty()) return std::nullopt;
   Expression formula = written(*choice, pieces.columns(), rows);
   if (!operators.admits(formula)) return std::nullopt;
-  return LinearSum{std::move(formula), choice->held_out};
+  return LongSum{std::move(formula), choice->held_out};
 }
 
-double held_out_error(const Expression& formula, const FiniteRows& rows, std::size_t most_rows) {
+std::vector<std::vector<double>> held_out_errors(std::span<const Expression> formulas,
+                                                 const FiniteRows& rows, std::size_t most_rows) {
   const Sample sample(rows, most_rows);
-  return cross_validate({&formula, 1}, sample.table(), sample.target(), sample.movement(), {},
-                        kFolds)
-      .mean_square[0];
+  return cross_validate(formulas, sample.table(), sample.target(), sample.movement(), {}, kFolds)
+      .fold_errors;
 }
 
 }  // namespace tribench::relay

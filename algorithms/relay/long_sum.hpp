@@ -14,24 +14,33 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "algorithms/budget.hpp"
 #include "algorithms/expression/operator_set.hpp"
 #include "algorithms/finite_rows.hpp"
-#include "algorithms/fitting/linear_sum.hpp"
 
 namespace tribench::relay {
+
+struct LongSum {
+  Expression formula;
+  std::vector<double> held_out;  // mean squares, fold by fold, of choices that had not seen it
+  double mean_held_out() const;
+};
 
 // Terms are chosen on at most `most_rows` rows, spread evenly, their coefficients fitted to all; at
 // most one for four rows, and 150. Of more than eight inputs those that a sum of products of two
 // takes first. None with fewer than 40 rows, where budget or seconds do not suffice, where no term
 // predicts rows held out, and where the operators lack + - *. Cost: some 0.2 s for eight inputs and
 // 4000 rows, 1.5 s for 24 000.
-std::optional<LinearSum> fit_long_sum(const FiniteRows& rows, const OperatorSet& operators,
-                                      std::size_t most_rows, Budget& budget);
+std::optional<LongSum> fit_long_sum(const FiniteRows& rows, const OperatorSet& operators,
+                                    std::size_t most_rows, Budget& budget);
 
-// Of a formula on the same rows and folds, its constants fitted anew without those held out: what a
-// sum's error is to be compared with. Infinite where it is not finite on a row. Cost: ten fits.
-double held_out_error(const Expression& formula, const FiniteRows& rows, std::size_t most_rows);
+// Of formulas on the same rows and folds, their constants fitted anew without those held out: what
+// a sum's errors are to be compared with. Infinite where one is not finite on a row. Cost: ten fits
+// a formula.
+std::vector<std::vector<double>> held_out_errors(std::span<const Expression> formulas,
+                                                 const FiniteRows& rows, std::size_t most_rows);
 
 }  // namespace tribench::relay

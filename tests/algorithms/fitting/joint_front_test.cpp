@@ -81,6 +81,13 @@ TEST_F(JointFrontTest, StandsForTheSimplestChoiceThatIsTypicalAndNotForTheOneTha
   EXPECT_EQ(chosen(joint), "v^2");
 }
 
+TEST_F(JointFrontTest, StandsForNoChoiceThatAnotherFormulaBeatsInEveryRespect) {
+  JointFront joint = joint_front();
+  joint.add(front({"v", "v^2 + 0.1*v"}), 1);
+  joint.add(front({"v^2"}), std::nullopt);
+  EXPECT_EQ(chosen(joint), "v^2");
+}
+
 TEST_F(JointFrontTest, ChoosesFromTheFrontWhereNoSearchStandsForAny) {
   JointFront joint = joint_front();
   joint.add(front({"v"}), std::nullopt);
