@@ -204,11 +204,13 @@ std::vector<double> take_weights(const FitArguments& arguments, Problem& problem
   return weights;
 }
 
-// What gives the same formula again: seconds depend on the machine, evaluations do not.
+// What gives the same formula again: the same command, where the clock had no say in it. Seconds
+// depend on the machine, evaluations do not; but parts of a search that had their share of the
+// seconds have another share of these.
 std::string reproducing(const FitArguments& arguments, const Record& record, bool by_clock) {
   std::vector<std::string> words = arguments.words;
   // A program need not say what it has spent: with no evaluations it would be asked for nothing.
-  if ((by_clock || arguments.spends_all) && record.evaluations > 0) {
+  if (by_clock && record.evaluations > 0) {
     constexpr const char* kAmple = "1e6";
     for (const std::string option : {"--seconds", "--evaluations"}) {
       std::erase_if(words, [&](const std::string& word) { return word.starts_with(option + "="); });
@@ -292,6 +294,7 @@ void fit(const FitArguments& arguments, const Registry& registry) {
                               kSpent * static_cast<double>(arguments.evaluations);
   answer.ended = by_clock ? "seconds" : by_evaluations ? "evaluations" : "finished";
   answer.reproduce = reproducing(arguments, record, by_clock);
+  answer.reproduces_exactly = !by_clock;
   answer.inputs = problem.input_names();
   answer.target = problem.target;
   answer.reading = *arguments.reading;

@@ -74,6 +74,7 @@ Json fit_json(const FitAnswer& answer) {
   if (Json reading = reading_json(answer.reading); !reading.empty()) all["reading"] = reading;
   all["ended"] = answer.ended;
   all["reproduce"] = answer.reproduce;
+  all["reproduces_exactly"] = answer.reproduces_exactly;
   if (answer.intervals) all["intervals"] = intervals_json(*answer.intervals);
   all["front"] = front;
   return all;
@@ -101,8 +102,9 @@ void print_fit(const FitAnswer& answer) {
   } else {
     fmt::print("no intervals: {}\n", answer.no_intervals);
   }
-  fmt::print("{} node-rows, {:.3g} CPU seconds; ended by: {}\nagain: {}\n", record.evaluations,
-             record.fit_cpu_s, answer.ended, answer.reproduce);
+  fmt::print("{} node-rows, {:.3g} CPU seconds; ended by: {}\nagain{}: {}\n", record.evaluations,
+             record.fit_cpu_s, answer.ended,
+             answer.reproduces_exactly ? "" : " (nearly: the clock had a say)", answer.reproduce);
 }
 
 Json category_json(const CategoryFit& fit) {

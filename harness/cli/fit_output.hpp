@@ -19,7 +19,8 @@ struct FitAnswer {
   std::optional<FitIntervals> intervals;
   std::string no_intervals;  // why there are none
   std::string ended;         // "finished", "evaluations", "seconds"
-  std::string reproduce;     // the command that gives the same again
+  std::string reproduce;     // the command that gives the same again, or nearly
+  bool reproduces_exactly = true;
   std::vector<std::string> inputs;
   std::string target;
   DataOptions reading;  // of the data

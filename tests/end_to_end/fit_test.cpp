@@ -322,6 +322,12 @@ TEST_F(UnequalRowsTest, TheCommandItNamesGivesTheSameAgain) {
   const std::string joined =
       answer({"--method", "pysr", "--seconds=0.05"}).at("reproduce").get<std::string>();
   EXPECT_THAT(joined, Not(HasSubstr("0.05")));
+  EXPECT_FALSE(clocked.at("reproduces_exactly"));
+  // Seconds that were not needed change nothing: the same command again.
+  const json timed = answer({"--method", "linear", "--seconds", "20"});
+  EXPECT_TRUE(timed.at("reproduces_exactly"));
+  EXPECT_THAT(timed.at("reproduce").get<std::string>(),
+              AllOf(HasSubstr("--seconds 20"), Not(HasSubstr("--evaluations"))));
   const json once = answer({"--method", "pysr", "--seed", "7"});
   const std::string line = once.at("reproduce");
   const ProgramRun again = run_to_end(
