@@ -6,17 +6,29 @@
 
 namespace tribench {
 
+std::string channel_name(Role role, std::string_view unit) {
+  std::string name = std::string(role_name(role)) + '_';
+  for (const char c : unit) {
+    if (c == '/') name += '_';
+    if (c != '/' && c != ' ' && c != '^') name += c;
+  }
+  return name;
+}
+
 Dataset blank_campaign(std::string name) {
   Dataset data;
   data.name = std::move(name);
-  data.channels = {{"time_s", "s", Role::time, {}},
-                   {"position_rad", "rad", Role::position, {}},
-                   {"velocity_rad_s", "rad/s", Role::velocity, {}},
-                   {"acceleration_rad_s2", "rad/s^2", Role::acceleration, {}},
-                   {"gravity_torque_Nm", "N m", Role::gravity_torque, {}},
-                   {"temperature_degC", "degC", Role::temperature, {}},
-                   {"other_velocity_rad_s", "rad/s", Role::other_velocity, {}},
-                   {"other_acceleration_rad_s2", "rad/s^2", Role::other_acceleration, {}}};
+  const auto add = [&](Role role, const char* unit) {
+    data.channels.push_back({channel_name(role, unit), unit, role, {}});
+  };
+  add(Role::time, "s");
+  add(Role::position, "rad");
+  add(Role::velocity, "rad/s");
+  add(Role::acceleration, "rad/s^2");
+  add(Role::gravity_torque, "N m");
+  add(Role::temperature, "degC");
+  add(Role::other_velocity, "rad/s");
+  add(Role::other_acceleration, "rad/s^2");
   return data;
 }
 

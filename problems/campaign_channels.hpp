@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "problems/dataset.hpp"
 
@@ -21,6 +22,9 @@ struct CampaignRow {
   double other_velocity_rad_s = 0;
   double other_acceleration_rad_s2 = 0;
 };
+
+// What our files call a quantity: its role and its SI unit, "velocity_rad_s".
+std::string channel_name(Role role, std::string_view unit);
 
 // A channel a member, in their order, without rows.
 Dataset blank_campaign(std::string name);

@@ -26,6 +26,8 @@ constexpr std::size_t kWholeFamily = 10;
 constexpr std::array<double, 2> kSizes = {3, 0.8};
 constexpr double kExplainedByBase = 1e-4;  // of a column's squares, on the reference
 
+constexpr double kDrawnByOther = 0.1;  // of a narrow column's squares is all that is left
+
 constexpr double kMisfit = 0.27;  // of a family's size: what one expects of its misfit
 constexpr Eigen::Index kMisfitColumns = 14;
 constexpr Eigen::Index kMisfitCentres = 3;
@@ -354,12 +356,34 @@ void ExplanationSpace::add_misfits() {
   }
 }
 
+// Something narrow that a family of the library draws is that family's, and nothing else: a bump at
+// standstill is a Stribeck curve. all: the columns on the reference, without the base.
+void ExplanationSpace::leave_to_the_library(const Eigen::MatrixXd& all) {
+  const Eigen::RowVectorXd squares = all.colwise().squaredNorm();
+  Eigen::RowVectorXd left = squares;
+  for (const ExplainingFamily& family : families_) {
+    if (family.unknown) continue;
+    for (const EffectBlock& block : family.blocks) {
+      const Eigen::MatrixXd own = all(Eigen::all, block.columns);
+      left = left.cwiseMin((all - own * PivotedQr(own).solve_each(all)).colwise().squaredNorm());
+    }
+  }
+  for (ExplainingFamily& family : families_) {
+    if (!family.unknown) continue;
+    std::erase_if(family.blocks, [&](const EffectBlock& block) {
+      const Eigen::Index first = block.columns.front();
+      return block.columns.size() == 1 && left[first] < kDrawnByOther * squares[first];
+    });
+  }
+}
+
 // The size of an effect and what a misfit has of it, over the reference; then every block in
 // several sizes.
 void ExplanationSpace::measure_blocks(double smallest_effect) {
   const Eigen::MatrixXd base = base_columns(reference_);
   Eigen::MatrixXd all = columns(reference_);
   all -= base * PivotedQr(base).solve_each(all);
+  leave_to_the_library(all);
   for (ExplainingFamily& family : families_) {
     for (EffectBlock& block : family.blocks) {
       const Eigen::MatrixXd own = all(Eigen::all, block.columns);

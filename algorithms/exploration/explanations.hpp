@@ -75,6 +75,7 @@ class ExplanationSpace {
   void add_places();
   void settle_scale();
   void add_misfits();
+  void leave_to_the_library(const Eigen::MatrixXd& all);
   void measure_blocks(double smallest_effect);
   Eigen::MatrixXd shaped(const Misfit& misfit, const Observations& rows,
                          const Eigen::MatrixXd& formulas) const;

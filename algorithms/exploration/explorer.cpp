@@ -190,7 +190,12 @@ class Explorer {
         out_.end = ExplorationEnd::budget;
         break;
       }
-      if (!execute(*next, cost_s) && !execute_rested(*next, cost_s)) {
+      const bool done = execute(*next, cost_s) || execute_rested(*next, cost_s);
+      if (!out_.failure.empty()) {
+        out_.end = ExplorationEnd::failed;
+        break;
+      }
+      if (!done) {
         if (next->candidate) refused_[*next->candidate] = 1;
         if (++refused_running_ <= kMostRefused) continue;
         out_.end = ExplorationEnd::nothing_tells;
@@ -198,34 +203,45 @@ class Explorer {
       }
       refused_running_ = 0;
       const bool looks = out_.seconds >= kLookAgain * looked_at_s_ && can_look();
-      if (looks) look();
+      if (looks) try_look();
       if (options_.told) options_.told(out_.steps.back());
+      if (!out_.failure.empty()) {
+        out_.end = ExplorationEnd::failed;
+        break;
+      }
       if (looks && sure()) {
         out_.end = ExplorationEnd::sure;
         break;
       }
     }
-    if (can_look() && looked_at_s_ < out_.seconds) look();
-    if (assessor_) tell_end();
+    if (can_look() && looked_at_s_ < out_.seconds) try_look();
+    if (looked_at_s_ > 0) tell_end();
     return std::move(out_);
   }
 
  private:
   bool execute(const NextMovement& next, double cost_s) {
     Dataset rows;
+    const std::size_t first = out_.data.rows();
     try {
       rows = execute_(next.movement);
+      append_movement(out_.data, rows);
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::bad_input) throw;
-      out_.refused.emplace_back(error.what());
+      if (error.kind() == ErrorKind::bad_input) {
+        out_.refused.emplace_back(error.what());
+      } else {
+        out_.failure = error.what();
+      }
       return false;
     }
     now_.time_s += next.movement.rest + cost_s;
     now_.position_rad = end_of(next.movement);
-    if (const Channel* sensor = rows.find(Role::temperature)) {
-      now_.temperature_degc = sensor->values.back();
+    if (out_.data.rows() > first) {
+      if (const Channel* sensor = rows.find(Role::temperature)) {
+        now_.temperature_degc = sensor->values.back();
+      }
+      if (const Channel* clock = rows.find(Role::time)) now_.time_s = clock->values.back();
     }
-    if (const Channel* clock = rows.find(Role::time)) now_.time_s = clock->values.back();
     out_.seconds += cost_s;
     ExplorationStep step;
     step.movement = next.movement;
@@ -234,13 +250,12 @@ class Explorer {
     step.why = next.why;
     step.expected = next.expected;
     out_.steps.push_back(std::move(step));
-    append_movement(out_.data, rows);
     return true;
   }
 
   // What was too warm for a movement need not be after a rest.
   bool execute_rested(NextMovement next, double cost_s) {
-    if (next.movement.rest >= limits_.longest_rest_s) return false;
+    if (!out_.failure.empty() || next.movement.rest >= limits_.longest_rest_s) return false;
     next.movement.rest = limits_.longest_rest_s;
     return execute(next, cost_s);
   }
@@ -299,19 +314,28 @@ class Explorer {
   // The candidates' rows, where time or warmth have moved on.
   void foresee() {
     const double warm = now_.temperature_degc.value_or(0);
-    const bool stale = foreseen_.movements.empty() ||
-                       now_.time_s > kForeseeAgain * foreseen_at_.time_s ||
-                       std::abs(warm - foreseen_at_.temperature_degc.value_or(0)) > kWarmer_k;
+    const bool warmer = std::abs(warm - foreseen_at_.temperature_degc.value_or(0)) > kWarmer_k;
+    const bool stale =
+        foreseen_.movements.empty() || warmer || now_.time_s > kForeseeAgain * foreseen_at_.time_s;
     if (!stale) return;
-    foreseen_at_ = now_;
     // What was refused may be allowed at another warmth.
-    std::ranges::fill(refused_, 0);
+    if (warmer) std::ranges::fill(refused_, 0);
+    foreseen_at_ = now_;
     const Dataset plan = foreseen_rows(candidates_, out_.data, limits_, now_, limits_.rate_hz);
     const Observations all = thinned(observe_plan(plan), kForeseenEvery);
     const Observations rows = with_signals_of(space_->reference(), all, plan);
     foreseen_.base = space_->base_columns(rows);
     foreseen_.columns = space_->columns(rows);
     foreseen_.movements = rows_of(rows, candidates_.size());
+  }
+
+  // Rows that no diagnosis can read end it as a failure of who executes does.
+  void try_look() {
+    try {
+      look();
+    } catch (const Error& error) {
+      if (out_.failure.empty()) out_.failure = error.what();
+    }
   }
 
   void look() {
@@ -376,7 +400,8 @@ class Explorer {
 }  // namespace
 
 std::string_view exploration_end_name(ExplorationEnd end) {
-  constexpr std::array<std::string_view, 4> kNames = {"sure", "budget", "nothing_tells", "stopped"};
+  constexpr std::array<std::string_view, 5> kNames = {"sure", "budget", "nothing_tells", "stopped",
+                                                      "failed"};
   return kNames[static_cast<std::size_t>(end)];
 }
 
@@ -425,6 +450,11 @@ DiagnosedFamilies diagnosed_families(const Observations& rows, const DiagnosisOp
 }
 
 void append_movement(Dataset& data, const Dataset& movement) {
+  for (const Channel& channel : data.channels) {
+    if (std::ranges::count(movement.channels, channel.name, &Channel::name) > 0) continue;
+    throw Error(ErrorKind::failed, fmt::format("the recording has no '{}'", channel.name),
+                movement.name, "every movement's recording needs the channels of the first");
+  }
   if (data.channels.empty()) {
     data.name = movement.name;
     for (const Channel& channel : movement.channels) {

@@ -46,7 +46,8 @@ struct ExplorerOptions {
   std::function<void(const struct ExplorationStep&)> told = {};
 };
 
-// The rows of a movement. Throws Error (bad_input) where it is refused: another one is asked for.
+// The rows of a movement. Throws Error: bad_input where it is refused, and another one is asked
+// for; any other kind ends the exploration, with what was recorded before.
 using ExecuteMovement = std::function<Dataset(const PlannedMovement&)>;
 
 struct ExplorationStep {
@@ -60,7 +61,7 @@ struct ExplorationStep {
   std::size_t left = 0;                  // different verdicts that cannot be excluded
 };
 
-enum class ExplorationEnd { sure, budget, nothing_tells, stopped };
+enum class ExplorationEnd { sure, budget, nothing_tells, stopped, failed };
 std::string_view exploration_end_name(ExplorationEnd end);
 
 struct Exploration {
@@ -77,6 +78,7 @@ struct Exploration {
   std::string diagnosis;
   std::vector<std::string> untestable;
   std::vector<std::string> refused;  // movements that were refused, and why
+  std::string failure;               // of who executes, where that ended it
   double seconds = 0;
   std::vector<ExplorationStep> steps;
   Dataset data;
@@ -122,7 +124,8 @@ DiagnosedFamilies diagnosed_families(const Observations& rows, const DiagnosisOp
 bool name_the_same(const std::vector<std::string>& names, const std::vector<std::string>& others,
                    std::span<const ExplainingFamily> families);
 
-// Appends the rows of a movement, under its own number.
+// Appends the rows of a movement, under its own number. Throws Error (failed) where a channel is
+// missing that the movements before had.
 void append_movement(Dataset& data, const Dataset& movement);
 
 }  // namespace tribench::loop

@@ -135,8 +135,9 @@ LogVariances log_variances(const Eigen::VectorXd& residual, const Clusters& clus
   for (const RowRange& range : clusters.movements) {
     const auto n = static_cast<double>(range.size());
     const double squares = rows_of(deviation, range).squaredNorm();
-    logs.values.push_back(
-        elementary::log(std::max(squares / std::max(1.0, n - 1) / variance, 1e-6)));
+    // One row has no deviation and says nothing of how loud its movement is.
+    const double part = range.size() > 1 ? squares / (n - 1) / variance : 1;
+    logs.values.push_back(elementary::log(std::max(part, 1e-6)));
     logs.mean += logs.values.back() / count;
     logs.sampling += (kurtosis - 1) * inflation / n / count;
   }

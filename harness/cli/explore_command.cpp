@@ -2,6 +2,7 @@
 //
 // tribench explore: asks a world, or a program, for the movements that tell what is missing.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -14,12 +15,12 @@
 #include "algorithms/exploration/fixed_plans.hpp"
 #include "foundation/error.hpp"
 #include "foundation/output_file.hpp"
-#include "foundation/output_folder.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/cli/world_options.hpp"
 #include "harness/exploration/executing_program.hpp"
+#include "harness/exploration/exploration_folder.hpp"
 #include "harness/exploration/exploration_report.hpp"
 #include "harness/exploration/recorded_world.hpp"
 #include "harness/exploration/world_folder.hpp"
@@ -65,9 +66,19 @@ void check(const ExploreArguments& arguments) {
   }
 }
 
+ExplorationSetting setting_of(const ExploreArguments& arguments,
+                              const loop::ExplorerOptions& options, const MotionLimits& limits) {
+  MotionLimits lasting = limits;
+  if (!arguments.world.empty()) lasting.seconds = 0;
+  return {fmt::format("{}, plan {}, seed {}, alpha {}, smallest effect {}",
+                      arguments.world.empty() ? fmt::format("{}", fmt::join(arguments.command, " "))
+                                              : arguments.world,
+                      arguments.plan, arguments.seed, options.alpha, options.smallest_effect),
+          limits_json(lasting), options.start_rad, limits.seconds};
+}
+
 ExitStatus run_explore(const ExploreArguments& arguments) {
   check(arguments);
-  if (!arguments.out.empty()) make_output_folder(arguments.out);
   const loop::NamedPlan& plan = loop::find_plan(arguments.plan);
   std::optional<WorldFolder> folder;
   std::optional<RecordedWorld> recorded;
@@ -94,10 +105,22 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
     };
   } else {
     limits = read_limits(read_file_text(arguments.limits), arguments.limits);
-    execute = executing_program(arguments.command, arguments.command_seconds);
+    execute = executing_program(arguments.command, limits, arguments.command_seconds);
+  }
+  options.smallest_effect = arguments.smallest_effect.value_or(options.smallest_effect);
+  std::optional<ExplorationFolder> answers;
+  if (!arguments.out.empty()) {
+    ExplorationSetting setting = setting_of(arguments, options, limits);
+    answers.emplace(arguments.out, setting);
+    if (answers->answers() > 0) {
+      fmt::print(stderr, "{}: {} answers are there; it goes on from these\n", arguments.out,
+                 answers->answers());
+    }
+    options.start_rad = setting.start_rad;
+    limits.seconds = setting.seconds_left;
+    execute = answers->remembering(std::move(execute));
   }
   options.budget_s = std::min(arguments.budget_s, limits.seconds);
-  options.smallest_effect = arguments.smallest_effect.value_or(options.smallest_effect);
   options.stop = &stop_requested_by_signal();
   if (!arguments.json) {
     options.told = [](const loop::ExplorationStep& step) {
@@ -114,9 +137,18 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
     std::vector<PlannedMovement> movements;
     for (const loop::ExplorationStep& step : done.steps) movements.push_back(step.movement);
     write_file(out / "movements.csv", movements_text(movements, "rad", "rad/s"));
-    if (done.data.rows() > 0) write_csv(done.data, out / "data.csv");
+    if (done.data.rows() > 0) {
+      write_csv(done.data, out / "data.csv");
+    } else {
+      std::filesystem::remove(out / "data.csv");
+    }
   }
   fmt::print("{}", arguments.json ? json : exploration_terminal(done, second, options));
+  if (done.end == loop::ExplorationEnd::failed) {
+    fmt::print(stderr, "tribench: {}{}\n", done.failure,
+               answers ? "; the same command goes on from there" : "");
+    return ExitStatus::failed;
+  }
   return done.end == loop::ExplorationEnd::sure ? ExitStatus::done : ExitStatus::undecided;
 }
 
@@ -165,7 +197,8 @@ void add_explore_command(CLI::App& app, ExitStatus& status) {
       ->transform(whole_number(0))
       ->capture_default_str();
   command->add_option("--out", arguments->out,
-                      "folder for exploration.json, exploration.md, movements.csv, data.csv");
+                      "folder for exploration.json, exploration.md, movements.csv, data.csv and, "
+                      "answer by answer, journal.jsonl: the same command goes on from there");
   command->add_flag("--json", arguments->json, "print exploration.json");
   command->callback([arguments, &status] { status = run_explore(*arguments); });
 }

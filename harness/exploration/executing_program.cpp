@@ -3,12 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/scratch_folder.hpp"
+#include "foundation/text.hpp"
+#include "problems/campaign_channels.hpp"
 #include "problems/reading/csv.hpp"
 
 namespace tribench {
@@ -19,42 +23,113 @@ constexpr std::size_t kMostReason = 400;            // characters of what it sai
 constexpr int kRefused = 2;
 
 std::string end_of_text(const std::string& text) {
-  return text.substr(text.size() - std::min(text.size(), kMostReason));
+  const std::string_view said = trimmed(text);
+  return std::string(said.substr(said.size() - std::min(said.size(), kMostReason)));
 }
 
-}  // namespace
+class Program {
+ public:
+  Program(std::vector<std::string> command, const MotionLimits& limits, double limit_s)
+      : command_(std::move(command)), has_gravity_(limits.gravity_nm != 0), limit_s_(limit_s) {}
 
-loop::ExecuteMovement executing_program(std::vector<std::string> command, double limit_s) {
-  return [command = std::move(command), limit_s](const PlannedMovement& movement) {
+  Dataset execute(const PlannedMovement& movement) {
+    const std::string output = run(movement);
+    CsvOptions options;
+    options.drop_missing = true;  // a cell without a value costs its row, not the exploration
+    DataFile file;
+    try {
+      file = parse_csv(output, "the program's answer", options);
+    } catch (const Error& error) {
+      fail(error.what(), "print the recording as CSV, with names as in docs/explore.md");
+    }
+    if (file.data.rows() == 0)
+      fail("the recording has no rows", "exit status 2 refuses a movement");
+    check_channels(file.data);
+    name_as_read(file.data);
+    run_clock_on(file.data, movement.rest);
+    return std::move(file.data);
+  }
+
+ private:
+  [[noreturn]] void fail(std::string_view what, std::string_view mend) const {
+    throw Error(ErrorKind::failed, what, command_.front(), mend);
+  }
+
+  std::string run(const PlannedMovement& movement) const {
     const ScratchFolder scratch;
     const std::filesystem::path file = scratch.path() / "movements.csv";
     write_file(file, movements_text({movement}, "rad", "rad/s"));
     ChildOptions options;
-    options.command = command;
+    options.command = command_;
     options.command.push_back(file.string());
     options.scratch = scratch.path();
-    const ChildRun run = run_child(options, {}, {limit_s, kMostOutputBytes});
+    const ChildRun run = run_child(options, {}, {limit_s_, kMostOutputBytes});
     if (run.timed_out) {
-      throw Error(ErrorKind::failed, fmt::format("the program took longer than {} s", limit_s),
-                  command.front());
+      fail(fmt::format("the program took longer than {} s", limit_s_),
+           "--command-seconds gives it more");
     }
     if (run.exit.signal == 0 && run.exit.status == kRefused) {
-      throw_bad_input(fmt::format("refused: {}", end_of_text(run.errors)), command.front());
+      throw_bad_input(fmt::format("refused: {}", end_of_text(run.errors)), command_.front());
     }
     if (!run.exit.ok()) {
       const std::string how = run.exit.signal != 0 ? signal_name(run.exit.signal)
                                                    : fmt::format("status {}", run.exit.status);
-      throw Error(ErrorKind::failed,
-                  fmt::format("the program ended with {}: {}", how, end_of_text(run.errors)),
-                  command.front(), "exit status 2 refuses a movement");
+      fail(fmt::format("the program ended with {}: {}", how, end_of_text(run.errors)),
+           "exit status 2 refuses a movement");
     }
-    try {
-      return parse_csv(run.output, "the program's answer").data;
-    } catch (const Error& error) {
-      throw Error(ErrorKind::failed, error.what(), command.front(),
-                  "print the recording as CSV, with names as in docs/explore.md");
+    return run.output;
+  }
+
+  // The explorer knows beforehand what each movement will look like, in these quantities alone.
+  void check_channels(const Dataset& data) const {
+    for (const Role role : {Role::time, Role::position, Role::velocity}) {
+      if (data.find(role) != nullptr) continue;
+      fail(fmt::format("the recording has no {}", role_name(role)),
+           "every recording needs time, position, velocity and a torque (docs/explore.md)");
     }
-  };
+    if (data.find(Role::friction_torque) != nullptr) return;
+    const Channel* torque = data.find(Role::motor_torque);
+    if (torque == nullptr || torque->unit != "N m") {
+      fail("the recording has neither friction_torque_Nm nor motor_torque_Nm",
+           "print the friction torque, or the motor torque with gravity_torque_Nm beside it; a "
+           "current is turned into a torque by its constant");
+    }
+    if (!has_gravity_ || data.find(Role::gravity_torque) != nullptr) return;
+    fail("the motor torque holds gravity, and no gravity_torque_Nm is beside it",
+         "print it too, or the friction torque; without gravity, gravity_Nm is 0 in the limits");
+  }
+
+  // What was read is in SI units: its channels get the names that say so.
+  static void name_as_read(Dataset& data) {
+    for (Channel& channel : data.channels) {
+      if (channel.role != Role::none) channel.name = channel_name(channel.role, channel.unit);
+    }
+  }
+
+  // A clock that begins anew with each recording runs on from where the last one ended.
+  void run_clock_on(Dataset& data, double rest_s) {
+    const auto clock = std::ranges::find(data.channels, Role::time, &Channel::role);
+    if (clock->values.front() <= ended_s_) {
+      const double step_s = (clock->values.back() - clock->values.front()) /
+                            static_cast<double>(clock->values.size());
+      const double behind = ended_s_ + rest_s + step_s - clock->values.front();
+      for (double& t : clock->values) t += behind;
+    }
+    ended_s_ = clock->values.back();
+  }
+
+  std::vector<std::string> command_;
+  bool has_gravity_;
+  double limit_s_;
+  double ended_s_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+loop::ExecuteMovement executing_program(std::vector<std::string> command,
+                                        const MotionLimits& limits, double limit_s) {
+  return [program = Program(std::move(command), limits, limit_s)](
+             const PlannedMovement& movement) mutable { return program.execute(movement); };
 }
 
 }  // namespace tribench

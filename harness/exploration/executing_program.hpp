@@ -3,18 +3,23 @@
 // A program that executes movements in the place of a simulated world: a robot's own.
 //
 // It is run once a movement, without a shell, with the path of a movements file (one line) as its
-// last word, and prints the recording as CSV on its standard output, columns as any file of data.
-// Exit status 2 with a reason on standard error refuses the movement; another one is chosen. Any
-// other failure, or an answer that cannot be read, ends the exploration with an Error (failed).
+// last word, and prints the recording as CSV on its standard output: time, position, velocity and
+// the friction torque (or the motor torque and, unless the limits have no gravity, the gravity
+// torque), named and in units as in any file of data; rows in which a value is missing are left
+// out. A clock may begin anew with each recording. Exit status 2 with a reason on standard error
+// refuses the movement; another one is chosen. Any other failure, or an answer that cannot be read,
+// ends the exploration with an Error (failed).
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "algorithms/exploration/explorer.hpp"
+#include "problems/experiment/motion_limits.hpp"
 
 namespace tribench {
 
-loop::ExecuteMovement executing_program(std::vector<std::string> command, double limit_s);
+loop::ExecuteMovement executing_program(std::vector<std::string> command,
+                                        const MotionLimits& limits, double limit_s);
 
 }  // namespace tribench

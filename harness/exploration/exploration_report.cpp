@@ -52,6 +52,8 @@ std::string end_words(const Exploration& done, const loop::ExplorerOptions& opti
       return "not sure: no movement that the limits and the seconds left allow tells more";
     case ExplorationEnd::stopped:
       return "not sure: stopped";
+    case ExplorationEnd::failed:
+      return "not sure: ended by a failure";
   }
   return {};
 }
@@ -122,6 +124,7 @@ std::string exploration_json(const Exploration& done, const SecondOpinion& secon
                          {"weight", done.weight},
                          {"log_e_value", done.log_e_value},
                          {"end", exploration_end_name(done.end)},
+                         {"failure", done.failure},
                          {"seconds", done.seconds},
                          {"alpha", options.alpha},
                          {"smallest_effect", options.smallest_effect},
@@ -140,10 +143,17 @@ std::string exploration_json(const Exploration& done, const SecondOpinion& secon
 std::string exploration_terminal(const Exploration& done, const SecondOpinion& second,
                                  const loop::ExplorerOptions& options) {
   std::string text =
-      fmt::format("{} (e-value {:.3g}, weight {:.4g}): {}\n", done.verdict,
-                  elementary::exp(done.log_e_value), done.weight, end_words(done, options));
+      done.verdict.empty()
+          ? fmt::format("no verdict from {} movements: {}\n", done.steps.size(),
+                        end_words(done, options))
+          : fmt::format("{} (e-value {:.3g}, weight {:.4g}): {}\n", done.verdict,
+                        elementary::exp(done.log_e_value), done.weight, end_words(done, options));
   text += fmt::format("  {} movements, {:.1f} s of motion, {} rows\n", done.steps.size(),
                       done.seconds, done.data.rows());
+  if (!done.refused.empty()) {
+    text += fmt::format("  {} movements were refused, the last: {}\n", done.refused.size(),
+                        done.refused.back());
+  }
   if (done.unknown) text += fmt::format("  it lives in {}\n", fmt::join(done.inputs, " x "));
   if (done.left.size() > 1) {
     text += fmt::format("  not excluded: {}\n", weights_words(done.left, kMostLeft));
@@ -167,6 +177,7 @@ std::string exploration_markdown(const Exploration& done, const SecondOpinion& s
                                  const loop::ExplorerOptions& options) {
   std::string text = fmt::format("# What is missing: {}\n\n{}\n", done.verdict,
                                  exploration_terminal(done, second, options));
+  if (!done.failure.empty()) text += fmt::format("The failure: {}\n\n", done.failure);
   text += "| | movement | s | asked to tell apart | expected nats | what it told | left |\n";
   text += "|--:|---|--:|---|--:|---|--:|\n";
   for (std::size_t i = 0; i < done.steps.size(); ++i) {

@@ -14,6 +14,7 @@
 #include "algorithms/inference/evidence.hpp"
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
+#include "foundation/sign.hpp"
 #include "problems/joint_simulation/world.hpp"
 
 namespace tribench::loop {
@@ -253,6 +254,20 @@ TEST(Assessor, IsTheSurerThatNothingIsMissingTheLargerTheSmallestEffect) {
   };
   EXPECT_LT(doubt(2), 0.5 * doubt(1));
   EXPECT_LT(doubt(1), 0.5 * doubt(0.25));
+}
+
+// Something narrow at standstill is what the library calls a Stribeck curve, and nothing else.
+TEST(Assessor, AStribeckCurveIsNotSomethingElseOfTheVelocity) {
+  simulation::World world({8, simulation::WorldLevel::easy, simulation::WorldKind::none});
+  Observations rows = observe(recorded(world, some_movements(world.limits())));
+  const std::vector<double>& v = rows.find("v")->values;
+  for (std::size_t i = 0; i < rows.rows(); ++i) {
+    rows.target[i] += 1.5 * sign(v[i]) * std::exp(-v[i] * v[i] / (0.08 * 0.08));
+  }
+  const ExplanationSpace space(rows, {100});
+  Assessor assessor(space, 0.01);
+  assessor.add(rows);
+  EXPECT_GT(assessor.look().weight_of("stribeck"), 30 * assessor.look().weight_of("UNKNOWN"));
 }
 
 // A notch where nobody has been may be there however much was recorded elsewhere.

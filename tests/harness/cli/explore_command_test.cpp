@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+//
+// A robot's own program in the place of a world: what it may print, and what is left when it fails.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/paths.hpp"
+#include "tests/support/run_program.hpp"
+
+namespace tribench::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// A robot that is a world: `before` is done before each movement, `filter` to its recording.
+class ExploreByProgram : public ::testing::Test {
+ protected:
+  std::string make_robot(const std::string& name, const std::string& before = "",
+                         const std::string& filter = "cat") {
+    const std::string world = (folder_ / (name + ".world")).string();
+    EXPECT_EQ(run_tribench({"world", "7", "--out", world}).status, 0);
+    const std::string script = (folder_ / (name + ".sh")).string();
+    write_text(script, before + "\nd=$(mktemp) && '" + program().string() + "' world '" + world +
+                           "' execute \"$1\" --out $d >&2 || exit $?\n" + filter +
+                           " < $d; rm $d\n");
+    write_text(folder_ / "limits.json", read_text(world + "/world.json"));
+    return script;
+  }
+  ProgramRun explore(const std::string& robot, const std::string& out,
+                     const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"explore",
+                                      "--limits",
+                                      (folder_ / "limits.json").string(),
+                                      "--budget",
+                                      "25",
+                                      "--out",
+                                      (folder_ / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    words.insert(words.end(), {"--command", "sh", robot});
+    return run_tribench(words);
+  }
+  json path_of(const std::string& out) {
+    return json::parse(read_text(folder_ / out / "exploration.json"))["path"];
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(ExploreByProgram, AFailureLosesNothingAndTheSameCommandGoesOn) {
+  const std::string calls = (folder_ / "calls").string();
+  const std::string robot = make_robot("a", "echo >> " + calls + "; if [ $(wc -l < " + calls +
+                                                ") = 7 ]; then echo 'brake' >&2; exit 7; fi");
+  const ProgramRun failed = explore(robot, "x");
+  EXPECT_EQ(failed.status, 3);
+  EXPECT_THAT(failed.errors, AllOf(HasSubstr("the program ended with status 7: brake"),
+                                   HasSubstr("the same command goes on from there")));
+  EXPECT_EQ(path_of("x").size(), 6U);
+  EXPECT_THAT(read_text(folder_ / "x/data.csv"), HasSubstr("move 6"));
+  EXPECT_EQ(explore(robot, "x", {"--seed", "5"}).status, 2) << "another exploration";
+  EXPECT_EQ(explore(robot, "x").status, 4);
+  ASSERT_EQ(explore(make_robot("b"), "whole").status, 4);
+  EXPECT_EQ(path_of("x"), path_of("whole"));
+  EXPECT_EQ(read_text(folder_ / "x/data.csv"), read_text(folder_ / "whole/data.csv"));
+  // A line that was cut off was not answered.
+  const std::string journal = read_text(folder_ / "x/journal.jsonl");
+  write_text(folder_ / "x/journal.jsonl", journal + R"({"movement": "1,con)");
+  EXPECT_EQ(explore(robot, "x").status, 4);
+  EXPECT_EQ(path_of("x"), path_of("whole"));
+}
+
+TEST_F(ExploreByProgram, ReadsTheUnitsOfTheHeaderAndWritesWhatItHasRead) {
+  const std::string robot = make_robot("a", "",
+                                       "awk -F, -v OFS=, 'NR == 1 { sub(\"time_s\", \"time_ms\"); "
+                                       "print; next } { $2 *= 1000; print }'");
+  ASSERT_EQ(explore(robot, "x").status, 4);
+  const std::string data = read_text(folder_ / "x/data.csv");
+  EXPECT_THAT(data, AllOf(HasSubstr("time_s,"), Not(HasSubstr("time_ms"))));
+  EXPECT_NE(run_tribench({"loop", (folder_ / "x/data.csv").string()}).status, 2);
+}
+
+TEST_F(ExploreByProgram, AsksForWhatTheFirstRecordingLacks) {
+  const auto says = [&](const std::string& name, const std::string& columns) {
+    const std::string robot = make_robot(name, "", "cut -d, -f" + columns);
+    const ProgramRun run = explore(robot, name + ".x");
+    EXPECT_EQ(run.status, 3);
+    return run.errors;
+  };
+  EXPECT_THAT(says("still", "1-3,5-"), HasSubstr("the recording has no velocity"));
+  EXPECT_THAT(says("free", "1-8"), HasSubstr("neither friction_torque_Nm nor motor_torque_Nm"));
+}
+
+TEST_F(ExploreByProgram, AClockThatBeginsAnewRunsOn) {
+  const std::string anew = make_robot(
+      "a", "", "awk -F, -v OFS=, 'NR == 1 { print; next } NR == 2 { t = $2 } { $2 -= t; print }'");
+  ASSERT_EQ(explore(anew, "x").status, 4);
+  std::istringstream data(read_text(folder_ / "x/data.csv"));
+  double last = -1;
+  std::string line;
+  std::getline(data, line);
+  while (std::getline(data, line)) {
+    const double time = std::stod(line.substr(line.find(',') + 1));
+    EXPECT_GT(time, last);
+    last = time;
+  }
+}
+
+}  // namespace
+}  // namespace tribench::testing
