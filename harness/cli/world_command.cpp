@@ -15,6 +15,7 @@
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 #include "foundation/number_text.hpp"
+#include "foundation/output_file.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/data_options.hpp"
 #include "harness/cli/number_options.hpp"
@@ -128,6 +129,7 @@ Executed executed(const WorldArguments& arguments, const std::vector<PlannedMove
 void execute(const WorldArguments& arguments) {
   const std::vector<PlannedMovement> movements =
       read_movements(read_file_text(arguments.movements), arguments.movements);
+  try_output_file(arguments.data);  // what is executed cannot be taken back
   const auto [data, before_s, used_s, left_s, given] = executed(arguments, movements);
   write_csv(data, arguments.data);
   if (arguments.json) {

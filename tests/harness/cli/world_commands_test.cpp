@@ -79,6 +79,33 @@ TEST(WorldCommand, RefusesWithRowAndMendAndDoesNothing) {
   EXPECT_EQ(run_tribench({"world", "seven", "--out", (folder / "x").string()}).status, 2);
 }
 
+// The seconds would be spent and the rows lost.
+TEST(WorldCommand, NothingIsExecutedWhereTheRecordingCannotBeWritten) {
+  const TemporaryFolder folder;
+  const std::string simulated = (folder / "w").string();
+  const std::string recorded = (folder / "r").string();
+  ASSERT_EQ(run_tribench({"world", "7", "--out", simulated}).status, 0);
+  write_text(folder / "m.csv", std::string(kHeader) + kThere);
+  const auto execute = [&](const std::string& world, const char* out) {
+    return run_tribench({"world", world, "execute", (folder / "m.csv").string(), "--out",
+                         (folder / out).string(), "--json"});
+  };
+  const auto refused_first = [&](const std::string& world) {
+    const ProgramRun refused = execute(world, "none/d.csv");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_THAT(refused.errors, HasSubstr("none/d.csv"));
+    EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(world) / "executed.csv"));
+    const ProgramRun done = execute(world, "d.csv");
+    EXPECT_EQ(done.status, 0) << done.errors;
+    const json cost = json::parse(done.output);
+    EXPECT_EQ(cost["seconds_used"], cost["seconds"]);
+  };
+  refused_first(simulated);
+  write_text(folder / "m.csv", std::string(kHeader) + "constant,0.3,-0.9,0.9\n");
+  ASSERT_EQ(run_tribench({"world", (folder / "d.csv").string(), "--out", recorded}).status, 0);
+  refused_first(recorded);
+}
+
 TEST(WorldCommand, RevealsWhatTheSealSaidAndNothingIsAskedAfterwards) {
   const TemporaryFolder folder;
   const std::string world = (folder / "w").string();
