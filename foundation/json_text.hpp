@@ -9,6 +9,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -21,13 +22,24 @@ namespace tribench {
 inline constexpr int kMaxJsonDepth = 64;
 
 // The value, or a discarded one (is_discarded()) where the text is not JSON or nests too deep;
-// `reason` then says why in one line of printable text, with the line and column.
+// `reason` then says why in one line of printable text, with the line and column, and the word
+// there (NaN).
 template <typename Json>
 Json read_json(std::string_view text, std::string* reason = nullptr);
 
 // As above; throws Error (bad_input) with the place instead.
 template <typename Json>
 Json read_json_or_throw(std::string_view text, std::string_view place);
+
+// Among whatever else a program prints: where, from `from` on, a line begins with '{', blanks
+// aside; npos where none does.
+std::size_t find_json_object(std::string_view text, std::size_t from);
+
+// The object or array that begins at `at`, over as many lines as it takes and whatever follows it;
+// as read_json otherwise. `at` moves on to where the reading ended, so that reading all of a text
+// costs as much as the text is long.
+template <typename Json>
+Json read_json_at(std::string_view text, std::size_t& at, std::string* reason = nullptr);
 
 // The whole number, where the value is one that Whole holds. get<Whole>() makes any number of 1e77,
 // of 2.5 and of one with more digits.
@@ -50,6 +62,8 @@ std::string write_json(const Json& value, int indent = -1);
 
 extern template nlohmann::json read_json(std::string_view, std::string*);
 extern template nlohmann::ordered_json read_json(std::string_view, std::string*);
+extern template nlohmann::json read_json_at(std::string_view, std::size_t&, std::string*);
+extern template nlohmann::ordered_json read_json_at(std::string_view, std::size_t&, std::string*);
 extern template nlohmann::json read_json_or_throw(std::string_view, std::string_view);
 extern template nlohmann::ordered_json read_json_or_throw(std::string_view, std::string_view);
 extern template std::string write_json(const nlohmann::json&, int);

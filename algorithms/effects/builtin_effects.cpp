@@ -417,6 +417,12 @@ const std::vector<EffectFamily>& builtin_effects() {
   return kEffects;
 }
 
+std::vector<std::string> builtin_effect_names() {
+  std::vector<std::string> names;
+  for (const EffectFamily& family : builtin_effects()) names.push_back(family.name);
+  return names;
+}
+
 std::string experiment_text(std::string_view rule) {
   if (rule == "R1") return "repeat at least 5 settings twice, hours apart";
   if (rule == "R2") return "move both ways over the same stroke in the same posture";

@@ -99,6 +99,7 @@ struct EffectFamily {
 
 // The built-in families, in the order in which they are listed.
 const std::vector<EffectFamily>& builtin_effects();
+std::vector<std::string> builtin_effect_names();
 
 // What R1 ... R9 ask for, in words.
 std::string experiment_text(std::string_view rule);

@@ -93,16 +93,10 @@ Json rows_of(const Dataset& data) {
   return out;
 }
 
-std::vector<std::string> family_names() {
-  std::vector<std::string> names;
-  for (const loop::EffectFamily& family : loop::builtin_effects()) names.push_back(family.name);
-  return names;
-}
-
 void take_verdict(const Json& verdict, const simulation::World& world, ChallengeResult& result) {
   const auto families = verdict.value("families", std::vector<std::string>());
   // A slip of the pen is no wrong verdict.
-  const std::vector<std::string> known = family_names();
+  const std::vector<std::string> known = loop::builtin_effect_names();
   for (const std::string& family : families) {
     if (std::ranges::count(known, family) > 0) continue;
     throw_bad_input(fmt::format("there is no family '{}'", family), "verdict",
@@ -119,7 +113,7 @@ void take_verdict(const Json& verdict, const simulation::World& world, Challenge
 void converse(Talk& talk, simulation::World& world, ChallengeResult& result) {
   talk.say({{"protocol", kChallengeProtocol},
             {"seal", result.seal},
-            {"families", family_names()},
+            {"families", loop::builtin_effect_names()},
             {"smallest_effect", world.smallest_effect()},
             {"limits", Json::parse(limits_json(world.limits()))}});
   for (std::size_t k = 0; k < kMostRequests; ++k) {

@@ -2,17 +2,21 @@
 #include "harness/study/external_diagnosis.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "algorithms/diagnosis/diagnosis.hpp"
+#include "algorithms/effects/effect_library.hpp"
 #include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 #include "foundation/scratch_folder.hpp"
+#include "foundation/suggestion.hpp"
 #include "harness/loop/judged_diagnosis.hpp"
 #include "problems/preparation/test_movements.hpp"
 #include "problems/reading/csv.hpp"
@@ -73,13 +77,11 @@ void write_request(const std::filesystem::path& folder, const LoopCase& one,
                    const std::vector<char>& train) {
   write_csv(part_of(planted.data, train, true), folder / "train.csv");
   write_csv(part_of(planted.data, held_out, false), folder / "held_out.csv");
-  json families = json::array();
-  for (const loop::EffectFamily& family : loop::builtin_effects()) families.push_back(family.name);
   const json request = {{"protocol", kDiagnosisProtocol},
                         {"train", "train.csv"},
                         {"held_out", "held_out.csv"},
                         {"target", planted.data.find(Role::friction_torque)->name},
-                        {"families", families},
+                        {"families", loop::builtin_effect_names()},
                         {"gear_ratio", one.gear_ratio},
                         {"seed", one.seed}};
   std::ofstream(folder / "request.json") << request.dump(1) << "\n";
@@ -111,23 +113,63 @@ std::string output_of(const std::vector<std::string>& command, const std::filesy
                   errors.substr(errors.size() - std::min<std::size_t>(errors.size(), 400))));
 }
 
-// The last line that is a JSON object; the others are chatter.
+[[noreturn]] void throw_no_answer(std::string_view why, std::string_view mend = {}) {
+  throw Error(ErrorKind::failed, why, {}, mend);
+}
+
+// The last JSON object; all else is chatter. What cannot be read is chatter too, unless nothing
+// else has a verdict.
 json object_in(const std::string& text) {
   json found;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const json line = read_json<json>(std::string_view(text).substr(begin, end - begin));
-    if (line.is_object()) found = line;
-    begin = end + 1;
+  std::size_t broken = text.size();
+  for (std::size_t at = find_json_object(text, 0); at < text.size();
+       at = find_json_object(text, at)) {
+    const std::size_t begin = at;
+    json object = read_json_at<json>(text, at);
+    if (object.is_object()) {
+      found = std::move(object);
+    } else {
+      broken = begin;
+    }
   }
-  if (!found.is_object()) throw Error(ErrorKind::failed, "the program printed no JSON object");
+  if (broken < text.size() && !found.contains("verdict")) {
+    std::string reason;
+    read_json_at<json>(text, broken, &reason);
+    throw_no_answer(fmt::format("the program's answer cannot be read: {}", reason),
+                    "a prediction is a finite number");
+  }
+  if (!found.is_object()) throw_no_answer("the program printed no JSON object");
   return found;
+}
+
+std::string known_family(const json& name) {
+  const auto family = name.get<std::string>();
+  const std::vector<std::string> known = loop::builtin_effect_names();
+  if (std::ranges::count(known, family) == 0) {
+    throw_no_answer(fmt::format("there is no family '{}'", family), did_you_mean(family, known));
+  }
+  return family;
+}
+
+std::string verdict_in(const json& object) {
+  const auto verdict = object.at("verdict").get<std::string>();
+  std::vector<std::string> known;
+  for (const loop::Verdict one : {loop::Verdict::none, loop::Verdict::effects,
+                                  loop::Verdict::unknown, loop::Verdict::cannot_tell}) {
+    known.emplace_back(loop::verdict_name(one));
+  }
+  if (std::ranges::count(known, verdict) == 0) {
+    throw_no_answer(
+        fmt::format("there is no verdict '{}', only {}", verdict, fmt::join(known, ", ")),
+        did_you_mean(verdict, known, "print one of them"));
+  }
+  return verdict;
 }
 
 std::vector<LoopAnswer::Effect> effects_in(const json& object) {
   std::vector<LoopAnswer::Effect> effects;
   for (const json& effect : object.value("effects", json::array())) {
-    effects.push_back({effect.at("family").get<std::string>(), {}});
+    effects.push_back({known_family(effect.at("family")), {}});
     const json bristles = effect.value("bristles", json::object());
     effects.back().stiffness = bristles.value("stiffness", 0.0);
     effects.back().stiffness_low = bristles.value("lo", 0.0);
@@ -136,7 +178,7 @@ std::vector<LoopAnswer::Effect> effects_in(const json& object) {
     effects.back().stiffness_high =
         ends ? bristles["hi"].get<double>() : std::numeric_limits<double>::infinity();
     for (const json& alias : effect.value("alias", json::array())) {
-      effects.back().aliases.push_back(alias.at("family").get<std::string>());
+      effects.back().aliases.push_back(known_family(alias.at("family")));
     }
   }
   return effects;
@@ -149,7 +191,7 @@ std::vector<LoopAnswer::Burst> bursts_in(const json& object,
     const auto name = event.at("movement_name").get<std::string>();
     const auto found = std::ranges::find(movement_names, name);
     if (found == movement_names.end()) {
-      throw Error(ErrorKind::failed, fmt::format("there is no movement '{}'", name));
+      throw_no_answer(fmt::format("there is no movement '{}'", name));
     }
     bursts.push_back(
         {static_cast<int>(found - movement_names.begin()), event.at("t0"), event.at("t1")});
@@ -159,9 +201,11 @@ std::vector<LoopAnswer::Burst> bursts_in(const json& object,
 
 LoopAnswer answer_in(const json& object, const AskedDiagnosis& asked) {
   LoopAnswer answer;
-  if (object.at("verdict") != "CANNOT_TELL") answer.effects = effects_in(object);
+  const std::string verdict = verdict_in(object);
+  answer.effects = effects_in(object);
+  if (verdict == loop::verdict_name(loop::Verdict::cannot_tell)) answer.effects.clear();
   answer.bursts = bursts_in(object, asked.movement_names);
-  answer.unknown = object.at("verdict") == "UNKNOWN";
+  answer.unknown = verdict == loop::verdict_name(loop::Verdict::unknown);
   if (object.contains("leftover")) {
     for (const json& input : object.at("leftover").value("inputs", json::array())) {
       answer.inputs.push_back(input.get<std::string>());
@@ -170,8 +214,8 @@ LoopAnswer answer_in(const json& object, const AskedDiagnosis& asked) {
   const auto rows = static_cast<std::size_t>(std::ranges::count(asked.held_out, 1));
   const json& predictions = object.at("held_out");
   if (predictions.size() != rows) {
-    throw Error(ErrorKind::failed,
-                fmt::format("'held_out' has {} predictions for {} rows", predictions.size(), rows));
+    throw_no_answer(
+        fmt::format("'held_out' has {} predictions for {} rows", predictions.size(), rows));
   }
   answer.before.assign(asked.held_out.size(), std::numeric_limits<double>::quiet_NaN());
   answer.after = answer.before;
@@ -189,8 +233,7 @@ LoopAnswer read_diagnosis(const std::string& output, const AskedDiagnosis& asked
   try {
     return answer_in(object_in(output), asked);
   } catch (const json::exception& error) {
-    throw Error(ErrorKind::failed,
-                fmt::format("the program's answer is malformed: {}", error.what()));
+    throw_no_answer(fmt::format("the program's answer is malformed: {}", error.what()));
   }
 }
 

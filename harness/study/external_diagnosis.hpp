@@ -19,8 +19,8 @@ struct AskedDiagnosis {
   std::vector<double> before;  // the base's predictions, per row
 };
 
-// What a program printed: the last line that is a JSON object. Throws Error (failed) where it is
-// no answer.
+// The last JSON object that a program printed, on one line or several. Throws Error (failed) where
+// it is no answer: a verdict or family that there is not, a number that is none.
 LoopAnswer read_diagnosis(const std::string& output, const AskedDiagnosis& asked);
 
 // command: the words to run; the path of the request is added as the last. Unusable answers and an

@@ -6,6 +6,7 @@
 
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "foundation/error.hpp"
 
@@ -35,8 +36,35 @@ TEST(JsonText, SaysWhereItIsNoJsonInPrintableText) {
   EXPECT_TRUE(read_json<Json>("", &reason).is_discarded());
   EXPECT_EQ(reason, "no JSON at line 1, column 1");
   EXPECT_TRUE(read_json<Json>("[1e999]", &reason).is_discarded());
+  EXPECT_TRUE(read_json<Json>("{\"a\":\n [1, -Infinity]}", &reason).is_discarded());
+  EXPECT_EQ(reason, "no JSON at line 2, column 7 (Infinity)");
+  EXPECT_TRUE(read_json<Json>("[nan]", &reason).is_discarded());
+  EXPECT_THAT(reason, HasSubstr("(nan)"));
   EXPECT_THROW(read_json_or_throw<Json>("{", "a file"), Error);
   EXPECT_EQ(read_json_or_throw<Json>("[1, 2]", "a file").size(), 2U);
+}
+
+// The objects among what a program prints, "!" for one that cannot be read.
+std::vector<std::string> objects_in(const std::string& text) {
+  std::vector<std::string> found;
+  for (std::size_t at = find_json_object(text, 0); at < text.size();
+       at = find_json_object(text, at)) {
+    const Json object = read_json_at<Json>(text, at);
+    found.push_back(object.is_discarded() ? "!" : write_json(object));
+  }
+  return found;
+}
+
+TEST(JsonText, FindsObjectsAmongChatterOnOneLineOrSeveral) {
+  using Found = std::vector<std::string>;
+  EXPECT_EQ(objects_in("go\n {\"a\": 1} is it\n{\n\"b\":\n{\n\"c\": \"}\"}\n}\nnot {\"d\": 2}\n"),
+            (Found{"{\"a\":1}", "{\"b\":{\"c\":\"}\"}}"}));
+  EXPECT_EQ(objects_in("{ begins\n{\"a\": 1}\n{'b': 2}\n{\"c\": [NaN,\n1]}\n{"),
+            (Found{"!", "{\"a\":1}", "!", "!", "!"}));
+  EXPECT_EQ(objects_in(""), Found{});
+  std::string chatter;
+  for (int i = 0; i < 50'000; ++i) chatter += "{\n";
+  EXPECT_FALSE(objects_in(chatter).empty()) << "in time";
 }
 
 TEST(JsonText, ANumberIsWholeWhereItsTypeHoldsIt) {

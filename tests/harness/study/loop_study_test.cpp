@@ -222,6 +222,19 @@ TEST(LoopStudy, WhatAProgramCannotTellIsNoClaim) {
   EXPECT_EQ(claimed_with("CANNOT_TELL"), std::vector<std::string>{});
 }
 
+// As json.dumps(answer, indent=1) has it.
+TEST(LoopStudy, AnAnswerMayTakeSeveralLines) {
+  const std::string printed =
+      "reading {\n{\n \"verdict\": \"EFFECTS\",\n \"effects\": [\n  {\n   \"family\": "
+      "\"stribeck\"\n"
+      "  }\n ],\n \"held_out\": [\n  0.25,\n  -1\n ]\n}\ndone\n";
+  const LoopAnswer answer = read_diagnosis(printed, {{"up"}, {0, 1, 1}, {0, 0, 0}});
+  ASSERT_EQ(answer.effects.size(), 1U);
+  EXPECT_EQ(answer.effects[0].family, "stribeck");
+  EXPECT_EQ(answer.after[1], 0.25);
+  EXPECT_EQ(answer.after[2], -1);
+}
+
 TEST(LoopStudy, AProgramThatFailsIsNamedWithItsCase) {
   LoopStudyOptions options{.null_runs = 1, .runs_per_cell = 1, .first_seed = 921};
   options.only = "null";
@@ -229,6 +242,16 @@ TEST(LoopStudy, AProgramThatFailsIsNamedWithItsCase) {
       {{"false"}, "status 1"},
       {{"echo", "garbage"}, "no JSON object"},
       {{"sh", "-c", "echo '{\"effects\": []}'"}, "malformed"},
+      {{"echo", "{\"verdict\": \"NONE\", \"held_out\": [NaN]}"}, "(NaN)"},
+      {{"echo", "{\"verdict\": \"MAYBE\", \"held_out\": []}"},
+       "no verdict 'MAYBE', only NONE, EFF"},
+      {{"echo", "{\"verdict\": \"EFECTS\", \"held_out\": []}"}, "did you mean EFFECTS?"},
+      {{"echo", "{\"verdict\": \"EFFECTS\", \"effects\": [{\"family\": \"gremlin\"}]}"},
+       "no family 'gremlin'; known: asymmetry, stribeck"},
+      {{"echo",
+        "{\"verdict\": \"EFFECTS\", \"effects\": [{\"family\": \"lag\", \"alias\": "
+        "[{\"family\": \"stribek\"}]}]}"},
+       "did you mean stribeck?"},
       {{"sh", "-c", "echo '{\"verdict\": \"NONE\", \"held_out\": [1]}'"}, "1 predictions"}};
   for (const auto& [command, what] : failures) {
     try {
