@@ -49,9 +49,10 @@ class Talk {
     while (true) {
       while (text_.find('\n') != std::string::npos) {
         const std::size_t end = text_.find('\n');
-        const Json line = read_json<Json>(std::string_view(text_).substr(0, end));
+        const std::string line = text_.substr(0, end);
         text_.erase(0, end + 1);
-        if (line.is_object()) return line;
+        Json said = said_in(line);
+        if (said.is_object()) return said;
       }
       if (text_.size() > kLongestLine) {
         throw Error(ErrorKind::failed, "the program prints a line without end");
@@ -69,6 +70,17 @@ class Talk {
   }
 
  private:
+  // What was meant as an object would be waited for in vain by both sides.
+  static Json said_in(const std::string& line) {
+    std::string reason;
+    Json said = read_json<Json>(line, &reason);
+    if (said.is_discarded() && find_json_object(line, 0) == 0) {
+      throw Error(ErrorKind::failed, fmt::format("{}: '{}'", reason, line), "the program's line",
+                  "print an object on one line, every number finite");
+    }
+    return said;
+  }
+
   ChildProcess child_;
   Clock::time_point end_;
   std::string text_;

@@ -291,6 +291,22 @@ TEST(ChallengeCommand, AFamilyThatThereIsNotIsNoVerdict) {
   EXPECT_THAT(score["results"][0]["reason"].get<std::string>(), HasSubstr("stribeck"));
 }
 
+// Both sides would wait for the other until the world's time is over.
+TEST(ChallengeCommand, AnObjectThatCannotBeReadEndsItsWorldAtOnce) {
+  const TemporaryFolder folder;
+  const std::string script = (folder / "nan.sh").string();
+  write_text(
+      script,
+      "read hello\necho 'no {} object'\n"
+      "echo '{\"movement\": {\"kind\": \"constant\", \"velocity_rad_s\": NaN}}'\nread rows\n");
+  const ProgramRun done =
+      run_tribench({"challenge", "--worlds", "1", "--wall-seconds", "5", "--out",
+                    (folder / "board").string(), "--command", "sh", script});
+  EXPECT_EQ(done.status, 3);
+  EXPECT_THAT(done.output, HasSubstr("(NaN): '{\"movement\""));
+  EXPECT_THAT(done.output, HasSubstr("every number finite"));
+}
+
 TEST(ChallengeCommand, RanksOnlyScoresOnTheSameWorlds) {
   const TemporaryFolder folder;
   const std::string board = (folder / "board").string();
