@@ -11,6 +11,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/plain_name.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
@@ -84,8 +85,15 @@ ExitStatus run_challenge_command(ChallengeArguments arguments) {
   } else {
     print_score(score, arguments.out);
   }
+  const auto worlds = static_cast<std::size_t>(arguments.plan.worlds);
+  const bool stopped = score.results.size() < worlds;
+  if (stopped) {
+    print_message(fmt::format(
+        "stopped: {} of {} worlds are done, which is not ranked; the same command begins anew\n",
+        score.results.size(), worlds));
+  }
   const bool failed = std::ranges::count(score.results, "failed", &ChallengeResult::verdict) > 0;
-  return failed ? ExitStatus::failed : ExitStatus::done;
+  return failed || stopped ? ExitStatus::failed : ExitStatus::done;
 }
 
 }  // namespace
@@ -96,7 +104,7 @@ void add_challenge_command(CLI::App& app, ExitStatus& status) {
   command->footer(
       "Example: tribench challenge --out board --name mine --command python3 mine.py\n"
       "The protocol: docs/challenge.md; an entry to begin with: adapters/challenge_entry.py.\n"
-      "Exit status 3 where the program failed in a world.");
+      "Exit status 3 where the program failed in a world, or Ctrl-C stopped it before the last.");
   auto arguments = std::make_shared<ChallengeArguments>();
   command->add_option("--command", arguments->command,
                       "the program and its words, run without a shell once a world");

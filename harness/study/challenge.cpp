@@ -184,31 +184,48 @@ bool is_score(const Json& json) {
          json.contains("results") && json["results"].is_array();
 }
 
-bool is_of_worlds(const Json& score, const Json& seals) {
-  return std::ranges::all_of(score["results"], [&](const Json& one) {
-    return one.is_object() && std::ranges::count(seals, one.value("seal", Json())) > 0;
-  });
+std::size_t count_scored(const Json& seals, const Json& score) {
+  return static_cast<std::size_t>(std::ranges::count_if(seals, [&](const Json& seal) {
+    return std::ranges::any_of(score["results"], [&](const Json& one) {
+      return one.is_object() && one.value("seal", Json()) == seal;
+    });
+  }));
 }
 
-// Of every score in the folder on worlds with these seals: most right first, then fewest wrong,
-// then fewest seconds.
-std::string leaderboard_of(const std::filesystem::path& folder, const Json& seals) {
-  std::vector<Json> scores;
+// Scores in a folder, by what they were scored on.
+struct Scores {
+  std::vector<Json> ranked;             // all worlds with these seals and no others
+  std::vector<std::string> incomplete;  // some of them; with how many
   std::vector<std::string> others;
+};
+
+Scores scores_in(const std::filesystem::path& folder, const Json& seals) {
+  Scores scores;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".json" || entry.path().stem() == "seals") continue;
     const Json score = read_json<Json>(read_file_if_there(entry.path()).value_or(""));
     if (!is_score(score)) continue;
-    if (is_of_worlds(score, seals)) {
-      scores.push_back(score);
+    const std::size_t scored = count_scored(seals, score);
+    const auto name = score.value("name", std::string());
+    if (scored < score["results"].size()) {
+      scores.others.push_back(name);
+    } else if (scored < seals.size()) {
+      scores.incomplete.push_back(fmt::format("{} ({} of {})", name, scored, seals.size()));
     } else {
-      others.push_back(score.value("name", std::string()));
+      scores.ranked.push_back(score);
     }
   }
+  std::ranges::sort(scores.incomplete);
+  std::ranges::sort(scores.others);
+  return scores;
+}
+
+// Most right first, then fewest wrong, then fewest seconds.
+std::string leaderboard_of(const std::filesystem::path& folder, const Json& seals) {
+  auto [scores, incomplete, others] = scores_in(folder, seals);
   const auto key = [](const Json& one) {
-    return std::tuple(-one.value("right", 0.0) / std::max(1.0, one.value("worlds", 1.0)),
-                      one.value("wrong", 0.0), one.value("median_seconds", 0.0),
-                      one.value("name", std::string()));
+    return std::tuple(-one.value("right", 0.0), one.value("wrong", 0.0),
+                      one.value("median_seconds", 0.0), one.value("name", std::string()));
   };
   std::ranges::sort(scores, [&](const Json& a, const Json& b) { return key(a) < key(b); });
   std::string text =
@@ -224,7 +241,10 @@ std::string leaderboard_of(const std::filesystem::path& folder, const Json& seal
                         worlds - right - wrong, one.value("median_seconds", 0.0));
   }
   text += "\nA verdict that is not right counts as all of a world's seconds.\n";
-  std::ranges::sort(others);
+  if (!incomplete.empty()) {
+    text += fmt::format("Not ranked, since incomplete, with how many worlds: {}.\n",
+                        fmt::join(incomplete, ", "));
+  }
   if (!others.empty()) {
     text += fmt::format("Not ranked, since scored on other worlds than those of seals.json: {}.\n",
                         fmt::join(others, ", "));

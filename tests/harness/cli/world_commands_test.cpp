@@ -326,6 +326,30 @@ TEST(ChallengeCommand, RanksOnlyScoresOnTheSameWorlds) {
   EXPECT_THAT(leaderboard, HasSubstr("seals.json: practice"));
 }
 
+// The first program of "cut" waits until the challenge has been asked to end.
+TEST(ChallengeCommand, WhatWasInterruptedIsNotRanked) {
+  const TemporaryFolder folder;
+  write_text(folder / "silent.sh", entry("null"));
+  write_text(folder / "cut.sh",
+             "read hello\ntouch \"$1/begun\"\n"
+             "while [ ! -e \"$1/asked\" ]; do sleep 0.01; done\n"
+             "echo '{\"verdict\": null}'\n");
+  const std::string challenge = "'" + program().string() + "' challenge --worlds 3 --out board ";
+  write_text(folder / "both.sh", "cd \"$1\"\n" + challenge +
+                                     "--name whole --command sh silent.sh || exit\n" + challenge +
+                                     "--name cut --command sh cut.sh . &\n"
+                                     "while [ ! -e begun ]; do sleep 0.01; done\n"
+                                     "kill -TERM $!; touch asked; wait $!\n");
+  const ProgramRun done = run_to_end({"sh", (folder / "both.sh").string(), folder.path().string()});
+  EXPECT_EQ(done.status, 3) << done.errors;
+  EXPECT_THAT(done.errors, HasSubstr("stopped: 1 of 3 worlds are done"));
+  EXPECT_THAT(done.errors, HasSubstr("the same command begins anew"));
+  const std::string leaderboard = read_text(folder / "board/leaderboard.md");
+  EXPECT_THAT(leaderboard, HasSubstr("| 1 | whole |"));
+  EXPECT_THAT(leaderboard, ::testing::Not(HasSubstr("| cut |")));
+  EXPECT_THAT(leaderboard, HasSubstr("incomplete, with how many worlds: cut (1 of 3)."));
+}
+
 TEST(ChallengeCommand, TheEntryToBeginWithTakesPart) {
   const TemporaryFolder folder;
   const ProgramRun done = run_tribench({"challenge", "--worlds", "5", "--out",
