@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "algorithms/effects/effect_library.hpp"
 #include "foundation/child_process.hpp"
@@ -252,6 +253,18 @@ std::string leaderboard_of(const std::filesystem::path& folder, const Json& seal
   return text;
 }
 
+// Once published they stay: the scores beside them are of their worlds.
+void publish_seals(const std::filesystem::path& file, const Json& seals) {
+  const std::string text = write_json(Json{{"truth_sha256", seals}}, 1) + "\n";
+  const std::optional<std::string> published = read_file_if_there(file);
+  if (!published) {
+    write_file(file, text);
+  } else if (*published != text) {
+    throw_bad_input("the seals published here are of other worlds", file.string(),
+                    "choose another folder, or this one's --worlds, --level and --secret-file");
+  }
+}
+
 }  // namespace
 
 std::size_t ChallengeScore::right() const {
@@ -313,7 +326,7 @@ ChallengeScore run_challenge(const ChallengePlan& plan, const std::string& name,
   for (const simulation::WorldPlan& one : worlds) {
     seals.push_back(seal_of(simulation::World(one).truth()));
   }
-  write_file(folder / "seals.json", write_json(Json{{"truth_sha256", seals}}, 1) + "\n");
+  publish_seals(folder / "seals.json", seals);
   ChallengeScore score{name, {}};
   for (const simulation::WorldPlan& one : worlds) {
     if (stop) break;

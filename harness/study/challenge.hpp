@@ -55,7 +55,8 @@ ChallengeResult run_challenge_world(const std::vector<std::string>& command,
 
 // Writes seals.json before the first program is started, then NAME.json and leaderboard.md, which
 // has a line for every score on all of these worlds in the folder and names the others. stop:
-// looked at between worlds; the score then has fewer results than the plan has worlds.
+// looked at between worlds; the score then has fewer results than the plan has worlds. Throws Error
+// (bad_input) where the folder's seals.json is of other worlds.
 ChallengeScore run_challenge(const ChallengePlan& plan, const std::string& name,
                              const std::vector<std::string>& command,
                              const std::filesystem::path& folder, const std::atomic<bool>& stop);

@@ -313,13 +313,32 @@ TEST(ChallengeCommand, RanksOnlyScoresOnTheSameWorlds) {
   const std::string script = (folder / "silent.sh").string();
   write_text(script, entry("null"));
   write_text(folder / "secret.txt", "nobody knows this\n");
-  const ProgramRun practice = run_tribench({"challenge", "--worlds", "2", "--name", "practice",
-                                            "--out", board, "--command", "sh", script});
-  ASSERT_EQ(practice.status, 0) << practice.errors;
-  const ProgramRun sealed =
-      run_tribench({"challenge", "--worlds", "2", "--name", "sealed", "--secret-file",
-                    (folder / "secret.txt").string(), "--out", board, "--command", "sh", script});
-  ASSERT_EQ(sealed.status, 0) << sealed.errors;
+  const auto take = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"challenge", "--name", name, "--out", board};
+    words.insert(words.end(), more.begin(), more.end());
+    words.insert(words.end(), {"--command", "sh", script});
+    return run_tribench(words);
+  };
+  const std::vector<std::string> secret = {"--worlds", "2", "--secret-file",
+                                           (folder / "secret.txt").string()};
+  ASSERT_EQ(take("sealed", secret).status, 0);
+  const std::string published = read_text(folder / "board/seals.json");
+  // What was published stays.
+  const std::vector<std::vector<std::string>> other_worlds = {{"--worlds", "2"}, {"--worlds", "3"}};
+  for (const std::vector<std::string>& others : other_worlds) {
+    const ProgramRun refused = take("practice", others);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_THAT(refused.errors, HasSubstr("seals.json"));
+    EXPECT_THAT(refused.errors, HasSubstr("another folder"));
+    EXPECT_EQ(read_text(folder / "board/seals.json"), published);
+    EXPECT_FALSE(std::filesystem::exists(folder / "board/practice.json"));
+  }
+  // A score that was carried here.
+  json foreign = json::parse(read_text(folder / "board/sealed.json"));
+  foreign["name"] = "practice";
+  for (json& one : foreign["results"]) one["seal"] = "of another world";
+  write_text(folder / "board/practice.json", foreign.dump());
+  ASSERT_EQ(take("sealed", secret).status, 0);
   const std::string leaderboard = read_text(folder / "board/leaderboard.md");
   EXPECT_THAT(leaderboard, HasSubstr("| sealed |"));
   EXPECT_THAT(leaderboard, ::testing::Not(HasSubstr("| practice |")));
