@@ -327,13 +327,16 @@ ChallengeScore run_challenge(const ChallengePlan& plan, const std::string& name,
     seals.push_back(seal_of(simulation::World(one).truth()));
   }
   publish_seals(folder / "seals.json", seals);
+  const std::filesystem::path scored = folder / (name + ".json");
+  const std::filesystem::path leaderboard = folder / "leaderboard.md";
+  for (const std::filesystem::path& file : {scored, leaderboard}) try_output_file(file);
   ChallengeScore score{name, {}};
   for (const simulation::WorldPlan& one : worlds) {
     if (stop) break;
     score.results.push_back(run_challenge_world(command, one, plan.wall_s));
+    write_file(scored, write_json(score_json(score), 1) + "\n");
   }
-  write_file(folder / (name + ".json"), write_json(score_json(score), 1) + "\n");
-  write_file(folder / "leaderboard.md", leaderboard_of(folder, seals));
+  write_file(leaderboard, leaderboard_of(folder, seals));
   return score;
 }
 

@@ -53,10 +53,10 @@ struct ChallengeScore {
 ChallengeResult run_challenge_world(const std::vector<std::string>& command,
                                     const simulation::WorldPlan& plan, double wall_s);
 
-// Writes seals.json before the first program is started, then NAME.json and leaderboard.md, which
-// has a line for every score on all of these worlds in the folder and names the others. stop:
-// looked at between worlds; the score then has fewer results than the plan has worlds. Throws Error
-// (bad_input) where the folder's seals.json is of other worlds.
+// Writes seals.json before the first program is started, NAME.json after each world, and at the end
+// leaderboard.md, which has a line for every score on all of these worlds in the folder and names
+// the others. stop: looked at between worlds; the score then has fewer results than the plan has
+// worlds. Throws Error (bad_input) where the folder's seals.json is of other worlds.
 ChallengeScore run_challenge(const ChallengePlan& plan, const std::string& name,
                              const std::vector<std::string>& command,
                              const std::filesystem::path& folder, const std::atomic<bool>& stop);
