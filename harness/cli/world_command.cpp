@@ -107,11 +107,12 @@ struct Executed {
 };
 
 Executed executed(const WorldArguments& arguments, const std::vector<PlannedMovement>& movements) {
+  const KeepRows keep = [&](const Dataset& rows) { write_csv(rows, arguments.data); };
   Executed out;
   if (RecordedWorld::is_in(arguments.world)) {
     RecordedWorld world(arguments.world);
     out.before_s = world.seconds_used();
-    RecordedWorld::Answer answer = world.execute(movements, arguments.movements);
+    RecordedWorld::Answer answer = world.execute(movements, arguments.movements, keep);
     out.data = std::move(answer.rows);
     out.given = std::move(answer.given);
     out.used_s = world.seconds_used();
@@ -120,7 +121,7 @@ Executed executed(const WorldArguments& arguments, const std::vector<PlannedMove
   }
   WorldFolder folder(arguments.world);
   out.before_s = folder.world().seconds_used();
-  out.data = folder.execute(movements, arguments.movements);
+  out.data = folder.execute(movements, arguments.movements, keep);
   out.used_s = folder.world().seconds_used();
   out.left_s = folder.world().limits().seconds - out.used_s;
   return out;
@@ -131,7 +132,6 @@ void execute(const WorldArguments& arguments) {
       read_movements(read_file_text(arguments.movements), arguments.movements);
   try_output_file(arguments.data);  // what is executed cannot be taken back
   const auto [data, before_s, used_s, left_s, given] = executed(arguments, movements);
-  write_csv(data, arguments.data);
   if (arguments.json) {
     WorldJson answer = {{"movements", movements.size()},
                         {"rows", data.rows()},

@@ -20,7 +20,6 @@
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/pivoted_qr.hpp"
-#include "harness/exploration/world_folder.hpp"
 #include "problems/file_hash.hpp"
 #include "problems/joint_simulation/joint_recording.hpp"
 #include "problems/joint_simulation/world_motion.hpp"
@@ -270,7 +269,7 @@ void RecordedWorld::give(const PlannedMovement& wanted, Answer& answer) {
 }
 
 RecordedWorld::Answer RecordedWorld::execute(const std::vector<PlannedMovement>& wanted,
-                                             const std::string& file) {
+                                             const std::string& file, const KeepRows& keep) {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const std::string place = fmt::format("{}, movement {}", file, i + 1);
     if (asked_.size() + i >= recorded_.size()) {
@@ -283,6 +282,7 @@ RecordedWorld::Answer RecordedWorld::execute(const std::vector<PlannedMovement>&
   }
   Answer answer;
   for (const PlannedMovement& one : wanted) give(one, answer);
+  if (keep) keep(answer.rows);
   const std::filesystem::path part = folder_ / "executed.csv.part";
   write_file(part, movements_text(asked_, "rad", "rad/s"));
   std::filesystem::rename(part, folder_ / "executed.csv");

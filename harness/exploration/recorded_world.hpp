@@ -18,6 +18,7 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/exploration/world_folder.hpp"
 #include "problems/dataset.hpp"
 #include "problems/experiment/motion_limits.hpp"
 #include "problems/experiment/planned_movement.hpp"
@@ -45,7 +46,8 @@ class RecordedWorld {
     std::vector<std::string> given;  // what was recorded, a name a movement
   };
   // All of them or none: Throws Error (bad_input) where fewer are left than are asked for.
-  Answer execute(const std::vector<PlannedMovement>& wanted, const std::string& file);
+  Answer execute(const std::vector<PlannedMovement>& wanted, const std::string& file,
+                 const KeepRows& keep = {});
 
  private:
   struct Recorded {

@@ -194,8 +194,8 @@ WorldFolder::WorldFolder(const std::filesystem::path& folder)
 
 bool WorldFolder::revealed() const { return std::filesystem::exists(folder_ / "revealed.json"); }
 
-Dataset WorldFolder::execute(const std::vector<PlannedMovement>& movements,
-                             const std::string& file) {
+Dataset WorldFolder::execute(const std::vector<PlannedMovement>& movements, const std::string& file,
+                             const KeepRows& keep) {
   if (revealed()) {
     throw_bad_input("the truth of this world has been revealed", folder_.string(),
                     "ask before you reveal; another SEED is another world");
@@ -206,6 +206,7 @@ Dataset WorldFolder::execute(const std::vector<PlannedMovement>& movements,
     loop::append_movement(data,
                           world.execute(movements[i], fmt::format("{}, movement {}", file, i + 1)));
   }
+  if (keep) keep(data);
   world_ = std::move(world);
   append(movements);
   return data;

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ std::string limits_json(const MotionLimits& limits);
 // Throws Error (bad_input): not JSON, an unknown key, a number out of its range.
 MotionLimits read_limits(std::string_view text, const std::string& place);
 
+// Takes a recording to where it is safe, before its movements count as executed: where that fails
+// or is cut off, the folder is as before and the same movements give the same rows.
+using KeepRows = std::function<void(const Dataset&)>;
+
 class WorldFolder {
  public:
   // Throws Error (bad_input) where the folder holds a world already.
@@ -47,7 +52,8 @@ class WorldFolder {
 
   // All of them or none: a movement that breaks a limit is refused with its place ("FILE, movement
   // 3") and the mend, and nothing has happened. The answer is one dataset.
-  Dataset execute(const std::vector<PlannedMovement>& movements, const std::string& file);
+  Dataset execute(const std::vector<PlannedMovement>& movements, const std::string& file,
+                  const KeepRows& keep = {});
 
   // Checks the seal, writes revealed.json and returns it.
   std::string reveal();

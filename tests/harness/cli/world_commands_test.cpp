@@ -106,6 +106,30 @@ TEST(WorldCommand, NothingIsExecutedWhereTheRecordingCannotBeWritten) {
   refused_first(recorded);
 }
 
+// A disk that is full at the end: the same movements are to be had again.
+TEST(WorldCommand, ARecordingThatIsLostIsNotCounted) {
+  const TemporaryFolder folder;
+  const std::string simulated = (folder / "w").string();
+  const std::string recorded = (folder / "r").string();
+  ASSERT_EQ(run_tribench({"world", "7", "--out", simulated}).status, 0);
+  write_text(folder / "m.csv", std::string(kHeader) + "constant,0.3,-0.9,0.9\n");
+  const auto execute = [&](const std::string& world, const std::string& out) {
+    return run_tribench(
+        {"world", world, "execute", (folder / "m.csv").string(), "--out", out, "--json"});
+  };
+  const auto counts_only_what_is_kept = [&](const std::string& world) {
+    EXPECT_EQ(execute(world, "/dev/full").status, 3);
+    const ProgramRun done = execute(world, (folder / "d.csv").string());
+    ASSERT_EQ(done.status, 0) << done.errors;
+    const json cost = json::parse(done.output);
+    EXPECT_EQ(cost["seconds_used"], cost["seconds"]);
+  };
+  counts_only_what_is_kept(simulated);
+  write_text(folder / "m.csv", std::string(kHeader) + "constant,0.3,-0.8,0.8\n");
+  ASSERT_EQ(run_tribench({"world", (folder / "d.csv").string(), "--out", recorded}).status, 0);
+  counts_only_what_is_kept(recorded);
+}
+
 TEST(WorldCommand, RevealsWhatTheSealSaidAndNothingIsAskedAfterwards) {
   const TemporaryFolder folder;
   const std::string world = (folder / "w").string();
