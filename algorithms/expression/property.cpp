@@ -25,6 +25,32 @@ void set_signs(const InputBox& box, std::vector<double>& point) {
   }
 }
 
+// The formula with every sgn(X) of an input X written as the column sgn_X, which the box is given
+// where it has none: on a cell closed at 0 the sign is then one number, the limit's.
+struct Signed {
+  Expression formula;
+  InputBox box;
+};
+Signed with_sign_columns(const Expression& formula, InputBox box) {
+  const auto sign_column = [&box](std::size_t of) {
+    for (std::size_t j = 0; j < box.size(); ++j) {
+      if (box[j].sign_of == of) return j;
+    }
+    box.push_back({-1, 1, of});
+    return box.size() - 1;
+  };
+  std::vector<Node> tape;
+  for (const Node& node : formula.nodes()) {
+    if (node.op == Op::sgn && tape.back().is_variable()) {
+      const std::size_t of = tape.back().variable;
+      if (!box[of].sign_of) tape.back() = Node::input(sign_column(of));
+    } else {
+      tape.push_back(node);
+    }
+  }
+  return {Expression(std::move(tape)), std::move(box)};
+}
+
 // Bounds of the real value at one point.
 Interval value_at(FormulaBounds& bounds, const std::vector<double>& point) {
   Cell box(point.size());
@@ -48,7 +74,7 @@ std::vector<Cell> closed_cells(const Expression& formula, const InputBox& box,
   return cells;
 }
 
-// Branch and bound for properties of a value or a slope.
+// Branch and bound for properties of a value or a slope, cell by cell.
 class PropertyProver {
  public:
   PropertyProver(const Expression& formula, const InputBox& box, const PropertyQuestion& question,
@@ -204,6 +230,123 @@ class PropertyProver {
   std::uint64_t spent_ = 0;
 };
 
+bool is_zero(const Expression& formula) {
+  return formula.size() == 1 && formula.node(0).is_constant() && formula.node(0).value == 0;
+}
+
+// Where one part of the velocities that monotony is asked of ends or the next begins; its sign is
+// that of the part, so that 0 with a sign is the limit at 0.
+struct PartEnd {
+  double velocity = 0;
+  double sign = 0;
+};
+
+// v < 0, 0 and v > 0 as far as they are asked of: each part's end next to the other parts.
+std::vector<PartEnd> part_ends(const InputRange& v, double from) {
+  std::vector<PartEnd> ends;
+  if (v.low < 0 && v.low <= -from) ends.push_back({-from, -1});
+  if (from == 0 && v.low <= 0 && v.high >= 0) ends.push_back({0, 0});
+  if (v.high > 0 && v.high >= from) ends.push_back({from, 1});
+  return ends;
+}
+
+// That a formula does not fall: by its slope on each part, and by its steps from part to part.
+class MonotoneProver {
+ public:
+  MonotoneProver(const Expression& formula, const InputBox& box, const PropertyQuestion& question,
+                 const ProofLimits& limits)
+      : formula_(formula), box_(box), question_(question), limits_(limits), points_(formula) {}
+
+  PropertyResult run() {
+    PropertyResult result = PropertyProver(formula_, box_, question_, limits_)
+                                .run(closed_cells(formula_, box_, question_.velocity));
+    const auto ends = part_ends(box_[question_.velocity], question_.from);
+    for (std::size_t k = 1; k < ends.size() && result.verdict != Verdict::refuted; ++k) {
+      PropertyResult step = prove_step(ends[k - 1], ends[k]);
+      step.boxes += result.boxes;
+      if (step.verdict == Verdict::proved_free) {
+        result.boxes = step.boxes;
+      } else {
+        result = std::move(step);
+      }
+    }
+    return result;
+  }
+
+ private:
+  // The step is a formula in the other inputs; the velocity's place is 1, so that "dissipative"
+  // asks whether the step is below 0 anywhere.
+  PropertyResult prove_step(const PartEnd& slow, const PartEnd& fast) {
+    const Expression step = Expression::binary(Op::sub, at(fast), at(slow));
+    InputBox others = box_;
+    others[question_.velocity] = {1, 1};
+    PropertyResult result;
+    result.undecided_box = closed_cells(formula_, others, question_.velocity).front();
+    const SingularityResult finite = prove_free(step, others, limits_);
+    result.boxes = finite.boxes;
+    if (finite.verdict == Verdict::proved_free) {
+      Canonicalizer canonicalizer({[](const Expression&) { return true; }, {}});
+      if (is_zero(canonicalizer.canonical(step))) {
+        result.verdict = Verdict::proved_free;
+        return result;
+      }
+      const PropertyQuestion is_up{Property::dissipative, question_.velocity};
+      result = PropertyProver(step, others, is_up, limits_)
+                   .run(closed_cells(step, others, question_.velocity));
+      result.boxes += finite.boxes;
+    }
+    if (result.verdict == Verdict::refuted) confirm(slow, fast, result);
+    if (result.verdict == Verdict::undecided) {
+      result.undecided_box[question_.velocity] = {slow.velocity, fast.velocity};
+    }
+    return result;
+  }
+
+  Expression at(const PartEnd& end) const {
+    std::vector<Node> tape(formula_.nodes().begin(), formula_.nodes().end());
+    for (Node& node : tape) {
+      if (!node.is_variable()) continue;
+      if (node.variable == question_.velocity) {
+        node = Node::constant(end.velocity);
+      } else if (box_[node.variable].sign_of == question_.velocity) {
+        node = Node::constant(end.sign);
+      }
+    }
+    return Expression(std::move(tape));
+  }
+
+  // A step down at limits is one between two points, and the farther apart they are the easier to
+  // read; undecided where none is far enough for our arithmetic.
+  void confirm(const PartEnd& slow, const PartEnd& fast, PropertyResult& result) {
+    const InputRange& v = box_[question_.velocity];
+    std::vector<double> before = result.witness->point;
+    std::vector<double> after = before;
+    const double least = std::max(question_.from, next_up(0));
+    double speed = std::min(slow.sign < 0 ? -v.low : kInfinity, fast.sign > 0 ? v.high : kInfinity);
+    for (;; speed = std::max(speed / 4, least)) {
+      before[question_.velocity] = slow.sign * speed;
+      after[question_.velocity] = fast.sign * speed;
+      set_signs(box_, before);
+      set_signs(box_, after);
+      if (value_at(points_, after).high < value_at(points_, before).low) {
+        result.witness = {before, after, formula_.root()};
+        return;
+      }
+      if (speed == least) break;
+    }
+    result.verdict = Verdict::undecided;
+    result.undecided_box.clear();
+    for (const double x : result.witness->point) result.undecided_box.push_back(Interval::point(x));
+    result.witness.reset();
+  }
+
+  const Expression& formula_;
+  const InputBox& box_;
+  PropertyQuestion question_;
+  ProofLimits limits_;
+  FormulaBounds points_;
+};
+
 // The formula at the mirrored point: v and its sign turned round.
 Expression mirrored(const Expression& formula, const InputBox& box, std::size_t velocity) {
   std::vector<Node> tape;
@@ -224,8 +367,7 @@ PropertyResult prove_odd(const Expression& formula, const InputBox& box, std::si
   const Expression sum = Expression::binary(Op::add, formula, mirrored(formula, box, velocity));
   // The formula is proved finite, and so is its mirror image: every term may cancel.
   Canonicalizer canonicalizer({[](const Expression&) { return true; }, {}});
-  const Expression rest = canonicalizer.canonical(sum);
-  if (rest.size() == 1 && rest.node(0).is_constant() && rest.node(0).value == 0) {
+  if (is_zero(canonicalizer.canonical(sum))) {
     result.verdict = Verdict::proved_free;
     return result;
   }
@@ -273,6 +415,41 @@ void check_question(const InputBox& box, const PropertyQuestion& question) {
   }
 }
 
+// The box, or the parts of it in which |v| >= from.
+std::vector<InputBox> parts_asked(const InputBox& box, const PropertyQuestion& question) {
+  if (question.property != Property::monotone || question.from == 0) return {box};
+  std::vector<InputBox> parts;
+  const InputRange& v = box[question.velocity];
+  if (v.low <= -question.from) {
+    parts.push_back(box);
+    parts.back()[question.velocity].high = std::min(v.high, -question.from);
+  }
+  if (v.high >= question.from) {
+    parts.push_back(box);
+    parts.back()[question.velocity].low = std::max(v.low, question.from);
+  }
+  return parts;
+}
+
+PropertyResult prove_of_finite(const Expression& formula, const InputBox& box,
+                               const PropertyQuestion& question, const ProofLimits& limits) {
+  switch (question.property) {
+    case Property::odd:
+      return prove_odd(formula, box, question.velocity);
+    case Property::monotone:
+      return MonotoneProver(formula, box, question, limits).run();
+    default:
+      return PropertyProver(formula, box, question, limits)
+          .run(closed_cells(formula, box, question.velocity));
+  }
+}
+
+// Without the sign columns that the question did not have.
+void trim(Witness& witness, std::size_t inputs) {
+  witness.point.resize(inputs);
+  if (!witness.neighbour.empty()) witness.neighbour.resize(inputs);
+}
+
 }  // namespace
 
 std::string_view property_name(Property property) {
@@ -294,16 +471,24 @@ PropertyResult prove_property(const Expression& formula, const InputBox& box,
                               const PropertyQuestion& question, const ProofLimits& limits) {
   check_box(formula, box);
   check_question(box, question);
-  SingularityResult finite = prove_free(formula, box, limits);
-  if (finite.verdict != Verdict::proved_free || question.property == Property::finite) {
-    return {finite.verdict, std::move(finite.witness), std::move(finite.undecided_box),
-            finite.boxes};
+  PropertyResult result;
+  for (const InputBox& part : parts_asked(box, question)) {
+    SingularityResult finite = prove_free(formula, part, limits);
+    result.boxes += finite.boxes;
+    if (finite.verdict != Verdict::proved_free) {
+      return {finite.verdict, std::move(finite.witness), std::move(finite.undecided_box),
+              result.boxes};
+    }
   }
-  PropertyResult result = question.property == Property::odd
-                              ? prove_odd(formula, box, question.velocity)
-                              : PropertyProver(formula, box, question, limits)
-                                    .run(closed_cells(formula, box, question.velocity));
-  result.boxes += finite.boxes;
+  const std::size_t boxes = result.boxes;
+  result.verdict = Verdict::proved_free;
+  if (question.property != Property::finite) {
+    const Signed sure = with_sign_columns(formula, box);
+    result = prove_of_finite(sure.formula, sure.box, question, limits);
+    result.boxes += boxes;
+    if (result.witness) trim(*result.witness, box.size());
+    if (!result.undecided_box.empty()) result.undecided_box.resize(box.size());
+  }
   return result;
 }
 

@@ -6,13 +6,14 @@
 //
 //   dissipative  f * v >= 0: friction never drives the joint
 //   bounded      |f| <= limit
-//   monotone     f grows with v (does not fall) for |v| >= from: beyond the Stribeck range,
-//   friction
-//                grows with speed in both directions
+//   monotone     f(v1, ...) <= f(v2, ...) for all v1 < v2 with |v1| and |v2| >= from, whatever
+//                their signs: beyond the Stribeck range friction grows with speed, and no jump of
+//                a sign goes down. What happens at |v| < from, a pole too, is not asked.
 //   odd          f(-v, ...) = -f(v, ...), signs of v turned with it: no direction is preferred
 //
 // Method: branch and bound with the bounds of bounds.hpp on cells closed at v = 0 (f's limit there
-// decides nothing but a limit that has the wrong sign); oddness by canonical forms.
+// decides nothing but a limit that has the wrong sign); monotony by the slope on v < 0 and v > 0
+// and by the steps between them; oddness by canonical forms.
 #pragma once
 
 #include <cstddef>
@@ -37,8 +38,8 @@ struct PropertyQuestion {
 
 struct PropertyResult {
   Verdict verdict = Verdict::undecided;  // proved_free stands for proved
-  // Refuted: a point where f v < 0 or |f| > limit; two points with |v| and f falling (monotone) or
-  // mirrored with f(-v) != -f(v) (odd); or the witness of a singularity.
+  // Refuted: a point where f v < 0 or |f| > limit; two points, v growing and f falling (monotone)
+  // or mirrored with f(-v) != -f(v) (odd); or the witness of a singularity.
   std::optional<Witness> witness;
   std::vector<Interval> undecided_box;
   std::size_t boxes = 0;

@@ -106,19 +106,30 @@ void print_json(const Expression& formula, const NamedBox& box, Property propert
   fmt::print("{}\n", write_json(json, 2));
 }
 
-void print_text(const NamedBox& box, Property property, const PropertyResult& result,
+// What a proof says of the box, in words where the property's name leaves the region open.
+std::string claim_text(const NamedBox& box, const PropertyQuestion& question) {
+  const std::string name(property_name(question.property));
+  if (question.property != Property::monotone) return name;
+  const std::string& v = box.names[question.velocity];
+  const std::string region =
+      question.from > 0 ? fmt::format(", |{}| >= {} at both", v, question.from) : std::string();
+  return fmt::format("{} (not falling from any {} to a greater one{})", name, v, region);
+}
+
+void print_text(const NamedBox& box, const PropertyQuestion& question, const PropertyResult& result,
                 double seconds) {
+  const Property property = question.property;
   const std::string_view verdict = verdict_text(result.verdict, property);
   switch (result.verdict) {
     case Verdict::proved_free:
-      fmt::print("{}: {} everywhere on {}", verdict, property_name(property), print_box(box));
+      fmt::print("{}: {} everywhere on {}", verdict, claim_text(box, question), print_box(box));
       break;
     case Verdict::refuted:
       fmt::print("{}: not {} at {}", verdict, property_name(property),
                  witness_json(*result.witness, box.names));
       break;
     default:
-      fmt::print("{}: {} on {}; smallest box left: {}", verdict, property_name(property),
+      fmt::print("{}: {} on {}; smallest box left: {}", verdict, claim_text(box, question),
                  print_box(box), ranges_json(result.undecided_box, box).dump());
   }
   fmt::print("  ({} boxes, {:.3g} s)\n", result.boxes, seconds);
@@ -234,7 +245,7 @@ ExitStatus run_check(const CheckOptions& options) {
   if (options.json) {
     print_json(formula, box, question.property, result, seconds.count());
   } else {
-    print_text(box, question.property, result, seconds.count());
+    print_text(box, question, result, seconds.count());
   }
   if (!options.certificate.empty() && result.verdict == Verdict::proved_free) {
     save_certificate(formula, box, claim, options.certificate);
@@ -260,9 +271,10 @@ void add_check_command(CLI::App& app, ExitStatus& status) {
   auto options = std::make_shared<CheckOptions>();
   check->add_option("formula", options->formula, "The formula; sgn_X is the sign of X");
   check->add_option("--box", options->box, "Ranges of the inputs: 'v=-2:2,g=-60:60'");
-  check->add_option("--property", options->property,
-                    "finite, bounded (|f| <= --limit), dissipative (f*v >= 0), monotone (f grows "
-                    "with v for |v| >= --from), odd (f(-v) = -f(v))");
+  check->add_option(
+      "--property", options->property,
+      "finite, bounded (|f| <= --limit), dissipative (f*v >= 0), monotone (f does "
+      "not fall from any v to a greater one, |v| >= --from at both), odd (f(-v) = -f(v))");
   check->add_option("--velocity", options->velocity, "The input that is the velocity (v)");
   check->add_option("--limit", options->limit, "For bounded, in the formula's unit")
       ->transform(real_number(0, 1e308));

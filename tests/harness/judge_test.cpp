@@ -249,8 +249,9 @@ TEST(JudgeFormula, AsksPhysicsOfFormulasThatAreProvedFree) {
 
 // A Stribeck curve falls near standstill, and that is no fault: 0.5 is a quarter of the top speed.
 TEST(JudgeFormula, AsksForAGrowingFrictionBeyondTheStribeckRange) {
-  EXPECT_EQ(judged("v^3 - 0.5 * v").monotone, PhysicsProof::proved);  // falls up to 0.41
-  EXPECT_EQ(judged("v^3 - 3 * v").monotone, PhysicsProof::refuted);   // falls up to 1
+  EXPECT_EQ(judged("v^3 - 0.2 * v").monotone, PhysicsProof::proved);   // falls up to 0.26
+  EXPECT_EQ(judged("v^3 - 0.5 * v").monotone, PhysicsProof::refuted);  // f(-0.5) > f(0.5)
+  EXPECT_EQ(judged("v^3 - 3 * v").monotone, PhysicsProof::refuted);    // falls up to 1
 }
 
 // The top speed is that of the faster direction: up to 2 of 8 friction may fall.

@@ -106,6 +106,46 @@ TEST(Monotone, IsRefutedByTwoPointsBetweenWhichFrictionFalls) {
   EXPECT_TRUE(witness_json(*result.witness, kNames).starts_with("{\"points\": [{\"v\": "));
 }
 
+TEST(Monotone, ComparesTheTwoSidesOfAJump) {
+  expect_all({{"v - sgn_v", kRefuted},
+              {"v - sgn(v)", kRefuted},
+              {"v + sgn(v)", kProved},
+              {"v + sgn_v^2", kRefuted},
+              {"v + 0.1*g*sgn_v", kRefuted},
+              {"v + (7 + 0.1*g)*sgn_v", kProved},
+              {"v + g + sgn_v*v^2", kProved},
+              {"tanh(5*v)*(7 + 0.1*g) + sgn_g", kProved}},
+             {.property = Property::monotone});
+  expect_all({{"v - 0.05*sgn_v", kProved},
+              {"v - sgn_v", kRefuted},
+              {"v - sgn(v)", kRefuted},
+              {"v - sgn(2*v)", kRefuted},
+              {"v^3 - 3*v*exp(-1000*v^2)", kProved},
+              {"v^2*sgn_v - 0.011*sgn(v^3)", kRefuted}},
+             {.property = Property::monotone, .from = 0.1});
+}
+
+TEST(Monotone, IsRefutedByTwoPointsOnTwoSidesOfAJump) {
+  for (const double from : {0.0, 0.1}) {
+    const PropertyResult result = ask("v - sgn(v)", {.property = Property::monotone, .from = from});
+    ASSERT_TRUE(result.witness);
+    const auto& [slow, fast, node] = *result.witness;
+    EXPECT_EQ(slow.size(), kNames.size());
+    EXPECT_LE(slow[0], -from);
+    EXPECT_GE(fast[0], from);
+    EXPECT_GT(f("v - sgn(v)", slow), f("v - sgn(v)", fast));
+  }
+}
+
+TEST(Monotone, AsksNothingOfTheSpeedsBelow) {
+  expect_all({{"v + 1/(v - 0.1)", kRefuted}, {"1/v", kRefuted}, {"v - 0.01/v", kProved}},
+             {.property = Property::monotone, .from = 0.5});
+  const PropertyResult result = ask("-1/v", {.property = Property::monotone, .from = 0.5});
+  ASSERT_TRUE(result.witness);
+  EXPECT_LE(result.witness->point[0], -0.5);
+  EXPECT_GE(result.witness->neighbour[0], 0.5);
+}
+
 TEST(Odd, IsDecidedByFormOrByAPoint) {
   expect_all({{"3*sgn_v + 2*v", kProved},
               {"v^3 - 2*v", kProved},

@@ -73,6 +73,19 @@ TEST(CheckCommand, DecidesPropertiesOfFrictionLaws) {
   EXPECT_EQ(json["verdict"], "proved");
 }
 
+TEST(CheckCommand, SaysWhichSpeedsAProofOfMonotonyIsAbout) {
+  const ProgramRun all = run_check("'v + sgn_v' --box v=-2:2 --property monotone");
+  EXPECT_TRUE(all.output.starts_with(
+      "proved: monotone (not falling from any v to a greater one) everywhere on v=-2:2"))
+      << all.output;
+  const ProgramRun beyond = run_check("'v^3' --box v=-2:2 --property monotone --from 0.1");
+  EXPECT_TRUE(
+      beyond.output.starts_with("proved: monotone (not falling from any v to a greater "
+                                "one, |v| >= 0.1 at both) everywhere on v=-2:2"))
+      << beyond.output;
+  EXPECT_EQ(run_check("'v - sgn_v' --box v=-2:2 --property monotone").status, 1);
+}
+
 TEST(CheckCommand, WritesACertificateThatItVerifiesAndRejectsOnceTamperedWith) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("tribench_certificate_" + std::to_string(getpid()) + ".json");
