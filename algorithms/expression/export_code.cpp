@@ -264,9 +264,11 @@ std::string matlab_helpers(const CodeSource& source, const Statements& body) {
         op_name(op));
   }
   if (body.text.find("real_power(") != std::string::npos) {
+    // Of the size alone: one complex element makes the whole array complex, in its last places too.
     text +=
-        "\nfunction y = real_power(x, e)\n  y = x .^ e;\n"
-        "  y(imag(y) ~= 0) = NaN;\n  y = real(y);\nend\n";
+        "\nfunction y = real_power(x, e)\n  is_negative = x < 0 | 1 ./ x < 0;\n"
+        "  y = abs(x) .^ e .* (1 - 2 * (is_negative & mod(e, 2) == 1));\n"
+        "  y(x < 0 & isfinite(x) & e ~= fix(e)) = NaN;\nend\n";
   }
   return text;
 }

@@ -268,6 +268,21 @@ TEST(Export, MatlabGivesTheEvaluatorsValuesInOctave) {
                        all);
 }
 
+TEST(Export, MatlabRaisesWholeColumnsElementByElement) {
+  if (!has("octave-cli")) GTEST_SKIP() << "no octave";
+  const fs::path folder = fresh_folder("matlab_columns");
+  const auto function = [&](const char* formula, const char* name) {
+    write(folder / fmt::format("{}.m", name), exported(formula, "matlab", {.function = name}));
+  };
+  function("v^g", "power");
+  function("(-2)^g", "of_two");
+  write(folder / "run.m",
+        "printf('%g ', power([-2;-2;-2;-3;2;-0;-0], [3;2.5;-1;2;0.5;-1;-2]));\n"
+        "printf('%g ', of_two([3;2.5;2]));\n");
+  EXPECT_EQ(output_of(fmt::format("cd {} && octave-cli --norc run.m 2>/dev/null", folder.string())),
+            "-8 NaN -0.5 9 1.41421 -Inf Inf -8 NaN 4 ");
+}
+
 // The few words of LaTeX that the exporter writes, back to the grammar of formulas.
 std::string from_latex(std::string text) {
   const auto replace = [&](const std::string& from, const std::string& to) {
