@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iterator>
 #include <memory>
@@ -58,6 +59,11 @@ struct PredictArguments {
   std::shared_ptr<DataOptions> reading = std::make_shared<DataOptions>();
 };
 
+// A blank line would be no row to a reader, and every later prediction would move up.
+std::string prediction_text(double value) {
+  return std::isnan(value) ? std::string("nan") : csv_number(value);
+}
+
 std::string predictions(const PredictArguments& arguments) {
   const std::string& file = arguments.model;
   const bool intervals = arguments.intervals;
@@ -88,9 +94,10 @@ std::string predictions(const PredictArguments& arguments) {
   }
   std::string text = intervals ? "prediction,low,high\n" : "prediction\n";
   for (std::size_t r = 0; r < values.size(); ++r) {
-    text += csv_number(values[r]);
+    text += prediction_text(values[r]);
     if (intervals) {
-      text += "," + csv_number(values[r] - halves[r]) + "," + csv_number(values[r] + halves[r]);
+      text += "," + prediction_text(values[r] - halves[r]) + "," +
+              prediction_text(values[r] + halves[r]);
     }
     text += "\n";
   }
@@ -106,7 +113,7 @@ void add_predict_command(CLI::App& app, ExitStatus& /*status*/) {
       "m.json"
       "\n         tribench predict m.json later.csv --out predicted.csv"
       "\nThe data are read as those that a model was fitted to, its --roles and all, unless "
-      "options here say how.");
+      "options here say how. Where the formula has no value the line is nan.");
   auto arguments = std::make_shared<PredictArguments>();
   command
       ->add_option("MODEL", arguments->model, "what `fit --json` printed, in a file; or a formula")

@@ -170,6 +170,14 @@ TEST(CommandLine, NothingIsWrittenToAPlaceWithoutAName) {
   }
 }
 
+// Readers skip a blank line, and every row below it would get another row's prediction.
+TEST(CommandLine, APredictionWithoutAValueKeepsItsRow) {
+  const TemporaryFolder folder;
+  const std::string data = (folder / "rows.csv").string();
+  write_text(data, "v\n-1\n4\n-2\n9\n");
+  EXPECT_EQ(run_tribench({"predict", "sqrt(v)", data}).output, "prediction\nnan\n2\nnan\n3\n");
+}
+
 TEST(CommandLine, WhatIsReadIsNotWrittenOver) {
   const TemporaryFolder folder;
   const std::string data = (folder / "joint.csv").string();
