@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/udsr/prior.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -67,8 +69,8 @@ void Traversal::push(TokenId token) {
 
 Prior::Prior(const TokenLibrary& library, const PriorOptions& options, const DataRange& range)
     : library_(&library), options_(options) {
-  if (library.size() > 64) {
-    throw_bad_input("uDSR's token library holds at most 64 tokens", {},
+  if (library.size() > kMostTokens) {
+    throw_bad_input(fmt::format("uDSR's token library holds at most {} tokens", kMostTokens), {},
                     "use fewer inputs or operations");
   }
   for (std::size_t i = 0; i < library.size(); ++i) {

@@ -19,8 +19,9 @@ namespace tribench::udsr {
 
 inline constexpr double kForbidden = -std::numeric_limits<double>::infinity();
 
-// A set of tokens; libraries have at most 64 (checked by Prior).
+// A set of tokens, a bit each (checked by Prior).
 using TokenSet = std::uint64_t;
+inline constexpr std::size_t kMostTokens = 64;
 
 inline TokenSet set_of(TokenId token) { return TokenSet{1} << token; }
 

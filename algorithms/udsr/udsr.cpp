@@ -295,6 +295,13 @@ class Udsr : public Regressor {
   explicit Udsr(Settings settings) : settings_(std::move(settings)) {}
 
   FitResult fit(FitContext& context) const override {
+    const udsr::TokenLibrary tokens(context.operators, context.data.inputs.size(),
+                                    settings_.tokens);
+    if (tokens.size() > udsr::kMostTokens) {
+      return FitResult::unsupported(
+          fmt::format("inputs and operations are {} tokens, and uDSR's library holds {}: use fewer",
+                      tokens.size(), udsr::kMostTokens));
+    }
     Search search(settings_, context.data, context.operators, context.budget, context.progress,
                   context.threads);
     if (search.rows() == 0) return FitResult::unsupported("no training row is finite");

@@ -63,6 +63,16 @@ TEST(Relay, StaysWithItsMembersWhereNoStructureIsExact) {
   EXPECT_EQ(result.note, "");
 }
 
+// udsr has not so many tokens, and what the others find was lost with it.
+TEST(Relay, LeavesOutAMemberThatCannotDoSoManyInputs) {
+  std::vector<testing::DrawnInput> inputs;
+  for (int j = 0; j < 70; ++j) inputs.push_back({"x" + std::to_string(j), 1, 2});
+  const DrawnLaw law("2*x3 + sin(5*x7)*x8", inputs, 90, 0.05);
+  const FitResult result = run_fit(law.data(), "relay", with_evaluations(3'000'000));
+  EXPECT_FALSE(result.front.empty());
+  EXPECT_THAT(result.note, ::testing::HasSubstr("udsr: "));
+}
+
 // Every part can be left out, and what it alone finds is then found by another or not at all.
 TEST(Relay, DoesWithoutAnyOfItsParts) {
   const DrawnLaw law("2.5*x^2/y", {{"x", 1, 3}, {"y", 1, 3}}, 60);

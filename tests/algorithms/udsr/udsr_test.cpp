@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "algorithms/admission.hpp"
 #include "algorithms/expression/singularity.hpp"
@@ -57,6 +58,19 @@ double truth_error(const FrictionCurve& curve, const Expression& formula) {
   double sum = 0;
   for (std::size_t i = 0; i < values.size(); ++i) sum += std::abs(values[i] - curve.truth[i]);
   return sum / static_cast<double>(values.size());
+}
+
+// Whoever asks several methods goes on with the others.
+TEST(Udsr, CannotDoMoreInputsThanItHasTokensFor) {
+  FrictionCurve curve;
+  while (curve.columns.size() < 64) {
+    curve.inputs.push_back(
+        {"x" + std::to_string(curve.columns.size()), "-", Role::none, -2, 2, {}});
+    curve.columns.push_back(curve.v.data());
+  }
+  const FitResult result = fit(curve, kSmall);
+  EXPECT_EQ(result.reason, StopReason::unsupported);
+  EXPECT_NE(result.note.find("library holds 64"), std::string::npos) << result.note;
 }
 
 TEST(Udsr, FindsAFrictionCurveToWithinItsNoise) {
