@@ -112,6 +112,9 @@ struct FitResult {
   std::string note;  // one line for the record; says why where unsupported
   // The formulas' form is the user's (a template): whoever shortens formulas leaves them.
   bool keeps_form = false;
+  // `chosen` is final (a program of the user's has said it): no other formula takes its place, and
+  // no further round is fitted, which could only do that.
+  bool keeps_choice = false;
   // On few rows a sum of few inputs may take the chosen formula's place where it stands better on
   // rows held out (fitting/held_out_choice.hpp): a part of the method, done when all rounds of it
   // have ended.

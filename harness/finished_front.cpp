@@ -43,13 +43,15 @@ void finish_front(const TrainingData& data, const OperatorSet& operators, Budget
     if (same == finished.end()) finished.push_back(std::move(formula));
   }
   fit.front = std::move(finished);
+  fit.chosen = chosen;
+  if (fit.keeps_choice) return;
   if (const auto exact = simplest_exact(fit.front, rows.table(), rows.target)) {
     fit.chosen = *exact;
     return;
   }
   const auto in_time = [&budget] { return budget.in_time(); };
   fit.chosen =
-      held_out_choice(fit.front, chosen, rows.table(), rows.target, rows.movement, in_time);
+      held_out_choice(fit.front, fit.chosen, rows.table(), rows.target, rows.movement, in_time);
   if (!fit.yields_to_plain_sum) return;
   if (auto sum = plain_sum_instead(fit.front[fit.chosen], rows.table(), rows.target, rows.movement,
                                    in_time);

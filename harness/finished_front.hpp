@@ -5,7 +5,8 @@
 // another where few rows speak plainly against the choice (fitting/held_out_choice.hpp). A plain
 // sum takes its place only in a method that says so (FitResult::yields_to_plain_sum). The one place
 // between methods and judge where formulas are rewritten and a choice is looked at again; a method
-// that was given a form by the user keeps it (FitResult::keeps_form).
+// that was given a form by the user keeps it (FitResult::keeps_form), and a program of the user's
+// its choice (keeps_choice).
 #pragma once
 
 #include "algorithms/regressor.hpp"

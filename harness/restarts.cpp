@@ -17,7 +17,7 @@ FitResult fit_until_spent(FitResult first, const FitRound& round, bool widens,
                           const TrainingData& data, const Budget& budget,
                           const RandomStream& random) {
   // Models with states are fitted from a grid of starts: another round would find the same.
-  if (first.front.empty() || !first.states.empty()) return first;
+  if (first.front.empty() || !first.states.empty() || first.keeps_choice) return first;
   const FiniteRows rows(data);
   JointFront joint(rows.table(), rows.target, rows.movement, input_box(data.inputs));
   joint.add(first.front, first.chosen);

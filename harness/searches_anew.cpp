@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kFewestRows = 20;  // four of them held out
 
 bool is_worth_a_look(const FitResult& fit, const FiniteRows& rows) {
-  return fit.front.size() > 1 && fit.states.empty() && !fit.keeps_form &&
+  return fit.front.size() > 1 && fit.states.empty() && !fit.keeps_form && !fit.keeps_choice &&
          rows.rows() >= kFewestRows && rows.rows() <= kFewRows &&
          !simplest_exact(fit.front, rows.table(), rows.target);
 }

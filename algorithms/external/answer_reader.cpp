@@ -140,6 +140,7 @@ void AnswerReader::take_front(const nlohmann::json& object) {
         fmt::format("'chosen' is {} in a front of {}", result.chosen, result.front.size()));
   }
   result.note = object.value("note", std::string());
+  result.keeps_choice = true;
   keep_admitted_formulas(context_, result);
   context_.budget.book(count_in(object, "evaluations", 0));
   result_ = std::move(result);

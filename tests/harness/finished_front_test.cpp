@@ -44,6 +44,27 @@ TEST(FinishedFront, TakesAPlainSumOnFewRowsWhereTheMethodYieldsToIt) {
   EXPECT_LT(fit.front[0].size(), 8U) << print(fit.front[0], std::vector<std::string>{"v"});
 }
 
+// The shorter formula is exact, and the folds speak for it too.
+TEST(FinishedFront, LeavesTheChoiceOfAMethodThatKeepsIt) {
+  const std::vector<std::string> names = {"v"};
+  std::vector<double> v;
+  std::vector<double> target;
+  for (int r = 0; r < 30; ++r) {
+    v.push_back(0.1 * r);
+    target.push_back(2 * v.back());
+  }
+  const std::vector<Input> inputs = {{"v", "rad/s", Role::velocity, 0, 3, std::nullopt}};
+  const std::vector<const double*> columns = {v.data()};
+  const TrainingData data{inputs, columns, target, {}};
+  FitResult fit;
+  fit.front = {parse("2*v", names), parse("0.7 + 0.37*v^2", names)};
+  fit.chosen = 1;
+  fit.keeps_choice = true;
+  Budget budget({1'000'000, 1e6});
+  finish_front(data, find_operator_set("full"), budget, fit);
+  EXPECT_EQ(print(fit.front[fit.chosen], names), "0.7 + 0.37*v^2");
+}
+
 // Seconds of folds were spent beyond those that a fit was given.
 TEST(FinishedFront, LeavesTheChoiceOnceTheSecondsHaveRunOut) {
   EXPECT_EQ(finished_on_few_rows(true, 0).front.size(), 1U);
