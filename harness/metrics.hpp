@@ -18,7 +18,7 @@ struct ErrorFigures {
   double rmse = kMissing;       // root of the mean of (f - y)^2
   double max_error = kMissing;  // max |f - y|
   double r2 = kMissing;         // 1 - sum (f - y)^2 / sum (y - mean y)^2; missing if y is constant
-  double relative = kMissing;   // 100 |f - y| / |y|, 2-norms, percent; missing if y is zero
+  double relative = kMissing;   // 100 |f - y| / |y|, 2-norms, percent; missing if only y is 0
   std::size_t rows = 0;         // with a target
   std::size_t not_finite = 0;   // of these, rows where the formula has no finite value
 };

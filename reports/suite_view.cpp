@@ -28,8 +28,16 @@ constexpr std::array<const char*, 3> kSizes = {"small", "middle", "large"};
 
 using Records = std::vector<const Record*>;
 
+// The share of the variance on unseen rows that is left; a constant has none to be explained, and
+// its square takes the variance's place.
+double unexplained(const Record& record) {
+  if (!std::isnan(record.r2_test)) return 1 - record.r2_test;
+  const double relative = record.relative_error_test / 100;
+  return relative * relative;
+}
+
 bool is_recovered(const Record& record, double below) {
-  return is_ok(record) && 1 - record.r2_test <= below;
+  return is_ok(record) && unexplained(record) <= below;
 }
 
 template <typename Hit>
@@ -79,8 +87,7 @@ SuiteMethodRow row_of(const SuiteView& view, const ByProblem& by_problem) {
         records, [&](const Record& one) { return is_recovered(one, view.suite.recovered_below); }));
     for (std::size_t b = 0; b < kBands.size(); ++b) {
       row.r2_at_least[b] +=
-          share_of(records,
-                   [&](const Record& one) { return is_ok(one) && one.r2_test >= kBands[b]; }) /
+          share_of(records, [&](const Record& one) { return is_recovered(one, 1 - kBands[b]); }) /
           static_cast<double>(by_problem.size());
     }
     const auto info = std::ranges::find(view.suite.problems, problem, &SuiteProblemInfo::problem);

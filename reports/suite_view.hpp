@@ -4,7 +4,8 @@
 // what time, beside published shares. From records and suites.json alone.
 //
 // Recovered: the fraction of variance unexplained on unseen rows, 1 - R2, is at most the suite's
-// bound; a failed cell is not recovered.
+// bound; of a constant law, which has no variance, the squared error's share of the squared value.
+// A failed cell is not recovered.
 #pragma once
 
 #include <array>

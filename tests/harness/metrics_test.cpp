@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace tribench {
 namespace {
@@ -51,6 +52,18 @@ TEST(ComputeErrors, TheLargestErrorMayBeSmall) {
   const double values[] = {1, 2.25};
   const double target[] = {1, 2};
   EXPECT_DOUBLE_EQ(compute_errors(values, target).max_error, 0.25);
+}
+
+// Ten tenths have a mean that is not a tenth.
+TEST(ComputeErrors, AConstantHasNoVariance) {
+  const std::vector<double> target(10, 0.1);
+  std::vector<double> values = target;
+  EXPECT_TRUE(std::isnan(compute_errors(values, target).r2));
+  EXPECT_EQ(compute_errors(values, target).relative, 0);
+  values[0] = 0.2;
+  EXPECT_TRUE(std::isnan(compute_errors(values, target).r2));
+  const std::vector<double> zeros(3, 0.0);
+  EXPECT_EQ(compute_errors(zeros, zeros).relative, 0);
 }
 
 TEST(ComputeErrors, GivesNoRatioWhereItHasNoMeaning) {

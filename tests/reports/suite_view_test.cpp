@@ -67,6 +67,23 @@ TEST(SuiteView, CountsWhatWasRecoveredByHand) {
   EXPECT_EQ(views[0].never_solved, std::vector<std::string>{"s/c"});
 }
 
+TEST(SuiteView, AConstantLawIsRecoveredByItsValue) {
+  SuiteInfo suite = small_suite();
+  suite.problems = {{"s/seven", "7", 1}};
+  std::vector<Record> records = {record("s/seven", "exact", 1, kMissing),
+                                 record("s/seven", "near", 1, kMissing)};
+  records[0].relative_error_test = 1e-13;
+  records[1].relative_error_test = 4;
+  const std::vector<SuiteView> views = view_suites({suite}, records);
+  ASSERT_EQ(views[0].rows.size(), 2U);
+  EXPECT_EQ(views[0].rows[0].method, "exact");
+  EXPECT_EQ(views[0].rows[0].recovered, 1);
+  EXPECT_EQ(views[0].rows[1].recovered, 0);
+  EXPECT_EQ(views[0].rows[1].r2_at_least[0], 0);
+  EXPECT_EQ(views[0].rows[1].r2_at_least[1], 1);  // 0.04^2 of the square are left
+  EXPECT_TRUE(views[0].never_solved.empty());
+}
+
 TEST(SuiteView, ASuiteThatTheRunDoesNotHaveIsLeftOut) {
   SuiteInfo other = small_suite();
   other.name = "another";
