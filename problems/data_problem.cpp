@@ -61,6 +61,7 @@ std::vector<Input> make_inputs(const Dataset& data, const std::string& target,
                       {}});
   }
   link_signs(inputs);
+  require_signs(data, names);
   return inputs;
 }
 

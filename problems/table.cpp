@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "problems/table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
 
+#include "foundation/error.hpp"
 #include "foundation/sign.hpp"
 
 namespace tribench {
@@ -71,6 +74,22 @@ std::vector<double> input_values(const Dataset& data, std::string_view name) {
     }
   }
   return data.at(name).values;  // throws with the nearest name
+}
+
+void require_signs(const Dataset& data, std::span<const std::string> inputs) {
+  for (const std::string& of : inputs) {
+    const std::string name = std::string(kSignPrefix) + of;
+    if (std::ranges::find(inputs, name) == inputs.end()) continue;
+    const std::vector<double> values = input_values(data, of);
+    const std::vector<double> given = input_values(data, name);
+    for (std::size_t r = 0; r < values.size(); ++r) {
+      if (given[r] == sign(values[r]) || std::isnan(given[r]) || std::isnan(values[r])) continue;
+      throw_bad_input(fmt::format("'{0}' is {1} where '{2}' is {3}, and the name {0} stands for "
+                                  "the sign of {2}: -1, 0 or 1",
+                                  name, given[r], of, values[r]),
+                      data.name, "rename the column");
+    }
+  }
 }
 
 void link_signs(std::vector<Input>& inputs) {

@@ -25,6 +25,10 @@ struct KnownDataset {
 // channel X (0 at 0). Throws Error (bad_input) with the nearest name.
 std::vector<double> input_values(const Dataset& data, std::string_view name);
 
+// Throws Error (bad_input) where X and sgn_X are inputs and a channel sgn_X is not the sign of X:
+// a fit would use the channel, and proofs and exported code the sign.
+void require_signs(const Dataset& data, std::span<const std::string> inputs);
+
 // Fills sign_of wherever an input is named sgn_X and X is among the inputs.
 void link_signs(std::vector<Input>& inputs);
 

@@ -81,6 +81,7 @@ std::string predictions(const PredictArguments& arguments) {
   const Expression& formula = read.formula;
   std::vector<std::vector<double>> columns;
   std::vector<const double*> pointers;
+  require_signs(data, names);
   for (const std::string& name : names) columns.push_back(input_values(data, name));
   add_state_columns(read, data, columns);
   for (const std::vector<double>& column : columns) pointers.push_back(column.data());

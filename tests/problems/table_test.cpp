@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+
 #include "foundation/error.hpp"
 
 namespace tribench {
@@ -39,6 +42,24 @@ TEST(Table, AnUnknownInputIsAnsweredWithTheNearestColumn) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("sgn_w"), std::string::npos);
   }
+}
+
+TEST(Table, RefusesASignThatIsNoneOfTheInputBesideIt) {
+  KnownDataset known = two_movements();
+  const std::vector<std::string> inputs = {"sgn_v", "v"};
+  require_signs(known.data, inputs);
+  known.data.channels.push_back({"sgn_v", "-", Role::none, {-1, 0, 1, std::nan("")}});
+  require_signs(known.data, inputs);
+  known.data.channels.back().values[2] = -2;
+  try {
+    require_signs(known.data, inputs);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("'sgn_v' is -2 where 'v' is 2"), std::string::npos) << text;
+    EXPECT_NE(text.find("rename the column"), std::string::npos) << text;
+  }
+  require_signs(known.data, std::vector<std::string>{"sgn_v"});
 }
 
 TEST(Table, TimeBreaksWhereItLeapsOrFalls) {
