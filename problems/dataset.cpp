@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -65,6 +66,15 @@ const Channel* Dataset::find(Role role) const {
 
 const Channel& Dataset::at(std::string_view channel_name) const {
   if (const Channel* channel = find(channel_name)) return *channel;
+  const auto text = std::ranges::find(texts, channel_name, &TextCell::column);
+  if (text != texts.end()) {
+    throw_bad_input(
+        fmt::format("column '{}' holds text: '{}' is no number", channel_name, text->text),
+        text->place,
+        text->text.find(',') == std::string::npos
+            ? "name a column of numbers, or write numbers"
+            : "write numbers with a decimal point and without signs for thousands");
+  }
   std::vector<std::string> names;
   for (const Channel& channel : channels) names.push_back(channel.name);
   throw_bad_input(fmt::format("there is no column '{}'", channel_name), name,

@@ -45,17 +45,26 @@ struct Channel {
   std::vector<double> values;
 };
 
+// A column of the source that is no channel, since it holds text: what stands in it, and where.
+struct TextCell {
+  std::string column;
+  std::string text;
+  std::string place;  // "joint.csv:2:label"
+};
+
 // All channels have the same number of rows. Rows of one movement stand together.
 struct Dataset {
   std::string name;
   std::vector<Channel> channels;
   std::vector<int> movement;                // per row: index into movement_names
   std::vector<std::string> movement_names;  // in the order of the file, which is the campaign's
+  std::vector<TextCell> texts = {};         // one a column, for messages
 
   std::size_t rows() const { return movement.size(); }
   const Channel* find(std::string_view channel_name) const;
   const Channel* find(Role role) const;  // the first with that role
-  // As `find`, but throws Error (bad_input) with the nearest name.
+  // As `find`, but throws Error (bad_input) with the text that the column holds, or the nearest
+  // name.
   const Channel& at(std::string_view channel_name) const;
 };
 

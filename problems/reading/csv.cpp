@@ -51,7 +51,8 @@ double largest_of(const ColumnPlan& plan) {
                            : kind == CellKind::number
                                ? fmt::format("'{}' is too large for what is measured", cell)
                                : fmt::format("'{}' is not a finite number", cell);
-  const bool mixed = cell.find('.') != std::string::npos && cell.find(',') != std::string::npos;
+  const bool mixed = cell.find(',') != std::string::npos &&
+                     (cell.find('.') != std::string::npos || !in.layout.decimal_comma);
   throw_bad_input(what, csv_place(in.file, line_of(in.text, place), in.layout.header[column]),
                   mixed ? "write numbers in one way, and without signs for thousands"
                         : "mend the value, or drop such rows with --drop-missing");
@@ -249,6 +250,16 @@ void add_spare_channel(Reading& in, std::size_t j, DataFile& out) {
   out.data.channels.push_back({in.layout.header[j], {}, Role::none, kept(numbers, in.rows)});
 }
 
+// The first cell of a column of text, for whoever takes it for numbers.
+void note_text(const Reading& in, std::size_t j, Dataset& data) {
+  const std::vector<std::string>& texts = in.columns.columns[j].texts;
+  const auto first = std::ranges::find_if(texts, [](const auto& text) { return !text.empty(); });
+  if (first == texts.end()) return;
+  const std::size_t place = in.columns.places[static_cast<std::size_t>(first - texts.begin())];
+  const std::string& column = in.layout.header[j];
+  data.texts.push_back({column, *first, csv_place(in.file, line_of(in.text, place), column)});
+}
+
 void fill_channels(Reading& in, DataFile& out) {
   for (std::size_t j = 0; j < in.plans.size(); ++j) {
     ColumnPlan& plan = in.plans[j];
@@ -260,6 +271,7 @@ void fill_channels(Reading& in, DataFile& out) {
       channel.unit = plan.reading.si;
       out.data.channels.push_back(std::move(channel));
     } else if (plan.reading.role != Role::movement && column.kind == ColumnKind::text) {
+      note_text(in, j, out.data);
       out.texts.push_back({in.layout.header[j], kept(column.texts, in.rows)});
     } else if (column.kind == ColumnKind::spare) {
       add_spare_channel(in, j, out);

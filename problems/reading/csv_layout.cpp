@@ -293,15 +293,30 @@ bool has_decimal_comma(std::string_view cell) {
          read_cell(cell, true, value) == CellKind::number;
 }
 
+// Of a number with one comma: "1,234" may be more than a thousand, "0,234" and "1,23" are less.
+bool may_be_thousands(std::string_view cell) {
+  if (cell.starts_with('-') || cell.starts_with('+')) cell.remove_prefix(1);
+  const std::size_t comma = cell.find(',');
+  return comma <= 3 && !cell.starts_with('0') && cell.size() == comma + 4;
+}
+
+// Where commas part the cells, a comma inside one may be a sign for thousands: it is decimal where
+// a number shows that, and none beside those that leave it open has a decimal point.
 bool uses_decimal_commas(const std::vector<HeadLine>& lines, const Found& found) {
-  bool commas = false;
+  bool open = false;
+  bool shown = false;
+  bool points = false;
   for (std::size_t i = found.row; i < lines.size(); ++i) {
     if (lines[i].comment) continue;
     for (const std::string& cell : cells_of(lines[i], found.delimiter)) {
-      commas = commas || has_decimal_comma(cell);
+      if (has_decimal_comma(cell)) {
+        (found.delimiter == ',' && may_be_thousands(cell) ? open : shown) = true;
+      } else {
+        points = points || (cell.find('.') != std::string::npos && is_number(cell));
+      }
     }
   }
-  return commas;
+  return shown && !(open && points);
 }
 
 void check_bytes(std::string_view text, std::string_view file) {

@@ -138,6 +138,17 @@ TEST(Csv, ComplainsOfTheFileWithAPlaceAndAMend) {
   EXPECT_THAT(complaint(std::string_view("v\0,y\n", 5)), HasSubstr("zero byte"));
 }
 
+TEST(Csv, AColumnOfTextIsSaidToHoldText) {
+  const DataFile reading = parse_csv("lab,y\n,1\ntrue,2\nfalse,3\n", "data.csv");
+  try {
+    reading.data.at("lab");
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("data.csv:3:lab: column 'lab' holds text: 'true'"),
+                                    HasSubstr("name a column of numbers")));
+  }
+}
+
 TEST(Csv, MovementsStandTogetherAndTimeRunsForward) {
   EXPECT_THAT(complaint("movement,v\na,1\nb,2\na,3\n"), HasSubstr("data.csv:4: movement 'a'"));
   EXPECT_THAT(complaint("time_s,v\n0,1\n1,2\n0.5,3\n"), HasSubstr("data.csv:4:time_s"));

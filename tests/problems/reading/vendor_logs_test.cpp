@@ -22,6 +22,7 @@
 namespace tribench {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr double kDegree = M_PI / 180;
@@ -232,6 +233,35 @@ TEST(VendorLogs, WhatARecorderSaysOfItselfIsNoRow) {
   // A monitor of the bus writes its counters so.
   expect_read("t_s,enc [counts],tau_Nm\n0,0x0A,1\n0.002,0x10,2\n", told("", {}, {16.0, {}}),
               {0.002, 2 * M_PI, 2});
+}
+
+TEST(VendorLogs, ACommaInANumberIsDecimalWhereTheFileShowsIt) {
+  const auto first = [](std::string_view text) {
+    return parse_csv(text, "data.csv").data.at("v").values[0];
+  };
+  EXPECT_EQ(first("v,y\n\"1,234\",\"0,5\"\n\"2,5\",1\n"), 1.234);
+  EXPECT_EQ(first("v,y\n\"-0,234\",2.5\n\"0,5\",1\n"), -0.234);
+  EXPECT_EQ(first("v;y\n1,234;2\n1,235;1\n"), 1.234);
+  EXPECT_EQ(first("v\ty\n1,234\t2.5\n1,235\t1\n"), 1.234);
+}
+
+TEST(VendorLogs, ACommaThatMayPartThousandsIsRefused) {
+  const auto refused = [](std::string_view text) {
+    try {
+      parse_csv(text, "data.csv").data.at("v");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  for (const std::string_view text :
+       {"v,y\n\"1,234\",2\n\"1,235\",3\n", "v,y\n\"1,234\",2.5\n\"1,235\",3\n",
+        "v,y,z\n\"1,234\",2.5,\"0,5\"\n\"1,235\",3,\"1,5\"\n"}) {
+    EXPECT_THAT(refused(text), AllOf(HasSubstr("data.csv:2:v"), HasSubstr("'1,234'"),
+                                     HasSubstr("without signs for thousands")));
+  }
+  EXPECT_THAT(refused("v,y\n950,2.5\n\"1,050\",3\n"),
+              AllOf(HasSubstr("data.csv:3:v: '1,050'"), HasSubstr("without signs for thousands")));
 }
 
 TEST(VendorLogs, TimesInWords) {
