@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "foundation/elementary.hpp"
+
 namespace tribench {
 namespace {
 
@@ -26,6 +28,14 @@ double peak_speed(const PlannedMovement& movement) {
     speed += 2 * std::numbers::pi * tone.frequency * tone.amplitude;
   }
   return speed;
+}
+
+// The largest |sin| between two angles.
+double peak_sine(double low, double high) {
+  constexpr double kQuarter = 0.5 * std::numbers::pi;
+  const double crest = kQuarter + std::numbers::pi * std::ceil((low - kQuarter) / std::numbers::pi);
+  if (crest <= high) return 1;
+  return std::max(std::abs(elementary::sin(low)), std::abs(elementary::sin(high)));
 }
 
 }  // namespace
@@ -64,6 +74,13 @@ BrokenLimit broken_limit(const PlannedMovement& movement, const MotionLimits& li
     return {
         fmt::format("there is no load factor of {:g}", movement.load_factor),
         fmt::format("from {:g} to {:g}", limits.least_load_factor, limits.greatest_load_factor)};
+  }
+  const double gravity_nm =
+      limits.gravity_nm * movement.load_factor *
+      peak_sine(low + limits.gravity_phase_rad, high + limits.gravity_phase_rad);
+  if (gravity_nm > limits.torque_nm) {
+    return {fmt::format("gravity alone takes {:.4g} N m", gravity_nm),
+            fmt::format("{:g} N m at most: less load, or another place", limits.torque_nm)};
   }
   if (movement.other_velocity > limits.greatest_other_velocity_rad_s * (1 + kRounding)) {
     return {fmt::format("the other joint cannot move at {:g} rad/s", movement.other_velocity),

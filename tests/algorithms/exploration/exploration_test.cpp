@@ -455,6 +455,19 @@ TEST(RecordedMovements, AreAskedForUntilTheyMakeTheVerdictOfAll) {
   EXPECT_GT(drawn.seconds(), asked.seconds());
 }
 
+TEST(Plans, AskForNoPlaceAtWhichGravityAloneIsOverTheTorque) {
+  MotionLimits limits;
+  limits.gravity_nm = 30;
+  limits.torque_nm = 20;
+  const std::vector<PlannedMovement> all = candidate_movements(limits, 30);
+  EXPECT_GT(all.size(), 10U);
+  for (const PlannedMovement& one : all) {
+    for (const double q : {one.from, one.to}) {
+      EXPECT_LE(30 * one.load_factor * std::abs(std::sin(q)), 20);
+    }
+  }
+}
+
 TEST(Plans, AnUnknownNameIsAnsweredWithTheNearest) {
   try {
     find_plan("sweeep");
