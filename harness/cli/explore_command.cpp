@@ -15,6 +15,7 @@
 #include "algorithms/exploration/fixed_plans.hpp"
 #include "foundation/error.hpp"
 #include "foundation/output_file.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
@@ -113,8 +114,8 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
     ExplorationSetting setting = setting_of(arguments, options, limits);
     answers.emplace(arguments.out, setting);
     if (answers->answers() > 0) {
-      fmt::print(stderr, "{}: {} answers are there; it goes on from these\n", arguments.out,
-                 answers->answers());
+      print_message(fmt::format("{}: {} answers are there; it goes on from these", arguments.out,
+                                answers->answers()));
     }
     options.start_rad = setting.start_rad;
     limits.seconds = setting.seconds_left;
@@ -145,8 +146,8 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
   }
   fmt::print("{}", arguments.json ? json : exploration_terminal(done, second, options));
   if (done.end == loop::ExplorationEnd::failed) {
-    fmt::print(stderr, "tribench: {}{}\n", done.failure,
-               answers ? "; the same command goes on from there" : "");
+    print_message(fmt::format("tribench: {}{}", done.failure,
+                              answers ? "; the same command goes on from there" : ""));
     return ExitStatus::failed;
   }
   return done.end == loop::ExplorationEnd::sure ? ExitStatus::done : ExitStatus::undecided;
