@@ -71,10 +71,12 @@ ExplorationSetting setting_of(const ExploreArguments& arguments,
                               const loop::ExplorerOptions& options, const MotionLimits& limits) {
   MotionLimits lasting = limits;
   if (!arguments.world.empty()) lasting.seconds = 0;
-  return {fmt::format("{}, plan {}, seed {}, alpha {}, smallest effect {}",
+  // The budget too: towards its end it decides which movements are asked for.
+  return {fmt::format("{}, plan {}, seed {}, alpha {}, smallest effect {}, budget {} s",
                       arguments.world.empty() ? fmt::format("{}", fmt::join(arguments.command, " "))
                                               : arguments.world,
-                      arguments.plan, arguments.seed, options.alpha, options.smallest_effect),
+                      arguments.plan, arguments.seed, options.alpha, options.smallest_effect,
+                      arguments.budget_s),
           limits_json(lasting), options.start_rad, limits.seconds};
 }
 

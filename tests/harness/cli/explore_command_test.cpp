@@ -35,17 +35,10 @@ class ExploreByProgram : public ::testing::Test {
     return script;
   }
   ProgramRun explore(const std::string& robot, const std::string& out,
-                     const std::vector<std::string>& more = {}) {
-    std::vector<std::string> words = {"explore",
-                                      "--limits",
-                                      (folder_ / "limits.json").string(),
-                                      "--budget",
-                                      "25",
-                                      "--out",
-                                      (folder_ / out).string()};
-    words.insert(words.end(), more.begin(), more.end());
-    words.insert(words.end(), {"--command", "sh", robot});
-    return run_tribench(words);
+                     const std::string& budget = "25", const std::string& seed = "1") {
+    return run_tribench({"explore", "--limits", (folder_ / "limits.json").string(), "--budget",
+                         budget, "--seed", seed, "--out", (folder_ / out).string(), "--command",
+                         "sh", robot});
   }
   json path_of(const std::string& out) {
     return json::parse(read_text(folder_ / out / "exploration.json"))["path"];
@@ -64,7 +57,8 @@ TEST_F(ExploreByProgram, AFailureLosesNothingAndTheSameCommandGoesOn) {
                                    HasSubstr("the same command goes on from there")));
   EXPECT_EQ(path_of("x").size(), 6U);
   EXPECT_THAT(read_text(folder_ / "x/data.csv"), HasSubstr("move 6"));
-  EXPECT_EQ(explore(robot, "x", {"--seed", "5"}).status, 2) << "another exploration";
+  EXPECT_EQ(explore(robot, "x", "25", "5").status, 2) << "another exploration";
+  EXPECT_EQ(explore(robot, "x", "30").status, 2) << "its end would be another";
   EXPECT_EQ(explore(robot, "x").status, 4);
   ASSERT_EQ(explore(make_robot("b"), "whole").status, 4);
   EXPECT_EQ(path_of("x"), path_of("whole"));
