@@ -214,7 +214,11 @@ Prior corpus_prior(const TokenLibrary& library) {
 }  // namespace
 
 TokenLibrary pretraining_library() {
-  return {find_operator_set("full"), kInputs, {.constants = true, .linear = true}};
+  std::vector<Op> operators = find_operator_set("full").operators();
+  std::erase(operators, Op::atan);
+  return {OperatorSet("pretraining", "of the shipped weights", std::move(operators)),
+          kInputs,
+          {.constants = true, .linear = true}};
 }
 
 Sequence friction_law(const TokenLibrary& library, RandomStream& random) {

@@ -27,8 +27,8 @@ struct PretrainingOptions {
   double friction_share = 0.5;  // of the corpus; the rest comes from the library under the prior
 };
 
-// All operations, eight inputs, constants and the linear token. The shipped weights cover them but
-// for atan, which is younger: an operation that weights do not know begins untrained.
+// The operations of the shipped weights, eight inputs, constants and the linear token. That is all
+// but atan, which is younger and in no friction law: what weights do not know begins untrained.
 TokenLibrary pretraining_library();
 
 // A friction law in tokens: inputs x1, x2 = sgn x1 and, in some, x3, x4 = sgn x3 (a load). Not
