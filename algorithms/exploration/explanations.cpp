@@ -26,7 +26,8 @@ constexpr std::size_t kWholeFamily = 10;
 constexpr std::array<double, 2> kSizes = {3, 0.8};
 constexpr double kExplainedByBase = 1e-4;  // of a column's squares, on the reference
 
-constexpr double kDrawnByOther = 0.1;  // of a narrow column's squares is all that is left
+// Of a narrow column's squares: where a family's own columns leave less, it is that family's.
+constexpr double kDrawnByOther = 0.1;
 
 constexpr double kMisfit = 0.27;  // of a family's size: what one expects of its misfit
 constexpr Eigen::Index kMisfitColumns = 14;

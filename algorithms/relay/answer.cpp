@@ -148,8 +148,7 @@ std::optional<std::size_t> Answer::best_against_rival(std::span<const Expression
   }
   const int rival_length = paper_complexity(rival_->formula);
   for (const std::size_t place : places) {
-    const std::vector<double> errors =
-        held_out_errors({&front[place], 1}, rows_, rival_rows_).front();
+    const std::vector<double> errors = held_out_errors(front[place], rows_, rival_rows_);
     const double mean =
         std::reduce(errors.begin(), errors.end()) / static_cast<double>(errors.size());
     const bool is_shorter = paper_complexity(front[place]) < rival_length;

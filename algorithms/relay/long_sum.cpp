@@ -429,11 +429,12 @@ std::optional<LongSum> fit_long_sum(const FiniteRows& rows, const OperatorSet& o
   return LongSum{std::move(formula), choice->held_out};
 }
 
-std::vector<std::vector<double>> held_out_errors(std::span<const Expression> formulas,
-                                                 const FiniteRows& rows, std::size_t most_rows) {
+std::vector<double> held_out_errors(const Expression& formula, const FiniteRows& rows,
+                                    std::size_t most_rows) {
   const Sample sample(rows, most_rows);
-  return cross_validate(formulas, sample.table(), sample.target(), sample.movement(), {}, kFolds)
-      .fold_errors;
+  return cross_validate({&formula, 1}, sample.table(), sample.target(), sample.movement(), {},
+                        kFolds)
+      .fold_errors[0];
 }
 
 }  // namespace tribench::relay

@@ -14,7 +14,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "algorithms/budget.hpp"
@@ -37,10 +36,9 @@ struct LongSum {
 std::optional<LongSum> fit_long_sum(const FiniteRows& rows, const OperatorSet& operators,
                                     std::size_t most_rows, Budget& budget);
 
-// Of formulas on the same rows and folds, their constants fitted anew without those held out: what
-// a sum's errors are to be compared with. Infinite where one is not finite on a row. Cost: ten fits
-// a formula.
-std::vector<std::vector<double>> held_out_errors(std::span<const Expression> formulas,
-                                                 const FiniteRows& rows, std::size_t most_rows);
+// Of a formula on the same rows and folds, its constants fitted anew without those held out: what a
+// sum's errors are to be compared with. Infinite where it is not finite on a row. Cost: ten fits.
+std::vector<double> held_out_errors(const Expression& formula, const FiniteRows& rows,
+                                    std::size_t most_rows);
 
 }  // namespace tribench::relay

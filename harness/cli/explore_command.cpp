@@ -123,6 +123,8 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
     limits.seconds = setting.seconds_left;
     execute = answers->remembering(std::move(execute));
   }
+  // Of what was remembered, too: the clock begins anew where the exploration goes on.
+  if (arguments.world.empty()) execute = with_running_clock(std::move(execute));
   options.budget_s = std::min(arguments.budget_s, limits.seconds);
   options.stop = &stop_requested_by_signal();
   if (!arguments.json) {

@@ -32,7 +32,7 @@ class Program {
   Program(std::vector<std::string> command, const MotionLimits& limits, double limit_s)
       : command_(std::move(command)), has_gravity_(limits.gravity_nm != 0), limit_s_(limit_s) {}
 
-  Dataset execute(const PlannedMovement& movement) {
+  Dataset execute(const PlannedMovement& movement) const {
     const std::string output = run(movement);
     CsvOptions options;
     options.drop_missing = true;  // a cell without a value costs its row, not the exploration
@@ -46,7 +46,6 @@ class Program {
       fail("the recording has no rows", "exit status 2 refuses a movement");
     check_channels(file.data);
     name_as_read(file.data);
-    run_clock_on(file.data, movement.rest);
     return std::move(file.data);
   }
 
@@ -106,30 +105,39 @@ class Program {
     }
   }
 
-  // A clock that begins anew with each recording runs on from where the last one ended.
-  void run_clock_on(Dataset& data, double rest_s) {
-    const auto clock = std::ranges::find(data.channels, Role::time, &Channel::role);
-    if (clock->values.front() <= ended_s_) {
-      const double step_s = (clock->values.back() - clock->values.front()) /
-                            static_cast<double>(clock->values.size());
-      const double behind = ended_s_ + rest_s + step_s - clock->values.front();
-      for (double& t : clock->values) t += behind;
-    }
-    ended_s_ = clock->values.back();
-  }
-
   std::vector<std::string> command_;
   bool has_gravity_;
   double limit_s_;
-  double ended_s_ = -std::numeric_limits<double>::infinity();
 };
+
+// Runs on from `ended_s`, which becomes the end of these rows.
+void run_clock_on(Dataset& data, double rest_s, double& ended_s) {
+  const auto clock = std::ranges::find(data.channels, Role::time, &Channel::role);
+  if (clock->values.front() <= ended_s) {
+    const double step_s =
+        (clock->values.back() - clock->values.front()) / static_cast<double>(clock->values.size());
+    const double behind = ended_s + rest_s + step_s - clock->values.front();
+    for (double& t : clock->values) t += behind;
+  }
+  ended_s = clock->values.back();
+}
 
 }  // namespace
 
 loop::ExecuteMovement executing_program(std::vector<std::string> command,
                                         const MotionLimits& limits, double limit_s) {
-  return [program = Program(std::move(command), limits, limit_s)](
-             const PlannedMovement& movement) mutable { return program.execute(movement); };
+  return [program = Program(std::move(command), limits, limit_s)](const PlannedMovement& movement) {
+    return program.execute(movement);
+  };
+}
+
+loop::ExecuteMovement with_running_clock(loop::ExecuteMovement execute) {
+  return [execute = std::move(execute), ended_s = -std::numeric_limits<double>::infinity()](
+             const PlannedMovement& movement) mutable {
+    Dataset rows = execute(movement);
+    run_clock_on(rows, movement.rest, ended_s);
+    return rows;
+  };
 }
 
 }  // namespace tribench

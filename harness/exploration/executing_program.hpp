@@ -6,7 +6,7 @@
 // last word, and prints the recording as CSV on its standard output: time, position, velocity and
 // the friction torque (or the motor torque and, unless the limits have no gravity, the gravity
 // torque), named and in units as in any file of data; rows in which a value is missing are left
-// out. A clock may begin anew with each recording. Exit status 2 with a reason on standard error
+// out. Exit status 2 with a reason on standard error
 // refuses the movement; another one is chosen. Any other failure, or an answer that cannot be read,
 // ends the exploration with an Error (failed).
 #pragma once
@@ -21,5 +21,9 @@ namespace tribench {
 
 loop::ExecuteMovement executing_program(std::vector<std::string> command,
                                         const MotionLimits& limits, double limit_s);
+
+// A clock that begins anew with each recording runs on from where the last one ended: a robot's
+// program need not remember. The rows have a time and are not empty.
+loop::ExecuteMovement with_running_clock(loop::ExecuteMovement execute);
 
 }  // namespace tribench

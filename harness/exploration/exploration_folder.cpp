@@ -10,6 +10,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/reading/file_text.hpp"
@@ -26,12 +27,20 @@ void append_line(const std::filesystem::path& file, const Json& line) {
   if (!out) throw Error(ErrorKind::environment, "cannot be written to", file.string());
 }
 
-// Whole lines alone: what was being written when the program was killed was not answered.
+// What was being written when the program was killed was not answered: it is cut off, and the next
+// answer has a line of its own.
+void cut_off_torn_line(const std::filesystem::path& file) {
+  std::string text = read_file_text(file);
+  const std::size_t whole = text.rfind('\n') + 1;  // 0 where no line is
+  if (whole == text.size()) return;
+  text.resize(whole);
+  write_file(file, text);
+}
+
 std::vector<Json> read_lines(const std::filesystem::path& file) {
   std::vector<Json> lines;
   std::istringstream text(read_file_text(file));
   for (std::string line; std::getline(text, line);) {
-    if (text.eof()) break;
     const std::string place = fmt::format("{}:{}", file.string(), lines.size() + 1);
     lines.push_back(read_json_or_throw<Json>(line, place));
     const char* first = lines.size() == 1 ? "asked" : "movement";
@@ -50,9 +59,11 @@ ExplorationFolder::ExplorationFolder(std::filesystem::path folder, ExplorationSe
   make_output_folder(journal_);
   const std::filesystem::path place = std::exchange(journal_, journal_ / "journal.jsonl");
   std::vector<Json> lines;
-  if (std::filesystem::exists(journal_)) lines = read_lines(journal_);
+  if (std::filesystem::exists(journal_)) {
+    cut_off_torn_line(journal_);
+    lines = read_lines(journal_);
+  }
   if (lines.empty()) {
-    std::filesystem::remove(journal_);
     append_line(journal_, {{"asked", setting.asked},
                            {"limits", setting.limits},
                            {"start_rad", setting.start_rad},

@@ -28,7 +28,7 @@ std::string stands_beside_sum(const std::string& law, const std::vector<double>&
   relay::Answer answer(context);
   answer.offer(parse(law, rows.names), "the test");
   const Expression formula = answer.likeliest();
-  std::vector<double> errors = relay::held_out_errors({&formula, 1}, answer.rows(), kRows).front();
+  std::vector<double> errors = relay::held_out_errors(formula, answer.rows(), kRows);
   for (std::size_t f = 0; f < errors.size(); ++f) errors[f] *= part[f % part.size()];
   answer.set_rival({parse(kSum, rows.names), errors}, kRows);
   const FitResult result = std::move(answer).result();

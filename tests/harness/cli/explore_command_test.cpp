@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -63,11 +64,21 @@ TEST_F(ExploreByProgram, AFailureLosesNothingAndTheSameCommandGoesOn) {
   ASSERT_EQ(explore(make_robot("b"), "whole").status, 4);
   EXPECT_EQ(path_of("x"), path_of("whole"));
   EXPECT_EQ(read_text(folder_ / "x/data.csv"), read_text(folder_ / "whole/data.csv"));
-  // A line that was cut off was not answered.
+}
+
+// What was cut off was not answered: it is asked for again, in a line of its own.
+TEST_F(ExploreByProgram, ALineThatWasCutOffIsAskedForAgain) {
+  const std::string robot = make_robot("a");
+  ASSERT_EQ(explore(robot, "x").status, 4);
   const std::string journal = read_text(folder_ / "x/journal.jsonl");
-  write_text(folder_ / "x/journal.jsonl", journal + R"({"movement": "1,con)");
-  EXPECT_EQ(explore(robot, "x").status, 4);
-  EXPECT_EQ(path_of("x"), path_of("whole"));
+  const std::size_t last = journal.rfind('\n', journal.size() - 2) + 1;
+  write_text(folder_ / "x/journal.jsonl", journal.substr(0, last + 40));
+  // The robot has moved on since: what it records now is not what it was.
+  ASSERT_EQ(explore(robot, "x").status, 4);
+  const std::string again = read_text(folder_ / "x/journal.jsonl");
+  EXPECT_EQ(again.substr(0, last + 20), journal.substr(0, last + 20));
+  EXPECT_EQ(std::ranges::count(again, '\n'), std::ranges::count(journal, '\n'));
+  EXPECT_EQ(explore(robot, "x").status, 4) << "and can be read again";
 }
 
 TEST_F(ExploreByProgram, ReadsTheUnitsOfTheHeaderAndWritesWhatItHasRead) {
@@ -94,6 +105,11 @@ TEST_F(ExploreByProgram, AsksForWhatTheFirstRecordingLacks) {
 TEST_F(ExploreByProgram, AClockThatBeginsAnewRunsOn) {
   const std::string anew = make_robot(
       "a", "", "awk -F, -v OFS=, 'NR == 1 { print; next } NR == 2 { t = $2 } { $2 -= t; print }'");
+  ASSERT_EQ(explore(anew, "x").status, 4);
+  // Where the exploration goes on, too.
+  const std::string journal = read_text(folder_ / "x/journal.jsonl");
+  write_text(folder_ / "x/journal.jsonl",
+             journal.substr(0, journal.rfind('\n', journal.size() - 2) + 1));
   ASSERT_EQ(explore(anew, "x").status, 4);
   std::istringstream data(read_text(folder_ / "x/data.csv"));
   double last = -1;
