@@ -41,9 +41,15 @@ class List {
   void add_slow(std::size_t j) {
     add(FactorKind::root, function(Op::sqrt, input(j)), {j});
     add(FactorKind::logarithm, function(Op::log, input(j)), {j});
+    if (!rows_.is_share(j)) return;
+    add(FactorKind::logarithm, function(Op::log, constant(1) - input(j)), {j});
   }
   void add_powers(std::size_t i, std::size_t j) {
     add(FactorKind::power, Expression::binary(Op::pow, input(i), input(j)), {i, j});
+    if (!rows_.is_share(i)) return;
+    // What is left, or has grown, after j times a share of i.
+    add(FactorKind::power, Expression::binary(Op::pow, constant(1) - input(i), input(j)), {i, j});
+    add(FactorKind::power, Expression::binary(Op::pow, constant(1) + input(i), input(j)), {i, j});
   }
   // Of inputs j and later ones, `product` times a wave of each of one more.
   void add_wave_products(std::size_t next, const Expression& product,

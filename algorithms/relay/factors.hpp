@@ -21,8 +21,8 @@ enum class FactorKind {
   difference,    // of two inputs
   sum,
   root,         // of a positive input
-  power,        // x^y
-  logarithm,    // of a positive input
+  power,        // x^y; (1 - x)^y and (1 + x)^y of a share x
+  logarithm,    // of a positive input x; of 1 - x of a share
   exponential,  // of an input of order one
   decay,        // exp(-x y) of two of them
   other,        // 1 + x, tanh x, ...

@@ -79,6 +79,10 @@ bool LogRows::is_of_order_one(std::size_t j) const {
   return largest >= 0.2 && largest <= 50;
 }
 
+bool LogRows::is_share(std::size_t j) const {
+  return std::ranges::all_of(inputs_[j].values, [](double x) { return x > 0 && x < 1; });
+}
+
 bool LogRows::are_alike(std::size_t i, std::size_t j) const {
   constexpr double kApart = 30;
   const double a = mean_size_of(inputs_[i].values);

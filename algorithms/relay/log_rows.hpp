@@ -41,6 +41,8 @@ class LogRows {
   // An input that may be an angle or another number of order one, of which a sine or an exponential
   // means something.
   bool is_of_order_one(std::size_t j) const;
+  // A part of one: a concentration, a probability, a rate of interest.
+  bool is_share(std::size_t j) const;
   // Whether a sum of the two may mean something: sizes that overlap.
   bool are_alike(std::size_t i, std::size_t j) const;
 

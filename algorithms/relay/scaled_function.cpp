@@ -24,8 +24,10 @@ using namespace build;
 
 constexpr std::size_t kFewestScaledRows = 20;
 constexpr std::size_t kCoarseRows = 64;
-constexpr int kCoarseScales = 60;   // of a, from a hundredth to three thousand over the range
-constexpr double kScaleStep = 1.3;  // from one of them to the next, at most
+constexpr int kCoarseScales = 60;       // of a, from a hundredth to three thousand over the range
+constexpr double kScaleStep = 1.3;      // from one of them to the next, at most
+constexpr int kLimitScales = 20;        // of a below 0, by how near the last row is to the limit
+constexpr double kNearestLimit = 1e-6;  // of the limit
 // Of a function the combinations that are best on the grid of scales, and of these with a finer
 // scale.
 constexpr std::size_t kRefined = 40;
@@ -154,6 +156,26 @@ class ScaledFunctionSearch {
     return result;
   }
 
+  // Powers and logarithms of 1 + a x^q have a limit, which x stays below.
+  static bool has_limit(const UnitFunction& function) {
+    return function.kind == Kind::power || function.kind == Kind::logarithm;
+  }
+
+  double limit(double q) const {
+    double largest = 0;
+    for (const double x : x_) largest = std::max(largest, elementary::pow(x, q));
+    return -1 / largest;
+  }
+
+  std::vector<double> scales_before_limit(double q) const {
+    std::vector<double> result;
+    for (int k = 1; k <= kLimitScales; ++k) {
+      const double apart = elementary::pow(kNearestLimit, static_cast<double>(k) / kLimitScales);
+      result.push_back(limit(q) * (1 - apart));
+    }
+    return result;
+  }
+
   // Of c_0 + c_1 exp(a x^q) over many decades the largest rows tell a; no grid is as fine.
   double steepest(const Outer& outer, double q) const {
     const std::vector<double> z = formed_target(rows_.target().values, outer.form);
@@ -193,6 +215,9 @@ class ScaledFunctionSearch {
       try_scale(size, 0, outers_.size());
       if (is_exponential) try_scale(-size, 0, outers_.size());
     }
+    if (has_limit(function)) {
+      for (const double scale : scales_before_limit(q)) try_scale(scale, 0, outers_.size());
+    }
     for (std::size_t k = 0; is_exponential && k < outers_.size(); ++k) {
       try_scale(steepest(outers_[k], q), k, k + 1);
     }
@@ -218,8 +243,12 @@ class ScaledFunctionSearch {
       }
       return left_of(relative, f);
     };
-    const double scale = least_by_golden_sections(left_at, combination.scale / kScaleStep,
-                                                  combination.scale * kScaleStep, kNarrowings);
+    double steepest = combination.scale * kScaleStep;
+    if (has_limit(combination.function) && steepest < 0) {
+      steepest = std::max(steepest, limit(combination.inner) * (1 - kNearestLimit));
+    }
+    const double scale =
+        least_by_golden_sections(left_at, combination.scale / kScaleStep, steepest, kNarrowings);
     const double left = left_at(scale);
     if (left < combination.left) {
       combination.scale = scale;

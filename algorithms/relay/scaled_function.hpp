@@ -3,7 +3,8 @@
 // What is left of many laws once their products are taken off: T(y) = x^p (c_0 + c_1 f(a x^q)),
 // with T one of y, 1/y, y^2, 1/y^2, p and q small fractions, f one of exp, tanh, atan, log(1 + .),
 // powers of 1 + ., e^. + e^-. and e^. - e^-. Planck's law, the efficiency of a fin, an Arrhenius
-// rate with a prefactor, the field on the axis of a disk.
+// rate with a prefactor, the field on the axis of a disk; where a is below 0, what has a limit that
+// x stays below, as a speed below that of light.
 //
 // All combinations are tried on few rows and a coarse grid of a, where c_0 and c_1 are solved for;
 // the best are fitted. Finds nothing where there is noise (product_search.hpp says why).

@@ -236,7 +236,7 @@ void StructureSearch::find_products_and_sums(const LogRows& rows, Budget& budget
     answer_.offer(find_relation(rows, operators, Columns::with_factors, kColumns, budget), kBySum);
   }
   if (answer_.is_done()) return;
-  if (context_.data.inputs.size() == 1) solve(whole(), Width::narrow, budget);
+  if (context_.data.inputs.size() == 1) solve(whole(), budget);
 }
 
 std::optional<ReducedProblem> StructureSearch::find_structure(const LogRows& rows, Budget& budget) {
@@ -249,7 +249,7 @@ std::optional<ReducedProblem> StructureSearch::find_structure(const LogRows& row
   const auto collapses =
       find_collapses(rows, context_.operators, kOrders << round_, kMostCollapses, budget);
   for (const Collapse& collapse : collapses) {
-    solve(collapsed(whole(), collapse), Width::narrow, budget);
+    solve(collapsed(whole(), collapse), budget);
     if (answer_.is_done()) return std::nullopt;
   }
   if (collapses.empty() || !collapses[0].is_smooth) return std::nullopt;
@@ -262,13 +262,13 @@ void StructureSearch::find_angles(Budget& budget) {
   for (std::size_t j = 0; j < context_.data.inputs.size(); ++j) inputs.push_back(build::input(j));
   for (const TargetForm form : angle_forms(answer_.rows().target)) {
     Reduction angle{form, false, build::constant(1), inputs};
-    solve({whole(), std::move(angle)}, Width::narrow, budget);
+    solve({whole(), std::move(angle)}, budget);
     if (answer_.is_done()) return;
   }
 }
 
 // g among products, short sums and known functions.
-void StructureSearch::solve(const ReducedProblem& problem, Width width, Budget& budget) {
+void StructureSearch::solve(const ReducedProblem& problem, Budget& budget) {
   const FiniteRows all(problem.data());
   const LogRows rows(all, kSearchedRows);
   if (rows.rows() == 0) return;
@@ -284,9 +284,15 @@ void StructureSearch::solve(const ReducedProblem& problem, Width width, Budget& 
     if (!answer_.is_done()) try_g(find_scaled_function(rows, operators, budget));
     if (!answer_.is_done()) try_g(find_waves(rows, operators, budget));
   }
-  if (width == Width::narrow || problem.inputs() > kFewInputs || answer_.is_done()) return;
+}
+
+void StructureSearch::solve_with_factors(const ReducedProblem& problem, Budget& budget) {
+  const FiniteRows all(problem.data());
+  const LogRows rows(all, kSearchedRows);
+  if (problem.inputs() > kFewInputs || rows.rows() == 0) return;
   const std::size_t columns = problem.inputs() == 1 ? kColumns / 5 : 2 * kColumns;
-  try_g(find_relation(rows, operators, Columns::with_factors, columns, budget));
+  const auto g = find_relation(rows, context_.operators, Columns::with_factors, columns, budget);
+  if (g) answer_.offer(problem.restored(*g), kByReduction);
 }
 
 // g by another method.
@@ -323,6 +329,10 @@ std::optional<ReducedProblem> StructureSearch::reduce(Guesses guesses) {
     seen.push_back(std::move(*problem));
     if (answer_.is_done() && seen.back().depth() > 0) ++after;
   }
+  for (const ReducedProblem& problem : seen) {
+    if (answer_.is_done() || budget.exhausted()) break;
+    if (problem.depth() > 0) solve_with_factors(problem, budget);
+  }
   context_.budget.settle(budget);
   const auto fewest = std::ranges::min_element(seen, {}, &ReducedProblem::inputs);
   if (fewest == seen.end() || fewest->depth() == 0) return std::nullopt;
@@ -336,7 +346,7 @@ bool StructureSearch::look_at(ReducedProblem& problem, Guesses guesses,
   Reductions further = find_reductions(rows, guesses, budget);
   if (!(further.roughness <= problem.most_roughness())) return false;
   problem.set_roughness(further.roughness);
-  if (problem.depth() > 0) solve(problem, Width::wide, budget);
+  if (problem.depth() > 0) solve(problem, budget);
   for (Reduction& each : further.list) {
     if (problem.depth() < kMostDepth) open.emplace_back(problem, std::move(each));
   }

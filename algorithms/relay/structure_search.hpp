@@ -59,8 +59,6 @@ class StructureSearch {
   void search_wide_sums();
 
  private:
-  enum class Width { narrow, wide };  // wide: with factors (factors.hpp)
-
   // What structure is likely under noise: weighed beside the methods' choices.
   void search_likely();
   // What is exact is offered; the return is a problem of fewer variables that was not solved.
@@ -80,8 +78,10 @@ class StructureSearch {
   // and what it reduces to is put to those that are open.
   bool look_at(ReducedProblem& problem, Guesses guesses, std::vector<ReducedProblem>& open,
                Budget& budget);
-  // What is exact is offered.
-  void solve(const ReducedProblem& problem, Width width, Budget& budget);
+  // What is exact is offered. With factors (factors.hpp): one search, as expensive as all of the
+  // others together, for when these have looked at every problem.
+  void solve(const ReducedProblem& problem, Budget& budget);
+  void solve_with_factors(const ReducedProblem& problem, Budget& budget);
   void search_by_solver(const ReducedProblem& problem);
   ReducedProblem whole() const { return {context_.data.inputs, answer_.rows()}; }
   bool has(std::string_view search) const { return without_ != search; }

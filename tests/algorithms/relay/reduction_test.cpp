@@ -101,7 +101,7 @@ TEST(Relay, FindsAGasLawOfWhichTwoVariablesRemain) {
        {{"n", 1, 5}, {"t", 250, 500}, {"v", 1, 5}, {"b", 0.02, 0.1}, {"a", 100, 500}},
        250});
 }
-TEST(Relay, DISABLED_FindsAnInterestOfWhichTwoVariablesRemain) {
+TEST(Relay, FindsAnInterestOfWhichTwoVariablesRemain) {
   expect_two_variables(
       {"p*(1 + r/n)^(n*t)", {{"p", 100, 1000}, {"r", 0.01, 0.1}, {"n", 1, 12}, {"t", 1, 20}}, 300});
 }

@@ -121,6 +121,19 @@ TEST(RelationSearch, FindsDecaysOfProducts) {
   }
 }
 
+// Entropy, mixing, a logit; what survives, an annuity, savings.
+TEST(RelationSearch, FindsLawsOfShares) {
+  for (const std::string text : {"-(p*log(p)) - (1 - p)*log(1 - p)", "a*log(p/(1 - p))",
+                                 "1 - (1 - p)^a", "p/(1 - (1 + p)^(-a))", "((1 + p)^a - 1)/p"}) {
+    const DrawnLaw law(text, {{"p", 0.02, 0.9}, {"a", 1, 9}}, 200);
+    Budget budget({});
+    const auto found =
+        relay::find_relation(*Rows(law), full(), relay::Columns::with_factors, 500, budget);
+    ASSERT_TRUE(found) << text;
+    EXPECT_LT(law.error_of(*found), 1e-9) << text << ": " << print(*found, law.names);
+  }
+}
+
 TEST(RelationSearch, FindsSumsOfProductsOfWaves) {
   const DrawnLaw law("sin(a)*sin(b) + cos(a)*cos(b)*cos(d)",
                      {{"a", -1.5, 1.5}, {"b", -1.5, 1.5}, {"d", -3, 3}}, 200);
@@ -239,6 +252,18 @@ TEST(ScaledFunction, FindsWhatIsLeftOfPlanckFinsAndRates) {
   const DrawnLaw other("sin(3*x) + x", {{"x", 0.3, 5}}, 200);
   Budget budget({});
   EXPECT_FALSE(relay::find_scaled_function(*Rows(other), full(), budget));
+}
+
+// The input stays below a limit, far from it and just.
+TEST(ScaledFunction, FindsWhatHasALimit) {
+  for (const std::string text : {"9*(1/sqrt(1 - x^2/25.01) - 1)", "3 - sqrt(30 - x^2)",
+                                 "log(1 - 0.15*x) + 2", "2*x/(1 - (x/6)^2)^0.7"}) {
+    const DrawnLaw law(text, {{"x", 0.3, 5}}, 200);
+    Budget budget({});
+    const auto found = relay::find_scaled_function(*Rows(law), full(), budget);
+    ASSERT_TRUE(found) << text;
+    EXPECT_LT(law.error_of(*found), 1e-8) << text << ": " << print(*found, law.names);
+  }
 }
 
 TEST(Waves, FindsTwoWavesAndOneThatDecays) {
