@@ -43,6 +43,7 @@ struct Channel {
   std::string unit;  // SI symbol, "-" for none
   Role role = Role::none;
   std::vector<double> values;
+  std::string formula = {};  // over q, the position, where it is no column of the source: "sin(q)"
 };
 
 // A column of the source that is no channel, since it holds text: what stands in it, and where.

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "algorithms/expression/expression.hpp"
 
@@ -35,6 +37,20 @@ inline Expression function(Op op, const Expression& a) { return Expression::unar
 inline Expression sum_of(const Expression& a, const Expression& b) {
   if (a.empty()) return b;
   return b.empty() ? a : a + b;
+}
+
+// The formula with inputs[j] in place of input j.
+inline Expression substituted(const Expression& formula, std::span<const Expression> inputs) {
+  std::vector<Node> tape;
+  for (const Node& node : formula.nodes()) {
+    if (!node.is_variable()) {
+      tape.push_back(node);
+      continue;
+    }
+    const auto nodes = inputs[node.variable].nodes();
+    tape.insert(tape.end(), nodes.begin(), nodes.end());
+  }
+  return Expression(std::move(tape));
 }
 
 }  // namespace tribench::build

@@ -16,20 +16,6 @@ namespace {
 constexpr double kSmoother = 0.7;  // than the problem before, for each input less
 constexpr double kSmooth = 1e-5;   // enough, however smooth that was
 
-// `formula` with formulas in place of its inputs.
-Expression substituted(const Expression& formula, const std::vector<Expression>& inputs) {
-  std::vector<Node> nodes;
-  for (const Node& node : formula.nodes()) {
-    if (node.is_variable()) {
-      const auto piece = inputs[node.variable].nodes();
-      nodes.insert(nodes.end(), piece.begin(), piece.end());
-    } else {
-      nodes.push_back(node);
-    }
-  }
-  return Expression(std::move(nodes));
-}
-
 bool is_one(const Expression& formula) {
   return formula.size() == 1 && formula.node(0).is_constant() && formula.node(0).value == 1;
 }

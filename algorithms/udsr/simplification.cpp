@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "algorithms/expression/build.hpp"
 #include "foundation/order_statistics.hpp"
 
 namespace tribench::udsr {
@@ -309,20 +310,6 @@ Subproblem separable_subproblem(const std::vector<std::size_t>& part, std::vecto
   return sub;
 }
 
-// formula with input j replaced by substitutes[j].
-Expression substituted(const Expression& formula, std::span<const Expression> substitutes) {
-  std::vector<Node> tape;
-  for (const Node& node : formula.nodes()) {
-    if (!node.is_variable()) {
-      tape.push_back(node);
-      continue;
-    }
-    const auto nodes = substitutes[node.variable].nodes();
-    tape.insert(tape.end(), nodes.begin(), nodes.end());
-  }
-  return Expression(std::move(tape));
-}
-
 }  // namespace
 
 std::optional<Reduction> find_reduction(const Smoother& smoother, std::span<const Input> inputs,
@@ -371,10 +358,10 @@ std::vector<Subproblem> split(const Reduction& reduction, const Smoother& smooth
 
 Expression recombine(const Reduction& reduction, std::span<const Subproblem> parts,
                      std::span<const Expression> formulas) {
-  if (is_symmetry(reduction.kind)) return substituted(formulas[0], parts[0].substitutes);
+  if (is_symmetry(reduction.kind)) return build::substituted(formulas[0], parts[0].substitutes);
   return Expression::binary(operation_of(reduction.kind),
-                            substituted(formulas[0], parts[0].substitutes),
-                            substituted(formulas[1], parts[1].substitutes));
+                            build::substituted(formulas[0], parts[0].substitutes),
+                            build::substituted(formulas[1], parts[1].substitutes));
 }
 
 }  // namespace tribench::udsr

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,11 +16,10 @@
 #include "algorithms/states/state_export.hpp"
 #include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
-#include "foundation/json_text.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/suggestion.hpp"
-#include "foundation/text.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/loop_formula.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/loop/controller_code.hpp"
 #include "harness/motion/simulator_friction.hpp"
@@ -53,37 +51,6 @@ CodeForm find_form(const std::string& name) {
   throw_bad_input(fmt::format("there is no form '{}'", name), "--as", did_you_mean(name, names));
 }
 
-// The formula of a loop.json, and how its channels that no sensor gives are computed.
-struct LoopFormula {
-  std::string text;
-  std::optional<loop::PathFrom> distance_from;
-};
-
-LoopFormula loop_formula_in(const nlohmann::json& json) {
-  LoopFormula loop{json.at("formula"), std::nullopt};
-  bool has_position = false;
-  bool derives_distance = false;
-  for (const nlohmann::json& symbol : json.at("symbols")) {
-    const std::string name = symbol.value("name", "");
-    has_position = has_position || name == "q";
-    derives_distance =
-        derives_distance || (loop::is_distance(name) && symbol.contains("computed_as"));
-  }
-  if (derives_distance) {
-    loop.distance_from = has_position ? loop::PathFrom::position : loop::PathFrom::velocity;
-  }
-  return loop;
-}
-
-LoopFormula read_loop(const std::string& file) {
-  try {
-    return loop_formula_in(read_json<nlohmann::json>(read_file(file)));
-  } catch (const nlohmann::json::exception&) {  // no JSON, no object, another type
-    throw_bad_input("this is no loop.json: it has no formula and symbols", file,
-                    "give a formula, or the loop.json that 'tribench loop --out' writes");
-  }
-}
-
 // "d=q", "d=v"
 std::optional<loop::PathFrom> distance_from(const std::string& text) {
   if (text.empty()) return std::nullopt;
@@ -108,8 +75,8 @@ std::string stateful_code(const ExportArguments& arguments, CodeForm form) {
   }
   StatefulExportOptions options{arguments.options.function, {}, arguments.single};
   std::vector<std::string> names;
-  if (!arguments.box.empty()) {
-    options.box = parse_box(arguments.box);
+  if (arguments.options.box) {
+    options.box = arguments.options.box;
     names = options.box->names;
     NamedBox whole = *options.box;
     parse_stateful_over(arguments.formula, whole);  // refuses a name that has no range
@@ -120,31 +87,45 @@ std::string stateful_code(const ExportArguments& arguments, CodeForm form) {
 
 // The parameters that a simulator's joint can take of it.
 void write_simulator(const ExportArguments& arguments, Simulator simulator) {
-  if (arguments.box.empty()) {
+  if (!arguments.options.box) {
     throw_bad_input("a simulator's parameters are fitted over a box", "--box",
                     "give it: --box 'v=-2:2,g=-60:60'");
   }
-  const std::string formula =
-      arguments.formula.ends_with(".json") ? read_loop(arguments.formula).text : arguments.formula;
   const SimulatorFriction friction =
-      fit_simulator_friction(formula, parse_box(arguments.box), arguments.velocity,
+      fit_simulator_friction(arguments.formula, *arguments.options.box, arguments.velocity,
                              arguments.acceleration, simulator, arguments.inertia);
-  write_code(arguments,
-             simulator_text(friction, simulator, formula, arguments.joint, arguments.is_linear));
+  write_code(arguments, simulator_text(friction, simulator, arguments.formula, arguments.joint,
+                                       arguments.is_linear));
+}
+
+// A current is no torque to a simulator.
+void refuse_other_units(const LoopFormula& loop, const std::string& file) {
+  if (loop.unit.empty() || loop.unit == "N m" || loop.unit == "N") return;
+  throw_bad_input(fmt::format("this friction is in {}, and a simulator takes N m or N", loop.unit),
+                  file, "give 'tribench loop' the --torque-constant");
+}
+
+// A loop.json tells its formula, its box and how its distance is derived, unless options do.
+void read_loop(ExportArguments& arguments, std::optional<loop::PathFrom>& from) {
+  if (!arguments.formula.ends_with(".json")) return;
+  const std::optional<NamedBox>& given = arguments.options.box;
+  LoopFormula loop =
+      read_loop_formula(arguments.formula, given ? given->names : std::vector<std::string>{});
+  if (find_simulator(arguments.form)) refuse_other_units(loop, arguments.formula);
+  arguments.formula = std::move(loop.text);
+  if (!given) arguments.options.box = std::move(loop.box);
+  if (!from) from = loop.distance_from;
 }
 
 void write_export(ExportArguments arguments) {
+  if (!arguments.box.empty()) arguments.options.box = parse_box(arguments.box);
+  std::optional<loop::PathFrom> from = distance_from(arguments.derive);
+  read_loop(arguments, from);
   if (const std::optional<Simulator> simulator = find_simulator(arguments.form)) {
     write_simulator(arguments, *simulator);
     return;
   }
   const CodeForm form = find_form(arguments.form);
-  std::optional<loop::PathFrom> from = distance_from(arguments.derive);
-  if (arguments.formula.ends_with(".json")) {
-    LoopFormula loop = read_loop(arguments.formula);
-    arguments.formula = std::move(loop.text);
-    if (!from) from = loop.distance_from;
-  }
   if (declares_states(arguments.formula)) {
     write_code(arguments, stateful_code(arguments, form));
     return;
@@ -156,10 +137,9 @@ void write_export(ExportArguments arguments) {
   ExportOptions options = arguments.options;
   std::vector<std::string> names;
   Expression formula;
-  if (arguments.box.empty()) {
+  if (!options.box) {
     formula = parse_collecting_names(arguments.formula, names);
   } else {
-    options.box = parse_box(arguments.box);
     formula = parse_over(arguments.formula, *options.box);
     names = options.box->names;
   }
@@ -186,7 +166,9 @@ void add_export_command(CLI::App& app, ExitStatus& /*status*/) {
       "An input sgn_X is computed from X. In front of a formula that begins with a minus put --.\n"
       "With states ('z = dahl(v, sliding=1e-5); 2e6*z') the code has init and step.\n"
       "A simulator takes Coulomb and viscous friction alone: what that loses is said beside them.\n"
-      "In place of a formula: the loop.json of 'tribench loop', with its channels' history in C.");
+      "In place of a formula: the loop.json of 'tribench loop', with its box, and its channels' "
+      "history\nin C. Gravity that it fitted is put in where the friction reads it, and not "
+      "added.");
   auto arguments = std::make_shared<ExportArguments>();
   command->add_option("formula", arguments->formula, "the formula, or a loop.json")->required();
   command

@@ -25,8 +25,4 @@ nlohmann::json model_argument(const std::string& model) {
   return json;
 }
 
-std::string formula_argument(const std::string& model) {
-  return model_argument(model)["formula"].get<std::string>();
-}
-
 }  // namespace tribench

@@ -11,6 +11,5 @@ namespace tribench {
 
 // An object with a text "formula" at least. Throws Error (bad_input) for a file that is none.
 nlohmann::json model_argument(const std::string& model);
-std::string formula_argument(const std::string& model);
 
 }  // namespace tribench

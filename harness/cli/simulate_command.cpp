@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -22,6 +23,7 @@
 #include "foundation/standard_streams.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/data_options.hpp"
+#include "harness/cli/loop_formula.hpp"
 #include "harness/cli/model_argument.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/motion/motion_trial.hpp"
@@ -89,6 +91,14 @@ DataFile read_recording(const SimulateArguments& arguments, const MotionSetup& s
   return file;
 }
 
+// A loop.json tells the gravity that it fitted, unless an option does.
+void read_model(const SimulateArguments& arguments, MotionSetup& setup) {
+  const nlohmann::json model = model_argument(arguments.model);
+  setup.formula = model["formula"].get<std::string>();
+  if (!model.contains("symbols")) return;
+  if (arguments.gravity.empty()) setup.gravity = read_loop_formula(arguments.model).gravity;
+}
+
 // "4.9*sin(q)", "fit", "none", "1.2"
 void read_body(const SimulateArguments& arguments, MotionSetup& setup) {
   if (arguments.inertia == "fit") {
@@ -103,7 +113,7 @@ void read_body(const SimulateArguments& arguments, MotionSetup& setup) {
   }
   if (arguments.gravity == "fit") {
     setup.fit_gravity = true;
-  } else if (arguments.gravity != "none") {
+  } else if (!arguments.gravity.empty() && arguments.gravity != "none") {
     setup.gravity = arguments.gravity;
   }
   if (setup.is_whole && (setup.inertia || setup.fit_inertia || setup.fit_gravity)) {
@@ -238,7 +248,7 @@ bool has_recorded_gravity(const Dataset& data) {
 void simulate(const SimulateArguments& arguments) {
   if (!arguments.out.empty()) make_output_folder(arguments.out);
   MotionSetup setup = arguments.setup;
-  setup.formula = formula_argument(arguments.model);
+  read_model(arguments, setup);
   read_body(arguments, setup);
   read_control(arguments, setup);
   read_refined(arguments, setup);

@@ -23,7 +23,7 @@
 namespace tribench {
 namespace {
 
-struct Arguments {
+struct RetellingArguments {
   LoopGenerator generator = LoopGenerator::planted;
   int campaigns = 60;
   std::uint64_t seed = 1;
@@ -37,7 +37,7 @@ struct Arguments {
   bool json = false;
 };
 
-std::vector<RecordingToTell> listed_recordings(const Arguments& arguments) {
+std::vector<RecordingToTell> listed_recordings(const RetellingArguments& arguments) {
   RecordingList list;
   if (arguments.measured) {
     const auto folder = measured::find_data_folder(
@@ -58,7 +58,7 @@ std::vector<RecordingToTell> listed_recordings(const Arguments& arguments) {
   return list.recordings;
 }
 
-std::vector<RecordingToTell> chosen_recordings(const Arguments& arguments) {
+std::vector<RecordingToTell> chosen_recordings(const RetellingArguments& arguments) {
   std::vector<RecordingToTell> recordings =
       arguments.measured || !arguments.list.empty()
           ? listed_recordings(arguments)
@@ -147,7 +147,7 @@ void print_json(const RetellingStudy& study, const std::string& folder) {
   fmt::print("{}\n", nlohmann::ordered_json{{"figures", figures}, {"changed", changed}}.dump(2));
 }
 
-void run(const Arguments& arguments, ExitStatus& status) {
+void run(const RetellingArguments& arguments, ExitStatus& status) {
   if (!arguments.out.empty()) make_output_folder(arguments.out);
   const RetellingStudy study = run_retelling_study(
       chosen_recordings(arguments), make_loop_teller("/proc/self/exe"), arguments.study);
@@ -168,7 +168,7 @@ void add_retelling_study(CLI::App& study, ExitStatus& status) {
   command->footer(
       "Example: tribench study retellings --campaigns 60\n"
       "         tribench study retellings --measured --data ../shared/data");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RetellingArguments>();
   add_generator_option(*command, arguments->generator);
   command->add_option("--campaigns", arguments->campaigns, "so many planted campaigns")
       ->transform(whole_number(1, 100'000))

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "algorithms/expression/canonical.hpp"
 #include "algorithms/expression/text.hpp"
@@ -190,7 +191,8 @@ void add_symbols(LoopRecord& record, const JudgedDiagnosis& diagnosis, const Obs
     const Signal& signal = data.signals[j];
     const auto [low, high] = std::ranges::minmax(signal.values);
     record.symbols.push_back({signal.name, signal.channel, signal.unit, meaning_of(data, signal),
-                              signal.recipe, used[j] != 0, low, high});
+                              signal.formula.empty() ? signal.recipe : signal.formula, used[j] != 0,
+                              low, high, signal.formula});
   }
 }
 
@@ -248,7 +250,12 @@ std::string code_of(const JudgedDiagnosis& diagnosis, const Observations& data) 
   if (d != nullptr && !d->recipe.empty()) {
     from = data.find("q") != nullptr ? PathFrom::position : PathFrom::velocity;
   }
-  return controller_code(formula_of(diagnosis.after), data.names(), {}, from);
+  std::map<std::string, std::string> formulas;
+  for (const Signal& signal : data.signals) {
+    if (!signal.formula.empty()) formulas.emplace(signal.name, signal.formula);
+  }
+  const NamedFormula read = with_formulas(formula_of(diagnosis.after), data.names(), formulas);
+  return controller_code(read.formula, read.names, {}, from);
 }
 
 }  // namespace

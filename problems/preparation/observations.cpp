@@ -437,7 +437,8 @@ void add_signal(Observations& out, const Channel& channel, bool rigid) {
   }
   if (!taken || out.find(name) != nullptr) return;
   out.signals.push_back({name, channel.name, channel.unit, channel.role,
-                         derived ? derived->recipe : std::string(), channel.values});
+                         derived ? derived->recipe : std::string(), channel.values,
+                         channel.formula});
   if (rigid) out.rigid.push_back(name);
 }
 

@@ -35,6 +35,7 @@ struct Signal {
   Role role = Role::none;
   std::string recipe;  // how it is computed where it is no column of the data, else empty
   std::vector<double> values;
+  std::string formula = {};  // over q, where that says it: "sin(q)"
   // A velocity after a filter, a distance read otherwise: nothing to look at beside the signal
   // itself.
   bool is_variant() const { return name.starts_with("v_lag") || name == kSeenDistance; }

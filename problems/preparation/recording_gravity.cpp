@@ -122,9 +122,13 @@ void fit_gravity(PreparedRecording& out, Gravity gravity) {
   const std::vector<double> angle = out.data.find(Role::position)->values;
   const Channel* torque = out.data.find(Role::motor_torque);
   if (torque == nullptr) torque = out.data.find(Role::motor_current);
-  Channel sine{"sin_q", "-", Role::none, {}};
-  Channel cosine{"cos_q", "-", Role::none, {}};
-  Channel load{"fitted_gravity", torque->unit, Role::gravity_torque, {}};
+  Channel sine{"sin_q", "-", Role::none, {}, "sin(q)"};
+  Channel cosine{"cos_q", "-", Role::none, {}, "cos(q)"};
+  Channel load{"fitted_gravity",
+               torque->unit,
+               Role::gravity_torque,
+               {},
+               fmt::format("{}*sin(q) + {}*cos(q)", body->sine, body->cosine)};
   for (const double q : angle) {
     sine.values.push_back(elementary::sin(q));
     cosine.values.push_back(elementary::cos(q));

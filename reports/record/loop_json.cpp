@@ -202,6 +202,7 @@ Json symbols_json(const LoopRecord& record) {
                  {"low", json_number(symbol.low)},
                  {"high", json_number(symbol.high)}};
     if (!symbol.recipe.empty()) json["computed_as"] = symbol.recipe;
+    if (!symbol.formula.empty()) json["formula"] = symbol.formula;
     symbols.push_back(std::move(json));
   }
   return symbols;

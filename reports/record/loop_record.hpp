@@ -244,6 +244,7 @@ struct LoopSymbol {
   bool used = false;       // by the model
   double low = kNoFigure;  // in the rows used: where the model has been seen
   double high = kNoFigure;
+  std::string formula = {};  // over q, where that says it: "sin(q)"
 };
 
 // A part of the model: the base or one effect.
