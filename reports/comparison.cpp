@@ -17,6 +17,7 @@
 #include "foundation/random.hpp"
 #include "reports/record/record_csv.hpp"
 #include "reports/run_conditions.hpp"
+#include "reports/statistics/log_ratios.hpp"
 #include "reports/statistics/rank_tests.hpp"
 
 namespace tribench {
@@ -53,32 +54,42 @@ double evaluations_of(const Record& record) {
                                                  : kMissing;
 }
 
-// log(new / base); 0 for equal figures, infinite where only one of them failed, NaN for no pair.
-double log_ratio(double base, double now) {
-  if (base == now) return std::isinf(base) ? kMissing : 0.0;
-  return elementary::log(now / base);
-}
-
 using Figure = double (*)(const Record&);
-using MethodKey = std::pair<std::string, std::string>;  // method, operators
-using Groups = std::map<MethodKey, std::map<std::string, std::vector<double>>>;  // by problem
+using MethodKey = std::pair<std::string, std::string>;                 // method, operators
+using Groups = std::map<MethodKey, std::map<std::string, LogRatios>>;  // by problem
 
+// Of new over base; infinite where only one of them failed.
 Groups log_ratios(const std::vector<Pair>& pairs, Figure figure) {
   Groups groups;
   for (const Pair& pair : pairs) {
-    const double ratio = log_ratio(figure(*pair.base), figure(*pair.now));
-    if (std::isnan(ratio)) continue;
-    groups[{pair.now->method, pair.now->operators}][pair.now->problem].push_back(ratio);
+    const double base = figure(*pair.base);
+    const double now = figure(*pair.now);
+    if (std::isnan(base) || std::isnan(now) || (std::isinf(base) && std::isinf(now))) continue;
+    groups[{pair.now->method, pair.now->operators}][pair.now->problem].add(base, now);
   }
   return groups;
 }
 
+// What a test sees: of errors every draw once; a cost repeats because the work does.
+enum class Tested { distinct, all };
+
+std::vector<double> tested(const LogRatios& ratios, Tested what) {
+  return what == Tested::distinct ? ratios.distinct() : ratios.all();
+}
+
 // Row with everything but the adjusted p and the verdict.
 ComparisonRow row_of(const MethodKey& key, const std::string& problem,
-                     const std::vector<std::vector<double>>& by_problem,
+                     const std::vector<const LogRatios*>& by_problem, Tested what,
                      const ComparisonOptions& options) {
   std::vector<double> all;
-  for (const auto& values : by_problem) all.insert(all.end(), values.begin(), values.end());
+  std::vector<double> evidence;
+  std::vector<std::vector<double>> groups;
+  for (const LogRatios* ratios : by_problem) {
+    groups.push_back(ratios->all());
+    all.insert(all.end(), ratios->all().begin(), ratios->all().end());
+    const std::vector<double> seen = tested(*ratios, what);
+    evidence.insert(evidence.end(), seen.begin(), seen.end());
+  }
   ComparisonRow row;
   row.method = key.first;
   row.operators = key.second;
@@ -86,7 +97,7 @@ ComparisonRow row_of(const MethodKey& key, const std::string& problem,
   row.pairs = all.size();
   row.equal = static_cast<std::size_t>(std::count(all.begin(), all.end(), 0.0));
   row.ratio = elementary::exp(median(all));
-  const SignedRankTest test = wilcoxon_signed_rank(all);
+  const SignedRankTest test = wilcoxon_signed_rank(evidence);
   row.p = test.p;
   row.effect = test.effect;
   if (row.equal == row.pairs) {
@@ -95,25 +106,25 @@ ComparisonRow row_of(const MethodKey& key, const std::string& problem,
   }
   const RandomStream random(key_of(fmt::format("{}|{}|{}", key.first, key.second, problem)));
   const ConfidenceInterval logs = two_level_bootstrap(
-      by_problem, [](std::span<const double> values) { return median(values); }, kConfidence,
+      groups, [](std::span<const double> values) { return median(values); }, kConfidence,
       options.rounds, random);
   row.interval = {elementary::exp(logs.low), elementary::exp(logs.high)};
   return row;
 }
 
-std::vector<ComparisonRow> rows_of(const Groups& groups, bool each_problem,
+std::vector<ComparisonRow> rows_of(const Groups& groups, bool each_problem, Tested what,
                                    const ComparisonOptions& options) {
   std::vector<ComparisonRow> rows;
   for (const auto& [key, problems] : groups) {
-    std::vector<std::vector<double>> all;
-    for (const auto& [problem, values] : problems) all.push_back(values);
-    rows.push_back(row_of(key, "", all, options));
+    std::vector<const LogRatios*> all;
+    for (const auto& [problem, ratios] : problems) all.push_back(&ratios);
+    rows.push_back(row_of(key, "", all, what, options));
   }
   if (!each_problem) return rows;
   for (const auto& [key, problems] : groups) {
     if (problems.size() < 2) continue;  // the pooled row says it all
-    for (const auto& [problem, values] : problems) {
-      rows.push_back(row_of(key, problem, {values}, options));
+    for (const auto& [problem, ratios] : problems) {
+      rows.push_back(row_of(key, problem, {&ratios}, what, options));
     }
   }
   return rows;
@@ -182,7 +193,7 @@ void look_at_power(const Groups& groups, Comparison& comparison, const Compariso
     if (options.power_rounds == 0) continue;
     const std::string& problem = row.problem.empty() ? problems.begin()->first : row.problem;
     row.detectable = smallest_detectable_loss(
-        problems.at(problem), level,
+        problems.at(problem).distinct(), level,
         key_of(fmt::format("power|{}|{}|{}", row.method, row.operators, problem)), options);
   }
 }
@@ -255,18 +266,16 @@ void compare_cost(const std::vector<Pair>& pairs, const RunFolder& base, const R
     const bool counted = has_instructions(pairs);
     comparison.cost_currency = counted ? CostCurrency::instructions : CostCurrency::evaluations;
     groups = log_ratios(pairs, counted ? instructions_of : evaluations_of);
-    comparison.cost = rows_of(groups, false, options);
+    comparison.cost = rows_of(groups, false, Tested::all, options);
     return;
   }
   comparison.cost_currency = CostCurrency::cpu_seconds;
   // A machine that was slower throughout is no slower code.
   const double pace = elementary::log(median(calibration_of(now)) / median(calibration_of(base)));
   for (auto& [key, problems] : groups) {
-    for (auto& [problem, values] : problems) {
-      for (double& value : values) value -= pace;
-    }
+    for (auto& [problem, ratios] : problems) ratios.shift(-pace);
   }
-  comparison.cost = rows_of(groups, false, options);
+  comparison.cost = rows_of(groups, false, Tested::all, options);
 }
 
 // Two-sided exact sign test of `worse` against `better` cells.
@@ -481,7 +490,7 @@ Comparison compare_runs(const RunFolder& base, const RunFolder& now,
   comparison.conditions_allowed = options.allow_conditions;
   const std::vector<Pair> pairs = count_cells(base, now, comparison);
   const Groups quality = log_ratios(pairs, placing_error);
-  comparison.quality = rows_of(quality, true, options);
+  comparison.quality = rows_of(quality, true, Tested::distinct, options);
   compare_cost(pairs, base, now, options, comparison);
   decide(comparison, options);
   look_at_power(quality, comparison, options);

@@ -23,8 +23,11 @@ std::string counts_line(const RunFolder& run, const RunSummary& summary) {
                                  summary.cells - summary.failed, summary.failed);
   if (run.planned > 0) {
     text += run.missing.empty() ? std::string(", none missing")
-                                : fmt::format(", **{} of {} planned are missing**",
-                                              run.missing.size(), run.planned);
+                                : fmt::format(
+                                      ", **{} of {} planned are missing**: places and tests "
+                                      "are of what is there, and may be of other seeds for "
+                                      "one method than for another",
+                                      run.missing.size(), run.planned);
   }
   return text + fmt::format("; {} of CPU time in fits.\n", duration_figure(summary.fit_cpu_s));
 }

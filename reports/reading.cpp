@@ -31,8 +31,17 @@ const char* is_are(const std::vector<std::string>& names) {
   return names.size() == 1 ? "is" : "are";
 }
 
-std::string too_few(std::size_t seeds) {
-  return fmt::format("{} {} too few for a test", counted(seeds, "seed"), seeds == 1 ? "is" : "are");
+// What repeats to the last digit is one draw.
+std::string too_few(const ProblemTable& table) {
+  std::size_t draws = 0;
+  for (const MethodRow& row : table.rows) {
+    if (row.standing == Standing::behind_untested) draws = std::max(draws, row.pairs);
+  }
+  const std::string seeds = counted(table.seeds, "seed");
+  if (draws > 0 && draws < table.seeds) {
+    return fmt::format("{} repeat {} and are too few for a test", seeds, counted(draws, "result"));
+  }
+  return fmt::format("{} {} too few for a test", seeds, table.seeds == 1 ? "is" : "are");
 }
 
 std::string failures_of(const ProblemTable& table) {
@@ -81,7 +90,7 @@ std::string reading_of(const ProblemTable& table) {
   const auto untested = methods_with(table, Standing::behind_untested);
   if (!untested.empty()) {
     text += fmt::format(" {} {} behind on every seed, but {}.", list_of(untested), is_are(untested),
-                        too_few(table.seeds));
+                        too_few(table));
   }
   const auto behind = methods_with(table, Standing::behind);
   if (!behind.empty()) {
@@ -124,7 +133,7 @@ std::string certainty_of(const ProblemTable& table) {
     return "the others gave no formula";
   }
   if (!methods_with(table, Standing::behind_untested).empty()) {
-    return "ahead on every seed, " + too_few(table.seeds);
+    return "ahead on every seed, " + too_few(table);
   }
   return "clearly (5 %)";
 }

@@ -11,6 +11,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "foundation/number_text.hpp"
 #include "foundation/text.hpp"
 #include "reports/record/record_csv.hpp"
 
@@ -92,19 +93,25 @@ void read_provenance(RunFolder& run) {
   flatten("", json, run.provenance);
 }
 
-// The value of `name` in [grid]; grid.toml is written by the program, so a line is enough.
-std::string grid_name(const fs::path& file) {
+// The value of a key in a table, as written; grid.toml is written by the program, so a line is
+// enough.
+std::string grid_value(const fs::path& file, std::string_view table, std::string_view key) {
   std::ifstream in = open_file_if_there(file);
   std::string line;
-  bool in_grid = false;
+  bool is_inside = false;
   while (std::getline(in, line)) {
-    if (line.starts_with("[")) in_grid = line == "[grid]";
-    if (!in_grid || !line.starts_with("name")) continue;
-    const std::size_t open = line.find_first_of("\"'");
-    const std::size_t close = line.find_last_of("\"'");
-    if (open != std::string::npos && close > open) return line.substr(open + 1, close - open - 1);
+    if (line.starts_with("[")) is_inside = line == fmt::format("[{}]", table);
+    const std::size_t equals = line.find('=');
+    if (is_inside && equals != std::string::npos && trimmed(line.substr(0, equals)) == key) {
+      return std::string(trimmed(line.substr(equals + 1)));
+    }
   }
   return {};
+}
+
+std::string grid_name(const fs::path& file) {
+  const std::string text = grid_value(file, "grid", "name");
+  return text.size() < 2 ? std::string() : text.substr(1, text.size() - 2);  // in quotes
 }
 
 }  // namespace
@@ -133,6 +140,8 @@ RunFolder read_run_folder(const fs::path& folder) {
   read_plan(run);
   read_provenance(run);
   run.name = grid_name(folder / "grid.toml");
+  run.budget = read_number<std::uint64_t>(grid_value(folder / "grid.toml", "budget", "evaluations"))
+                   .value_or(0);
   if (run.name.empty()) run.name = fs::absolute(folder).lexically_normal().filename().string();
   return run;
 }

@@ -22,6 +22,7 @@ struct RunFolder {
   std::string name;                  // of the grid, where grid.toml has one; else the folder's
   std::vector<Record> records;       // in the order of comes_before
   std::vector<PlannedCell> missing;  // planned, but without a record
+  std::uint64_t budget = 0;          // evaluations of a cell; 0 where it is not known
   std::size_t planned = 0;           // cells the grid asks for; 0 where it is not known
   // provenance.json, flattened: {"sessions.0.machine.cpu", "..."}; in the file's order.
   std::vector<std::pair<std::string, std::string>> provenance;

@@ -178,21 +178,39 @@ class Variations {
 
 using BestByCell = std::unordered_map<std::string, std::array<double, kBudgetShares.size()>>;
 
+// What an external program says of its way is a claim: no more evaluations than the budget, and no
+// error below that of the formula which it gave in the end. What has said nothing has its formula
+// after all of its evaluations.
 BestByCell best_at_budgets(const RunFolder& run) {
   BestByCell best;
   if (!std::filesystem::exists(run.path / "trace.csv")) return best;
+  std::unordered_map<std::string_view, const Record*> by_cell;
   std::uint64_t most = 0;
-  for (const Record& record : run.records) most = std::max(most, record.evaluations);
-  read_trace(run.path / "trace.csv", [&](TraceRecord&& point) {
-    const auto [place, is_new] = best.try_emplace(point.cell);
+  for (const Record& record : run.records) {
+    by_cell.emplace(record.cell, &record);
+    most = std::max(most, record.evaluations);
+  }
+  if (run.budget > 0) most = std::min(most, run.budget);
+  const auto add = [&](const std::string& cell, std::uint64_t evaluations, double error) {
+    const auto [place, is_new] = best.try_emplace(cell);
     auto& at = place->second;
     if (is_new) at.fill(kInfinity);
+    const auto spent = static_cast<double>(std::min(evaluations, most));
     for (std::size_t i = 0; i < kBudgetShares.size(); ++i) {
-      const bool within =
-          static_cast<double>(point.evaluations) <= kBudgetShares[i] * static_cast<double>(most);
-      if (within) at[i] = std::min(at[i], point.train_error);
+      if (spent <= kBudgetShares[i] * static_cast<double>(most)) at[i] = std::min(at[i], error);
     }
+  };
+  read_trace(run.path / "trace.csv", [&](TraceRecord&& point) {
+    const auto found = by_cell.find(point.cell);
+    const bool is_judged = found != by_cell.end() && is_ok(*found->second);
+    const double judged = is_judged ? found->second->mae_train : kMissing;
+    add(point.cell, point.evaluations,
+        std::isnan(judged) ? point.train_error : std::max(point.train_error, judged));
   });
+  for (const Record& record : run.records) {
+    if (!is_ok(record) || std::isnan(record.mae_train)) continue;
+    add(record.cell, record.evaluations == 0 ? most : record.evaluations, record.mae_train);
+  }
   return best;
 }
 

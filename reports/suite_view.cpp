@@ -8,6 +8,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "foundation/error.hpp"
@@ -22,7 +24,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kRounds = 1000;
 constexpr std::array kBands = {0.999, 0.99, 0.9};
 constexpr std::array<const char*, 3> kSizes = {"small", "middle", "large"};
 
@@ -53,6 +54,14 @@ double mean_of(std::span<const double> values) {
   return sum / static_cast<double>(values.size());
 }
 
+// Cells without a formula are below all others; missing where they are half or more.
+double median_r2(const Records& records) {
+  std::vector<double> values;
+  for (const Record* one : records) values.push_back(is_ok(*one) ? one->r2_test : -HUGE_VAL);
+  const double middle = median(values);
+  return std::isinf(middle) ? kMissing : middle;
+}
+
 double median_of(const Records& records, double Record::*member) {
   std::vector<double> values;
   for (const Record* one : records) values.push_back(one->*member);
@@ -74,6 +83,15 @@ std::size_t third_of(int nodes, const std::array<int, 2>& bounds) {
   return nodes <= bounds[0] ? 0 : nodes <= bounds[1] ? 1 : 2;
 }
 
+// "~noise=0.2" of a problem that a sweep changed; empty where none did.
+std::string_view variant_of(std::string_view problem) {
+  return problem.substr(std::min(problem.find('~'), problem.size()));
+}
+
+std::string_view without_variant(std::string_view problem) {
+  return problem.substr(0, problem.find('~'));
+}
+
 // Every problem's records of one method.
 using ByProblem = std::map<std::string, Records>;
 
@@ -90,21 +108,21 @@ SuiteMethodRow row_of(const SuiteView& view, const ByProblem& by_problem) {
           share_of(records, [&](const Record& one) { return is_recovered(one, 1 - kBands[b]); }) /
           static_cast<double>(by_problem.size());
     }
-    const auto info = std::ranges::find(view.suite.problems, problem, &SuiteProblemInfo::problem);
+    const auto info = std::ranges::find(view.suite.problems, without_variant(problem),
+                                        &SuiteProblemInfo::problem);
     if (info != view.suite.problems.end() && info->nodes > 0) {
       by_size[third_of(info->nodes, view.size_bounds)].push_back(recovered.back());
     }
     all.insert(all.end(), records.begin(), records.end());
   }
   row.method = all.front()->method;
-  row.operators = all.front()->operators;
+  row.operators = all.front()->operators + std::string(variant_of(all.front()->problem));
   row.problems = by_problem.size();
   row.cells = all.size();
   for (const Record* one : all) row.failed += is_ok(*one) ? 0 : 1;
   row.recovered = mean_of(recovered);
-  row.interval = bootstrap(recovered, mean_of, kConfidence, kRounds,
-                           RandomStream(key_of(view.suite.name + row.method + row.operators)));
-  row.r2_median = median_of(all, &Record::r2_test);
+  row.interval = wilson_of_share(row.recovered, recovered.size(), kConfidence);
+  row.r2_median = median_r2(all);
   row.fit_cpu_s = median_of(all, &Record::fit_cpu_s);
   row.fit_wall_s = median_of(all, &Record::fit_wall_s);
   std::vector<double> evaluations;
@@ -290,18 +308,23 @@ std::vector<SuiteView> view_suites(const std::vector<SuiteInfo>& suites,
   std::vector<SuiteView> views;
   for (const SuiteInfo& suite : suites) {
     SuiteView view{suite, {}, size_bounds_of(suite), {}, {}};
-    std::map<std::pair<std::string, std::string>, ByProblem> methods;
+    // A sweep's variants are not problems more: noise is another question.
+    std::map<std::tuple<std::string, std::string, std::string>, ByProblem> methods;
     std::set<std::string> solved;
     for (const Record& record : records) {
       if (!record.problem.starts_with(suite.name + "/")) continue;
-      methods[{record.method, record.operators}][record.problem].push_back(&record);
-      if (is_recovered(record, suite.recovered_below)) solved.insert(record.problem);
+      const std::string variant(variant_of(record.problem));
+      methods[{record.method, record.operators, variant}][record.problem].push_back(&record);
+      if (!is_recovered(record, suite.recovered_below)) continue;
+      solved.insert(std::string(without_variant(record.problem)));
     }
     if (methods.empty()) continue;
     std::set<std::string> tried;
     for (const auto& [key, by_problem] : methods) {
       view.rows.push_back(row_of(view, by_problem));
-      for (const auto& [problem, cells] : by_problem) tried.insert(problem);
+      for (const auto& [problem, cells] : by_problem) {
+        tried.insert(std::string(without_variant(problem)));
+      }
     }
     std::ranges::stable_sort(view.rows, std::ranges::greater(), &SuiteMethodRow::recovered);
     for (const SuiteProblemInfo& one : suite.problems) {

@@ -64,7 +64,7 @@ struct SuiteMethodRow {
   std::size_t cells = 0;
   std::size_t failed = 0;
   double recovered = 0;         // mean over problems of the share of seeds
-  ConfidenceInterval interval;  // bootstrap over problems, 95 %
+  ConfidenceInterval interval;  // over problems, 95 %
   // Of the same: R2 on unseen rows of at least 0.999, 0.99, 0.9.
   std::array<double, 3> r2_at_least{};
   double r2_median = 0;

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "foundation/elementary.hpp"
+#include "reports/statistics/log_ratios.hpp"
 #include "reports/statistics/power.hpp"
 
 namespace tribench {
@@ -64,10 +65,12 @@ MethodRow row_of(const Cells& cells) {
   row.method = cells.front()->method;
   row.operators = cells.front()->operators;
   row.cells = cells.size();
-  std::vector<double> errors;
+  std::vector<double> errors;  // of cells that have one
+  std::vector<double> all;     // infinite where a cell has none
   std::vector<double> placing;
   for (const Record* record : cells) {
     placing.push_back(placing_error(*record));
+    all.push_back(is_ok(*record) ? record->mae_test : HUGE_VAL);
     if (is_ok(*record)) {
       errors.push_back(record->mae_test);
       count_singularities(row, *record);
@@ -77,6 +80,8 @@ MethodRow row_of(const Cells& cells) {
     }
   }
   row.mae_test = spread_of(errors);
+  const double middle = median(all);
+  row.mae_test.middle = std::isinf(middle) ? kMissing : middle;
   row.placed_by = median(placing);
   row.mae_truth = median_over(cells, &Record::mae_truth);
   row.relative_error_test = median_over(cells, &Record::relative_error_test);
@@ -86,29 +91,38 @@ MethodRow row_of(const Cells& cells) {
   row.evaluations = median_count(cells, &Record::evaluations);
   row.ceiling = ratio_to(cells, &Record::mae_ceiling);
   row.refitted = ratio_to(cells, &Record::mae_refitted);
-  row.representative = representative_of(cells, row.mae_test.middle);
+  row.representative = representative_of(cells, middle);
   return row;
 }
 
-// log(error / error of the best) for the seeds that both have.
-std::vector<double> log_ratios(const Cells& cells, const Cells& best) {
-  std::vector<double> ratios;
+// Over the seeds that both have.
+LogRatios errors_over(const Cells& best, const Cells& cells) {
+  LogRatios ratios;
   auto other = best.begin();
   for (const Record* record : cells) {  // both in the order of seeds
     while (other != best.end() && (*other)->seed < record->seed) ++other;
     if (other == best.end()) break;
-    if ((*other)->seed != record->seed) continue;
-    const double a = placing_error(*record);
-    const double b = placing_error(**other);
-    if (std::isinf(a) && std::isinf(b)) continue;
-    ratios.push_back(a == b ? 0.0 : elementary::log(a / b));
+    if ((*other)->seed == record->seed) ratios.add(placing_error(**other), placing_error(*record));
   }
   return ratios;
 }
 
+// Whether a seed more or less could not make it a difference of use: by the interval of the median,
+// or all seeds where they are too few for one; and no seed failed in one of the two alone.
+bool is_equivalent(const std::vector<double>& ratios) {
+  if (std::ranges::any_of(ratios, [](double r) { return std::isinf(r); })) return false;
+  const double most = elementary::log1p(kEquivalence);
+  ConfidenceInterval interval = median_interval(ratios, 1 - kLevel);
+  if (std::isnan(interval.low)) {
+    const auto [low, high] = std::ranges::minmax(ratios);
+    interval = {low, high};
+  }
+  return -most <= interval.low && interval.high <= most;
+}
+
 Standing stand(const MethodRow& row, const std::vector<double>& ratios, double smallest_p) {
   if (std::isinf(row.placed_by)) return Standing::failed;
-  if (std::abs(row.ratio - 1) <= kEquivalence) return Standing::equivalent;
+  if (is_equivalent(ratios)) return Standing::equivalent;
   if (row.p <= kLevel) return Standing::behind;
   const bool every_seed =
       !ratios.empty() && std::all_of(ratios.begin(), ratios.end(), [](double r) { return r > 0; });
@@ -126,9 +140,10 @@ void hold_against_best(std::vector<MethodRow>& rows, const std::vector<const Cel
   std::vector<std::vector<double>> ratios(rows.size());
   std::vector<double> p(rows.size(), kMissing);
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    ratios[i] = log_ratios(*cells[i], *cells[0]);
+    const LogRatios to_best = errors_over(*cells[0], *cells[i]);
+    ratios[i] = to_best.distinct();
     rows[i].pairs = ratios[i].size();
-    rows[i].ratio = elementary::exp(median(ratios[i]));
+    rows[i].ratio = elementary::exp(median(to_best.all()));
     if (!std::isinf(rows[i].placed_by)) p[i] = wilcoxon_signed_rank(ratios[i]).p;
   }
   const std::vector<double> adjusted = holm(p);
@@ -162,8 +177,8 @@ ProblemTable table_of(const std::string& problem, const std::string& operators,
   std::vector<std::pair<MethodRow, const Cells*>> both;
   for (const Cells* cells : methods) both.emplace_back(row_of(*cells), cells);
   std::sort(both.begin(), both.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.first.placed_by, a.first.mae_test.middle, a.first.method) <
-           std::tie(b.first.placed_by, b.first.mae_test.middle, b.first.method);
+    return std::tie(a.first.placed_by, a.first.failed, a.first.method) <
+           std::tie(b.first.placed_by, b.first.failed, b.first.method);
   });
   ProblemTable table{problem,
                      operators,

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "reports/record/record.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "reports/record/record_columns.hpp"
@@ -43,11 +46,19 @@ bool read_word(std::string_view text, const std::array<std::string_view, N>& wor
   return true;
 }
 
+// Errors below what rounding makes of a target are none, and what differs in the last digits is the
+// same: a formula is no better for the order in which it was summed.
+constexpr double kRoundingPercent = 1e-10;
+constexpr int kPlacedDigits = 10;
+
 }  // namespace
 
 double placing_error(const Record& record) {
-  return is_ok(record) && !std::isnan(record.mae_test) ? record.mae_test
-                                                       : std::numeric_limits<double>::infinity();
+  if (!is_ok(record) || std::isnan(record.mae_test)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  if (record.relative_error_test <= kRoundingPercent) return 0;
+  return std::stod(fmt::format("{:.{}e}", record.mae_test, kPlacedDigits - 1));
 }
 
 std::string_view record_word(std::optional<CellStatus> value) {

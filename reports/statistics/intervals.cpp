@@ -23,9 +23,13 @@ constexpr ConfidenceInterval kNone{std::numeric_limits<double>::quiet_NaN(),
 }  // namespace
 
 ConfidenceInterval wilson(std::size_t hits, std::size_t trials, double confidence) {
+  const double share = trials == 0 ? 0 : static_cast<double>(hits) / static_cast<double>(trials);
+  return wilson_of_share(share, trials, confidence);
+}
+
+ConfidenceInterval wilson_of_share(double share, std::size_t trials, double confidence) {
   if (trials == 0) return {0, 1};
   const auto n = static_cast<double>(trials);
-  const double share = static_cast<double>(hits) / n;
   const double z = normal_quantile(0.5 + confidence / 2);
   const double centre = share + z * z / (2 * n);
   const double half = z * std::sqrt(share * (1 - share) / n + z * z / (4 * n * n));

@@ -24,6 +24,10 @@ struct ConfidenceInterval {
 
 // For `hits` of `trials` at the given confidence; Wilson 1927. [0, 1] without trials.
 ConfidenceInterval wilson(std::size_t hits, std::size_t trials, double confidence);
+// For the mean of `trials` shares (of recovered seeds, a problem each): hits may be parts of one.
+// No values in [0, 1] with that mean vary more than hits and misses, so that it is wide enough, and
+// it has a width where all are 0 or all are 1, as a bootstrap has not.
+ConfidenceInterval wilson_of_share(double share, std::size_t trials, double confidence);
 
 // For the median of what the values are drawn from: from the k-th smallest to the k-th largest,
 // with the largest k that keeps the confidence whatever the distribution (Conover 1999, section

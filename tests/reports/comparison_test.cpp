@@ -92,6 +92,20 @@ TEST(Comparison, AlwaysFindsThreePerCentWhereTheSeedsAreTheSame) {
   EXPECT_FALSE(back.has_regression());
 }
 
+// A method without chance on one split: a hundred seeds say no more than one.
+TEST(Comparison, TakesWhatRepeatsToTheLastDigitForOneDraw) {
+  RunFolder base = noisy_run("a", 20);
+  std::erase_if(base.records, [](const Record& r) { return r.problem != "p0"; });
+  for (Record& record : base.records) record.mae_test = 1;
+  RunFolder now = base;
+  for (Record& record : now.records) record.mae_test = record.method == "b" ? 1.06 : 1;
+  const Comparison comparison = compare_runs(base, now);
+  const ComparisonRow& row = pooled(comparison.quality, "b");
+  EXPECT_EQ(row.verdict, ComparisonVerdict::not_distinguishable);
+  EXPECT_EQ(row.p, 1);
+  EXPECT_NEAR(row.ratio, 1.06, 1e-9);
+}
+
 TEST(Comparison, CallsAChangeBelowOnePerCentEquivalent) {
   const Comparison comparison = compare_runs(noisy_run("x", 20), noisy_run("x", 20, {1.005, 1}));
   EXPECT_EQ(pooled(comparison.quality, "b").verdict, ComparisonVerdict::equivalent);

@@ -34,6 +34,7 @@ RunFolder planted() {
         const bool late = seed > 2;
         const double b = problem == "r" ? 0.5 : (late ? 0.9 : 2);
         r.mae_test = method == "a" ? 1 : (method == "b" ? b : 3);
+        r.mae_train = r.mae_test;
         r.rmse_test = r.mae_test;
         r.max_error_test = method == "c" ? 1 : 2 * r.mae_test;
         r.evaluations = 1'000'000;
@@ -76,6 +77,28 @@ TEST(Sensitivity, FindsWhatTurnsThePlantedRankingAround) {
   EXPECT_THAT(reading_of(all[0]), HasSubstr("a leads in"));
   EXPECT_THAT(reading_of(all[0]), HasSubstr("largest error"));
   EXPECT_THAT(sensitivity_section(all), HasSubstr("| largest error"));
+}
+
+// An external program that claims all of its error gone at once, another one that says nothing.
+TEST(Sensitivity, BelievesNoClaimThatTheJudgedFormulaContradicts) {
+  RunFolder run = planted();
+  std::vector<TraceRecord> trace;
+  run.budget = 1'000'000;
+  for (Record& record : run.records) {
+    if (record.method == "b") {
+      record.mae_train = record.mae_test = 50;
+      trace.push_back({record.cell, 1, 0, -5});
+      record.evaluations = 1'000'000'000'000;
+    } else if (record.method == "c") {
+      trace.push_back({record.cell, 400'000, 0, record.mae_test});
+    }
+  }
+  write_file(run.path / "trace.csv", trace_csv(trace));
+  const std::vector<Sensitivity> all = ranking_sensitivity(run, summarise(run));
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(find(all[0], "training error after the whole budget").leaders.count("a"), 1U);
+  EXPECT_THROW(find(all[0], "training error after 10 % of the budget").leaders.at("c"),
+               std::out_of_range);
 }
 
 TEST(Sensitivity, HasNothingToSayOfOneProblem) {

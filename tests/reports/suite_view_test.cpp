@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reports/suite_view.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -65,6 +66,32 @@ TEST(SuiteView, CountsWhatWasRecoveredByHand) {
   EXPECT_DOUBLE_EQ(row.recovered_by_size[1], 0.5);
   EXPECT_DOUBLE_EQ(row.recovered_by_size[2], 0);
   EXPECT_EQ(views[0].never_solved, std::vector<std::string>{"s/c"});
+}
+
+TEST(SuiteView, AFewProblemsAreNoCertainty) {
+  const std::vector<SuiteView> views =
+      view_suites({small_suite()}, {record("s/a", "m", 1, 1), record("s/a", "m", 2, 1)});
+  EXPECT_EQ(views[0].rows[0].recovered, 1);
+  EXPECT_LT(views[0].rows[0].interval.low, 0.3);
+  EXPECT_EQ(views[0].rows[0].interval.high, 1);
+}
+
+TEST(SuiteView, NoiseThatASweepAddsIsAnotherQuestion) {
+  const std::vector<SuiteView> views = view_suites(
+      {small_suite()}, {record("s/a", "m", 1, 1), record("s/a~noise=0.2", "m", 1, 0.9)});
+  ASSERT_EQ(views[0].rows.size(), 2U);
+  EXPECT_EQ(views[0].rows[0].recovered, 1);
+  EXPECT_EQ(views[0].rows[1].recovered, 0);
+  EXPECT_THAT(views[0].rows[1].operators, ::testing::EndsWith("~noise=0.2"));
+  EXPECT_EQ(views[0].rows[1].recovered_by_size[0], 0);
+  EXPECT_TRUE(views[0].never_solved.empty());
+}
+
+TEST(SuiteView, CellsThatFailedAreInTheMedian) {
+  std::vector<Record> records = {record("s/a", "m", 1, 0.9), record("s/b", "m", 1, 0.5),
+                                 record("s/c", "m", 1, kMissing)};
+  records[2].status = CellStatus::failed;
+  EXPECT_EQ(view_suites({small_suite()}, records)[0].rows[0].r2_median, 0.5);
 }
 
 TEST(SuiteView, AConstantLawIsRecoveredByItsValue) {

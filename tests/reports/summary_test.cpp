@@ -54,11 +54,65 @@ TEST(Summary, TellsBehindFromNotDistinguishableFromPracticallyEqual) {
   EXPECT_THAT(reading_of(table), HasSubstr("unclear is not distinguishable from it"));
 }
 
+TEST(Summary, CallsNothingEqualThatFailsOrIsFarOffOnSomeSeeds) {
+  RunFolder run;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const double error = 1 + 0.1 * static_cast<double>(seed);
+    run.records.push_back(cell("best", seed, error));
+    run.records.push_back(cell("flaky", seed, seed > 3 ? std::nan("") : error));
+    run.records.push_back(cell("same", seed, error * 1.004));
+    run.records.push_back(cell("split", seed, seed > 3 ? 149 * error : error));
+  }
+  const RunSummary summary = summarise(run);
+  EXPECT_EQ(row_of(summary.tables[0], "same").standing, Standing::equivalent);
+  EXPECT_EQ(row_of(summary.tables[0], "split").standing, Standing::not_distinguishable);
+  EXPECT_EQ(row_of(summary.tables[0], "flaky").standing, Standing::not_distinguishable);
+}
+
+TEST(Summary, TakesWhatRepeatsToTheLastDigitForOneDraw) {
+  RunFolder run;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    run.records.push_back(cell("better", seed, 1));
+    run.records.push_back(cell("worse", seed, 1.69));
+  }
+  const RunSummary summary = summarise(run);
+  EXPECT_EQ(row_of(summary.tables[0], "worse").standing, Standing::behind_untested);
+  EXPECT_THAT(reading_of(summary.tables[0]), HasSubstr("10 seeds repeat 1 result"));
+}
+
+TEST(Summary, TakesErrorsOfRoundingAloneForEqual) {
+  RunFolder run;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const auto s = static_cast<double>(seed);
+    run.records.push_back(cell("exact", seed, 0));
+    run.records.push_back(cell("last bit", seed, 4.6e-17 * s));
+    run.records.push_back(cell("near", seed, 1e-9 * s));
+  }
+  for (Record& record : run.records) record.relative_error_test = 100 * record.mae_test / 3;
+  const ProblemTable table = summarise(run).tables[0];
+  EXPECT_EQ(row_of(table, "last bit").standing, Standing::equivalent);
+  EXPECT_EQ(row_of(table, "last bit").placed_by, 0);
+  EXPECT_EQ(row_of(table, "near").standing, Standing::behind);
+}
+
+// Least squares that ends without a formula on the seed that is hardest.
+TEST(Summary, FailingOnAHardSeedMakesNoMedianSmaller) {
+  RunFolder run;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const auto s = static_cast<double>(seed);
+    run.records.push_back(cell("plain", seed, s));
+    run.records.push_back(cell("cherry", seed, seed == 5 ? std::nan("") : s));
+  }
+  const ProblemTable table = summarise(run).tables[0];
+  EXPECT_EQ(row_of(table, "cherry").mae_test.middle, row_of(table, "plain").mae_test.middle);
+  EXPECT_EQ(table.rows.front().method, "plain");
+}
+
 TEST(Summary, SaysThatTwoSeedsAreTooFewForATest) {
   RunFolder run;
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-    run.records.push_back(cell("good", seed, 1));
-    run.records.push_back(cell("bad", seed, 2));
+    run.records.push_back(cell("good", seed, static_cast<double>(seed)));
+    run.records.push_back(cell("bad", seed, 2 * static_cast<double>(seed)));
   }
   const RunSummary summary = summarise(run);
   EXPECT_EQ(row_of(summary.tables[0], "bad").standing, Standing::behind_untested);
