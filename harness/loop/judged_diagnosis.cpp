@@ -397,10 +397,11 @@ JudgedDiagnosis LoopJudge::in_turn() {
   searches.without.insert(searches.without.begin(), std::vector<int>());
   search(searches, numbers(0, turns + 1), options_);
   std::vector<std::string> needed = name_the_stable(searches);
-  // The error is that of what is named.
+  // The error is that of what is named: where nothing is, a part's own effects are none.
   LeftOut all(data_.rows());
   parallel_for(turns, judging_.threads, [&](std::size_t k) {
-    const Diagnosis& part = searches.found[k + 1];
+    Diagnosis& part = searches.found[k + 1];
+    if (searches.whole().effects.empty()) part.after = part.before;
     add_predictions(all, part, bristles_of(part, data_), random_.split(k));
   });
   JudgedDiagnosis whole{std::move(searches.whole()), {}, {}, {}};

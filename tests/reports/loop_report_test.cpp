@@ -60,6 +60,16 @@ TEST(LoopWords, AnswerWhatHowMuchHowSureAndWhatNext) {
   EXPECT_THAT(words.next, HasSubstr("use two postures or a known payload"));
 }
 
+TEST(LoopWords, SayOfALargeErrorInNoneThatItMayHaveACauseInTime) {
+  LoopRecord record = with(LoopVerdict::none);
+  record.error.mae_before = record.error.mae_after = 2.1;
+  record.error.ceiling = 0.18;
+  EXPECT_THAT(loop_words(record).error, HasSubstr("1.9 N m of it lasts from row to row"));
+  EXPECT_THAT(loop_words(record).error, Not(HasSubstr("can be had")));
+  record.error.ceiling = 1.9;
+  EXPECT_THAT(loop_words(record).error, HasSubstr("can be had"));
+}
+
 TEST(LoopWords, SayHowStiffBristlesAre) {
   LoopRecord record = sample_loop();
   EXPECT_EQ(loop_words(record).cards[0].bristles, "");

@@ -12,6 +12,7 @@
 #include "problems/joint_simulation/simulated_campaign.hpp"
 #include "problems/kuka/planted.hpp"
 #include "problems/reading/csv.hpp"
+#include "problems/table.hpp"
 #include "reports/record/loop_record.hpp"
 #include "tests/support/paths.hpp"
 
@@ -65,6 +66,27 @@ TEST(JudgedDiagnosis, FoundPreslidingHasAStiffnessAndIsWorthMoreAsAState) {
   EXPECT_LT(diagnosis.bristles->low, truth);
   EXPECT_GT(diagnosis.bristles->high, truth);
   EXPECT_LT(diagnosis.error.mae_state, 0.95 * diagnosis.error.mae_after);
+}
+
+// Few movements, left out in turn: a search without some of them may name what all of them do not.
+TEST(JudgedDiagnosis, WhereNothingIsNamedNothingIsBetter) {
+  std::size_t unnamed = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    PlantedData planted = kuka::make_planted({.effects = {{"stribeck", 0.6}}}, seed);
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < planted.data.rows(); ++i) {
+      if (planted.data.movement[i] < 14) rows.push_back(i);
+    }
+    DiagnosisOptions options;
+    options.physical_vetoes = false;
+    const JudgedDiagnosis diagnosis =
+        diagnose_and_judge(observe(select_rows({planted.data, {}}, rows).data),
+                           coulomb_viscous_base, options, JudgingOptions{});
+    if (!diagnosis.effects.empty()) continue;
+    ++unnamed;
+    EXPECT_EQ(diagnosis.error.mae_before, diagnosis.error.mae_after) << seed;
+  }
+  EXPECT_GE(unnamed, 2U);
 }
 
 // Mean magnitude of the planted noise in the movements that a diagnosis has held out.
