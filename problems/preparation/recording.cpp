@@ -76,9 +76,11 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
   out.data = std::move(file.data);
   settle_other_acceleration(out);
   double noise = 0;
+  double acceleration_noise = 0;
   double blur = 0;
   if (const std::optional<DerivedMotion> derived = derive_motion(out)) {
     noise = derived->motion.velocity_noise;
+    acceleration_noise = derived->motion.acceleration_noise;
     settle_velocity(out, *derived);
     settle_acceleration(out, *derived);
     mark_unresolved(out, *derived);
@@ -102,6 +104,7 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
   adjust_acceleration(out);
   drop_unresolved(out);
   drop_lonely_acceleration(out);
+  drop_unseen_acceleration(out, acceleration_noise);
   check_gravity_factor(out, options);
   fit_gravity(out, gravity);
   return out;

@@ -306,6 +306,23 @@ void drop_lonely_acceleration(PreparedRecording& out) {
             "accelerate as no other movement does, so that no other tells the inertia");
 }
 
+// A column of which half is noise has half of its coefficient at most, and takes the other half
+// from whatever goes with it: no inertia.
+void drop_unseen_acceleration(PreparedRecording& out, double noise) {
+  const Channel* a = out.data.find("derived_acceleration");
+  if (a == nullptr || !has_inertia_of_derived(out.data)) return;
+  double square = 0;
+  for (const double value : a->values) square += value * value;
+  const double size = std::sqrt(square / static_cast<double>(a->values.size()));
+  if (size >= noise) return;
+  out.notes.push_back(fmt::format(
+      "the rows left accelerate by {:.2g} {} (root mean square), no more than its noise: no "
+      "inertia can be told, and none is in the formulas",
+      size, a->unit));
+  std::erase(out.rigid, a->name);
+  erase_channel(out.data, "derived_acceleration");
+}
+
 void drop_unresolved(PreparedRecording& out) {
   const Channel* mark = out.data.find(kUnresolvedChannel);
   if (mark == nullptr) return;

@@ -66,6 +66,8 @@ void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived);
 void drop_unresolved(PreparedRecording& out);
 // Accelerations that a single movement holds.
 void drop_lonely_acceleration(PreparedRecording& out);
+// Accelerations that are little but noise; noise: of one.
+void drop_unseen_acceleration(PreparedRecording& out, double noise);
 // A smoother takes something off a derived acceleration that changes fast and leaves noise in one
 // that does not: where between half the bandwidth and beyond the whole it is right the torque
 // tells.
