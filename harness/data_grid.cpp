@@ -12,15 +12,15 @@
 namespace tribench {
 namespace {
 
-std::vector<std::filesystem::path> files_of(const std::vector<std::string>& named,
-                                            const std::string& option) {
-  std::vector<std::filesystem::path> files;
+std::vector<user::DataSource> sources_of(const std::vector<std::string>& named,
+                                         const std::string& option) {
+  std::vector<user::DataSource> sources;
   for (const std::string& one : named) {
-    for (std::filesystem::path& file : user::find_data_files(one, option)) {
-      files.push_back(std::move(file));
+    for (user::DataSource& source : user::find_sources(one, option)) {
+      sources.push_back(std::move(source));
     }
   }
-  return files;
+  return sources;
 }
 
 void add_problem(Grid& grid, user::UserProblem problem) {
@@ -50,12 +50,12 @@ bool has_idle_movements(const user::UserProblem& own) {
 
 Grid make_data_grid(const DataGridRequest& request, const Registry& registry) {
   Grid grid;
-  const std::vector<user::DataSource> sources =
-      user::hashed(files_of(request.files, "--data-file"));
+  std::vector<user::DataSource> sources = sources_of(request.files, "--data-file");
   user::UserProblem problem = request.problem;
   if (!request.test.empty()) {
     problem.held_out.kind = user::HeldOut::Kind::files;
-    problem.held_out.files = user::hashed(files_of(request.test, "--test"));
+    problem.held_out.files = sources_of(request.test, "--test");
+    user::leave_out_tests(sources, problem.held_out.files, "--test");
   }
   if (!request.together.empty()) {
     require_plain_name(request.together, "a problem", "--together");

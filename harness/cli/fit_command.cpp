@@ -166,8 +166,11 @@ Problem make_problem(const FitArguments& arguments, const std::vector<std::strin
   if (!arguments.held_out && arguments.group.empty()) {
     const Dataset train = read_columns(arguments.data, *arguments.reading, used_columns(arguments));
     std::optional<Dataset> test;
-    if (!arguments.test.empty())
+    if (!arguments.test.empty()) {
+      user::require_apart(std::vector<std::filesystem::path>{arguments.data}, arguments.test,
+                          "--test");
       test = read_columns(arguments.test, *arguments.reading, used_columns(arguments));
+    }
     Problem problem = make_data_problem(train, test ? &*test : nullptr, arguments.target, inputs);
     problem.name = kProblemName;
     return problem;

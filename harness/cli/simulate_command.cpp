@@ -254,7 +254,11 @@ void simulate(const SimulateArguments& arguments) {
   read_refined(arguments, setup);
   const DataFile train = read_recording(arguments, setup, arguments.files);
   std::optional<DataFile> test;
-  if (!arguments.test.empty()) test = read_recording(arguments, setup, {arguments.test});
+  if (!arguments.test.empty()) {
+    const std::vector<std::filesystem::path> trains(arguments.files.begin(), arguments.files.end());
+    user::require_apart(trains, arguments.test, "--test");
+    test = read_recording(arguments, setup, {arguments.test});
+  }
   read_unit(arguments, train.data, setup);
   if (arguments.gravity.empty() && has_recorded_gravity(train.data)) {
     setup.gravity = forward::kRecordedGravity;

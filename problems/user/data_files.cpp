@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <utility>
 
 #include "foundation/error.hpp"
 #include "foundation/number_text.hpp"
@@ -57,6 +58,17 @@ std::vector<fs::path> files_like(const fs::path& pattern, const std::string& pla
   return files;
 }
 
+bool is_same_data(const DataSource& one, const DataSource& other) {
+  if (!one.sha256.empty() && one.sha256 == other.sha256) return true;
+  std::error_code missing;  // whoever reads the file says so
+  return fs::equivalent(one.file, other.file, missing);
+}
+
+bool is_among(const DataSource& one, std::span<const DataSource> others) {
+  return std::ranges::any_of(others,
+                             [&](const DataSource& other) { return is_same_data(one, other); });
+}
+
 }  // namespace
 
 std::vector<fs::path> find_data_files(const fs::path& named, const std::string& place) {
@@ -70,6 +82,47 @@ std::vector<DataSource> hashed(std::span<const fs::path> files) {
   std::vector<DataSource> sources;
   for (const fs::path& file : files) sources.push_back({file, sha256_of(file)});
   return sources;
+}
+
+std::vector<DataSource> find_sources(const fs::path& named, const std::string& place) {
+  const std::vector<fs::path> files = find_data_files(named, place);
+  std::vector<DataSource> sources = hashed(files);
+  for (DataSource& source : sources) source.is_found = source.file != named;
+  return sources;
+}
+
+void require_apart(std::span<const DataSource> train, std::span<const DataSource> test,
+                   const std::string& place) {
+  for (const DataSource& source : train) {
+    if (!is_among(source, test)) continue;
+    throw_bad_input(
+        fmt::format("'{}' trains, and it or a copy of it tests: errors on it would say nothing",
+                    source.file.string()),
+        place, "leave it out of one of the two, or hold out a share of its rows by a split");
+  }
+}
+
+void require_apart(std::span<const fs::path> train, const fs::path& test,
+                   const std::string& place) {
+  const auto source_of = [](const fs::path& file) {
+    std::error_code missing;
+    const bool has_bytes = fs::is_regular_file(file, missing);
+    return DataSource{file, has_bytes ? sha256_of(file) : std::string()};
+  };
+  std::vector<DataSource> sources;
+  for (const fs::path& file : train) sources.push_back(source_of(file));
+  const DataSource tested = source_of(test);
+  require_apart(sources, {&tested, 1}, place);
+}
+
+void leave_out_tests(std::vector<DataSource>& train, std::span<const DataSource> test,
+                     const std::string& place) {
+  std::vector<DataSource> kept;
+  for (const DataSource& source : train) {
+    if (!source.is_found || !is_among(source, test)) kept.push_back(source);
+  }
+  if (!kept.empty()) train = std::move(kept);
+  require_apart(train, test, place);
 }
 
 std::string name_of_file(const fs::path& file) {

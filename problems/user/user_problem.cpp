@@ -310,6 +310,7 @@ DataFile read_user_rows(const UserProblem& own) { return read_rows(own, own.file
 Problem make_user_problem(const UserProblem& own, const suite::LawReader& laws,
                           std::uint64_t seed) {
   require_unchanged(own);
+  require_apart(own.files, own.held_out.files, own.name);
   const DataFile rows = read_user_rows(own);
   std::vector<std::string> names = inputs_of(own, rows.data);
   add_category(own, rows, names);

@@ -28,6 +28,7 @@ inline constexpr const char* kCategoryUnit = "category";
 struct DataSource {
   std::filesystem::path file;  // absolute, or from the working directory
   std::string sha256;          // of its bytes
+  bool is_found = false;       // in a folder or by a pattern: nobody named the file itself
 };
 
 // Which rows test. Rows of one group are never parted.
@@ -93,6 +94,21 @@ std::vector<std::filesystem::path> find_data_files(const std::filesystem::path& 
                                                    const std::string& place);
 // The files with their hashes. Throws Error (bad_input) where one cannot be read.
 std::vector<DataSource> hashed(std::span<const std::filesystem::path> files);
+// Both in one, of one name.
+std::vector<DataSource> find_sources(const std::filesystem::path& named, const std::string& place);
+
+// Rows that a method was trained on say nothing about it: throws Error (bad_input) where a file
+// that tests trains too, under this or another path or as a copy with the same bytes.
+void require_apart(std::span<const DataSource> train, std::span<const DataSource> test,
+                   const std::string& place);
+// The same of files that need not be on a disk (a pipe can be read once only).
+void require_apart(std::span<const std::filesystem::path> train, const std::filesystem::path& test,
+                   const std::string& place);
+// The same for files that somebody named; those that were only found in a folder or by a pattern
+// are left out of what trains, for that is what whoever names the folder and a test file in it
+// means. Throws Error (bad_input) where none is left.
+void leave_out_tests(std::vector<DataSource>& train, std::span<const DataSource> test,
+                     const std::string& place);
 
 // A file's name as a problem's: "joint 1 (up).csv" -> "joint_1_up".
 std::string name_of_file(const std::filesystem::path& file);

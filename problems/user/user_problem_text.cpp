@@ -45,29 +45,26 @@ std::vector<DataSource> read_sources(const TomlTable& table, const fs::path& fol
     }
   }
   if (key.empty()) return {};
-  std::vector<fs::path> files;
+  std::vector<DataSource> sources;
   for (const std::string& name : named) {
     if (name.empty()) throw_bad_input(fmt::format("'{}' is empty", key), table.place(key));
     if (table.has("sha256")) {  // whoever reads them looks for them
-      files.push_back(folder / name);
+      sources.push_back({folder / name, {}});
       continue;
     }
-    for (fs::path& file : find_data_files(folder / name, table.place(key))) {
-      files.push_back(std::move(file));
+    for (DataSource& source : find_sources(folder / name, table.place(key))) {
+      sources.push_back(std::move(source));
     }
   }
-  if (files.empty()) throw_bad_input(fmt::format("'{}' names no file", key), table.place(key));
-  if (!table.has("sha256")) return hashed(files);
+  if (sources.empty()) throw_bad_input(fmt::format("'{}' names no file", key), table.place(key));
+  if (!table.has("sha256")) return sources;
   std::vector<std::string> hashes;
   table.read("sha256", hashes);
-  if (hashes.size() != files.size()) {
-    throw_bad_input(fmt::format("{} hashes for {} files", hashes.size(), files.size()),
+  if (hashes.size() != sources.size()) {
+    throw_bad_input(fmt::format("{} hashes for {} files", hashes.size(), sources.size()),
                     table.place("sha256"), "give one for each file, in their order, or none");
   }
-  std::vector<DataSource> sources;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    sources.push_back({std::move(files[i]), std::move(hashes[i])});
-  }
+  for (std::size_t i = 0; i < sources.size(); ++i) sources[i].sha256 = std::move(hashes[i]);
   return sources;
 }
 
@@ -186,6 +183,9 @@ UserProblem read_one(const TomlTable& table, const fs::path& folder) {
   own.held_out = read_held_out(table.table("split", {"share", "seeds", "column", "values", "file",
                                                      "files", "folder", "glob", "sha256"}),
                                folder);
+  if (own.held_out.kind == HeldOut::Kind::files) {
+    leave_out_tests(own.files, own.held_out.files, table.place("split"));
+  }
   table.read("law", own.law);
   own.units = read_units(table);
   own.box = read_box(table);

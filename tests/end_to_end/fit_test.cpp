@@ -117,6 +117,14 @@ TEST_F(FitTest, RefusesBadInputWithPlaceAndMend) {
               HasSubstr("template, character 3: 'velocity_rad' is not an input; did you mean"));
   EXPECT_EQ(fit({"--target", "x", "--inputs", "y", "--method", "linear", "--seed", "-1"}).status,
             2);
+  for (const std::string group : {"", "movement"}) {
+    std::vector<std::string> words = {"--target", "friction_torque_Nm",
+                                      "--inputs", "velocity_rad_s",
+                                      "--method", "linear",
+                                      "--test",   (folder_ / "train.csv").string()};
+    if (!group.empty()) words.insert(words.end(), {"--group", group});
+    EXPECT_THAT(refused(words), HasSubstr("train.csv' trains"));
+  }
 }
 
 TEST_F(FitTest, AFileThatCannotBeWrittenIsFoundBeforeTheWork) {

@@ -90,6 +90,23 @@ TEST_F(OwnDataTest, AFolderOfFilesBecomesALeaderboardInOneCommand) {
   EXPECT_EQ(column_of(folder_ / "one", "status").size(), 3U);
 }
 
+TEST_F(OwnDataTest, AFileOfTheFolderThatTestsIsNoProblem) {
+  const std::string logs = (folder_ / "here/logs").string();
+  const auto run_on = [&](const std::string& files, const std::string& out) {
+    return run({"run", "--data-file", files, "--target", "tau", "--inputs", "v,load", "--methods",
+                "linear", "--test", logs + "/joint 2.csv", "--out", (folder_ / out).string(),
+                "--quiet"});
+  };
+  const ProgramRun done = run_on(logs, "rest");
+  ASSERT_EQ(done.status, 0) << done.errors;
+  const auto status = column_of(folder_ / "rest", "status");
+  EXPECT_EQ(status.size(), 4U);
+  for (const auto& [cell, text] : status) EXPECT_EQ(cell.find("joint_2"), std::string::npos);
+  const ProgramRun refused = run_on(logs + "/joint 2.csv", "itself");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, AllOf(HasSubstr("--test"), HasSubstr("joint 2.csv' trains")));
+}
+
 // What a method says it lacks can be given by doing what the message says.
 TEST_F(OwnDataTest, AMissingRoleIsToldWithItsMend) {
   const auto run_with = [this](const std::string& name, const std::vector<std::string>& more) {

@@ -115,6 +115,43 @@ TEST_F(UserProblems, AColumnOrOtherFilesCanSayWhatTests) {
   EXPECT_EQ(by_file.inputs[0].high, 100);
 }
 
+// An error on rows that a method was trained on would pass for one on rows that it never saw.
+TEST_F(UserProblems, AFileThatTestsDoesNotTrain) {
+  const std::string bytes = "v,tau\n100,1\n-200,2\n";
+  write("logs/two.csv", bytes);
+  write("copy.csv", bytes);
+  const std::string head = "[[problem]]\ntarget = \"tau\"\ninputs = [\"v\"]\n";
+  const auto refused = [&](const std::string& files) -> std::string {
+    try {
+      parse(head + files);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(
+      refused("files = [\"logs/one.csv\", \"logs/two.csv\"]\n"
+              "split = { file = \"logs/../logs/two.csv\" }\n"),
+      AllOf(HasSubstr("g.toml:5"), HasSubstr("two.csv' trains"), HasSubstr("leave it out")));
+  EXPECT_THAT(refused("file = \"logs/two.csv\"\nsplit = { file = \"copy.csv\" }\n"),
+              HasSubstr("a copy of it tests"));
+  EXPECT_THAT(refused("glob = \"logs/t*.csv\"\nsplit = { file = \"logs/two.csv\" }\n"),
+              HasSubstr("two.csv' trains"));
+  // Of a folder, the others are meant.
+  for (const char* test : {"logs/two.csv", "copy.csv"}) {
+    const std::string split = "split = { file = \"" + std::string(test) + "\" }\n";
+    const std::vector<UserProblem> left = parse(head + "folder = \"logs\"\n" + split);
+    ASSERT_EQ(left.size(), 1U);
+    EXPECT_EQ(left[0].name, "one");
+    EXPECT_EQ(parse(head + "glob = \"logs/*\"\nname = \"all\"\n" + split)[0].files.size(), 1U);
+  }
+  // Whoever puts a problem together without a text is told when it is made.
+  UserProblem own =
+      parse(head + "file = \"logs/two.csv\"\nsplit = { file = \"logs/one.csv\" }\n")[0];
+  own.held_out.files = own.files;
+  EXPECT_THROW(make_user_problem(own, {}, 1), Error);
+}
+
 TEST_F(UserProblems, TheLawTheBoxAndTheUnitsAreTheUsers) {
   const Problem problem = make(
       "inputs = [\"v\", \"sgn_v\"]\nlaw = \"2*v\"\nbox = { v = [-40, 50.5] }\n"
@@ -209,7 +246,7 @@ TEST_F(UserProblems, MotionIsJudgedOnTheRowsThatTestAndWantsItsColumns) {
   EXPECT_NEAR(judged.test.find(Role::time)->values[1], 1.1e-3, 1e-18);
   EXPECT_NEAR(judged.test.find(Role::position)->values[1], 0.1 * M_PI / 180, 1e-18);
   // Without movements: a column that is the same all through a recording, or another file.
-  write("logs/third.csv", kRecordings);
+  write("logs/third.csv", std::string(kRecordings) + "\n");
   for (const char* split : {"column = \"run\", values = [\"down\"]", "file = \"logs/third.csv\""}) {
     const Problem other = make_user_problem(
         parse(std::string("[[problem]]\nname = \"m\"\nfile = \"logs/two.csv\"\ntarget = \"u\"\n"
