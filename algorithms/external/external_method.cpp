@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -45,11 +46,24 @@ std::vector<std::string> names_of(const TrainingData& data) {
   return names;
 }
 
+// The columns that train.csv has beside the inputs.
+constexpr const char* kTargetColumn = "target";
+constexpr const char* kMovementColumn = "movement";
+
+// An input of such a name would be a second column of it, and which of the two a program reads is
+// its CSV library's choice.
+const Input* input_of_taken_name(const TrainingData& data) {
+  const auto found = std::ranges::find_if(data.inputs, [](const Input& input) {
+    return input.name == kTargetColumn || input.name == kMovementColumn;
+  });
+  return found == data.inputs.end() ? nullptr : &*found;
+}
+
 // Rows without a target are left out: the program need not know of missing values.
 void write_training_rows(const TrainingData& data, const std::filesystem::path& file) {
   std::string text;
   for (const std::string& name : names_of(data)) text += name + ",";
-  text += "target,movement\n";
+  text += fmt::format("{},{}\n", kTargetColumn, kMovementColumn);
   for (std::size_t r = 0; r < data.rows(); ++r) {
     bool is_finite = std::isfinite(data.target[r]);
     for (const double* column : data.columns) is_finite = is_finite && std::isfinite(column[r]);
@@ -84,7 +98,7 @@ json request_json(const FitContext& context,
   RandomStream random = context.random;
   return {{"protocol", kProtocol},
           {"train", "train.csv"},
-          {"target", "target"},
+          {"target", kTargetColumn},
           {"inputs", inputs},
           {"operator_set", context.operators.name()},
           {"operators", operators},
@@ -104,6 +118,12 @@ class ExternalMethod : public Regressor {
 
   FitResult fit(FitContext& context) const override {
     if (context.budget.remaining() == 0) return {{}, 0, StopReason::budget, "no budget"};
+    if (const Input* taken = input_of_taken_name(context.data)) {
+      return FitResult::unsupported(
+          fmt::format("an input is called '{}' like a column that programs are given; give that "
+                      "column of the data another name",
+                      taken->name));
+    }
     const ScratchFolder scratch;
     write_training_rows(context.data, scratch.path() / "train.csv");
     const std::filesystem::path request = scratch.path() / "request.json";
