@@ -131,6 +131,12 @@ std::vector<std::string> pick(const TomlTable& table, std::string_view key,
   return pick_names(globs, known, what, table.place(key));
 }
 
+constexpr const char* kRename = "a leaderboard would show one for the other: rename it";
+
+bool is_algorithm(const std::string& name, const Registry& registry) {
+  return std::ranges::count(registry.entries(), name, &AlgorithmEntry::name) > 0;
+}
+
 Method read_method(const TomlTable& table, const Registry& registry) {
   table.require("name");
   Method method;
@@ -141,23 +147,24 @@ Method read_method(const TomlTable& table, const Registry& registry) {
   const std::string place = table.has("parameters") ? table.place("parameters") : table.place();
   at_place(place, [&] { return registry.make(method.algorithm, method.parameters); });
   method.fixed_form = registry.find(method.algorithm).fixed_form;
-  const bool takes_a_name =
-      method.name != method.algorithm &&
-      std::ranges::count(registry.entries(), method.name, &AlgorithmEntry::name) > 0;
-  if (takes_a_name) {
+  if (method.name != method.algorithm && is_algorithm(method.name, registry)) {
     throw_bad_input(fmt::format("'{}' is the name of another algorithm than '{}'", method.name,
                                 method.algorithm),
-                    table.place("name"), "a leaderboard would show one for the other: rename it");
+                    table.place("name"), kRename);
   }
   return method;
 }
 
-Method read_external(const TomlTable& table, const std::vector<std::string>& set_names,
-                     const CellLimits& limits) {
+Method read_external(const TomlTable& table, const Registry& registry,
+                     const std::vector<std::string>& set_names, const CellLimits& limits) {
   table.require("name");
   table.require("command");
   Method method;
   table.read("name", method.name);
+  if (is_algorithm(method.name, registry)) {
+    throw_bad_input(fmt::format("'{}' is the name of an algorithm, not of a program", method.name),
+                    table.place("name"), kRename);
+  }
   table.read("command", method.command);
   if (method.command.empty()) throw_bad_input("'command' is empty", table.place("command"));
   method.parameters = table.values("parameters");
@@ -181,8 +188,8 @@ void check_names(const std::vector<Method>& methods, const std::string& file_nam
   }
 }
 
-// The registry's algorithms under their own names, then what the file declares; a declaration
-// with an algorithm's name replaces it.
+// The registry's algorithms under their own names, then what the file declares; a [[method]]
+// with its algorithm's own name replaces it.
 std::vector<Method> known_methods(const TomlTable& file, const Registry& registry,
                                   const std::vector<std::string>& set_names,
                                   const CellLimits& limits, const std::string& file_name) {
@@ -194,7 +201,7 @@ std::vector<Method> known_methods(const TomlTable& file, const Registry& registr
   std::vector<std::string> keys = {"name", "command", "operators", "fixed_form", "parameters"};
   keys.insert(keys.end(), limit_keys().begin(), limit_keys().end());
   for (const TomlTable& table : file.array_of_tables("external", keys)) {
-    declared.push_back(read_external(table, set_names, limits));
+    declared.push_back(read_external(table, registry, set_names, limits));
   }
   check_names(declared, file_name);
   std::vector<Method> all;
