@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "foundation/error.hpp"
@@ -12,6 +13,28 @@
 #include "problems/variant.hpp"
 
 namespace tribench {
+namespace {
+
+// What a pattern of the quarantine is held against: nobody writes down what a file hashes to.
+class CellName {
+ public:
+  explicit CellName(const Cell& cell) : key_(cell.key()) {
+    if (cell.data.empty()) return;
+    Cell bare = cell;
+    bare.data.clear();
+    without_hash_ = bare.key();
+  }
+  bool is_matched_by(const std::string& glob) const {
+    return glob_matches(glob, key_) ||
+           (!without_hash_.empty() && glob_matches(glob, without_hash_));
+  }
+
+ private:
+  std::string key_;
+  std::string without_hash_;  // empty where the key has none
+};
+
+}  // namespace
 
 void set_seconds(CellLimits& limits, double seconds) {
   limits.seconds = seconds;
@@ -127,9 +150,30 @@ const user::UserProblem* Grid::own_problem(std::string_view problem) const {
   return found == own.end() ? nullptr : &*found;
 }
 
-bool Grid::quarantined(const std::string& cell_key) const {
-  return std::ranges::any_of(quarantine,
-                             [&](const std::string& glob) { return glob_matches(glob, cell_key); });
+bool Grid::quarantined(const Cell& cell) const {
+  return std::ranges::any_of(quarantine, [key = CellName(cell)](const std::string& glob) {
+    return key.is_matched_by(glob);
+  });
+}
+
+std::vector<std::string> Grid::idle_quarantine() const {
+  std::vector<std::string> idle = quarantine;
+  if (idle.empty()) return idle;
+  for (const Cell& cell : cells()) {
+    const CellName name(cell);
+    std::erase_if(idle, [&name](const std::string& glob) { return name.is_matched_by(glob); });
+    if (idle.empty()) break;
+  }
+  return idle;
+}
+
+std::vector<std::string> Grid::effective_quarantine() const {
+  const std::vector<std::string> idle = idle_quarantine();
+  std::vector<std::string> effective;
+  std::ranges::copy_if(quarantine, std::back_inserter(effective), [&](const std::string& glob) {
+    return std::ranges::count(idle, glob) == 0;
+  });
+  return effective;
 }
 
 }  // namespace tribench

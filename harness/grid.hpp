@@ -113,7 +113,13 @@ struct Grid {
   // Nothing for a problem of the catalogue.
   const user::UserProblem* own_problem(std::string_view problem) const;
   CellLimits limits_of(const Method& method) const { return method.limits.value_or(limits); }
-  bool quarantined(const std::string& cell_key) const;
+  // A pattern is held against the key, and of a problem of the grid's own against the key without
+  // the hash of its data too.
+  bool quarantined(const Cell& cell) const;
+  // The patterns that leave out no cell, and those that do. Cost: every cell's key, where there
+  // are patterns.
+  std::vector<std::string> idle_quarantine() const;
+  std::vector<std::string> effective_quarantine() const;
 };
 
 // The names that globs pick, in the order of `known`; "!GLOB" leaves out of what those before it

@@ -79,7 +79,8 @@ std::string print_grid_with(const Grid& grid, const toml::array& own) {
   table.insert("operators", text_array(grid.operators, &OperatorSet::name));
   table.insert("seeds", toml::table{{"first", static_cast<std::int64_t>(grid.first_seed)},
                                     {"count", static_cast<std::int64_t>(grid.seed_count)}});
-  table.insert("quarantine", text_array(grid.quarantine));
+  // Of a list of another run's cells, or with fewer seeds than the file had, some take no effect.
+  table.insert("quarantine", text_array(grid.effective_quarantine()));
   if (!grid.reference.empty()) table.insert("reference", kPublishedFile);
   toml::table budget;
   insert_limits(budget, grid.limits);

@@ -339,6 +339,16 @@ void read_axes(const TomlTable& file, const TomlTable& table, const Registry& re
   }
 }
 
+// A pattern that leaves nothing out is a slip: what should not run would run.
+void require_quarantined_cells(const Grid& grid, const std::string& place) {
+  const std::vector<std::string> idle = grid.idle_quarantine();
+  if (idle.empty()) return;
+  throw_bad_input(fmt::format("no cell of the grid is '{}'", idle.front()), place,
+                  fmt::format("cells are PROBLEM|METHOD|OPERATORS|SEED, the first here is '{}'; "
+                              "--dry-run lists them",
+                              grid.cells().front().key()));
+}
+
 }  // namespace
 
 Grid parse_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
@@ -380,6 +390,7 @@ Grid parse_grid(std::string_view toml, const std::string& file_name, const Regis
     throw_bad_input(fmt::format("the grid has {} cells", cells), table.place(),
                     fmt::format("use at most {}: split it into several grids", kMaxCells));
   }
+  require_quarantined_cells(grid, table.place("quarantine"));
   return grid;
 }
 

@@ -127,7 +127,7 @@ class GridRun {
   }
 
   std::optional<CellResult> result_of(const Cell& cell, WorkerProcess& worker) {
-    if (grid_.quarantined(cell.key())) {
+    if (grid_.quarantined(cell)) {
       CellResult result;
       result.record = empty_record(cell);
       mark_failed(result.record, FailureKind::quarantined);

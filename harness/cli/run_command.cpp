@@ -194,6 +194,21 @@ void verify(const RunArguments& arguments, const Registry& registry, ExitStatus&
   if (!verdict.different.empty()) status = ExitStatus::found;
 }
 
+// The file may list cells of several grids: one that is not here is no error, but is said.
+void add_quarantine_file(const std::string& file, Grid& grid) {
+  const std::vector<std::string> globs = read_quarantine_file(file);
+  Grid listed = grid;
+  listed.quarantine = globs;
+  const std::vector<std::string> idle = listed.idle_quarantine();
+  if (!idle.empty()) {
+    print_message(
+        fmt::format("tribench: {}: {} of {} lines leave out no cell of this grid; the "
+                    "first is '{}'; --dry-run lists the cells\n",
+                    file, idle.size(), globs.size(), idle.front()));
+  }
+  grid.quarantine.insert(grid.quarantine.end(), globs.begin(), globs.end());
+}
+
 void run(const RunArguments& arguments, const Registry& registry, ExitStatus& status) {
   if (!arguments.verify.empty()) {
     verify(arguments, registry, status);
@@ -211,11 +226,7 @@ void run(const RunArguments& arguments, const Registry& registry, ExitStatus& st
   }
   for (const std::string& note : reading_notes(grid))
     print_message(fmt::format("tribench: {}\n", note));
-  if (!arguments.quarantine.empty()) {
-    for (std::string& glob : read_quarantine_file(arguments.quarantine)) {
-      grid.quarantine.push_back(std::move(glob));
-    }
-  }
+  if (!arguments.quarantine.empty()) add_quarantine_file(arguments.quarantine, grid);
   if (arguments.dry_run) {
     print_dry_run(grid, arguments, options);
     if (arguments.out.empty()) return;

@@ -116,6 +116,18 @@ methods = ["test_mean", "test_crash", "test_throw"]
                 .status,
             0);
   EXPECT_EQ(column_of(folder_ / "next", "reason").at("A/j2/no_load|test_crash|-|1"), "quarantined");
+  // A line that leaves out no cell is said, and is not what goes on as the run's grid.
+  write_text(list, read_text(list) + "A/j3/*|test_mean|*\n");
+  const ProgramRun more =
+      run_to_end({test_program().string(), "run", (folder_ / "grid.toml").string(), "--out",
+                  (folder_ / "more").string(), "--quarantine", list.string()});
+  EXPECT_EQ(more.status, 0);
+  EXPECT_THAT(more.errors, ::testing::HasSubstr("1 of 2 lines leave out no cell of this grid; the "
+                                                "first is 'A/j3/*|test_mean|*'"));
+  EXPECT_EQ(run_to_end({test_program().string(), "run", (folder_ / "more/grid.toml").string(),
+                        "--out", (folder_ / "more").string(), "--resume"})
+                .status,
+            0);
 }
 
 TEST_F(MisbehavingMethodsTest, AFullDiskIsSaidAndLosesNothing) {

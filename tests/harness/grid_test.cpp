@@ -139,6 +139,45 @@ TEST(Grid, RefusesToShowOneAlgorithmUnderTheNameOfAnother) {
               AllOf(HasSubstr("g.toml:5"), HasSubstr("another algorithm than 'grid_alpha'")));
 }
 
+TEST(Grid, RefusesAProgramUnderTheNameOfAnAlgorithm) {
+  EXPECT_THAT(
+      refusal(std::string(kAxes) + "[[external]]\nname = \"grid_fixed\"\ncommand = [\"true\"]\n"),
+      AllOf(HasSubstr("g.toml:5"), HasSubstr("'grid_fixed' is the name of an algorithm"),
+            HasSubstr("rename it")));
+}
+
+// What should not run would run, without a word.
+TEST(Grid, RefusesAQuarantineThatLeavesOutNoCell) {
+  const auto with = [](const std::string& globs) {
+    return refusal(std::string(kAxes) + "quarantine = [" + globs + "]\n");
+  };
+  EXPECT_EQ(with(""), "accepted");
+  EXPECT_EQ(with("\"*|grid_fixed|*\""), "accepted");
+  EXPECT_THAT(
+      with("\"*|grid_fixed|*\", \"A/j3/*|grid_alpha|*\""),
+      AllOf(HasSubstr("g.toml:4"), HasSubstr("no cell of the grid is 'A/j3/*|grid_alpha|*'"),
+            HasSubstr("A/j2/no_load|grid_alpha|paper|1")));
+}
+
+// The list may be another run's, of which this grid has some cells; the run's folder keeps those.
+TEST(Grid, PrintsTheQuarantineThatTakesEffect) {
+  Grid grid = parse_text(kAxes);
+  grid.quarantine = {"*|grid_fixed|*", "*|gone|*"};
+  EXPECT_THAT(grid.idle_quarantine(), ElementsAre("*|gone|*"));
+  EXPECT_THAT(parse_text(print_grid(grid)).quarantine, ElementsAre("*|grid_fixed|*"));
+}
+
+TEST(Grid, AQuarantineNeedNotKnowWhatFilesHashTo) {
+  Grid grid;
+  grid.quarantine = {"tt|linear|*"};
+  const Cell hashed{"tt", "linear", "-", 1, "3fa9c1e2d4b5"};
+  EXPECT_TRUE(grid.quarantined(hashed));
+  EXPECT_FALSE(grid.quarantined({"tt", "constant", "-", 1, "3fa9c1e2d4b5"}));
+  grid.quarantine = {"tt@3fa9c1e2d4b5|linear|-|1"};
+  EXPECT_TRUE(grid.quarantined(hashed));
+  EXPECT_FALSE(grid.quarantined({"tt", "linear", "-", 1, "000000000000"}));
+}
+
 TEST(Grid, ChecksParametersAgainstTheAlgorithm) {
   EXPECT_THAT(refusal(std::string(kAxes) + "[[method]]\nname = \"a2\"\nalgorithm = \"grid_alpha\"\n"
                                            "parameters = { island = 3 }\n"),
