@@ -75,7 +75,8 @@ std::vector<std::string> environment_with(const std::vector<std::string>& extra)
   return all;
 }
 
-// A program's file as execve wants it: found in PATH where the word has no slash.
+}  // namespace
+
 std::string found_in_path(const std::string& word) {
   if (word.find('/') != std::string::npos) return word;
   const char* variable = std::getenv("PATH");
@@ -88,8 +89,6 @@ std::string found_in_path(const std::string& word) {
   }
   return word;  // execve will say that it is not there
 }
-
-}  // namespace
 
 ChildProcess::ChildProcess(const ChildOptions& options) {
   if (options.command.empty()) throw Error(ErrorKind::failed, "an empty command cannot be run");

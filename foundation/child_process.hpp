@@ -100,6 +100,10 @@ struct ChildLimits {
 ChildRun run_child(const ChildOptions& options, std::string_view input = {},
                    const ChildLimits& limits = {});
 
+// A program's file as it will be run: found in PATH where the word has no slash; the word where it
+// is not there.
+std::string found_in_path(const std::string& word);
+
 // "SIGSEGV" for 11; "signal 99" where there is no name.
 std::string signal_name(int signal);
 

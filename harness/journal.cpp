@@ -72,15 +72,19 @@ int open_locked(const std::filesystem::path& file, int flags) {
 }
 
 std::string identity_body(const RunIdentity& identity) {
-  return json{
-      {"identity", {{"grid", identity.grid}, {"code", identity.code}, {"data", identity.data}}}}
-      .dump();
+  json text = {{"grid", identity.grid}, {"code", identity.code}, {"data", identity.data}};
+  if (!identity.programs.empty()) text["programs"] = identity.programs;
+  return write_json(json{{"identity", std::move(text)}});
 }
 
 RunIdentity parse_identity(std::string_view body, const std::filesystem::path& file) {
   try {
     const json object = read_json<json>(body).at("identity");
-    return {object.at("grid"), object.at("code"), object.at("data")};
+    RunIdentity identity{object.at("grid"), object.at("code"), object.at("data")};
+    if (object.contains("programs")) {
+      identity.programs = object.at("programs").get<std::map<std::string, std::string>>();
+    }
+    return identity;
   } catch (const json::exception&) {  // an empty body, or one that this program did not write
     throw_bad_input("this is not a run's journal", file.string());
   }
@@ -118,6 +122,28 @@ std::string line_difference(const std::string& before, const std::string& after)
   return text;
 }
 
+// A file that one of the two does not have shows as none.
+std::string program_difference(const std::map<std::string, std::string>& before,
+                               const std::map<std::string, std::string>& now) {
+  constexpr std::size_t kShown = 12;  // hexadecimal digits
+  std::map<std::string, std::string> all = before;
+  all.insert(now.begin(), now.end());
+  const auto hash_in = [](const std::map<std::string, std::string>& files,
+                          const std::string& name) {
+    const auto found = files.find(name);
+    return found == files.end() ? std::string("none") : found->second;
+  };
+  std::string text;
+  for (const auto& [name, hash] : all) {
+    const std::string old = hash_in(before, name);
+    const std::string fresh = hash_in(now, name);
+    if (old == fresh) continue;
+    text += fmt::format("the program's file differs, {}: {} -> {}\n", name, old.substr(0, kShown),
+                        fresh.substr(0, kShown));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string journal_line(std::string_view body) {
@@ -131,7 +157,7 @@ std::string RunIdentity::difference(const RunIdentity& other) const {
   }
   if (code != other.code) text += fmt::format("the code differs: {} -> {}\n", code, other.code);
   if (data != other.data) text += fmt::format("the data differ: {} -> {}\n", data, other.data);
-  return text;
+  return text + program_difference(programs, other.programs);
 }
 
 JournalContents read_journal(const std::filesystem::path& file) {

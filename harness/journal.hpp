@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -26,6 +27,8 @@ struct RunIdentity {
   std::string grid;  // as printed by print_grid
   std::string code;  // version, commit and, where the tree was dirty, the program's hash
   std::string data;  // a hash of every problem's data
+  // Of the grid's programs (program_files.hpp).
+  std::map<std::string, std::string> programs = {};
 
   // Empty where equal; else what differs, as text for people.
   std::string difference(const RunIdentity& other) const;

@@ -116,8 +116,7 @@ WholeRun run_pending(const Grid& grid, RunOptions options, const std::atomic<boo
     return run_whole(grid, options, stop);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::bad_input || !fs::exists(options.out / "cells.jsonl")) throw;
-    const RunIdentity now{print_grid_identity(grid), code_identity(),
-                          data_identity(grid, options.data)};
+    const RunIdentity now = identity_of(grid, options.data);
     if (read_journal(options.out / "cells.jsonl").identity.difference(now).empty()) throw;
   }
   const std::string aside = kAbandoned + file_time(utc_now());

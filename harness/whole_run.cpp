@@ -7,6 +7,7 @@
 #include "foundation/text.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/curves.hpp"
+#include "harness/program_files.hpp"
 #include "harness/provenance.hpp"
 #include "harness/run_files.hpp"
 #include "reports/run_reports.hpp"
@@ -24,9 +25,13 @@ std::string own_command_line() {
 
 }  // namespace
 
+RunIdentity identity_of(const Grid& grid, const std::string& data) {
+  return {print_grid_identity(grid), code_identity(), data_identity(grid, data),
+          program_files(grid)};
+}
+
 WholeRun run_whole(const Grid& grid, const RunOptions& options, const std::atomic<bool>& stop) {
-  const RunIdentity identity{print_grid_identity(grid), code_identity(),
-                             data_identity(grid, options.data)};
+  const RunIdentity identity = identity_of(grid, options.data);
   RunSession session{utc_now(), {}, own_command_line(), options, {}};
   session.tally = run_grid(grid, options, identity, stop);
   session.ended = utc_now();

@@ -21,6 +21,9 @@ struct WholeRun {
   bool all_failed() const { return tally.done() > 0 && tally.failed == tally.done(); }
 };
 
+// What run_whole's journal says of the run. Throws as data_identity does.
+RunIdentity identity_of(const Grid& grid, const std::string& data);
+
 // Runs what options.out does not have yet and writes every file of a run's folder. Throws as
 // run_grid does. `stop`: ends it early, with files of what is done.
 WholeRun run_whole(const Grid& grid, const RunOptions& options, const std::atomic<bool>& stop);

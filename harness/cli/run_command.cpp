@@ -28,6 +28,7 @@
 #include "harness/grid.hpp"
 #include "harness/machine.hpp"
 #include "harness/plan.hpp"
+#include "harness/program_files.hpp"
 #include "harness/provenance.hpp"
 #include "harness/run.hpp"
 #include "harness/run_files.hpp"
@@ -187,6 +188,9 @@ void verify(const RunArguments& arguments, const Registry& registry, ExitStatus&
   const VerifyResult verdict = verify_run(grid, journal, arguments.sample, options, never);
   if (journal.identity.code != code_identity()) {
     fmt::print("made by {}, verified by {}\n", journal.identity.code, code_identity());
+  }
+  if (journal.identity.programs != program_files(grid)) {
+    fmt::print("made with other files of its programs than these\n");
   }
   for (const std::string& difference : verdict.different) fmt::print("{}\n", difference);
   fmt::print("{} cells run again, {} differ; {} cells of the run promise nothing (clock, limits)\n",

@@ -175,6 +175,40 @@ TEST_F(ExternalTest, AFaultOfTheMachineStopsTheRunAndIsRepeatedByResume) {
   EXPECT_EQ(figure("limited", "formula"), "4");
 }
 
+// Figures of two versions of a program in one leaderboard would be nobody's.
+TEST_F(ExternalTest, AProgramThatHasChangedIsAnotherRun) {
+  const std::filesystem::path script = folder_ / "theirs.sh";
+  const auto write_version = [&](const std::string& number) {
+    write_text(script, "echo '{\"front\": [\"" + number + "\"]}'\n");
+  };
+  write_version("3");
+  write_text(
+      folder_ / "grid.toml",
+      "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"theirs\"]\nseeds = { count = 2 }\n"
+      "[[external]]\nname = \"theirs\"\ncommand = [\"bash\", \"" +
+          script.string() + "\"]\n");
+  const auto run_to = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"run", (folder_ / "grid.toml").string(), "--out",
+                                      (folder_ / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_tribench(words);
+  };
+  ASSERT_EQ(run_to("one", {"--shard", "1/2"}).status, 0);
+  ASSERT_EQ(run_to("one", {"--shard", "1/2", "--resume"}).status, 0);
+  EXPECT_THAT(read_text(folder_ / "one" / "provenance.json"), HasSubstr("theirs.sh\": \""));
+  write_version("4");
+  const ProgramRun resumed = run_to("one", {"--resume"});
+  EXPECT_EQ(resumed.status, 2);
+  EXPECT_THAT(resumed.errors,
+              HasSubstr("the program's file differs, theirs: " + script.string() + ": "));
+  ASSERT_EQ(run_to("two", {"--shard", "2/2"}).status, 0);
+  const ProgramRun merged =
+      run_tribench({"merge", (folder_ / "one").string(), (folder_ / "two").string(), "--out",
+                    (folder_ / "merged").string()});
+  EXPECT_EQ(merged.status, 2);
+  EXPECT_THAT(merged.errors, HasSubstr("theirs.sh: "));
+}
+
 TEST_F(ExternalTest, ARunOfWhichEveryCellFailedHasFailed) {
   write_text(folder_ / "grid.toml", "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"no\"]\n" +
                                         shell_method("no", "exit 9"));

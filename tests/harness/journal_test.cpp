@@ -98,6 +98,13 @@ TEST_F(JournalTest, SaysAtTheNextCellThatItsFileWasRemoved) {
   EXPECT_THROW(journal.append(result(1)), Error);
 }
 
+TEST_F(JournalTest, KeepsWhatTheProgramsWere) {
+  RunIdentity identity = kIdentity;
+  identity.programs = {{"theirs: bash", "0123"}, {"theirs: theirs.sh", "4567"}};
+  Journal::create(file_, identity);
+  EXPECT_EQ(read_journal(file_).identity.programs, identity.programs);
+}
+
 TEST_F(JournalTest, RefusesAFileThatIsNoJournal) {
   write_text(file_, "{\"cells\": 3}\n");
   EXPECT_THROW(read_journal(file_), Error);
@@ -114,6 +121,11 @@ TEST(RunIdentity, ShowsWhatDiffers) {
   EXPECT_THAT(difference, HasSubstr("- name = 'x'"));
   EXPECT_THAT(difference, HasSubstr("+ name = 'y'"));
   EXPECT_THAT(difference, HasSubstr("0.1.0 (abc) -> 0.1.0 (def)"));
+  RunIdentity with_program = kIdentity;
+  with_program.programs = {{"theirs: theirs.py", "01234567"}};
+  EXPECT_THAT(kIdentity.difference(with_program),
+              HasSubstr("the program's file differs, theirs: theirs.py: none -> 01234567"));
+  EXPECT_EQ(with_program.difference(with_program), "");
 }
 
 }  // namespace
