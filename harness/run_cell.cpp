@@ -259,9 +259,11 @@ class StageFits {
  private:
   BudgetLimits left() const { return {budget_.remaining(), budget_.remaining_seconds()}; }
 
+  // What a program chooses stands (FitResult::keeps_choice): no look at it needs seconds.
+  bool keeps_choice() const { return task_.method.is_external(); }
   // Of few rows the search leaves seconds to be made again, where it has enough of them by itself.
   double share_of_first() const {
-    const bool leaves = data_.rows() <= kFewRows &&
+    const bool leaves = !keeps_choice() && data_.rows() <= kFewRows &&
                         kShareBesideSearchesAnew * budget_.remaining_seconds() >= kSecondsOfSearch;
     return leaves ? kShareBesideSearchesAnew : 1;
   }
@@ -280,7 +282,7 @@ class StageFits {
   }
   // The whole budget but for its seconds: what has been refused to one is refused to the other.
   Budget search_part(double share) const {
-    if (data_.target.size() <= kFewRows) share *= kSearchShareOfFewRows;
+    if (!keeps_choice() && data_.target.size() <= kFewRows) share *= kSearchShareOfFewRows;
     Budget part = budget_.share(budget_.remaining(), share);
     if (budget_.exhausted()) part.spend(part.remaining() + 1);
     return part;

@@ -82,19 +82,6 @@ std::vector<std::string> used_columns(const FitArguments& arguments) {
   return used;
 }
 
-CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fixed_form) {
-  CellTask task;
-  const std::string& method = arguments.method.empty() ? arguments.external : arguments.method;
-  task.cell = {problem.name, method, fixed_form ? kFixedForm : arguments.operators, arguments.seed};
-  task.operators = find_operator_set(arguments.operators);
-  if (fixed_form) task.operators = fixed_form_operators();
-  task.limits.evaluations = arguments.evaluations;
-  task.limits.seconds = arguments.seconds;
-  task.limits.spend = arguments.spends_all;
-  task.threads = usable_processors();
-  return task;
-}
-
 // The words of a command as a shell would part them; quotes hold words together.
 std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words;
@@ -118,6 +105,20 @@ std::vector<std::string> words_of(const std::string& text) {
                     "as in --external 'python3 mine.py'");
   }
   return words;
+}
+
+CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fixed_form) {
+  CellTask task;
+  const std::string& method = arguments.method.empty() ? arguments.external : arguments.method;
+  if (!arguments.external.empty()) task.method.command = words_of(arguments.external);
+  task.cell = {problem.name, method, fixed_form ? kFixedForm : arguments.operators, arguments.seed};
+  task.operators = find_operator_set(arguments.operators);
+  if (fixed_form) task.operators = fixed_form_operators();
+  task.limits.evaluations = arguments.evaluations;
+  task.limits.seconds = arguments.seconds;
+  task.limits.spend = arguments.spends_all;
+  task.threads = usable_processors();
+  return task;
 }
 
 // A program does not declare the kinds of its parameters: as a grid's TOML would have them.

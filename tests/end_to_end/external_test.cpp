@@ -135,6 +135,34 @@ TEST_F(ExternalTest, AnInputThatIsCalledLikeAColumnOfTheProtocolIsRefused) {
   }
 }
 
+// Where rows are few, methods of the harness's own leave a part for a look at their choice.
+TEST_F(ExternalTest, AProgramIsTheOnlyOneToSpendItsSeconds) {
+  std::string rows = "v,tau\n";
+  for (int r = 0; r < 40; ++r) rows += std::to_string(r) + "," + std::to_string(3 * r) + "\n";
+  write_text(folder_ / "few.csv", rows);
+  const std::string told = (folder_ / "told").string();
+  const std::string script = (folder_ / "asks.sh").string();
+  write_text(script,
+             "grep seconds \"$1\" | tr -dc 0-9. > " + told + "\necho '{\"front\": [\"3*v\"]}'\n");
+  ASSERT_EQ(run_tribench({"fit", (folder_ / "few.csv").string(), "--target", "tau", "--inputs", "v",
+                          "--seconds", "20", "--external", "bash " + script})
+                .status,
+            0);
+  EXPECT_GT(std::stod(read_text(told)), 19);
+  for (const std::string spend : {"false", "true"}) {
+    write_text(folder_ / "grid.toml",
+               "[grid]\nmethods = [\"asks\"]\n[budget]\nseconds = 20\nspend = " + spend +
+                   "\n[[problem]]\nfile = \"few.csv\"\ntarget = \"tau\"\n"
+                   "[[external]]\nname = \"asks\"\ncommand = [\"bash\", \"" +
+                   script + "\"]\n");
+    ASSERT_EQ(run_tribench({"run", (folder_ / "grid.toml").string(), "--out",
+                            (folder_ / ("spend_" + spend)).string()})
+                  .status,
+              0);
+    EXPECT_GT(std::stod(read_text(told)), 19) << spend;
+  }
+}
+
 TEST_F(ExternalTest, AnAnswerStandsThoughSomethingStillHoldsTheOutput) {
   run("\"lingers\"", shell_method("lingers",
                                   "setsid -f sleep 987; sleep 987 & "
