@@ -396,6 +396,7 @@ CellResult fit_and_judge_by_category(const Problem& problem, const CategoryColum
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.peak_memory_mib = std::max(fit.peak_memory_mib, peak_memory_mib());
   record.evaluations = fit.evaluations;
+  note_overspending(record, task.limits.seconds, task.limits.evaluations);
   if (fit.failure.kind != FailureKind::none) {
     mark_failed(record, fit.failure.kind, std::move(fit.failure.detail));
     return result;

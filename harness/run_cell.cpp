@@ -397,6 +397,7 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
   record.peak_memory_mib = peak_memory_mib();
   record.evaluations = budget.spent();
   record.note = fit.note;
+  note_overspending(record, task.limits.seconds, task.limits.evaluations);
   result.trace = trace.records();
   if (fit.failure.kind != FailureKind::none) {
     mark_failed(record, fit.failure.kind, std::move(fit.failure.detail));

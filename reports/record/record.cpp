@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "reports/record/record_columns.hpp"
@@ -27,6 +28,29 @@ constexpr std::array kFailureWords = {""sv,        "timeout"sv, "cpu_limit"sv,  
 static_assert(kFailureWords.size() == static_cast<std::size_t>(FailureKind::other));
 
 constexpr std::string_view kEndedByClock = "ended by the clock";
+constexpr std::string_view kOverBudget = "over budget: ";
+constexpr std::string_view kCpuSeconds = " CPU seconds";
+constexpr std::string_view kBetweenNotes = "; ";
+
+void add_to_note(Record& record, std::string_view text) {
+  if (!record.note.empty()) record.note += kBetweenNotes;
+  record.note += text;
+}
+
+// How much is another machine's affair, and the next run's: the same result says another number.
+void forget_seconds_over_budget(std::string& note) {
+  if (note.find(kOverBudget) == std::string::npos) return;
+  std::string kept;
+  for (std::size_t start = 0; start < note.size();) {
+    const std::size_t end = std::min(note.find(kBetweenNotes, start), note.size());
+    const std::string_view part = std::string_view(note).substr(start, end - start);
+    start = end + kBetweenNotes.size();
+    if (part.starts_with(kOverBudget) && part.ends_with(kCpuSeconds)) continue;
+    if (!kept.empty()) kept += kBetweenNotes;
+    kept += part;
+  }
+  note = std::move(kept);
+}
 
 template <typename Enum, std::size_t N>
 std::string_view word_of(std::optional<Enum> value, const std::array<std::string_view, N>& words) {
@@ -124,9 +148,22 @@ void mark_failed(Record& record, FailureKind kind, std::string detail) {
 }
 
 void note_end_by_clock(Record& record) {
-  if (!record.note.empty()) record.note += "; ";
-  record.note += kEndedByClock;
-  record.note += ": not reproducible";
+  add_to_note(record, fmt::format("{}: not reproducible", kEndedByClock));
+}
+
+void note_overspending(Record& record, double seconds, std::uint64_t evaluations) {
+  constexpr double kTolerated = 1.1;
+  constexpr double kLeastSeconds = 0.5;  // starting and ending take some
+  const double spent_s = record.fit_cpu_s;
+  if (spent_s > kTolerated * seconds && spent_s > seconds + kLeastSeconds) {
+    add_to_note(record,
+                fmt::format("{}{:.1f} of {:g}{}", kOverBudget, spent_s, seconds, kCpuSeconds));
+  }
+  const auto spent = static_cast<double>(record.evaluations);
+  if (spent > kTolerated * static_cast<double>(evaluations)) {
+    add_to_note(record, fmt::format("{}{} of {} evaluations", kOverBudget, record.evaluations,
+                                    evaluations));
+  }
 }
 
 bool was_ended_by_clock(const Record& record) {
@@ -137,6 +174,7 @@ void forget_costs(Record& record) {
   for (const RecordColumn<Record>& column : result_columns()) {
     if (column.rules.is_cost) record.*std::get<double Record::*>(column.member) = kMissing;
   }
+  forget_seconds_over_budget(record.note);
 }
 
 }  // namespace tribench

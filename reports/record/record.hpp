@@ -130,6 +130,9 @@ void mark_failed(Record& record, FailureKind kind, std::string detail = {});
 // A fit that the clock ended cannot be repeated; the record's note says so.
 void note_end_by_clock(Record& record);
 bool was_ended_by_clock(const Record& record);
+// Where the fit took more than its budget, by more than a tenth (and half a second), the note says
+// how much of how much: beside others that kept to theirs its figures are no fair ones.
+void note_overspending(Record& record, double seconds, std::uint64_t evaluations);
 
 // Takes out what time and machine decide: two records of equal results are equal then.
 void forget_costs(Record& record);

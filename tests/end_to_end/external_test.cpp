@@ -163,6 +163,22 @@ TEST_F(ExternalTest, AProgramIsTheOnlyOneToSpendItsSeconds) {
   }
 }
 
+// A program may answer after its seconds: the figures stand, and whoever compares them is told.
+TEST_F(ExternalTest, WhatAProgramTakesBeyondItsBudgetIsSaid) {
+  const std::string script = (folder_ / "spins.py").string();
+  write_text(script, "import time\nwhile time.process_time() < 1.5:\n  pass\n");
+  run("\"slow\", \"boasts\", \"within\"",
+      shell_method("slow",
+                   "python3 " + script + "; echo '{\"front\": [\"3\"], \"note\": \"mine\"}'") +
+          "seconds = 0.3\nwall_seconds = 60\ncpu_limit_seconds = 60\n" +
+          shell_method("boasts", "echo '{\"front\": [\"3\"], \"evaluations\": 30000000}'") +
+          shell_method("within", "echo '{\"front\": [\"3\"], \"evaluations\": 20000000}'"));
+  EXPECT_THAT(figure("slow", "note"), StartsWith("mine; over budget: "));
+  EXPECT_THAT(figure("slow", "note"), HasSubstr(" of 0.3 CPU seconds"));
+  EXPECT_EQ(figure("boasts", "note"), "over budget: 30000000 of 20000000 evaluations");
+  EXPECT_EQ(figure("within", "note"), "");
+}
+
 TEST_F(ExternalTest, AnAnswerStandsThoughSomethingStillHoldsTheOutput) {
   run("\"lingers\"", shell_method("lingers",
                                   "setsid -f sleep 987; sleep 987 & "

@@ -129,5 +129,29 @@ TEST(Record, SaysThatTheClockEndedItsFit) {
   EXPECT_TRUE(was_ended_by_clock(record));
 }
 
+TEST(Record, SaysHowMuchAFitTookBeyondItsBudget) {
+  Record record;
+  record.note = "first";
+  record.evaluations = 109;
+  // A tenth is the clock's grain and half a second a program's start.
+  for (const auto& [spent, budget] : {std::pair{21.9, 20.0}, std::pair{1.4, 1.0}}) {
+    record.fit_cpu_s = spent;
+    note_overspending(record, budget, 100);
+    EXPECT_EQ(record.note, "first");
+  }
+  record.fit_cpu_s = 12.04;
+  record.evaluations = 5000;
+  note_overspending(record, 1, 100);
+  note_end_by_clock(record);
+  EXPECT_EQ(
+      record.note,
+      "first; over budget: 12.0 of 1 CPU seconds; over budget: 5000 of 100 evaluations; ended "
+      "by the clock: not reproducible");
+  // Seconds are never the same twice; what was claimed is.
+  forget_costs(record);
+  EXPECT_EQ(record.note,
+            "first; over budget: 5000 of 100 evaluations; ended by the clock: not reproducible");
+}
+
 }  // namespace
 }  // namespace tribench
