@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench {
 namespace {
@@ -48,6 +50,25 @@ std::uint64_t count_in(const json& object, const char* key, std::uint64_t otherw
     return static_cast<std::uint64_t>(number);
   }
   throw_unusable(fmt::format("'{}' is {}, not a whole number from 0", key, excerpt(value.dump())));
+}
+
+bool is_answer(const json& line) {
+  return line.is_object() &&
+         (line.contains("improved") || line.contains("unsupported") || line.contains("front"));
+}
+
+// A key that is only nearly right ("choosen") would be a choice that nobody hears of.
+void require_known_keys(const json& answer) {
+  static const std::vector<std::string> kKeys = {"improved", "unsupported", "front",
+                                                 "chosen",   "evaluations", "note"};
+  for (const auto& [key, value] : answer.items()) {
+    if (std::ranges::count(kKeys, key) > 0) continue;
+    throw_unusable(fmt::format("the program's answer has a key '{}' that is not known; {}",
+                               excerpt(key), did_you_mean(key, kKeys)));
+  }
+  if (answer.contains("front") && answer.contains("unsupported")) {
+    throw_unusable("the program's answer has a front and says that it is unsupported; print one");
+  }
 }
 
 void take_improvement(FitContext& context, const json& improvement) {
@@ -109,14 +130,16 @@ FitResult AnswerReader::finish(const ChildExit& exit, std::string_view errors) {
                      : fmt::format("the program printed no front but '{}'", other_output_));
 }
 
-// Lines that are no JSON object are the program's own chatter.
+// Lines that are no JSON object, or one of the program's own log, are its chatter.
 void AnswerReader::take_line(const std::string& line) {
+  const std::size_t start = std::min(line.find_first_not_of(" \t"), line.size());
   const json object =
-      line.starts_with('{') ? read_json<json>(line) : json(json::value_t::discarded);
-  if (!object.is_object()) {
+      line.substr(start, 1) == "{" ? read_json<json>(line) : json(json::value_t::discarded);
+  if (!is_answer(object)) {
     if (other_output_.empty()) other_output_ = excerpt(line);
     return;
   }
+  require_known_keys(object);
   try {
     if (object.contains("improved")) take_improvement(context_, object.at("improved"));
     if (object.contains("unsupported")) {

@@ -179,6 +179,18 @@ TEST_F(ExternalTest, WhatAProgramTakesBeyondItsBudgetIsSaid) {
   EXPECT_EQ(figure("within", "note"), "");
 }
 
+TEST_F(ExternalTest, AnAnswerSaysOneThingInKnownWords) {
+  run(R"("misspelt", "both", "indented", "logs")",
+      shell_method("misspelt", "echo '{\"front\": [\"1\", \"2\"], \"choosen\": 0}'") +
+          shell_method("both", "echo '{\"front\": [\"1\"], \"unsupported\": \"no\"}'") +
+          shell_method("indented", "printf '  \\t{\"front\": [\"1\"]}'") +
+          shell_method("logs", "echo '{\"level\": \"info\"}'; echo '{\"front\": [\"1\"]}'"));
+  EXPECT_THAT(reason("misspelt"), HasSubstr("'choosen' that is not known; did you mean chosen?"));
+  EXPECT_THAT(reason("both"), HasSubstr("a front and says that it is unsupported"));
+  EXPECT_EQ(reason("indented"), "");
+  EXPECT_EQ(reason("logs"), "");
+}
+
 TEST_F(ExternalTest, AnAnswerStandsThoughSomethingStillHoldsTheOutput) {
   run("\"lingers\"", shell_method("lingers",
                                   "setsid -f sleep 987; sleep 987 & "
