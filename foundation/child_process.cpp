@@ -4,10 +4,12 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -75,6 +77,14 @@ std::vector<std::string> environment_with(const std::vector<std::string>& extra)
   return all;
 }
 
+std::atomic<long> g_peak_of_children_kib{0};
+
+void note_peak_memory(long kib) noexcept {
+  long known = g_peak_of_children_kib.load();
+  while (kib > known && !g_peak_of_children_kib.compare_exchange_weak(known, kib)) {
+  }
+}
+
 }  // namespace
 
 std::string found_in_path(const std::string& word) {
@@ -89,6 +99,12 @@ std::string found_in_path(const std::string& word) {
   }
   return word;  // execve will say that it is not there
 }
+
+double peak_memory_of_children_mib() {
+  return static_cast<double>(g_peak_of_children_kib.load()) / 1024;
+}
+
+void reset_peak_memory_of_children() { g_peak_of_children_kib = 0; }
 
 ChildProcess::ChildProcess(const ChildOptions& options) {
   if (options.command.empty()) throw Error(ErrorKind::failed, "an empty command cannot be run");
@@ -200,8 +216,11 @@ void ChildProcess::reap() noexcept {
   const int status = read_end(report_);
   if (WIFSIGNALED(status)) exit_.signal = WTERMSIG(status);
   if (WIFEXITED(status)) exit_.status = WEXITSTATUS(status);
-  while (::waitpid(keeper_, nullptr, 0) < 0 && errno == EINTR) {
+  rusage use{};
+  pid_t ended = 0;
+  while ((ended = ::wait4(keeper_, nullptr, 0, &use)) < 0 && errno == EINTR) {
   }
+  if (ended == keeper_) note_peak_memory(use.ru_maxrss);
   ::close(std::exchange(report_, -1));
   kill();  // the keeper has gone: this only closes the pipe
   reaped_ = true;

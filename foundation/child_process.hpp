@@ -107,6 +107,12 @@ std::string found_in_path(const std::string& word);
 // "SIGSEGV" for 11; "signal 99" where there is no name.
 std::string signal_name(int signal);
 
+// The most resident memory, in MiB, that one process had of those that ended under a ChildProcess
+// since the last reset: of the programs and of what they started and waited for. The kernel's own
+// figure for a process's children (getrusage) cannot be reset.
+double peak_memory_of_children_mib();
+void reset_peak_memory_of_children();
+
 // CPU seconds and resident memory of a process and of all it has started that still run. A keeper's
 // memory is that of the process it was forked from and is not counted twice.
 struct ProcessUse {

@@ -18,6 +18,7 @@
 #include "algorithms/fitting/held_out_choice.hpp"
 #include "algorithms/missing_role.hpp"
 #include "algorithms/scaled_data.hpp"
+#include "foundation/child_process.hpp"
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
@@ -81,7 +82,10 @@ double cpu_seconds_with_children() {
 }
 
 // Linux: writing 5 resets the high-water mark of the resident set (proc(5)).
-void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+void reset_peak_memory() {
+  std::ofstream("/proc/self/clear_refs") << "5";
+  reset_peak_memory_of_children();
+}
 
 // The inputs that the stage may use and that vary in its rows. One that does not (the sign of a
 // load that never changed) has nothing to tell, and a coefficient fitted to it would be anything:
@@ -361,7 +365,9 @@ void set_yardsticks(const Yardsticks& yardsticks, Record& record) {
 double peak_memory_mib() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmHWM:")) return std::strtod(line.c_str() + 6, nullptr) / 1024.0;
+    if (!line.starts_with("VmHWM:")) continue;
+    const double own_mib = std::strtod(line.c_str() + 6, nullptr) / 1024.0;
+    return std::max(own_mib, peak_memory_of_children_mib());
   }
   return kMissing;
 }

@@ -28,7 +28,8 @@ using WidenedMethod = std::function<std::unique_ptr<Regressor>(int round)>;
 CellResult fit_and_judge(const Problem& problem, const Regressor& method, const CellTask& task,
                          const WidenedMethod& widened = {});
 
-// Of this process, since fit_and_judge last began; NaN where the kernel does not say.
+// Of this process, or of a program that it ran where one took more, since fit_and_judge last began;
+// NaN where the kernel does not say.
 double peak_memory_mib();
 
 // Keeps the last problems made: cells that follow each other often share one, and making it (20 ms

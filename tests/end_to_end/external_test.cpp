@@ -191,6 +191,15 @@ TEST_F(ExternalTest, AnAnswerSaysOneThingInKnownWords) {
   EXPECT_EQ(reason("logs"), "");
 }
 
+TEST_F(ExternalTest, AProgramsMemoryIsItsCells) {
+  run("\"large\", \"small\"", shell_method("large",
+                                           "x=$(head -c 60000000 /dev/zero | tr \"\\0\" x); "
+                                           "echo '{\"front\": [\"3\"]}'") +
+                                  shell_method("small", "echo '{\"front\": [\"3\"]}'"));
+  EXPECT_GT(std::stod(figure("large", "peak_memory_mib")), 55);
+  EXPECT_LT(std::stod(figure("small", "peak_memory_mib")), 55);
+}
+
 TEST_F(ExternalTest, AnAnswerStandsThoughSomethingStillHoldsTheOutput) {
   run("\"lingers\"", shell_method("lingers",
                                   "setsid -f sleep 987; sleep 987 & "
