@@ -120,15 +120,17 @@ TEST_F(ExternalTest, NumbersInAnAnswerAreReadStrictly) {
 
 // train.csv has columns of these names already: a program would read one for the other.
 TEST_F(ExternalTest, AnInputThatIsCalledLikeAColumnOfTheProtocolIsRefused) {
+  const std::string script = (folder_ / "answers.sh").string();
+  write_text(script, "echo '{\"front\": [\"3*v\"]}'\n");
   for (const std::string input : {"target", "movement"}) {
     std::string rows = "v," + input + ",tau\n";
     for (int r = 0; r < 8; ++r) {
       rows += std::to_string(r) + "," + std::to_string(r * r) + "," + std::to_string(3 * r) + "\n";
     }
     write_text(folder_ / "own.csv", rows);
-    const ProgramRun ended = run_tribench({"fit", (folder_ / "own.csv").string(), "--target", "tau",
-                                           "--inputs", "v," + input, "--external",
-                                           "bash -c \"echo '{\\\"front\\\": [\\\"3*v\\\"]}'\""});
+    const ProgramRun ended =
+        run_tribench({"fit", (folder_ / "own.csv").string(), "--target", "tau", "--inputs",
+                      "v," + input, "--external", "bash " + script});
     EXPECT_NE(ended.status, 0) << ended.output;
     EXPECT_THAT(ended.errors, HasSubstr("an input is called '" + input + "'"));
     EXPECT_THAT(ended.errors, HasSubstr("another name"));
