@@ -77,11 +77,11 @@ std::vector<std::string> environment_with(const std::vector<std::string>& extra)
   return all;
 }
 
-std::atomic<long> g_peak_of_children_kib{0};
+std::atomic<long> peak_of_children_kib{0};
 
 void note_peak_memory(long kib) noexcept {
-  long known = g_peak_of_children_kib.load();
-  while (kib > known && !g_peak_of_children_kib.compare_exchange_weak(known, kib)) {
+  long known = peak_of_children_kib.load();
+  while (kib > known && !peak_of_children_kib.compare_exchange_weak(known, kib)) {
   }
 }
 
@@ -101,10 +101,10 @@ std::string found_in_path(const std::string& word) {
 }
 
 double peak_memory_of_children_mib() {
-  return static_cast<double>(g_peak_of_children_kib.load()) / 1024;
+  return static_cast<double>(peak_of_children_kib.load()) / 1024;
 }
 
-void reset_peak_memory_of_children() { g_peak_of_children_kib = 0; }
+void reset_peak_memory_of_children() { peak_of_children_kib = 0; }
 
 ChildProcess::ChildProcess(const ChildOptions& options) {
   if (options.command.empty()) throw Error(ErrorKind::failed, "an empty command cannot be run");
