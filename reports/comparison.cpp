@@ -64,7 +64,7 @@ Groups log_ratios(const std::vector<Pair>& pairs, Figure figure) {
   for (const Pair& pair : pairs) {
     const double base = figure(*pair.base);
     const double now = figure(*pair.now);
-    if (std::isnan(base) || std::isnan(now) || (std::isinf(base) && std::isinf(now))) continue;
+    if (!LogRatios::is_pair(base, now)) continue;  // else there would be an empty group
     groups[{pair.now->method, pair.now->operators}][pair.now->problem].add(base, now);
   }
   return groups;

@@ -213,8 +213,7 @@ std::string leaderboard(const RunFolder& run, const RunSummary& summary,
       "5 %) can tell the two apart; *within 1 %* holds for an interval of the median, and for no "
       "method that fails.\n"
       "What repeats to ten digits is one draw, and an error below 1e-12 of the target is none.\n"
-      "*singular* counts formulas with a point inside the input box "
-      "where they\n"
+      "*singular* counts formulas with a point inside the input box where they\n"
       "have no finite value; *failed* counts cells without a formula, which are placed last and "
       "never left out.\n";
   std::string problem;

@@ -93,9 +93,8 @@ std::string error_sentence(const LoopRecord& record) {
   const double room = error.mae_after - error.ceiling;
   if (known(room) && record.verdict == LoopVerdict::none && room > 0.5 * error.mae_after) {
     text += fmt::format(
-        "; {} {} of it lasts from row to row and goes with none of the inputs: noise that lasts, "
-        "or "
-        "a cause in time that no column tells",
+        "; {} {} of it lasts from row to row and goes with none of the inputs: noise that "
+        "lasts, or a cause in time that no column tells",
         figure(unit.factor * room, 2), unit.name);
   } else if (known(room) && record.verdict != LoopVerdict::cannot_tell) {
     text += room > 0.01 * error.mae_after ? fmt::format("; at most {} {} more can be had",

@@ -108,8 +108,10 @@ LogRatios errors_over(const Cells& best, const Cells& cells) {
 }
 
 // Whether a seed more or less could not make it a difference of use: by the interval of the median,
-// or all seeds where they are too few for one; and no seed failed in one of the two alone.
+// or all seeds where they are too few for one; and no seed failed in one of the two alone. Without
+// a common seed (of an unfinished run) nothing is known.
 bool is_equivalent(const std::vector<double>& ratios) {
+  if (ratios.empty()) return false;
   if (std::ranges::any_of(ratios, [](double r) { return std::isinf(r); })) return false;
   const double most = elementary::log1p(kEquivalence);
   ConfidenceInterval interval = median_interval(ratios, 1 - kLevel);

@@ -9,9 +9,13 @@
 
 namespace tribench {
 
+bool LogRatios::is_pair(double reference, double figure) {
+  const bool has_both = !std::isnan(reference) && !std::isnan(figure);
+  return has_both && !(std::isinf(reference) && std::isinf(figure));
+}
+
 void LogRatios::add(double reference, double figure) {
-  if (std::isnan(reference) || std::isnan(figure)) return;
-  if (std::isinf(reference) && std::isinf(figure)) return;
+  if (!is_pair(reference, figure)) return;
   figures_.emplace_back(reference, figure);
   all_.push_back(reference == figure ? 0.0 : elementary::log(figure / reference));
 }

@@ -11,8 +11,10 @@ namespace tribench {
 
 class LogRatios {
  public:
-  // log(figure / reference): 0 for equal ones, infinite where one is 0 or infinite. No pair where
-  // one is NaN or both are infinite.
+  // Not where one is NaN (there is no figure) or both are infinite (both failed).
+  static bool is_pair(double reference, double figure);
+  // log(figure / reference): 0 for equal ones, infinite where one is 0 or infinite. What is no pair
+  // is left out.
   void add(double reference, double figure);
   void shift(double by);
 

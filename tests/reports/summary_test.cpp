@@ -69,6 +69,17 @@ TEST(Summary, CallsNothingEqualThatFailsOrIsFarOffOnSomeSeeds) {
   EXPECT_EQ(row_of(summary.tables[0], "flaky").standing, Standing::not_distinguishable);
 }
 
+// A shard of a run has some seeds of one method and others of another.
+TEST(Summary, SaysNothingOfMethodsWithoutACommonSeed) {
+  RunFolder run;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    run.records.push_back(cell(seed % 2 == 0 ? "even" : "odd", seed, 1));
+  }
+  const ProblemTable table = summarise(run).tables[0];
+  EXPECT_EQ(row_of(table, "odd").standing, Standing::not_distinguishable);
+  EXPECT_EQ(row_of(table, "odd").pairs, 0U);
+}
+
 TEST(Summary, TakesWhatRepeatsToTheLastDigitForOneDraw) {
   RunFolder run;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
