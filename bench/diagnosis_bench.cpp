@@ -12,6 +12,7 @@
 #include "algorithms/diagnosis/diagnosis.hpp"
 #include "algorithms/inference/column_products.hpp"
 #include "algorithms/inference/wave_scan.hpp"
+#include "foundation/freed_memory.hpp"
 #include "foundation/random.hpp"
 #include "problems/kuka/planted.hpp"
 #include "problems/preparation/test_movements.hpp"
@@ -21,6 +22,7 @@ namespace {
 
 void diagnose_planted(benchmark::State& state, const kuka::PlantedCase& planted,
                       loop::Verdict expected) {
+  keep_freed_memory();  // as the program does when it starts
   const loop::Observations data = loop::observe(kuka::make_planted(planted, 1).data);
   loop::DiagnosisOptions options;
   options.physical_vetoes = false;

@@ -38,9 +38,11 @@ double tanh(double x) { return tables().scalar.tanh(x); }
 double atan(double x) { return tables().scalar.atan(x); }
 double pow(double x, double y) { return tables().scalar.pow(x, y); }
 
+void exp_of_each(std::span<double> x) { tables().column.exp(x.data(), x.size()); }
 void sin_of_each(std::span<double> x) { tables().column.sin(x.data(), x.size()); }
 void cos_of_each(std::span<double> x) { tables().column.cos(x.data(), x.size()); }
 void tanh_of_each(std::span<double> x) { tables().column.tanh(x.data(), x.size()); }
+void pow_of_each(std::span<double> x, double y) { tables().column.pow(x.data(), x.size(), y); }
 
 // Kahan: what rounding took from 1 + x is made good by the ratio.
 double log1p(double x) {

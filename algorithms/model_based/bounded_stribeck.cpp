@@ -43,6 +43,7 @@ class ShapeSearch {
   ShapeSearch(const StribeckRows& rows, const StribeckModel& model, Budget& budget)
       : rows_(rows), model_(model), budget_(budget) {
     make_fixed_columns();
+    take_apart_by_branch();
     for (double v : rows.velocity) highest_ = std::max(highest_, std::abs(v));
     if (highest_ == 0) highest_ = 1;
   }
@@ -52,6 +53,7 @@ class ShapeSearch {
 
  private:
   void make_fixed_columns();
+  void take_apart_by_branch();
   Candidate make_candidate(std::size_t branch, const Shape& shape);
   std::vector<Candidate> make_grid(std::size_t branch, std::size_t velocities,
                                    std::size_t exponents);
@@ -70,6 +72,8 @@ class ShapeSearch {
   std::vector<double> fixed_products_;
   std::vector<double> fixed_target_;
   double target_squares_ = 0;
+  std::vector<std::vector<std::size_t>> rows_of_;  // by branch
+  std::vector<std::vector<double>> speeds_;        // of these rows
   bool stopped_ = false;
 };
 
@@ -99,17 +103,26 @@ void ShapeSearch::make_fixed_columns() {
   target_squares_ = dot(rows_.target, rows_.target);
 }
 
+void ShapeSearch::take_apart_by_branch() {
+  rows_of_.resize(branches());
+  speeds_.resize(branches());
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    rows_of_[rows_.branch[row]].push_back(row);
+    speeds_[rows_.branch[row]].push_back(std::abs(rows_.velocity[row]));
+  }
+}
+
 Candidate ShapeSearch::make_candidate(std::size_t branch, const Shape& shape) {
   Candidate candidate{shape, std::vector<double>(fixed_.size(), 0.0)};
   if (!budget_.spend(kPassNodes * rows_.size())) {
     stopped_ = true;
     return candidate;
   }
-  const double velocity = elementary::exp(shape.log_velocity);
-  for (std::size_t row = 0; row < rows_.size(); ++row) {
-    if (rows_.branch[row] != branch) continue;
-    const double value =
-        rows_.sign[row] * stribeck_decay(rows_.velocity[row], velocity, shape.exponent);
+  std::vector<double> decays = speeds_[branch];
+  decay_of_each(decays, elementary::exp(shape.log_velocity), shape.exponent);
+  for (std::size_t i = 0; i < decays.size(); ++i) {
+    const std::size_t row = rows_of_[branch][i];
+    const double value = rows_.sign[row] * decays[i];
     candidate.with_itself += value * value;
     candidate.with_target += value * rows_.target[row];
     for (std::size_t k = 0; k < fixed_.size(); ++k) {

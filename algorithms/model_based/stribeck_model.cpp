@@ -10,8 +10,11 @@
 
 namespace tribench {
 
-double stribeck_decay(double velocity, double stribeck_velocity, double exponent) {
-  return elementary::exp(-elementary::pow(std::abs(velocity / stribeck_velocity), exponent));
+void decay_of_each(std::span<double> speeds, double stribeck_velocity, double exponent) {
+  for (double& v : speeds) v /= stribeck_velocity;
+  elementary::pow_of_each(speeds, exponent);
+  for (double& u : speeds) u = -u;
+  elementary::exp_of_each(speeds);
 }
 
 std::vector<double> StribeckModel::parameters() const {

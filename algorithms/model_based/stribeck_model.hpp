@@ -62,7 +62,7 @@ struct StribeckModel {
 Objective mean_squares(StribeckModel& trial, const StribeckRows& rows, Budget& budget,
                        std::uint64_t nodes_per_row, bool& stop);
 
-// exp(-|v / vs|^delta).
-double stribeck_decay(double velocity, double stribeck_velocity, double exponent);
+// exp(-(v / vs)^delta) of each speed v >= 0, in place.
+void decay_of_each(std::span<double> speeds, double stribeck_velocity, double exponent);
 
 }  // namespace tribench

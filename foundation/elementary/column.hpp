@@ -10,9 +10,11 @@
 namespace tribench::elementary {
 
 struct ColumnTable {
+  void (*exp)(double* x, std::size_t n);
   void (*sin)(double* x, std::size_t n);
   void (*cos)(double* x, std::size_t n);
   void (*tanh)(double* x, std::size_t n);
+  void (*pow)(double* x, std::size_t n, double y);
 };
 
 extern const ColumnTable kColumnBaseline;

@@ -64,10 +64,18 @@ TEST(Elementary, GivesTheSameBitsOnEveryMachine) {
 // A column of any length, and so the last, part-filled register, gives what one number at a time
 // does.
 void expect_columns(const elementary::ColumnTable& column, const elementary::ScalarTable& scalar) {
-  const std::pair<void (*)(double*, std::size_t), double (*)(double)> functions[] = {
-      {column.sin, scalar.sin}, {column.cos, scalar.cos}, {column.tanh, scalar.tanh}};
+  using Function = std::function<double(double)>;
+  using ColumnFunction = std::function<void(double*, std::size_t)>;
+  std::vector<std::pair<ColumnFunction, Function>> functions = {{column.exp, scalar.exp},
+                                                                {column.sin, scalar.sin},
+                                                                {column.cos, scalar.cos},
+                                                                {column.tanh, scalar.tanh}};
+  for (const double y : {0.5, 1.7, -3.0}) {
+    functions.push_back({[&column, y](double* x, std::size_t n) { column.pow(x, n, y); },
+                         [&scalar, y](double x) { return scalar.pow(x, y); }});
+  }
   const std::vector<double> x = arguments();
-  for (std::size_t k = 0; k < std::size(functions); ++k) {
+  for (std::size_t k = 0; k < functions.size(); ++k) {
     for (const std::size_t length : {std::size_t{1}, std::size_t{2}, std::size_t{7}, x.size()}) {
       std::vector<double> y(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(length));
       functions[k].first(y.data(), length);
