@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -19,6 +21,7 @@
 #include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/parallel_for.hpp"
 #include "harness/loop/bristles_of.hpp"
+#include "harness/loop/chosen_shares.hpp"
 #include "harness/loop/determined_rows.hpp"
 #include "harness/loop/noise_bounds.hpp"
 #include "problems/preparation/canonical.hpp"
@@ -31,9 +34,6 @@ namespace {
 constexpr std::size_t kFewMovements = 40;     // a fifth of them is too few to judge by
 constexpr std::size_t kWantedMovements = 30;  // R9
 constexpr std::size_t kPiecesOfOneMovement = 5;
-// Correlation of the columns of two names of one cause. Two slight effects cannot be told from each
-// other either, however little they have in common.
-constexpr double kAlike = 0.9;
 // Movements are left out in at least so many turns; in more, one movement each, where the rows of
 // all turns together stay below the second figure.
 constexpr std::size_t kFewestTurns = 10;
@@ -138,62 +138,6 @@ std::vector<char> judged_rows(std::vector<char> rows, const LeftOut& models,
   return kept;
 }
 
-std::set<std::string> families_of(const Diagnosis& diagnosis) {
-  std::set<std::string> families;
-  for (const EffectFinding& effect : diagnosis.effects) families.insert(effect.family);
-  return families;
-}
-
-// How often searches on parts of the data choose the same effects.
-class ChosenShares {
- public:
-  explicit ChosenShares(std::span<const Diagnosis> parts) {
-    for (const Diagnosis& part : parts) chosen_.push_back(families_of(part));
-  }
-
-  // NaN where there are no searches.
-  double of(const std::string& family) const { return of_any({family}); }
-  double of_any(const std::set<std::string>& families) const {
-    const auto share = std::ranges::count_if(chosen_, [&](const std::set<std::string>& one) {
-      return std::ranges::any_of(families, [&](const auto& name) { return one.contains(name); });
-    });
-    return chosen_.empty() ? std::numeric_limits<double>::quiet_NaN()
-                           : static_cast<double>(share) / static_cast<double>(chosen_.size());
-  }
-
- private:
-  std::vector<std::set<std::string>> chosen_;
-};
-
-// The effect and what looks like it in these data: searches on parts call one cause by one of these
-// names or another, and correlated candidates share their votes (cluster stability selection;
-// Faletto and Bien 2022).
-std::set<std::string> names_of(const EffectFinding& effect) {
-  std::set<std::string> names{effect.family};
-  for (const AliasFinding& alias : effect.aliases) {
-    if (alias.correlation >= kAlike) names.insert(alias.family);
-  }
-  return names;
-}
-
-// Each effect's share; where most searches call it by another name, which.
-void write_shares(Diagnosis& whole, const ChosenShares& shares) {
-  for (EffectFinding& effect : whole.effects) {
-    const std::set<std::string> names = names_of(effect);
-    effect.chosen_share = shares.of_any(names);
-    if (!(shares.of(effect.family) < kStableShare)) continue;
-    std::vector<std::string> others;
-    for (const std::string& name : names) {
-      if (name == effect.family || !(shares.of(name) > 0)) continue;
-      others.push_back(fmt::format("'{}' in {:.0f} %", name, 100 * shares.of(name)));
-    }
-    if (others.empty()) continue;
-    effect.notes.push_back(
-        fmt::format("in {:.0f} % of the searches without some of the movements by this name; {}",
-                    100 * shares.of(effect.family), fmt::join(others, ", ")));
-  }
-}
-
 // ": how", or nothing where no rule of experiment is known.
 std::string experiments_of(const std::vector<std::string>& rules) {
   std::vector<std::string> texts;
@@ -236,8 +180,11 @@ class LoopJudge {
     std::vector<SearchMemory> memories;
     Diagnosis& whole() { return found.front(); }
   };
-  void search(Searches& all, const std::vector<std::size_t>& which,
-              const DiagnosisOptions& options);
+  // while_named: those without some movements are asked for where the whole names an effect alone.
+  // They begin before that is known, and where it names none what has become of them is forgotten.
+  enum class Asked { always, while_named };
+  void search(Searches& all, const std::vector<std::size_t>& which, const DiagnosisOptions& options,
+              Asked asked = Asked::always);
   [[nodiscard]] std::vector<std::string> name_the_stable(Searches& all);
   // bristles: of `fitted`. Writes to the rows alone that it has not seen.
   void add_predictions(LeftOut& all, const Diagnosis& fitted,
@@ -257,20 +204,32 @@ class LoopJudge {
 };
 
 void LoopJudge::search(Searches& all, const std::vector<std::size_t>& which,
-                       const DiagnosisOptions& options) {
+                       const DiagnosisOptions& options, Asked asked) {
   DiagnosisOptions effects_alone = options;  // of all but the reported one
   effects_alone.compares_families = false;
   std::mutex mutex;
+  std::atomic<bool> names_nothing = false;
+  std::vector<std::exception_ptr> failures(which.size());
   all.found.resize(all.without.size());
   all.memories.resize(all.without.size());
   asked_ += which.size();
   parallel_for(which.size(), judging_.threads, [&](std::size_t k) {
+    if (names_nothing) return;
     const std::size_t one = which[k];
-    all.found[one] = diagnose(data_, base_, one == 0 ? options : effects_alone, all.without[one],
-                              &all.memories[one]);
+    try {
+      all.found[one] = diagnose(data_, base_, one == 0 ? options : effects_alone, all.without[one],
+                                &all.memories[one]);
+    } catch (...) {
+      failures[k] = std::current_exception();
+      return;
+    }
+    if (one == 0 && asked == Asked::while_named) names_nothing = all.whole().effects.empty();
     const std::lock_guard lock(mutex);
     if (judging_.progress) judging_.progress(++ended_, asked_);
   });
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    if (failures[k] && (which[k] == 0 || !names_nothing)) std::rethrow_exception(failures[k]);
+  }
 }
 
 // Stability selection (Meinshausen and Buehlmann 2010): what too few of the searches on parts
@@ -420,16 +379,17 @@ JudgedDiagnosis LoopJudge::in_turn() {
 
 JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
   Searches searches{{test}, {}, {}};
-  search(searches, {0}, options_);
-  std::vector<std::string> needed;
-  if (judging_.resample && !searches.whole().effects.empty()) {
+  if (judging_.resample) {
     for (std::vector<int>& left :
          left_out_together(data_.select(usable_rows(data_, test, false, {})))) {
       left.insert(left.end(), test.begin(), test.end());
       std::ranges::sort(left);
       searches.without.push_back(std::move(left));
     }
-    search(searches, numbers(1, searches.without.size()), options_);
+  }
+  search(searches, numbers(0, searches.without.size()), options_, Asked::while_named);
+  std::vector<std::string> needed;
+  if (judging_.resample && !searches.whole().effects.empty()) {
     needed = name_the_stable(searches);
   }
   JudgedDiagnosis whole{std::move(searches.whole()), {}, {}, {}};

@@ -254,6 +254,20 @@ TEST(JudgedDiagnosis, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(one.error.difference_low, two.error.difference_low);
 }
 
+// The searches without some movements begin beside the first, and where that names nothing their
+// number hangs on the threads; the answer does not.
+TEST(JudgedDiagnosis, WhereNothingIsNamedWhatBeganBesideItIsForgotten) {
+  for (const int threads : {1, 2}) {
+    std::size_t ended = 0;
+    const auto progress = [&](std::size_t now, std::size_t) { ended = now; };
+    const JudgedDiagnosis nothing =
+        diagnose_planted({}, 8, {.resample = true, .threads = threads, .progress = progress});
+    EXPECT_EQ(nothing.verdict, Verdict::none);
+    EXPECT_LE(ended, static_cast<std::size_t>(threads) + 1) << "of eleven";
+    EXPECT_EQ(nothing.error.mae_after, nothing.error.mae_before);
+  }
+}
+
 // Strokes at constant speeds, half of them backwards, with Coulomb and viscous friction and noise.
 Observations strokes(int movements, int rows = 40, double noise = 0.3) {
   RandomStream random(5);
