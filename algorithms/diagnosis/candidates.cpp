@@ -8,6 +8,7 @@
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/canonical_correlation.hpp"
 #include "algorithms/inference/column_products.hpp"
+#include "algorithms/inference/offset_grams.hpp"
 #include "algorithms/inference/whitening.hpp"
 
 namespace tribench::loop {
@@ -45,23 +46,16 @@ double carriers(const Round& round, std::size_t atom, const FittedModel& model,
 
 // The losses of the model with an atom more, with the spread of the movements' offsets that it
 // leaves itself: what differs between movements shows in that spread more than in the squares.
-Eigen::VectorXd losses_with_own_offsets(std::size_t atom, const FittedModel& model,
-                                        const Campaign& campaign) {
-  const Clusters& clusters = campaign.clusters;
-  const Library& library = campaign.library;
-  const Eigen::MatrixXd x = beside(model.raw_tangent, library.block_of(library.columns, atom));
-  const auto fitted =
-      static_cast<std::size_t>(model.model.coefficients.size()) + library.blocks[atom].count;
+Eigen::VectorXd losses_with_own_offsets(std::size_t atom, const FilteredModel& filtered,
+                                        const FittedModel& model, const Campaign& campaign) {
+  const OffsetGrams grams =
+      filtered.beside(campaign.library.block_of(campaign.library.columns, atom));
   Noise noise = model.noise;
   for (int pass = 0; pass < 2; ++pass) {
-    const Eigen::VectorXd solution =
-        least_squares(whitened(x, clusters, noise), whitened(model.raw_residual, clusters, noise));
-    const Eigen::VectorXd residual = model.raw_residual - x * solution;
-    noise.between_sd = estimate_noise(residual, clusters, fitted, campaign.noise_floor).between_sd;
+    noise.between_sd = grams.spread_beside(grams.coefficients_at(noise.between_sd));
   }
-  return held_out_losses(whitened(x, clusters, noise),
-                         whitened(model.raw_residual, clusters, noise), clusters, noise) +
-         offset_nats(clusters, noise);
+  return held_out_losses(grams.at(noise.between_sd), campaign.clusters, noise) +
+         offset_nats(campaign.clusters, noise);
 }
 
 // The most that an atom can gain: all offsets, and what it explains of the rows it is fitted to. An
@@ -73,28 +67,49 @@ double most_gain(const BlockTest& test, const FittedModel& model, double offsets
 
 // The rescue rule. What is carried by few movements cannot reach a small p by flipping their signs,
 // but it can explain their offsets: how far their variance falls is a part of its gain.
-std::optional<Candidate> rescue(std::size_t family, const Round& round, const FittedModel& model,
-                                const Campaign& campaign) {
+class Rescue {
+ public:
+  Rescue(const Round& round, const FittedModel& model, const Campaign& campaign)
+      : round_(round), model_(model), campaign_(campaign) {}
+
+  std::optional<Candidate> of(std::size_t family);
+
+ private:
+  // Not before an atom is looked at: most campaigns have none to rescue.
+  const FilteredModel& filtered() {
+    if (!filtered_) {
+      filtered_.emplace(model_.raw_tangent, model_.raw_residual, campaign_.clusters, model_.noise);
+    }
+    return *filtered_;
+  }
+
+  const Round& round_;
+  const FittedModel& model_;
+  const Campaign& campaign_;
+  std::optional<FilteredModel> filtered_;
+};
+
+std::optional<Candidate> Rescue::of(std::size_t family) {
   std::optional<Candidate> best;
-  if (!campaign.options.has("rescue")) return best;
+  if (!campaign_.options.has("rescue")) return best;
   // All atoms: with few carriers their scores tell next to nothing. Those that may gain most come
   // first, so that most need not be looked at.
   std::vector<std::size_t> atoms;
-  for (std::size_t k = 0; k < campaign.library.atoms.size(); ++k) {
-    if (campaign.library.atoms[k].family == family && round.blocks[k].test.testable) {
+  for (std::size_t k = 0; k < campaign_.library.atoms.size(); ++k) {
+    if (campaign_.library.atoms[k].family == family && round_.blocks[k].test.testable) {
       atoms.push_back(k);
     }
   }
   std::ranges::stable_sort(atoms, std::ranges::greater(),
-                           [&](std::size_t k) { return round.blocks[k].test.statistic; });
-  const Eigen::VectorXd offsets = offset_nats(campaign.clusters, model.noise);
+                           [&](std::size_t k) { return round_.blocks[k].test.statistic; });
+  const Eigen::VectorXd offsets = offset_nats(campaign_.clusters, model_.noise);
   const double all_offsets = offsets.sum();
   for (const std::size_t k : atoms) {
     const double least = best ? best->gain.nats : kRescueGain;
-    if (!(most_gain(round.blocks[k].test, model, all_offsets) > least)) break;
-    if (!(carriers(round, k, model, campaign) < kFewClusters)) continue;
-    Eigen::VectorXd losses = losses_with_own_offsets(k, model, campaign);
-    const Gain gain = paired_gain(model.losses + offsets, losses);
+    if (!(most_gain(round_.blocks[k].test, model_, all_offsets) > least)) break;
+    if (!(carriers(round_, k, model_, campaign_) < kFewClusters)) continue;
+    Eigen::VectorXd losses = losses_with_own_offsets(k, filtered(), model_, campaign_);
+    const Gain gain = paired_gain(model_.losses + offsets, losses);
     if (!(gain.nats > kRescueGain && gain.nats > kRescueErrors * gain.error)) continue;
     if (!best || gain.nats > best->gain.nats) {
       losses -= offsets;
@@ -148,13 +163,14 @@ std::optional<Candidate> best_atom(std::size_t family, const Round& round, const
 
 std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
                                 const Campaign& campaign) {
+  Rescue rescue(round, model, campaign);
   std::vector<Candidate> all;
   for (std::size_t f = 0; f < campaign.families.size(); ++f) {
     if (!(round.family_score[f] > 0)) continue;
     const bool significant =
         round.rescue_only[f] == 0 && round.family_p[f] <= campaign.options.alpha_library;
     if (!significant && round.family_p[f] >= kRescueP) continue;
-    std::optional<Candidate> one = rescue(f, round, model, campaign);
+    std::optional<Candidate> one = rescue.of(f);
     if (significant) {
       // What few movements carry gains by their offsets, significant or not: a smaller p must not
       // make it harder to be admitted.
@@ -305,6 +321,7 @@ Gain lead_of(const Candidate& winner, const FittedModel& extended, const Candida
 std::vector<AliasFinding> aliases_of(const Candidate& winner, const FittedModel& extended,
                                      const Round& round, const FittedModel& model,
                                      const Campaign& campaign) {
+  Rescue rescue(round, model, campaign);
   std::vector<AliasFinding> aliases;
   const EffectFamily& taken = campaign.families[winner.family];
   const auto columns = [&](std::size_t atom) {
@@ -314,7 +331,7 @@ std::vector<AliasFinding> aliases_of(const Candidate& winner, const FittedModel&
   for (std::size_t f = 0; f < campaign.families.size(); ++f) {
     if (f == winner.family || round.family_p[f] > largest_p) continue;
     std::optional<Candidate> rival;
-    if (winner.rescued) rival = rescue(f, round, model, campaign);
+    if (winner.rescued) rival = rescue.of(f);
     if (!rival) rival = best_atom(f, round, model, campaign);
     if (!rival) continue;
     const double r = canonical_correlation(columns(winner.atom), columns(rival->atom));

@@ -9,12 +9,13 @@
 
 #include "algorithms/diagnosis/candidates.hpp"
 #include "algorithms/inference/canonical_correlation.hpp"
+#include "algorithms/inference/column_products.hpp"
 
 namespace tribench::loop {
 namespace {
 
 // Two blocks of several columns whose columns correlate by less have no direction in common.
-constexpr float kWorthALook = 0.5F;
+constexpr double kWorthALook = 0.5;
 constexpr double kNineInTen = 1.2816;  // quantile of the normal law
 
 std::vector<UntestableFinding> untestable_families(const Round& round, const Campaign& campaign) {
@@ -50,12 +51,10 @@ class Likeness {
  public:
   Likeness(const Round& round, const FittedModel& base, const Campaign& campaign)
       : round_(round), campaign_(campaign), columns_(project_off(round.columns, base.basis)) {
-    Eigen::MatrixXf unit = columns_.cast<float>();
-    for (Eigen::Index j = 0; j < unit.cols(); ++j) {
-      const float norm = unit.col(j).norm();
-      if (norm > 0) unit.col(j) /= norm;
-    }
-    correlations_ = unit.transpose() * unit;
+    correlations_ = gram_of(columns_);
+    const Eigen::VectorXd norms = correlations_.diagonal().cwiseSqrt();
+    const Eigen::VectorXd unit = (norms.array() > 0).select(norms.cwiseInverse(), 0);
+    correlations_ = unit.asDiagonal() * correlations_ * unit.asDiagonal();
   }
 
   // The largest of any two columns of two atoms; 0 where one of them cannot be tested.
@@ -74,7 +73,7 @@ class Likeness {
   double canonical(std::size_t a, std::size_t b, double correlation) const {
     const std::vector<Block>& blocks = campaign_.library.blocks;
     const bool single = blocks[a].count == 1 && blocks[b].count == 1;
-    if (correlation < (single ? static_cast<float>(kExactCorrelation) : kWorthALook)) return 0;
+    if (correlation < (single ? kExactCorrelation : kWorthALook)) return 0;
     return canonical_correlation(campaign_.library.block_of(columns_, a),
                                  campaign_.library.block_of(columns_, b));
   }
@@ -83,7 +82,7 @@ class Likeness {
   const Round& round_;
   const Campaign& campaign_;
   Eigen::MatrixXd columns_;
-  Eigen::MatrixXf correlations_;
+  Eigen::MatrixXd correlations_;
 };
 
 // Family by family: how alike they are, and which cannot be told apart.

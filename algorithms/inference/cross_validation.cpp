@@ -99,6 +99,12 @@ StretchGrams with_columns(const StretchGrams& grams, const Eigen::MatrixXd& x,
   return wider;
 }
 
+Eigen::VectorXd coefficients_of(const StretchGrams& grams) {
+  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(grams[0].rows(), grams[0].cols());
+  for (const Eigen::MatrixXd& gram : grams) total += gram;
+  return solve_scaled(total, total.diagonal().head(total.cols() - 1));
+}
+
 Eigen::VectorXd held_out_losses(const StretchGrams& grams, const Clusters& clusters,
                                 const Noise& noise, Eigen::Index penalised, double ridge) {
   const Eigen::Index p = grams[0].cols() - 1;

@@ -27,6 +27,9 @@ StretchGrams with_columns(const StretchGrams& grams, const Eigen::MatrixXd& x,
                           const Eigen::VectorXd& y, const Eigen::MatrixXd& more,
                           const Clusters& clusters);
 
+// The coefficients of x that fit all stretches best.
+Eigen::VectorXd coefficients_of(const StretchGrams& grams);
+
 // Per cluster: sum of squared held-out errors over the noise's unit, in nats. Columns that depend
 // on others are harmless.
 // Cost: one small factorisation a fold.

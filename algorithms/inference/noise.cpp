@@ -96,24 +96,6 @@ Eigen::VectorXd deviations(const Eigen::VectorXd& residual, std::span<const RowR
   return out;
 }
 
-// Adds to the noise what differs between movements beyond the noise within them.
-void estimate_offsets(const Eigen::VectorXd& residual, const Clusters& clusters, Noise& noise) {
-  const double variance = noise.within_sd * noise.within_sd;
-  double means = 0;
-  double expected = 0;
-  for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
-    const double mean = rows_of(residual, clusters.movements[m]).mean();
-    const auto rows = static_cast<double>(clusters.movements[m].size());
-    const double own = variance / (clusters.weight_of(m) * clusters.weight_of(m));
-    means += mean * mean;
-    expected += own * std::min(noise.inflation(), rows) / rows;
-    noise.effective_rows += rows / std::min(noise.inflation(), rows);
-  }
-  if (clusters.movements.size() <= 2) return;
-  const auto movements = static_cast<double>(clusters.movements.size());
-  noise.between_sd = std::sqrt(std::max(0.0, (means - expected) / movements));
-}
-
 // Of the movements' variances, over that of all; `sampling` is the variance that such logarithms
 // have of themselves.
 struct LogVariances {
@@ -169,8 +151,27 @@ Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters, 
   const double dof = std::max(1.0, n - movements - static_cast<double>(fitted));
   noise.within_sd = std::max(std::sqrt(within / dof), floor_sd);
   estimate_memory(deviation, clusters, noise);
-  estimate_offsets(residual, clusters, noise);
+  Eigen::VectorXd means(static_cast<Eigen::Index>(clusters.movements.size()));
+  for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
+    const auto rows = static_cast<double>(clusters.movements[m].size());
+    means[static_cast<Eigen::Index>(m)] = rows_of(residual, clusters.movements[m]).mean();
+    noise.effective_rows += rows / std::min(noise.inflation(), rows);
+  }
+  noise.between_sd = offset_spread(means, clusters, noise);
   return noise;
+}
+
+double offset_spread(const Eigen::VectorXd& means, const Clusters& clusters, const Noise& noise) {
+  if (means.size() <= 2) return 0;
+  const double variance = noise.within_sd * noise.within_sd;
+  double expected = 0;
+  for (std::size_t m = 0; m < clusters.movements.size(); ++m) {
+    const auto rows = static_cast<double>(clusters.movements[m].size());
+    const double own = variance / (clusters.weight_of(m) * clusters.weight_of(m));
+    expected += own * std::min(noise.inflation(), rows) / rows;
+  }
+  const double more = means.squaredNorm() - expected;
+  return std::sqrt(std::max(0.0, more / static_cast<double>(means.size())));
 }
 
 std::vector<double> movement_weights(const Eigen::VectorXd& residual, const Clusters& clusters) {

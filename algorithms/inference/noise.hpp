@@ -49,6 +49,10 @@ struct Noise {
 Noise estimate_noise(const Eigen::VectorXd& residual, const Clusters& clusters, std::size_t fitted,
                      double floor_sd);
 
+// sb from the means of the movements' rows, beyond what the noise within movements makes of them;
+// 0 where there are no more than two movements.
+double offset_spread(const Eigen::VectorXd& means, const Clusters& clusters, const Noise& noise);
+
 // Weights of the movements from their own noise in `residual`: the spread of the movements' log
 // variances that sampling does not explain is kept, the rest is shrunk away. Mean square 1.
 std::vector<double> movement_weights(const Eigen::VectorXd& residual, const Clusters& clusters);

@@ -138,6 +138,14 @@ Eigen::MatrixXd Whitening::of(Eigen::MatrixXd columns) const {
   return columns;
 }
 
+Eigen::MatrixXd Whitening::filtered(Eigen::MatrixXd columns) const {
+  for (const RowRange& range : clusters_.movements) {
+    filter_rows(columns.middleRows(static_cast<Eigen::Index>(range.begin),
+                                   static_cast<Eigen::Index>(range.size())));
+  }
+  return columns;
+}
+
 void Whitening::filter_backwards(Eigen::Ref<Eigen::VectorXd> rows) const {
   if (filter_.carried() == 0) return;
   double after = 0;  // what the next row's filter was told

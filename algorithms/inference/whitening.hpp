@@ -65,6 +65,8 @@ class Whitening {
   const RowFilter& filter() const { return filter_; }
   OffsetShrinkage offset_of(std::size_t movement) const;
   Eigen::MatrixXd of(Eigen::MatrixXd columns) const;
+  // Without the memory alone: offsets and weights are as they were.
+  Eigen::MatrixXd filtered(Eigen::MatrixXd columns) const;
   // Of rows that have been whitened: their product with any whitened column is what comes out here
   // times that column as it was.
   Eigen::VectorXd adjoint(Eigen::VectorXd rows) const;
