@@ -349,6 +349,7 @@ std::string next_of(const LoopRecord& record, const LoopWords& words) {
   return "Nothing: the model stands as it is.";
 }
 
+// Where nothing was found: what would have been, and in which rows nobody looked.
 std::string detectable_of(const LoopRecord& record) {
   if (record.verdict != LoopVerdict::none) return {};
   const LoopUnit unit = torque_unit(record);
@@ -358,8 +359,13 @@ std::string detectable_of(const LoopRecord& record) {
     sizes.push_back(fmt::format("{} above {} {}", family_title(record, one.family),
                                 figure(unit.factor * one.detectable, 2), unit.name));
   }
-  if (sizes.empty()) return {};
-  return fmt::format("Would have been seen: {}.", listed(sizes));
+  std::vector<std::string> sentences;
+  if (!sizes.empty()) sentences.push_back(fmt::format("Would have been seen: {}.", listed(sizes)));
+  for (const LoopDataStep& step : record.steps) {
+    if (step.not_looked_at.empty()) continue;
+    sentences.push_back(fmt::format("Not looked at: {}.", plain_text(record, step.not_looked_at)));
+  }
+  return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 // Families with the same reason in one line.

@@ -44,11 +44,11 @@ struct LoopWords {
   std::string headline;  // what is missing
   std::string error;     // how much it matters
   std::vector<LoopCard> cards;
-  std::string leftover;                 // where what is still unexplained lives
-  std::string next;                     // what to do next
-  std::string detectable;               // where nothing was found: what would have been
-  std::vector<std::string> needed;      // where the data cannot tell: what to record
-  std::string unused;                   // columns without a role that explain what is left over
+  std::string leftover;             // where what is still unexplained lives
+  std::string next;                 // what to do next
+  std::string detectable;           // where nothing was found: what would have been, and where not
+  std::vector<std::string> needed;  // where the data cannot tell: what to record
+  std::string unused;               // columns without a role that explain what is left over
   std::vector<std::string> untestable;  // what these data cannot show, by reason
   std::vector<std::string> aliased;     // what they cannot tell apart
   std::vector<std::string> bursts;

@@ -248,12 +248,20 @@ struct LoopRecording {
 loop::Observations read_observations(const LoopArguments& arguments,
                                      std::vector<LoopDataStep>& steps, LoopRecording& whole) {
   DataFile file = read_files(arguments);
-  steps.push_back({"read from the file", file.data.rows()});
+  steps.push_back({"read from the file", file.data.rows(), {}});
   whole.unit = loop::position_unit(file);
   // Who says which rows are slow means those and no others.
   PreparedRecording recording = prepare(std::move(file), *arguments.reading, arguments.gravity,
                                         arguments.min_speed ? SlowRows::kept : SlowRows::left_out);
-  steps.push_back({"cut into movements, derived channels added", recording.data.rows()});
+  const std::size_t moving = recording.data.rows() + recording.unresolved;
+  steps.push_back({"cut into movements, derived channels added", moving, {}});
+  if (recording.unresolved > 0) {
+    steps.push_back({"acceleration resolved", recording.data.rows(),
+                     fmt::format("in {} of {} rows the acceleration changes faster than the "
+                                 "position shows; gentler starts, a finer encoder or a column of "
+                                 "the acceleration would open them",
+                                 recording.unresolved, moving)});
+  }
   std::vector<std::string> rigid = arguments.rigid;
   rigid.insert(rigid.end(), recording.rigid.begin(), recording.rigid.end());
   loop::Observations data = loop::observe(
@@ -265,11 +273,11 @@ loop::Observations read_observations(const LoopArguments& arguments,
   std::vector<std::string>& notes = recording.notes;
   whole.data = std::move(recording.data);
   const std::size_t all_rows = data.rows();
-  steps.push_back({"rows that count for friction", all_rows});
+  steps.push_back({"rows that count for friction", all_rows, {}});
   const loop::Shortened shortened = data.averaged(static_cast<std::size_t>(arguments.rows));
   data = shortened.data;
   if (data.rows() < all_rows)
-    steps.push_back({"neighbouring rows averaged or thinned", data.rows()});
+    steps.push_back({"neighbouring rows averaged or thinned", data.rows(), {}});
   if (data.rows() < all_rows) {
     notes.push_back(shortened.rows_each > 1
                         ? fmt::format("{} rows are averaged over {:.3g} neighbours each{} (--rows)",

@@ -328,7 +328,9 @@ void drop_unresolved(PreparedRecording& out) {
   if (mark == nullptr) return;
   const std::vector<char> rows(mark->values.begin(), mark->values.end());
   erase_channel(out.data, kUnresolvedChannel);
-  if (2 * static_cast<std::size_t>(std::ranges::count(rows, 1)) > rows.size()) return;
+  const auto count = static_cast<std::size_t>(std::ranges::count(rows, 1));
+  if (2 * count > rows.size()) return;
+  out.unresolved = count;
   leave_out(out, rows, "change their acceleration faster than the position's noise lets be seen");
 }
 

@@ -212,6 +212,7 @@ Json steps_json(const LoopRecord& record) {
   Json steps = Json::array();
   for (const LoopDataStep& step : record.steps) {
     steps.push_back({{"what", step.what}, {"rows", step.rows}});
+    if (!step.not_looked_at.empty()) steps.back()["not_looked_at"] = step.not_looked_at;
   }
   return steps;
 }

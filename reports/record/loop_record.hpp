@@ -257,6 +257,8 @@ struct LoopTerm {
 struct LoopDataStep {
   std::string what;
   std::size_t rows = 0;  // that were left
+  // Of rows in motion that were left out: why nobody looked there. Empty: there are none.
+  std::string not_looked_at;
 };
 
 // A column without a role, and how much of what is left over a smooth function of it explains.

@@ -93,6 +93,10 @@ TEST(LoopWords, HaveAFaceForEveryVerdict) {
             "Nothing is missing that these data can show.");
   EXPECT_THAT(loop_words(with(LoopVerdict::none)).detectable,
               HasSubstr("Stribeck effect above 0.050 N m"));
+  LoopRecord in_part = with(LoopVerdict::none);
+  in_part.steps.push_back({"acceleration resolved", 5000, "in 760 of 5760 rows it is not"});
+  EXPECT_THAT(loop_words(in_part).detectable,
+              ::testing::EndsWith("Not looked at: in 760 of 5760 rows it is not."));
   EXPECT_THAT(loop_words(with(LoopVerdict::unknown)).leftover, HasSubstr("depends on position"));
   EXPECT_EQ(loop_words(with(LoopVerdict::cannot_tell)).next, "Record 20 stretches of movement.");
   LoopRecord nothing_to_test = with(LoopVerdict::none);

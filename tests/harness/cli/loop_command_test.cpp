@@ -224,6 +224,32 @@ TEST(LoopCommand, FilesWithoutMovementsAreOneMovementEach) {
   EXPECT_THAT(loop["notes"].dump(), HasSubstr("12 movements"));
 }
 
+// Strokes that start at once: the acceleration of a position alone does not follow.
+TEST(LoopCommand, WhereItFindsNothingItSaysInWhichRowsItDidNotLook) {
+  const testing::TemporaryFolder folder;
+  constexpr double kStep = 0.004;
+  constexpr int kRows = 600;
+  double position = 0;
+  const std::string file =
+      file_of(folder, "time_s,position_rad,motor_torque_Nm", 24, kRows, [&](int m, int i) {
+        const bool rests = i < 100;
+        const double v = rests ? 0 : (m % 2 == 0 ? 0.8 : -0.8) * (0.3 + 0.03 * m);
+        position += kStep * v;
+        const double torque = rests ? noise_of(m, i) : friction_of(v, m, i);
+        return csv({kStep * (kRows * m + i), std::round(position * 1e4) / 1e4, torque});
+      });
+  const std::string out = (folder / "out").string();
+  const testing::ProgramRun run = run_tribench({"loop", file, "--gravity", "none", "--out", out});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("Not looked at: in "));
+  const Json steps = Json::parse(testing::read_text(out + "/loop.json"))["data_steps"];
+  const std::size_t moving = steps[1]["rows"];
+  const std::size_t left = steps[2]["rows"];
+  EXPECT_LT(left, moving);
+  EXPECT_THAT(steps[2]["not_looked_at"].get<std::string>(),
+              HasSubstr("in " + std::to_string(moving - left) + " of "));
+}
+
 // Data that leave nothing to be found, or nothing to find it with.
 TEST(LoopCommand, AColumnThatNobodyUsesMayHoldAnything) {
   const testing::TemporaryFolder folder;

@@ -78,6 +78,8 @@ TEST(PreparedRecording, PositionAndCurrentAloneBecomeTorqueVelocityAndStrokes) {
   EXPECT_LT(rms_against_truth(recording, truth, Role::velocity, &RawSample::velocity, plan.step),
             0.005);
   // Ramps are left out; what is left goes straight on.
+  EXPECT_GT(recording.unresolved, 0U);
+  EXPECT_THAT(recording.notes, Contains(HasSubstr(std::to_string(recording.unresolved) + " of ")));
   EXPECT_THAT(recording.notes, Contains(HasSubstr("no inertia can be told")));
   // Strokes are the movements that were made, give or take those at either end.
   const int made = truth.back().movement > 0 ? truth.back().movement : 20;
