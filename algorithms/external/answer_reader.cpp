@@ -7,7 +7,9 @@
 #include <cmath>
 #include <csignal>
 #include <cstdint>
+#include <new>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <utility>
 
 #include "algorithms/admission.hpp"
@@ -37,6 +39,23 @@ std::string last_line(std::string_view text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.remove_suffix(1);
   const std::size_t start = text.rfind('\n');
   return excerpt(start == std::string_view::npos ? text : text.substr(start + 1));
+}
+
+// What languages say that were refused memory; the program's exit status says no more than that it
+// has failed.
+bool tells_of_no_memory(std::string_view errors) {
+  constexpr std::string_view kWords[] = {
+      "MemoryError",           // Python
+      "std::bad_alloc",        // C++
+      "OutOfMemoryError",      // Java, Julia
+      "cannot allocate",       // R, Go
+      "Cannot allocate",       // the C library: ENOMEM
+      "Unable to allocate",    // NumPy
+      "memory allocation of",  // Rust
+      "out of memory",         // Octave
+  };
+  return std::ranges::any_of(
+      kWords, [&](std::string_view words) { return errors.find(words) != std::string_view::npos; });
 }
 
 // A count in the program's answer.
@@ -79,10 +98,16 @@ void take_improvement(FitContext& context, const json& improvement) {
 
 // Formulas beyond a prior go, and those not proved free where the operator set admits no others.
 // The next simpler one that is left stands in for a choice that goes, else the simplest.
-void keep_admitted_formulas(const FitContext& context, FitResult& result) {
+void keep_admitted_formulas(const FitContext& context, std::span<const std::string> names,
+                            FitResult& result) {
   const Admission admission(context);
   std::vector<Expression> kept;
   std::size_t chosen = 0;
+  if (!admission.may_be_offered(result.front[result.chosen])) {
+    result.note += fmt::format("{}its choice {} is not admitted, another formula stands in",
+                               result.note.empty() ? "" : "; ",
+                               excerpt(print(result.front[result.chosen], names)));
+  }
   for (std::size_t k = 0; k < result.front.size(); ++k) {
     if (!admission.may_be_offered(result.front[k])) continue;
     if (k <= result.chosen) chosen = kept.size();
@@ -117,6 +142,8 @@ FitResult AnswerReader::finish(const ChildExit& exit, std::string_view errors) {
     throw Error(ErrorKind::environment, "the program met a limit on the size of files", {},
                 "raise it: ulimit -f unlimited");
   }
+  const bool has_failed = exit.signal != 0 || exit.status != 0;
+  if (has_failed && tells_of_no_memory(errors)) throw std::bad_alloc();
   if (exit.signal != 0) {
     throw_unusable(fmt::format("the program was ended by {}", signal_name(exit.signal)));
   }
@@ -164,7 +191,7 @@ void AnswerReader::take_front(const nlohmann::json& object) {
   }
   result.note = object.value("note", std::string());
   result.keeps_choice = true;
-  keep_admitted_formulas(context_, result);
+  keep_admitted_formulas(context_, names_, result);
   context_.budget.book(count_in(object, "evaluations", 0));
   result_ = std::move(result);
 }

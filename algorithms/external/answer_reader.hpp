@@ -24,7 +24,8 @@ class AnswerReader {
   // Some bytes of the program's standard output, in the order in which they come.
   void take(std::string_view text);
   // After the last byte; `errors`: what stands on its standard error. A program that met a limit on
-  // the size of files throws Error (environment).
+  // the size of files throws Error (environment), one that says that it was refused memory
+  // std::bad_alloc.
   FitResult finish(const ChildExit& exit, std::string_view errors);
 
  private:

@@ -71,6 +71,8 @@ TEST_F(ExternalTest, OnlyProvedFormulasStayWhereTheSetAdmitsNoOthers) {
                        "\"4 + qd\"], \"chosen\": 2}'"),
       "A/j2/no_load", "paper+safe_div");
   EXPECT_EQ(figure("mixed", "formula", "paper+safe_div"), "3 + qd/(qd^2 + 1)");
+  EXPECT_EQ(figure("mixed", "note", "paper+safe_div"),
+            "its choice 1/qd is not admitted, another formula stands in");
   EXPECT_THAT(figure("poles", "reason", "paper+safe_div"), HasSubstr("is proved free"));
 }
 
@@ -200,6 +202,18 @@ TEST_F(ExternalTest, AProgramsMemoryIsItsCells) {
                                   shell_method("small", "echo '{\"front\": [\"3\"]}'"));
   EXPECT_GT(std::stod(figure("large", "peak_memory_mib")), 55);
   EXPECT_LT(std::stod(figure("small", "peak_memory_mib")), 55);
+}
+
+// A limit of memory shows to a program as a request that is refused.
+TEST_F(ExternalTest, AProgramThatIsRefusedMemoryHasMetItsLimit) {
+  run("\"python\", \"aborts\", \"other\", \"linear\"",
+      shell_method("python", "python3 -c 'x = bytearray(1 << 33)'") +
+          shell_method("aborts", "echo \"  what():  std::bad_alloc\" >&2; kill -ABRT $$") +
+          shell_method("other", "echo no memory of that file >&2; exit 1"));
+  EXPECT_EQ(reason("python"), "out_of_memory");
+  EXPECT_EQ(reason("aborts"), "out_of_memory");
+  EXPECT_THAT(reason("other"), HasSubstr("error (the program ended with status 1"));
+  EXPECT_EQ(figure("linear", "status", "-"), "ok");
 }
 
 TEST_F(ExternalTest, AnAnswerStandsThoughSomethingStillHoldsTheOutput) {
