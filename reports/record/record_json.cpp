@@ -102,7 +102,8 @@ nlohmann::ordered_json record_row(const Record& record, const std::vector<std::s
     const auto all = result_columns();
     const auto column = std::ranges::find(all, name, &RecordColumn<Record>::name);
     if (column == all.end()) throw Error(ErrorKind::failed, "no column of records", name);
-    row.push_back(field_json<ordered_json>(record, *column));
+    const bool has_none = column->rules.needs_formula && record.formula.empty();
+    row.push_back(has_none ? ordered_json(nullptr) : field_json<ordered_json>(record, *column));
   }
   return row;
 }

@@ -25,7 +25,8 @@ Record parse_record(const nlohmann::json& object);
 FrontRecord parse_front(const nlohmann::json& object, const std::string& cell);
 TraceRecord parse_trace(const nlohmann::json& object, const std::string& cell);
 
-// The values of the named columns, in their order: a row of a page's table.
+// The values of the named columns, in their order: a row of a page's table. null where there is
+// none.
 nlohmann::ordered_json record_row(const Record& record, const std::vector<std::string>& columns);
 
 }  // namespace tribench

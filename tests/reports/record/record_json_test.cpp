@@ -94,6 +94,11 @@ TEST(RecordRow, HasTheColumnsAskedForInTheirOrderAndNoOther) {
   record.cell = "a cell";
   record.method = "line";
   EXPECT_EQ(record_row(record, {"method", "cell"}).dump(), "[\"line\",\"a cell\"]");
+  // A cell that failed has no formula, and so no complexity.
+  EXPECT_EQ(record_row(record, {"complexity", "seed"}).dump(), "[null,0]");
+  record.formula = "3";
+  record.complexity = 1;
+  EXPECT_EQ(record_row(record, {"complexity"}).dump(), "[1]");
   EXPECT_THROW(record_row(record, {"method", "no_column"}), Error);
 }
 
