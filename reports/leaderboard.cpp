@@ -71,7 +71,7 @@ std::string winners(const RunSummary& summary) {
     const MethodRow& best = each.rows.front();
     table.add({each.problem, each.operators, fmt::format("**{}**", best.method),
                figure(best.mae_test.middle), count_figure(best.complexity),
-               marked_count(best.refuted, best.mae_test.count), certainty_of(each)});
+               marked_count(best.refuted, best.looked_at()), certainty_of(each)});
   }
   return table.text();
 }
@@ -158,7 +158,7 @@ std::string method_table(const ProblemTable& table) {
     if (relative) cells.push_back(figure(row.relative_error_test));
     cells.push_back(complexity_text(row));
     cells.push_back(figure(row.fit_cpu_s));
-    cells.push_back(marked_count(row.refuted, row.mae_test.count));
+    cells.push_back(marked_count(row.refuted, row.looked_at()));
     cells.push_back(marked_count(row.failed, row.cells) +
                     (row.missing > 0 ? fmt::format(" ({} missing)", row.missing) : ""));
     text.add(std::move(cells));

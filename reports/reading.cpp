@@ -61,7 +61,7 @@ std::string singularities_of(const ProblemTable& table) {
   std::vector<std::string> parts;
   for (const MethodRow& row : table.rows) {
     if (row.refuted > 0) {
-      parts.push_back(fmt::format("{} ({} of {})", row.method, row.refuted, row.mae_test.count));
+      parts.push_back(fmt::format("{} ({} of {})", row.method, row.refuted, row.looked_at()));
     }
   }
   return parts.empty() ? std::string()

@@ -71,9 +71,9 @@ MethodRow row_of(const Cells& cells) {
   for (const Record* record : cells) {
     placing.push_back(placing_error(*record));
     all.push_back(is_ok(*record) ? record->mae_test : HUGE_VAL);
+    count_singularities(row, *record);
     if (is_ok(*record)) {
       errors.push_back(record->mae_test);
-      count_singularities(row, *record);
     } else {
       ++row.failed;
       ++row.reasons[reason_text(record->reason)];

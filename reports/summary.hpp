@@ -61,6 +61,8 @@ struct MethodRow {
   std::size_t proved_free = 0;
   std::size_t refuted = 0;
   std::size_t undecided = 0;
+  // Cells whose formula was looked at: one that has a pole may fail on the test rows for that.
+  std::size_t looked_at() const { return proved_free + refuted + undecided; }
   const Record* representative = nullptr;  // the cell whose error is nearest the median, below it
   const Record* singular = nullptr;        // the first cell with a witness
 

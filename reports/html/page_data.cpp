@@ -59,7 +59,7 @@ ordered_json row_json(const MethodRow& row) {
           {"cpu", finite_or_null(row.fit_cpu_s)},
           {"proved", row.proved_free},
           {"refuted", row.refuted},
-          {"ok", row.mae_test.count},
+          {"looked_at", row.looked_at()},
           {"failed", row.failed},
           {"cells", row.cells},
           {"seed", shown == nullptr ? ordered_json(nullptr) : ordered_json(shown->seed)},

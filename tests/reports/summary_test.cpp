@@ -144,6 +144,19 @@ TEST(Summary, PlacesAFailedCellLastInsteadOfLeavingItOut) {
   EXPECT_THAT(reading_of(table), HasSubstr("lucky failed in 2 of 3 cells"));
 }
 
+// A pole that a test row meets makes the cell fail: it is a pole all the same.
+TEST(Summary, CountsThePolesOfFailedCellsToo) {
+  RunFolder run;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    run.records.push_back(cell("smooth", seed, 2));
+    run.records.push_back(cell("pole", seed, seed == 1 ? 1 : std::nan("")));
+    run.records.back().singularity = seed == 1 ? Singularity::proved_free : Singularity::refuted;
+  }
+  const RunSummary summary = summarise(run);
+  EXPECT_EQ(row_of(summary.tables[0], "pole").refuted, 2U);
+  EXPECT_THAT(reading_of(summary.tables[0]), HasSubstr("pole (2 of 3)"));
+}
+
 TEST(Summary, SetsAFixedFormBesideEveryOperatorSet) {
   RunFolder run;
   run.records = sample_records(2);

@@ -41,8 +41,8 @@ function methodTable(table) {
   if (any("relative")) columns.push({name: "relative %", key: "relative", number: true});
   columns.push(
     {name: "complexity", key: "complexity", count: true}, {name: "CPU s", key: "cpu", number: true},
-    {name: "proved free", key: "proved", count: true, show: (r) => `${r.proved}/${r.ok}`},
-    {name: "singular", key: "refuted", count: true, show: (r) => share(r.refuted, r.ok)},
+    {name: "proved free", key: "proved", count: true, show: (r) => `${r.proved}/${r.looked_at}`},
+    {name: "singular", key: "refuted", count: true, show: (r) => share(r.refuted, r.looked_at)},
     {name: "failed", key: "failed", count: true, show: (r) => share(r.failed, r.cells)});
   return dataTable(columns, table.rows, {label: `methods on ${table.problem}, ${table.operators}`});
 }
@@ -60,7 +60,7 @@ function winnersTable() {
   const rows = data.tables.map((t) => {
     const best = t.rows.find((r) => r.standing === "best") || {};
     return {problem: t.problem, operators: t.operators, method: best.method || "none", mae: best.mae, ceiling: t.ceiling,
-            complexity: best.complexity, refuted: best.refuted || 0, ok: best.ok || 0, sure: t.certainty};
+            complexity: best.complexity, refuted: best.refuted || 0, looked_at: best.looked_at || 0, sure: t.certainty};
   });
   const columns = [
     {name: "problem", key: "problem"}, {name: "operators", key: "operators"},
@@ -68,7 +68,7 @@ function winnersTable() {
     {name: "MAE test", key: "mae", number: true, show: withUnit("mae")}];
   if (rows.some((r) => r.ceiling !== null)) columns.push({name: "noise ceiling", key: "ceiling", number: true, show: withUnit("ceiling")});
   columns.push({name: "complexity", key: "complexity", count: true},
-    {name: "singular", key: "refuted", count: true, show: (r) => share(r.refuted, r.ok)},
+    {name: "singular", key: "refuted", count: true, show: (r) => share(r.refuted, r.looked_at)},
     {name: "how sure", key: "sure"});
   return dataTable(columns, rows, {label: "who wins where"});
 }
