@@ -75,7 +75,8 @@ ExplorationFolder::ExplorationFolder(std::filesystem::path folder, ExplorationSe
                                 lines[0].at("asked").dump(), setting.asked),
                     place.string(), "give another --out, or the same options");
   }
-  if (lines[0].value("limits", "") != setting.limits) {
+  // A journal of before there were limits has none.
+  if (lines[0].value("limits", Json("")) != setting.limits) {
     throw_bad_input("the folder holds an exploration within other limits", place.string(),
                     "give another --out, or the same limits");
   }
