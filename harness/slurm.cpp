@@ -8,6 +8,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
+#include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -17,6 +20,7 @@
 #include "foundation/output_folder.hpp"
 #include "foundation/shell_word.hpp"
 #include "foundation/standard_streams.hpp"
+#include "foundation/text.hpp"
 #include "harness/run_files.hpp"
 
 namespace tribench {
@@ -64,10 +68,21 @@ std::string submit(const std::vector<std::string>& command) {
   return result.output.substr(0, end);
 }
 
-std::size_t elements_left(const std::string& job) {
-  const ChildRun result = run_child({.command = {"squeue", "-h", "-r", "-o", "%i", "-j", job}});
-  if (!result.exit.ok()) return 0;  // Slurm has forgotten the job: it has ended
-  return static_cast<std::size_t>(std::ranges::count(result.output, '\n'));
+// Of these jobs; none where Slurm does not answer, and `errors` says why: a controller that is busy
+// or started again has lost nothing.
+std::optional<std::size_t> elements_left(std::initializer_list<std::string> jobs,
+                                         std::string& errors) {
+  std::size_t left = 0;
+  for (const std::string& job : jobs) {
+    const ChildRun result = run_child({.command = {"squeue", "-h", "-r", "-o", "%i", "-j", job}});
+    const bool is_forgotten = result.errors.find("Invalid job id") != std::string::npos;
+    if (!result.exit.ok() && !is_forgotten) {
+      errors = trimmed(result.errors);
+      return {};
+    }
+    left += static_cast<std::size_t>(std::ranges::count(result.output, '\n'));
+  }
+  return left;
 }
 
 }  // namespace
@@ -124,16 +139,19 @@ SlurmJobs submit_slurm(const Grid& grid, const SlurmPlan& plan, const SlurmOptio
 
 bool follow_slurm(const SlurmJobs& jobs, const std::atomic<bool>& stop) {
   const bool is_terminal = ::isatty(STDERR_FILENO) == 1;
-  std::size_t shown = 0;
+  std::string shown;
   while (!stop.load()) {
-    const std::size_t left = elements_left(jobs.array) + elements_left(jobs.merge);
-    if (left == 0) return true;
+    std::string errors;
+    const std::optional<std::size_t> left = elements_left({jobs.array, jobs.merge}, errors);
+    if (left == std::size_t{0}) return true;
+    const std::string state = left ? fmt::format("{} elements left", *left)
+                                   : fmt::format("Slurm does not answer, asked again: {}", errors);
     if (is_terminal) {
-      print_message(fmt::format("\r\033[K{} elements left", left));
-    } else if (left != shown) {
-      print_message(fmt::format("{} elements left\n", left));
+      print_message(fmt::format("\r\033[K{}", state));
+    } else if (state != shown) {
+      print_message(state + '\n');
     }
-    shown = left;
+    shown = state;
     for (int tenth = 0; tenth < 20 && !stop.load(); ++tenth) {
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }

@@ -48,8 +48,8 @@ struct SlurmJobs {
 // where sbatch is missing, (failed) with what sbatch says.
 SlurmJobs submit_slurm(const Grid& grid, const SlurmPlan& plan, const SlurmOptions& options);
 
-// Waits until both jobs have left the queue, telling how many elements are left. False where
-// `stop` was set first: the jobs go on.
+// Waits until both jobs have left the queue, telling how many elements are left, or that Slurm does
+// not answer. False where `stop` was set first: the jobs go on.
 bool follow_slurm(const SlurmJobs& jobs, const std::atomic<bool>& stop);
 
 }  // namespace tribench
