@@ -101,12 +101,16 @@ SlurmPlan plan_slurm(const Grid& grid, const SlurmOptions& options, const Measur
     longest_s += item.predicted_s;
   }
   plan.predicted_element_s = longest_s / options.jobs;
+  double wall_s = 0;
+  double memory_mib = 0;
+  for (const Method& method : grid.methods) {
+    wall_s = std::max(wall_s, grid.limits_of(method).wall_seconds);
+    memory_mib = std::max(memory_mib, grid.limits_of(method).memory_mib);
+  }
   // Predictions err: four times, and one cell at its limit. What does not fit is missing after the
   // merge, and a second submission runs it.
-  plan.minutes = 5 + static_cast<int>(
-                         std::ceil((4 * plan.predicted_element_s + grid.limits.wall_seconds) / 60));
-  plan.memory_mib =
-      kProgramMemoryMib + options.jobs * static_cast<int>(std::ceil(grid.limits.memory_mib));
+  plan.minutes = 5 + static_cast<int>(std::ceil((4 * plan.predicted_element_s + wall_s) / 60));
+  plan.memory_mib = kProgramMemoryMib + options.jobs * static_cast<int>(std::ceil(memory_mib));
   const std::string folder = options.out.string();
   const std::string name = grid.name;
   const std::string data = options.data.empty() ? "" : " --data " + shell_word(options.data);

@@ -70,6 +70,22 @@ TEST(SlurmPlan, RefusesValuesThatWouldAddLinesToTheHeader) {
   EXPECT_THROW(plan_slurm(grid, options), Error);
 }
 
+TEST(SlurmPlan, AsksForWhatTheGreediestMethodMayTake) {
+  const auto plan = [](const std::string& more) {
+    return plan_slurm(parse_grid("[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"linear\", "
+                                 "\"own\"]\n[budget]\nwall_seconds = 60\nmemory_mib = 500\n"
+                                 "[[external]]\nname = \"own\"\ncommand = [\"true\"]\n" +
+                                     more,
+                                 "g.toml", Registry(), Catalogue()),
+                      {.out = "/tmp/out", .program = {}, .data = {}, .jobs = 2, .partition = {}});
+  };
+  const SlurmPlan usual = plan("");
+  const SlurmPlan greedy = plan("wall_seconds = 1260\nmemory_mib = 3000\n");
+  EXPECT_EQ(greedy.memory_mib - usual.memory_mib, 2 * 2500);
+  EXPECT_EQ(greedy.minutes - usual.minutes, 20);
+  EXPECT_EQ(plan("wall_seconds = 6\nmemory_mib = 100\n").minutes, usual.minutes);
+}
+
 TEST(ParseShard, RefusesWhatIsNone) {
   EXPECT_EQ(parse_shard("3/8"), (Shard{3, 8}));
   for (const char* text : {"", "3", "0/8", "9/8", "a/b", "3/8x", "-1/2", "1/0"}) {
