@@ -2,8 +2,14 @@
 #include "problems/preparation/steady_clock.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <vector>
 
+#include "foundation/elementary.hpp"
 #include "foundation/order_statistics.hpp"
 
 namespace tribench {
@@ -37,42 +43,101 @@ double beat_of(std::span<const double> time, std::span<const RowRange> pieces) {
   return beat;
 }
 
-// The one of the first stamps that lies in the middle of them, on the circle of a beat.
-double first_beat(std::span<const double> time, double beat) {
-  constexpr std::size_t kRows = 25;
-  const std::span<const double> first = time.first(std::min(kRows, time.size()));
-  const auto distance = [&](double candidate) {
-    double sum = 0;
-    for (const double stamp : first) {
-      const double beats = (stamp - candidate) / beat;
-      sum += std::abs(beats - std::round(beats));
-    }
-    return sum;
-  };
-  return *std::ranges::min_element(first, {}, distance);
+// Means over `reach` rows to either side, fewer at the ends.
+std::vector<double> running_means(const std::vector<double>& values, std::size_t reach) {
+  std::vector<double> until = {0};
+  for (const double value : values) until.push_back(until.back() + value);
+  std::vector<double> means;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t side = std::min({reach, i, values.size() - 1 - i});
+    means.push_back((until[i + side + 1] - until[i - side]) / static_cast<double>(2 * side + 1));
+  }
+  return means;
 }
 
-// The number of each row's sample, those that no row holds counted too: the nearest beat of a
-// clock that follows the stamps in phase and frequency. A message can only be late: where two
-// would have one number the earlier was.
-std::vector<double> sample_numbers(std::span<const double> time, double beat) {
-  constexpr double kFollow = 0.05;
-  double phase = first_beat(time, beat);  // of the last number
-  double last = 0;
-  std::vector<double> number;
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    const double now = std::round((time[i] - phase) / beat);
-    const double off = time[i] - phase - now * beat;
-    number.push_back(last + now);
-    // Counted from here on, so that a change of the beat moves nothing that is past.
-    phase += now * beat + kFollow * off;
-    beat += 0.25 * kFollow * kFollow * off;
-    last = number.back();
-    for (std::size_t k = i; k > 0 && number[k - 1] >= number[k]; --k) {
-      number[k - 1] = number[k] - 1;
+double turns_of(double cosine, double sine) {  // -1/2 to 1/2
+  const double size = std::sqrt(cosine * cosine + sine * sine);
+  const double half = size > 0 ? elementary::atan(sine / (size + std::abs(cosine))) : 0;
+  const double turns = half / std::numbers::pi;
+  return cosine >= 0 ? turns : std::copysign(0.5, sine) - turns;
+}
+
+// Where the stamps lie within a beat, in beats: the circular mean over `reach` rows to either side,
+// which no wrong count can mislead, laid end to end.
+std::vector<double> phases(std::span<const double> beats, std::size_t reach) {
+  std::vector<double> cosines;
+  std::vector<double> sines;
+  for (const double b : beats) {
+    const double angle = 2 * std::numbers::pi * (b - std::floor(b));
+    cosines.push_back(elementary::cos(angle));
+    sines.push_back(elementary::sin(angle));
+  }
+  cosines = running_means(cosines, reach);
+  sines = running_means(sines, reach);
+  std::vector<double> phase;
+  for (std::size_t i = 0; i < beats.size(); ++i) {
+    const double here = turns_of(cosines[i], sines[i]);
+    phase.push_back(i == 0 ? here : here + std::round(phase.back() - here));
+  }
+  return phase;
+}
+
+// The number of each row's sample, those that no row holds counted too: of all that rise from row
+// to row the nearest to the stamps, by the sum of squares (Viterbi 1967). A message comes late by
+// many samples where a bus was blocked. Empty: one was later than that.
+std::vector<double> nearest_rising(std::span<const double> beats) {
+  constexpr int kLatest = 30;  // samples
+  constexpr int kChoices = kLatest + 2;
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  std::vector<std::array<std::int8_t, kChoices>> came_from(beats.size());
+  std::array<double, kChoices> cost{};
+  const auto number = [&](std::size_t i, int choice) {
+    return std::round(beats[i]) + static_cast<double>(choice - kLatest);
+  };
+  for (std::size_t i = 0; i < beats.size(); ++i) {
+    std::array<double, kChoices> next{};
+    int before = 0;
+    double least = i == 0 ? 0 : kNever;
+    int from = 0;
+    for (int c = 0; c < kChoices; ++c) {
+      for (; i > 0 && before < kChoices && number(i - 1, before) < number(i, c); ++before) {
+        if (cost[before] < least) {
+          least = cost[before];
+          from = before;
+        }
+      }
+      const double off = beats[i] - number(i, c);
+      next[c] = least + off * off;
+      came_from[i][c] = static_cast<std::int8_t>(from);
+    }
+    cost = next;
+  }
+  auto choice = static_cast<int>(std::ranges::min_element(cost) - cost.begin());
+  std::vector<double> numbers(beats.size());
+  if (cost[choice] == kNever) return {};
+  for (std::size_t i = beats.size(); i-- > 0;) {
+    numbers[i] = number(i, choice);
+    choice = came_from[i][choice];
+  }
+  return numbers;
+}
+
+// Empty: there is no steady clock behind the stamps. reach: rows over which it is straight.
+std::vector<double> sample_numbers(std::span<const double> time, double beat, std::size_t reach) {
+  constexpr std::size_t kFirstReach = 25;  // the beat is not known to much more rows than that
+  if (!(time.back() > time.front())) return {};
+  std::vector<double> beats;
+  for (const std::size_t rows : {std::min(kFirstReach, reach), reach}) {
+    beats.clear();
+    for (const double t : time) beats.push_back((t - time.front()) / beat);
+    const std::vector<double> phase = phases(beats, rows);
+    if (rows < reach) {
+      beat *= 1 + (phase.back() - phase.front()) / beats.back();
+    } else {
+      for (std::size_t i = 0; i < beats.size(); ++i) beats[i] -= phase[i];
     }
   }
-  return number;
+  return nearest_rising(beats);
 }
 
 // What is left of the stamps on a line over the samples' numbers; the line takes their place.
@@ -99,18 +164,6 @@ std::vector<double> take_line_off(std::span<const double> time, std::vector<doub
   return rest;
 }
 
-// Means over `reach` rows to either side, fewer at the ends.
-std::vector<double> running_means(const std::vector<double>& values, std::size_t reach) {
-  std::vector<double> until = {0};
-  for (const double value : values) until.push_back(until.back() + value);
-  std::vector<double> means;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::size_t side = std::min({reach, i, values.size() - 1 - i});
-    means.push_back((until[i + side + 1] - until[i - side]) / static_cast<double>(2 * side + 1));
-  }
-  return means;
-}
-
 }  // namespace
 
 std::optional<SteadyClock> steady_clock(std::span<const double> time,
@@ -125,7 +178,8 @@ std::optional<SteadyClock> steady_clock(std::span<const double> time,
     const std::size_t n = piece.end - piece.begin;
     if (n < kFewestRows) continue;
     const std::span<const double> stamps = time.subspan(piece.begin, n);
-    std::vector<double> steady = sample_numbers(stamps, step);
+    std::vector<double> steady = sample_numbers(stamps, step, reach);
+    if (steady.empty()) return {};
     const std::vector<double> rest = take_line_off(stamps, steady);
     const std::vector<double> bend = running_means(rest, reach);
     for (std::size_t i = 0; i < n; ++i) {

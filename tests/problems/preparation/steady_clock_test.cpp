@@ -51,6 +51,28 @@ TEST(SteadyClock, TheInstantsBehindLateAndLostMessagesAreFound) {
   }
 }
 
+// Stamps that are early as often as late, so far that some round to another sample: beside a lost
+// message a wrong count would shift all rows from there to the next one.
+TEST(SteadyClock, StampsThatRoundToAnotherSampleAreCountedWithTheirNeighbours) {
+  for (const double lost : {0.0, 0.0002, 0.002, 0.01}) {
+    RandomStream random(73);
+    Stamped rows;
+    for (std::size_t i = 0; i < 70'000; ++i) {
+      const double off = 0.2 * kPeriod * random.normal();
+      if (random.chance(lost)) continue;
+      const double stamp = kPeriod * static_cast<double>(i) + off;
+      if (!rows.stamps.empty() && stamp <= rows.stamps.back()) continue;
+      rows.sampled.push_back(kPeriod * static_cast<double>(i));
+      rows.stamps.push_back(stamp);
+    }
+    const std::vector<RowRange> whole = {{0, rows.stamps.size()}};
+    const std::optional<SteadyClock> clock = steady_clock(rows.stamps, whole);
+    ASSERT_TRUE(clock) << lost;
+    EXPECT_NEAR(clock->jitter, 0.2 * kPeriod, 0.01 * kPeriod) << lost;
+    EXPECT_LT(distance(clock->time, rows.sampled), 0.05 * kPeriod) << lost;
+  }
+}
+
 TEST(SteadyClock, EvenStampsAndRowsWithoutABeatHaveNone) {
   std::vector<double> even;
   std::vector<double> uneven;
