@@ -42,6 +42,7 @@ struct Suspect {
   double factor;  // of (change of position) / (integral of velocity)
   Role role;
   std::string unit;
+  bool at_motor = false;  // the unit that it has, at the motor
 };
 
 std::vector<Suspect> suspects(std::optional<double> gear_ratio) {
@@ -59,8 +60,8 @@ std::vector<Suspect> suspects(std::optional<double> gear_ratio) {
                                {0.25, Role::position, "counts, before quadrature"}};
   if (gear_ratio) {
     const double n = *gear_ratio;
-    list.push_back({n, Role::position, "rad@motor"});
-    list.push_back({1 / n, Role::velocity, "rad/s@motor"});
+    list.push_back({n, Role::position, "rad", true});
+    list.push_back({1 / n, Role::velocity, "rad/s", true});
     list.push_back({kTurn / 60 / n, Role::velocity, "rpm@motor"});
     list.push_back({1 / n / kDegrees, Role::velocity, "deg/s@motor"});
     list.push_back({n * kDegrees, Role::position, "deg@motor"});
@@ -70,7 +71,7 @@ std::vector<Suspect> suspects(std::optional<double> gear_ratio) {
 
 std::vector<Suspect> suspects_of_acceleration(std::optional<double> gear_ratio) {
   std::vector<Suspect> list = {{1 / kDegrees, Role::acceleration, "deg/s^2"}};
-  if (gear_ratio) list.push_back({1 / *gear_ratio, Role::acceleration, "rad/s^2@motor"});
+  if (gear_ratio) list.push_back({1 / *gear_ratio, Role::acceleration, "rad/s^2", true});
   return list;
 }
 
@@ -78,6 +79,10 @@ std::string mend_for(const DataFile& file, const Suspect& suspect) {
   const ColumnReading* reading = reading_of(file, suspect.role);
   const bool plain = suspect.unit.find(' ') == std::string::npos;
   if (reading == nullptr) return "check the units";
+  if (suspect.at_motor) {
+    return fmt::format("say --roles '{}={}[{}@motor]'", reading->column, role_name(suspect.role),
+                       reading->unit.empty() ? suspect.unit : reading->unit);
+  }
   return plain ? fmt::format("say --roles '{}={}[{}]'", reading->column, role_name(suspect.role),
                              suspect.unit)
                : fmt::format("check the {}: {}", role_name(suspect.role), suspect.unit);
@@ -212,6 +217,18 @@ void check_turns(const DataFile& file, std::optional<double> gear_ratio) {
                   position->column));
 }
 
+// In which rows are as far apart as those of a recording are. Days and hours: spreadsheets.
+std::string_view likely_unit_of(double step) {
+  constexpr double kClosest = 1e-4;  // s
+  constexpr double kFarthest = 0.02;
+  constexpr std::pair<double, std::string_view> kUnits[] = {
+      {1e-3, "ms"}, {1e-6, "us"}, {1e-9, "ns"}, {86400, "86400 s"}, {3600, "3600 s"}};
+  for (const auto& [factor, unit] : kUnits) {
+    if (step * factor >= kClosest && step * factor <= kFarthest) return unit;
+  }
+  return "ms";
+}
+
 // What was taken for SI because its name's source always uses SI, and cannot be.
 void check_assumed_time(const DataFile& file) {
   const ColumnReading* time = reading_of(file, Role::time);
@@ -223,7 +240,8 @@ void check_assumed_time(const DataFile& file) {
     throw_bad_input(
         fmt::format("'{}' steps by {:.4g} s: its unit was only assumed", time->column, step),
         file.data.name,
-        fmt::format("say it: --roles '{0}=time[ms]', or '{0}=time[s]' if it is so", time->column));
+        fmt::format("say it: --roles '{0}=time[{1}]', or '{0}=time[s]' if it is so", time->column,
+                    likely_unit_of(step)));
   }
 }
 

@@ -19,6 +19,7 @@ constexpr double kMuchExplained = 0.3;
 constexpr double kSure = 10;    // standard errors, from which a story is refused
 constexpr double kCertain = 5;  // standard errors of a gravity that explains much
 constexpr double kSameFactor = 0.08;
+constexpr double kNoPayload = 5;  // a factor beyond that, or below its inverse, is none's
 
 }  // namespace
 
@@ -62,16 +63,13 @@ void check_gravity_factor(const PreparedRecording& out, const DataOptions& optio
                     "one of the two has its sign turned: gravity is the torque that the motor has "
                     "to hold; turn it in the file, or let it be fitted: --gravity fit");
   }
-  std::vector<double> known_factors = {1e3, 1e-3};
-  if (const std::optional<double> ratio = options.drive.gear_ratio) {
-    known_factors.insert(known_factors.end(), {*ratio, 1 / *ratio});
-  }
-  for (const double known : known_factors) {
-    if (!is(known) || is(1)) continue;
-    throw_bad_input(what, out.data.name,
-                    "check their units (--roles COLUMN=ROLE[UNIT]), --torque-constant and the side "
-                    "of the gear (@motor)");
-  }
+  const double size = std::abs(value);
+  const std::optional<double> ratio = options.drive.gear_ratio;
+  const bool is_ratio = ratio && !is(1) && (is(*ratio) || is(1 / *ratio));
+  if (!is_ratio && size < kNoPayload && size > 1 / kNoPayload) return;
+  throw_bad_input(what, out.data.name,
+                  "check their units (--roles COLUMN=ROLE[UNIT]), --torque-constant and the side "
+                  "of the gear (@motor); a torque without gravity is a friction_torque");
 }
 
 namespace {

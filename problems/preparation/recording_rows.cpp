@@ -393,6 +393,9 @@ bool spread_evenly(std::vector<double>& time, const RowRange& piece, double tick
 // A clock that ticks more slowly than the rows come: between two gaps they are taken to be even.
 void spread_coarse_stamps(PreparedRecording& out) {
   constexpr double kOften = 0.3;  // of the rows: fewer are messages that were sent twice
+  // Fewer say nothing of how many rows a tick has: stamps since 1970 in single precision tick every
+  // 128 s.
+  constexpr std::size_t kFewestTicks = 10;
   Channel* t = find_channel(out.data, Role::time);
   if (t == nullptr) return;
   std::size_t repeats = 0;
@@ -402,16 +405,20 @@ void spread_coarse_stamps(PreparedRecording& out) {
   if (static_cast<double>(repeats) < kOften * static_cast<double>(out.data.rows())) return;
   const double tick = median_step(t->values, out.data.movement);
   const std::vector<RowRange> pieces = pieces_of(t->values, out.data.movement, {});
-  const bool even = std::ranges::all_of(
-      pieces, [&](const RowRange& piece) { return spread_evenly(t->values, piece, tick); });
+  const std::size_t ticks = out.data.rows() - repeats;
+  const bool even =
+      ticks >= kFewestTicks && std::ranges::all_of(pieces, [&](const RowRange& piece) {
+        return spread_evenly(t->values, piece, tick);
+      });
   const std::string what = fmt::format(
       "{} of {} rows have the stamp of the row before in '{}', "
       "whose clock ticks every {:.3g} s",
       repeats, out.data.rows(), t->name, tick);
   if (!even) {
-    throw_bad_input(what, out.data.name,
-                    "give the time's role to a finer column, or to one that counts the samples: "
-                    "--roles 'COLUMN=time[2 ms]'");
+    throw_bad_input(
+        what, out.data.name,
+        "give the time's role to a finer column (stamps since 1970 need 17 digits), or to "
+        "one that counts the samples: --roles 'COLUMN=time[2 ms]'");
   }
   out.notes.push_back(what + ": the rows between two gaps are taken to be even in time");
 }

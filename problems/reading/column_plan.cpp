@@ -134,6 +134,10 @@ ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions&
     plan.reading.unit_assumed = true;
   } else {
     plan.reading.unit_asked = needs_unit(role);
+    if (!unknown.empty() && role != Role::none && role != Role::movement) {
+      plan.reading.remark =
+          fmt::format("'{}' is no unit that is known: read as it stands", unknown);
+    }
   }
   return plan;
 }

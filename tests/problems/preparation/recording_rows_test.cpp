@@ -86,6 +86,10 @@ TEST(RecordingRows, AClockThatTicksMoreSlowlyThanTheRowsCome) {
     bursts[i].time = std::floor(std::sqrt(static_cast<double>(i)));
   }
   EXPECT_THROW(prepared(bursts), Error);
+  // A few ticks do not say how fast the rows are: stamps since 1970 in single precision.
+  std::vector<Row> single = swings();
+  for (Row& row : single) row.time = 128 * std::floor((row.time + 120) / 128);
+  EXPECT_THROW(prepared(single), Error);
 }
 
 TEST(RecordingRows, StampsThatJitterAboutASteadyBeat) {

@@ -280,11 +280,18 @@ TEST(PreparedRecording, AStoryThatIsNotPossibleIsRefusedWithTheMend) {
   EXPECT_THAT(complaint(told_wrong(1, 1, 1000), options), HasSubstr("time=time[ms]"));
   EXPECT_THAT(complaint(told_wrong(1, -1, 1), options),
               ::testing::AllOf(HasSubstr("sign turned"), HasSubstr("'dq=velocity[-1 rad/s]'")));
+  DataOptions derived;
+  derived.roles = parse_roles("dq=none", "--roles");
+  EXPECT_THAT(complaint(told_wrong(1, 1, 1e3), derived), HasSubstr("time=time[ms]"));
+  EXPECT_THAT(complaint(told_wrong(1, 1, 1e6), derived), HasSubstr("time=time[us]"));
   // Both in degrees agree with one another; the range of motion does not agree with radians.
   EXPECT_THAT(complaint(told_wrong(57.29578, 57.29578, 1), options), HasSubstr("q=position[deg]"));
   DataOptions geared;
   geared.drive.gear_ratio = 100;
   EXPECT_THAT(complaint(told_wrong(1, 100, 1), geared), HasSubstr("velocity[rad/s@motor]"));
+  EXPECT_THAT(complaint(told_wrong(1, 954.9297, 1), geared), HasSubstr("velocity[rpm@motor]"));
+  // A unit that was said stays.
+  geared.roles = parse_roles("dq=velocity[rpm]", "--roles");
   EXPECT_THAT(complaint(told_wrong(1, 954.9297, 1), geared), HasSubstr("velocity[rpm@motor]"));
 }
 
@@ -305,6 +312,12 @@ TEST(PreparedRecording, DifferentUnitsAreNeverSubtracted) {
   DataOptions wrong = engineer();
   wrong.torque_constant->value = 8000;
   EXPECT_THAT(complaint(text, wrong), HasSubstr("with the factor"));
+  // At the motor, and nobody said so.
+  wrong.torque_constant->value = 8.0 / 160;
+  EXPECT_THAT(complaint(text, wrong), HasSubstr("side of the gear (@motor)"));
+  // A payload that nobody declared, or a constant that is somewhat off, is a story.
+  wrong.torque_constant->value = 12;
+  EXPECT_EQ(complaint(text, wrong), "no error");
 }
 
 TEST(PreparedRecording, AllThatIsMissingIsSaidAtOnce) {

@@ -163,11 +163,24 @@ TEST(VendorLogs, ARowOfUnitsMayHoldOneThatIsNotKnown) {
   expect_read(names + "s;zoll;rad/s;N m\n" + rows, told("theta=position[deg]"),
               {0.002, 91 * kDegree, 2});
   // Nor is a unit that nobody knows the one that a name's source always uses.
-  for (const char* text : {"t;q;effort\ns;rad;in-lb\n0;1;1\n1;2;1\n",
-                           "t [s];q [rad];effort [in-lb]\n0;1;1\n1;2;1\n"}) {
+  for (const char* text :
+       {"t;q;effort\ns;rad;zoll\n0;1;1\n1;2;1\n", "t [s];q [rad];effort [zoll]\n0;1;1\n1;2;1\n"}) {
     const DataFile file = parse_csv(text, "log.csv", told(""));
     ASSERT_NE(file.data.find(Role::motor_torque), nullptr);
     EXPECT_EQ(file.data.find(Role::motor_torque)->unit, "-");
+    EXPECT_THAT(file.readings.back().remark, HasSubstr("'zoll' is no unit that is known"));
+  }
+}
+
+TEST(VendorLogs, TorquesInPoundsAndKilogramsAreConverted) {
+  const std::pair<const char*, double> kUnits[] = {
+      {"in-lb", 0.112985}, {"lbf.ft", 1.35582}, {"oz-in", 0.0070616}, {"kgf cm", 0.0980665}};
+  for (const auto& [unit, factor] : kUnits) {
+    const std::string text = fmt::format("t [s];q [rad];effort [{}]\n0;1;10\n1;2;10\n", unit);
+    const DataFile file = parse_csv(text, "log.csv", told(""));
+    ASSERT_NE(file.data.find(Role::motor_torque), nullptr);
+    EXPECT_EQ(file.data.find(Role::motor_torque)->unit, "N m") << unit;
+    EXPECT_NEAR(file.data.find(Role::motor_torque)->values[0], 10 * factor, 1e-4 * factor) << unit;
   }
 }
 
