@@ -120,6 +120,9 @@ std::vector<std::string> doubts_of(const LoopRecord& record, const LoopEffect& e
                               plain_text(record, effect.objection)));
   } else if (!record.error.confirmed) {
     all.push_back("The movements that were left out do not confirm it.");
+  } else if (effect.told_by_others) {
+    all.push_back(
+        "The other effects together can tell nine tenths of it: they may be there to cancel it.");
   } else if (effect.provisional && !record.leftover.varying.term.empty()) {
     all.push_back(fmt::format(
         "It shows between movements only, and may stand for the {}, which differs between them.",

@@ -79,8 +79,11 @@ struct EffectFinding {
   std::vector<AliasFinding> aliases;
   std::vector<std::string> separate_by;
   bool few_movements = false;  // carried by few movements: ask for more of them
-  // Shares an input with the leftover, is not physical, or (the judge says that) is not confirmed
-  // by the movements left out.
+  // The other effects together can tell nine tenths of it: it may be there because they cancel each
+  // other (variance inflation above 10; Marquardt 1970).
+  bool told_by_others = false;
+  // Shares an input with the leftover, is told by the others, is not physical, or (the judge says
+  // that) is not confirmed by the movements left out.
   bool provisional = false;
   std::string objection;  // why it is not physical; empty where it is
   // Shows between movements only, beside something that differs between them: may stand for it.

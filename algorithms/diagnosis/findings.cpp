@@ -112,6 +112,27 @@ std::vector<std::string> notes_of(const EffectFinding& finding) {
   return notes;
 }
 
+// Whether little of the effect's torque, beside what the base can do, is left beside the other
+// effects: the variance inflation of the effect as a whole.
+bool is_told_by_others(std::size_t family, const FittedModel& fit, const Campaign& campaign) {
+  if (!campaign.options.has("cancelling")) return false;
+  const LoopModel& model = fit.model;
+  const auto base = static_cast<Eigen::Index>(model.first_column(0));
+  Eigen::MatrixXd rest = fit.x.leftCols(base);
+  const Eigen::MatrixXd base_basis = orthonormal_basis(rest);
+  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
+    if (model.atoms[k].family == family) continue;
+    rest = beside(rest, fit.x.middleCols(static_cast<Eigen::Index>(model.first_column(k)),
+                                         static_cast<Eigen::Index>(model.atoms[k].columns.size())));
+  }
+  if (rest.cols() == base) return false;
+  const Eigen::MatrixXd torque =
+      whitened(contribution(model, family, campaign.data), campaign.clusters, fit.noise);
+  const double own = project_off(torque, orthonormal_basis(rest)).squaredNorm();
+  const double all = project_off(torque, base_basis).squaredNorm();
+  return own * kLargeVif < all;
+}
+
 EffectFinding effect_finding(const Found& found, const FittedModel& fit,
                              const Covariance& covariance, const Campaign& campaign) {
   const EffectFamily& family = campaign.families[found.family];
@@ -131,6 +152,7 @@ EffectFinding effect_finding(const Found& found, const FittedModel& fit,
   finding.few_movements = found.few;
   finding.another_shape = found.another_shape;
   finding.separate_by = family.separate_by;
+  finding.told_by_others = is_told_by_others(found.family, fit, campaign);
   for (std::size_t k = 0; k < fit.model.atoms.size(); ++k) {
     const Atom& atom = fit.model.atoms[k];
     if (atom.family != found.family) continue;
@@ -280,7 +302,8 @@ void write_findings(Diagnosis& out, const SearchResult& result, const Campaign& 
         out.effects.emplace_back(effect_finding(one, state.model, covariance, campaign));
     finding.order = static_cast<int>(out.effects.size());
     finding.stands_in = one.stands_in;
-    finding.provisional = shares_a_signal(one.family, out.after, out.leftover, campaign.data);
+    finding.provisional = finding.told_by_others ||
+                          shares_a_signal(one.family, out.after, out.leftover, campaign.data);
   }
   for (std::size_t k = 0; k < state.found.size() && campaign.options.physical_vetoes; ++k) {
     veto(out, out.effects[k], state.found[k].family, campaign);

@@ -26,6 +26,7 @@ constexpr std::array kRules = {
     Rule{"shape_of_leftover", "a leftover in the inputs of a larger effect is its shape"},
     Rule{"last_resort", "rare effects are looked for where the usual ones leave something over"},
     Rule{"unknown_ripple", "waves of any length in the position are looked for in the leftover"},
+    Rule{"cancelling", "what the other effects together can tell is provisional"},
     Rule{"local_defect",
          "ripples and loads that one bump in the position predicts better are dropped"},
     Rule{"random_slopes",

@@ -51,6 +51,7 @@ LoopEffect effect_of(const EffectFinding& from) {
   to.provisional = from.provisional;
   to.objection = from.objection;
   to.few_movements = from.few_movements;
+  to.told_by_others = from.told_by_others;
   to.another_shape = from.another_shape;
   to.chosen_share = from.chosen_share;
   to.notes = from.notes;

@@ -41,6 +41,7 @@ Json effect_json(const LoopEffect& effect) {
                {"provisional", effect.provisional},
                {"not_physical", effect.objection},
                {"few_movements", effect.few_movements},
+               {"told_by_others", effect.told_by_others},
                {"another_shape", effect.another_shape},
                {"chosen_share", json_number(effect.chosen_share)},
                {"notes", effect.notes}};

@@ -90,6 +90,7 @@ struct LoopEffect {
   bool provisional = false;
   std::string objection;  // why it is not physical
   bool few_movements = false;
+  bool told_by_others = false;  // the other effects can tell nine tenths of it
   bool another_shape = false;
   double chosen_share = kNoFigure;  // of the searches with movements left out
   std::vector<std::string> notes;

@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "foundation/random.hpp"
+#include "problems/dataset.hpp"
 #include "tests/algorithms/diagnosis/planted_diagnosis.hpp"
 
 namespace tribench::loop {
@@ -45,6 +48,42 @@ TEST(Aliases, AMassAndASpringAreToldApartByTheRangeOfMotionAlone) {
     ASSERT_EQ(families(diagnosis), std::vector<std::string>{"spring"}) << turns_far;
     EXPECT_EQ(std::ranges::count(diagnosis.effects[0].aliases, "payload", &AliasFinding::family),
               turns_far ? 0 : 1);
+  }
+}
+
+// Ten waves a turn over a quarter of one: no ripple of the library, but a sum of some and of a mass
+// whose torques cancel. What is there only to cancel the others is not sure.
+TEST(Aliases, WhatTheOtherEffectsCanTellIsProvisional) {
+  RandomStream random(3);
+  constexpr std::size_t kStroke = 150;
+  std::vector<std::vector<double>> columns(4);  // position, velocity, gravity, friction
+  Dataset data;
+  for (int m = 0; m < 40; ++m) {
+    data.movement_names.push_back(std::to_string(m));
+    const double v = (m % 2 == 0 ? 1 : -1) * (0.2 + 0.02 * m);
+    for (std::size_t i = 0; i < kStroke; ++i) {
+      const double way = 1.6 * static_cast<double>(i) / (kStroke - 1) - 0.8;
+      const double q = v > 0 ? way : -way;
+      const double friction = (v > 0 ? 5 : -5) + 3 * v + std::cos(10 * q + 0.3);
+      const double row[] = {q, v, 14 * std::sin(q + 0.4), friction + 0.1 * random.normal()};
+      for (std::size_t k = 0; k < columns.size(); ++k) columns[k].push_back(row[k]);
+      data.movement.push_back(m);
+    }
+  }
+  data.channels = {{"q", "rad", Role::position, columns[0]},
+                   {"v", "rad/s", Role::velocity, columns[1]},
+                   {"g", "N m", Role::gravity_torque, columns[2]},
+                   {"tau", "N m", Role::friction_torque, columns[3]}};
+  for (const bool with_rule : {true, false}) {
+    DiagnosisOptions options{.gear_ratios = {160}};
+    if (!with_rule) options.without = {"cancelling"};
+    const Diagnosis diagnosis = diagnose(observe(data), coulomb_viscous_base, options);
+    const auto payload = std::ranges::find(diagnosis.effects, "payload", &EffectFinding::family);
+    ASSERT_NE(payload, diagnosis.effects.end());
+    EXPECT_GT(payload->rms_contribution, 1);
+    EXPECT_EQ(payload->told_by_others, with_rule);
+    EXPECT_EQ(payload->provisional, with_rule);
+    EXPECT_FALSE(diagnosis.effects[0].told_by_others) << diagnosis.effects[0].family;
   }
 }
 
