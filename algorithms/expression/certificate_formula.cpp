@@ -5,12 +5,12 @@
 #include <charconv>
 #include <cmath>
 
+#include "algorithms/expression/input_box.hpp"
 #include "foundation/error.hpp"
 
 namespace tribench {
 namespace {
 
-constexpr std::string_view kSign = "sgn_";
 constexpr int kDeepest = 4000;  // print nests a level of a formula at most twice
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -97,8 +97,9 @@ class Reading {
 
   std::size_t input(std::string_view name) {
     if (const auto place = box_.place_of(name)) return *place;
-    const auto whole = name.starts_with(kSign) ? box_.place_of(name.substr(kSign.size()))
-                                               : std::optional<std::size_t>();
+    const auto whole = name.starts_with(kSignPrefix)
+                           ? box_.place_of(name.substr(kSignPrefix.size()))
+                           : std::optional<std::size_t>();
     if (!whole || box_.sign_of[*whole]) refuse("an input without a range");
     box_.add_name(name);
     box_.ranges.push_back({-1, 1});
@@ -172,7 +173,8 @@ ClaimedBox read_claimed_box(std::string_view text) {
   }
   // A name sgn_X beside X is the sign of X, never an input of its own.
   for (const std::string& name : box.names) {
-    const bool is_sign = name.starts_with(kSign) && box.place_of(name.substr(kSign.size()));
+    const bool is_sign =
+        name.starts_with(kSignPrefix) && box.place_of(name.substr(kSignPrefix.size()));
     if (is_sign) throw_bad_input("the box gives a range to a sign", "certificate");
     box.sign_of.emplace_back();
   }

@@ -16,8 +16,6 @@
 namespace tribench {
 namespace {
 
-constexpr std::string_view kSign = "sgn_";
-
 // Adds an argument unless it is there; returns its place.
 std::size_t argument_place(CodeInputs& inputs, const std::string& name) {
   for (std::size_t i = 0; i < inputs.arguments.size(); ++i) {
@@ -51,7 +49,7 @@ CodeInputs code_inputs(const Expression& formula, std::span<const std::string> n
   CodeInputs inputs;
   if (options.box) {
     for (std::size_t i = 0; i < options.box->names.size(); ++i) {
-      if (options.box->names[i].starts_with(kSign)) continue;
+      if (options.box->names[i].starts_with(kSignPrefix)) continue;
       const std::size_t at = argument_place(inputs, options.box->names[i]);
       inputs.arguments[at].range = options.box->ranges[i];
     }
@@ -61,8 +59,8 @@ CodeInputs code_inputs(const Expression& formula, std::span<const std::string> n
     if (!node.is_variable()) continue;
     const std::string& name = names[node.variable];
     CodeInputs::Column& column = inputs.columns[node.variable];
-    column.is_sign = name.starts_with(kSign) && name.size() > kSign.size();
-    const std::string base = column.is_sign ? name.substr(kSign.size()) : name;
+    column.is_sign = name.starts_with(kSignPrefix) && name.size() > kSignPrefix.size();
+    const std::string base = column.is_sign ? name.substr(kSignPrefix.size()) : name;
     column.argument = argument_place(inputs, base);
     column.is_used = true;
   }
@@ -70,7 +68,7 @@ CodeInputs code_inputs(const Expression& formula, std::span<const std::string> n
   for (CodeInputs::Column& column : inputs.columns) {
     if (!column.is_used) continue;
     const std::string& called = inputs.arguments[column.argument].code_name;
-    column.name = column.is_sign ? fmt::format("{}{}", kSign, called) : called;
+    column.name = column.is_sign ? fmt::format("{}{}", kSignPrefix, called) : called;
   }
   return inputs;
 }

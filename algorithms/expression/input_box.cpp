@@ -15,7 +15,6 @@
 namespace tribench {
 namespace {
 
-constexpr std::string_view kSign = "sgn_";
 constexpr std::string_view kExample = "write ranges as 'v=-2:2,g=-60:60'";
 
 std::string_view trimmed(std::string_view text) {
@@ -70,8 +69,8 @@ void leave_out_signs(NamedBox& box) {
   NameIndex places(box.names);
   for (std::size_t j = 0; j < box.names.size(); ++j) {
     const std::string& name = box.names[j];
-    const auto base = name.starts_with(kSign)
-                          ? places.find(std::string_view(name).substr(kSign.size()))
+    const auto base = name.starts_with(kSignPrefix)
+                          ? places.find(std::string_view(name).substr(kSignPrefix.size()))
                           : std::nullopt;
     if (!base) {
       kept.names.push_back(name);
@@ -118,8 +117,8 @@ Expression parse_over(std::string_view formula, NamedBox& box) {
   NameIndex places(box.names);
   for (std::size_t j = box.names.size(); j < names.size(); ++j) {
     const std::string& name = names[j];
-    const auto base = name.starts_with(kSign)
-                          ? places.find(std::string_view(name).substr(kSign.size()))
+    const auto base = name.starts_with(kSignPrefix)
+                          ? places.find(std::string_view(name).substr(kSignPrefix.size()))
                           : std::nullopt;
     if (!base) {
       throw_bad_input(fmt::format("the formula's input '{}' has no range", name), "--box",

@@ -16,6 +16,9 @@
 
 namespace tribench {
 
+// An input called so and after another is that one's sign: "sgn_v".
+inline constexpr std::string_view kSignPrefix = "sgn_";
+
 // The range of one input, in the order of the formula's columns.
 struct InputRange {
   double low = 0;

@@ -32,19 +32,20 @@ void read_one_by_one(std::span<const Node> tape, const LeafLists<T>& lists) {
 // The layout that the vector form reads: value, then one word of length, variable and op.
 static_assert(offsetof(Node, length) == 8 && offsetof(Node, variable) == 12 &&
               offsetof(Node, op) == 14 && sizeof(Op) == 1);
-#define TRIBENCH_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,popcnt")))
+#define TRIBENCH_AVX512_POPCNT __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,popcnt")))
 
-TRIBENCH_AVX512 inline void store_scalars(double* out, __m512i bits) {
+TRIBENCH_AVX512_POPCNT inline void store_scalars(double* out, __m512i bits) {
   _mm512_storeu_pd(out, _mm512_castsi512_pd(bits));
 }
-TRIBENCH_AVX512 inline void store_scalars(float* out, __m512i bits) {
+TRIBENCH_AVX512_POPCNT inline void store_scalars(float* out, __m512i bits) {
   _mm256_storeu_ps(out, _mm512_maskz_cvtpd_ps(0xff, _mm512_castsi512_pd(bits)));
 }
 
 // Eight nodes at a time; masked-out ones read as constants. The forms with a mask of ones are the
 // plain instructions; GCC 12 warns about its own headers in the plain forms.
 template <typename T>
-TRIBENCH_AVX512 void read_eight_by_eight(std::span<const Node> tape, const LeafLists<T>& lists) {
+TRIBENCH_AVX512_POPCNT void read_eight_by_eight(std::span<const Node> tape,
+                                                const LeafLists<T>& lists) {
   const __m512i first_words = _mm512_set_epi64(14, 12, 10, 8, 6, 4, 2, 0);
   const __m512i second_words = _mm512_set_epi64(15, 13, 11, 9, 7, 5, 3, 1);
   const __m512i lane = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
