@@ -11,6 +11,8 @@
 #include "algorithms/diagnosis/plausibility.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/column_products.hpp"
+#include "algorithms/inference/score_test.hpp"
+#include "algorithms/inference/whitening.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
 
 namespace tribench::loop {

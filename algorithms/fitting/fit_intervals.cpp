@@ -95,6 +95,14 @@ double student_point(double freedom) {
 
 namespace {
 
+// The power of two next below the largest of these: squares of physical constants' units may come
+// to nothing.
+double size_of(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  int exponent = 0;
+  std::frexp(values.cwiseAbs().maxCoeff(), &exponent);
+  return std::ldexp(1.0, exponent - 1);
+}
+
 // The weighted rows of the formula linearised in its constants, a column a constant, of like
 // lengths: `scale` brings back the constants' own. A column that is 0 everywhere stays, and is not
 // determined.
@@ -119,9 +127,13 @@ LinearisedRows linearise(const Expression& formula, const std::vector<std::size_
     rows.residual[r] = root * (target[row] - values[row]);
     rows.jacobian.row(r) *= root;
   }
-  rows.scale = rows.jacobian.colwise().norm();
-  for (double& length : rows.scale) length = length > 0 ? length : 1;
-  rows.jacobian = rows.jacobian * rows.scale.cwiseInverse().asDiagonal();
+  rows.scale.resize(rows.jacobian.cols());
+  for (Eigen::Index k = 0; k < rows.scale.size(); ++k) {
+    const double size = size_of(rows.jacobian.col(k));
+    const double length = (rows.jacobian.col(k) / size).norm();
+    rows.scale[k] = length > 0 ? size * length : 1;
+    rows.jacobian.col(k) /= rows.scale[k];
+  }
   return rows;
 }
 
@@ -147,7 +159,7 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
   result.unit = "row";
   result.units = inputs.rows;
   if (p == 0) return result;
-  const LinearisedRows rows = linearise(formula, result.places, inputs, target, weights);
+  LinearisedRows rows = linearise(formula, result.places, inputs, target, weights);
   if (!rows.is_finite()) {
     throw_bad_input("the formula has no finite derivative in some row", {},
                     "its constants have no intervals");
@@ -158,6 +170,9 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
     throw_bad_input(fmt::format("{} rows for {} constants", n, p), {},
                     "intervals need more rows than constants");
   }
+  // Of the residual in this unit: in its own, squares may come to nothing.
+  const double unit = known_variance ? 1 : size_of(rows.residual);
+  rows.residual /= unit;
   const double variance =
       known_variance ? 1 : rows.residual.squaredNorm() / static_cast<double>(n - rank);
   Eigen::MatrixXd covariance = variance * base.inverse;
@@ -173,8 +188,8 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
       result.quantile = student_point(static_cast<double>(movements.size() - 1));
     }
   }
-  covariance =
-      rows.scale.cwiseInverse().asDiagonal() * covariance * rows.scale.cwiseInverse().asDiagonal();
+  const Eigen::VectorXd own = unit * rows.scale.cwiseInverse();
+  covariance = own.asDiagonal() * covariance * own.asDiagonal();
   for (Eigen::Index k = 0; k < p; ++k) {
     const double value = formula.node(result.places[static_cast<std::size_t>(k)]).value;
     constexpr double kLost = 1e-6;

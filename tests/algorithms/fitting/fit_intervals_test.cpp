@@ -67,6 +67,23 @@ TEST(FitIntervals, AreTheTextbooksForAStraightLine) {
               2.262157 * 1.2366 / std::sqrt(11.0), 1e-3);
 }
 
+// In units in which squares of the rows are below any number.
+TEST(FitIntervals, AreTheSameInUnitsOfPhysicalConstants) {
+  Rows rows = draw(5, 60, 0.1, 0);
+  const Expression line = parse("0.6*x", kNames);
+  const auto slope = [&](const Rows& all) {
+    const std::vector<const double*> columns = all.columns();
+    return fit_intervals(line, {columns, all.x.size()}, all.y, all.movement).constants.at(0);
+  };
+  const ConstantInterval usual = slope(rows);
+  for (double& x : rows.x) x = std::ldexp(x, -600);
+  for (double& y : rows.y) y = std::ldexp(y, -600);
+  const ConstantInterval tiny = slope(rows);
+  EXPECT_EQ(tiny.low, usual.low);
+  EXPECT_EQ(tiny.high, usual.high);
+  EXPECT_LT(usual.low, usual.high);
+}
+
 TEST(FitIntervals, StudentsPointsAreTheTables) {
   EXPECT_NEAR(student_point(1), 12.7062, 1e-4);
   EXPECT_NEAR(student_point(2), 4.30265, 1e-5);
