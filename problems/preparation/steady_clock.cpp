@@ -89,7 +89,7 @@ std::vector<double> nearest_rising(std::span<const double> beats) {
   constexpr int kLatest = 30;  // samples
   constexpr int kChoices = kLatest + 2;
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  std::vector<std::array<std::int8_t, kChoices>> came_from(beats.size());
+  std::vector<std::array<std::uint8_t, kChoices>> came_from(beats.size());
   std::array<double, kChoices> cost{};
   const auto number = [&](std::size_t i, int choice) {
     return std::round(beats[i]) + static_cast<double>(choice - kLatest);
@@ -108,7 +108,7 @@ std::vector<double> nearest_rising(std::span<const double> beats) {
       }
       const double off = beats[i] - number(i, c);
       next[c] = least + off * off;
-      came_from[i][c] = static_cast<std::int8_t>(from);
+      came_from[i][c] = static_cast<std::uint8_t>(from);
     }
     cost = next;
   }
