@@ -122,21 +122,21 @@ std::vector<double> nearest_rising(std::span<const double> beats) {
   return numbers;
 }
 
+std::vector<double> in_beats(std::span<const double> time, double beat) {
+  std::vector<double> beats;
+  for (const double t : time) beats.push_back((t - time.front()) / beat);
+  return beats;
+}
+
 // Empty: there is no steady clock behind the stamps. reach: rows over which it is straight.
 std::vector<double> sample_numbers(std::span<const double> time, double beat, std::size_t reach) {
   constexpr std::size_t kFirstReach = 25;  // the beat is not known to much more rows than that
   if (!(time.back() > time.front())) return {};
-  std::vector<double> beats;
-  for (const std::size_t rows : {std::min(kFirstReach, reach), reach}) {
-    beats.clear();
-    for (const double t : time) beats.push_back((t - time.front()) / beat);
-    const std::vector<double> phase = phases(beats, rows);
-    if (rows < reach) {
-      beat *= 1 + (phase.back() - phase.front()) / beats.back();
-    } else {
-      for (std::size_t i = 0; i < beats.size(); ++i) beats[i] -= phase[i];
-    }
-  }
+  std::vector<double> beats = in_beats(time, beat);
+  const std::vector<double> drift = phases(beats, kFirstReach);
+  beats = in_beats(time, beat * (1 + (drift.back() - drift.front()) / beats.back()));
+  const std::vector<double> phase = phases(beats, reach);
+  for (std::size_t i = 0; i < beats.size(); ++i) beats[i] -= phase[i];
   return nearest_rising(beats);
 }
 
