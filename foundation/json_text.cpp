@@ -72,6 +72,11 @@ Json parse_from(std::string_view text, std::size_t& at, Json* first, std::string
 
 template <typename Json>
 Json read_json(std::string_view text, std::string* reason) {
+  // The parser takes a NUL byte for the end, and what stands behind it would be read by nobody.
+  if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+    if (reason != nullptr) *reason = "a NUL byte, which JSON has not, at " + place_in(text, nul);
+    return Json(Json::value_t::discarded);
+  }
   std::size_t at = 0;
   return parse_from<Json>(text, at, nullptr, reason);
 }

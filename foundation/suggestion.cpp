@@ -49,7 +49,12 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
     return !word.empty() && candidate.size() > word.size() && candidate.ends_with(word) &&
            candidate[candidate.size() - word.size() - 1] == '/';
   });
-  return ends_in_it == candidates.end() ? std::string() : *ends_in_it;
+  if (ends_in_it != candidates.end()) return *ends_in_it;
+  constexpr std::size_t kFewestLetters = 3;
+  const auto begins_with_it = std::ranges::find_if(candidates, [&](const std::string& candidate) {
+    return word.size() >= kFewestLetters && candidate.starts_with(word);
+  });
+  return begins_with_it == candidates.end() ? std::string() : *begins_with_it;
 }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates,

@@ -23,6 +23,47 @@ std::string capitalised(std::string text) {
   return text;
 }
 
+namespace {
+
+// Of the control character at the start of a text; 0: there is none. U+0080 to U+009F are two
+// bytes.
+std::size_t control_length(std::string_view text) {
+  const auto byte = static_cast<unsigned char>(text[0]);
+  if (byte < 0x20 || byte == 0x7F) return 1;
+  if (byte != 0xC2 || text.size() < 2) return 0;
+  const auto next = static_cast<unsigned char>(text[1]);
+  return next >= 0x80 && next < 0xA0 ? 2 : 0;
+}
+
+}  // namespace
+
+bool holds_control_characters(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (control_length(text.substr(i)) > 0) return true;
+  }
+  return false;
+}
+
+std::string without_control_characters(std::string_view text) {
+  std::string shown;
+  while (!text.empty()) {
+    const std::size_t control = control_length(text);
+    const bool is_blank = text[0] >= '\t' && text[0] <= '\r';
+    shown += control == 0 ? text[0] : is_blank ? ' ' : '?';
+    text.remove_prefix(std::max<std::size_t>(control, 1));
+  }
+  return shown;
+}
+
+std::string lines_without_control_characters(std::string_view text) {
+  std::string shown;
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    shown += without_control_characters(text.substr(0, end)) + '\n';
+    text.remove_prefix(end + 1);
+  }
+  return shown + without_control_characters(text);
+}
+
 std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> pieces;
   if (trimmed(text).empty()) return pieces;

@@ -19,6 +19,14 @@ std::string_view trimmed(std::string_view text);
 // As a sentence begins: the first letter large, where it is one of ASCII's.
 std::string capitalised(std::string text);
 
+// ASCII's and Unicode's control characters (as UTF-8): they show nothing, and a terminal obeys
+// them.
+bool holds_control_characters(std::string_view text);
+// With a blank in place of tabs and line ends, and '?' in place of each other one.
+std::string without_control_characters(std::string_view text);
+// The same of several lines, whose ends stay.
+std::string lines_without_control_characters(std::string_view text);
+
 // The pieces between separators, trimmed: "a, b" at ',' gives "a" and "b"; "a,,b" has an empty
 // piece; an empty or blank text has none.
 std::vector<std::string> split(std::string_view text, char separator);

@@ -154,7 +154,7 @@ std::string loop_markdown(const LoopRecord& record) {
   text += list_of("Bursts, left out of every fit and no friction", words.bursts);
   text += next_movements_of(record) + data_of(record);
   text += list_of("Remarks", words.remarks);
-  return text;
+  return without_tags(text);
 }
 
 }  // namespace tribench

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "foundation/text.hpp"
+
 namespace tribench {
 namespace {
 
@@ -50,6 +52,22 @@ std::string shortened(std::string_view utf8, std::size_t width) {
 std::string markdown_code(std::string_view text) {
   const char* fence = text.find('`') == std::string_view::npos ? "`" : "``";
   return fmt::format("{}{}{}", fence, text, fence);
+}
+
+std::string without_tags(std::string_view page) {
+  constexpr std::string_view kOpeners = "/!?";  // of a tag, beside letters
+  std::string text;
+  for (std::size_t i = 0; i < page.size(); ++i) {
+    const char next = i + 1 < page.size() ? page[i + 1] : ' ';
+    const bool opens = (next >= 'a' && next <= 'z') || (next >= 'A' && next <= 'Z') ||
+                       kOpeners.find(next) != std::string_view::npos;
+    if (page[i] == '<' && opens) {
+      text += "&lt;";
+    } else {
+      text += page[i];
+    }
+  }
+  return lines_without_control_characters(text);
 }
 
 void MarkdownTable::add(std::vector<std::string> cells) {

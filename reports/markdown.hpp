@@ -37,4 +37,8 @@ std::string shortened(std::string_view utf8, std::size_t width);
 // As code: formulas hold * and ^ and |, which Markdown would eat.
 std::string markdown_code(std::string_view text);
 
+// A page with words from outside in it (names of columns, files and movements): none of them is a
+// tag, and control characters but line ends are gone.
+std::string without_tags(std::string_view page);
+
 }  // namespace tribench

@@ -11,6 +11,7 @@
 #include "reports/html/page_data.hpp"
 #include "reports/latex.hpp"
 #include "reports/leaderboard.hpp"
+#include "reports/markdown.hpp"
 #include "reports/published.hpp"
 #include "reports/run_folder.hpp"
 #include "reports/suite_view.hpp"
@@ -61,7 +62,7 @@ std::string write_run_reports(const std::filesystem::path& folder,
   const std::vector<SuiteView> suites =
       view_suites(read_suites(folder / kSuiteFile, run.complaints), run.records);
   if (!suites.empty()) text += "\n## Suites\n" + suites_markdown(suites, "###");
-  write_file(folder / "leaderboard.md", text);
+  write_file(folder / "leaderboard.md", without_tags(text));
   nlohmann::ordered_json data = page_data(run, summary, published);
   data["changed"] = change.json;
   data["sensitivity"] = sensitivity_json(sensitivity);

@@ -22,6 +22,7 @@
 #include "foundation/freed_memory.hpp"
 #include "foundation/standard_streams.hpp"
 #include "foundation/suggestion.hpp"
+#include "foundation/text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/provenance.hpp"
 #include "harness/worker.hpp"
@@ -49,10 +50,13 @@ std::vector<std::string> names_like(const CLI::App& command, const std::string& 
   std::vector<std::string> names;
   if (word.starts_with("-")) {
     for (const CLI::Option* option : command.get_options()) {
+      if (option->get_group().empty()) continue;  // hidden
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     }
   } else {
-    for (const CLI::App* each : command.get_subcommands({})) names.push_back(each->get_name());
+    for (const CLI::App* each : command.get_subcommands({})) {
+      if (!each->get_group().empty()) names.push_back(each->get_name());
+    }
   }
   return names;
 }
@@ -217,17 +221,21 @@ int run_command_line(int argc, char** argv, const Registry& registry) {
   return exit_code(status);
 }
 
+// An error quotes what came from outside: nothing of it reaches the terminal as a command.
+void print_error(std::string_view message) {
+  print_message(fmt::format("tribench: {}\n", lines_without_control_characters(message)));
+}
+
 int run_guarded(int argc, char** argv, const Registry& registry) {
   try {
     if (argc == 2 && std::strcmp(argv[1], kWorkerCommand) == 0) return run_worker(registry);
     return run_command_line(argc, argv, registry);
   } catch (const Error& error) {
-    print_message(fmt::format("tribench: {}\n", error.what()));
+    print_error(error.what());
     return exit_code(error.kind() == ErrorKind::bad_input ? ExitStatus::bad_input
                                                           : ExitStatus::failed);
   } catch (const std::filesystem::filesystem_error& error) {  // a name that no file can have
-    print_message(
-        fmt::format("tribench: {}: {}\n", error.path1().string(), error.code().message()));
+    print_error(fmt::format("{}: {}", error.path1().string(), error.code().message()));
     const bool is_name = error.code() == std::errc::too_many_symbolic_link_levels ||
                          error.code() == std::errc::filename_too_long;
     return exit_code(is_name ? ExitStatus::bad_input : ExitStatus::failed);
@@ -235,7 +243,7 @@ int run_guarded(int argc, char** argv, const Registry& registry) {
     print_message("tribench: there is not enough memory; give it less data or more memory\n");
     return exit_code(ExitStatus::failed);
   } catch (const std::exception& error) {
-    print_message(fmt::format("tribench: {}\n", error.what()));
+    print_error(error.what());
     return exit_code(ExitStatus::failed);
   }
 }

@@ -9,6 +9,7 @@
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
+#include "reports/markdown.hpp"
 
 namespace tribench {
 namespace {
@@ -195,7 +196,7 @@ std::string exploration_markdown(const Exploration& done, const SecondOpinion& s
   if (!second.model.empty()) {
     text += fmt::format("\nThe loop's refitted model: `{}`\n", second.model);
   }
-  return text;
+  return without_tags(text);
 }
 
 }  // namespace tribench

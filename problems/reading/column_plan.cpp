@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
@@ -12,6 +11,7 @@
 #include "foundation/order_statistics.hpp"
 #include "foundation/suggestion.hpp"
 #include "problems/reading/channel_names.hpp"
+#include "problems/reading/time_columns.hpp"
 
 namespace tribench {
 namespace {
@@ -219,33 +219,15 @@ void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, Dat
   }
 }
 
-// Seconds and nanoseconds of one stamp in two columns.
-bool completes_time(const ColumnPlan& first, const ColumnPlan& second) {
-  return first.reading.role == Role::time && first.unit.symbol() == "s" &&
-         second.unit.symbol() == "ns";
-}
-
-bool is_named_time(const ColumnPlan& plan, std::string_view unit) {
-  const ColumnReading& reading = plan.reading;
-  return reading.role == Role::time && plan.unit.symbol() == unit && reading.unit_from == "name";
-}
-
-// Seconds beside nanoseconds, both named so, are a stamp before any other column that sounds like a
-// time: a recorder's own time beside the message's.
-bool is_split_stamp(const ColumnPlan& plan, const std::vector<ColumnPlan>& plans) {
-  return is_named_time(plan, "s") &&
-         std::ranges::any_of(plans, [](const auto& other) { return is_named_time(other, "ns"); });
-}
-
 // A role given by hand takes it away from columns that only sound like it; of several that sound
 // alike the one whose name is closest keeps it, then the first.
-void settle_roles(std::vector<ColumnPlan>& plans, DataFile& out) {
+void settle_roles(const CsvLayout& layout, std::vector<ColumnPlan>& plans, DataFile& out) {
   std::map<Role, std::size_t> owner;
   std::vector<std::size_t> order(plans.size());
   for (std::size_t j = 0; j < order.size(); ++j) order[j] = j;
   std::ranges::stable_sort(order, {}, [&](std::size_t j) {
     if (plans[j].role_given) return -2;
-    return is_split_stamp(plans[j], plans) ? -1 : plans[j].doubt;
+    return is_split_stamp(layout, plans[j], plans) ? -1 : plans[j].doubt;
   });
   for (const std::size_t j : order) {
     ColumnPlan& plan = plans[j];
@@ -253,7 +235,7 @@ void settle_roles(std::vector<ColumnPlan>& plans, DataFile& out) {
     const auto [place, is_new] = owner.try_emplace(plan.reading.role, j);
     if (is_new) continue;
     ColumnPlan& first = plans[place->second];
-    if (completes_time(first, plan) || completes_time(plan, first)) {
+    if (completes_time(layout, first, plan) || completes_time(layout, plan, first)) {
       // The seconds are the time, the nanoseconds are added to it.
       ColumnPlan& part = plan.unit.symbol() == "ns" ? plan : first;
       part.adds_to_time = true;
@@ -305,19 +287,6 @@ bool is_plainly_written(const ColumnPlan& plan) {
   const std::string& name = plan.reading.column;
   const bool letter = name.size() > 1 && name[name.size() - 2] == '_';
   return !plan.reading.unit_assumed && (!letter || plan.reading.unit_from == "row of units");
-}
-
-// A date that holds the clock ("2025-03-07T14:58:21.25") is the time where nothing else is.
-void take_date(const CsvLayout& layout, std::vector<ColumnPlan>& plans, bool has_time) {
-  for (std::size_t j = 0; j < plans.size() && !has_time; ++j) {
-    ColumnReading& reading = plans[j].reading;
-    if (reading.role != Role::none || plans[j].role_given || !names_date(reading.column)) continue;
-    const std::vector<std::string>& row = layout.first_rows.front();
-    if (j >= row.size() || row[j].find(':') == std::string::npos) continue;
-    reading.role = Role::time;
-    reading.role_from = "name";
-    has_time = true;
-  }
 }
 
 // The one column in a unit of time, angle, current, torque or temperature ("tick_ms",
@@ -379,7 +348,7 @@ std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& 
     plans.push_back(plan_column(layout, j, options, file));
   }
   if (options.names_tell) choose_joint(options, plans, out);
-  settle_roles(plans, out);
+  settle_roles(layout, plans, out);
   if (options.names_tell && out.joints.empty()) take_roles_by_unit(layout, plans, out);
   for (ColumnPlan& plan : plans) {
     const Role role = plan.reading.role;

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 #include "problems/reading/channel_names.hpp"
 #include "problems/reading/column_plan.hpp"
 #include "problems/reading/csv_cells.hpp"
@@ -35,7 +36,7 @@ struct Reading {
 std::string stem_of(std::string_view file) {
   std::filesystem::path path(file);
   if (path.extension() == ".gz") path = path.stem();
-  return path.stem().string();
+  return without_control_characters(path.stem().string());
 }
 
 double largest_of(const ColumnPlan& plan) {
@@ -267,6 +268,11 @@ void fill_channels(Reading& in, DataFile& out) {
     if (plan.reading.role != Role::movement && column.kind == ColumnKind::number) {
       Channel channel{in.layout.header[j], {}, plan.reading.role, kept(column.numbers, in.rows)};
       if (column.told_in_text) take_time_text(plan);
+      if (column.hexadecimal) {
+        out.warnings.push_back(fmt::format(
+            "'{}' holds hexadecimal numbers: each is read as a whole number without a sign",
+            in.layout.header[j]));
+      }
       convert(plan, channel.values, in.options.drive, in.file);
       channel.unit = plan.reading.si;
       out.data.channels.push_back(std::move(channel));

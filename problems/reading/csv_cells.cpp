@@ -28,7 +28,6 @@ bool is_missing(std::string_view cell) {
   return std::find(kMissing.begin(), kMissing.end(), word) != kMissing.end();
 }
 
-// As a bus's monitor writes a counter.
 CellKind read_hexadecimal(std::string_view digits, double& value) {
   std::uint64_t whole = 0;
   const char* const end = digits.data() + digits.size();
@@ -39,6 +38,11 @@ CellKind read_hexadecimal(std::string_view digits, double& value) {
 }
 
 }  // namespace
+
+bool is_hexadecimal(std::string_view cell) {
+  if (cell.starts_with('+')) cell.remove_prefix(1);
+  return cell.starts_with("0x") || cell.starts_with("0X");
+}
 
 CellKind read_cell(std::string_view cell, bool decimal_comma, double& value) {
   std::string_view digits = cell;
@@ -55,7 +59,7 @@ CellKind read_cell(std::string_view cell, bool decimal_comma, double& value) {
     plain[comma] = '.';
     digits = {plain.data(), digits.size()};
   }
-  if (digits.starts_with("0x") || digits.starts_with("0X")) return read_hexadecimal(digits, value);
+  if (is_hexadecimal(digits)) return read_hexadecimal(digits, value);
   // Fortran writes 1.5D-03.
   const std::size_t exponent = digits.find_first_of("dD");
   if (exponent != std::string_view::npos && exponent > 0 && digits.size() <= plain.size()) {

@@ -42,6 +42,9 @@ enum class CellKind { number, missing, text };
 // inf in any case and sign. decimal_comma: "1,5" is a number too.
 CellKind read_cell(std::string_view cell, bool decimal_comma, double& value);
 
+// As a bus's monitor writes a counter: 0x1F, a whole number without a sign.
+bool is_hexadecimal(std::string_view cell);
+
 // The record at the scanner: `width` cells and a separator at the end at most.
 // Throws Error (bad_input) naming the line where it is ragged.
 void check_width(std::size_t cells, bool last_is_empty, const CsvLayout& layout,

@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 
+#include "foundation/text.hpp"
 #include "problems/reading/csv_cells.hpp"
 #include "problems/reading/csv_scanner.hpp"
 #include "problems/reading/time_text.hpp"
@@ -151,7 +152,7 @@ class ColumnReader {
       case ColumnKind::unused:
         return;
       case ColumnKind::text:
-        column.texts.emplace_back(cell);
+        column.texts.push_back(without_control_characters(cell));
         return;
       case ColumnKind::found:
         settle(column, cell);
@@ -191,12 +192,13 @@ class ColumnReader {
       column.numbers.push_back(kMissing);
     } else if (kind == CellKind::number) {
       column.kind = ColumnKind::number;
+      column.hexadecimal = is_hexadecimal(cell);
       column.numbers.push_back(value);
     } else {
       column.kind = ColumnKind::text;
       column.texts.resize(column.numbers.size());
       column.numbers = {};
-      column.texts.emplace_back(cell);
+      column.texts.push_back(without_control_characters(cell));
     }
   }
 
@@ -204,6 +206,7 @@ class ColumnReader {
     double value = kMissing;
     const CellKind kind = read_cell(cell, layout_.decimal_comma, value);
     if (kind == CellKind::text && column.first_text == kNoRow) column.first_text = out_.rows();
+    column.hexadecimal = column.hexadecimal || is_hexadecimal(cell);
     column.numbers.push_back(kind == CellKind::number ? value : kMissing);
   }
 

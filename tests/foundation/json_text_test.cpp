@@ -67,6 +67,14 @@ TEST(JsonText, FindsObjectsAmongChatterOnOneLineOrSeveral) {
   EXPECT_FALSE(objects_in(chatter).empty()) << "in time";
 }
 
+// The parser takes a NUL byte for the end of the text.
+TEST(JsonText, NothingStandsBehindANulByte) {
+  std::string reason;
+  const std::string text("{\"a\": 1}\n\0{\"b\"", 14);
+  EXPECT_TRUE(read_json<Json>(text, &reason).is_discarded());
+  EXPECT_NE(reason.find("a NUL byte, which JSON has not, at line 2"), std::string::npos) << reason;
+}
+
 TEST(JsonText, ANumberIsWholeWhereItsTypeHoldsIt) {
   const auto held = [](const char* text) { return json_whole_number<int>(read_json<Json>(text)); };
   EXPECT_EQ(held("7"), 7);

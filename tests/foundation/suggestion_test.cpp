@@ -21,6 +21,12 @@ TEST(NearestName, OfANameInPartsTheLastIsEnough) {
   EXPECT_EQ(nearest_name("", names), "");
 }
 
+TEST(NearestName, ABeginningIsEnough) {
+  const std::vector<std::string> names = {"--help", "--version"};
+  EXPECT_EQ(nearest_name("--vers", names), "--version");
+  EXPECT_EQ(nearest_name("--", names), "");
+}
+
 TEST(Suggestion, OffersANearNameElseWhatIsKnown) {
   EXPECT_EQ(did_you_mean("velocty", {"position", "velocity"}), "did you mean velocity?");
   EXPECT_EQ(did_you_mean("x", {"position", "velocity"}), "known: position, velocity");

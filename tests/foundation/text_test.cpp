@@ -28,6 +28,16 @@ TEST(Text, SplitsAtSeparatorsAndTrimsThePieces) {
   EXPECT_EQ(trimmed("\r\n x y \t"), "x y");
 }
 
+TEST(Text, ControlCharactersAreSeenAndShownAsWhatTheyAreNot) {
+  EXPECT_FALSE(holds_control_characters("\xc3\xa9 \xc2\xb5m ~"));  // e acute, micro
+  for (const char* text : {"a\x1b[31m", "\x07", "a\tb", "\x7f", "\xc2\x9b"}) {
+    EXPECT_TRUE(holds_control_characters(text)) << text;
+  }
+  EXPECT_EQ(without_control_characters("Torque\n(Nm)\x1b[31m\xc2\x9b\xc2\xb5"),
+            "Torque (Nm)?[31m?\xc2\xb5");
+  EXPECT_EQ(lines_without_control_characters("a\x07\nb\tc\n"), "a?\nb c\n");
+}
+
 // The complaint of reading it; empty where it is read.
 std::string complaint_of(const std::filesystem::path& file, std::size_t largest) {
   try {

@@ -47,6 +47,12 @@ TEST(MarkdownTable, LetsNoTagAndNoControlCharacterThrough) {
       << table.text();
 }
 
+// Of a page what is no tag stays as it reads best.
+TEST(Markdown, APageHasNoTagOfAnybodysName) {
+  EXPECT_EQ(without_tags("# <b>x|y\x07, p < 0.05, a <= b\n`</script>` <!-- -->\n"),
+            "# &lt;b>x|y?, p < 0.05, a <= b\n`&lt;/script>` &lt;!-- -->\n");
+}
+
 TEST(Shortened, NeverCutsACodePoint) {
   EXPECT_EQ(shortened("abcdef", 6), "abcdef");
   EXPECT_EQ(shortened("abcdefg", 6), "abc...");

@@ -240,6 +240,13 @@ TEST(LoopJson, KeepsTheKeysThatProgramsRead) {
   EXPECT_EQ(loop["pictures"]["effects"][1]["series"].size(), 2U);
 }
 
+TEST(LoopReport, HoldsNoTagFromOutside) {
+  LoopRecord record = sample_loop();
+  record.title = "<img src=x onerror=alert(1)>\x1b[2J";
+  const std::string text = loop_markdown(record);
+  EXPECT_THAT(text, HasSubstr("# Closing the loop: &lt;img src=x onerror=alert(1)>?[2J\n"));
+}
+
 TEST(LoopReport, OfARecordWithoutFiguresSaysNothingOfThem) {
   const LoopRecord empty;
   EXPECT_THAT(loop_markdown(empty), Not(HasSubstr("nan")));
