@@ -93,7 +93,7 @@ std::optional<LearnedEffect> learn_effect(const Diagnosis& diagnosis, const Obse
   learned.found_on = finding.movements().size();
   learned.tested_on = testing.movements().size();
   const std::string inputs = fmt::format("{}", fmt::join(diagnosis.leftover.inputs, "_"));
-  learned.family.name = "learned:" + inputs;
+  learned.family.name = std::string(kLearnedPrefix) + inputs;
   learned.family.id = "learned";
   learned.family.summary = fmt::format("grown from data, in {}", inputs);
   learned.family.phrase = fmt::format("a dependence on {} that was learned from data", inputs);

@@ -14,8 +14,8 @@
 #include <sstream>
 #include <type_traits>
 
+#include "algorithms/effects/effect_checks.hpp"
 #include "algorithms/effects/effect_library.hpp"
-#include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/suggestion.hpp"
 #include "foundation/text.hpp"
@@ -27,9 +27,15 @@ namespace {
 // A file of these sizes holds any library that a person or a method writes; beyond them the tests
 // would have nothing left to find an effect with, and the memory would go first.
 constexpr std::uintmax_t kMostBytes = 1'000'000;
-constexpr std::size_t kMostColumnsOfAtom = 16;
 constexpr std::size_t kMostColumns = 2000;  // of the file, every shape of the grids counted
-constexpr std::size_t kMostNodes = 200;     // of a column
+
+// Of an [[effect]]: what the first table of a name says of the family, and what each says.
+const std::vector<std::string> kFamilyKeys = {"id",     "phrase", "summary",    "source",
+                                              "origin", "title",  "angular",    "changeable",
+                                              "sanity", "alias",  "separate_by"};
+const std::vector<std::string> kAtomKeys = {"name",         "columns", "coefficients",
+                                            "shape",        "curve",   "beside_another",
+                                            "by_direction", "one_way", "last_resort"};
 
 // A table of the file, its keys checked against what may stand there. Every error names the line.
 class Entry {
@@ -66,6 +72,15 @@ class Entry {
     return all;
   }
 
+  void refuse_any(const std::vector<std::string>& keys, const std::string& mend) const {
+    for (const std::string& key : keys) {
+      const toml::node* node = table_.get(key);
+      if (node == nullptr) continue;
+      throw_bad_input(fmt::format("a further table of an effect has '{}'", key), place(*node),
+                      mend);
+    }
+  }
+
   // The tables of an array of tables; none where there is none.
   std::vector<Entry> entries(std::string_view key, const std::vector<std::string>& known) const {
     std::vector<Entry> all;
@@ -100,6 +115,7 @@ class Entry {
   T value(const toml::node& node, std::string_view key) const {
     if constexpr (std::is_same_v<T, std::string>) {
       if (!node.is_string()) refuse(node, key, "text");
+      if (holds_control_characters(node.as_string()->get())) refuse(node, key, "one line of text");
       return node.as_string()->get();
     } else if constexpr (std::is_same_v<T, bool>) {
       if (!node.is_boolean()) refuse(node, key, "true or false");
@@ -153,31 +169,6 @@ ShapeTemplate read_shape(const Entry& entry) {
   return shape;
 }
 
-void check_columns(const AtomTemplate& atom, const std::string& place) {
-  if (atom.columns.empty()) {
-    throw_bad_input("an effect has no columns", place, "give it columns = [\"sgn_v*abs(g)\"]");
-  }
-  if (atom.columns.size() > kMostColumnsOfAtom) {
-    throw_bad_input(fmt::format("an effect has {} columns, more than {}", atom.columns.size(),
-                                kMostColumnsOfAtom),
-                    place, "make several effects of it");
-  }
-  std::vector<std::string> names;
-  for (const std::string& column : atom.columns) {
-    const Expression parsed = parse_collecting_names(column, names);  // throws: no formula
-    if (parsed.size() > kMostNodes) {
-      throw_bad_input(
-          fmt::format("a column has {} operations, more than {}", parsed.size(), kMostNodes), place,
-          "write it shorter");
-    }
-  }
-  for (const ShapeTemplate& shape : atom.shapes) {
-    if (std::ranges::count(names, shape.name) > 0) continue;
-    throw_bad_input(fmt::format("no column holds the shape '{}'", shape.name), place,
-                    "leave the shape out, or write it into a column");
-  }
-}
-
 constexpr std::array kCurves = {SpeedCurve::any, SpeedCurve::falls, SpeedCurve::rises};
 
 std::string_view curve_name(SpeedCurve curve) {
@@ -199,7 +190,6 @@ AtomTemplate read_atom(const Entry& entry) {
                                                     "recorded", "reference", "gear_ratio"})) {
     atom.shapes.push_back(read_shape(shape));
   }
-  check_columns(atom, entry.place());
   atom.coefficients = entry.list<std::string>("coefficients");
   if (!atom.coefficients.empty() && atom.coefficients.size() != atom.columns.size()) {
     throw_bad_input("an effect has not as many coefficients as columns", entry.place(),
@@ -213,6 +203,7 @@ AtomTemplate read_atom(const Entry& entry) {
   atom.one_way = entry.find<bool>("one_way").value_or(false);
   atom.last_resort = entry.find<bool>("last_resort").value_or(false);
   atom.curve = read_curve(entry);
+  check_atom(atom, entry.place());
   return atom;
 }
 
@@ -225,6 +216,10 @@ Sanity read_sanity(const Entry& entry) {
   }
   sanity.sign = static_cast<int>(sign);
   sanity.largest = entry.find<double>("largest").value_or(0);
+  if (sanity.largest < 0) {
+    throw_bad_input(fmt::format("'largest' is {}", sanity.largest), entry.place(),
+                    "give a magnitude, or 0 (any)");
+  }
   sanity.why = entry.find<std::string>("why").value_or("not physical");
   return sanity;
 }
@@ -336,28 +331,32 @@ toml::table table_of(const AtomTemplate& atom) {
 std::vector<EffectFamily> read_effects(const std::filesystem::path& file) {
   const toml::table table = parse_file(file);
   const Entry whole(table, file.string(), {"effect"});
-  const std::vector<Entry> effects =
-      whole.entries("effect", {"name",           "id",           "phrase",       "summary",
-                               "source",         "origin",       "title",        "angular",
-                               "changeable",     "curve",        "separate_by",  "sanity",
-                               "alias",          "columns",      "coefficients", "shape",
-                               "beside_another", "by_direction", "one_way",      "last_resort"});
+  std::vector<std::string> keys = kFamilyKeys;
+  keys.insert(keys.end(), kAtomKeys.begin(), kAtomKeys.end());
+  const std::vector<Entry> effects = whole.entries("effect", keys);
   if (effects.empty()) {
     throw_bad_input("there is no [[effect]] in the file", file.string(),
                     "see --save-effect for the form");
   }
   std::vector<EffectFamily> all;
+  std::vector<std::string> places;  // of each family
   std::size_t columns = 0;
   for (const Entry& effect : effects) {
     const std::string name = effect.needed_text("name");
     auto family = std::ranges::find(all, name, &EffectFamily::name);
-    if (family == all.end()) family = all.insert(all.end(), read_family(effect));
+    if (family == all.end()) {
+      family = all.insert(all.end(), read_family(effect));
+      places.push_back(effect.place());
+    } else {
+      effect.refuse_any(kFamilyKeys, fmt::format("it belongs into the first table of '{}'", name));
+    }
     family->atoms.push_back(read_atom(effect));
     columns += columns_made(family->atoms.back());
     if (columns <= kMostColumns) continue;
     throw_bad_input(fmt::format("the grids make more than {} columns", kMostColumns),
                     effect.place(), "a few values a shape will do: they are refined");
   }
+  for (std::size_t f = 0; f < all.size(); ++f) check_family(all[f], places[f]);
   return all;
 }
 

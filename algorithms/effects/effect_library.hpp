@@ -27,7 +27,7 @@ enum class ShapeValues { grid, gear_ratios };
 
 struct ShapeTemplate {
   std::string name;
-  std::string scale;  // signal whose scale multiplies grid, low and high; "g/a": of two; empty: 1
+  std::string scale;  // signal whose scale multiplies grid, low and high; "g/a", "1/q"; empty: 1
   std::vector<double> grid;  // one atom for each value (the product over all shapes)
   double low = 0;            // bounds of the refinement; low == high: not refined
   double high = 0;
@@ -96,6 +96,9 @@ struct EffectFamily {
   std::string title = {};   // a short noun for tables and cards; empty: the name
   std::string first_experiment() const { return separate_by.empty() ? "" : separate_by[0]; }
 };
+
+// What the name of an effect begins with that a method has grown from data.
+inline constexpr std::string_view kLearnedPrefix = "learned:";
 
 // The built-in families, in the order in which they are listed.
 const std::vector<EffectFamily>& builtin_effects();

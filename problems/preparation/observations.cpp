@@ -192,6 +192,16 @@ void set_target(Observations& out, const Dataset& data) {
 
 }  // namespace
 
+std::vector<std::string> known_signal_names() {
+  std::vector<std::string> names;
+  for (const auto& [role, name] : kSignalNames) names.emplace_back(name);
+  for (const std::string_view name : {std::string_view("d"), kSeenDistance, Signal::kSinceStart}) {
+    names.emplace_back(name);
+  }
+  for (const int lag_ms : kLags_ms) names.push_back(lagged_velocity_name(lag_ms));
+  return names;
+}
+
 std::string signal_name(Role role, std::string_view channel) {
   for (const auto& [known, name] : kSignalNames) {
     if (known == role) return std::string(name);

@@ -130,6 +130,9 @@ inline constexpr std::size_t kRowsOfSteadyMovement = 5;
 // Throws Error (bad_input): no velocity, no target, friction against velocity, no usable rows.
 Observations observe(const Dataset& data, const ObservationOptions& options = {});
 
+// All names that signals have where no column keeps its own: what an effect may be written in.
+std::vector<std::string> known_signal_names();
+
 // A role's short name in formulas ("v"), or the channel's own, with _ where that is a role's name.
 std::string signal_name(Role role, std::string_view channel);
 

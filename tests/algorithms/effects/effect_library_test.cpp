@@ -242,6 +242,57 @@ TEST(EffectFile, RefusesWhatItDoesNotKnow) {
   }
 }
 
+// What would be tested and found nowhere: it names what is not there, or says nothing.
+TEST(EffectFile, RefusesWhatMeansNothing) {
+  const std::filesystem::path file =
+      std::filesystem::path(::testing::TempDir()) / "tribench_idle_effects.toml";
+  const auto complaint = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    try {
+      read_effects(file);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+      return fmt::format("{} | {}", error.what(), error.mend());
+    }
+    return std::string("none");
+  };
+  const std::string head = "[[effect]]\nname = 'x'\nphrase = 'y'\n";
+  const std::string columns = head + "columns = ['v^2']\n";
+  const std::string shaped = head + "columns = ['exp(-d/l)']\n";
+  EXPECT_EQ(complaint(columns), "none");
+  EXPECT_EQ(complaint(columns + "[[effect]]\nname = 'x'\ncolumns = ['v^4']\n"), "none");
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {head + "columns = ['velocty*v']\n", "'velocty' is no signal; signals: v sgn_v"},
+      {shaped + "shape = [{name = 'l', scale = 'dd', grid = [1.0]}]\n",
+       "the scale of 'l', 'dd' is no signal"},
+      {shaped + "shape = [{name = 'l', scale = 'g/aa', grid = [1.0]}]\n", "'aa' is no signal"},
+      {shaped + "shape = [{name = 'l', reference = true, grid = [1.0]}]\n", "has no scale"},
+      {head + "columns = ['exp(-d/a)']\nshape = [{name = 'a', grid = [1.0]}]\n",
+       "'a' is called like a signal"},
+      {shaped + "shape = [{name = 'l', grid = [1.0]}, {name = 'l', grid = [2.0]}]\n",
+       "'l' stands there twice"},
+      {shaped + "shape = [{name = 'l', grid = [1.0, 9.0], low = 0.5, high = 2}]\n",
+       "has 9 on its grid, outside 0.5 .. 2"},
+      {head + "columns = ['sin(n*q)']\nshape = [{name = 'n', grid = [1, 0]}]\n",
+       "with n = 0 a column is 0 or no number everywhere"},
+      {head + "columns = ['v/l']\nshape = [{name = 'l', grid = [0.0]}]\n", "with l = 0 a column"},
+      {head + "columns = ['v^2', 'v^4']\ncoefficients = ['a', 'a']\n",
+       "two coefficients are called 'a'"},
+      {columns + "separate_by = ['R10']\n", "no experiment 'R10'; give R1 to R9"},
+      {columns + "sanity = [{coefficient = 'k', sign = 1}]\n", "has no coefficient 'k'"},
+      {columns + "sanity = [{coefficient = 'c1', largest = -1}]\n", "'largest' is -1"},
+      {columns + "alias = [{name = 'z', coefficient = 'k'}]\n", "has no coefficient 'k'"},
+      {columns + "alias = [{name = 'z', unless_known = 'w'}]\n", "'unless_known' 'w' is no signal"},
+      {columns + "[[effect]]\nname = 'x'\nphrase = 'z'\ncolumns = ['v^4']\n",
+       "a further table of an effect has 'phrase'"},
+      {"[[effect]]\nname = 'a<script>'\nphrase = 'y'\ncolumns = ['v^2']\n",
+       "cannot name an effect"},
+      {columns + "summary = \"a\\u0007\\nb\"\n", "'summary' is no one line of text"}};
+  for (const auto& [text, wanted] : cases) {
+    EXPECT_NE(complaint(text).find(wanted), std::string::npos) << text << complaint(text);
+  }
+}
+
 // A file of a few hundred bytes whose grids multiply is refused before any column is made.
 TEST(EffectFile, RefusesGridsThatMultiply) {
   const std::filesystem::path file =
