@@ -9,6 +9,7 @@ namespace tribench {
 namespace {
 
 constexpr int kFarFromOne = 100;  // 2^100 is 1.3e30
+constexpr int kFarthestStep = 1000;
 
 // The power of two that the largest number of the column lies at; 0 where that is near 1.
 int scale_exponent(std::span<const double> column) {
@@ -58,9 +59,14 @@ ScaledData::ScaledData(const TrainingData& data)
 Expression ScaledData::unscaled(const Expression& formula) const {
   if (!is_scaled_) return formula;
   std::vector<Node> nodes;
+  // In steps: 2^1074, which the smallest subnormal number is brought to 1 by, is no double.
   const auto times_two_to = [&nodes](int exponent) {
-    nodes.push_back(Node::constant(std::ldexp(1.0, exponent)));
-    nodes.push_back({0, 1, 0, Op::mul});
+    while (exponent != 0) {
+      const int step = std::clamp(exponent, -kFarthestStep, kFarthestStep);
+      nodes.push_back(Node::constant(std::ldexp(1.0, step)));
+      nodes.push_back({0, 1, 0, Op::mul});
+      exponent -= step;
+    }
   };
   for (const Node& node : formula.nodes()) {
     nodes.push_back(node);

@@ -106,6 +106,8 @@ struct Grid {
   // Every cell, in the order of the results: problem, method, operator set, seed.
   std::vector<Cell> cells() const;
   std::size_t cell_count() const;
+  // Throws Error (bad_input) at `place` where there is no cell, or more than a run can hold.
+  void require_runnable(std::string_view place) const;
   // Names of the operator sets that a method runs with.
   std::vector<std::string> sets_of(const Method& method) const;
   const Method& method(std::string_view method_name) const;

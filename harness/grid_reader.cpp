@@ -25,7 +25,6 @@ namespace {
 constexpr double kMaxSeconds = 30.0 * 24 * 3600;
 constexpr std::int64_t kMaxDegree = 16;
 constexpr std::uint64_t kMaxSeeds = 1'000'000;
-constexpr std::size_t kMaxCells = 5'000'000;  // a cell takes about 1 kB of memory and 2 kB of disk
 
 // Runs `action`; what it throws gets the place in the file.
 template <typename Action>
@@ -382,14 +381,7 @@ Grid parse_grid(std::string_view toml, const std::string& file_name, const Regis
       file.table("retry", {"crashed", "timeout", "cpu_limit", "out_of_memory", "error"}));
   grid.prior = read_prior(file.table("prior", {"max_degree"}));
   read_axes(file, table, registry, catalogue, file_name, grid);
-  if (grid.cell_count() == 0) {
-    throw_bad_input("the grid has no cell: no problem, no method or no operator set is named",
-                    table.place(), "name some; '*' names all");
-  }
-  if (const std::size_t cells = grid.cell_count(); cells > kMaxCells) {
-    throw_bad_input(fmt::format("the grid has {} cells", cells), table.place(),
-                    fmt::format("use at most {}: split it into several grids", kMaxCells));
-  }
+  grid.require_runnable(table.place());
   require_quarantined_cells(grid, table.place("quarantine"));
   return grid;
 }

@@ -10,11 +10,13 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "foundation/error.hpp"
@@ -190,7 +192,10 @@ JournalContents read_journal(const std::filesystem::path& file) {
     }
     contents.good_bytes = offset;
   }
-  if (number == 0) throw_bad_input("the journal is empty", file.string());
+  if (number == 0) {
+    throw_bad_input("the journal is empty", file.string(),
+                    "no cell was written: remove the file and run again");
+  }
   return contents;
 }
 
@@ -212,7 +217,13 @@ Journal::~Journal() {
 
 Journal Journal::create(const std::filesystem::path& file, const RunIdentity& identity) {
   Journal journal(file, open_locked(file, O_WRONLY | O_CREAT | O_EXCL), 0);
-  journal.write_line(identity_body(identity));
+  try {
+    journal.write_line(identity_body(identity));
+  } catch (const Error&) {  // an empty file would stand in the way of every later run
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+    throw;
+  }
   return journal;
 }
 

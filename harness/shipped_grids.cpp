@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "harness/shipped_grids.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "foundation/error.hpp"
+#include "foundation/plain_name.hpp"
+#include "foundation/suggestion.hpp"
 
 namespace tribench {
 namespace embedded {
@@ -68,6 +77,17 @@ Grid load_named_grid(const std::string& name_or_file, const Registry& registry,
     if (suite.name == name_or_file && !std::filesystem::is_regular_file(name_or_file)) {
       return parse_grid(suite.toml, name_or_file + ".toml", registry, catalogue);
     }
+  }
+  // A word that is no path was meant for a name.
+  std::error_code unknown;
+  if (is_plain_name(name_or_file) && !std::filesystem::exists(name_or_file, unknown)) {
+    std::vector<std::string> names;
+    for (const ShippedGrid& grid : shipped_grids()) names.emplace_back(grid.name);
+    for (const suite::ShippedSuite& suite : suite::shipped_suites()) names.emplace_back(suite.name);
+    throw_bad_input(fmt::format("there is no grid '{}'", name_or_file), {},
+                    did_you_mean(name_or_file, names,
+                                 "give the path of a TOML file, or a name from: tribench list "
+                                 "grids"));
   }
   return load_grid(name_or_file, registry, catalogue);
 }

@@ -32,12 +32,18 @@ constexpr int kProgramMemoryMib = 256;   // the run itself, beside its workers
 // A value in a line of the script's header. sbatch reads quotes there; a line's end would begin a
 // line of its own.
 std::string header_value(const std::string& value, const char* option) {
-  for (const char c : value) {
-    if (c >= ' ' && c != '\x7f' && c != '"' && c != '\\') continue;
-    throw_bad_input(fmt::format("a value holds the character {}", static_cast<int>(c)), option,
+  if (holds_control_characters(value) || value.find_first_of("\"\\") != std::string::npos) {
+    throw_bad_input(fmt::format("'{}' cannot stand in a Slurm script", value), option,
                     "use no quotes, backslashes or control characters");
   }
   return value.find(' ') == std::string::npos ? value : fmt::format("\"{}\"", value);
+}
+
+// A path in which Slurm takes no %j for the job's number.
+std::string without_patterns(const std::string& path) {
+  std::string text;
+  for (const char c : path) text += c == '%' ? std::string("%%") : std::string(1, c);
+  return text;
 }
 
 std::string header(const std::string& name, const SlurmOptions& options, int minutes,
@@ -112,16 +118,17 @@ SlurmPlan plan_slurm(const Grid& grid, const SlurmOptions& options, const Measur
   plan.minutes = 5 + static_cast<int>(std::ceil((4 * plan.predicted_element_s + wall_s) / 60));
   plan.memory_mib = kProgramMemoryMib + options.jobs * static_cast<int>(std::ceil(memory_mib));
   const std::string folder = options.out.string();
+  const std::string logs = without_patterns(folder) + "/log";
   const std::string name = grid.name;
   const std::string data = options.data.empty() ? "" : " --data " + shell_word(options.data);
-  plan.array_script = header(name, options, plan.minutes, plan.memory_mib, options.jobs,
-                             folder + "/log/element-%a.log") +
-                      fmt::format(
-                          "exec {0} run {1} --out {2}/shard-$SLURM_ARRAY_TASK_ID "
-                          "--shard $SLURM_ARRAY_TASK_ID/{3} --jobs {4} --resume --quiet{5}\n",
-                          shell_word(options.program.string()), shell_word(folder + "/grid.toml"),
-                          shell_word(folder), plan.shards, options.jobs, data);
-  plan.merge_script = header(name + "-merge", options, 60, 2048, 1, folder + "/log/merge.log") +
+  plan.array_script =
+      header(name, options, plan.minutes, plan.memory_mib, options.jobs, logs + "/element-%a.log") +
+      fmt::format(
+          "exec {0} run {1} --out {2}/shard-$SLURM_ARRAY_TASK_ID "
+          "--shard $SLURM_ARRAY_TASK_ID/{3} --jobs {4} --resume --quiet{5}\n",
+          shell_word(options.program.string()), shell_word(folder + "/grid.toml"),
+          shell_word(folder), plan.shards, options.jobs, data);
+  plan.merge_script = header(name + "-merge", options, 60, 2048, 1, logs + "/merge.log") +
                       fmt::format("rm -f {0}/cells.jsonl\nexec {1} merge {0}/shard-* --out {0}\n",
                                   shell_word(folder), shell_word(options.program.string()));
   return plan;

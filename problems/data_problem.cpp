@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <unordered_set>
 
 #include "foundation/error.hpp"
 #include "foundation/formula_name.hpp"
@@ -28,8 +30,8 @@ void require_squares(const Channel& target, const std::string& place) {
 }
 
 // Of an input sgn_X that is derived from X.
-Role role_of_sign(const Dataset& data, std::string_view name) {
-  const Channel* of = data.find(name.substr(std::string_view("sgn_").size()));
+Role role_of_sign(const ChannelIndex& channels, std::string_view name) {
+  const Channel* of = channels.find(name.substr(std::string_view("sgn_").size()));
   if (of != nullptr && of->role == Role::velocity) return Role::velocity_sign;
   if (of != nullptr && of->role == Role::gravity_torque) return Role::gravity_sign;
   return Role::none;
@@ -38,24 +40,29 @@ Role role_of_sign(const Dataset& data, std::string_view name) {
 std::vector<Input> make_inputs(const Dataset& data, const std::string& target,
                                std::span<const std::string> names) {
   if (names.empty()) throw_bad_input("no input is given", data.name, "name at least one column");
+  if (names.size() > kMostInputs) {
+    throw_bad_input(fmt::format("{} inputs are given", names.size()), data.name,
+                    fmt::format("a formula can name {}: name those that matter", kMostInputs));
+  }
+  const ChannelIndex channels(data);
+  std::unordered_set<std::string_view> seen;
   std::vector<Input> inputs;
+  inputs.reserve(names.size());
   for (const std::string& name : names) {
     require_formula_name(name, data.name);
     if (name == target) {
       throw_bad_input(fmt::format("'{}' is the target and an input", name), data.name,
                       "remove it from the inputs");
     }
-    for (const Input& known : inputs) {
-      if (known.name == name) {
-        throw_bad_input(fmt::format("input '{}' is named twice", name), data.name, "name it once");
-      }
+    if (!seen.insert(name).second) {
+      throw_bad_input(fmt::format("input '{}' is named twice", name), data.name, "name it once");
     }
-    const std::vector<double> values = input_values(data, name);
+    const std::vector<double> values = input_values(channels, name);
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    const Channel* channel = data.find(name);
+    const Channel* channel = channels.find(name);
     inputs.push_back({name,
                       channel != nullptr ? channel->unit : "-",
-                      channel != nullptr ? channel->role : role_of_sign(data, name),
+                      channel != nullptr ? channel->role : role_of_sign(channels, name),
                       *low,
                       *high,
                       {}});

@@ -81,6 +81,16 @@ const Channel& Dataset::at(std::string_view channel_name) const {
                   did_you_mean(channel_name, names));
 }
 
+ChannelIndex::ChannelIndex(const Dataset& data) : data_(data) {
+  by_name_.reserve(data.channels.size());
+  for (const Channel& channel : data.channels) by_name_.try_emplace(channel.name, &channel);
+}
+
+const Channel* ChannelIndex::find(std::string_view channel_name) const {
+  const auto found = by_name_.find(channel_name);
+  return found == by_name_.end() ? nullptr : found->second;
+}
+
 void cut_movements(Dataset& data, std::span<const std::size_t> first_rows) {
   std::vector<int> movement;
   std::vector<std::string> names;

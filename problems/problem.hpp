@@ -21,6 +21,9 @@
 
 namespace tribench {
 
+// As many as a formula can name (kMaxInputs of algorithms/expression).
+inline constexpr std::size_t kMostInputs = 65'536;
+
 struct Input {
   std::string name;
   std::string unit;

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "foundation/error.hpp"
 #include "foundation/sign.hpp"
@@ -23,7 +26,8 @@ std::shared_ptr<const Trail> trail_of(const Dataset& data, std::span<const Input
   auto trail = std::make_shared<Trail>();
   trail->time = time->values;
   trail->starts = run_starts(trail->time);
-  for (const Input& input : inputs) trail->columns.push_back(input_values(data, input.name));
+  const ChannelIndex channels(data);
+  for (const Input& input : inputs) trail->columns.push_back(input_values(channels, input.name));
   return trail;
 }
 
@@ -63,25 +67,27 @@ void lay_trail(const Dataset& recording, const Dataset& drawn, std::span<const I
   for (std::size_t& row : table.trail_row) row = places[row];
 }
 
-std::vector<double> input_values(const Dataset& data, std::string_view name) {
-  if (const Channel* channel = data.find(name)) return channel->values;
+std::vector<double> input_values(const ChannelIndex& channels, std::string_view name) {
+  if (const Channel* channel = channels.find(name)) return channel->values;
   if (name.starts_with(kSignPrefix)) {
-    if (const Channel* channel = data.find(name.substr(kSignPrefix.size()))) {
+    if (const Channel* channel = channels.find(name.substr(kSignPrefix.size()))) {
       std::vector<double> signs;
       signs.reserve(channel->values.size());
       for (const double value : channel->values) signs.push_back(sign(value));
       return signs;
     }
   }
-  return data.at(name).values;  // throws with the nearest name
+  return channels.data().at(name).values;  // throws with the nearest name
 }
 
 void require_signs(const Dataset& data, std::span<const std::string> inputs) {
+  const ChannelIndex channels(data);
+  const std::unordered_set<std::string_view> named(inputs.begin(), inputs.end());
   for (const std::string& of : inputs) {
     const std::string name = std::string(kSignPrefix) + of;
-    if (std::ranges::find(inputs, name) == inputs.end()) continue;
-    const std::vector<double> values = input_values(data, of);
-    const std::vector<double> given = input_values(data, name);
+    if (!named.contains(name)) continue;
+    const std::vector<double> values = input_values(channels, of);
+    const std::vector<double> given = input_values(channels, name);
     for (std::size_t r = 0; r < values.size(); ++r) {
       if (given[r] == sign(values[r]) || std::isnan(given[r]) || std::isnan(values[r])) continue;
       throw_bad_input(fmt::format("'{0}' is {1} where '{2}' is {3}, and the name {0} stands for "
@@ -93,13 +99,13 @@ void require_signs(const Dataset& data, std::span<const std::string> inputs) {
 }
 
 void link_signs(std::vector<Input>& inputs) {
+  std::unordered_map<std::string_view, std::size_t> places;
+  for (std::size_t j = 0; j < inputs.size(); ++j) places.emplace(inputs[j].name, j);
   for (Input& input : inputs) {
     input.sign_of.reset();
     if (!input.name.starts_with(kSignPrefix)) continue;
-    const std::string of = input.name.substr(kSignPrefix.size());
-    for (std::size_t j = 0; j < inputs.size(); ++j) {
-      if (inputs[j].name == of) input.sign_of = j;
-    }
+    const auto of = places.find(std::string_view(input.name).substr(kSignPrefix.size()));
+    if (of != places.end()) input.sign_of = of->second;
   }
 }
 
@@ -117,8 +123,9 @@ Table make_table(const KnownDataset& source, std::span<const Input> inputs, std:
     return taken;
   };
   Table table;
+  const ChannelIndex channels(data);
   for (const Input& input : inputs) {
-    table.columns.push_back(gather(input_values(data, input.name)));
+    table.columns.push_back(gather(input_values(channels, input.name)));
   }
   table.target = gather(data.at(target).values);
   for (const std::size_t r : rows) table.movement.push_back(data.movement[r]);

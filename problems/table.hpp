@@ -23,7 +23,7 @@ struct KnownDataset {
 
 // The values of input `name`: the channel of that name, or, for a missing sgn_X, the sign of
 // channel X (0 at 0). Throws Error (bad_input) with the nearest name.
-std::vector<double> input_values(const Dataset& data, std::string_view name);
+std::vector<double> input_values(const ChannelIndex& channels, std::string_view name);
 
 // Throws Error (bad_input) where X and sgn_X are inputs and a channel sgn_X is not the sign of X:
 // a fit would use the channel, and proofs and exported code the sign.

@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "algorithms/expression/export_forms.hpp"
 #include "algorithms/expression/reserved_words.hpp"
@@ -16,14 +20,16 @@
 namespace tribench {
 namespace {
 
+using ArgumentPlaces = std::unordered_map<std::string, std::size_t>;
+
 // Adds an argument unless it is there; returns its place.
-std::size_t argument_place(CodeInputs& inputs, const std::string& name) {
-  for (std::size_t i = 0; i < inputs.arguments.size(); ++i) {
-    if (inputs.arguments[i].name == name) return i;
+std::size_t argument_place(CodeInputs& inputs, ArgumentPlaces& places, const std::string& name) {
+  const auto [place, is_new] = places.try_emplace(name, inputs.arguments.size());
+  if (is_new) {
+    require_formula_name(name, "export");
+    inputs.arguments.push_back({name, {}, {}});
   }
-  require_formula_name(name, "export");
-  inputs.arguments.push_back({name, {}, {}});
-  return inputs.arguments.size() - 1;
+  return place->second;
 }
 
 // Names for the code that no language reserves and no two arguments share: of `if` and `if_` the
@@ -47,21 +53,26 @@ void name_arguments(CodeInputs& inputs, const std::string& function) {
 CodeInputs code_inputs(const Expression& formula, std::span<const std::string> names,
                        const ExportOptions& options) {
   CodeInputs inputs;
+  ArgumentPlaces places;
   if (options.box) {
     for (std::size_t i = 0; i < options.box->names.size(); ++i) {
-      if (options.box->names[i].starts_with(kSignPrefix)) continue;
-      const std::size_t at = argument_place(inputs, options.box->names[i]);
+      if (options.box->ranges[i].sign_of) continue;
+      const std::size_t at = argument_place(inputs, places, options.box->names[i]);
       inputs.arguments[at].range = options.box->ranges[i];
     }
   }
+  std::unordered_set<std::string_view> in_box;
+  if (options.box) in_box.insert(options.box->names.begin(), options.box->names.end());
   inputs.columns.resize(names.size());
   for (const Node& node : formula.nodes()) {
     if (!node.is_variable()) continue;
     const std::string& name = names[node.variable];
     CodeInputs::Column& column = inputs.columns[node.variable];
-    column.is_sign = name.starts_with(kSignPrefix) && name.size() > kSignPrefix.size();
-    const std::string base = column.is_sign ? name.substr(kSignPrefix.size()) : name;
-    column.argument = argument_place(inputs, base);
+    const bool is_called_sign = name.starts_with(kSignPrefix) && name.size() > kSignPrefix.size();
+    const std::string base = is_called_sign ? name.substr(kSignPrefix.size()) : name;
+    // A box that has sgn_X and no X makes it an input of its own.
+    column.is_sign = is_called_sign && (in_box.contains(base) || !in_box.contains(name));
+    column.argument = argument_place(inputs, places, column.is_sign ? base : name);
     column.is_used = true;
   }
   name_arguments(inputs, options.function);

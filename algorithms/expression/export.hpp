@@ -10,7 +10,8 @@
 // (a few units in the last place apart). SymPy reorders sums as it likes. MATLAB's square root and
 // logarithm of a negative number are NaN here, not complex.
 //
-// An input named sgn_X is no argument of the code: it is computed from X as the judge does.
+// An input named sgn_X is no argument of the code: it is computed from X as the judge does. Beside
+// a box that has sgn_X and no X it is an argument like any other.
 #pragma once
 
 #include <optional>

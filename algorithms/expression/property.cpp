@@ -404,10 +404,14 @@ void check_question(const InputBox& box, const PropertyQuestion& question) {
                     "velocity", "name an input of the box");
   }
   const InputRange& v = box[question.velocity];
-  if (question.property == Property::monotone && !(question.from < std::max(v.high, -v.low))) {
-    throw_bad_input(fmt::format("no speed of the box {}:{} lies beyond {}: nothing is asked", v.low,
-                                v.high, question.from),
-                    "--from", "start below the largest speed");
+  // A single speed on either side has nothing beside it to rise or fall to.
+  const bool has_speeds =
+      std::max(v.low, question.from) < v.high || v.low < std::min(v.high, -question.from);
+  if (question.property == Property::monotone && !has_speeds) {
+    throw_bad_input(fmt::format("the box {}:{} has no two speeds beyond {}: nothing is asked",
+                                v.low, v.high, question.from),
+                    question.from > 0 ? "--from" : "--box",
+                    "give a range, and start below its largest speed");
   }
   if (question.property == Property::odd && !(v.low < 0 && v.high > 0)) {
     throw_bad_input("oddness needs a velocity range with both signs", "--box",

@@ -24,6 +24,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kQuotedCharacters = 200;
+// Of a front, one a complexity: each is simplified, proved and judged, in about 0.2 ms at least.
+constexpr std::size_t kMostFormulas = 10'000;
 
 [[noreturn]] void throw_unusable(std::string_view what) { throw Error(ErrorKind::failed, what); }
 
@@ -62,13 +64,22 @@ bool tells_of_no_memory(std::string_view errors) {
 std::uint64_t count_in(const json& object, const char* key, std::uint64_t otherwise) {
   if (!object.contains(key)) return otherwise;
   const json& value = object.at(key);
-  if (const auto count = json_whole_number<std::uint64_t>(value)) return *count;
-  constexpr double kExact = 0x1p53;  // a program may count in doubles
+  // A program may count in doubles; nothing that runs within a budget counts beyond them, and a
+  // negative number that was taken for a large one does.
+  constexpr std::uint64_t kExact = std::uint64_t{1} << 53;
+  const auto count = json_whole_number<std::uint64_t>(value);
+  if (count && *count <= kExact) return *count;
   const double number = value.is_number_float() ? value.get<double>() : -1;
-  if (number >= 0 && number <= kExact && number == std::floor(number)) {
+  if (number >= 0 && number <= static_cast<double>(kExact) && number == std::floor(number)) {
     return static_cast<std::uint64_t>(number);
   }
-  throw_unusable(fmt::format("'{}' is {}, not a whole number from 0", key, excerpt(value.dump())));
+  throw_unusable(fmt::format("'{}' is {}, not a whole number from 0 to {}", key,
+                             excerpt(value.dump()), kExact));
+}
+
+std::string text_in(const json& value, const char* key) {
+  if (value.is_string()) return value.get<std::string>();
+  throw_unusable(fmt::format("'{}' is {}, not text", key, excerpt(value.dump())));
 }
 
 bool is_answer(const json& line) {
@@ -92,7 +103,12 @@ void require_known_keys(const json& answer) {
 
 void take_improvement(FitContext& context, const json& improvement) {
   if (context.progress == nullptr) return;
-  context.progress->improved(improvement.at("train_error"),
+  if (!improvement.is_object() || !improvement.contains("train_error") ||
+      !improvement.at("train_error").is_number()) {
+    throw_unusable(fmt::format("'improved' is {}, not {{\"train_error\": NUMBER}}",
+                               excerpt(improvement.dump())));
+  }
+  context.progress->improved(improvement.at("train_error").get<double>(),
                              count_in(improvement, "evaluations", 0));
 }
 
@@ -167,29 +183,33 @@ void AnswerReader::take_line(const std::string& line) {
     return;
   }
   require_known_keys(object);
-  try {
-    if (object.contains("improved")) take_improvement(context_, object.at("improved"));
-    if (object.contains("unsupported")) {
-      result_ = FitResult::unsupported(object.at("unsupported"));
-    }
-    if (object.contains("front")) take_front(object);
-  } catch (const json::exception& error) {
-    throw_unusable(fmt::format("the program's answer is malformed: {}", error.what()));
+  if (object.contains("improved")) take_improvement(context_, object.at("improved"));
+  if (object.contains("unsupported")) {
+    result_ = FitResult::unsupported(text_in(object.at("unsupported"), "unsupported"));
   }
+  if (object.contains("front")) take_front(object);
 }
 
 void AnswerReader::take_front(const nlohmann::json& object) {
   FitResult result;
-  for (const json& formula : object.at("front")) {
-    result.front.push_back(parse_formula(formula.get<std::string>()));
+  const json& front = object.at("front");
+  if (!front.is_array()) {
+    throw_unusable(fmt::format("'front' is {}, not a list of formulas", excerpt(front.dump())));
   }
-  if (result.front.empty()) throw_unusable("the program's front is empty");
+  if (front.empty()) throw_unusable("the program's front is empty");
+  if (front.size() > kMostFormulas) {
+    throw_unusable(fmt::format("the program's front has {} formulas, more than {}", front.size(),
+                               kMostFormulas));
+  }
+  for (const json& formula : front) {
+    result.front.push_back(parse_formula(text_in(formula, "front")));
+  }
   result.chosen = count_in(object, "chosen", result.front.size() - 1);
   if (result.chosen >= result.front.size()) {
     throw_unusable(
         fmt::format("'chosen' is {} in a front of {}", result.chosen, result.front.size()));
   }
-  result.note = object.value("note", std::string());
+  if (object.contains("note")) result.note = text_in(object.at("note"), "note");
   result.keeps_choice = true;
   keep_admitted_formulas(context_, names_, result);
   context_.budget.book(count_in(object, "evaluations", 0));

@@ -9,6 +9,7 @@
 
 #include "algorithms/pysr/options.hpp"
 #include "algorithms/pysr/text_pieces.hpp"
+#include "algorithms/pysr/units.hpp"
 #include "foundation/error.hpp"
 #include "foundation/number_text.hpp"
 
@@ -302,6 +303,7 @@ Options options_from(const Parameters& parameters) {
   settings().front().apply(parameters, options);
   options = profile_options(options.profile);
   for (const Setting& setting : settings()) setting.apply(parameters, options);
+  parse_unit(options.target_unit);  // throws, whether it is looked at or not
   if (!options.form.empty() && options.select_features > 0) {
     throw_bad_input("a template says itself which inputs its parts see", "select_features",
                     "leave out select_features or the template");

@@ -82,7 +82,8 @@ std::string predictions(const PredictArguments& arguments) {
   std::vector<std::vector<double>> columns;
   std::vector<const double*> pointers;
   require_signs(data, names);
-  for (const std::string& name : names) columns.push_back(input_values(data, name));
+  const ChannelIndex channels(data);
+  for (const std::string& name : names) columns.push_back(input_values(channels, name));
   add_state_columns(read, data, columns);
   for (const std::vector<double>& column : columns) pointers.push_back(column.data());
   std::vector<double> values(data.rows());

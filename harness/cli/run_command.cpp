@@ -82,15 +82,19 @@ void print_dry_run(const Grid& grid, const RunArguments& arguments, const RunOpt
   const std::string basis =
       options.costs.empty() ? std::string("budgets") : "medians of " + arguments.like;
   if (arguments.json) {
+    // Without a run to go by nothing is predicted.
+    const auto predicted = [&](double seconds) {
+      return options.costs.empty() ? nlohmann::json() : nlohmann::json(seconds);
+    };
     nlohmann::json cells = nlohmann::json::array();
     for (const PlannedWork& item : work) {
-      cells.push_back({{"cell", item.cell.key()}, {"predicted_s", item.predicted_s}});
+      cells.push_back({{"cell", item.cell.key()}, {"predicted_s", predicted(item.predicted_s)}});
     }
     fmt::print("{}\n", nlohmann::json{{"grid", grid.name},
                                       {"cells", cells},
                                       {"basis", basis},
-                                      {"predicted_cpu_s", total_s},
-                                      {"predicted_wall_s", total_s / options.jobs},
+                                      {"predicted_cpu_s", predicted(total_s)},
+                                      {"predicted_wall_s", predicted(total_s / options.jobs)},
                                       {"most_wall_s", most_s / options.jobs}}
                            .dump(2));
     return;
@@ -228,6 +232,7 @@ void run(const RunArguments& arguments, const Registry& registry, ExitStatus& st
     set_seconds(grid.limits, *arguments.seconds);
     if (!arguments.evaluations) spend_seconds_alone(grid.limits);
   }
+  grid.require_runnable(arguments.seeds ? "--seeds" : grid.name);
   for (const std::string& note : reading_notes(grid))
     print_message(fmt::format("tribench: {}\n", note));
   if (!arguments.quarantine.empty()) add_quarantine_file(arguments.quarantine, grid);

@@ -12,6 +12,8 @@
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/shell_word.hpp"
+#include "foundation/standard_streams.hpp"
+#include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/study/log_study.hpp"
 
@@ -87,7 +89,9 @@ void print_json(const LogStudy& study, const std::string& folder) {
 
 void run(const LogStudyArguments& arguments, ExitStatus& status) {
   if (!arguments.out.empty()) make_output_folder(arguments.out);
-  const LogStudy study = run_log_study("/proc/self/exe", arguments.study);
+  LogStudyOptions options = arguments.study;
+  options.stop = &stop_requested_by_signal();
+  const LogStudy study = run_log_study("/proc/self/exe", options);
   if (arguments.json) {
     print_json(study, arguments.out);
   } else {
@@ -97,6 +101,10 @@ void run(const LogStudyArguments& arguments, ExitStatus& status) {
   const bool fine = std::ranges::all_of(
       study.figures, [](const LogFigure& f) { return f.misread == 0 && f.wrong == 0; });
   if (!fine) status = ExitStatus::found;
+  if (study.left_out > 0) {
+    print_message(fmt::format("stopped: {} logs are left out\n", study.left_out));
+    status = ExitStatus::failed;
+  }
 }
 
 }  // namespace

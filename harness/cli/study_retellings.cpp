@@ -15,6 +15,7 @@
 #include "foundation/shell_word.hpp"
 #include "foundation/standard_streams.hpp"
 #include "foundation/text.hpp"
+#include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/cli/study_loop.hpp"
 #include "harness/study/retelling_study.hpp"
@@ -149,8 +150,10 @@ void print_json(const RetellingStudy& study, const std::string& folder) {
 
 void run(const RetellingArguments& arguments, ExitStatus& status) {
   if (!arguments.out.empty()) make_output_folder(arguments.out);
-  const RetellingStudy study = run_retelling_study(
-      chosen_recordings(arguments), make_loop_teller("/proc/self/exe"), arguments.study);
+  RetellingStudyOptions options = arguments.study;
+  options.stop = &stop_requested_by_signal();
+  const RetellingStudy study = run_retelling_study(chosen_recordings(arguments),
+                                                   make_loop_teller("/proc/self/exe"), options);
   if (arguments.json) {
     print_json(study, arguments.out);
   } else {
@@ -158,6 +161,10 @@ void run(const RetellingArguments& arguments, ExitStatus& status) {
     print_table(study.figures);
   }
   if (!std::ranges::all_of(study.figures, &RetellingFigure::met)) status = ExitStatus::found;
+  if (study.left_out > 0) {
+    print_message(fmt::format("stopped: {} recordings are left out\n", study.left_out));
+    status = ExitStatus::failed;
+  }
 }
 
 }  // namespace

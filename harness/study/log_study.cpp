@@ -228,9 +228,15 @@ LogStudy run_log_study(const std::string& program, const LogStudyOptions& option
                     "as in the lines printed: load, linear_viscous_power/19");
   }
   std::vector<std::vector<LogOutcome>> by_case(cases.size());
-  for_each_case(cases.size(), options.threads, options.quiet,
-                [&](std::size_t i) { by_case[i] = tell_case(program, cases[i], options); });
+  const auto stopped = [&] { return options.stop != nullptr && *options.stop; };
+  for_each_case(cases.size(), options.threads, options.quiet, [&](std::size_t i) {
+    if (stopped()) return;
+    std::vector<LogOutcome> outcomes = tell_case(program, cases[i], options);
+    if (!stopped()) by_case[i] = std::move(outcomes);
+  });
   LogStudy study;
+  study.left_out = static_cast<std::size_t>(
+      std::ranges::count_if(by_case, [](const auto& outcomes) { return outcomes.empty(); }));
   for (std::vector<LogOutcome>& outcomes : by_case) {
     std::ranges::move(outcomes, std::back_inserter(study.outcomes));
   }

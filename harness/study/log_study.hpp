@@ -7,6 +7,8 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -66,6 +68,7 @@ struct LogStudyOptions {
   double seconds = 90;  // of a log
   int threads = 0;      // 0: all; the figures are the same for any number
   bool quiet = true;
+  const std::atomic<bool>* stop = nullptr;  // logs that are not told when it is set are left out
 };
 
 struct LogFigure {
@@ -84,6 +87,7 @@ struct LogFigure {
 struct LogStudy {
   std::vector<LogOutcome> outcomes;  // by log, then as in kLogTellings
   std::vector<LogFigure> figures;    // as in kLogTellings
+  std::size_t left_out = 0;          // logs, when it was stopped
 };
 
 // Reads the log as its engineer tells it and prepares it: the channel that comes out with another

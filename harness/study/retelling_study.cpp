@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -72,10 +74,12 @@ class FirstTellings {
 
 std::vector<RetellingOutcome> retell(const RecordingToTell& recording,
                                      const std::vector<const Retelling*>& ways,
-                                     const StoryTeller& teller) {
+                                     const StoryTeller& teller,
+                                     const std::function<bool()>& stopped) {
   FirstTellings first(recording, teller);
   std::vector<RetellingOutcome> outcomes;
   for (const Retelling* way : ways) {
+    if (stopped()) return {};
     std::optional<RecordingToTell> told =
         way->tell(recording, RandomStream(key_of(recording.name)).split(way->name));
     if (!told) continue;
@@ -166,9 +170,16 @@ RetellingStudy run_retelling_study(const std::vector<RecordingToTell>& recording
     for (const Retelling& way : retellings()) ways.push_back(&way);
   }
   std::vector<std::vector<RetellingOutcome>> by_recording(recordings.size());
-  for_each_case(recordings.size(), options.threads, options.quiet,
-                [&](std::size_t i) { by_recording[i] = retell(recordings[i], ways, teller); });
+  const auto stopped = [&] { return options.stop != nullptr && *options.stop; };
+  std::atomic<std::size_t> told = 0;
+  for_each_case(recordings.size(), options.threads, options.quiet, [&](std::size_t i) {
+    std::vector<RetellingOutcome> outcomes = retell(recordings[i], ways, teller, stopped);
+    if (stopped()) return;
+    by_recording[i] = std::move(outcomes);
+    ++told;
+  });
   RetellingStudy study;
+  study.left_out = recordings.size() - told;
   for (std::vector<RetellingOutcome>& outcomes : by_recording) {
     std::ranges::move(outcomes, std::back_inserter(study.outcomes));
   }

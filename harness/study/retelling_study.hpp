@@ -7,6 +7,8 @@
 // The loop is asked as a user asks it, by files and options: reading is tried with it.
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -68,13 +70,16 @@ struct RetellingFigure {
 struct RetellingStudy {
   std::vector<RetellingOutcome> outcomes;  // by recording, then by retelling
   std::vector<RetellingFigure>
-      figures;  // by retelling; those nothing could be told in are left out
+      figures;               // by retelling; those nothing could be told in are left out
+  std::size_t left_out = 0;  // recordings, when it was stopped
 };
 
 struct RetellingStudyOptions {
   std::vector<std::string> retellings;  // names; empty: all
   int threads = 0;                      // 0: all; the figures are the same for any number
   bool quiet = true;                    // no progress line
+  // Recordings that are not told all their ways when it is set are left out.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 // Throws Error (bad_input) where a first telling fails. Cost: a run of the loop each.

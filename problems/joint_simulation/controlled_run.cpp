@@ -16,9 +16,9 @@ namespace tribench::simulation {
 namespace {
 
 constexpr double kControllerStep_s = 0.001;
-constexpr double kReach_rad = 1.5;
-constexpr double kSlowest_rad_s = 0.04;
-constexpr double kFastest_rad_s = 1.2;
+constexpr double kReachOfRun_rad = 1.5;
+constexpr double kSlowestOfRun_rad_s = 0.04;
+constexpr double kFastestOfRun_rad_s = 1.2;
 constexpr double kMetresPerRadian = 0.2;
 constexpr double kNewtonsPerNewtonMetre = 10;
 constexpr double kOffset = 0.1;  // sd of the movements' offsets, in sd of the noise
@@ -38,8 +38,9 @@ struct Schedule {
   }
 };
 
-double draw_speed(RandomStream& random) {
-  return kSlowest_rad_s * elementary::pow(kFastest_rad_s / kSlowest_rad_s, random.uniform());
+double draw_run_speed(RandomStream& random) {
+  return kSlowestOfRun_rad_s *
+         elementary::pow(kFastestOfRun_rad_s / kSlowestOfRun_rad_s, random.uniform());
 }
 
 // A stroke to the other side or some there and back without a rest.
@@ -47,9 +48,9 @@ void add_strokes(Schedule& schedule, RandomStream& random) {
   Movement movement(schedule.position);
   const std::uint64_t strokes = random.chance(0.3) ? 2 + random.below(4) : 1;
   for (std::uint64_t k = 0; k < strokes; ++k) {
-    const double speed = draw_speed(random);
+    const double speed = draw_run_speed(random);
     const double side = movement.end_rad() > 0 ? -1 : 1;
-    const double room = kReach_rad - side * movement.end_rad();
+    const double room = kReachOfRun_rad - side * movement.end_rad();
     const double length = std::clamp(speed * random.uniform(1, 4), 0.1, room);
     movement.add_stroke(movement.end_rad() + side * length, speed, random.uniform(1, 6));
   }
@@ -64,7 +65,7 @@ void add_sines(Schedule& schedule, RandomStream& random) {
   std::array<Sine, 2> sines;
   for (Sine& sine : sines) {
     const double rate = random.uniform(0.8, 4);
-    sine = {draw_speed(random) * 0.6 / rate, rate, random.uniform(0, 2 * std::numbers::pi)};
+    sine = {draw_run_speed(random) * 0.6 / rate, rate, random.uniform(0, 2 * std::numbers::pi)};
   }
   for (double t = 0; t < duration; t += kControllerStep_s) {
     const double fade = elementary::sin(std::numbers::pi * t / duration);

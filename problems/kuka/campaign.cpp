@@ -14,7 +14,6 @@
 namespace tribench::kuka {
 namespace {
 
-constexpr double kPauseBetweenMovements_s = 2.0;
 constexpr std::size_t kAveragingInstants = 6000;
 constexpr double kDurationB_s = 43.0;
 

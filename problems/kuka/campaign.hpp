@@ -24,6 +24,8 @@
 
 namespace tribench::kuka {
 
+inline constexpr double kPauseBetweenMovements_s = 2;
+
 // Rows: 90 x samples_per_movement, one instant drawn from each of as many equal parts of a
 // movement. Truth: the law, without ripple and noise.
 KnownDataset make_a_raw(const Joint& joint, std::uint64_t seed, std::size_t samples_per_movement);

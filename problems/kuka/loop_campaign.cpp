@@ -10,6 +10,7 @@
 
 #include "foundation/elementary.hpp"
 #include "problems/campaign_channels.hpp"
+#include "problems/kuka/campaign.hpp"
 #include "problems/kuka/joint.hpp"
 
 namespace tribench::kuka {
@@ -18,7 +19,6 @@ namespace {
 constexpr std::size_t kInstantsA = 40;
 constexpr std::size_t kInstantsD = 120;
 constexpr double kDurationD_s = 12;
-constexpr double kPauseBetweenMovements_s = 2;
 constexpr double kOtherJointMoves = 0.6;
 // Parts of the time in motion: the constant of warming and cooling, and the pause half way.
 constexpr double kThermalConstant = 0.22;

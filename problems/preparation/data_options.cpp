@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "foundation/error.hpp"
+#include "foundation/number_text.hpp"
 #include "problems/data_problem.hpp"
 #include "problems/preparation/chain_gravity.hpp"
 #include "problems/reading/csv_cells.hpp"
@@ -16,6 +17,7 @@
 namespace tribench {
 namespace {
 
+// As a cell is written, which may be a bus's 0x1F.
 std::optional<double> number_of(std::string_view text) {
   double value = 0;
   if (read_cell(text, false, value) != CellKind::number || !std::isfinite(value)) return {};
@@ -96,7 +98,7 @@ TorqueConstant parse_torque_constant(const std::string& text, const std::string&
     constant.at_motor = true;
     number.remove_suffix(kMotor.size());
   }
-  const std::optional<double> value = number_of(number);
+  const std::optional<double> value = read_number<double>(number);
   if (!value || !(*value > 0)) {
     throw_bad_input(fmt::format("'{}' is no torque constant", text), place,
                     "write N m/A at the joint, or K@motor beside --gear-ratio; a negative one is "

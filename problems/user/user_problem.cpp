@@ -150,7 +150,8 @@ std::vector<double> truth_of(const UserProblem& own, const suite::LawReader& law
     }
   }();
   std::vector<std::vector<double>> columns;
-  for (const std::string& input : inputs) columns.push_back(input_values(data, input));
+  const ChannelIndex channels(data);
+  for (const std::string& input : inputs) columns.push_back(input_values(channels, input));
   std::vector<double> truth;
   std::vector<double> point(inputs.size());
   for (std::size_t r = 0; r < data.rows(); ++r) {

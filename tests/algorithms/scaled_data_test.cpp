@@ -52,6 +52,23 @@ TEST(ScaledData, WritesAFormulaInTheDatasOwnNumbersWithTheSameBits) {
   for (std::size_t r = 0; r < 3; ++r) EXPECT_EQ(outside[r], inside[r] * factor);
 }
 
+// 2^1074, which the smallest number is brought near 1 by, is no double.
+TEST(ScaledData, WritesAFormulaOverNumbersThatNoFactorReaches) {
+  Rows rows;
+  rows.far = {3e-310, -1e-309, 2e-310, 0};
+  const ScaledData scaled(rows.data());
+  const TrainingData seen = scaled.data();
+  const Expression found = parse("2*far + 1", kNames);
+  std::vector<double> inside(4);
+  std::vector<double> outside(4);
+  Evaluator().evaluate(found, seen.table(), inside);
+  const Expression written = scaled.unscaled(found);
+  Evaluator().evaluate(written, rows.data().table(), outside);
+  const double factor = rows.target[0] / seen.target[0];
+  for (std::size_t r = 0; r < 4; ++r) EXPECT_EQ(outside[r], inside[r] * factor);
+  for (const Node& node : written.nodes()) EXPECT_TRUE(std::isfinite(node.value));
+}
+
 TEST(ScaledData, HandsOnWhatLiesWhereFitsCanCompute) {
   Rows rows;
   rows.far = {1e-30, 2e-30, 3e-30, 0};

@@ -120,6 +120,24 @@ TEST_F(ExternalTest, NumbersInAnAnswerAreReadStrictly) {
   EXPECT_EQ(figure("good", "evaluations"), "1000000");
 }
 
+TEST_F(ExternalTest, AnAnswerHasTheFormThatIsAsked) {
+  run(R"("text", "negative", "numbers", "many", "progress", "good")",
+      shell_method("text", "echo '{\"front\": \"v\"}'") +
+          shell_method("negative",
+                       "echo '{\"front\": [\"1\"], \"evaluations\": 18446744073709551615}'") +
+          shell_method("numbers", "echo '{\"front\": [1, 2]}'") +
+          shell_method("many",
+                       "printf '{\"front\": [\"1\"'; for i in $(seq 10000); do printf ',\"'$i'\"'; "
+                       "done; echo ']}'") +
+          shell_method("progress", "echo '{\"improved\": 3}'; echo '{\"front\": [\"1\"]}'") +
+          shell_method("good", "echo '{\"front\": [\"1\"]}'"));
+  EXPECT_THAT(reason("text"), HasSubstr("'front' is \"v\", not a list of formulas"));
+  EXPECT_THAT(reason("negative"), HasSubstr("'evaluations' is 18446744073709551615, not a whole"));
+  EXPECT_THAT(reason("numbers"), HasSubstr("'front' is 1, not text"));
+  EXPECT_THAT(reason("many"), HasSubstr("has 10001 formulas, more than 10000"));
+  EXPECT_THAT(reason("progress"), HasSubstr("'improved' is 3, not {"));
+}
+
 // train.csv has columns of these names already: a program would read one for the other.
 TEST_F(ExternalTest, AnInputThatIsCalledLikeAColumnOfTheProtocolIsRefused) {
   const std::string script = (folder_ / "answers.sh").string();

@@ -246,6 +246,15 @@ TEST_F(OwnDataTest, SlurmElementsAreToldTheSameFiles) {
   EXPECT_EQ(element.status, 0) << element.errors;
 }
 
+// In a path Slurm would write %j as the job's number.
+TEST_F(OwnDataTest, SlurmWritesItsLogsWhereTheRunIs) {
+  const std::string out = (folder_ / "r\xc3\xa9sultat %j").string();
+  const ProgramRun plan =
+      run({"submit", (folder_ / "here/grid.toml").string(), "--slurm", "--out", out, "--dry-run"});
+  ASSERT_EQ(plan.status, 0) << plan.errors;
+  EXPECT_THAT(plan.output, HasSubstr("r\xc3\xa9sultat %%j/log/element-%a.log\""));
+}
+
 TEST_F(OwnDataTest, RefusalsNameOptionAndMend) {
   const std::string logs = (folder_ / "here/logs").string();
   const auto refused = [&](std::vector<std::string> words) {

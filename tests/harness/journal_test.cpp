@@ -3,6 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
 
 #include "foundation/error.hpp"
 #include "tests/support/run_program.hpp"
@@ -89,6 +93,20 @@ TEST_F(JournalTest, RefusesToGoOnWithoutWhatAnotherRunWroteMeanwhile) {
   const std::string both = read_text(file_);
   EXPECT_THROW(Journal::resume(file_, contents), Error);
   EXPECT_EQ(read_text(file_), both);
+}
+
+// `ulimit -f 0`, a full disk: the next run finds the folder as it was.
+TEST_F(JournalTest, LeavesNoFileThatItCannotBegin) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit none{0, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &none), 0);
+  EXPECT_THROW(Journal::create(file_, kIdentity), Error);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_FALSE(std::filesystem::exists(file_));
+  EXPECT_NO_THROW(Journal::create(file_, kIdentity));
 }
 
 TEST_F(JournalTest, SaysAtTheNextCellThatItsFileWasRemoved) {

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
@@ -43,6 +46,36 @@ TEST(DataProblem, TakesTheColumnsAskedForAndDerivesSigns) {
   EXPECT_EQ(problem.stages.front().train.columns[1], (std::vector<double>{-1, 0, 1}));
   EXPECT_EQ(problem.test.target, (std::vector<double>{-5, 0, 6}));
   EXPECT_EQ(make_data_problem(data, nullptr, "tau_f", inputs).test.rows(), 0U);
+}
+
+Dataset wide(std::size_t columns) {
+  Dataset data;
+  data.name = "wide";
+  data.movement = {0, 0};
+  data.movement_names = {"wide"};
+  for (std::size_t j = 0; j < columns; ++j) {
+    data.channels.push_back({fmt::format("x{}", j), "-", Role::none, {0.5, 1}});
+  }
+  return data;
+}
+
+// Columns are found by name: to look at each for each would take minutes of 65 000.
+TEST(DataProblem, TakesTimeInProportionToItsColumns) {
+  const Dataset data = wide(30'000);
+  std::vector<std::string> inputs;
+  for (const Channel& channel : data.channels) inputs.push_back(channel.name);
+  inputs.erase(inputs.begin());
+  const std::clock_t start = std::clock();
+  EXPECT_EQ(make_data_problem(data, nullptr, "x0", inputs).inputs.size(), 29'999U);
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 2);
+}
+
+TEST(DataProblem, RefusesMoreInputsThanAFormulaCanName) {
+  const Dataset data = wide(kMostInputs + 2);
+  std::vector<std::string> inputs;
+  for (const Channel& channel : data.channels) inputs.push_back(channel.name);
+  inputs.erase(inputs.begin());
+  EXPECT_THAT(complaint(data, "x0", inputs), HasSubstr("65537 inputs are given"));
 }
 
 TEST(DataProblem, TheBoxCoversTheRowsThatTest) {

@@ -37,7 +37,8 @@ TEST(Table, TakesWholeMovementsAndDerivesSigns) {
 
 TEST(Table, AnUnknownInputIsAnsweredWithTheNearestColumn) {
   try {
-    input_values(two_movements().data, "sgn_w");
+    const KnownDataset known = two_movements();
+    input_values(ChannelIndex(known.data), "sgn_w");
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("sgn_w"), std::string::npos);

@@ -193,6 +193,19 @@ TEST(Export, CStatesTheBoxAndHasNoBranchAndNoLoop) {
     EXPECT_THAT(code, Not(HasSubstr(word)));
 }
 
+// A column that is called like a sign and stands without what it would be the sign of.
+TEST(Export, ASignWithoutItsInputIsAnArgument) {
+  const std::vector<std::string> names = {"sgn_x"};
+  ExportOptions options;
+  options.box = parse_box("sgn_x=-1:1");
+  const Expression formula = parse("0.5*sgn_x + 1.5", names);
+  const std::string code = export_code(formula, names, CodeForm::c, options);
+  EXPECT_THAT(code, HasSubstr("double friction(double sgn_x)"));
+  EXPECT_THAT(code, HasSubstr("sgn_x in [-1, 1]"));
+  EXPECT_THAT(code, Not(HasSubstr("sign_of")));
+  EXPECT_THAT(export_code(formula, names, CodeForm::c, {}), HasSubstr("double friction(double x)"));
+}
+
 TEST(Export, PythonGivesTheEvaluatorsValuesWhenRun) {
   const std::string python = "/usr/bin/python3";
   if (!runs(python + " -c 'import numpy' 2>/dev/null")) GTEST_SKIP() << "no python3-numpy";

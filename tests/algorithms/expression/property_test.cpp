@@ -146,6 +146,21 @@ TEST(Monotone, AsksNothingOfTheSpeedsBelow) {
   EXPECT_GE(result.witness->neighbour[0], 0.5);
 }
 
+// Nothing is proved of a question that asks nothing.
+TEST(Monotone, NeedsTwoSpeedsOnASide) {
+  const auto asked = [](double low, double high, double from) {
+    const std::vector<std::string> names = {"v"};
+    prove_property(parse("2*v", names), InputBox{{low, high}},
+                   {.property = Property::monotone, .from = from});
+  };
+  EXPECT_THROW(asked(3, 3, 0), Error);
+  EXPECT_THROW(asked(-1, 1, 1), Error);
+  EXPECT_THROW(asked(-1, 1, 5), Error);
+  EXPECT_NO_THROW(asked(3, 4, 0));
+  EXPECT_NO_THROW(asked(-4, -3, 0));
+  EXPECT_NO_THROW(asked(-1, 3, 1));
+}
+
 TEST(Odd, IsDecidedByFormOrByAPoint) {
   expect_all({{"3*sgn_v + 2*v", kProved},
               {"v^3 - 2*v", kProved},

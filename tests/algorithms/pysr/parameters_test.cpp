@@ -8,6 +8,7 @@
 
 #include "algorithms/pysr/options.hpp"
 #include "algorithms/registry.hpp"
+#include "foundation/error.hpp"
 
 namespace tribench::pysr::parameters_test {
 namespace {
@@ -67,6 +68,12 @@ Outcome fit(const Problem& problem, Given given) {
   FitContext context{data, find_operator_set("paper"), budget, RandomStream(5), 1, &trace};
   const FitResult result = method->fit(context);
   return {result.front, result.chosen, trace.steps, budget.spent()};
+}
+
+// Whether units are looked at or not.
+TEST(PysrParameters, ATargetsUnitIsOneThatIsKnown) {
+  EXPECT_THROW(Registry().make("pysr", {{"target_unit", std::string("blah")}}), Error);
+  EXPECT_NO_THROW(Registry().make("pysr", {{"target_unit", std::string("N m")}}));
 }
 
 struct Case {

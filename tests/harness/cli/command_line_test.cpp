@@ -144,7 +144,35 @@ TEST(CommandLine, UnknownWordsAreAnsweredWithTheNearest) {
   expect({"fit", "--metod", "x"}, "there is no option '--metod'; did you mean --method?");
   expect({"run", "--jbos=3"}, "there is no option '--jbos'; did you mean --jobs?");
   expect({"run", "quick", "more"}, "there is no further argument 'more'");
+  expect({"run", "qiuck"}, "there is no grid 'qiuck'; did you mean quick?");
+  expect({"run", "--vers"}, "there is no option '--vers'; see: tribench run --help");
+  expect({"--vers"}, "did you mean --version?");
+  expect({"describ"}, "there is no subcommand 'describ'; known: run, fit");  // not for users
   expect({}, "A subcommand is required");
+}
+
+// The grid's own file is held to the same bound.
+TEST(CommandLine, MoreCellsThanARunCanHoldAreRefusedBeforeTheyAreMade) {
+  const ProgramRun run = run_tribench({"run", "paper", "--seeds", "1000000", "--dry-run"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("--seeds: the grid has "));
+  EXPECT_THAT(run.errors, HasSubstr("use at most 5000000"));
+}
+
+// What budgets allow at most is no prediction.
+TEST(CommandLine, ADryRunPredictsNothingWithoutARunToGoBy) {
+  const ProgramRun run = run_tribench({"run", "quick", "--dry-run", "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("\"predicted_wall_s\": null"));
+  EXPECT_THAT(run.output, HasSubstr("\"basis\": \"budgets\""));
+}
+
+// A name may hold what a terminal obeys.
+TEST(CommandLine, AnErrorSendsNoCommandToTheTerminal) {
+  const ProgramRun run = run_tribench(
+      {"fit", "no\x1b[2Jsuch.csv", "--target", "y", "--inputs", "x", "--method", "linear"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("no?[2Jsuch.csv"));
 }
 
 TEST(CommandLine, AllThatIsMissingIsSaidAtOnceWithAnExample) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <string>
 
 namespace tribench {
@@ -34,6 +35,17 @@ TEST(LogStudy, EverySeedHasItsRun) {
   EXPECT_EQ(make_log_case(10, 2, 20).name, "none/10");
   EXPECT_EQ(make_log_case(9, 2, 20).name, "linear_stribeck_exponential/9");
   EXPECT_TRUE(make_log_case(3, 2, 20).plan.gravity);  // no load friction without a load
+}
+
+// After Ctrl-C nothing more is asked, and what is left out is counted.
+TEST(LogStudy, IsStoppedInGoodOrder) {
+  const std::atomic<bool> stop = true;
+  LogStudyOptions options;
+  options.logs = 3;
+  options.stop = &stop;
+  const LogStudy study = run_log_study("/bin/false", options);
+  EXPECT_EQ(study.left_out, 3U);
+  EXPECT_TRUE(study.outcomes.empty());
 }
 
 }  // namespace

@@ -304,6 +304,14 @@ TEST(PreparedRecording, ASlideBesideItsMotorsSpeedIsRefusedWithTheScrewsLead) {
   EXPECT_EQ(complaint(told_wrong(1000, 3000, 1), options), "no error");
 }
 
+// A bus's 0x10 is a cell's way of writing, not a person's.
+TEST(PreparedRecording, ATorqueConstantIsADecimalNumber) {
+  EXPECT_EQ(parse_torque_constant("0.07@motor", "here").value, 0.07);
+  for (const char* text : {"0x10", "1,5", "nan", "-2", ""}) {
+    EXPECT_THROW(parse_torque_constant(text, "here"), Error) << text;
+  }
+}
+
 TEST(PreparedRecording, DifferentUnitsAreNeverSubtracted) {
   RawLogPlan plan;
   const std::string text = raw_table(simulate(plan), plan, {.gravity = true});
