@@ -126,4 +126,10 @@ Interval FormulaBounds::derivative(std::size_t node, std::size_t variable) const
   return {0, 0};
 }
 
+Interval value_at(FormulaBounds& bounds, const std::vector<double>& point) {
+  std::vector<Interval> box(point.size());
+  for (std::size_t j = 0; j < point.size(); ++j) box[j] = Interval::point(point[j]);
+  return bounds.bound(box) ? bounds.root().range : Interval::entire();
+}
+
 }  // namespace tribench

@@ -81,4 +81,7 @@ class FormulaBounds {
   BoxPoints points_;
 };
 
+// Bounds of the real value at one point.
+Interval value_at(FormulaBounds& bounds, const std::vector<double>& point);
+
 }  // namespace tribench

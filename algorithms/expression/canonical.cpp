@@ -220,4 +220,8 @@ std::uint32_t Canonicalizer::scaled(std::uint32_t index, double factor) {
   return forms_.product(factor, scratch_);
 }
 
+bool is_zero(const Expression& formula) {
+  return formula.size() == 1 && formula.node(0).is_constant() && formula.node(0).value == 0;
+}
+
 }  // namespace tribench

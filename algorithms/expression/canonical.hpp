@@ -60,4 +60,7 @@ class Canonicalizer {
   std::vector<std::uint32_t> stack_;
 };
 
+// Whether it is the constant 0, as what cancels is in canonical form.
+bool is_zero(const Expression& formula);
+
 }  // namespace tribench

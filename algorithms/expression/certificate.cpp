@@ -136,7 +136,9 @@ std::optional<std::string> write_certificate(const Expression& original, const N
   ClaimedBox box = read_claimed_box(print_box(named));
   const ClaimedFormula formula = read_claimed_formula(text, box);
   Writer writer(formula, box, claim, max_pieces);
-  for (const Piece& cell : certificate_cells(formula, box)) {
+  const std::optional<std::vector<Piece>> cells = certificate_cells(formula, box, max_pieces);
+  if (!cells) return std::nullopt;
+  for (const Piece& cell : *cells) {
     if (!writer.cover(cell)) return std::nullopt;
   }
   Json json = {{"format", "tribench certificate 2"},

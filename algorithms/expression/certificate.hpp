@@ -59,8 +59,11 @@ struct CertificateCheck {
 // Never throws on a bad certificate: what cannot be read is rejected, with the reason.
 CertificateCheck check_certificate(std::string_view text);
 
-// What the two sides share: how the box falls into cells, and the bounds on one piece.
-std::vector<Piece> certificate_cells(const ClaimedFormula& formula, const ClaimedBox& box);
+// What the two sides share: how the box falls into cells, and the bounds on one piece. Each input
+// whose sign the formula looks at makes three of one; nothing where there would be more than
+// `most`.
+std::optional<std::vector<Piece>> certificate_cells(const ClaimedFormula& formula,
+                                                    const ClaimedBox& box, std::size_t most);
 // The formula's range on the piece by natural interval extension; nothing where a node may not be
 // finite.
 std::optional<PieceRange> piece_bounds(const ClaimedFormula& formula, const Piece& piece);

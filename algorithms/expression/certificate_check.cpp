@@ -216,7 +216,10 @@ class Reader {
 
   // Empty where the entries prove the claim.
   std::string run() {
-    for (const Piece& cell : certificate_cells(formula_, box_)) {
+    // Each takes an entry at least.
+    const auto cells = certificate_cells(formula_, box_, entries_.size());
+    if (!cells) return "the entries are fewer than the cells of the box";
+    for (const Piece& cell : *cells) {
       if (std::string reason = cover(cell, 0); !reason.empty()) return reason;
     }
     return next_ == entries_.size() ? "" : "entries are left over";
@@ -244,9 +247,12 @@ class Reader {
 
   std::string close(const Piece& piece, const Json& entry, const std::string& place) {
     ++pieces_;
-    if (entry.at("piece").size() != piece.size()) return "a piece lacks an input" + place;
-    for (std::size_t j = 0; j < piece.size(); ++j) {
-      const Json& side = entry.at("piece").at(box_.names[j]);
+    const Json& sides = entry.at("piece");
+    if (sides.size() != piece.size()) return "a piece lacks an input" + place;
+    auto next = sides.begin();  // they stand in the box's order, as a rule
+    for (std::size_t j = 0; j < piece.size(); ++j, ++next) {
+      const bool is_here = sides.is_object() && next.key() == box_.names[j];
+      const Json& side = is_here ? next.value() : sides.at(box_.names[j]);
       if (!(Range{side.at(0), side.at(1)} == piece[j])) {
         return "a piece is not the one that its cuts lead to" + place;
       }
@@ -315,7 +321,12 @@ void check_content(Json json, CertificateCheck& check) {
 
 }  // namespace
 
-std::vector<Piece> certificate_cells(const ClaimedFormula& formula, const ClaimedBox& box) {
+namespace {
+constexpr std::size_t kMostSidesOfCells = std::size_t{1} << 22;  // ranges in memory
+}
+
+std::optional<std::vector<Piece>> certificate_cells(const ClaimedFormula& formula,
+                                                    const ClaimedBox& box, std::size_t most) {
   const std::size_t inputs = box.names.size();
   std::vector<bool> looks_at_sign(inputs, false);
   for (std::size_t i = 0; i < formula.size(); ++i) {
@@ -325,25 +336,28 @@ std::vector<Piece> certificate_cells(const ClaimedFormula& formula, const Claime
     const Op above = i + 1 < formula.size() ? formula[i + 1].op : Op::constant;
     if (above == Op::abs || above == Op::sgn) looks_at_sign[input] = true;
   }
-  std::vector<Piece> cells = {Piece(inputs)};
+  std::vector<std::vector<std::size_t>> signs_of(inputs);
+  for (std::size_t s = 0; s < inputs; ++s) {
+    if (box.sign_of[s]) signs_of[*box.sign_of[s]].push_back(s);
+  }
+  std::vector<Piece> cells = {box.ranges};
+  if (cells.size() > most) return std::nullopt;
+  const std::size_t most_cells =
+      std::min(most, kMostSidesOfCells / std::max<std::size_t>(inputs, 1));
   for (std::size_t j = 0; j < inputs; ++j) {
-    if (box.sign_of[j]) continue;
+    if (!looks_at_sign[j]) continue;
     const Range& side = box.ranges[j];
-    std::vector<Range> parts = {side};
-    if (looks_at_sign[j]) {
-      parts = {{side.low, std::min(side.high, -kTiny)},
-               {std::max(side.low, 0.0), std::min(side.high, 0.0)},
-               {std::max(side.low, kTiny), side.high}};
-    }
+    std::vector<Range> parts = {{side.low, std::min(side.high, -kTiny)},
+                                {std::max(side.low, 0.0), std::min(side.high, 0.0)},
+                                {std::max(side.low, kTiny), side.high}};
+    std::erase_if(parts, [](const Range& part) { return part.low > part.high; });
+    if (cells.size() * parts.size() > most_cells) return std::nullopt;
     std::vector<Piece> finer;
     for (const Piece& cell : cells) {
       for (const Range& part : parts) {
-        if (part.low > part.high) continue;
         finer.push_back(cell);
         finer.back()[j] = part;
-        for (std::size_t s = 0; s < inputs; ++s) {
-          if (box.sign_of[s] == j) finer.back()[s] = sign(part);
-        }
+        for (const std::size_t s : signs_of[j]) finer.back()[s] = sign(part);
       }
     }
     cells = std::move(finer);

@@ -130,6 +130,12 @@ Expression parse_over(std::string_view formula, NamedBox& box) {
   return parsed;
 }
 
+void set_signs(const InputBox& box, std::vector<double>& point) {
+  for (std::size_t j = 0; j < box.size(); ++j) {
+    if (box[j].sign_of) point[j] = sign(point[*box[j].sign_of]);
+  }
+}
+
 void check_box(const Expression& formula, const InputBox& box) {
   if (columns_used(formula) > box.size()) {
     throw_bad_input(fmt::format("the formula uses input {} but the box has only {}",

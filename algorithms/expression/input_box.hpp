@@ -42,6 +42,9 @@ std::string print_box(const NamedBox& box);
 // to the box. Throws Error (bad_input) on any other name.
 Expression parse_over(std::string_view formula, NamedBox& box);
 
+// Gives the signs of a point, one number an input, the values that they have there.
+void set_signs(const InputBox& box, std::vector<double>& point);
+
 // Throws Error (bad_input) where a range is not one (NaN, infinite, low > high), a sign is that of
 // no input with a range, or the formula uses a column beyond the box.
 void check_box(const Expression& formula, const InputBox& box);

@@ -9,6 +9,8 @@
 
 #include "algorithms/expression/bounds.hpp"
 #include "algorithms/expression/canonical.hpp"
+#include "algorithms/expression/oddness.hpp"
+#include "algorithms/expression/singularity.hpp"
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
 
@@ -16,14 +18,6 @@ namespace tribench {
 namespace {
 
 using Cell = std::vector<Interval>;
-
-void set_signs(const InputBox& box, std::vector<double>& point) {
-  for (std::size_t j = 0; j < box.size(); ++j) {
-    if (!box[j].sign_of) continue;
-    const double x = point[*box[j].sign_of];
-    point[j] = x > 0 ? 1 : (x < 0 ? -1 : 0);
-  }
-}
 
 // The formula with every sgn(X) of an input X written as the column sgn_X, which the box is given
 // where it has none: on a cell closed at 0 the sign is then one number, the limit's.
@@ -51,15 +45,9 @@ Signed with_sign_columns(const Expression& formula, InputBox box) {
   return {Expression(std::move(tape)), std::move(box)};
 }
 
-// Bounds of the real value at one point.
-Interval value_at(FormulaBounds& bounds, const std::vector<double>& point) {
-  Cell box(point.size());
-  for (std::size_t j = 0; j < point.size(); ++j) box[j] = Interval::point(point[j]);
-  return bounds.bound(box) ? bounds.root().range : Interval::entire();
-}
-
 // The sign cells of the box with the velocity split at 0 whether the formula looks at its sign or
-// not, and closed at 0: what holds on the closure holds on the cell.
+// not, and closed at 0: what holds on the closure holds on the cell. Empty where there are too
+// many.
 std::vector<Cell> closed_cells(const Expression& formula, const InputBox& box,
                                std::size_t velocity) {
   const Expression watched = Expression::binary(
@@ -82,6 +70,14 @@ class PropertyProver {
       : box_(box), question_(question), limits_(limits), bounds_(formula), points_(formula) {}
 
   PropertyResult run(std::vector<Cell> cells) {
+    if (cells.empty()) {  // a bound on the whole holds on every cell; what else is asked has signs
+      const Cell whole = whole_box(box_);
+      const bool is_shown =
+          question_.property == Property::bounded && bounds_.sharpen(whole) && holds(whole);
+      if (is_shown) result_.verdict = Verdict::proved_free;
+      if (!is_shown) result_.undecided_box = whole;
+      return std::move(result_);
+    }
     result_.verdict = Verdict::proved_free;
     std::erase_if(cells, [this](Cell& cell) { return !restrict_velocity(cell); });
     for (const Cell& cell : cells) {
@@ -230,10 +226,6 @@ class PropertyProver {
   std::uint64_t spent_ = 0;
 };
 
-bool is_zero(const Expression& formula) {
-  return formula.size() == 1 && formula.node(0).is_constant() && formula.node(0).value == 0;
-}
-
 // Where one part of the velocities that monotony is asked of ends or the next begins; its sign is
 // that of the part, so that 0 with a sign is the limit at 0.
 struct PartEnd {
@@ -281,7 +273,8 @@ class MonotoneProver {
     InputBox others = box_;
     others[question_.velocity] = {1, 1};
     PropertyResult result;
-    result.undecided_box = closed_cells(formula_, others, question_.velocity).front();
+    const std::vector<Cell> cells = closed_cells(formula_, others, question_.velocity);
+    result.undecided_box = cells.empty() ? whole_box(others) : cells.front();
     const SingularityResult finite = prove_free(step, others, limits_);
     result.boxes = finite.boxes;
     if (finite.verdict == Verdict::proved_free) {
@@ -346,52 +339,6 @@ class MonotoneProver {
   ProofLimits limits_;
   FormulaBounds points_;
 };
-
-// The formula at the mirrored point: v and its sign turned round.
-Expression mirrored(const Expression& formula, const InputBox& box, std::size_t velocity) {
-  std::vector<Node> tape;
-  for (const Node& node : formula.nodes()) {
-    tape.push_back(node);
-    if (node.is_variable() &&
-        (node.variable == velocity || box[node.variable].sign_of == velocity)) {
-      tape.push_back({0, 0, 0, Op::neg});
-    }
-  }
-  return Expression(std::move(tape));
-}
-
-// Odd where f(v) + f(-v) cancels; refuted where it is certainly not 0 at a point.
-PropertyResult prove_odd(const Expression& formula, const InputBox& box, std::size_t velocity) {
-  constexpr int kPoints = 500;
-  PropertyResult result;
-  const Expression sum = Expression::binary(Op::add, formula, mirrored(formula, box, velocity));
-  // The formula is proved finite, and so is its mirror image: every term may cancel.
-  Canonicalizer canonicalizer({[](const Expression&) { return true; }, {}});
-  if (is_zero(canonicalizer.canonical(sum))) {
-    result.verdict = Verdict::proved_free;
-    return result;
-  }
-  const double reach = std::min(box[velocity].high, -box[velocity].low);
-  FormulaBounds bounds(sum);
-  RandomStream random(key_of("odd"));
-  std::vector<double> point(box.size());
-  for (int i = 0; i < kPoints; ++i) {
-    for (std::size_t j = 0; j < box.size(); ++j) {
-      point[j] = j == velocity ? random.uniform(0, reach) : random.uniform(box[j].low, box[j].high);
-    }
-    set_signs(box, point);
-    ++result.boxes;
-    if (value_at(bounds, point).contains(0)) continue;
-    std::vector<double> mirror = point;
-    mirror[velocity] = -point[velocity];
-    set_signs(box, mirror);
-    result.verdict = Verdict::refuted;
-    result.witness = Witness{point, mirror, formula.root()};
-    return result;
-  }
-  for (const InputRange& range : box) result.undecided_box.push_back({range.low, range.high});
-  return result;
-}
 
 void check_question(const InputBox& box, const PropertyQuestion& question) {
   if (!(question.from >= 0) || !(question.limit >= 0)) {

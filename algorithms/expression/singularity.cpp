@@ -41,16 +41,6 @@ std::vector<Interval> sign_parts(double low, double high) {
   return parts;
 }
 
-void set_signs(const InputBox& box, Witness& witness) {
-  for (std::size_t j = 0; j < box.size(); ++j) {
-    if (!box[j].sign_of) continue;
-    witness.point[j] = sign(witness.point[*box[j].sign_of]);
-    if (!witness.neighbour.empty()) {
-      witness.neighbour[j] = sign(witness.neighbour[*box[j].sign_of]);
-    }
-  }
-}
-
 // Branch and bound over one formula; boxes are kept on one stack, ranges side by side.
 class Prover {
  public:
@@ -234,6 +224,21 @@ class Prover {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+// A sign that may be any beside an input that may be any: more than the box holds, so that what is
+// finite there is finite in the box, and what is not tells nothing.
+SingularityResult bound_whole(const Expression& formula, const InputBox& box) {
+  const Cell whole = whole_box(box);
+  FormulaBounds bounds(formula);
+  SingularityResult result;
+  result.boxes = 1;
+  if (bounds.bound(whole)) {
+    result.verdict = Verdict::proved_free;
+  } else {
+    result.undecided_box = whole;
+  }
+  return result;
+}
+
 std::string point_json(std::span<const double> point, std::span<const std::string> names) {
   std::string text = "{";
   for (std::size_t j = 0; j < point.size(); ++j) {
@@ -270,23 +275,37 @@ std::string witness_json(const Witness& witness, std::span<const std::string> na
                      point_json(witness.point, names), point_json(witness.neighbour, names));
 }
 
+std::vector<Interval> whole_box(const InputBox& box) {
+  Cell whole;
+  for (const InputRange& range : box) {
+    whole.push_back(range.sign_of ? Interval{-1, 1} : Interval{range.low, range.high});
+  }
+  return whole;
+}
+
 std::vector<std::vector<Interval>> sign_cells(const Expression& formula, const InputBox& box) {
   check_box(formula, box);
   const std::vector<bool> is_signed = signed_inputs(formula, box);
-  Cell whole(box.size());
-  for (std::size_t j = 0; j < box.size(); ++j) {
-    if (!box[j].sign_of) whole[j] = {box[j].low, box[j].high};
+  std::vector<std::vector<std::size_t>> signs_of(box.size());
+  for (std::size_t s = 0; s < box.size(); ++s) {
+    if (box[s].sign_of) signs_of[*box[s].sign_of].push_back(s);
+  }
+  Cell whole = whole_box(box);
+  for (std::size_t s = 0; s < box.size(); ++s) {
+    if (box[s].sign_of) whole[s] = {};  // that of its cell, or of no one
   }
   std::vector<Cell> cells = {whole};
   for (std::size_t j = 0; j < box.size(); ++j) {
     if (!is_signed[j]) continue;
+    const std::vector<Interval> parts = sign_parts(box[j].low, box[j].high);
+    if (cells.size() * parts.size() * box.size() > kMostSides) return {};
     std::vector<Cell> finer;
     for (const Cell& cell : cells) {
-      for (const Interval& part : sign_parts(box[j].low, box[j].high)) {
+      for (const Interval& part : parts) {
         finer.push_back(cell);
         finer.back()[j] = part;
-        for (std::size_t s = 0; s < box.size(); ++s) {
-          if (box[s].sign_of == j) finer.back()[s] = Interval::point(sign(part.high + part.low));
+        for (const std::size_t s : signs_of[j]) {
+          finer.back()[s] = Interval::point(sign(part.high + part.low));
         }
       }
     }
@@ -298,8 +317,12 @@ std::vector<std::vector<Interval>> sign_cells(const Expression& formula, const I
 SingularityResult prove_free(const Expression& formula, const InputBox& box,
                              const ProofLimits& limits) {
   const std::vector<Cell> cells = sign_cells(formula, box);
+  if (cells.empty()) return bound_whole(formula, box);
   SingularityResult result = Prover(formula, limits).run(cells);
-  if (result.witness) set_signs(box, *result.witness);
+  if (result.witness) {
+    set_signs(box, result.witness->point);
+    if (!result.witness->neighbour.empty()) set_signs(box, result.witness->neighbour);
+  }
   return result;
 }
 

@@ -63,12 +63,18 @@ struct SingularityResult {
 };
 
 // Throws Error (bad_input) where the box is not one (NaN, infinite, low > high, sign_of out of
-// range) or lacks a column of the formula.
+// range) or lacks a column of the formula. Where the box has too many sign cells only its bounds as
+// a whole are looked at: proved or undecided.
 SingularityResult prove_free(const Expression& formula, const InputBox& box,
                              const ProofLimits& limits = {});
 
+// All of the box, as ranges per input; a sign may be any.
+std::vector<Interval> whole_box(const InputBox& box);
+
 // The parts of the box in which every sign is one number, as ranges per input: the cells of the
-// case split, in a fixed order. Throws as prove_free.
+// case split, in a fixed order. Each input whose sign the formula looks at makes three of one:
+// empty where they would hold more than kMostSides ranges. Throws as prove_free.
+inline constexpr std::size_t kMostSides = std::size_t{1} << 22;
 std::vector<std::vector<Interval>> sign_cells(const Expression& formula, const InputBox& box);
 
 }  // namespace tribench

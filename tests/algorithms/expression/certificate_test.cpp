@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/expression/certificate.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -142,6 +143,27 @@ TEST(Certificate, CheckerAcceptsNoFalseClaimHoweverTheBoxIsCut) {
   Json json = Json::parse(certify("1/(v^2 + 1)", "v=-2:2"));
   json["formula"] = "1/(v^2 - 1)";
   EXPECT_FALSE(check_certificate(forge(json)).accepted);
+}
+
+// Each sign that is looked at makes three cells of one: 3^40 of them are no certificate's.
+TEST(Certificate, OfMoreCellsThanEntriesIsRejectedBeforeTheyAreMade) {
+  std::string formula = "abs(x0)";
+  std::string box = "x0=-1:1";
+  for (int k = 1; k < 40; ++k) {
+    formula += fmt::format(" + abs(x{})", k);
+    box += fmt::format(",x{}=-1:1", k);
+  }
+  nlohmann::ordered_json json = {{"format", "tribench certificate 2"},
+                                 {"formula", formula},
+                                 {"box", box},
+                                 {"claim", "finite"},
+                                 {"entries", nlohmann::json::array()}};
+  json["digest"] = certificate_digest(json.dump());
+  const CertificateCheck check = check_certificate(json.dump());
+  EXPECT_FALSE(check.accepted);
+  EXPECT_EQ(check.reason, "the entries are fewer than the cells of the box");
+  NamedBox named = parse_box(box);
+  EXPECT_FALSE(write_certificate(parse_over(formula, named), named));
 }
 
 // 1/x10000 is not finite on x10000=-1:1; a variable of 16 bits that folded input 65536 onto input 0

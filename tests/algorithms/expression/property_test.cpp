@@ -146,6 +146,26 @@ TEST(Monotone, AsksNothingOfTheSpeedsBelow) {
   EXPECT_GE(result.witness->neighbour[0], 0.5);
 }
 
+// 3^40 cells are more than any machine has: a bound on the whole says what it can.
+TEST(Properties, OfManySignsAreProvedOnTheWholeOrLeft) {
+  std::vector<std::string> names = {"v"};
+  std::string sum = "v";
+  for (int k = 0; k < 40; ++k) {
+    names.push_back("x" + std::to_string(k));
+    sum += " + abs(" + names.back() + ")";
+  }
+  const InputBox box(names.size(), {-1, 1});
+  const Expression formula = parse(sum, names);
+  const auto verdict = [&](const PropertyQuestion& question) {
+    return prove_property(formula, box, question).verdict;
+  };
+  EXPECT_EQ(verdict({.property = Property::finite}), kProved);
+  EXPECT_EQ(verdict({.property = Property::bounded, .limit = 41}), kProved);
+  EXPECT_EQ(verdict({.property = Property::bounded, .limit = 40}), Verdict::undecided);
+  EXPECT_EQ(verdict({.property = Property::monotone}), Verdict::undecided);
+  EXPECT_EQ(prove_free(parse("1/(" + sum + ")", names), box).verdict, Verdict::undecided);
+}
+
 // Nothing is proved of a question that asks nothing.
 TEST(Monotone, NeedsTwoSpeedsOnASide) {
   const auto asked = [](double low, double high, double from) {

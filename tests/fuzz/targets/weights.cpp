@@ -39,7 +39,7 @@ void fill_in(Json& parameters) {
 TRIBENCH_FUZZ_TARGET(weights) {
   try_weights(input);
   Json file = Json::parse(input, nullptr, false);
-  if (!file.is_object()) return;
+  if (!file.is_object() || !file.contains("tokens") || !file.contains("parameters")) return;
   fill_in(file["parameters"]);
   try {
     file["hash"] =
