@@ -106,6 +106,12 @@ Json read_json_or_throw(std::string_view text, std::string_view place) {
   return value;
 }
 
+std::string json_complaint(const nlohmann::detail::exception& error) {
+  const std::string_view said = error.what();
+  const std::size_t end = said.starts_with('[') ? said.find("] ") : std::string_view::npos;
+  return std::string(end == std::string_view::npos ? said : said.substr(end + 2));
+}
+
 nlohmann::ordered_json json_number(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }

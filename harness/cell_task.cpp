@@ -76,7 +76,7 @@ auto parse_or_throw(std::string_view text, Parse parse) {
   try {
     return parse(message);
   } catch (const json::exception& error) {
-    throw Error(ErrorKind::failed, fmt::format("a malformed message: {}", error.what()));
+    throw Error(ErrorKind::failed, fmt::format("a malformed message: {}", json_complaint(error)));
   }
 }
 

@@ -296,7 +296,7 @@ std::vector<SuiteInfo> read_suites(const std::filesystem::path& file,
       suites.push_back(suite_in(json));
     }
   } catch (const nlohmann::json::exception& error) {
-    complaints.push_back(fmt::format("{}: {}", file.filename().string(), error.what()));
+    complaints.push_back(fmt::format("{}: {}", file.filename().string(), json_complaint(error)));
   } catch (const Error& error) {
     complaints.push_back(fmt::format("{}: {}", file.filename().string(), error.what()));
   }

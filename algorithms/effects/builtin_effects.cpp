@@ -344,8 +344,11 @@ EffectFamily lag() {
                  "friction follows the velocity late near standstill",
                  "Hess and Soom 1990",
                  {}};
-  f.atoms = {
-      {{"sgn_v*exp(-abs(v)/vl)*sgn(v*a)"}, {"lag"}, {{"vl", "v", {0.07, 0.15, 0.3}, 0.02, 0.6}}}};
+  // Where the joint is sped up or slowed down: the sign of what a disturbance shakes it by is that
+  // of the disturbance.
+  f.atoms = {{{"exp(-abs(v)/vl)*(sgn(a - al) + sgn(a + al))/2"},
+              {"lag"},
+              {{"vl", "v", {0.07, 0.15, 0.3}, 0.02, 0.6}, {"al", "a", {0.03}}}}};
   // Friction of the velocity as it was: its viscous part is an inertia, and no lag.
   for (const int lag_ms : kLags_ms) {
     const std::string late = lagged_velocity_name(lag_ms);

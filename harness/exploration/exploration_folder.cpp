@@ -87,7 +87,7 @@ ExplorationFolder::ExplorationFolder(std::filesystem::path folder, ExplorationSe
       known_.push_back({lines[k].at("movement"), lines[k].at("refused"), lines[k].at("recording")});
     }
   } catch (const Json::exception& error) {
-    throw_bad_input(fmt::format("no journal of an exploration: {}", error.what()),
+    throw_bad_input(fmt::format("no journal of an exploration: {}", json_complaint(error)),
                     journal_.string(), "give another --out");
   }
 }

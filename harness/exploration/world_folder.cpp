@@ -84,7 +84,7 @@ simulation::WorldPlan read_plan(const std::filesystem::path& file) {
       if (!plan.kind) refuse("its kind is not known");
     }
   } catch (const Json::exception& error) {
-    refuse(error.what());
+    refuse(json_complaint(error));
   }
   return plan;
 }

@@ -311,7 +311,7 @@ ChallengeResult run_challenge_world(const std::vector<std::string>& command,
     result.reason = error.what();
   } catch (const Json::exception& error) {
     result.verdict = "failed";
-    result.reason = fmt::format("the program's line is malformed: {}", error.what());
+    result.reason = fmt::format("the program's line is malformed: {}", json_complaint(error));
   }
   result.seconds = world.seconds_used();
   return result;

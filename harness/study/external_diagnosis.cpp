@@ -233,7 +233,7 @@ LoopAnswer read_diagnosis(const std::string& output, const AskedDiagnosis& asked
   try {
     return answer_in(object_in(output), asked);
   } catch (const json::exception& error) {
-    throw_no_answer(fmt::format("the program's answer is malformed: {}", error.what()));
+    throw_no_answer(fmt::format("the program's answer is malformed: {}", json_complaint(error)));
   }
 }
 

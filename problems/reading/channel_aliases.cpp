@@ -10,6 +10,7 @@
 //   RTDE       Universal Robots' Real-Time Data Exchange (actual_q, actual_qd, actual_current)
 //   FRI, RSI   KUKA's Fast Research Interface (measured position, torque: rad, N m) and Robot
 //              Sensor Interface (AIPos: deg; MACur)
+//   CiA 402    drives' objects 0x6064, 0x606C, 0x6077, 0x6078: in units that each drive sets itself
 //   usual      what people write; says what the channel is and not in which unit
 #include <array>
 
@@ -24,6 +25,7 @@ constexpr std::string_view kFranka = "libfranka";
 constexpr std::string_view kRtde = "RTDE";
 constexpr std::string_view kFri = "KUKA FRI";
 constexpr std::string_view kRsi = "KUKA RSI";
+constexpr std::string_view kCia402 = "CiA 402";
 constexpr std::string_view kUsual = "usual";
 
 using enum Role;
@@ -58,6 +60,7 @@ constexpr std::array kAliases = {
     ChannelAlias{"actual_q", position, "rad", kRtde},
     ChannelAlias{"q_actual", position, "rad", kRtde},
     ChannelAlias{"measured_joint_position", position, "rad", kFri},
+    ChannelAlias{"position_actual_value", position, "", kCia402},
     ChannelAlias{"aipos", position, "deg", kRsi},
     ChannelAlias{"ai_pos", position, "deg", kRsi},
     ChannelAlias{"winkel", position, "", kUsual},
@@ -84,6 +87,7 @@ constexpr std::array kAliases = {
     ChannelAlias{"q_dot", velocity, "rad/s", kUsual},
     ChannelAlias{"actual_qd", velocity, "rad/s", kRtde},
     ChannelAlias{"qd_actual", velocity, "rad/s", kRtde},
+    ChannelAlias{"velocity_actual_value", velocity, "", kCia402},
     ChannelAlias{"geschwindigkeit", velocity, "", kUsual},
     ChannelAlias{"drehzahl", velocity, "", kUsual},
     ChannelAlias{"drehzahlistwert", velocity, "", kUsual},
@@ -121,6 +125,7 @@ constexpr std::array kAliases = {
     ChannelAlias{"effort", motor_torque, "N m", kRos},
     ChannelAlias{"tau_j", motor_torque, "N m", kFranka},
     ChannelAlias{"measured_joint_torque", motor_torque, "N m", kFri},
+    ChannelAlias{"torque_actual_value", motor_torque, "", kCia402},
     ChannelAlias{"tau", motor_torque, "", kUsual},
     ChannelAlias{"torque", motor_torque, "", kUsual},
     ChannelAlias{"force", motor_torque, "", kUsual},
@@ -148,9 +153,12 @@ constexpr std::array kAliases = {
     ChannelAlias{"motor_temperature", temperature, "", kUsual},
     ChannelAlias{"motor_temp", temperature, "", kUsual},
     ChannelAlias{"temp_motor", temperature, "", kUsual},
+    ChannelAlias{"temperatures", temperature, "", kUsual},
+    ChannelAlias{"joint_temperatures", temperature, "degC", kRtde},
     ChannelAlias{"motor_current", motor_current, "", kOwn},
     ChannelAlias{"current", motor_current, "", kOwn},
     ChannelAlias{"actual_current", motor_current, "A", kRtde},
+    ChannelAlias{"current_actual_value", motor_current, "", kCia402},
     ChannelAlias{"current_motor", motor_current, "", kUsual},
     ChannelAlias{"macur", motor_current, "", kRsi},
     ChannelAlias{"strom", motor_current, "", kUsual},

@@ -108,6 +108,25 @@ TEST(EffectLibrary, TheLoopFindsTheRippleOfAScrewWithoutBeingToldItsLead) {
   EXPECT_NEAR(period, 0.01, 1e-12);
 }
 
+// A pump, a cable, another joint: what swings in time shakes the joint a little, and the sign of that
+// little acceleration is the sign of what swings.
+TEST(EffectLibrary, ADisturbanceThatShakesTheJointIsNoLateFriction) {
+  Observations data = observe(kuka::make_planted({}, 7).data);
+  const std::vector<double> t = data.find("t")->values;
+  const double scale = signal_scale(data, "a");
+  for (Signal& signal : data.signals) {
+    if (signal.name != "a") continue;
+    for (std::size_t i = 0; i < data.rows(); ++i) {
+      double& a = signal.values[i];
+      const double swing = std::sin(2 * std::numbers::pi * 1.37 * t[i]);
+      a = (std::abs(a) < 0.3 * scale ? 0 : a) + 0.01 * scale * swing;
+      data.target[i] += 0.3 * swing;
+    }
+  }
+  const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, {});
+  for (const EffectFinding& effect : diagnosis.effects) EXPECT_NE(effect.family, "lag");
+}
+
 bool same(const AtomTemplate& a, const AtomTemplate& b) {
   const auto same_shape = [](const ShapeTemplate& x, const ShapeTemplate& y) {
     return x.name == y.name && x.scale == y.scale && x.grid == y.grid && x.low == y.low &&
