@@ -10,6 +10,7 @@
 #include "algorithms/diagnosis/candidates.hpp"
 #include "algorithms/diagnosis/leftover.hpp"
 #include "algorithms/diagnosis/plausibility.hpp"
+#include "algorithms/diagnosis/shaking.hpp"
 #include "algorithms/diagnosis/worth.hpp"
 #include "algorithms/inference/whitening.hpp"
 
@@ -53,6 +54,7 @@ bool add(SearchState& state, const Candidate& winner, const Round& round,
     if (!(fitted.nats > (winner.rescued ? kRescueErrors : 1) * fitted.error)) return false;
   }
   if (stands_for_another_cause(extended.model, campaign)) return false;
+  if (goes_with_shaking(extended, winner.family, campaign)) return false;
   if (known == 0) {
     const bool few = winner.rescued || round.counted_alike[winner.family] != 0;
     state.found.push_back({winner.family, round.family_p[winner.family], winner.gain, few,
@@ -89,6 +91,7 @@ bool choose_anew(SearchState& state, const Round& round, const Campaign& campaig
     for (const std::size_t atom : atoms) model.add(campaign.library.atoms[atom]);
     FittedModel chosen = fit_in_its_noise(std::move(model), campaign, FitScope::everything);
     if (!chosen.losses.allFinite() || stands_for_another_cause(chosen.model, campaign)) continue;
+    if (goes_with_shaking(chosen, one.family, campaign)) continue;
     for (const Atom& atom : state.model.model.atoms) {
       if (atom.family != one.family) continue;
       const bool stays = std::ranges::count(chosen.model.atoms, atom.label, &Atom::label) > 0;
