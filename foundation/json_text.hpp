@@ -53,8 +53,8 @@ std::optional<Whole> json_whole_number(const Json& value) {
   return std::nullopt;
 }
 
-// What the library says of a value that is not there or of another type ("key 'verdict' not found"),
-// without the library's own numbers.
+// What the library says of a value that is not there or of another type ("key 'verdict' not
+// found"), without the library's own numbers.
 std::string json_complaint(const nlohmann::detail::exception& error);
 
 // null where the value is not finite.

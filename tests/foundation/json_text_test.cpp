@@ -75,6 +75,19 @@ TEST(JsonText, NothingStandsBehindANulByte) {
   EXPECT_NE(reason.find("a NUL byte, which JSON has not, at line 2"), std::string::npos) << reason;
 }
 
+TEST(JsonText, AComplaintIsInWordsAndNotInTheLibrarysNumbers) {
+  const auto complaint = [](const char* text) {
+    try {
+      read_json<Json>(text).at("a").at("b");
+    } catch (const nlohmann::detail::exception& error) {
+      return json_complaint(error);
+    }
+    return std::string();
+  };
+  EXPECT_EQ(complaint("{}"), "key 'a' not found");
+  EXPECT_EQ(complaint("{\"a\": [1]}"), "cannot use at() with array");
+}
+
 TEST(JsonText, ANumberIsWholeWhereItsTypeHoldsIt) {
   const auto held = [](const char* text) { return json_whole_number<int>(read_json<Json>(text)); };
   EXPECT_EQ(held("7"), 7);

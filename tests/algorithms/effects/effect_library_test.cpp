@@ -108,8 +108,8 @@ TEST(EffectLibrary, TheLoopFindsTheRippleOfAScrewWithoutBeingToldItsLead) {
   EXPECT_NEAR(period, 0.01, 1e-12);
 }
 
-// A pump, a cable, another joint: what swings in time shakes the joint a little, and the sign of that
-// little acceleration is the sign of what swings.
+// A pump, a cable, another joint: what swings in time shakes the joint a little, and the sign of
+// that little acceleration is the sign of what swings.
 TEST(EffectLibrary, ADisturbanceThatShakesTheJointIsNoLateFriction) {
   Observations data = observe(kuka::make_planted({}, 7).data);
   const std::vector<double> t = data.find("t")->values;
