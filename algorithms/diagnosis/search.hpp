@@ -66,6 +66,7 @@ struct SearchStart {
   std::vector<std::size_t> left_out;  // families
   bool last_resort = false;           // with the atoms of last resort
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes what <=> compares with for a pointer
   auto operator<=>(const SearchStart&) const = default;
 };
 

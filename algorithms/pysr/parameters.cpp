@@ -30,7 +30,7 @@ ParameterSpec of_profile(const std::string& name, const std::string& summary, Pa
   return {name, summary + "; -1: as the profile has it", std::move(left), low, high, {}, -1};
 }
 
-Setting whole(std::string name, int Options::*option, const std::string& summary, double low,
+Setting whole(const std::string& name, int Options::*option, const std::string& summary, double low,
               double high) {
   return {of_profile(name, summary, std::int64_t{-1}, low, high),
           [name, option](const Parameters& given, Options& options) {
@@ -39,7 +39,8 @@ Setting whole(std::string name, int Options::*option, const std::string& summary
           }};
 }
 
-Setting number(std::string name, double Options::*option, const std::string& summary, double high) {
+Setting number(const std::string& name, double Options::*option, const std::string& summary,
+               double high) {
   return {of_profile(name, summary, -1.0, 0, high),
           [name, option](const Parameters& given, Options& options) {
             const double value = given.number(name);
@@ -47,8 +48,8 @@ Setting number(std::string name, double Options::*option, const std::string& sum
           }};
 }
 
-Setting share(std::string name, double Options::*option, const std::string& summary) {
-  return number(std::move(name), option, summary, 1);
+Setting share(const std::string& name, double Options::*option, const std::string& summary) {
+  return number(name, option, summary, 1);
 }
 
 Setting text(std::string name, std::string Options::*option, std::string summary) {
@@ -71,7 +72,7 @@ using Named = std::vector<std::pair<std::string, Value>>;
 
 // `otherwise` leaves the option as it is, or is one of the values.
 template <typename Value>
-Setting choice(std::string name, Value Options::*option, std::string summary,
+Setting choice(const std::string& name, Value Options::*option, std::string summary,
                const std::string& otherwise, Named<Value> values) {
   ParameterSpec spec{name, std::move(summary), otherwise, 0, 0, {}};
   if (otherwise == kProfile) spec.choices.push_back(otherwise);
@@ -84,9 +85,8 @@ Setting choice(std::string name, Value Options::*option, std::string summary,
           }};
 }
 
-Setting on_off(std::string name, bool Options::*option, std::string summary) {
-  return choice<bool>(std::move(name), option, std::move(summary), kProfile,
-                      {{"on", true}, {"off", false}});
+Setting on_off(const std::string& name, bool Options::*option, std::string summary) {
+  return choice<bool>(name, option, std::move(summary), kProfile, {{"on", true}, {"off", false}});
 }
 
 // Reads "rotate_tree=4; backsolve=0.1" over the weights there are.
