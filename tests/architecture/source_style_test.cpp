@@ -42,6 +42,22 @@ TEST(SourceStyle, TestsHaveNamesOfOneStyle) {
       IsEmpty());
 }
 
+// An exception must not leave an OpenMP region: parallel_for holds it, and so does the run's loop.
+TEST(SourceStyle, ThreadsAreBegunWhereExceptionsAreHeld) {
+  EXPECT_THAT(matches({"foundation", "problems", "algorithms", "reports", "harness"},
+                      std::regex(R"(#pragma omp parallel)")),
+              ::testing::ElementsAre("run.cpp: #pragma omp parallel"));
+}
+
+// Whose name another user can foretell.
+TEST(SourceStyle, TemporaryFoldersAreScratchFolders) {
+  EXPECT_THAT(
+      matches({"foundation", "problems", "algorithms", "reports", "harness"},
+              std::regex(R"(mkdtemp\(|mkstemp\(|tmpnam\(|temp_directory_path\(|"/tmp)")),
+      ::testing::UnorderedElementsAre("output_folder.cpp: mkstemp(", "scratch_folder.cpp: \"/tmp",
+                                      "scratch_folder.cpp: mkdtemp("));
+}
+
 // fmt::print throws where the stream takes nothing: a full disk behind standard error would end the
 // program from within its threads.
 TEST(SourceStyle, MessagesGoByPrintMessage) {

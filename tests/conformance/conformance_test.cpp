@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "algorithms/expression/singularity.hpp"
@@ -171,11 +172,13 @@ TEST_P(EveryMethod, FindsTheSameWhateverTheColumnsAreCalled) {
   Setting setting;
   setting.evaluations = 1'000'000;
   const Outcome plain = run(registry_, GetParam(), sample, setting);
-  sample.inputs[0].name = "g";
-  sample.inputs[1].name = "T";
-  const Outcome named = run(registry_, GetParam(), sample, setting);
-  EXPECT_EQ(named.result.front, plain.result.front);
-  EXPECT_EQ(named.result.chosen, plain.result.chosen);
+  for (const auto& [first, second] : {std::pair("g", "T"), std::pair("tau_m", "a")}) {
+    sample.inputs[0].name = first;
+    sample.inputs[1].name = second;
+    const Outcome named = run(registry_, GetParam(), sample, setting);
+    EXPECT_EQ(named.result.front, plain.result.front) << first;
+    EXPECT_EQ(named.result.chosen, plain.result.chosen) << first;
+  }
 }
 
 TEST_P(EveryMethod, ReturnsAtOnceWithoutABudget) {

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -19,6 +20,7 @@
 
 #include "algorithms/registry.hpp"
 #include "foundation/child_process.hpp"
+#include "foundation/number_text.hpp"
 #include "foundation/random.hpp"
 #include "harness/cli/program.hpp"
 #include "tests/support/run_program.hpp"
@@ -52,6 +54,18 @@ std::vector<std::string> values_of(const ParameterSpec& spec) {
   return {values.begin(), values.end()};
 }
 
+// Whether a value can be one of the parameter's: a number in its range, where it is a number.
+bool spec_may_take(const ParameterSpec& spec, const std::string& value) {
+  if (std::holds_alternative<std::string>(spec.default_value) ||
+      std::holds_alternative<bool>(spec.default_value)) {
+    return true;
+  }
+  const std::optional<double> number = read_number<double>(value);
+  if (!number) return false;
+  const bool is_besides = spec.besides && *number == *spec.besides;
+  return is_besides || (spec.low <= *number && *number <= spec.high);
+}
+
 std::string friction_csv() {
   std::string text = "v,g,tau\n";
   RandomStream random(key_of("parameter sweep"));
@@ -71,8 +85,9 @@ class ParameterSweep : public ::testing::Test {
   // One parameter's values, in a process of their own: begun as a copy of this one, as starts of
   // the program's file would take most of the time. What ends or hangs it is the value that it has
   // not answered; the others have another process.
-  void check(const std::string& method, const std::string& name, const Sweep& sweep,
+  void check(const std::string& method, const ParameterSpec& spec, const Sweep& sweep,
              std::span<const std::string> values) {
+    const std::string& name = spec.name;
     while (!values.empty()) {
       int ends[2];
       ASSERT_EQ(::pipe(ends), 0);
@@ -83,7 +98,8 @@ class ParameterSweep : public ::testing::Test {
       bool is_alive = true;
       while (is_alive && answered < values.size()) {
         SCOPED_TRACE(fmt::format("{} --parameter '{}={}'", method, name, values[answered]));
-        is_alive = judge_next(child, ends[0], answered, sweep.hang_s);
+        is_alive = judge_next(child, ends[0], answered, sweep.hang_s,
+                              spec_may_take(spec, values[answered]));
         ++answered;
       }
       ::close(ends[0]);
@@ -93,12 +109,12 @@ class ParameterSweep : public ::testing::Test {
   }
 
   // The status of the value with this number, as the process tells it; false where it tells none.
-  bool judge_next(pid_t child, int from, std::size_t number, double hang_s) {
+  bool judge_next(pid_t child, int from, std::size_t number, double hang_s, bool may_be_taken) {
     pollfd told = {from, POLLIN, 0};
     const bool is_told = ::poll(&told, 1, static_cast<int>(1000 * hang_s)) == 1;
     int status = 0;
     if (is_told && ::read(from, &status, sizeof status) == sizeof status) {
-      judge({status, 0}, read_text(errors_of(number)));
+      judge({status, 0}, read_text(errors_of(number)), may_be_taken);
       return true;
     }
     if (!is_told) {
@@ -109,7 +125,7 @@ class ParameterSweep : public ::testing::Test {
     if (is_told) {
       judge(
           {WIFEXITED(status) ? WEXITSTATUS(status) : 0, WIFSIGNALED(status) ? WTERMSIG(status) : 0},
-          read_text(errors_of(number)));
+          read_text(errors_of(number)), may_be_taken);
     }
     return false;
   }
@@ -155,9 +171,12 @@ class ParameterSweep : public ::testing::Test {
     ::_exit(0);
   }
 
-  void judge(const ChildExit& exit, const std::string& errors) {
+  void judge(const ChildExit& exit, const std::string& errors, bool may_be_taken) {
     ++tally_.cases;
     ASSERT_EQ(exit.signal, 0) << signal_name(exit.signal) << "\n" << errors;
+    if (!may_be_taken) {
+      EXPECT_EQ(exit.status, 2) << "taken, and out of its range";
+    }
     if (exit.status == 0) {
       ++tally_.fitted;
     } else if (exit.status == 2) {
@@ -172,7 +191,7 @@ class ParameterSweep : public ::testing::Test {
   void run(const Sweep& sweep) {
     for (const AlgorithmEntry& entry : registry_.entries()) {
       for (const ParameterSpec& spec : entry.parameters) {
-        check(entry.name, spec.name, sweep, values_of(spec));
+        check(entry.name, spec, sweep, values_of(spec));
       }
     }
     fmt::print("{} cases: {} fitted, {} refused, {} beyond the budget; 0 signals, 0 hangs\n",

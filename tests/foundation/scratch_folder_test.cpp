@@ -2,6 +2,7 @@
 #include "foundation/scratch_folder.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -29,6 +30,8 @@ TEST(ScratchFolder, TwoHaveDifferentNames) {
   const ScratchFolder one;
   const ScratchFolder other;
   EXPECT_NE(one.path(), other.path());
+  const std::string process = std::to_string(::getpid());
+  EXPECT_EQ(one.path().filename().string().find(process), std::string::npos) << "can be foretold";
 }
 
 class TemporaryFilesTest : public ::testing::Test {

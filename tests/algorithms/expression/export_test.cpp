@@ -193,6 +193,18 @@ TEST(Export, CStatesTheBoxAndHasNoBranchAndNoLoop) {
     EXPECT_THAT(code, Not(HasSubstr(word)));
 }
 
+// Input 65 536 is none that a formula can name, nor one that comes round to input 0.
+TEST(Export, AFormulaNamesNoMoreInputsThanItCan) {
+  std::string sum = "x0";
+  for (std::size_t j = 1; j <= kMaxInputs; ++j) sum += fmt::format(" + x{}", j);
+  std::vector<std::string> names;
+  EXPECT_THROW(parse_collecting_names(sum, names), Error);
+  names.resize(kMaxInputs);
+  for (std::size_t j = 0; j < names.size(); ++j) names[j] = fmt::format("x{}", j);
+  const Expression last = parse(fmt::format("1/x{}", kMaxInputs - 1), names);
+  EXPECT_THAT(export_code(last, names, CodeForm::c, {}), HasSubstr("1.0 / x65535"));
+}
+
 // A column that is called like a sign and stands without what it would be the sign of.
 TEST(Export, ASignWithoutItsInputIsAnArgument) {
   const std::vector<std::string> names = {"sgn_x"};

@@ -253,10 +253,17 @@ TEST(LoopCommand, WhereItFindsNothingItSaysInWhichRowsItDidNotLook) {
 // Data that leave nothing to be found, or nothing to find it with.
 TEST(LoopCommand, AColumnThatNobodyUsesMayHoldAnything) {
   const testing::TemporaryFolder folder;
-  const auto answer = [&](const std::string& header, auto line) {
-    const auto run = run_tribench({"loop", file_of(folder, header, 12, 20, line), "--json"});
-    return Json::parse(run.output)["error"];
+  const auto answer = [&](const std::string& header, auto line,
+                          const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"loop", file_of(folder, header, 12, 20, line), "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return Json::parse(run_tribench(words).output)["error"];
   };
+  // A name that tells, taken away by hand.
+  EXPECT_EQ(answer(std::string(kPlainHeader) + ",temperature",
+                   [](int m, int i) { return plain_line(m, i) + (i % 2 == 0 ? ",1e300" : ",-7"); },
+                   {"--roles", "temperature=none"}),
+            answer(kPlainHeader, plain_line));
   EXPECT_EQ(answer(std::string(kPlainHeader) + ",junk",
                    [](int m, int i) { return plain_line(m, i) + (i % 2 == 0 ? ",1e300" : ",-7"); }),
             answer(kPlainHeader, plain_line));
