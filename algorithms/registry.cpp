@@ -21,6 +21,8 @@
 
 namespace tribench {
 
+static_assert(kMostInputs == kMaxInputs, "a problem has as many inputs as a formula can name");
+
 Registry::Registry() {
   entries_.push_back(symmetric_entry());
   entries_.push_back(asymmetric_entry());

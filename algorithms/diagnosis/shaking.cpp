@@ -19,10 +19,8 @@ constexpr double kHalfWindow_s = 0.125;
 constexpr double kLeastShare = 0.5;
 constexpr double kErrors = 2;
 
-bool is_filtered_velocity(const Signal& signal) { return signal.name.starts_with("v_lag"); }
-
 bool is_shaken(const Signal& signal) {
-  return signal.role == Role::acceleration || is_filtered_velocity(signal);
+  return signal.role == Role::acceleration || signal.is_filtered_velocity();
 }
 
 // Means over the rows of the movement within half a window on either side.
@@ -101,8 +99,8 @@ Factor instrumented_factor(const Eigen::MatrixXd& x, const Eigen::MatrixXd& inst
 
 bool goes_with_shaking(const FittedModel& fit, std::size_t family, const Campaign& campaign) {
   const Observations& data = campaign.data;
-  // Which there are where there is a time in s, whether the order of the movements counts or not.
-  const bool is_timed = std::ranges::any_of(data.signals, is_filtered_velocity);
+  // Velocities are filtered where time is in s, whether the movements' order counts or not.
+  const bool is_timed = std::ranges::any_of(data.signals, &Signal::is_filtered_velocity);
   const std::vector<const Signal*> read = signals_read(fit.model, family, data);
   const bool is_asked = is_timed && campaign.options.has("shaking") &&
                         std::ranges::any_of(read, [](const Signal* s) { return is_shaken(*s); });

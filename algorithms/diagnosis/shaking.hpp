@@ -16,9 +16,9 @@
 
 namespace tribench::loop {
 
-// Unless half of the effect is there in the smooth motion for certain (two standard errors by
-// stretches). False of families that read no acceleration, and without a time in s. Cost:
-// a fit of one factor.
+// True unless half of the effect is there in the smooth motion for certain (two standard errors by
+// stretches). Of families that read no acceleration, and without a time in s, nothing is asked:
+// false. Cost: the model's linear columns twice, and a few passes over them.
 bool goes_with_shaking(const FittedModel& fit, std::size_t family, const Campaign& campaign);
 
 }  // namespace tribench::loop

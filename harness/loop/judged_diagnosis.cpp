@@ -111,6 +111,14 @@ struct LeftOut {
         determined(rows, 0) {}
 };
 
+// Whether a model that was fitted without it can be judged in any of the rows.
+bool has_determined_row(const std::vector<char>& rows, const LeftOut& models) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i] != 0 && models.determined[i] != 0) return true;
+  }
+  return false;
+}
+
 // Of the rows those that can be judged; all where none can. Says which movements hold the others.
 std::vector<char> judged_rows(std::vector<char> rows, const LeftOut& models,
                               const Observations& data, std::vector<std::string>& notes) {
@@ -145,10 +153,19 @@ std::string experiments_of(const std::vector<std::string>& rules) {
   return texts.empty() ? std::string() : fmt::format(": {}", fmt::join(texts, ", or "));
 }
 
-// It is not that nothing is missing where a smooth function of the same inputs, fitted to the same
-// movements, leaves less error on those that it never saw (more than rounding: then there is
-// nothing to be tested either). On data without a cause it leaves none less: no correction at all
-// is one of its choices. needed: what to record of what was found and not named.
+// It is not that nothing is missing where no movement can be foretold from the others: a base that
+// they do not determine may hold anything.
+void doubt_undetermined(JudgedDiagnosis& whole) {
+  if (whole.verdict != Verdict::none) return;
+  whole.verdict = Verdict::cannot_tell;
+  whole.needed = {
+      "movements that repeat one another's directions and speeds: without any one of them the "
+      "others do not determine even the base model"};
+}
+
+// Nor where a smooth function of the same inputs, fitted to the same movements, leaves less error
+// on those that it never saw (more than rounding: then there is nothing to be tested either). On
+// data without a cause it leaves none less: no correction at all is one of its choices. needed: what to record of what was found and not named.
 void doubt_nothing_missing(JudgedDiagnosis& whole, std::vector<std::string> needed) {
   constexpr double kTooMuch = 0.05;  // of the error
   const double less = 1 - whole.error.attainable / whole.error.mae_after;
@@ -365,8 +382,9 @@ JudgedDiagnosis LoopJudge::in_turn() {
   });
   JudgedDiagnosis whole{std::move(searches.whole()), {}, {}, {}};
   whole.bristles = bristles_of(whole, data_);
-  const std::vector<char> rows =
-      judged_rows(usable_rows(data_, {}, false, whole.masked), all, data_, whole.notes);
+  std::vector<char> rows = usable_rows(data_, {}, false, whole.masked);
+  if (!has_determined_row(rows, all)) doubt_undetermined(whole);
+  rows = judged_rows(std::move(rows), all, data_, whole.notes);
   whole.error = judged(rows, all, pieces(data_.select(rows), whole.correlation_rows));
   point_at_unused_columns(whole);
   whole.error.how =
@@ -400,6 +418,7 @@ JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
   if (std::ranges::count(rows, 1) == 0) return whole;
   LeftOut models(data_.rows());
   add_predictions(models, whole, whole.bristles, random_);
+  if (!has_determined_row(rows, models)) doubt_undetermined(whole);
   rows = judged_rows(std::move(rows), models, data_, whole.notes);
   whole.error = judged(rows, models, data_.select(rows).movement);
   point_at_unused_columns(whole);

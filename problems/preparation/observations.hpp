@@ -38,7 +38,8 @@ struct Signal {
   std::string formula = {};  // over q, where that says it: "sin(q)"
   // A velocity after a filter, a distance read otherwise: nothing to look at beside the signal
   // itself.
-  bool is_variant() const { return name.starts_with("v_lag") || name == kSeenDistance; }
+  bool is_variant() const { return is_filtered_velocity() || name == kSeenDistance; }
+  bool is_filtered_velocity() const { return name.starts_with("v_lag"); }
   // Seconds since a movement began: what a joint does differently after a rest.
   static constexpr std::string_view kSinceStart = "t_start";
   // It follows from the motion before (a distance since reversal, a filtered velocity).

@@ -186,6 +186,33 @@ TEST(JudgedDiagnosis, NothingIsMissingOnlyWhereASmoothModelDoesNoBetter) {
   }
 }
 
+// Of one movement forwards and one backwards neither says anything of the other: whatever the base
+// is, it was not looked at.
+TEST(JudgedDiagnosis, NothingIsMissingOnlyWhereTheOthersForetellAMovement) {
+  const auto verdict = [](int movements) {
+    RandomStream random(3);
+    Dataset data;
+    data.channels = {{"time", "s", Role::time, {}},
+                     {"v", "rad/s", Role::velocity, {}},
+                     {"tau_f", "N m", Role::friction_torque, {}}};
+    for (int m = 0; m < movements; ++m) {
+      data.movement_names.push_back(std::to_string(m));
+      const double way = m % 2 == 0 ? 1 : -1;
+      for (int i = 0; i < 700; ++i) {
+        const double v = way * (0.2 + 0.8 * (i % 350) / 350.0);
+        const double friction = 8 * way + 14 * v + 0.3 * random.normal();
+        data.movement.push_back(m);
+        data.channels[0].values.push_back(100 * m + 0.01 * i);
+        data.channels[1].values.push_back(v);
+        data.channels[2].values.push_back(friction);
+      }
+    }
+    return diagnose_and_judge(observe(data), coulomb_viscous_base, {}).verdict;
+  };
+  EXPECT_EQ(verdict(2), Verdict::cannot_tell);
+  EXPECT_EQ(verdict(4), Verdict::none);
+}
+
 // A fall with speed of a twelfth of the noise is found with all movements and not without some.
 TEST(JudgedDiagnosis, WhatTheSearchesOnPartsDoNotFindAgainIsNotNamed) {
   const kuka::PlantedCase planted{.effects = {{"stribeck", 0.08}}};
