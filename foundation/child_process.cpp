@@ -207,6 +207,12 @@ ChildOutput ChildProcess::read(double timeout_s) {
   return result;
 }
 
+bool ChildProcess::ends_within(double timeout_s) const {
+  if (report_ < 0) return true;
+  pollfd report{report_, POLLIN, 0};
+  return ::poll(&report, 1, static_cast<int>(timeout_s * 1000) + 1) > 0;
+}
+
 void ChildProcess::kill() {
   if (life_ >= 0) ::close(std::exchange(life_, -1));
 }
@@ -238,6 +244,7 @@ ChildRun run_child(const ChildOptions& options, std::string_view input, const Ch
   if (!input.empty()) child.write(input);
   child.close_input();
   ChildRun run;
+  bool is_silent = false;  // it has closed its streams
   for (bool ended = false; !ended;) {
     const double left_s =
         limits.wall_s - std::chrono::duration<double>(Clock::now() - start).count();
@@ -246,13 +253,17 @@ ChildRun run_child(const ChildOptions& options, std::string_view input, const Ch
       child.kill();
       break;
     }
+    if (is_silent) {
+      ended = child.ends_within(std::min(left_s, 1.0));
+      continue;
+    }
     const ChildOutput part = child.read(std::min(left_s, 1.0));
     run.output += part.output;
     run.errors += part.errors;
     if (run.output.size() + run.errors.size() > limits.output_bytes) {
       throw Error(ErrorKind::failed, "the program prints without end", options.command.front());
     }
-    ended = part.ended;
+    is_silent = part.ended;
   }
   run.exit = child.wait();
   return run;

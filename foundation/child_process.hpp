@@ -65,6 +65,8 @@ class ChildProcess {
 
   // SIGKILL to the program and to all it has started. No error where it has ended already.
   void kill();
+  // Waits up to `timeout_s` for the program's end; it can close its streams long before.
+  bool ends_within(double timeout_s) const;
   // Waits for the end of the program and of all it has started; the same answer from then on.
   ChildExit wait();
 

@@ -76,6 +76,7 @@ class ClosedLoop : public Regressor {
     options_.alpha_library = parameters.number("alpha_library");
     options_.alpha_leftover = parameters.number("alpha_leftover");
     options_.flips = static_cast<std::size_t>(parameters.integer("flips"));
+    require_enough_flips(options_);
     options_.physical_vetoes = parameters.flag("physical_vetoes");
     const double ratio = parameters.number("gear_ratio");
     if (ratio > 0) options_.gear_ratios = {ratio};
@@ -231,8 +232,8 @@ AlgorithmEntry closed_loop_entry() {
   entry.parameters = {
       {"base", "coulomb_viscous, a method's name, or formula:TEXT over the inputs",
        std::string(loop::kDefaultBase)},
-      {"alpha_library", "family-wise error of claiming an effect", 0.003, 1e-6, 0.5},
-      {"alpha_leftover", "error of claiming that something else is left", 0.002, 1e-6, 0.5},
+      {"alpha_library", "family-wise error of claiming an effect", 0.003, 1e-5, 0.5},
+      {"alpha_leftover", "error of claiming that something else is left", 0.002, 1e-5, 0.5},
       {"flips", "sign flips of the null distribution", std::int64_t{1999}, 99, 99999},
       {"gear_ratio", "of the joint; 0 scans the usual ones", 0.0, 0, 10000},
       {"physical_vetoes", "an effect with unphysical parameters is no finding", true},

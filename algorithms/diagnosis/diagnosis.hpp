@@ -43,6 +43,10 @@ struct DiagnosisOptions {
   bool has(std::string_view rule) const { return std::ranges::count(without, rule) == 0; }
 };
 
+// Throws bad input where so few flips cannot reach a level that is asked for: the smallest p of n
+// flips is 1 / (n + 1), and above the level nothing would ever be found.
+void require_enough_flips(const DiagnosisOptions& options);
+
 // cannot_tell: nothing could be tested, neither the library nor what is left over; or something is
 // there that too few movements show.
 enum class Verdict { none, effects, unknown, cannot_tell };

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -113,8 +114,9 @@ json request_json(const FitContext& context,
 
 class ExternalMethod : public Regressor {
  public:
-  ExternalMethod(std::vector<std::string> command, std::map<std::string, ParameterValue> parameters)
-      : command_(std::move(command)), parameters_(std::move(parameters)) {}
+  ExternalMethod(std::vector<std::string> command, std::map<std::string, ParameterValue> parameters,
+                 ProgramLimits limits)
+      : command_(std::move(command)), parameters_(std::move(parameters)), limits_(limits) {}
 
   FitResult fit(FitContext& context) const override {
     if (context.budget.remaining() == 0) return {{}, 0, StopReason::budget, "no budget"};
@@ -148,7 +150,8 @@ class ExternalMethod : public Regressor {
   }
 
  private:
-  static FitResult converse(ChildProcess& program, FitContext& context) {
+  FitResult converse(ChildProcess& program, FitContext& context) const {
+    const auto start = std::chrono::steady_clock::now();
     AnswerReader answer(context);
     std::string errors;
     std::size_t bytes = 0;
@@ -160,20 +163,37 @@ class ExternalMethod : public Regressor {
       errors += output.errors;
       if (errors.size() > 65536) errors.erase(0, errors.size() - 4096);
       ended = output.ended;
+      require_time_left(program, start);
     }
+    while (!program.ends_within(1.0)) require_time_left(program, start);
     const ChildExit exit = program.wait();
     return answer.finish(exit, errors);
   }
 
+  void require_time_left(const ChildProcess& program,
+                         std::chrono::steady_clock::time_point start) const {
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    if (wall.count() > limits_.wall_s) {
+      throw Error(ErrorKind::failed,
+                  fmt::format("the program took more than {:.3g} s of wall time", limits_.wall_s));
+    }
+    if (std::isfinite(limits_.cpu_s) && process_tree_use(program.pid()).cpu_s > limits_.cpu_s) {
+      throw Error(ErrorKind::failed, fmt::format("the program took more than {:.3g} s of CPU time",
+                                                 limits_.cpu_s));
+    }
+  }
+
   std::vector<std::string> command_;
   std::map<std::string, ParameterValue> parameters_;
+  ProgramLimits limits_;
 };
 
 }  // namespace
 
 std::unique_ptr<Regressor> make_external_method(std::vector<std::string> command,
-                                                std::map<std::string, ParameterValue> parameters) {
-  return std::make_unique<ExternalMethod>(std::move(command), std::move(parameters));
+                                                std::map<std::string, ParameterValue> parameters,
+                                                ProgramLimits limits) {
+  return std::make_unique<ExternalMethod>(std::move(command), std::move(parameters), limits);
 }
 
 }  // namespace tribench

@@ -8,6 +8,7 @@
 // own; it and all it starts end with its answer or with this process, whichever comes first.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -17,11 +18,18 @@
 
 namespace tribench {
 
+// What a program may take where nobody else watches it: beyond that it is ended.
+struct ProgramLimits {
+  double cpu_s = std::numeric_limits<double>::infinity();
+  double wall_s = std::numeric_limits<double>::infinity();
+};
+
 // command: the words to run; the path of the request file is added as the last. Parameters are
 // handed on as they are. Unusable answers (no front, a formula that does not parse or leaves the
-// operator set, an exit status other than 0) throw Error (failed) from fit(); a full disk throws
-// Error (environment).
+// operator set, an exit status other than 0) and a program beyond its limits throw Error (failed)
+// from fit(); a full disk throws Error (environment).
 std::unique_ptr<Regressor> make_external_method(std::vector<std::string> command,
-                                                std::map<std::string, ParameterValue> parameters);
+                                                std::map<std::string, ParameterValue> parameters,
+                                                ProgramLimits limits = {});
 
 }  // namespace tribench

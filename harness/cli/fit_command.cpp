@@ -115,7 +115,7 @@ CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fix
   task.operators = find_operator_set(arguments.operators);
   if (fixed_form) task.operators = fixed_form_operators();
   task.limits.evaluations = arguments.evaluations;
-  task.limits.seconds = arguments.seconds;
+  set_seconds(task.limits, arguments.seconds);
   task.limits.spend = arguments.spends_all;
   task.threads = usable_processors();
   return task;
@@ -142,7 +142,12 @@ ChosenMethod choose_method(const FitArguments& arguments, const Registry& regist
       const auto [name, value] = name_and_value(text, "--parameter");
       parameters[name] = plain_value(value);
     }
-    return {make_external_method(words_of(arguments.external), parameters), false};
+    // As in a grid's worker; here nobody else watches it.
+    CellLimits limits;
+    set_seconds(limits, arguments.seconds);
+    return {make_external_method(words_of(arguments.external), parameters,
+                                 {limits.cpu_limit_seconds, limits.wall_seconds}),
+            false};
   }
   const AlgorithmEntry& entry = registry.find(arguments.method);
   for (const std::string& text : arguments.parameters) {

@@ -154,6 +154,7 @@ loop::DiagnosisOptions diagnosis_options(const LoopArguments& arguments) {
   options.alpha_library = arguments.alpha_library;
   options.alpha_leftover = arguments.alpha_leftover;
   options.flips = static_cast<std::size_t>(arguments.flips);
+  loop::require_enough_flips(options);
   options.families = arguments.effects;
   options.physical_vetoes = !arguments.any_sign;
   if (!arguments.learned.empty()) options.learned = loop::read_effects(arguments.learned);
@@ -306,8 +307,9 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
     explain(arguments);
     return ExitStatus::done;
   }
-  // Before any work: a folder that cannot be written to, an unknown name, and a file
-  // that nothing would be written to.
+  // Before any work: a level that cannot be reached, a folder that cannot be written to, an unknown
+  // name, and a file that nothing would be written to.
+  const loop::DiagnosisOptions options = diagnosis_options(arguments);
   if (!arguments.out.empty()) make_output_folder(arguments.out);
   if (!arguments.pictures.empty()) make_output_folder(arguments.pictures);
   if (!arguments.save_effect.empty()) try_output_file(arguments.save_effect);
@@ -324,7 +326,7 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
   const loop::Observations data = read_observations(arguments, extras.steps, whole);
   std::unique_ptr<Regressor> method;
   const loop::BaseMaker base = base_of(arguments, registry, method);
-  loop::JudgedDiagnosis diagnosis = diagnosed(arguments, data, base, diagnosis_options(arguments));
+  loop::JudgedDiagnosis diagnosis = diagnosed(arguments, data, base, options);
   if (arguments.learn != "none" && !diagnosis.leftover.signals.empty()) {
     grow_library(arguments, registry, data, base, diagnosis, extras);
   }
@@ -391,10 +393,10 @@ void add_base_options(CLI::App& command, LoopArguments& arguments) {
 // How sure an effect has to be.
 void add_test_options(CLI::App& command, LoopArguments& arguments) {
   command.add_option("--alpha", arguments.alpha_library, "false alarms of the library")
-      ->transform(real_number(1e-6, 0.5))
+      ->transform(real_number(1e-5, 0.5))
       ->capture_default_str();
   command.add_option("--alpha-leftover", arguments.alpha_leftover, "false alarms of UNKNOWN")
-      ->transform(real_number(1e-6, 0.5))
+      ->transform(real_number(1e-5, 0.5))
       ->capture_default_str();
   command.add_option("--flips", arguments.flips, "sign flips of the null distribution")
       ->transform(whole_number(99, 99999))

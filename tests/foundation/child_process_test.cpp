@@ -110,6 +110,13 @@ TEST_F(EscapingChild, TakesItsScratchFolderWithIt) {
   expect_all_ended();
 }
 
+// Nothing more can come from it, but it has not ended.
+TEST(RunChild, EndsAProgramThatClosedItsStreamsWhenTimeIsUp) {
+  const ChildRun run =
+      run_child({.command = {"bash", "-c", "exec >&- 2>&-; sleep 60"}}, {}, {.wall_s = 0.5});
+  EXPECT_TRUE(run.timed_out);
+}
+
 TEST(RunChild, StopsAProgramThatPrintsWithoutEnd) {
   EXPECT_THROW(run_child({.command = {"yes"}}, {}, {.output_bytes = 1U << 20}), Error);
 }

@@ -115,6 +115,10 @@ TEST(LoopCommand, BadOptionsEndWithStatus2AndItSaysHowToMendThem) {
   EXPECT_THAT(option_complaint({"--save-effect", (folder / "effect.toml").string()}),
               HasSubstr("--learn"));
   EXPECT_THAT(option_complaint({"--learn", "pysir"}), HasSubstr("pysr"));
+  // Nothing could ever be found.
+  EXPECT_THAT(option_complaint({"--flips", "498"}),
+              AllOf(HasSubstr("498 sign flips"), HasSubstr("take 499 or more")));
+  EXPECT_THAT(option_complaint({"--alpha", "1e-5"}), HasSubstr("take 99999 or more"));
 }
 
 TEST(LoopCommand, AFolderThatCannotBeMadeIsSaidBeforeTheWork) {
