@@ -112,15 +112,14 @@ std::size_t Grid::cell_count() const {
 }
 
 void Grid::require_runnable(std::string_view place) const {
-  constexpr std::size_t kMaxCells = 5'000'000;  // each about 1 kB of memory and 2 kB of disk
   const std::size_t cells = cell_count();
   if (cells == 0) {
     throw_bad_input("the grid has no cell: no problem, no method or no operator set is named",
                     place, "name some; '*' names all");
   }
-  if (cells > kMaxCells) {
+  if (cells > kMostCells) {
     throw_bad_input(fmt::format("the grid has {} cells", cells), place,
-                    fmt::format("use at most {}: split it into several grids", kMaxCells));
+                    fmt::format("use at most {}: split it into several grids", kMostCells));
   }
 }
 

@@ -85,6 +85,8 @@ void apply_prior(const Prior& prior, Problem& problem);
 OperatorSet fixed_form_operators();
 
 struct Grid {
+  static constexpr std::size_t kMostCells = 1'000'000;  // each about 1 kB of memory, 2 kB of disk
+
   std::string name;
   std::vector<std::string> problems;
   std::vector<Method> methods;

@@ -30,11 +30,21 @@ std::vector<std::string> multiplied(const std::vector<std::string>& suffixes,
 Sweep::Sweep(const TomlTable& grid, const Registry& registry) : registry_(registry) {
   const std::vector<std::string> keys = grid.keys("sweep");
   const TomlTable table = grid.table("sweep", keys);
+  // Before they are made: of the problems' values, and of each method's.
+  std::map<std::string, std::size_t> combinations;
+  const auto multiply = [&](const std::string& of, std::size_t values, const std::string& place) {
+    std::size_t& product = combinations.try_emplace(of, 1).first->second;
+    product *= std::min(values, Grid::kMostCells);
+    if (product <= Grid::kMostCells) return;
+    throw_bad_input(fmt::format("the sweep has more than {} combinations", Grid::kMostCells), place,
+                    "sweep fewer values");
+  };
   for (const std::string& key : keys) {
     if (key == kNoiseKey || key == kRowsKey) {
       std::vector<double> values;
       table.read(key, values);
       if (values.empty()) throw_bad_input(fmt::format("'{}' has no value", key), table.place(key));
+      multiply("", values.size(), table.place(key));
       suffixes_ = multiplied(suffixes_, key, values);
       continue;
     }
@@ -45,6 +55,7 @@ Sweep::Sweep(const TomlTable& grid, const Registry& registry) : registry_(regist
     }
     parameters_.push_back(
         {key.substr(0, dot), key.substr(dot + 1), table.value_array(key), table.place(key)});
+    multiply(parameters_.back().method, parameters_.back().values.size(), table.place(key));
   }
 }
 

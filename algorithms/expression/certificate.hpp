@@ -56,7 +56,8 @@ struct CertificateCheck {
   std::string claim;  // in words
   std::size_t pieces = 0;
 };
-// Never throws on a bad certificate: what cannot be read is rejected, with the reason.
+// Never throws on a bad certificate: what cannot be read is rejected, with the reason. Throws
+// std::bad_alloc where there is not enough memory.
 CertificateCheck check_certificate(std::string_view text);
 
 // What the two sides share: how the box falls into cells, and the bounds on one piece. Each input

@@ -159,6 +159,11 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
   result.unit = "row";
   result.units = inputs.rows;
   if (p == 0) return result;
+  constexpr Eigen::Index kMostConstants = 1000;  // a second; the time grows with the cube
+  if (p > kMostConstants) {
+    throw_bad_input(fmt::format("the formula has {} constants", p), {},
+                    fmt::format("intervals are made of {} at most", kMostConstants));
+  }
   LinearisedRows rows = linearise(formula, result.places, inputs, target, weights);
   if (!rows.is_finite()) {
     throw_bad_input("the formula has no finite derivative in some row", {},

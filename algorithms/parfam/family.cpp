@@ -129,6 +129,23 @@ std::size_t Structure::inner_parameters() const {
   return count;
 }
 
+double parameter_count(const Family& family, std::span<const int> caps) {
+  const auto denominator = [](int degree, std::span<const int> with_caps) {
+    return degree == 0 ? 0 : monomial_count(degree, with_caps);
+  };
+  std::vector<int> out_caps(caps.begin(), caps.end());
+  out_caps.resize(caps.size() + family.functions.size(), 1);
+  double count = monomial_count(family.degree_out, out_caps) +
+                 denominator(family.degree_out_denominator, out_caps);
+  if (family.enforce_function && !family.functions.empty()) {
+    count -= monomial_count(family.degree_out, caps);
+  }
+  if (family.functions.empty()) return count;
+  return count + static_cast<double>(family.functions.size()) *
+                     (monomial_count(family.degree_in, caps) +
+                      denominator(family.degree_in_denominator, caps));
+}
+
 Structure make_structure(const Family& family, std::span<const int> caps) {
   Structure structure;
   structure.inputs = caps.size();

@@ -73,5 +73,7 @@ inline constexpr int kMaximalPotence = 3;  // the published cap on an input's ex
 
 // caps: per input.
 Structure make_structure(const Family& family, std::span<const int> caps);
+// The parameters that it would have, without making it.
+double parameter_count(const Family& family, std::span<const int> caps);
 
 }  // namespace tribench::parfam

@@ -2,6 +2,7 @@
 #include "algorithms/parfam/monomials.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "algorithms/expression/build.hpp"
 #include "algorithms/expression/complexity.hpp"
@@ -102,6 +103,20 @@ std::vector<Monomial> monomials_up_to(int degree, std::span<const int> caps) {
   Monomial current(caps.size(), 0);
   for (int total = 0; total <= degree; ++total) extend(total, 0, caps, current, result);
   return result;
+}
+
+double monomial_count(int degree, std::span<const int> caps) {
+  // of[d]: in the variables so far, of total degree d.
+  std::vector<double> of(static_cast<std::size_t>(degree) + 1, 0);
+  of[0] = 1;
+  for (const int cap : caps) {
+    for (std::size_t d = of.size(); d-- > 0;) {
+      for (std::size_t e = 1; e <= std::min(d, static_cast<std::size_t>(cap)); ++e) {
+        of[d] += of[d - e];
+      }
+    }
+  }
+  return std::accumulate(of.begin(), of.end(), 0.0);
 }
 
 std::vector<double> monomial_values(const Monomial& monomial,

@@ -21,6 +21,9 @@ using Monomial = std::vector<int>;
 // All monomials of total degree <= degree with exponent j <= caps[j], by degree and then in
 // reverse lexicographic order: 1, x0, x1, x0^2, x0 x1, x1^2, ...
 std::vector<Monomial> monomials_up_to(int degree, std::span<const int> caps);
+// How many these are, without making them: of a thousand variables there are half a million of
+// degree 2. Exact up to 2^53.
+double monomial_count(int degree, std::span<const int> caps);
 
 // x0^e0 x1^e1 ... row by row; columns[j] holds variable j.
 std::vector<double> monomial_values(const Monomial& monomial,

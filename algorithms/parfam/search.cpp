@@ -19,7 +19,7 @@ namespace tribench::parfam {
 namespace {
 
 // More candidates than this make best subsets slow and their choice arbitrary.
-constexpr std::size_t kMostMonomials = 130;
+constexpr double kMostMonomials = 130;
 constexpr std::size_t kMostTerms = 16;
 // A family with more inner parameters is no longer searched well by a few starts.
 constexpr std::size_t kMostInner = 40;
@@ -123,9 +123,8 @@ class Search {
 void Search::add_polynomials() {
   std::vector<Monomial> monomials;
   for (int degree = 1; degree <= options_.polynomial_degree; ++degree) {
-    std::vector<Monomial> more = monomials_up_to(degree, all_.caps);
-    if (more.size() > kMostMonomials) break;
-    monomials = std::move(more);
+    if (monomial_count(degree, all_.caps) > kMostMonomials) break;
+    monomials = monomials_up_to(degree, all_.caps);
   }
   if (monomials.empty()) return;
   const std::size_t m = monomials.size();
@@ -173,6 +172,10 @@ std::vector<Structure> Search::structures() const {
   std::vector<Structure> result;
   const bool one_plus_q = options_.inner.denominators != Denominators::safe;
   for (const Family& family : families()) {
+    // Two for each function and one more are dropped below.
+    const auto dropped = static_cast<double>(2 * family.functions.size() + 1);
+    const double count = parameter_count(family, caps) - dropped;
+    if (2 * count > static_cast<double>(sample_.rows())) continue;
     Structure structure = make_structure(family, caps);
     for (std::size_t i = 0; i < structure.functions.size(); ++i) {
       // exp's constant is a factor of its coefficient; a ratio has its scale in the numerator.

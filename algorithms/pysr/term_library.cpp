@@ -37,6 +37,7 @@ class Builder {
  private:
   // Offers every monomial of total degree `left` in the inputs from `input` on.
   void monomials(std::vector<int>& powers, std::size_t input, int left) {
+    if (is_full()) return;  // of thousands of inputs there are millions
     if (left == 0) return offer_monomial(powers);
     if (input == powers.size()) return;
     for (int power = left; power >= 0; --power) {
@@ -90,8 +91,10 @@ class Builder {
     if (operators_.allows(Op::abs)) offer(Expression::unary(Op::abs, argument));
   }
 
+  bool is_full() const { return library_.terms.size() >= kMostTerms; }
+
   void offer(const Expression& formula, int degree = 9) {
-    if (library_.terms.size() >= kMostTerms) return;
+    if (is_full()) return;
     if (formula.size() > 1 && !operators_.admits(formula)) return;
     std::vector<double> values(rows_.size());
     evaluator_.evaluate(formula, rows_.inputs(), values);

@@ -21,8 +21,9 @@ using namespace build;
 
 constexpr std::size_t kFewestRowsOfSum = 40;
 constexpr std::size_t kMostInputsOfSum = 8;
-constexpr std::size_t kManyInputs = 36;   // beyond, products of different inputs are left out
-constexpr std::size_t kLongestSum = 150;  // bounds the cost; folds end most sums before
+constexpr std::size_t kMostOffered = 5000;  // columns: 200 MB for their products, fold by fold
+constexpr std::size_t kManyInputs = 36;     // beyond, products of different inputs are left out
+constexpr std::size_t kLongestSum = 150;    // bounds the cost; folds end most sums before
 constexpr std::size_t kRowsATerm = 4;
 constexpr int kFolds = 10;
 constexpr double kNothingNew = 1e-6;      // of a column's square beside the columns before it
@@ -412,6 +413,7 @@ std::optional<LongSum> fit_long_sum(const FiniteRows& rows, const OperatorSet& o
   if (inputs.size() > kMostInputsOfSum) {
     Library products(sample);
     products.add_products(inputs);
+    if (products.columns().size() > kMostOffered) return std::nullopt;
     if (!budget.spend(cost_of(products.columns().size(), sample.rows()))) return std::nullopt;
     const auto taken = choose(products.columns(), sample, budget);
     if (!taken) return std::nullopt;

@@ -38,6 +38,7 @@ struct Column {
 
 std::vector<Column> columns_of(const LogRows& rows, const OperatorSet& operators, int stage) {
   std::vector<Column> columns;
+  if (rows.inputs().size() > kMostColumns) return columns;
   const auto factors =
       stage == 0 ? known_factors(rows, operators, {})
                  : known_factors(rows, operators,
@@ -128,7 +129,7 @@ std::optional<Regression> grown(const std::vector<Column>& columns,
   for (const Column& column : columns) pointers.push_back(column.values.data());
   pointers.push_back(target.data());
   const std::size_t count = pointers.size();
-  if (!budget.spend(count * count / 16 * n)) return std::nullopt;
+  if (count > kMostColumns || !budget.spend(count * count / 16 * n)) return std::nullopt;
   std::vector<double> gram(count * count);
   columns::gram(pointers.data(), count, n, gram.data());
   const SubsetFits fits(std::move(gram), std::vector<char>(count - 1, 0));
@@ -202,7 +203,7 @@ std::vector<Expression> likely_products(const LogRows& rows, const OperatorSet& 
   const std::size_t count = weighted.size();
   std::vector<const double*> pointers;
   for (const auto& column : weighted) pointers.push_back(column.data());
-  if (!budget.spend(count * count / 16 * n)) return likely;
+  if (count > kMostColumns || !budget.spend(count * count / 16 * n)) return likely;
   std::vector<double> gram(count * count);
   columns::gram(pointers.data(), count, n, gram.data());
   const SubsetFits fits(std::move(gram), std::vector<char>(count - 1, 0));

@@ -25,7 +25,6 @@ constexpr double kExactRelation = 1e-8;      // of a row's target, root mean squ
 constexpr double kNoPart = 1e-10;            // of a row's target, that a term explains
 constexpr double kPromisingRelation = 1e-5;  // in the Gram matrix, whose rounding is larger
 constexpr std::size_t kMostRelationTerms = 6;
-constexpr std::size_t kMostColumns = 2000;  // 0.2 s and 50 MB for their products
 constexpr std::size_t kLikelyOfASize = 3;
 constexpr std::size_t kMostLikelyTerms = 3;
 constexpr std::size_t kSums = 300;  // that are grown (subset_fits.hpp)

@@ -19,6 +19,7 @@
 
 #include "algorithms/fitting/product_blocking.hpp"
 #include "foundation/error.hpp"
+#include "foundation/free_memory.hpp"
 #include "foundation/freed_memory.hpp"
 #include "foundation/standard_streams.hpp"
 #include "foundation/suggestion.hpp"
@@ -199,6 +200,7 @@ void add_commands(CLI::App& app, ExitStatus& status, const Registry& registry,
 
 int run_command_line(int argc, char** argv, const Registry& registry) {
   keep_freed_memory();
+  hold_to_free_memory();
   CLI::App app("Benchmarks symbolic regression of joint friction, and closes the loop with data.",
                "tribench");
   app.set_version_flag("--version", version_with_commit());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What every registered method must keep to, whatever it is: the rules of regressor.hpp.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -243,6 +244,21 @@ TEST_P(EveryMethod, AnswersFewRows) {
     Sample sample = friction_sample(rows);
     expect_legal(run(registry_, GetParam(), sample).result, sample);
   }
+}
+
+// What a method makes of its inputs grows with their pairs at most as long as these are few: two
+// thousand have two million products.
+TEST_P(EveryMethod, AnswersThousandsOfInputsInSeconds) {
+  Sample sample = friction_sample(60);
+  RandomStream random(key_of("many inputs"));
+  for (int j = 2; j < 2000; ++j) {
+    sample.inputs.push_back({fmt::format("x{}", j), "-", Role::none, 0, 1, std::nullopt});
+    sample.columns.emplace_back();
+    for (std::size_t r = 0; r < 60; ++r) sample.columns.back().push_back(random.uniform());
+  }
+  const double begin_s = process_cpu_seconds();
+  expect_legal(run(registry_, GetParam(), sample, {.operators = "full"}).result, sample);
+  EXPECT_LT(process_cpu_seconds() - begin_s, 8);
 }
 
 TEST_P(EveryMethod, AnswersASingleRow) {

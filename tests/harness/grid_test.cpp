@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "harness/grid.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -321,6 +322,13 @@ TEST(Grid, RefusesASweepOfWhatIsNotThere) {
   EXPECT_THAT(swept("\"grid_alpha.island\" = [1]"), HasSubstr("islands"));
   EXPECT_THAT(swept("\"grid_alpha.islands\" = [1000]"), HasSubstr("g.toml:4"));
   EXPECT_THAT(swept("\"pysr.populations\" = [8]"), HasSubstr("does not run it"));
+  // More than a run can hold, before they are made.
+  std::string many = "0";
+  for (int i = 1; i < 1001; ++i) many += fmt::format(", {}", i);
+  EXPECT_THAT(swept(fmt::format("noise = [{0}], rows = [{0}]", many)),
+              AllOf(HasSubstr("g.toml:4"), HasSubstr("sweep fewer values")));
+  EXPECT_THAT(swept(fmt::format("\"grid_alpha.a\" = [{0}], \"grid_alpha.b\" = [{0}]", many)),
+              AllOf(HasSubstr("g.toml:4"), HasSubstr("sweep fewer values")));
   // A method whose name begins with it is another one.
   EXPECT_THAT(refusal("[grid]\nproblems = [\"A/j2/load\"]\nmethods = [\"pysr-x\"]\n"
                       "sweep = { \"pysr.cycles\" = [5] }\n[[method]]\nname = \"pysr-x\"\n"

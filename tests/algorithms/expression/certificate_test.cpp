@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -164,6 +165,32 @@ TEST(Certificate, OfMoreCellsThanEntriesIsRejectedBeforeTheyAreMade) {
   EXPECT_EQ(check.reason, "the entries are fewer than the cells of the box");
   NamedBox named = parse_box(box);
   EXPECT_FALSE(write_certificate(parse_over(formula, named), named));
+}
+
+// A box of its own for each of thousands of cuts within one another took 10 GB.
+TEST(Certificate, OfManyCutsWithinOneAnotherTakesNoMemoryForEach) {
+  constexpr int kInputs = 20'000;
+  std::string box = "x0=1:2";
+  for (int k = 1; k < kInputs; ++k) box += fmt::format(",x{}=1:2", k);
+  Json json = {{"format", "tribench certificate 2"},
+               {"formula", "x0 + 1"},
+               {"box", box},
+               {"claim", "finite"},
+               {"entries", Json::array()}};
+  for (int cut = 0; cut < 4000; ++cut) {
+    json["entries"].push_back({{"cut", {"x0", 2 - 0.0001 * (cut + 1)}}});
+  }
+#ifdef TRIBENCH_SANITIZED
+  GTEST_SKIP() << "the sanitizer's shadow memory is too large to be limited";
+#endif
+  struct rlimit memory {};
+  getrlimit(RLIMIT_DATA, &memory);
+  struct rlimit little = memory;
+  little.rlim_cur = 1U << 30;
+  setrlimit(RLIMIT_DATA, &little);
+  const CertificateCheck check = check_certificate(forge(json));
+  setrlimit(RLIMIT_DATA, &memory);
+  EXPECT_EQ(check.reason, "the entries end before the box is covered");
 }
 
 // 1/x10000 is not finite on x10000=-1:1; a variable of 16 bits that folded input 65536 onto input 0

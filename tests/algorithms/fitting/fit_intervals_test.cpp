@@ -109,6 +109,11 @@ TEST(FitIntervals, SayWhatTheRowsDoNotDetermine) {
   const std::vector<const double*> two = {few.data()};
   const std::vector<int> one = {0, 0};
   EXPECT_THROW(fit_intervals(parse("1 + 2*x", kNames), {two, 2}, few, one), Error);
+  // The time grows with the cube of the constants.
+  std::string sum = "1";
+  for (int k = 0; k < 1000; ++k) sum += " + 2*sin(x)";
+  Expression long_sum = parse(sum, kNames);
+  EXPECT_THROW(fitted(rows, long_sum), Error);
 }
 
 struct Coverage {

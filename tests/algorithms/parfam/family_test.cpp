@@ -46,6 +46,21 @@ TEST(Family, HasThePublishedNumberOfParameters) {
   }
 }
 
+TEST(Family, ItsParametersAreCountedWithoutMakingThem) {
+  for (Family family : {Family{0, 0, 3, 2, {}, false}, Family{2, 2, 4, 3, {Op::exp}, false},
+                        Family{1, 1, 2, 0, {Op::cos, Op::sqrt}, false}}) {
+    for (const bool enforce : {false, true}) {
+      family.enforce_function = enforce;
+      const std::vector<int> caps = {3, 1, 2};
+      EXPECT_EQ(parameter_count(family, caps),
+                static_cast<double>(make_structure(family, caps).parameters()))
+          << describe(family);
+    }
+  }
+  const std::vector<int> many(20'000, 3);
+  EXPECT_EQ(parameter_count({0, 0, 2, 0, {}, false}, many), 20'001.0 * 20'002 / 2);
+}
+
 TEST(Family, EnforceKeepsOnlyMonomialsWithAFunction) {
   const std::vector<int> caps = {3};
   const Structure structure = make_structure({1, 0, 2, 0, {Op::exp}, true}, caps);

@@ -156,7 +156,7 @@ TEST(CommandLine, MoreCellsThanARunCanHoldAreRefusedBeforeTheyAreMade) {
   const ProgramRun run = run_tribench({"run", "paper", "--seeds", "1000000", "--dry-run"});
   EXPECT_EQ(run.status, 2);
   EXPECT_THAT(run.errors, HasSubstr("--seeds: the grid has "));
-  EXPECT_THAT(run.errors, HasSubstr("use at most 5000000"));
+  EXPECT_THAT(run.errors, HasSubstr("use at most 1000000"));
 }
 
 // What budgets allow at most is no prediction.
