@@ -17,6 +17,7 @@
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
 #include "foundation/output_file.hpp"
+#include "foundation/number_text.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/shell_word.hpp"
 #include "foundation/standard_streams.hpp"
@@ -36,7 +37,9 @@ std::string header_value(const std::string& value, const char* option) {
     throw_bad_input(fmt::format("'{}' cannot stand in a Slurm script", value), option,
                     "use no quotes, backslashes or control characters");
   }
-  return value.find(' ') == std::string::npos ? value : fmt::format("\"{}\"", value);
+  // A single quote would open one, and a hash begins a comment.
+  const bool is_plain = value.find_first_of(" '#") == std::string::npos;
+  return is_plain ? value : fmt::format("\"{}\"", value);
 }
 
 // A path in which Slurm takes no %j for the job's number.
@@ -70,8 +73,13 @@ std::string submit(const std::vector<std::string>& command) {
     throw Error(ErrorKind::failed, fmt::format("sbatch refused the job: {}", result.errors));
   }
   // --parsable prints "id" or "id;cluster".
-  const std::size_t end = result.output.find_first_of(";\n");
-  return result.output.substr(0, end);
+  const std::string job = result.output.substr(0, result.output.find_first_of(";\n"));
+  if (!read_number<std::uint64_t>(job)) {
+    throw Error(ErrorKind::failed,
+                fmt::format("sbatch answers '{}', which is no job's number", job), "sbatch",
+                "look for the job by squeue; is this the sbatch of Slurm?");
+  }
+  return job;
 }
 
 // Of these jobs; none where Slurm does not answer, and `errors` says why: a controller that is busy

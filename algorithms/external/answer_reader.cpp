@@ -7,6 +7,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdint>
+#include <initializer_list>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -43,21 +44,31 @@ std::string last_line(std::string_view text) {
   return excerpt(start == std::string_view::npos ? text : text.substr(start + 1));
 }
 
+bool holds_any(std::string_view text, std::initializer_list<std::string_view> words) {
+  return std::ranges::any_of(
+      words, [&](std::string_view one) { return text.find(one) != std::string_view::npos; });
+}
+
 // What languages say that were refused memory; the program's exit status says no more than that it
 // has failed.
 bool tells_of_no_memory(std::string_view errors) {
-  constexpr std::string_view kWords[] = {
-      "MemoryError",           // Python
-      "std::bad_alloc",        // C++
-      "OutOfMemoryError",      // Java, Julia
-      "cannot allocate",       // R, Go
-      "Cannot allocate",       // the C library: ENOMEM
-      "Unable to allocate",    // NumPy
-      "memory allocation of",  // Rust
-      "out of memory",         // Octave
-  };
-  return std::ranges::any_of(
-      kWords, [&](std::string_view words) { return errors.find(words) != std::string_view::npos; });
+  return holds_any(errors, {
+                               "MemoryError",           // Python
+                               "std::bad_alloc",        // C++
+                               "OutOfMemoryError",      // Java, Julia
+                               "cannot allocate",       // R, Go
+                               "Cannot allocate",       // the C library: ENOMEM
+                               "Unable to allocate",    // NumPy
+                               "memory allocation of",  // Rust
+                               "out of memory",         // Octave
+                           });
+}
+
+// What the C library says of files that could not be written, and a shell of a program that was
+// ended for it.
+bool tells_of_full_disk(std::string_view errors) {
+  return holds_any(errors, {"No space left on device", "Disk quota exceeded", "File too large",
+                            "File size limit exceeded"});
 }
 
 // A count in the program's answer.
@@ -74,12 +85,12 @@ std::uint64_t count_in(const json& object, const char* key, std::uint64_t otherw
     return static_cast<std::uint64_t>(number);
   }
   throw_unusable(fmt::format("'{}' is {}, not a whole number from 0 to {}", key,
-                             excerpt(value.dump()), kExact));
+                             excerpt(write_json(value)), kExact));
 }
 
 std::string text_in(const json& value, const char* key) {
   if (value.is_string()) return value.get<std::string>();
-  throw_unusable(fmt::format("'{}' is {}, not text", key, excerpt(value.dump())));
+  throw_unusable(fmt::format("'{}' is {}, not text", key, excerpt(write_json(value))));
 }
 
 bool is_answer(const json& line) {
@@ -106,7 +117,7 @@ void take_improvement(FitContext& context, const json& improvement) {
   if (!improvement.is_object() || !improvement.contains("train_error") ||
       !improvement.at("train_error").is_number()) {
     throw_unusable(fmt::format("'improved' is {}, not {{\"train_error\": NUMBER}}",
-                               excerpt(improvement.dump())));
+                               excerpt(write_json(improvement))));
   }
   context.progress->improved(improvement.at("train_error").get<double>(),
                              count_in(improvement, "evaluations", 0));
@@ -160,6 +171,12 @@ FitResult AnswerReader::finish(const ChildExit& exit, std::string_view errors) {
   }
   const bool has_failed = exit.signal != 0 || exit.status != 0;
   if (has_failed && tells_of_no_memory(errors)) throw std::bad_alloc();
+  // By the time it has ended its folder is gone and there is room again.
+  if (has_failed && tells_of_full_disk(errors)) {
+    throw Error(ErrorKind::environment,
+                fmt::format("there was no room to write for the program: {}", last_line(errors)),
+                {}, "make room in the folder of temporary files, or name another by TMPDIR");
+  }
   if (exit.signal != 0) {
     throw_unusable(fmt::format("the program was ended by {}", signal_name(exit.signal)));
   }
@@ -194,7 +211,8 @@ void AnswerReader::take_front(const nlohmann::json& object) {
   FitResult result;
   const json& front = object.at("front");
   if (!front.is_array()) {
-    throw_unusable(fmt::format("'front' is {}, not a list of formulas", excerpt(front.dump())));
+    throw_unusable(
+        fmt::format("'front' is {}, not a list of formulas", excerpt(write_json(front))));
   }
   if (front.empty()) throw_unusable("the program's front is empty");
   if (front.size() > kMostFormulas) {

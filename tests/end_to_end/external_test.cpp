@@ -274,6 +274,21 @@ TEST_F(ExternalTest, AFaultOfTheMachineStopsTheRunAndIsRepeatedByResume) {
   EXPECT_EQ(figure("limited", "formula"), "4");
 }
 
+// The program's own folder is gone by then, and there is room again.
+TEST_F(ExternalTest, ADiskThatIsFullWithinAProgramStopsTheRun) {
+  for (const std::string fault : {"dd if=/dev/zero of=/dev/full count=1 || exit 1",
+                                  "(ulimit -f 1; yes > $TMPDIR/x) || exit 1"}) {
+    write_text(folder_ / "grid.toml",
+               "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"filler\"]\n" +
+                   shell_method("filler", fault + "; echo '{\"front\": [\"4\"]}'"));
+    const ProgramRun stopped =
+        run_to_end({program().string(), "run", (folder_ / "grid.toml").string(), "--out",
+                    (folder_ / std::to_string(fault.size())).string()});
+    EXPECT_EQ(stopped.status, 3) << fault;
+    EXPECT_THAT(stopped.errors, HasSubstr("no room to write")) << fault;
+  }
+}
+
 // Figures of two versions of a program in one leaderboard would be nobody's.
 TEST_F(ExternalTest, AProgramThatHasChangedIsAnotherRun) {
   const std::filesystem::path script = folder_ / "theirs.sh";

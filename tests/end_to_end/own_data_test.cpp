@@ -246,13 +246,24 @@ TEST_F(OwnDataTest, SlurmElementsAreToldTheSameFiles) {
   EXPECT_EQ(element.status, 0) << element.errors;
 }
 
-// In a path Slurm would write %j as the job's number.
+// In a path Slurm would write %j as the job's number, and sbatch takes quotes and hashes for its
+// own.
 TEST_F(OwnDataTest, SlurmWritesItsLogsWhereTheRunIs) {
-  const std::string out = (folder_ / "r\xc3\xa9sultat %j").string();
+  const std::string out = (folder_ / "r\xc3\xa9sultat#%j'").string();
   const ProgramRun plan =
       run({"submit", (folder_ / "here/grid.toml").string(), "--slurm", "--out", out, "--dry-run"});
   ASSERT_EQ(plan.status, 0) << plan.errors;
-  EXPECT_THAT(plan.output, HasSubstr("r\xc3\xa9sultat %%j/log/element-%a.log\""));
+  EXPECT_THAT(plan.output, HasSubstr("r\xc3\xa9sultat#%%j'/log/element-%a.log\""));
+}
+
+TEST_F(OwnDataTest, AnSbatchThatNamesNoJobIsNotBelieved) {
+  write_text(folder_ / "bin/sbatch", "#!/bin/sh\necho submitted\n");
+  fs::permissions(folder_ / "bin/sbatch", fs::perms::owner_all);
+  const ProgramRun answer = run_to_end(
+      {program().string(), "submit", "quick", "--slurm", "--out", (folder_ / "run").string()},
+      {"PATH=" + (folder_ / "bin").string() + ":" + std::getenv("PATH")});
+  EXPECT_EQ(answer.status, 3);
+  EXPECT_THAT(answer.errors, HasSubstr("'submitted', which is no job's number"));
 }
 
 TEST_F(OwnDataTest, RefusalsNameOptionAndMend) {
@@ -268,6 +279,10 @@ TEST_F(OwnDataTest, RefusalsNameOptionAndMend) {
   EXPECT_THAT(refused({"quick", "--data-file", logs, "--target", "tau"}), HasSubstr("excludes"));
   EXPECT_THAT(refused({"--data-file", logs + "/none.csv", "--target", "tau"}),
               AllOf(HasSubstr("--data-file"), HasSubstr("none.csv")));
+  const std::string latin = (folder_ / "here/p\xe9riode.csv").string();
+  write_text(latin, "v,tau\n1,2\n2,4\n");
+  EXPECT_THAT(refused({"--data-file", latin, "--target", "tau", "--inputs", "v"}),
+              HasSubstr("not UTF-8; rename it"));
   EXPECT_THAT(refused({"--data-file", logs, "--target", "tau", "--methods", "linaer"}),
               HasSubstr("linear"));
   EXPECT_THAT(refused({"--data-file", logs, "--target", "tua", "--methods", "linear"}),
