@@ -35,7 +35,31 @@ std::size_t control_length(std::string_view text) {
   return next >= 0x80 && next < 0xA0 ? 2 : 0;
 }
 
+// Bytes of the UTF-8 sequence that begins at `at`; 0: none does.
+std::size_t utf8_sequence(std::string_view text, std::size_t at) {
+  const auto first = static_cast<unsigned char>(text[at]);
+  const std::size_t size = first < 0x80                     ? 1
+                           : first >= 0xC2 && first < 0xE0  ? 2
+                           : first >= 0xE0 && first < 0xF0  ? 3
+                           : first >= 0xF0 && first <= 0xF4 ? 4
+                                                            : 0;
+  if (at + size > text.size()) return 0;
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((static_cast<unsigned char>(text[at + i]) & 0xC0) != 0x80) return 0;
+  }
+  return size;
+}
+
 }  // namespace
+
+bool is_utf8(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t size = utf8_sequence(text, at);
+    if (size == 0) return false;
+    at += size;
+  }
+  return true;
+}
 
 bool holds_control_characters(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 #include "foundation/plain_name.hpp"
 
 namespace tribench {
@@ -17,6 +18,9 @@ std::vector<user::DataSource> sources_of(const std::vector<std::string>& named,
   std::vector<user::DataSource> sources;
   for (const std::string& one : named) {
     for (user::DataSource& source : user::find_sources(one, option)) {
+      if (!is_utf8(source.file.string())) {  // the run's grid, which is TOML, could not name it
+        throw_bad_input("the file's name is not UTF-8", source.file.string(), "rename it");
+      }
       sources.push_back(std::move(source));
     }
   }

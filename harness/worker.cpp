@@ -13,6 +13,7 @@
 #include <string>
 
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "harness/run_cell.hpp"
 
 namespace tribench {
@@ -69,7 +70,7 @@ int run_worker(const Registry& registry) {
       send(answers, "finished", print_result(result));
     } catch (const Error& error) {
       // Nothing a cell can do wrong comes here: CellRunner makes a record of it.
-      send(answers, "environment", nlohmann::json(error.what()).dump());
+      send(answers, "environment", write_json(nlohmann::json(error.what())));
     } catch (const std::bad_alloc&) {
       send(answers, "out_of_memory", "true");
       return 1;

@@ -173,17 +173,16 @@ Night night_of_run(const RunFolder& run, std::string name) {
 }
 
 std::string print_night(const Night& night) {
-  std::string body = ordered_json{{"name", night.name},
-                                  {"started", night.started},
-                                  {"code", night.code},
-                                  {"commit", night.commit},
-                                  {"machine", night.machine},
-                                  {"grid", night.grid},
-                                  {"data", night.data},
-                                  {"outcome", night.outcome},
-                                  {"benches", night.benches.size()},
-                                  {"bench_conditions", night.bench_conditions}}
-                         .dump(-1, ' ', false, ordered_json::error_handler_t::replace) +
+  std::string body = write_json(ordered_json{{"name", night.name},
+                                             {"started", night.started},
+                                             {"code", night.code},
+                                             {"commit", night.commit},
+                                             {"machine", night.machine},
+                                             {"grid", night.grid},
+                                             {"data", night.data},
+                                             {"outcome", night.outcome},
+                                             {"benches", night.benches.size()},
+                                             {"bench_conditions", night.bench_conditions}}) +
                      "\n";
   for (const NightSeries& series : night.series) {
     body +=

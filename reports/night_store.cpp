@@ -117,11 +117,12 @@ void NightStore::bless(const Blessing& blessing) {
   std::string name = blessing.when;
   std::erase(name, ':');
   while (fs::exists(folder_ / kBlessings / (name + kBlessingEnd))) name += "+";
-  write_durably(
-      folder_ / kBlessings / (name + kBlessingEnd),
-      ordered_json{{"night", blessing.night}, {"reason", blessing.reason}, {"when", blessing.when}}
-              .dump(1, ' ', false, ordered_json::error_handler_t::replace) +
-          "\n");
+  write_durably(folder_ / kBlessings / (name + kBlessingEnd),
+                write_json(ordered_json{{"night", blessing.night},
+                                        {"reason", blessing.reason},
+                                        {"when", blessing.when}},
+                           1) +
+                    "\n");
 }
 
 std::vector<Blessing> NightStore::blessings() const {

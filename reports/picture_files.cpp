@@ -8,6 +8,7 @@
 
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "foundation/output_file.hpp"
 #include "reports/html/embedded.hpp"
 
@@ -57,9 +58,7 @@ std::vector<std::string> draw_picture_files(const std::vector<std::string_view>&
                                             const std::filesystem::path& folder,
                                             const std::vector<std::string>& only) {
   std::filesystem::create_directories(folder);
-  const ScratchFile file(
-      folder / ".data.json",
-      data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  const ScratchFile file(folder / ".data.json", write_json(data));
   std::string script;
   for (const std::string_view part : {embedded::vega_js(), embedded::plots_js()}) {
     script += part;

@@ -283,7 +283,7 @@ std::string suites_json(const std::vector<SuiteInfo>& suites) {
                      {"results", suite_results_json(suite.results)},
                      {"results_note", suite.results_note}});
   }
-  return array.dump(1) + "\n";
+  return write_json(array, 1) + "\n";
 }
 
 std::vector<SuiteInfo> read_suites(const std::filesystem::path& file,

@@ -129,7 +129,7 @@ class ExternalMethod : public Regressor {
     const ScratchFolder scratch;
     write_training_rows(context.data, scratch.path() / "train.csv");
     const std::filesystem::path request = scratch.path() / "request.json";
-    write_or_throw(request, request_json(context, parameters_).dump(1) + "\n");
+    write_or_throw(request, write_json(request_json(context, parameters_), 1) + "\n");
     ChildOptions options;
     options.command = command_;
     options.command.push_back(request.string());
@@ -178,8 +178,8 @@ class ExternalMethod : public Regressor {
                   fmt::format("the program took more than {:.3g} s of wall time", limits_.wall_s));
     }
     if (std::isfinite(limits_.cpu_s) && process_tree_use(program.pid()).cpu_s > limits_.cpu_s) {
-      throw Error(ErrorKind::failed, fmt::format("the program took more than {:.3g} s of CPU time",
-                                                 limits_.cpu_s));
+      throw Error(ErrorKind::failed,
+                  fmt::format("the program took more than {:.3g} s of CPU time", limits_.cpu_s));
     }
   }
 

@@ -161,8 +161,8 @@ class Transfer {
 }  // namespace
 
 std::string weights_hash(const Json& tokens, const Json& parameters, const Json& encoder) {
-  return fmt::format("{:016x}", key_of(tokens.dump() + parameters.dump() +
-                                       (encoder.is_null() ? "" : encoder.dump())));
+  return fmt::format("{:016x}", key_of(write_json(tokens) + write_json(parameters) +
+                                       (encoder.is_null() ? "" : write_json(encoder))));
 }
 
 std::string write_weights(const Policy& policy, const DataEncoder* encoder,
@@ -188,7 +188,7 @@ std::string write_weights(const Policy& policy, const DataEncoder* encoder,
   file["tokens"] = std::move(tokens);
   file["parameters"] = std::move(parameters);
   if (encoder != nullptr) file["encoder"] = std::move(encoding);
-  return file.dump() + "\n";
+  return write_json(file) + "\n";
 }
 
 void read_weights(std::string_view text, std::string_view place, Policy& policy) {

@@ -130,7 +130,7 @@ void print_text(const NamedBox& box, const PropertyQuestion& question, const Pro
       break;
     default:
       fmt::print("{}: {} on {}; smallest box left: {}", verdict, claim_text(box, question),
-                 print_box(box), ranges_json(result.undecided_box, box).dump());
+                 print_box(box), write_json(ranges_json(result.undecided_box, box)));
   }
   fmt::print("  ({} boxes, {:.3g} s)\n", result.boxes, seconds);
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "foundation/json_text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
 #include "reports/comparison.hpp"
@@ -66,7 +67,7 @@ void compare(const CompareArguments& arguments, ExitStatus& status) {
   if (arguments.json) {
     nlohmann::ordered_json answer = comparison_json(comparison);
     if (has_history) answer["history"] = changes_json(changes, runs);
-    fmt::print("{}\n", answer.dump(2));
+    fmt::print("{}\n", write_json(answer, 2));
   } else {
     fmt::print("{}", comparison_markdown(comparison));
     if (has_history) fmt::print("\n### History\n\n{}", history_markdown(changes, runs));

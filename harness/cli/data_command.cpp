@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "harness/cli/commands.hpp"
 #include "problems/measured/data_folder.hpp"
 #include "problems/measured/manifest.hpp"
@@ -70,7 +71,7 @@ void list_sets(const DataArguments& options) {
                  manifest.problems.size(), manifest.licence);
     }
   }
-  if (options.json) fmt::print("{}\n", array.dump(2));
+  if (options.json) fmt::print("{}\n", write_json(array, 2));
 }
 
 ExitStatus check_sets(const DataArguments& options) {
@@ -96,7 +97,7 @@ ExitStatus check_sets(const DataArguments& options) {
     }
   }
   if (!any) throw_bad_input("none of the measured sets is here", folder->string(), kFolderMend);
-  if (options.json) fmt::print("{}\n", array.dump(2));
+  if (options.json) fmt::print("{}\n", write_json(array, 2));
   return all_good ? ExitStatus::done : ExitStatus::found;
 }
 

@@ -18,6 +18,7 @@
 #include "algorithms/external/external_method.hpp"
 #include "algorithms/registry.hpp"
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "foundation/number_text.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/shell_word.hpp"
@@ -270,7 +271,7 @@ void fit_shared_shape(const FitArguments& arguments, Problem& problem, const Cho
                 reason_text(shared.failure), arguments.method, "");
   }
   if (arguments.json) {
-    fmt::print("{}\n", category_json(shared).dump(2));
+    fmt::print("{}\n", write_json(category_json(shared), 2));
   } else {
     print_category_fit(shared);
   }
@@ -308,9 +309,9 @@ void fit(const FitArguments& arguments, const Registry& registry) {
   answer.target = problem.target;
   answer.reading = *arguments.reading;
   add_intervals(arguments, problem, weights, answer);
-  if (!arguments.save.empty()) write_file(arguments.save, fit_json(answer).dump(2) + "\n");
+  if (!arguments.save.empty()) write_file(arguments.save, write_json(fit_json(answer), 2) + "\n");
   if (arguments.json) {
-    fmt::print("{}\n", fit_json(answer).dump(2));
+    fmt::print("{}\n", write_json(fit_json(answer), 2));
   } else {
     print_fit(answer);
   }

@@ -155,7 +155,7 @@ DataOptions read_fit_reading(const nlohmann::json& model, const std::string& fil
   if (!model.contains("reading")) return {};
   std::string text;
   for (const auto& [key, value] : model["reading"].items()) {
-    if (value.is_primitive() && !value.is_null()) text += key + " = " + value.dump() + "\n";
+    if (value.is_primitive() && !value.is_null()) text += key + " = " + write_json(value) + "\n";
   }
   const toml::table table = parse_toml(text, file);
   return read_data_options(TomlTable(table, file, "reading", data_option_keys()));

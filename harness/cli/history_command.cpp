@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/standard_streams.hpp"
 #include "harness/cli/commands.hpp"
@@ -69,7 +70,7 @@ nlohmann::ordered_json json_of(const StoreHistory& history) {
 void show(const HistoryArguments& arguments) {
   const StoreHistory history = read_history(existing(arguments.store));
   if (arguments.json) {
-    fmt::print("{}\n", json_of(history).dump(2));
+    fmt::print("{}\n", write_json(json_of(history), 2));
   } else {
     fmt::print("{}", history_text(history));
   }

@@ -15,6 +15,7 @@
 #include "algorithms/effects/effect_library.hpp"
 #include "algorithms/expression/operator_set.hpp"
 #include "algorithms/registry.hpp"
+#include "foundation/json_text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/shipped_grids.hpp"
 #include "problems/measured/data_folder.hpp"
@@ -96,7 +97,7 @@ std::vector<Listed> listed_grids() {
 
 void print_list(const std::vector<Listed>& all, bool json) {
   if (json) {
-    fmt::print("{}\n", array_of(all).dump(2));
+    fmt::print("{}\n", write_json(array_of(all), 2));
     return;
   }
   std::size_t width = 0;
@@ -104,10 +105,10 @@ void print_list(const std::vector<Listed>& all, bool json) {
   for (const Listed& item : all) {
     fmt::print("{:<{}}  {}", item.name, width, item.summary);
     if (item.more.contains("high")) {
-      fmt::print("; {} to {}", item.more["low"].dump(), item.more["high"].dump());
+      fmt::print("; {} to {}", write_json(item.more["low"]), write_json(item.more["high"]));
     }
-    if (item.more.contains("choices")) fmt::print("; one of {}", item.more["choices"].dump());
-    if (item.more.contains("default")) fmt::print(" [{}]", item.more["default"].dump());
+    if (item.more.contains("choices")) fmt::print("; one of {}", write_json(item.more["choices"]));
+    if (item.more.contains("default")) fmt::print(" [{}]", write_json(item.more["default"]));
     fmt::print("\n");
   }
 }

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "algorithms/udsr/pretraining.hpp"
+#include "foundation/json_text.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/standard_streams.hpp"
 #include "harness/cli/commands.hpp"
@@ -44,10 +45,9 @@ void run(const Arguments& arguments) {
       udsr::pretrain(policy, trained, arguments.options, show_progress);
   write_file(arguments.out, udsr::write_weights(policy, trained, provenance));
   if (arguments.json) {
-    fmt::print("{}\n", nlohmann::json({{"file", arguments.out},
-                                       {"sequences", provenance.sequences},
-                                       {"loss_per_token", provenance.loss_per_token}})
-                           .dump());
+    fmt::print("{}\n", write_json(nlohmann::json({{"file", arguments.out},
+                                                  {"sequences", provenance.sequences},
+                                                  {"loss_per_token", provenance.loss_per_token}})));
   } else {
     fmt::print("{}: trained on {} formulas, {:.3f} nats a token on held-out ones\n", arguments.out,
                provenance.sequences, provenance.loss_per_token);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "foundation/glob.hpp"
+#include "foundation/json_text.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
@@ -123,7 +124,7 @@ void list_names(const Catalogue& catalogue, const ListingArguments& arguments) {
   for (const ProblemEntry* entry : shown) {
     array.push_back({{"name", entry->name}, {"summary", entry->summary}});
   }
-  fmt::print("{}\n", array.dump(2));
+  fmt::print("{}\n", write_json(array, 2));
 }
 
 void list_problems(const ListingArguments& arguments) {
@@ -138,7 +139,7 @@ void list_problems(const ListingArguments& arguments) {
   }
   const Json problem = problem_json(catalogue.find(arguments.name), arguments.seed);
   if (arguments.json) {
-    fmt::print("{}\n", Json::array({problem}).dump(2));
+    fmt::print("{}\n", write_json(Json::array({problem}), 2));
   } else {
     print_problem(problem);
   }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "foundation/json_text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/study/recovery_study.hpp"
 
@@ -58,7 +59,7 @@ void print_recovery_json(const std::vector<RecoveryFigure>& figures) {
                      {"runs", figure.runs},
                      {"median_cpu_s", figure.median_cpu_s}});
   }
-  fmt::print("{}\n", array.dump(2));
+  fmt::print("{}\n", write_json(array, 2));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/scratch_folder.hpp"
 #include "foundation/shell_word.hpp"
@@ -90,13 +91,14 @@ void print_dry_run(const Grid& grid, const RunArguments& arguments, const RunOpt
     for (const PlannedWork& item : work) {
       cells.push_back({{"cell", item.cell.key()}, {"predicted_s", predicted(item.predicted_s)}});
     }
-    fmt::print("{}\n", nlohmann::json{{"grid", grid.name},
-                                      {"cells", cells},
-                                      {"basis", basis},
-                                      {"predicted_cpu_s", predicted(total_s)},
-                                      {"predicted_wall_s", predicted(total_s / options.jobs)},
-                                      {"most_wall_s", most_s / options.jobs}}
-                           .dump(2));
+    fmt::print("{}\n",
+               write_json(nlohmann::json{{"grid", grid.name},
+                                         {"cells", cells},
+                                         {"basis", basis},
+                                         {"predicted_cpu_s", predicted(total_s)},
+                                         {"predicted_wall_s", predicted(total_s / options.jobs)},
+                                         {"most_wall_s", most_s / options.jobs}},
+                          2));
     return;
   }
   for (const PlannedWork& item : work) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "foundation/json_text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/cli/study_logs.hpp"
@@ -48,7 +49,7 @@ void print_json(const std::vector<GeneratorFigure>& figures) {
                      {"within", figure.within},
                      {"paper", figure.paper}});
   }
-  fmt::print("{}\n", array.dump(2));
+  fmt::print("{}\n", write_json(array, 2));
 }
 
 void add_generator_study(CLI::App& study, ExitStatus& status) {
@@ -92,7 +93,7 @@ void print_references(const std::vector<ReferenceFigure>& figures, bool json) {
                  figure.within ? "yes" : "NO");
     }
   }
-  if (json) fmt::print("{}\n", array.dump(2));
+  if (json) fmt::print("{}\n", write_json(array, 2));
 }
 
 void add_reference_study(CLI::App& study, ExitStatus& status) {
@@ -129,7 +130,7 @@ void print_torques_json(const std::vector<ExternalTorqueFigure>& figures) {
          {"outside_share", figure.outside_share},
          {"mae_outside_nm", figure.mae_outside_nm}});
   }
-  fmt::print("{}\n", array.dump(2));
+  fmt::print("{}\n", write_json(array, 2));
 }
 
 void add_external_torque_study(CLI::App& study) {

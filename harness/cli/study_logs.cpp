@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "foundation/json_text.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/shell_word.hpp"
@@ -84,7 +85,7 @@ void print_json(const LogStudy& study, const std::string& folder) {
                     {"misread", one.misread}});
     if (!folder.empty() && !one.text.empty()) logs.back()["repeat"] = keep_log(one, folder);
   }
-  fmt::print("{}\n", nlohmann::ordered_json{{"figures", figures}, {"logs", logs}}.dump(2));
+  fmt::print("{}\n", write_json(nlohmann::ordered_json{{"figures", figures}, {"logs", logs}}, 2));
 }
 
 void run(const LogStudyArguments& arguments, ExitStatus& status) {

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/diagnosis/rules.hpp"
+#include "foundation/json_text.hpp"
 #include "harness/cli/choice_option.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/study/external_diagnosis.hpp"
@@ -78,7 +79,7 @@ void print_json(const LoopStudy& study) {
                      {"met", figure.met}});
   }
   for (const CauseAnswers& one : study.answers) array.push_back(answers_json(one));
-  fmt::print("{}\n", array.dump(2));
+  fmt::print("{}\n", write_json(array, 2));
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ void print_json(const std::vector<MemoryFigure>& figures) {
                      {"gain", json_number(f.gain)},
                      {"half", json_number(f.half)}});
   }
-  fmt::print("{}\n", array.dump(2));
+  fmt::print("{}\n", write_json(array, 2));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "foundation/error.hpp"
+#include "foundation/json_text.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/shell_word.hpp"
 #include "foundation/standard_streams.hpp"
@@ -145,7 +146,8 @@ void print_json(const RetellingStudy& study, const std::string& folder) {
                        {"again", story_json(one.again)},
                        {"repeat", repeating(one, changed.size() + 1, folder)}});
   }
-  fmt::print("{}\n", nlohmann::ordered_json{{"figures", figures}, {"changed", changed}}.dump(2));
+  fmt::print("{}\n",
+             write_json(nlohmann::ordered_json{{"figures", figures}, {"changed", changed}}, 2));
 }
 
 void run(const RetellingArguments& arguments, ExitStatus& status) {

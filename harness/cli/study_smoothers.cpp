@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "foundation/json_text.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/study/smoother_study.hpp"
 
@@ -46,7 +47,7 @@ void print_json(const std::vector<SmootherFigure>& figures) {
          {"spline", json_of(f.spline)},
          {"validated_spline", json_of(f.validated_spline)}});
   }
-  fmt::print("{}\n", array.dump(2));
+  fmt::print("{}\n", write_json(array, 2));
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ ExplorationFolder::ExplorationFolder(std::filesystem::path folder, ExplorationSe
   }
   if (lines[0].at("asked") != setting.asked) {
     throw_bad_input(fmt::format("the folder holds the exploration {}, not '{}'",
-                                lines[0].at("asked").dump(), setting.asked),
+                                write_json(lines[0].at("asked")), setting.asked),
                     place.string(), "give another --out, or the same options");
   }
   // A journal of before there were limits has none.

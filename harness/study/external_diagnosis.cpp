@@ -84,7 +84,7 @@ void write_request(const std::filesystem::path& folder, const LoopCase& one,
                         {"families", loop::builtin_effect_names()},
                         {"gear_ratio", one.gear_ratio},
                         {"seed", one.seed}};
-  std::ofstream(folder / "request.json") << request.dump(1) << "\n";
+  std::ofstream(folder / "request.json") << write_json(request, 1) << "\n";
 }
 
 // What the program printed; throws where it failed or took too long.

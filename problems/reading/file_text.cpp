@@ -103,32 +103,11 @@ std::string from_utf16(std::string_view bytes, bool high_first) {
   return out;
 }
 
-// Bytes of the UTF-8 sequence that begins at `at`; 0: none does.
-std::size_t utf8_sequence(std::string_view text, std::size_t at) {
-  const auto first = static_cast<unsigned char>(text[at]);
-  const std::size_t size = first < 0x80                     ? 1
-                           : first >= 0xC2 && first < 0xE0  ? 2
-                           : first >= 0xE0 && first < 0xF0  ? 3
-                           : first >= 0xF0 && first <= 0xF4 ? 4
-                                                            : 0;
-  if (at + size > text.size()) return 0;
-  for (std::size_t i = 1; i < size; ++i) {
-    if ((static_cast<unsigned char>(text[at + i]) & 0xC0) != 0x80) return 0;
-  }
-  return size;
-}
-
 // A text that is no UTF-8 is taken for Latin-1, as Windows' spreadsheets write it.
 std::string as_utf8(std::string text) {
   if (text.starts_with("\xFF\xFE")) return from_utf16(text, false);
   if (text.starts_with("\xFE\xFF")) return from_utf16(text, true);
-  std::size_t at = 0;
-  while (at < text.size()) {
-    const std::size_t size = utf8_sequence(text, at);
-    if (size == 0) break;
-    at += size;
-  }
-  if (at == text.size()) return text;
+  if (is_utf8(text)) return text;
   std::string out;
   for (const char c : text) append_utf8(out, static_cast<unsigned char>(c));
   return out;

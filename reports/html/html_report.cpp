@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "foundation/json_text.hpp"
 #include "reports/html/embedded.hpp"
 #include "reports/markup.hpp"
 
@@ -115,7 +116,7 @@ std::string html_page(std::string_view title, PageKind kind, const nlohmann::ord
       "<noscript>The pictures and tables of this page need JavaScript; leaderboard.md or loop.md "
       "beside it holds the same figures as text.</noscript>\n"
       "<script type=\"application/json\" id=\"data\">";
-  page += script_safe(data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  page += script_safe(write_json(data));
   page += "</script>\n";
   append_script(page, embedded::vega_js());
   append_script(page, embedded::katex_js());

@@ -408,7 +408,7 @@ std::string write_loop_json(const LoopRecord& record) {
   Json json = loop_json(record);
   json["pictures"] = loop_pictures_json(record);
   json["pictures"]["residuals"] = residuals_json(record.pictures.residuals);
-  return json.dump(2) + "\n";
+  return write_json(json, 2) + "\n";
 }
 
 }  // namespace tribench

@@ -34,7 +34,7 @@ Json field_json(const Row& row, const RecordColumn<Row>& column) {
 }
 
 [[noreturn]] void refuse(const json& field, const char* name) {
-  throw Error(ErrorKind::failed, fmt::format("{} is not a value of {}", field.dump(), name));
+  throw Error(ErrorKind::failed, fmt::format("{} is not a value of {}", write_json(field), name));
 }
 
 template <typename Value>

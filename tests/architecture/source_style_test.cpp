@@ -58,6 +58,13 @@ TEST(SourceStyle, TemporaryFoldersAreScratchFolders) {
                                       "scratch_folder.cpp: mkdtemp("));
 }
 
+// dump() throws where a text is not UTF-8, as a file's name may be.
+TEST(SourceStyle, JsonIsWrittenByWriteJson) {
+  EXPECT_THAT(matches({"foundation", "problems", "algorithms", "reports", "harness"},
+                      std::regex(R"(\.dump\()")),
+              ::testing::ElementsAre("json_text.cpp: .dump("));
+}
+
 // fmt::print throws where the stream takes nothing: a full disk behind standard error would end the
 // program from within its threads.
 TEST(SourceStyle, MessagesGoByPrintMessage) {

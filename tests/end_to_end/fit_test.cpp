@@ -205,6 +205,15 @@ TEST_F(UnequalRowsTest, HoldsOutWhatItIsAskedTo) {
   EXPECT_THAT(refusal({"--method", "linear", "--split", "fold=9"}), HasSubstr("values there"));
 }
 
+TEST_F(UnequalRowsTest, AFileMayHaveANameThatIsNotUtf8) {
+  const std::filesystem::path latin = folder_ / "p\xe9riode.csv";
+  write_text(latin, "x,y\n1,2\n2,4\n3,6\n4,8\n");
+  const ProgramRun ended = run_tribench(
+      {"fit", latin.string(), "--target", "y", "--inputs", "x", "--method", "linear", "--json"});
+  EXPECT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_EQ(json::parse(ended.output).at("formula"), "2*x");
+}
+
 TEST_F(UnequalRowsTest, AProgramIsAMethod) {
   write_text(folder_ / "mine.sh", "echo '{\"front\": [\"1.5*v + 0.25\"]}'\n");
   const json told = answer({"--external", "bash '" + (folder_ / "mine.sh").string() + "'"});

@@ -28,6 +28,12 @@ TEST(Text, SplitsAtSeparatorsAndTrimsThePieces) {
   EXPECT_EQ(trimmed("\r\n x y \t"), "x y");
 }
 
+TEST(Text, IsUtf8OrNot) {
+  EXPECT_TRUE(is_utf8(""));
+  EXPECT_TRUE(is_utf8("a \xc2\xb5m \xe2\x82\xac \xf0\x9f\x98\x80"));
+  for (const char* text : {"a\xff", "\xb5m", "\xe2\x82", "\xc0\xaf"}) EXPECT_FALSE(is_utf8(text));
+}
+
 TEST(Text, ControlCharactersAreSeenAndShownAsWhatTheyAreNot) {
   EXPECT_FALSE(holds_control_characters("\xc3\xa9 \xc2\xb5m ~"));  // e acute, micro
   for (const char* text : {"a\x1b[31m", "\x07", "a\tb", "\x7f", "\xc2\x9b"}) {
