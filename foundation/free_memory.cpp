@@ -61,8 +61,8 @@ std::uint64_t of_control_groups(const path& root) {
     if (controllers == ",,") {
       left = std::min(left, of_groups(v2 / inner, v2, "memory.max", "memory.current"));
     } else if (controllers.find(",memory,") != std::string::npos) {
-      left = std::min(left, of_groups(v1 / inner, v1, "memory.limit_in_bytes",
-                                      "memory.usage_in_bytes"));
+      left = std::min(left,
+                      of_groups(v1 / inner, v1, "memory.limit_in_bytes", "memory.usage_in_bytes"));
     }
   }
   return left;
