@@ -7,8 +7,8 @@
 #include <set>
 
 #include "foundation/error.hpp"
-#include "foundation/text.hpp"
 #include "foundation/plain_name.hpp"
+#include "foundation/text.hpp"
 
 namespace tribench {
 namespace {

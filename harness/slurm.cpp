@@ -16,8 +16,8 @@
 
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
-#include "foundation/output_file.hpp"
 #include "foundation/number_text.hpp"
+#include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/shell_word.hpp"
 #include "foundation/standard_streams.hpp"

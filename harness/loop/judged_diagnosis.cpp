@@ -165,7 +165,8 @@ void doubt_undetermined(JudgedDiagnosis& whole) {
 
 // Nor where a smooth function of the same inputs, fitted to the same movements, leaves less error
 // on those that it never saw (more than rounding: then there is nothing to be tested either). On
-// data without a cause it leaves none less: no correction at all is one of its choices. needed: what to record of what was found and not named.
+// data without a cause it leaves none less: no correction at all is one of its choices. needed:
+// what to record of what was found and not named.
 void doubt_nothing_missing(JudgedDiagnosis& whole, std::vector<std::string> needed) {
   constexpr double kTooMuch = 0.05;  // of the error
   const double less = 1 - whole.error.attainable / whole.error.mae_after;
