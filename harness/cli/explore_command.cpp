@@ -150,7 +150,7 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
   }
   fmt::print("{}", arguments.json ? json : exploration_terminal(done, second, options));
   if (done.end == loop::ExplorationEnd::failed) {
-    print_message(fmt::format("tribench: {}{}", done.failure,
+    print_message(fmt::format("tribench: {}{}\n", done.failure,
                               answers ? "; the same command goes on from there" : ""));
     return ExitStatus::failed;
   }
