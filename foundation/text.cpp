@@ -47,7 +47,12 @@ std::size_t utf8_sequence(std::string_view text, std::size_t at) {
   for (std::size_t i = 1; i < size; ++i) {
     if ((static_cast<unsigned char>(text[at + i]) & 0xC0) != 0x80) return 0;
   }
-  return size;
+  if (size < 3) return size;
+  const auto second = static_cast<unsigned char>(text[at + 1]);
+  const bool is_overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
+  const bool is_half_or_beyond =
+      (first == 0xED && second >= 0xA0) || (first == 0xF4 && second >= 0x90);
+  return is_overlong || is_half_or_beyond ? 0 : size;
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ std::string_view trimmed(std::string_view text);
 // As a sentence begins: the first letter large, where it is one of ASCII's.
 std::string capitalised(std::string text);
 
+// As RFC 3629 has it: no overlong forms, no halves of a pair.
 bool is_utf8(std::string_view text);
 
 // ASCII's and Unicode's control characters (as UTF-8): they show nothing, and a terminal obeys

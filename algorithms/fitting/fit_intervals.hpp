@@ -40,7 +40,7 @@ struct FitIntervals {
 
 // weights: of the squared residuals, relative; empty: all 1. known_variance: a weight is one over
 // the variance of its row, which the residuals then say nothing about (rows as units only).
-// Throws Error (bad_input) where there are no more rows than constants.
+// Throws Error (bad_input) where there are no more rows than constants, or more than 1000 of these.
 FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
                            std::span<const double> target, std::span<const int> movement,
                            std::span<const double> weights = {}, bool known_variance = false);

@@ -12,7 +12,7 @@ namespace tribench::relay {
 
 // Of more inputs pairs are no factors: hundreds of them would leave time for nothing else.
 inline constexpr std::size_t kMostPaired = 12;
-// Of which sums are sought, product by product: 0.2 s and 50 MB for their products.
+// Of which a sparse sum is sought: 0.2 s and 50 MB for the products of any two.
 inline constexpr std::size_t kMostColumns = 2000;
 
 enum class FactorKind {

@@ -108,6 +108,14 @@ std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
+CellLimits limits_of(const FitArguments& arguments) {
+  CellLimits limits;
+  set_seconds(limits, arguments.seconds);
+  limits.evaluations = arguments.evaluations;
+  limits.spend = arguments.spends_all;
+  return limits;
+}
+
 CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fixed_form) {
   CellTask task;
   const std::string& method = arguments.method.empty() ? arguments.external : arguments.method;
@@ -115,9 +123,7 @@ CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fix
   task.cell = {problem.name, method, fixed_form ? kFixedForm : arguments.operators, arguments.seed};
   task.operators = find_operator_set(arguments.operators);
   if (fixed_form) task.operators = fixed_form_operators();
-  task.limits.evaluations = arguments.evaluations;
-  set_seconds(task.limits, arguments.seconds);
-  task.limits.spend = arguments.spends_all;
+  task.limits = limits_of(arguments);
   task.threads = usable_processors();
   return task;
 }
@@ -144,8 +150,7 @@ ChosenMethod choose_method(const FitArguments& arguments, const Registry& regist
       parameters[name] = plain_value(value);
     }
     // As in a grid's worker; here nobody else watches it.
-    CellLimits limits;
-    set_seconds(limits, arguments.seconds);
+    const CellLimits limits = limits_of(arguments);
     return {make_external_method(words_of(arguments.external), parameters,
                                  {limits.cpu_limit_seconds, limits.wall_seconds}),
             false};

@@ -31,7 +31,9 @@ TEST(Text, SplitsAtSeparatorsAndTrimsThePieces) {
 TEST(Text, IsUtf8OrNot) {
   EXPECT_TRUE(is_utf8(""));
   EXPECT_TRUE(is_utf8("a \xc2\xb5m \xe2\x82\xac \xf0\x9f\x98\x80"));
-  for (const char* text : {"a\xff", "\xb5m", "\xe2\x82", "\xc0\xaf"}) EXPECT_FALSE(is_utf8(text));
+  for (const char* text : {"a\xff", "\xb5m", "\xe2\x82", "\xc0\xaf", "\xe0\x80\xaf", "\xed\xa0\x80",
+                           "\xf0\x80\x80\xaf", "\xf4\x90\x80\x80"})
+    EXPECT_FALSE(is_utf8(text));
 }
 
 TEST(Text, ControlCharactersAreSeenAndShownAsWhatTheyAreNot) {
