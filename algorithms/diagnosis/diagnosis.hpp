@@ -78,7 +78,7 @@ struct EffectFinding {
   double gain = 0;
   double gain_error = 0;
   std::vector<ParameterFinding> parameters;
-  double rms_contribution = 0;
+  double rms_contribution = 0;  // of its torque, beyond what the base can do as well
   double vif = 1;
   std::vector<AliasFinding> aliases;
   std::vector<std::string> separate_by;

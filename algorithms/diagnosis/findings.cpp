@@ -135,6 +135,14 @@ bool is_told_by_others(std::size_t family, const FittedModel& fit, const Campaig
   return own * kLargeVif < all;
 }
 
+// An effect's torque without what the base can do as well: how the two share that is no news, and
+// with shapes that are nearly the base's own they may each be far too large, of opposite signs.
+Eigen::VectorXd beyond_base(std::size_t family, const FittedModel& fit, const Campaign& campaign) {
+  const auto base = static_cast<Eigen::Index>(fit.model.first_column(0));
+  return project_off(contribution(fit.model, family, campaign.data),
+                     orthonormal_basis(fit.raw_tangent.leftCols(base)));
+}
+
 EffectFinding effect_finding(const Found& found, const FittedModel& fit,
                              const Covariance& covariance, const Campaign& campaign) {
   const EffectFamily& family = campaign.families[found.family];
@@ -161,8 +169,8 @@ EffectFinding effect_finding(const Found& found, const FittedModel& fit,
     finding.atom += (finding.atom.empty() ? "" : ", ") + atom.label;
     add_parameters(finding, fit, covariance, k);
   }
-  finding.rms_contribution = contribution(fit.model, found.family, campaign.data).norm() /
-                             std::sqrt(static_cast<double>(campaign.data.rows()));
+  const Eigen::VectorXd own = beyond_base(found.family, fit, campaign);
+  finding.rms_contribution = own.norm() / std::sqrt(static_cast<double>(own.size()));
   for (std::string& note : notes_of(finding)) finding.notes.push_back(std::move(note));
   return finding;
 }

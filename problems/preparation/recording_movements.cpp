@@ -179,12 +179,13 @@ std::vector<RowRange> strokes_of_movements(const Dataset& data, const Channel& t
 // near no rest.
 struct Slow {
   double speed = 0;
+  double rest = 0;  // slower still: at rest
   double near = 0;
   double way = 0;
 
   Slow(const std::vector<RowRange>& strokes, const std::vector<double>& t,
        const std::vector<double>& v, double noise)
-      : speed(std::max(kSlow * top_speed(v), kNoisy * noise)) {
+      : speed(std::max(kSlow * top_speed(v), kNoisy * noise)), rest(rest_speed(v, noise)) {
     double longest = 0;
     for (const RowRange& stroke : strokes) longest = std::max(longest, way_of(stroke, t, v));
     near = kNear * longest;
@@ -210,22 +211,39 @@ std::string in_words(const Slow& slow, const Dataset& data) {
   return words;
 }
 
-// A stroke's rows from where it is first fast to where it is last; all of a stroke that creeps from
-// one place to another, but for rows as slow as the noise; and none so near a reversal.
+// The slow stretches in which a stroke begins, ends, or stops and goes on the same way: a stop too
+// short to end a stroke holds what friction does at rest all the same.
+std::vector<char> rows_near_rests(RowRange stroke, const Slow& slow, const std::vector<double>& v) {
+  std::vector<char> near_rest(stroke.end - stroke.begin, 0);
+  for (std::size_t begin = stroke.begin; begin < stroke.end;) {
+    std::size_t end = begin;
+    bool stops = false;
+    for (; end < stroke.end && std::abs(v[end]) < slow.speed; ++end) {
+      stops = stops || std::abs(v[end]) < slow.rest;
+    }
+    if (stops || begin == stroke.begin || end == stroke.end) {
+      std::fill(near_rest.begin() + static_cast<std::ptrdiff_t>(begin - stroke.begin),
+                near_rest.begin() + static_cast<std::ptrdiff_t>(end - stroke.begin), 1);
+    }
+    begin = std::max(end, begin + 1);
+  }
+  return near_rest;
+}
+
+// A stroke's rows where it moves; all of a stroke that creeps from one place to another, but for
+// rows as slow as the noise; and none so near a reversal.
 void add_moving(std::vector<std::size_t>& rows, RowRange stroke, const Slow& slow,
                 const Dataset& data, double noise) {
   const std::vector<double>& t = data.find(Role::time)->values;
   const std::vector<double>& v = data.find(Role::velocity)->values;
   const Channel* d = data.find(loop::derived_channel_name("d"));  // null: nobody knows it
-  const auto is_near = [&](std::size_t i) { return d != nullptr && d->values[i] < slow.near; };
-  const auto is_slow = [&](std::size_t i) { return std::abs(v[i]) < slow.speed; };
-  const bool gets_there = Slow::way_of(stroke, t, v) > slow.way;
-  RowRange fast = stroke;
-  while (fast.begin < fast.end && is_slow(fast.begin)) ++fast.begin;
-  while (fast.end > fast.begin && is_slow(fast.end - 1)) --fast.end;
-  if (fast.begin < fast.end || !gets_there) stroke = fast;
+  std::vector<char> near_rest = rows_near_rests(stroke, slow, v);
+  const bool creeps = std::ranges::count(near_rest, 0) == 0 && Slow::way_of(stroke, t, v) > slow.way;
+  if (creeps) std::ranges::fill(near_rest, 0);
   for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
-    if (std::abs(v[i]) >= kNoisy * noise && !is_near(i)) rows.push_back(i);
+    const bool moves = near_rest[i - stroke.begin] == 0 && std::abs(v[i]) >= kNoisy * noise;
+    const bool turns = d != nullptr && d->values[i] < slow.near;
+    if (moves && !turns) rows.push_back(i);
   }
 }
 

@@ -114,6 +114,10 @@ double top_speed(std::span<const double> velocity) {
   return quantile(std::move(speeds), 0.99);
 }
 
+double rest_speed(std::span<const double> velocity, double noise) {
+  return std::max(kRestSpeed * top_speed(velocity), kNoises * noise);
+}
+
 double median_step(std::span<const double> time, std::span<const int> movement) {
   return quantile(steps_of(time, movement), 0.5);
 }
@@ -197,7 +201,7 @@ std::vector<char> clipped_rows(std::span<const double> values) {
 
 Strokes strokes_of(std::span<const double> time, std::span<const double> velocity,
                    std::span<const RowRange> pieces, double noise, std::size_t fewest) {
-  const double slowest = std::max(kRestSpeed * top_speed(velocity), kNoises * noise);
+  const double slowest = rest_speed(velocity, noise);
   const std::vector<char> rests = resting_rows(time, velocity, pieces, slowest);
   Strokes out;
   out.resting = static_cast<std::size_t>(std::ranges::count(rests, 1));

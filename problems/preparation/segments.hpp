@@ -21,6 +21,9 @@ double median_step(std::span<const double> time, std::span<const int> movement);
 // 99 % quantile of the magnitudes.
 double top_speed(std::span<const double> velocity);
 
+// Slower than this is at rest: a small part of the top speed, or what the velocity's noise hides.
+double rest_speed(std::span<const double> velocity, double noise);
+
 // At least 80 % of the steps are no longer than three and a half medians, and the median is short
 // enough (0.1 s) to follow a motion: its derivatives can be taken, lost rows or not.
 bool is_regular(std::span<const double> time, std::span<const int> movement);

@@ -115,6 +115,31 @@ TEST(RecordingMovements, AStrokeStartsFromRestWhereItsRowsAreTooFarApartToShowIt
   }
 }
 
+// A program that names a movement a moment late puts a stop and the next start the same way into it:
+// what friction does at rest is in those rows, as it is at a stroke's ends.
+TEST(RecordingMovements, AStopTooShortToEndAStrokeIsLeftOut) {
+  PreparedRecording out;
+  Channel time{"t", "s", Role::time, {}};
+  Channel position{"q", "rad", Role::position, {}};
+  Channel velocity{"v", "rad/s", Role::velocity, {}};
+  double q = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double to_stop = std::abs(i - 200) - 5;  // stands still for eleven rows
+    const double v = std::clamp(0.05 * to_stop, 0.0, 1.0);
+    time.values.push_back(kStep * i);
+    position.values.push_back(q);
+    velocity.values.push_back(v);
+    q += kStep * v;
+    out.data.movement.push_back(0);
+  }
+  out.data.movement_names.push_back("two strokes");
+  out.data.channels = {time, position, velocity};
+  settle_strokes(out, 0);
+  const std::vector<double>& kept = out.data.at("v").values;
+  EXPECT_EQ(kept.size(), 400U - 11);
+  EXPECT_GE(*std::ranges::min_element(kept), 0.05);
+}
+
 // Six movements; the fourth alone has more than a touch of acceleration, in 40 of its rows.
 TEST(RecordingMovements, AnAccelerationThatOneMovementAloneHoldsIsLeftOut) {
   PreparedRecording out;
