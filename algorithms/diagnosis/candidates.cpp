@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/canonical_correlation.hpp"
@@ -74,6 +75,10 @@ class Rescue {
 
   std::optional<Candidate> of(std::size_t family);
 
+  // Gives one that was not rescued a gain that can be compared with that of one that was: with the
+  // offsets that it leaves the movements.
+  void count_offsets(Candidate& one);
+
  private:
   // Not before an atom is looked at: most campaigns have none to rescue.
   const FilteredModel& filtered() {
@@ -117,6 +122,14 @@ std::optional<Candidate> Rescue::of(std::size_t family) {
     }
   }
   return best;
+}
+
+void Rescue::count_offsets(Candidate& one) {
+  const Eigen::VectorXd offsets = offset_nats(campaign_.clusters, model_.noise);
+  Eigen::VectorXd losses = losses_with_own_offsets(one.atom, filtered(), model_, campaign_);
+  if (!losses.allFinite()) return;
+  one.gain = paired_gain(model_.losses + offsets, losses);
+  one.losses = losses - offsets;
 }
 
 // The family's atoms that can be tested; those with a column that the model has already only where
@@ -170,17 +183,23 @@ std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
     const bool significant =
         round.rescue_only[f] == 0 && round.family_p[f] <= campaign.options.alpha_library;
     if (!significant && round.family_p[f] >= kRescueP) continue;
-    std::optional<Candidate> one = rescue.of(f);
-    if (significant) {
-      // What few movements carry gains by their offsets, significant or not: a smaller p must not
-      // make it harder to be admitted.
-      std::optional<Candidate> plain = best_atom(f, round, model, campaign);
-      if (!one || (plain && plain->gain.nats >= one->gain.nats)) one = std::move(plain);
+    // What few movements carry gains by their offsets, significant or not: a smaller p must not
+    // make it harder to be admitted.
+    if (std::optional<Candidate> one = rescue.of(f)) all.push_back(std::move(*one));
+    if (!significant) continue;
+    if (std::optional<Candidate> one = best_atom(f, round, model, campaign)) {
+      all.push_back(std::move(*one));
     }
-    if (one) all.push_back(std::move(*one));
+  }
+  if (std::ranges::any_of(all, &Candidate::rescued)) {
+    for (Candidate& one : all) {
+      if (!one.rescued) rescue.count_offsets(one);
+    }
   }
   std::ranges::stable_sort(
       all, [](const Candidate& a, const Candidate& b) { return a.gain.nats > b.gain.nats; });
+  std::vector<char> seen(campaign.families.size(), 0);
+  std::erase_if(all, [&](const Candidate& one) { return std::exchange(seen[one.family], 1) != 0; });
   return all;
 }
 
@@ -332,8 +351,11 @@ std::vector<AliasFinding> aliases_of(const Candidate& winner, const FittedModel&
     if (f == winner.family || round.family_p[f] > largest_p) continue;
     std::optional<Candidate> rival;
     if (winner.rescued) rival = rescue.of(f);
-    if (!rival) rival = best_atom(f, round, model, campaign);
-    if (!rival) continue;
+    if (!rival) {
+      rival = best_atom(f, round, model, campaign);
+      if (!rival) continue;
+      if (winner.rescued) rescue.count_offsets(*rival);
+    }
     const double r = canonical_correlation(columns(winner.atom), columns(rival->atom));
     if (!(r >= kLeastLikeness)) continue;
     const Gain lead = lead_of(winner, extended, *rival, model, campaign);

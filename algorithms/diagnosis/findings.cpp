@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <span>
 
 #include "algorithms/diagnosis/plausibility.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
@@ -143,8 +144,9 @@ Eigen::VectorXd beyond_base(std::size_t family, const FittedModel& fit, const Ca
                      orthonormal_basis(fit.raw_tangent.leftCols(base)));
 }
 
-EffectFinding effect_finding(const Found& found, const FittedModel& fit,
-                             const Covariance& covariance, const Campaign& campaign) {
+EffectFinding effect_finding(const Found& found, std::span<const Found> later,
+                             const FittedModel& fit, const Covariance& covariance,
+                             const Campaign& campaign) {
   const EffectFamily& family = campaign.families[found.family];
   EffectFinding finding;
   finding.family = family.name;
@@ -152,11 +154,12 @@ EffectFinding effect_finding(const Found& found, const FittedModel& fit,
   finding.adjusted_p = found.p;
   finding.gain = found.gain.nats;
   finding.gain_error = found.gain.error;
-  // What is named beside it is no other name of it.
+  // What was found after it shows beside it; what it could not be told from when it was found may be
+  // all of it.
   std::ranges::copy_if(found.aliases, std::back_inserter(finding.aliases),
                        [&](const AliasFinding& alias) {
-                         return std::ranges::none_of(fit.model.atoms, [&](const Atom& atom) {
-                           return campaign.families[atom.family].name == alias.family;
+                         return std::ranges::none_of(later, [&](const Found& other) {
+                           return campaign.families[other.family].name == alias.family;
                          });
                        });
   finding.few_movements = found.few;
@@ -307,9 +310,11 @@ void write_findings(Diagnosis& out, const SearchResult& result, const Campaign& 
   out.notes = state.notes;
   for (const std::size_t family : result.tried) out.tried.push_back(campaign.families[family].name);
   const Covariance covariance = covariance_of(state.model, campaign.clusters);
-  for (const Found& one : state.found) {
+  for (std::size_t k = 0; k < state.found.size(); ++k) {
+    const Found& one = state.found[k];
+    const auto later = std::span(state.found).subspan(k + 1);
     EffectFinding& finding =
-        out.effects.emplace_back(effect_finding(one, state.model, covariance, campaign));
+        out.effects.emplace_back(effect_finding(one, later, state.model, covariance, campaign));
     finding.order = static_cast<int>(out.effects.size());
     finding.stands_in = one.stands_in;
     finding.provisional = finding.told_by_others ||

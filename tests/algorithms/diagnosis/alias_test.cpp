@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,14 +25,77 @@ TEST(Aliases, WhatLooksOtherwiseOrStandsBesideAnEffectIsNoAliasOfIt) {
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
       const Diagnosis diagnosis =
           diagnose_planted({.effects = {{pair.first, 1.0}, {pair.second, 1.0}}}, seed);
-      const std::vector<std::string> named = families(diagnosis);
       for (const EffectFinding& effect : diagnosis.effects) {
         for (const AliasFinding& alias : effect.aliases) {
           EXPECT_GE(alias.correlation, 0.5) << effect.family << " and " << alias.family;
-          EXPECT_THAT(named, ::testing::Not(::testing::Contains(alias.family))) << effect.family;
+          const auto other =
+              std::ranges::find(diagnosis.effects, alias.family, &EffectFinding::family);
+          const bool is_later = other != diagnosis.effects.end() && other->order > effect.order;
+          EXPECT_FALSE(is_later) << effect.family << " and " << alias.family;
         }
       }
     }
+  }
+}
+
+// Strokes of a campaign in which the joint warms up or wears, `effect` (of the temperature and of the
+// time, 0 to 1) being a part of its Coulomb friction.
+template <typename Effect>
+Observations warming_campaign(Effect effect, std::uint64_t seed) {
+  RandomStream random(seed);
+  constexpr int kMovements = 80;
+  constexpr std::size_t kStroke = 100;
+  std::vector<std::vector<double>> columns(5);  // time, velocity, acceleration, temperature, torque
+  Dataset data;
+  for (int m = 0; m < kMovements; ++m) {
+    data.movement_names.push_back(std::to_string(m));
+    const double direction = m % 2 == 0 ? 1 : -1;
+    const double top = random.uniform(0.3, 1.5);
+    for (std::size_t i = 0; i < kStroke; ++i) {
+      const double phase = std::numbers::pi * (static_cast<double>(i) + 1) / (kStroke + 1);
+      const double t = 3.0 * m + 0.01 * static_cast<double>(i);
+      const double now = t / (3.0 * kMovements);
+      const double temperature = 25 + 20 * (1 - std::exp(-3 * now));
+      const double v = direction * top * std::sin(phase);
+      const double torque = direction * (4 + effect(temperature, now)) + 3 * v;
+      const double row[] = {t, v, direction * top * std::numbers::pi * std::cos(phase),
+                            std::round(temperature * 10) / 10, torque + 0.15 * random.normal()};
+      for (std::size_t k = 0; k < columns.size(); ++k) columns[k].push_back(row[k]);
+      data.movement.push_back(m);
+    }
+  }
+  data.channels = {{"t", "s", Role::time, columns[0]},
+                   {"v", "rad/s", Role::velocity, columns[1]},
+                   {"a", "rad/s^2", Role::acceleration, columns[2]},
+                   {"T", "degC", Role::temperature, columns[3]},
+                   {"tau", "N m", Role::friction_torque, columns[4]}};
+  return observe(data);
+}
+
+// Where the temperature only rises, friction that changes with it changes with time as well. Which
+// of the two needs to be rescued because few movements carry it is chance.
+TEST(Aliases, TimeIsNoSurerThanATemperatureThatOnlyRises) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Observations data = warming_campaign(
+        [](double temperature, double) { return 0.05 * (temperature - 30); }, seed);
+    const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, {});
+    ASSERT_FALSE(diagnosis.effects.empty()) << seed;
+    for (const EffectFinding& effect : diagnosis.effects) {
+      const bool is_told = effect.family == "temperature" ||
+                           std::ranges::count(effect.aliases, "temperature", &AliasFinding::family);
+      EXPECT_TRUE(is_told) << effect.family << " of seed " << seed;
+    }
+  }
+}
+
+// A slow change and the base may share Coulomb friction as they like: an effect's size must not
+// hang on how they do.
+TEST(Aliases, AnEffectIsAsLargeAsWhatTheBaseCannotDo) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Observations data = warming_campaign([](double, double now) { return now; }, seed);
+    const Diagnosis diagnosis = diagnose(data, coulomb_viscous_base, {});
+    ASSERT_EQ(families(diagnosis), std::vector<std::string>{"drift"}) << seed;
+    EXPECT_NEAR(diagnosis.effects[0].rms_contribution, std::sqrt(1.0 / 12), 0.03) << seed;
   }
 }
 
@@ -80,7 +144,7 @@ TEST(Aliases, WhatTheOtherEffectsCanTellIsProvisional) {
     const Diagnosis diagnosis = diagnose(observe(data), coulomb_viscous_base, options);
     const auto payload = std::ranges::find(diagnosis.effects, "payload", &EffectFinding::family);
     ASSERT_NE(payload, diagnosis.effects.end());
-    EXPECT_GT(payload->rms_contribution, 1);
+    EXPECT_GT(payload->rms_contribution, 0.3);
     EXPECT_EQ(payload->told_by_others, with_rule);
     EXPECT_EQ(payload->provisional, with_rule);
     EXPECT_FALSE(diagnosis.effects[0].told_by_others) << diagnosis.effects[0].family;
