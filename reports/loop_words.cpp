@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "foundation/text.hpp"
@@ -352,7 +353,18 @@ std::string next_of(const LoopRecord& record, const LoopWords& words) {
   return "Nothing: the model stands as it is.";
 }
 
-// Where nothing was found: what would have been, and in which rows nobody looked.
+// Which ripples nobody looked for. Empty where that is not known.
+std::string ripples_not_looked_at(const LoopRecord& record) {
+  if (!known(record.shortest_wave)) return {};
+  if (record.shortest_wave_unit == "rad") {
+    return fmt::format("ripples of more than {:.0f} waves a turn, unless --gear-ratio names them",
+                       2 * std::numbers::pi / record.shortest_wave);
+  }
+  return fmt::format("ripples of less than {}, unless --screw-lead names them",
+                     amount({1000, "mm"}, record.shortest_wave));
+}
+
+// Where nothing was found: what would have been, and where nobody looked.
 std::string detectable_of(const LoopRecord& record) {
   if (record.verdict != LoopVerdict::none) return {};
   const LoopUnit unit = torque_unit(record);
@@ -364,6 +376,9 @@ std::string detectable_of(const LoopRecord& record) {
   }
   std::vector<std::string> sentences;
   if (!sizes.empty()) sentences.push_back(fmt::format("Would have been seen: {}.", listed(sizes)));
+  if (const std::string ripples = ripples_not_looked_at(record); !ripples.empty()) {
+    sentences.push_back(fmt::format("Not looked at: {}.", ripples));
+  }
   for (const LoopDataStep& step : record.steps) {
     if (step.not_looked_at.empty()) continue;
     sentences.push_back(fmt::format("Not looked at: {}.", plain_text(record, step.not_looked_at)));

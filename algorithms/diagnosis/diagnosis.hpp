@@ -198,6 +198,10 @@ struct Diagnosis {
   AliasMap alias_map;
   std::vector<EventFinding> events;
   std::vector<CandidateFinding> candidates;  // of the first round
+  // In the position's unit, "rad" or "m": what repeats over less is looked for at the gear's own
+  // ratios only. NaN where nothing that repeats is looked for.
+  double shortest_wave = std::numeric_limits<double>::quiet_NaN();
+  std::string shortest_wave_unit;
   std::vector<std::string> needed;           // where it cannot tell: what would be
   std::vector<std::string> notes;
   LoopModel before;  // fitted to the training movements

@@ -7,9 +7,12 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <numbers>
+#include <optional>
 #include <span>
 
 #include "algorithms/diagnosis/plausibility.hpp"
+#include "algorithms/diagnosis/unknown_ripple.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/column_products.hpp"
 #include "algorithms/inference/score_test.hpp"
@@ -307,6 +310,10 @@ void write_findings(Diagnosis& out, const SearchResult& result, const Campaign& 
   out.aliased = result.first.coinciding;
   out.alias_map = result.first.alias_map;
   out.candidates = result.first.candidates;
+  if (const std::optional<WaveRange> range = ripples_looked_for(campaign)) {
+    out.shortest_wave = 2 * std::numbers::pi / range->high;
+    out.shortest_wave_unit = campaign.data.find("q")->unit;
+  }
   out.notes = state.notes;
   for (const std::size_t family : result.tried) out.tried.push_back(campaign.families[family].name);
   const Covariance covariance = covariance_of(state.model, campaign.clusters);

@@ -17,7 +17,7 @@ namespace tribench::loop {
 namespace {
 
 constexpr double kFewestWaves = 2;      // over the travel: less is no repetition
-constexpr double kShortestInMeans = 5;  // a mean over a fifth of a wave keeps 93 % of it
+constexpr double kShortestInMeans = 2.5;  // a mean over two fifths of a wave keeps 76 % of it
 constexpr int kRefinements = 24;        // of a wavenumber: to 1e-5 of a step
 constexpr int kMostWaves = 3;           // one beside another: a ripple and two of its harmonics
 
@@ -108,8 +108,7 @@ bool repeats_with_the_gear(const EffectFamily& family) {
   });
 }
 
-std::optional<Wave> unknown_ripple(const FittedModel& model, const Campaign& campaign,
-                                   RandomStream random) {
+std::optional<WaveRange> ripples_looked_for(const Campaign& campaign) {
   const Signal* position = campaign.data.find("q");
   if (position == nullptr || campaign.clusters.stretches.size() < kFewestClusters) return {};
   if (std::ranges::none_of(campaign.families, repeats_with_the_gear)) return {};
@@ -119,6 +118,13 @@ std::optional<Wave> unknown_ripple(const FittedModel& model, const Campaign& cam
       waves_over(position->values, kFewestWaves, kShortestInMeans * mean);
   if (range && !is_linear) range->low = std::max(range->low, kMostWavesOfOutput + 0.5);
   if (!range || range->low >= range->high) return {};
+  return range;
+}
+
+std::optional<Wave> unknown_ripple(const FittedModel& model, const Campaign& campaign,
+                                   RandomStream random) {
+  const std::optional<WaveRange> range = ripples_looked_for(campaign);
+  if (!range) return {};
   // The most certain wave need not be the largest: the noise takes a large one for correlation of
   // its own, so that a harmonic of it stands out.
   WaveSearch search(model, campaign, *range);

@@ -15,8 +15,12 @@ namespace tribench::loop {
 // Whether a family has its period from the gear's ratio.
 bool repeats_with_the_gear(const EffectFamily& family);
 
+// The waves that unknown_ripple looks at. None where it looks at none: no position, too few stretches
+// of movement, or no family of the library would repeat with the gear.
+std::optional<WaveRange> ripples_looked_for(const Campaign& campaign);
+
 // The largest of what repeats, shorter than the output's own ripples. None where nothing repeats
-// at the level of what is left over, or no family of the library would with the gear.
+// at the level of what is left over, or none is looked at.
 std::optional<Wave> unknown_ripple(const FittedModel& model, const Campaign& campaign,
                                    RandomStream random);
 

@@ -119,6 +119,8 @@ void add_lists(LoopRecord& record, const JudgedDiagnosis& diagnosis) {
   for (const CoincidingFamilies& pair : diagnosis.aliased) {
     record.aliased.push_back({pair.first, pair.second, pair.correlation, pair.separate_by});
   }
+  record.shortest_wave = diagnosis.shortest_wave;
+  record.shortest_wave_unit = diagnosis.shortest_wave_unit;
   for (const EventFinding& one : diagnosis.events) {
     record.bursts.push_back({one.movement, one.movement_name, one.begin, one.end, one.peak});
   }

@@ -132,6 +132,8 @@ void add_lists(Json& json, const LoopRecord& record) {
                                   {"clusters", one.stretches},
                                   {"ask", one.ask}});
   }
+  json["shortest_wave"] = {{"length", json_number(record.shortest_wave)},
+                           {"unit", record.shortest_wave_unit}};
   json["aliased"] = Json::array();
   for (const LoopCoincidence& pair : record.aliased) {
     json["aliased"].push_back({{"families", {pair.first, pair.second}},

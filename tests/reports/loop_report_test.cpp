@@ -97,6 +97,12 @@ TEST(LoopWords, HaveAFaceForEveryVerdict) {
   in_part.steps.push_back({"acceleration resolved", 5000, "in 760 of 5760 rows it is not"});
   EXPECT_THAT(loop_words(in_part).detectable,
               ::testing::EndsWith("Not looked at: in 760 of 5760 rows it is not."));
+  EXPECT_THAT(loop_words(with(LoopVerdict::none)).detectable,
+              HasSubstr("Not looked at: ripples of more than 1257 waves a turn, unless"));
+  LoopRecord linear = with(LoopVerdict::none);
+  linear.shortest_wave = 0.0005;
+  linear.shortest_wave_unit = "m";
+  EXPECT_THAT(loop_words(linear).detectable, HasSubstr("ripples of less than 0.5000 mm, unless"));
   EXPECT_THAT(loop_words(with(LoopVerdict::unknown)).leftover, HasSubstr("depends on position"));
   EXPECT_EQ(loop_words(with(LoopVerdict::cannot_tell)).next, "Record 20 stretches of movement.");
   LoopRecord nothing_to_test = with(LoopVerdict::none);

@@ -271,6 +271,8 @@ LoopRecord sample_loop() {
   loop.untestable = {{"inertia", "no acceleration in the data", 0, 0, "R4"}};
   loop.bursts = {{17, "up slow", 1.2, 1.3, 4.1}};
   loop.error = sample_error();
+  loop.shortest_wave = 0.005;
+  loop.shortest_wave_unit = "rad";
   loop.candidates = {{"stribeck", "sgn_v*exp(-(abs(v)/vs)^delta)", 0.0005, 14.2, 212.4, 0.05},
                      {"temperature", "v*(T - T0)", 0.31, 2.2, kNoFigure, 0.1}};
   loop.base = "coulomb_viscous";

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,7 +34,7 @@ double ratio_of(const EffectFinding& effect) {
 }
 
 TEST(UnknownRipple, IsNamedWithItsPeriodWhateverRatioIsTold) {
-  for (const double wavenumber : {23.7, 88.2, 291.6}) {
+  for (const double wavenumber : {23.7, 88.2, 291.6, 900.3}) {
     const auto ripple = [&](double q) { return kHalfSinesNoise * std::cos(wavenumber * q + 1); };
     for (const std::vector<double>& told : {std::vector<double>{}, std::vector<double>{60}}) {
       const Diagnosis diagnosis = diagnose_strokes(ripple, told);
@@ -42,6 +43,7 @@ TEST(UnknownRipple, IsNamedWithItsPeriodWhateverRatioIsTold) {
       EXPECT_EQ(diagnosis.effects[0].family, "gear_ripple");
       EXPECT_NEAR(ratio_of(diagnosis.effects[0]), wavenumber, 0.1);
       EXPECT_FALSE(diagnosis.leftover.repeating.has_value());
+      EXPECT_LT(diagnosis.shortest_wave, 2 * std::numbers::pi / wavenumber);
     }
   }
 }
