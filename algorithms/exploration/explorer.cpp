@@ -17,7 +17,7 @@
 namespace tribench::loop {
 namespace {
 
-constexpr std::size_t kForeseenEvery = 4;  // of the rows that would be recorded
+constexpr double kForeseenRate_hz = 3.125;  // of the rows that would be recorded
 constexpr double kReferenceRate_hz = 1;
 constexpr double kForeseeAgain = 1.3;  // time since it was foreseen
 constexpr double kWarmer_k = 2;
@@ -86,9 +86,16 @@ std::vector<WeighedVerdict> verdicts_of(const Assessment& now, bool alive_only) 
   return out;
 }
 
-std::vector<MovementRows> rows_of(const Observations& foreseen, std::size_t movements) {
+// One row in so many is `kept_hz` of `rate_hz`.
+std::size_t one_in(double rate_hz, double kept_hz) {
+  return static_cast<std::size_t>(std::max(1.0, rate_hz / kept_hz));
+}
+
+// counts: how many rows a foreseen one stands for.
+std::vector<MovementRows> rows_of(const Observations& foreseen, std::size_t movements,
+                                  std::size_t counts) {
   std::vector<MovementRows> rows(movements);
-  for (MovementRows& one : rows) one.counts = static_cast<double>(kForeseenEvery);
+  for (MovementRows& one : rows) one.counts = static_cast<double>(counts);
   for (std::size_t i = 0; i < foreseen.rows(); ++i) {
     RowRange& range = rows[static_cast<std::size_t>(foreseen.movement[i])].rows;
     if (range.size() == 0) range.begin = i;
@@ -302,8 +309,8 @@ class Explorer {
 
   void make_space() {
     const Dataset all = reference_rows(candidates_, out_.data, limits_, limits_.rate_hz);
-    const auto every = static_cast<std::size_t>(std::max(1.0, limits_.rate_hz / kReferenceRate_hz));
-    const Observations reference = thinned(observe_plan(all), every);
+    const Observations reference =
+        thinned(observe_plan(all), one_in(limits_.rate_hz, kReferenceRate_hz));
     std::vector<double> ratios;
     if (limits_.gear_ratio > 0) ratios.push_back(limits_.gear_ratio);
     space_ = std::make_unique<ExplanationSpace>(reference, ratios, options_.smallest_effect);
@@ -322,11 +329,12 @@ class Explorer {
     if (warmer) std::ranges::fill(refused_, 0);
     foreseen_at_ = now_;
     const Dataset plan = foreseen_rows(candidates_, out_.data, limits_, now_, limits_.rate_hz);
-    const Observations all = thinned(observe_plan(plan), kForeseenEvery);
+    const std::size_t every = one_in(limits_.rate_hz, kForeseenRate_hz);
+    const Observations all = thinned(observe_plan(plan), every);
     const Observations rows = with_signals_of(space_->reference(), all, plan);
     foreseen_.base = space_->base_columns(rows);
     foreseen_.columns = space_->columns(rows);
-    foreseen_.movements = rows_of(rows, candidates_.size());
+    foreseen_.movements = rows_of(rows, candidates_.size(), every);
   }
 
   // Rows that no diagnosis can read end it as a failure of who executes does.

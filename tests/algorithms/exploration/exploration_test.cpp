@@ -207,6 +207,36 @@ TEST(Explorer, AsksForSomethingElseWhereAMovementIsRefused) {
   for (const ExplorationStep& step : done.steps) EXPECT_LE(step.movement.load_factor, 1);
 }
 
+// Rows at 1 kHz say what rows at 12.5 Hz say, and would fill the memory.
+TEST(Explorer, ForeseesNoMoreRowsOfAFasterRecording) {
+  const auto foreseen_at = [](double rate_hz) {
+    simulation::World world({3, simulation::WorldLevel::easy, simulation::WorldKind::single});
+    MotionLimits limits = world.limits();
+    limits.rate_hz = rate_hz;
+    ExplorerOptions options;
+    options.budget_s = 30;
+    std::pair<double, double> rows{0, 0};  // foreseen, and that they stand for
+    const MovementPlan plan = informative_movements();
+    explore(
+        limits,
+        [&](const PlannedMovement& movement) { return world.execute(movement, "the plan"); },
+        options, [&](const ExplorationState& state) {
+          rows = {0, 0};
+          for (const MovementRows& one : state.foreseen.movements) {
+            rows.first += static_cast<double>(one.rows.size());
+            rows.second += one.counts * static_cast<double>(one.rows.size());
+          }
+          return plan(state);
+        });
+    return rows;
+  };
+  const auto usual = foreseen_at(12.5);
+  const auto fast = foreseen_at(250);
+  EXPECT_GT(usual.first, 1000);
+  EXPECT_NEAR(fast.first / usual.first, 1, 0.1);
+  EXPECT_NEAR(fast.second / usual.second, 20, 2);
+}
+
 // As the simulated joint records them, one after the other.
 Dataset recorded(simulation::World& world, std::span<const PlannedMovement> movements) {
   Dataset all;
