@@ -252,6 +252,7 @@ TEST(LoopStudy, AProgramThatFailsIsNamedWithItsCase) {
         "{\"verdict\": \"EFFECTS\", \"effects\": [{\"family\": \"lag\", \"alias\": "
         "[{\"family\": \"stribek\"}]}]}"},
        "did you mean stribeck?"},
+      {{"echo", "{\"verdict\": \"NONE\"}"}, "a prediction for each of the"},
       {{"sh", "-c", "echo '{\"verdict\": \"NONE\", \"held_out\": [1]}'"}, "1 predictions"}};
   for (const auto& [command, what] : failures) {
     try {
