@@ -17,7 +17,7 @@ namespace tribench::loop {
 namespace {
 
 constexpr double kFewestWaves = 2;      // over the travel: less is no repetition
-constexpr double kShortestInMeans = 2.5;  // a mean over two fifths of a wave keeps 76 % of it
+constexpr double kShortestInMeans = 2;  // Nyquist 1928: what is shorter looks like what is longer
 constexpr int kRefinements = 24;        // of a wavenumber: to 1e-5 of a step
 constexpr int kMostWaves = 3;           // one beside another: a ripple and two of its harmonics
 
