@@ -78,6 +78,7 @@ ExitStatus run_challenge_command(ChallengeArguments arguments) {
     throw_bad_input(fmt::format("'{}' is no name for a score's file", arguments.name), "--name",
                     "letters, digits, - and _");
   }
+  arguments.plan.quiet = false;
   const ChallengeScore score = run_challenge(arguments.plan, arguments.name, arguments.command,
                                              arguments.out, stop_requested_by_signal());
   if (arguments.json) {

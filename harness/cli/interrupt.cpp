@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "harness/cli/interrupt.hpp"
 
+#include <unistd.h>
+
 #include <csignal>
+#include <string_view>
 
 namespace tribench {
 namespace {
@@ -9,8 +12,16 @@ namespace {
 // A signal handler can reach nothing but a global.
 std::atomic<bool> stop_requested{false};
 
+constexpr std::string_view kStopping =
+    "\nstopping once what is under way has ended; Ctrl-C again stops at once\n";
+
+// What it calls may be called in a signal handler.
 extern "C" void request_stop(int signal) {
   stop_requested = true;
+  if (signal == SIGINT) {
+    [[maybe_unused]] const auto told =
+        ::write(STDERR_FILENO, kStopping.data(), kStopping.size());
+  }
   std::signal(signal, SIG_DFL);
 }
 

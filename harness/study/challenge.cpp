@@ -19,6 +19,7 @@
 #include "foundation/suggestion.hpp"
 #include "foundation/text.hpp"
 #include "harness/exploration/world_folder.hpp"
+#include "harness/progress_line.hpp"
 #include "problems/file_hash.hpp"
 
 namespace tribench {
@@ -331,9 +332,11 @@ ChallengeScore run_challenge(const ChallengePlan& plan, const std::string& name,
   const std::filesystem::path leaderboard = folder / "leaderboard.md";
   for (const std::filesystem::path& file : {scored, leaderboard}) try_output_file(file);
   ChallengeScore score{name, {}};
+  ProgressLine progress(worlds.size(), static_cast<double>(worlds.size()), plan.quiet, {"worlds"});
   for (const simulation::WorldPlan& one : worlds) {
     if (stop) break;
     score.results.push_back(run_challenge_world(command, one, plan.wall_s));
+    progress.cell_ended(1, score.results.back().verdict == "failed");
     write_file(scored, write_json(score_json(score), 1) + "\n");
   }
   write_file(leaderboard, leaderboard_of(folder, seals));

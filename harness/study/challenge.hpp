@@ -23,6 +23,7 @@ struct ChallengePlan {
   int worlds = 20;
   simulation::WorldLevel level = simulation::WorldLevel::medium;
   double wall_s = 600;  // that a program may take for a world
+  bool quiet = true;    // no progress line
 };
 
 std::vector<simulation::WorldPlan> challenge_worlds(const ChallengePlan& plan);

@@ -168,6 +168,7 @@ TEST_P(InterruptedRunTest, LeavesARunThatResumes) {
   EXPECT_THAT(errors,
               HasSubstr("go on by: tribench run " + (folder_ / "grid.toml").string() + " --out " +
                         (folder_ / "stopped").string() + " --jobs 1 --timing --resume"));
+  if (GetParam() == SIGINT) EXPECT_THAT(errors, HasSubstr("Ctrl-C again stops at once"));
   const std::size_t before = column_of(folder_ / "stopped", "status").size();
   EXPECT_GT(before, 0U);
   EXPECT_LT(before, kCells);
