@@ -202,7 +202,7 @@ struct Diagnosis {
   // ratios only. NaN where nothing that repeats is looked for.
   double shortest_wave = std::numeric_limits<double>::quiet_NaN();
   std::string shortest_wave_unit;
-  std::vector<std::string> needed;           // where it cannot tell: what would be
+  std::vector<std::string> needed;  // where it cannot tell: what would be
   std::vector<std::string> notes;
   LoopModel before;  // fitted to the training movements
   LoopModel after;

@@ -157,8 +157,8 @@ EffectFinding effect_finding(const Found& found, std::span<const Found> later,
   finding.adjusted_p = found.p;
   finding.gain = found.gain.nats;
   finding.gain_error = found.gain.error;
-  // What was found after it shows beside it; what it could not be told from when it was found may be
-  // all of it.
+  // What was found after it shows beside it; what it could not be told from when it was found may
+  // be all of it.
   std::ranges::copy_if(found.aliases, std::back_inserter(finding.aliases),
                        [&](const AliasFinding& alias) {
                          return std::ranges::none_of(later, [&](const Found& other) {

@@ -15,8 +15,8 @@ namespace tribench::loop {
 // Whether a family has its period from the gear's ratio.
 bool repeats_with_the_gear(const EffectFamily& family);
 
-// The waves that unknown_ripple looks at. None where it looks at none: no position, too few stretches
-// of movement, or no family of the library would repeat with the gear.
+// The waves that unknown_ripple looks at. None where it looks at none: no position, too few
+// stretches of movement, or no family of the library would repeat with the gear.
 std::optional<WaveRange> ripples_looked_for(const Campaign& campaign);
 
 // The largest of what repeats, shorter than the output's own ripples. None where nothing repeats

@@ -19,8 +19,7 @@ constexpr std::string_view kStopping =
 extern "C" void request_stop(int signal) {
   stop_requested = true;
   if (signal == SIGINT) {
-    [[maybe_unused]] const auto told =
-        ::write(STDERR_FILENO, kStopping.data(), kStopping.size());
+    [[maybe_unused]] const auto told = ::write(STDERR_FILENO, kStopping.data(), kStopping.size());
   }
   std::signal(signal, SIG_DFL);
 }

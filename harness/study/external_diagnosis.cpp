@@ -212,8 +212,8 @@ LoopAnswer answer_in(const json& object, const AskedDiagnosis& asked) {
     }
   }
   const auto rows = static_cast<std::size_t>(std::ranges::count(asked.held_out, 1));
-  const std::string mend =
-      fmt::format("\"held_out\": [...], a prediction for each of the {} rows of held_out.csv", rows);
+  const std::string mend = fmt::format(
+      "\"held_out\": [...], a prediction for each of the {} rows of held_out.csv", rows);
   if (!object.contains("held_out")) throw_no_answer("the answer has no 'held_out'", mend);
   const json& predictions = object.at("held_out");
   if (predictions.size() != rows) {

@@ -238,7 +238,8 @@ void add_moving(std::vector<std::size_t>& rows, RowRange stroke, const Slow& slo
   const std::vector<double>& v = data.find(Role::velocity)->values;
   const Channel* d = data.find(loop::derived_channel_name("d"));  // null: nobody knows it
   std::vector<char> near_rest = rows_near_rests(stroke, slow, v);
-  const bool creeps = std::ranges::count(near_rest, 0) == 0 && Slow::way_of(stroke, t, v) > slow.way;
+  const bool creeps =
+      std::ranges::count(near_rest, 0) == 0 && Slow::way_of(stroke, t, v) > slow.way;
   if (creeps) std::ranges::fill(near_rest, 0);
   for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
     const bool moves = near_rest[i - stroke.begin] == 0 && std::abs(v[i]) >= kNoisy * noise;

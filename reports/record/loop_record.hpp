@@ -287,7 +287,7 @@ struct LoopRecord {
   std::vector<LoopCandidate> candidates;
   double shortest_wave = kNoFigure;  // that was looked for unless its ratio was told
   std::string shortest_wave_unit;    // "rad" or "m"
-  std::vector<std::string> needed;  // where it cannot tell: what would be
+  std::vector<std::string> needed;   // where it cannot tell: what would be
   std::vector<LoopUnusedColumn> unused_columns;
   LoopError error;
   LoopMotion motion;

@@ -38,8 +38,8 @@ TEST(Aliases, WhatLooksOtherwiseOrStandsBesideAnEffectIsNoAliasOfIt) {
   }
 }
 
-// Strokes of a campaign in which the joint warms up or wears, `effect` (of the temperature and of the
-// time, 0 to 1) being a part of its Coulomb friction.
+// Strokes of a campaign in which the joint warms up or wears, `effect` (of the temperature and of
+// the time, 0 to 1) being a part of its Coulomb friction.
 template <typename Effect>
 Observations warming_campaign(Effect effect, std::uint64_t seed) {
   RandomStream random(seed);

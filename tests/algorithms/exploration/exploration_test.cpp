@@ -11,7 +11,6 @@
 
 #include "algorithms/exploration/fixed_plans.hpp"
 #include "algorithms/exploration/recorded_movements.hpp"
-#include "algorithms/inference/evidence.hpp"
 #include "foundation/error.hpp"
 #include "foundation/freed_memory.hpp"
 #include "foundation/random.hpp"
@@ -26,78 +25,6 @@ const bool kKeepsFreedMemory = [] {
   keep_freed_memory();
   return true;
 }();
-
-struct Drawn {
-  Eigen::MatrixXd base;
-  Eigen::MatrixXd columns;
-  Eigen::VectorXd target;
-};
-
-// `size`: of the first of four columns, in the noise's.
-Drawn draw(int rows, double size, std::uint64_t seed) {
-  RandomStream random(seed);
-  Drawn out{Eigen::MatrixXd::Ones(rows, 2), Eigen::MatrixXd(rows, 4), Eigen::VectorXd(rows)};
-  for (int i = 0; i < rows; ++i) {
-    out.base(i, 1) = random.normal();
-    for (int j = 0; j < 4; ++j) out.columns(i, j) = random.normal();
-    out.target[i] = 5 - 3 * out.base(i, 1) + 0.2 * (size * out.columns(i, 0) + random.normal());
-  }
-  return out;
-}
-
-EvidenceTable table_of(const Drawn& data) {
-  EvidenceSums sums;
-  sums.add(data.base, data.columns, data.target);
-  return EvidenceTable(sums);
-}
-
-double log_factor(const Drawn& data, const ColumnBlock& block) {
-  const EffectBlock one{block};
-  const std::array<const EffectBlock*, 1> blocks = {&one};
-  return table_of(data).log_factor(blocks);
-}
-
-TEST(Evidence, GrowsWithWhatIsThereAndFallsWithWhatIsNot) {
-  const Drawn few = draw(100, 1, 1);
-  const Drawn many = draw(1000, 1, 1);
-  EXPECT_GT(log_factor(few, {0}), 10);
-  EXPECT_GT(log_factor(many, {0}), 100);
-  EXPECT_LT(log_factor(few, {1}), -2);
-  EXPECT_LT(log_factor(many, {1}), log_factor(few, {1}) - 1);
-  EXPECT_LT(log_factor(many, {1, 2}), -4);
-}
-
-TEST(Evidence, IsTheSameForAnyBaseCoefficientsAndAnyNoise) {
-  const Drawn data = draw(200, 0.5, 2);
-  Drawn other = data;
-  other.target = 7 * data.target + data.base * Eigen::Vector2d(-11, 4);
-  EXPECT_NEAR(log_factor(data, {0}), log_factor(other, {0}), 1e-7);
-}
-
-// The mean of a Bayes factor where the base alone is true is 1: rarely is it large, at any time.
-TEST(Evidence, IsRarelyLargeWhereNothingIsMissingHoweverOftenOneLooks) {
-  int large = 0;
-  constexpr int kRuns = 300;
-  for (int run = 0; run < kRuns; ++run) {
-    const Drawn data = draw(300, 0, 100 + static_cast<std::uint64_t>(run));
-    bool ever = false;
-    for (int rows = 10; rows <= 300; rows += 10) {
-      const Drawn part{data.base.topRows(rows), data.columns.topRows(rows), data.target.head(rows)};
-      ever = ever || log_factor(part, {0}) > std::log(20.0);
-    }
-    large += ever ? 1 : 0;
-  }
-  EXPECT_LE(large, kRuns / 20);
-}
-
-TEST(Evidence, PosteriorIsWhatWasPlanted) {
-  const Drawn data = draw(2000, 2, 3);
-  const EffectBlock block{{0}};
-  const std::array<const EffectBlock*, 1> blocks = {&block};
-  const EvidenceTable::Posterior found = table_of(data).posterior(blocks);
-  EXPECT_NEAR(found.mean[0], 0.4, 0.02);
-  EXPECT_NEAR(std::sqrt(found.variance), 0.2, 0.01);
-}
 
 std::vector<std::string> left_by(const Exploration& done) {
   std::vector<std::string> verdicts;
@@ -220,7 +147,8 @@ TEST(Explorer, ForeseesNoMoreRowsOfAFasterRecording) {
     explore(
         limits,
         [&](const PlannedMovement& movement) { return world.execute(movement, "the plan"); },
-        options, [&](const ExplorationState& state) {
+        options,
+        [&](const ExplorationState& state) {
           rows = {0, 0};
           for (const MovementRows& one : state.foreseen.movements) {
             rows.first += static_cast<double>(one.rows.size());

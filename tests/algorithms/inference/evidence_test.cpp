@@ -267,5 +267,71 @@ TEST(EvidenceTable, SaysNothingWithoutBlocksOrOfATargetThatIsWhollyExplained) {
   EXPECT_NEAR(products[1], columns.col(1).dot(left), 1e-9);
 }
 
+struct Drawn {
+  Eigen::MatrixXd base;
+  Eigen::MatrixXd columns;
+  Eigen::VectorXd target;
+};
+
+// `size`: of the first of four columns, in the noise's.
+Drawn draw(int rows, double size, std::uint64_t seed) {
+  RandomStream random(seed);
+  Drawn out{Eigen::MatrixXd::Ones(rows, 2), Eigen::MatrixXd(rows, 4), Eigen::VectorXd(rows)};
+  for (int i = 0; i < rows; ++i) {
+    out.base(i, 1) = random.normal();
+    for (int j = 0; j < 4; ++j) out.columns(i, j) = random.normal();
+    out.target[i] = 5 - 3 * out.base(i, 1) + 0.2 * (size * out.columns(i, 0) + random.normal());
+  }
+  return out;
+}
+
+EvidenceTable table_of(const Drawn& data) { return table_of(data.base, data.columns, data.target); }
+
+double log_factor(const Drawn& data, const ColumnBlock& block) {
+  return log_factor(table_of(data), EffectBlock{block});
+}
+
+TEST(EvidenceSums, GrowsWithWhatIsThereAndFallsWithWhatIsNot) {
+  const Drawn few = draw(100, 1, 1);
+  const Drawn many = draw(1000, 1, 1);
+  EXPECT_GT(log_factor(few, {0}), 10);
+  EXPECT_GT(log_factor(many, {0}), 100);
+  EXPECT_LT(log_factor(few, {1}), -2);
+  EXPECT_LT(log_factor(many, {1}), log_factor(few, {1}) - 1);
+  EXPECT_LT(log_factor(many, {1, 2}), -4);
+}
+
+TEST(EvidenceSums, IsTheSameForAnyBaseCoefficientsAndAnyNoise) {
+  const Drawn data = draw(200, 0.5, 2);
+  Drawn other = data;
+  other.target = 7 * data.target + data.base * Eigen::Vector2d(-11, 4);
+  EXPECT_NEAR(log_factor(data, {0}), log_factor(other, {0}), 1e-7);
+}
+
+// The mean of a Bayes factor where the base alone is true is 1: rarely is it large, at any time.
+TEST(EvidenceSums, IsRarelyLargeWhereNothingIsMissingHoweverOftenOneLooks) {
+  int large = 0;
+  constexpr int kRuns = 300;
+  for (int run = 0; run < kRuns; ++run) {
+    const Drawn data = draw(300, 0, 100 + static_cast<std::uint64_t>(run));
+    bool ever = false;
+    for (int rows = 10; rows <= 300; rows += 10) {
+      const Drawn part{data.base.topRows(rows), data.columns.topRows(rows), data.target.head(rows)};
+      ever = ever || log_factor(part, {0}) > std::log(20.0);
+    }
+    large += ever ? 1 : 0;
+  }
+  EXPECT_LE(large, kRuns / 20);
+}
+
+TEST(EvidenceSums, PosteriorIsWhatWasPlanted) {
+  const Drawn data = draw(2000, 2, 3);
+  const EffectBlock block{{0}};
+  const std::array<const EffectBlock*, 1> blocks = {&block};
+  const EvidenceTable::Posterior found = table_of(data).posterior(blocks);
+  EXPECT_NEAR(found.mean[0], 0.4, 0.02);
+  EXPECT_NEAR(std::sqrt(found.variance), 0.2, 0.01);
+}
+
 }  // namespace
 }  // namespace tribench::loop::evidence_test

@@ -225,8 +225,8 @@ TEST_F(Ripple, IsTheSameInRecordingsThatItWasNotFoundOn) {
   }
 }
 
-// A periodogram of the current over the position has its highest line at 1200 waves a turn, twelve a
-// turn of the motor.
+// A periodogram of the current over the position has its highest line at 1200 waves a turn, twelve
+// a turn of the motor.
 TEST_F(MeasuredLoop, KinovaMotorsCogTwelveTimesATurn) {
   for (const int joint : {5, 7}) {
     const Json json = loop("kinova-gen3/joint" + std::to_string(joint) + ".csv",

@@ -115,8 +115,8 @@ TEST(RecordingMovements, AStrokeStartsFromRestWhereItsRowsAreTooFarApartToShowIt
   }
 }
 
-// A program that names a movement a moment late puts a stop and the next start the same way into it:
-// what friction does at rest is in those rows, as it is at a stroke's ends.
+// A program that names a movement a moment late puts a stop and the next start the same way into
+// it: what friction does at rest is in those rows, as it is at a stroke's ends.
 TEST(RecordingMovements, AStopTooShortToEndAStrokeIsLeftOut) {
   PreparedRecording out;
   Channel time{"t", "s", Role::time, {}};
