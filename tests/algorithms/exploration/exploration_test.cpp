@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -13,7 +12,6 @@
 #include "algorithms/exploration/recorded_movements.hpp"
 #include "foundation/error.hpp"
 #include "foundation/freed_memory.hpp"
-#include "foundation/random.hpp"
 #include "foundation/sign.hpp"
 #include "problems/joint_simulation/world.hpp"
 
