@@ -369,7 +369,7 @@ void add_base_options(CLI::App& command, LoopArguments& arguments) {
   CLI::Option* gear_ratio = add_data_options(command, arguments.reading);
   gear_ratio->description(
       "motor turns per turn of the joint; without it the usual ones are scanned for ripples, and "
-      "what repeats with another period is found where it is long enough (loop.md says which)");
+      "what repeats with another period is found from loop.json's shortest_wave on");
   take_one_of<Gravity>(
       command.add_option("--gravity", arguments.gravity,
                          "gravity that no column declares: fit sin and cos of the position with "
