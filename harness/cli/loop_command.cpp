@@ -257,11 +257,13 @@ loop::Observations read_observations(const LoopArguments& arguments,
   const std::size_t moving = recording.data.rows() + recording.unresolved;
   steps.push_back({"cut into movements, derived channels added", moving, {}});
   if (recording.unresolved > 0) {
-    steps.push_back({"acceleration resolved", recording.data.rows(),
-                     fmt::format("in {} of {} rows the acceleration changes faster than the "
-                                 "position shows; gentler starts, a finer encoder or a column of "
-                                 "the acceleration would open them",
-                                 recording.unresolved, moving)});
+    const char* part =
+        recording.data.find(Role::friction_torque) != nullptr ? "velocity" : "acceleration";
+    steps.push_back({fmt::format("{} resolved", part), recording.data.rows(),
+                     fmt::format("in {} of {} rows the {} changes faster than the position shows; "
+                                 "gentler starts, a finer encoder or a column of the {} would open "
+                                 "them",
+                                 recording.unresolved, moving, part, part)});
   }
   std::vector<std::string> rigid = arguments.rigid;
   rigid.insert(rigid.end(), recording.rigid.begin(), recording.rigid.end());

@@ -16,6 +16,7 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 // Rows that the bandwidth is chosen by: enough for two digits of it.
 constexpr std::size_t kRowsOfTrial = 20'000;
 constexpr double kLowestBandwidth = 0.3;  // Hz: slower than any motion of a joint
+constexpr double kTakenAsTheyAre = 2;     // steps of time: from there on it follows every position
 constexpr double kTrialStep = 1.6;
 constexpr double kUnknown = 1e4;  // variance of the first state, in the filter's own units
 constexpr double kNothingNew = std::numeric_limits<double>::infinity();  // of a variance
@@ -273,7 +274,7 @@ Choice choose_bandwidth(std::span<const double> time, const Belief& data,
   const std::vector<RowRange> some = trial_pieces(pieces);
   Choice best;
   bool first = true;
-  for (double hertz = kLowestBandwidth; hertz <= 0.2 / dt; hertz *= kTrialStep) {
+  for (double hertz = kLowestBandwidth; hertz * dt <= kTakenAsTheyAre; hertz *= kTrialStep) {
     const double one = likelihood_of(time, data, some, jerk_of(hertz, dt));
     if (first || one > best.likelihood) best = {hertz, one};
     first = false;

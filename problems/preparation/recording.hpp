@@ -32,7 +32,7 @@ struct PreparedRecording {
   Dataset data;
   std::vector<std::string> rigid;  // channels whose coefficients are fitted with the base
   bool derived_velocity = false;   // from the position, in place of a column or of none
-  std::size_t unresolved = 0;      // rows left out: the derived acceleration does not follow there
+  std::size_t unresolved = 0;      // rows left out: the derived motion does not follow there
   std::vector<std::string> notes;  // what was done, one sentence each
 };
 

@@ -20,9 +20,11 @@ namespace {
 constexpr std::size_t kEdgeRows = 3;  // of a derived motion, at the ends of a piece
 constexpr double kUnresolved = 0.6;   // standard errors of the acceleration
 constexpr double kMatters = 0.33;     // of the acceleration that the torque's noise leaves visible
-constexpr double kLeastDelay = 0.6;   // steps of time
-constexpr double kMuchCoarser = 4;    // than the derived velocity's noise
-constexpr double kMuchNoisier = 10;   // a little: what a good controller knows beside its encoder
+constexpr double kHalfStep = 0.4;     // of time, at least
+constexpr double kMoreThanHalf = 0.6;
+constexpr double kSurely = 3;        // standard errors
+constexpr double kMuchCoarser = 4;   // than the derived velocity's noise
+constexpr double kMuchNoisier = 10;  // a little: what a good controller knows beside its encoder
 
 // Shorter ones make no stroke.
 std::vector<RowRange> pieces_to_smooth(std::span<const double> time,
@@ -112,31 +114,34 @@ void settle_velocity(PreparedRecording& out, const DerivedMotion& derived) {
     return;
   }
   const std::vector<double>& t = find_channel(out.data, Role::time)->values;
-  const std::optional<double> delay =
-      delay_of(t, derived.motion.velocity, v->values, derived.pieces);
   const double step = median_step(t, out.data.movement);
-  // No filter runs ahead: a velocity that does was derived otherwise, and is left as it is.
-  if (delay && *delay >= kLeastDelay * step) {
-    out.notes.push_back(
-        fmt::format("'{}' lags behind its position by {:.3g} ms, as a filtered velocity does",
-                    v->name, 1e3 * *delay));
-    replace_velocity(out, derived);
-    return;
-  }
+  const double delay =
+      delay_of(t, derived.motion.velocity, v->values, derived.pieces).value_or(0) / step;
+  // Whether the torque goes with the derived one, in standard errors.
+  const double preferred =
+      torque_prefers(out.data, derived.motion.velocity, derived.motion.acceleration).value_or(0);
   const double noise = noise_beside(v->values, derived.motion.velocity, derived.pieces);
-  if (noise > kMuchNoisier * derived.motion.velocity_noise) {
-    out.notes.push_back(
-        fmt::format("'{}' has a noise of {:.2g} {}, more than its position leaves open", v->name,
-                    noise, v->unit));
-    replace_velocity(out, derived);
+  const double count = resolution_of(v->values);
+  std::string why;
+  // No filter runs ahead: a velocity that does was derived otherwise, and is left as it is. Of half
+  // a step the torque has to say whether the velocity is late, as a difference is, or the position,
+  // as a simulator has it (semi-implicit Euler). Of more it says nothing: friction that lags is
+  // like a velocity that does.
+  if (delay >= kMoreThanHalf || (delay >= kHalfStep && preferred > kSurely)) {
+    why = fmt::format("lags behind its position by {:.3g} ms, as a {} velocity does",
+                      1e3 * step * delay, delay >= kMoreThanHalf ? "filtered" : "differenced");
+  } else if (preferred < -kSurely) {
+    return;  // speeds may have been commanded in even steps
+  } else if (noise > kMuchNoisier * derived.motion.velocity_noise) {
+    why =
+        fmt::format("has a noise of {:.2g} {}, more than its position leaves open", noise, v->unit);
+  } else if (count >= kMuchCoarser * derived.motion.velocity_noise) {
+    why = fmt::format("is told in steps of {:.2g} {}, more than its position leaves open", count,
+                      v->unit);
+  } else {
     return;
   }
-  const double count = resolution_of(v->values);
-  if (count < kMuchCoarser * derived.motion.velocity_noise) return;
-  out.notes.push_back(
-      fmt::format("'{}' is told in steps of {:.2g} {}, more than its position leaves "
-                  "open",
-                  v->name, count, v->unit));
+  out.notes.push_back(fmt::format("'{}' {}", v->name, why));
   replace_velocity(out, derived);
 }
 
@@ -194,7 +199,6 @@ namespace {
 constexpr std::string_view kUnresolvedChannel = "acceleration not resolved";
 constexpr std::string_view kChangeChannel = "acceleration less that of half the bandwidth";
 constexpr double kMostBlunted = 2;  // shares of the change
-constexpr double kSurely = 3;       // standard errors
 
 bool has_inertia_of_derived(const Dataset& data) {
   return data.find("derived_acceleration") != nullptr &&
@@ -240,21 +244,27 @@ std::vector<RowRange> fast_ramps(std::span<const double> change, std::span<const
 
 }  // namespace
 
-// Where the acceleration changes faster than the smoother follows, inertia would be taken for
-// friction: there the whole and half of the bandwidth, with hardly a noise, differ. Marked here,
-// dropped when the movements are cut.
+// Where the motion changes faster than the smoother follows, what it leaves of the acceleration, or
+// of a derived velocity beside a friction torque, would be taken for friction: there the whole and
+// half of the bandwidth, with hardly a noise, differ. Marked here, dropped when the movements are
+// cut.
 void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived) {
-  if (!has_inertia_of_derived(out.data)) return;
-  Channel change{std::string(kChangeChannel), "-", Role::none, derived.motion.acceleration};
+  const bool is_inertia = has_inertia_of_derived(out.data);
+  const bool is_friction = out.derived_velocity && out.data.find(Role::friction_torque) != nullptr;
+  if (!is_inertia && !is_friction) return;
+  const auto part = is_inertia ? &Motion::acceleration : &Motion::velocity;
+  const double noise =
+      is_inertia ? derived.motion.acceleration_noise : derived.motion.velocity_noise;
+  const std::optional<double> visible =
+      is_inertia ? visible_acceleration(out.data) : visible_velocity(out.data);
+  Channel change{std::string(kChangeChannel), "-", Role::none, derived.motion.*part};
   for (std::size_t i = 0; i < change.values.size(); ++i) {
-    change.values[i] -= derived.slower.acceleration[i];
+    change.values[i] -= (derived.slower.*part)[i];
   }
   const std::vector<double>& t = find_channel(out.data, Role::time)->values;
   Channel mark{std::string(kUnresolvedChannel), "-", Role::none, std::vector<double>(t.size(), 0)};
   const double blur = kBlur / (kRadPerTurn * derived.motion.bandwidth);
-  const double noise = derived.motion.acceleration_noise;
-  const double least =
-      std::max(kUnresolved * noise, kMatters * visible_acceleration(out.data).value_or(0));
+  const double least = std::max(kUnresolved * noise, kMatters * visible.value_or(0));
   const std::vector<RowRange> ramps =
       fast_ramps(change.values, t, derived.motion.velocity, least, noise, 2 * blur);
   for (RowRange ramp : ramps) {
@@ -266,7 +276,7 @@ void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived) {
               mark.values.begin() + static_cast<std::ptrdiff_t>(ramp.end), 1);
   }
   out.data.channels.push_back(std::move(mark));
-  out.data.channels.push_back(std::move(change));
+  if (is_inertia) out.data.channels.push_back(std::move(change));
 }
 
 // An inertia that one movement alone tells cannot be judged by leaving movements out: there its
@@ -331,7 +341,7 @@ void drop_unresolved(PreparedRecording& out) {
   const auto count = static_cast<std::size_t>(std::ranges::count(rows, 1));
   if (2 * count > rows.size()) return;
   out.unresolved = count;
-  leave_out(out, rows, "change their acceleration faster than the position's noise lets be seen");
+  leave_out(out, rows, "change their motion faster than the position's noise lets be seen");
 }
 
 void adjust_acceleration(PreparedRecording& out) {

@@ -54,13 +54,14 @@ struct DerivedMotion {
 
 // Nothing where there is no position, or the rows are too uneven or too far apart in time.
 std::optional<DerivedMotion> derive_motion(const PreparedRecording& out);
-// The derived velocity where there is none, or one that lags behind its position.
+// The derived velocity where there is none, or one that lags behind its position, has more noise or
+// coarser steps than the position leaves open; where they nearly agree the torque decides.
 void settle_velocity(PreparedRecording& out, const DerivedMotion& derived);
 // The derived acceleration where there is none.
 void settle_acceleration(PreparedRecording& out, const DerivedMotion& derived);
 // The other joint's acceleration from its velocity, where there is none.
 void settle_other_acceleration(PreparedRecording& out);
-// Where the acceleration changes faster than the smoother follows, inertia would be taken for
+// Where the motion changes faster than the smoother follows, what it lacks would be taken for
 // friction. Marked before rows are left out, dropped when the movements are cut.
 void mark_unresolved(PreparedRecording& out, const DerivedMotion& derived);
 void drop_unresolved(PreparedRecording& out);

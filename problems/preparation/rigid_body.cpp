@@ -17,6 +17,7 @@ constexpr std::size_t kRows = 20'000;  // that take part, evenly spaced
 constexpr std::size_t kFewestFitRows = 100;
 constexpr double kLeastRange = 0.3;  // rad: less does not tell gravity from an offset
 constexpr int kRounds = 4;
+constexpr double kCreeping = 0.02;  // of the top speed
 // Neighbouring rows repeat one another: of this many only one is new to the standard errors.
 constexpr double kRowsThatAgree = 20;
 
@@ -43,6 +44,9 @@ Fit least_squares(const Eigen::MatrixXd& x, const Eigen::VectorXd& y) {
   return fit;
 }
 
+constexpr Eigen::Index kVelocityColumn = 1;
+constexpr Eigen::Index kAccelerationColumn = 4;
+
 // sgn v, v, 1, |v| and, where there is one, the acceleration; then `more` columns left free.
 struct Rows {
   Eigen::MatrixXd x;
@@ -68,10 +72,10 @@ Rows rows_of(const Dataset& data, const Channel& torque, Eigen::Index more, doub
   for (Eigen::Index r = 0; r < n; ++r) {
     const std::size_t i = rows.places[static_cast<std::size_t>(r)];
     rows.x(r, 0) = v[i] > 0 ? 1 : -1;
-    rows.x(r, 1) = v[i];
+    rows.x(r, kVelocityColumn) = v[i];
     rows.x(r, 2) = 1;
     rows.x(r, 3) = std::abs(v[i]);
-    if (a != nullptr) rows.x(r, 4) = a->values[i];
+    if (a != nullptr) rows.x(r, kAccelerationColumn) = a->values[i];
     rows.y(r) = torque.values[i];
     rows.speed += std::abs(v[i]) / static_cast<double>(n);
   }
@@ -183,24 +187,31 @@ double torque_noise(const std::vector<double>& torque, std::size_t rows_each) {
   return kMadToSd * upper_median_magnitude(std::move(bends)) / std::sqrt(6.0);
 }
 
-}  // namespace
-
-std::optional<double> visible_acceleration(const Dataset& data) {
-  constexpr double kSlow = 0.02;        // of the top speed
+// The change of a column that the torque would show: its noise over the column's coefficient.
+std::optional<double> visible_change(const Dataset& data, const Channel* torque,
+                                     Eigen::Index column) {
   constexpr double kSurely = 5;         // standard errors
   constexpr std::size_t kMeans = 6000;  // that a diagnosis averages a recording to
-  constexpr Eigen::Index kAcceleration = 4;
-  const Channel* torque = effort_of(data);
   const Channel* v = data.find(Role::velocity);
-  if (torque == nullptr || v == nullptr || !data.find(Role::acceleration)) return {};
-  Rows rows = rows_of(data, *torque, load_columns(data), kSlow * top_speed(v->values));
+  if (torque == nullptr || v == nullptr) return {};
+  Rows rows = rows_of(data, *torque, load_columns(data), kCreeping * top_speed(v->values));
   if (rows.places.size() < kFewestFitRows) return {};
   fill_load_columns(data, rows, rows.base);
   const Fit fit = least_squares(rows.x, rows.y);
-  const double inertia = fit.coefficients(kAcceleration);
-  if (!(inertia > kSurely * fit.errors(kAcceleration))) return {};
+  if (!(fit.coefficients(column) > kSurely * fit.errors(column))) return {};
   const std::size_t rows_each = std::max<std::size_t>(1, data.rows() / kMeans);
-  return torque_noise(torque->values, rows_each) / inertia;
+  return torque_noise(torque->values, rows_each) / fit.coefficients(column);
+}
+
+}  // namespace
+
+std::optional<double> visible_acceleration(const Dataset& data) {
+  if (!data.find(Role::acceleration)) return {};
+  return visible_change(data, effort_of(data), kAccelerationColumn);
+}
+
+std::optional<double> visible_velocity(const Dataset& data) {
+  return visible_change(data, data.find(Role::friction_torque), kVelocityColumn);
 }
 
 std::optional<GravityFactor> gravity_factor(const Dataset& data) {
@@ -214,6 +225,39 @@ std::optional<GravityFactor> gravity_factor(const Dataset& data) {
   }
   const Fit fit = least_squares(rows.x, rows.y);
   return GravityFactor{fit.coefficients(rows.base), fit.errors(rows.base)};
+}
+
+std::optional<double> torque_prefers(const Dataset& data, std::span<const double> velocity,
+                                     std::span<const double> acceleration) {
+  constexpr Eigen::Index kParts = 8;
+  const Channel* effort = effort_of(data);
+  const Channel* friction = data.find(Role::friction_torque);
+  const Channel* v = data.find(Role::velocity);
+  if ((effort == nullptr && friction == nullptr) || v == nullptr) return {};
+  const Eigen::Index loads = load_columns(data);
+  Rows rows = rows_of(data, friction != nullptr ? *friction : *effort, loads + 2,
+                      kCreeping * top_speed(v->values));
+  if (rows.places.size() < kFewestFitRows) return {};
+  fill_load_columns(data, rows, rows.base);
+  const Eigen::Index n = rows.x.rows();
+  const auto left_with = [&](std::span<const double> speed) {
+    for (Eigen::Index r = 0; r < n; ++r) {
+      const std::size_t i = rows.places[static_cast<std::size_t>(r)];
+      rows.x(r, kVelocityColumn) = speed[i];
+      rows.x(r, 3) = std::abs(speed[i]);
+      rows.x(r, rows.base + loads) = speed[i] * std::abs(speed[i]);
+      rows.x(r, rows.base + loads + 1) = friction != nullptr ? 0 : acceleration[i];
+    }
+    const Eigen::VectorXd rest = rows.y - rows.x * least_squares(rows.x, rows.y).coefficients;
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(kParts);
+    for (Eigen::Index r = 0; r < n; ++r) squares(r * kParts / n) += rest(r) * rest(r);
+    return squares;
+  };
+  const Eigen::VectorXd gain = left_with(v->values) - left_with(velocity);
+  const double mean = gain.mean();
+  const double error = std::sqrt((gain.array() - mean).square().sum() / (kParts * (kParts - 1)));
+  if (!(error > 0)) return {};
+  return mean / error;
 }
 
 }  // namespace tribench

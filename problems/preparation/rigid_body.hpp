@@ -55,5 +55,14 @@ std::optional<Blunting> acceleration_blunting(const Dataset& data, std::span<con
 // The change of acceleration that the torque would show: its noise, in means as a diagnosis takes
 // them, divided by the inertia that it tells. Nothing where it tells none.
 std::optional<double> visible_acceleration(const Dataset& data);
+// The change of velocity that a friction torque would show.
+std::optional<double> visible_velocity(const Dataset& data);
+
+// Of two tellings of one motion, the recording's own and another, the one that the torque goes
+// with: in standard errors, above 0 the other. What friction, a motor's inertia and gravity leave
+// of the torque is less with it, as the eighths of the recording agree. Nothing where no torque was
+// recorded or rows are too few.
+std::optional<double> torque_prefers(const Dataset& data, std::span<const double> velocity,
+                                     std::span<const double> acceleration);
 
 }  // namespace tribench

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "foundation/random.hpp"
 #include "tests/problems/preparation/raw_log.hpp"
 
 namespace tribench {
@@ -134,6 +135,36 @@ TEST(MotionSmoother, ALongRestAtTheBeginLeavesFiniteNumbers) {
   const std::vector<RowRange> whole = {{0, q.size()}};
   const Motion motion = MotionSmoother(time, q, whole).smoothed();
   for (const double v : motion.velocity) ASSERT_TRUE(std::isfinite(v));
+}
+
+// A position without noise may be followed from row to row: 100 rows a second show an acceleration
+// that is another in every tenth of a second.
+TEST(MotionSmoother, APositionWithoutNoiseIsFollowedFromRowToRow) {
+  constexpr double kStep = 0.01;
+  constexpr double kAcceleration = 5;
+  RandomStream random(key_of("rough"));
+  std::vector<double> time;
+  std::vector<double> q;
+  std::vector<double> a;
+  double v = 0;
+  double position = 0;
+  double now = 0;
+  for (int i = 0; i < 4000; ++i) {
+    if (i % 10 == 0) now = kAcceleration * random.normal() - v;
+    time.push_back(kStep * i);
+    q.push_back(position);
+    a.push_back(now);
+    position += kStep * v + 0.5 * kStep * kStep * now;
+    v += kStep * now;
+  }
+  const std::vector<RowRange> whole = {{0, q.size()}};
+  const Motion motion = MotionSmoother(time, q, whole).smoothed();
+  double squares = 0;
+  for (std::size_t i = 100; i + 100 < q.size(); ++i) {
+    // Straight between rows: at an instant of a change the mean of both.
+    squares += std::pow(motion.acceleration[i] - 0.5 * (a[i] + a[i - 1]), 2);
+  }
+  EXPECT_LT(std::sqrt(squares / 3800), 0.07 * kAcceleration);
 }
 
 }  // namespace
