@@ -10,35 +10,16 @@
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 #include "foundation/output_file.hpp"
+#include "foundation/scratch_folder.hpp"
 #include "reports/html/embedded.hpp"
 
 namespace tribench {
 namespace {
 
-// A file that goes with its owner.
-class ScratchFile {
- public:
-  ScratchFile(std::filesystem::path path, const std::string& text) : path_(std::move(path)) {
-    write_file(path_, text);
-  }
-  ~ScratchFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-  std::string name() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
 // Runs a program that draws; returns what it printed.
-std::string run_drawing(std::vector<std::string> command, const std::string& input,
+std::string run_drawing(const ChildOptions& options, const std::string& input,
                         std::string_view package) {
-  const std::string program = command[0];
-  ChildOptions options;
-  options.command = std::move(command);
+  const std::string& program = options.command[0];
   try {
     const ChildRun run = run_child(options, input);
     if (run.exit.ok()) return run.output;
@@ -58,7 +39,9 @@ std::vector<std::string> draw_picture_files(const std::vector<std::string_view>&
                                             const std::filesystem::path& folder,
                                             const std::vector<std::string>& only) {
   std::filesystem::create_directories(folder);
-  const ScratchFile file(folder / ".data.json", write_json(data));
+  const ScratchFolder scratch;
+  const std::filesystem::path data_file = scratch.path() / "data.json";
+  write_file(data_file, write_json(data));
   std::string script;
   for (const std::string_view part : {embedded::vega_js(), embedded::plots_js()}) {
     script += part;
@@ -68,9 +51,11 @@ std::vector<std::string> draw_picture_files(const std::vector<std::string_view>&
     script += part;
     script += '\n';
   }
-  std::vector<std::string> command = {"node", "-", file.name(), folder.string()};
-  command.insert(command.end(), only.begin(), only.end());
-  std::istringstream printed(run_drawing(std::move(command), script, "nodejs"));
+  ChildOptions options;
+  options.command = {"node", "-", data_file.string(), folder.string()};
+  options.command.insert(options.command.end(), only.begin(), only.end());
+  options.scratch = scratch.path();
+  std::istringstream printed(run_drawing(options, script, "nodejs"));
   std::vector<std::string> names;
   for (std::string name; std::getline(printed, name);) names.push_back(name);
   return names;
@@ -81,9 +66,10 @@ std::vector<std::string> write_png_beside(const std::filesystem::path& folder,
   std::vector<std::string> names;
   for (const std::string& name : svg) {
     names.push_back(std::filesystem::path(name).replace_extension(".png").string());
-    run_drawing({"rsvg-convert", "--zoom", "2", "--output", (folder / names.back()).string(),
-                 (folder / name).string()},
-                {}, "librsvg2-bin");
+    // Printed and not written by rsvg-convert: half a picture would stay where it is killed.
+    write_file(folder / names.back(),
+               run_drawing({.command = {"rsvg-convert", "--zoom", "2", (folder / name).string()}},
+                           {}, "librsvg2-bin"));
   }
   return names;
 }

@@ -105,6 +105,8 @@ async function writeSvg(spec, folder, name, fs, path) {
   const view = new vega.View(vega.parse(still), {renderer: "none", logLevel: vega.Error});
   const svg = (await view.toSVG()).replace(/<[^>]*>/g, (tag) => tag.replace(/(\.[0-9]{2})[0-9]+/g, "$1"))
     .replace("<g ", `<title>${spec.description.replace(/[<&]/g, "")}</title><g `);
-  fs.writeFileSync(path.join(folder, name), svg);
+  const file = path.join(folder, name);
+  fs.writeFileSync(file + ".partial", svg);  // whole or not at all, as every file of a run
+  fs.renameSync(file + ".partial", file);
   console.log(name);
 }
