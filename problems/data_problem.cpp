@@ -96,10 +96,11 @@ void refuse_opposing_friction(const Dataset& data, std::string_view target) {
   const Channel* velocity = data.find(Role::velocity);
   if (friction.role != Role::friction_torque || velocity == nullptr) return;
   refuse_opposing_friction(friction.values, friction.name, velocity->values, velocity->name,
-                           data.name);
+                           data.name, mend_of_sign(data.torques_flipped));
 }
 
 void flip_torques(Dataset& data) {
+  data.torques_flipped = !data.torques_flipped;
   for (Channel& channel : data.channels) {
     if (channel.role == Role::gravity_sign || is_torque_like(channel.role)) {
       for (double& value : channel.values) value = value == 0 ? value : -value;

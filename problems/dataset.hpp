@@ -61,6 +61,7 @@ struct Dataset {
   std::vector<int> movement;                // per row: index into movement_names
   std::vector<std::string> movement_names;  // in the order of the file, which is the campaign's
   std::vector<TextCell> texts = {};         // one a column, for messages
+  bool torques_flipped = false;             // by flip_torques: what to mend is another thing then
 
   std::size_t rows() const { return movement.size(); }
   const Channel* find(std::string_view channel_name) const;

@@ -42,6 +42,11 @@ double friction_agreement(std::span<const double> friction, std::span<const doub
   return ff > 0 && vv > 0 ? fv / std::sqrt(ff * vv) : 0;
 }
 
+std::string mend_of_sign(bool turned) {
+  return turned ? "leave --flip-sign out: it is what turned the torques' sign"
+                : "give --flip-sign to change the sign of the torques";
+}
+
 void refuse_opposing_friction(std::span<const double> friction, const std::string& friction_name,
                               std::span<const double> velocity, const std::string& velocity_name,
                               const std::string& place, const std::string& mend) {

@@ -16,12 +16,13 @@ namespace tribench {
 // fall with speed. 0 where either does not vary. As many values in both, all finite.
 double friction_agreement(std::span<const double> friction, std::span<const double> velocity);
 
-inline constexpr const char* kTurnTheSign = "give --flip-sign to change the sign of the torques";
+// Where friction opposes velocity, of torques that were turned already (--flip-sign) or not.
+std::string mend_of_sign(bool turned);
 
 // Throws Error (bad_input) where friction opposes velocity by more than noise does by chance (a
 // correlation below -0.1). The names are the columns', `place` is the file's.
 void refuse_opposing_friction(std::span<const double> friction, const std::string& friction_name,
                               std::span<const double> velocity, const std::string& velocity_name,
-                              const std::string& place, const std::string& mend = kTurnTheSign);
+                              const std::string& place, const std::string& mend);
 
 }  // namespace tribench

@@ -169,6 +169,7 @@ KnownDataset select_rows(const KnownDataset& source, std::span<const std::size_t
   KnownDataset selected;
   selected.data.name = source.data.name;
   selected.data.movement_names = source.data.movement_names;
+  selected.data.torques_flipped = source.data.torques_flipped;
   for (const Channel& channel : source.data.channels) {
     selected.data.channels.push_back(
         {channel.name, channel.unit, channel.role, at_rows(channel.values, rows)});

@@ -251,8 +251,10 @@ double fit_rigid_body(JointModel& model, const RigidBodyTerms& terms,
   std::span<const double> coefficients = fit.coefficients;
   if (terms.inertia) {
     if (!(coefficients[0] > 0)) {
-      throw_bad_input(fmt::format("the fitted inertia is {:.4g}", coefficients[0]), place,
-                      "is the torque's sign right (--flip-sign)? else give the inertia");
+      throw_bad_input(
+          fmt::format("the fitted inertia is {:.4g}", coefficients[0]), place,
+          "is the torque's sign right (give --flip-sign, or leave it out)? else give the "
+          "inertia");
     }
     model.inertia = coefficients[0];
     coefficients = coefficients.subspan(1);

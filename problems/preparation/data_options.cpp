@@ -100,9 +100,10 @@ TorqueConstant parse_torque_constant(const std::string& text, const std::string&
   }
   const std::optional<double> value = read_number<double>(number);
   if (!value || !(*value > 0)) {
-    throw_bad_input(fmt::format("'{}' is no torque constant", text), place,
-                    "write N m/A at the joint, or K@motor beside --gear-ratio; a negative one is "
-                    "--flip-sign");
+    throw_bad_input(
+        fmt::format("'{}' is no torque constant", text), place,
+        "write N m/A at the joint, or K@motor beside --gear-ratio, without a sign: that "
+        "is turned by --flip-sign");
   }
   constant.value = *value;
   return constant;

@@ -138,8 +138,9 @@ void check_match(const DataFile& file, const MotionMatch& match, std::optional<d
     throw_bad_input(what, file.data.name,
                     fmt::format("one of the two has its sign turned: turn it with --roles "
                                 "'{0}=velocity[-1 {1}]' (or the position's and, where the torque "
-                                "goes with '{0}', --flip-sign)",
-                                velocity, unit.empty() ? "rad/s" : unit));
+                                "goes with '{0}', {2} --flip-sign)",
+                                velocity, unit.empty() ? "rad/s" : unit,
+                                file.data.torques_flipped ? "without" : "with"));
   }
   const std::vector<Suspect> list = suspects(gear_ratio);
   const Suspect* suspect = find_suspect(file, list, match.slope);

@@ -252,7 +252,7 @@ std::vector<double> without_place(const std::vector<double>& values, const std::
 
 }  // namespace
 
-void check_sign(const Observations& data) {
+void check_sign(const Observations& data, bool torques_flipped) {
   if (!data.rigid.empty()) return;  // inertia and gravity may dominate: no sign to be expected
   const Signal& v = *data.find("v");
   const Signal* q = data.find("q");
@@ -264,7 +264,7 @@ void check_sign(const Observations& data) {
       data.target, data.target_name, v.values, v.channel, data.target_name,
       holds_gravity ? "at the same place it goes with it, so that it holds gravity: declare that "
                       "with --roles COLUMN=gravity_torque[N m], or give --gravity fit"
-                    : kTurnTheSign);
+                    : mend_of_sign(torques_flipped));
 }
 
 }  // namespace tribench::loop

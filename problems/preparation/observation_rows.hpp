@@ -44,6 +44,6 @@ void check_varying(const Observations& data);
 void check_moving(const Observations& data);
 
 // Throws Error (bad_input) where friction opposes the velocity.
-void check_sign(const Observations& data);
+void check_sign(const Observations& data, bool torques_flipped);
 
 }  // namespace tribench::loop

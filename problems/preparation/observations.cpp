@@ -486,7 +486,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   drop_constant_signals(out);
   drop_negligible_load(out);
   check_varying(out);
-  check_sign(out);
+  check_sign(out, data.torques_flipped);
   return out;
 }
 

@@ -10,6 +10,7 @@
 
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
+#include "problems/friction_sign.hpp"
 #include "problems/preparation/rigid_body.hpp"
 
 namespace tribench {
@@ -80,7 +81,7 @@ void refuse_turned_sign(const PreparedRecording& out, const RigidBody& body) {
       fmt::format("friction opposes the velocity here ({:.3g} at the typical speed, inertia and "
                   "gravity taken off); it is expected positive with velocity",
                   body.friction),
-      out.data.name, "turn the torque's sign with --flip-sign");
+      out.data.name, mend_of_sign(out.data.torques_flipped));
 }
 
 void add_rigid(PreparedRecording& out, const Channel& channel) {

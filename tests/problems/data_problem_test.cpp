@@ -100,6 +100,12 @@ TEST(DataProblem, RefusesFrictionThatOpposesVelocityUntilItIsFlipped) {
   EXPECT_EQ(data.at("tau_g").values, small().at("tau_g").values);
 }
 
+TEST(DataProblem, WhereTheTorquesWereTurnedToOpposeTheMendIsNotToTurnThem) {
+  Dataset data = small();
+  flip_torques(data);
+  EXPECT_THAT(complaint(data, "tau_f", {"velocity_rad_s"}), HasSubstr("leave --flip-sign out"));
+}
+
 TEST(DataProblem, FrictionThatFallsWithSpeedInOneDirectionDoesNotOpposeIt) {
   const Dataset data = parse_csv("velocity_rad_s,tau_f\n1,9\n2,8\n3,7\n", "one.csv").data;
   EXPECT_EQ(complaint(data, "tau_f", {"velocity_rad_s"}), "no error");

@@ -33,6 +33,17 @@ TEST(Observations, FrictionAgainstTheVelocityIsRefusedWithTheMend) {
   EXPECT_NO_THROW(observe(planted.data));
 }
 
+TEST(Observations, FrictionThatWasTurnedAgainstTheVelocityIsNotToBeTurned) {
+  PlantedData planted = kuka::make_planted({}, 1);
+  flip_torques(planted.data);
+  try {
+    observe(planted.data);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.mend()).find("leave --flip-sign out"), std::string::npos);
+  }
+}
+
 TEST(Observations, AFewRowsTheOtherWayAreLeftOutAndSaid) {
   PlantedData planted = kuka::make_planted({.trajectories = 0}, 1);
   const auto values = [&](Role role) -> std::vector<double>& {

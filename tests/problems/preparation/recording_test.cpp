@@ -13,6 +13,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
+#include "problems/data_problem.hpp"
 #include "problems/joint_simulation/controlled_run.hpp"
 #include "tests/problems/preparation/raw_log.hpp"
 
@@ -341,7 +342,15 @@ TEST(PreparedRecording, FrictionThatOpposesTheVelocityIsSeenBesideGravity) {
   RawLogPlan plan;
   std::vector<RawSample> truth = simulate(plan);
   for (RawSample& sample : truth) sample.torque = -sample.torque;
-  EXPECT_THAT(complaint(raw_table(truth, plan, {}), engineer()), HasSubstr("--flip-sign"));
+  EXPECT_THAT(complaint(raw_table(truth, plan, {}), engineer()), HasSubstr("give --flip-sign"));
+  DataFile turned = parse_csv(raw_table(simulate(plan), plan, {}), "log.csv", csv_of(engineer()));
+  flip_torques(turned.data);
+  try {
+    prepare(turned, engineer());
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.mend(), "leave --flip-sign out: it is what turned the torques' sign");
+  }
 }
 
 TEST(PreparedRecording, ACurrentAtItsLimitIsLeftOutAndCounted) {
