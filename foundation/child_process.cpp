@@ -21,6 +21,7 @@
 
 #include "foundation/child_keeper.hpp"
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 
 extern char** environ;
 
@@ -272,6 +273,18 @@ ChildRun run_child(const ChildOptions& options, std::string_view input, const Ch
 std::string signal_name(int signal) {
   const char* name = ::sigabbrev_np(signal);
   return name != nullptr ? fmt::format("SIG{}", name) : fmt::format("signal {}", signal);
+}
+
+std::string told_of_end(const ChildExit& exit, std::string_view errors) {
+  constexpr std::size_t kMost = 400;  // bytes of what it said
+  const std::string how =
+      exit.signal != 0 ? signal_name(exit.signal) : fmt::format("status {}", exit.status);
+  std::string_view said = trimmed(errors);
+  if (said.empty()) return how + ", with nothing on its standard error";
+  said.remove_prefix(said.size() - std::min(said.size(), kMost));
+  // No half of a character.
+  while (!said.empty() && (said.front() & 0xC0) == 0x80) said.remove_prefix(1);
+  return fmt::format("{}: {}", how, said);
 }
 
 ProcessUse process_tree_use(pid_t pid) {

@@ -109,6 +109,10 @@ std::string found_in_path(const std::string& word);
 // "SIGSEGV" for 11; "signal 99" where there is no name.
 std::string signal_name(int signal);
 
+// For messages: "status 3: " or "SIGKILL: " and the end of what it printed to its standard error,
+// or that this was nothing.
+std::string told_of_end(const ChildExit& exit, std::string_view errors);
+
 // The most resident memory, in MiB, that one process had of those that ended under a ChildProcess
 // since the last reset: of the programs and of what they started and waited for. The kernel's own
 // figure for a process's children (getrusage) cannot be reset.

@@ -71,9 +71,7 @@ class Program {
       throw_bad_input(fmt::format("refused: {}", end_of_text(run.errors)), command_.front());
     }
     if (!run.exit.ok()) {
-      const std::string how = run.exit.signal != 0 ? signal_name(run.exit.signal)
-                                                   : fmt::format("status {}", run.exit.status);
-      fail(fmt::format("the program ended with {}: {}", how, end_of_text(run.errors)),
+      fail(fmt::format("the program ended with {}", told_of_end(run.exit, run.errors)),
            "exit status 2 refuses a movement");
     }
     return run.output;

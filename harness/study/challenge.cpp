@@ -31,6 +31,8 @@ using Clock = std::chrono::steady_clock;
 constexpr int kChallengeProtocol = 1;
 constexpr std::size_t kLongestLine = 1U << 20;
 constexpr std::size_t kMostRequests = 5000;
+constexpr const char* kVerdictLine =
+    "print {\"verdict\": ...} on a line at the end, null where there is none (docs/challenge.md)";
 
 // A program that answers lines with lines.
 class Talk {
@@ -40,9 +42,11 @@ class Talk {
         end_(Clock::now() +
              std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wall_s))) {}
 
+  // What ended is heard out: it may have said its verdict, and how it ended is worth more than that
+  // it no longer reads.
   void say(const Json& message) {
-    if (!child_.write(write_json(message) + "\n")) {
-      throw Error(ErrorKind::failed, "the program no longer reads");
+    if (!child_.write(write_json(message) + "\n") && !child_.ends_within(1)) {
+      throw Error(ErrorKind::failed, "the program no longer reads", {}, kVerdictLine);
     }
   }
 
@@ -55,23 +59,42 @@ class Talk {
         text_.erase(0, end + 1);
         Json said = said_in(line);
         if (said.is_object()) return said;
+        if (!trimmed(line).empty()) last_line_ = line;
       }
       if (text_.size() > kLongestLine) {
         throw Error(ErrorKind::failed, "the program prints a line without end");
       }
       const double left_s = std::chrono::duration<double>(end_ - Clock::now()).count();
-      if (left_s <= 0) throw Error(ErrorKind::failed, "the program took too long");
+      if (left_s <= 0) {
+        throw Error(ErrorKind::failed, "the program took too long", {},
+                    "--wall-seconds gives it more");
+      }
       const ChildOutput heard = child_.read(std::min(left_s, 1.0));
       text_ += heard.output;
       errors_ = (errors_ + heard.errors);
       if (errors_.size() > 400) errors_.erase(0, errors_.size() - 400);
       if (heard.ended && text_.find('\n') == std::string::npos) {
-        throw Error(ErrorKind::failed, "the program ended without a verdict: " + errors_);
+        if (text_.empty()) refuse_silence();
+        text_ += '\n';  // the last line needs no end of its own
       }
     }
   }
 
  private:
+  [[noreturn]] void refuse_silence() {
+    constexpr std::size_t kMost = 100;  // bytes of a line
+    const std::string printed =
+        last_line_.empty() ? "it printed no line"
+                           : fmt::format("the last line it printed is '{}'",
+                                         last_line_.substr(0, std::min(last_line_.size(), kMost)));
+    const std::string how = child_.ends_within(1)
+                                ? fmt::format("ended with {}", told_of_end(child_.wait(), errors_))
+                                : "closed its output and still runs";
+    throw Error(ErrorKind::failed,
+                fmt::format("the program gave no verdict: {}, and {}", printed, how), {},
+                kVerdictLine);
+  }
+
   // What was meant as an object would be waited for in vain by both sides.
   static Json said_in(const std::string& line) {
     std::string reason;
@@ -87,6 +110,7 @@ class Talk {
   Clock::time_point end_;
   std::string text_;
   std::string errors_;
+  std::string last_line_;  // of chatter
 };
 
 // The same reader as for files: a line under the columns' names.

@@ -103,14 +103,8 @@ std::string output_of(const std::vector<std::string>& command, const std::filesy
     throw Error(ErrorKind::failed, fmt::format("the program took longer than {} s", limit_s));
   }
   if (run.exit.ok()) return run.output;
-  const ChildExit& exit = run.exit;
-  const std::string& errors = run.errors;
-  const std::string how =
-      exit.signal != 0 ? signal_name(exit.signal) : fmt::format("status {}", exit.status);
-  throw Error(
-      ErrorKind::failed,
-      fmt::format("the program ended with {}: {}", how,
-                  errors.substr(errors.size() - std::min<std::size_t>(errors.size(), 400))));
+  throw Error(ErrorKind::failed,
+              fmt::format("the program ended with {}", told_of_end(run.exit, run.errors)));
 }
 
 [[noreturn]] void throw_no_answer(std::string_view why, std::string_view mend = {}) {

@@ -53,6 +53,18 @@ TEST(RunChild, NamesTheSignalThatEndedIt) {
   EXPECT_EQ(signal_name(run.exit.signal), "SIGTERM");
 }
 
+TEST(RunChild, TellsHowItEndedAndWhatItSaidLast) {
+  const auto told = [](const std::string& line) {
+    const ChildRun run = shell(line);
+    return told_of_end(run.exit, run.errors);
+  };
+  EXPECT_EQ(told("exit 3"), "status 3, with nothing on its standard error");
+  EXPECT_EQ(told("echo wrong >&2; kill -KILL $$"), "SIGKILL: wrong");
+  // Of 501 bytes the last 400 would begin within a character.
+  EXPECT_TRUE(told("for i in $(seq 250); do printf é >&2; done; printf x >&2; exit 1")
+                  .starts_with("status 1: é"));
+}
+
 TEST(RunChild, SetsEnvironmentAndFolder) {
   const ChildRun run = run_child({.command = {"sh", "-c", "echo $TRIBENCH_TOLD; pwd"},
                                   .environment = {"TRIBENCH_TOLD=so"},
