@@ -47,8 +47,9 @@ void reset_signals() {
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-// In the program's process: becomes the program, or says why not.
-[[noreturn]] void become(const KeptProgram& program, int why_not) {
+// In the program's process: says its pid and becomes the program, or says why not.
+[[noreturn]] void become(const KeptProgram& program, int said, int why_not) {
+  write_value(said, ::getpid());
   ::setpgid(0, 0);
   int streams[3];  // out of the way first: one of them may be 0, 1 or 2 itself
   for (int k = 0; k < 3; ++k) streams[k] = ::fcntl(program.streams[k], F_DUPFD_CLOEXEC, 3);
@@ -82,14 +83,11 @@ void kill_children() {
   ::close(list);
 }
 
-// Ends and reaps all that is left, round by round. The program's status where it is among them.
-void end_all(pid_t program, int& status) {
+// Ends and reaps all that is left, round by round.
+void end_all() {
   for (;;) {
     kill_children();
-    int ended = 0;
-    const pid_t pid = ::waitpid(-1, &ended, 0);
-    if (pid == program) status = ended;
-    if (pid < 0 && errno == ECHILD) return;
+    if (::waitpid(-1, nullptr, 0) < 0 && errno == ECHILD) return;
   }
 }
 
@@ -106,20 +104,17 @@ void remove_folder(const char* folder) {
   }
 }
 
-// True where the program has ended; reaps the orphans that have ended too.
-bool reap_ended(pid_t program, int& status) {
+// True where the stand-in has ended; reaps the orphans that have ended too.
+bool reap_ended(pid_t stand_in) {
   bool has_ended = false;
-  int ended = 0;
-  for (pid_t pid = 0; (pid = ::waitpid(-1, &ended, WNOHANG)) > 0;) {
-    if (pid != program) continue;
-    status = ended;
-    has_ended = true;
+  for (pid_t pid = 0; (pid = ::waitpid(-1, nullptr, WNOHANG)) > 0;) {
+    has_ended = has_ended || pid == stand_in;
   }
   return has_ended;
 }
 
 // Until the program has ended, the other side has closed the pipe, or the keeper is asked to end.
-void keep(pid_t program, int life, int signals, int& status) {
+void keep(pid_t stand_in, int life, int signals) {
   for (;;) {
     pollfd polled[2] = {{life, 0, 0}, {signals, POLLIN, 0}};
     if (::poll(polled, 2, -1) < 0 && errno != EINTR) return;
@@ -128,7 +123,7 @@ void keep(pid_t program, int life, int signals, int& status) {
     signalfd_siginfo signal;
     if (::read(signals, &signal, sizeof signal) != sizeof signal) continue;
     if (signal.ssi_signo != SIGCHLD) return;
-    if (reap_ended(program, status)) return;
+    if (reap_ended(stand_in)) return;
   }
 }
 
@@ -144,6 +139,19 @@ void keep_open(int (&descriptors)[count]) {
   ::close(nothing);
 }
 
+// The program's parent, which says the program's status and ends. A program that kills its parent
+// kills this one and not the keeper, to which it falls back.
+[[noreturn]] void stand_in(const KeptProgram& program, int said, int why_not) {
+  const pid_t child = ::_Fork();
+  if (child == 0) become(program, said, why_not);
+  if (child < 0) write_value(why_not, errno);
+  int open_here[] = {said};
+  keep_open(open_here);
+  int status = 0;
+  if (child > 0 && ::waitpid(child, &status, 0) == child) write_value(open_here[0], status);
+  ::_exit(0);
+}
+
 [[noreturn]] void run_keeper(const KeptProgram& program) {
   ::setsid();
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
@@ -155,23 +163,29 @@ void keep_open(int (&descriptors)[count]) {
   for (const int signal : {SIGCHLD, SIGTERM, SIGINT, SIGHUP}) sigaddset(&kept, signal);
   const int signals = ::signalfd(-1, &kept, SFD_CLOEXEC);
   int why_not[2];
-  if (signals < 0 || ::pipe2(why_not, O_CLOEXEC) != 0) {
+  int said[2];
+  if (signals < 0 || ::pipe2(why_not, O_CLOEXEC) != 0 || ::pipe2(said, O_CLOEXEC) != 0) {
     write_value(program.report, KeeperStart{-1, errno});
     ::_exit(127);
   }
-  const pid_t child = ::_Fork();
-  if (child == 0) become(program, why_not[1]);
+  const pid_t parent = ::_Fork();
+  if (parent == 0) stand_in(program, said[1], why_not[1]);
+  KeeperStart start{-1, parent < 0 ? errno : 0};
   ::close(why_not[1]);
-  KeeperStart start{child, child < 0 ? errno : 0};
-  if (child > 0) read_value(why_not[0], start.error);
-  int open_here[] = {program.life, program.report, signals};
+  ::close(said[1]);
+  if (parent > 0) {
+    read_value(said[0], start.pid);
+    read_value(why_not[0], start.error);
+  }
+  int open_here[] = {program.life, program.report, signals, said[0]};
   keep_open(open_here);
-  const auto [life, report, asked] = open_here;
+  const auto [life, report, asked, told] = open_here;
   write_value(report, start);
-  int status = 127 << 8;
-  if (start.error == 0) keep(child, life, asked, status);
-  end_all(child, status);
+  if (start.error == 0) keep(parent, life, asked);
+  end_all();
   if (program.scratch != nullptr) remove_folder(program.scratch);
+  int status = SIGKILL;  // as waitpid gives it: nobody is left to say more
+  read_value(told, status);
   write_value(report, status);
   ::_exit(0);
 }

@@ -122,6 +122,19 @@ TEST_F(EscapingChild, TakesItsScratchFolderWithIt) {
   expect_all_ended();
 }
 
+TEST_F(EscapingChild, IsEndedThoughTheProgramKillsItsParent) {
+  testing::write_text(folder_ / "pids", "");
+  const std::filesystem::path scratch = folder_ / "scratch";
+  testing::write_text(scratch / "file", "text");
+  const ChildRun run =
+      run_child({.command = {"bash", "-c", line("kill -9 $PPID; sleep 987")}, .scratch = scratch},
+                {}, {.wall_s = 20});
+  EXPECT_FALSE(run.timed_out);
+  EXPECT_EQ(run.exit.signal, SIGKILL);
+  EXPECT_FALSE(std::filesystem::exists(scratch));
+  expect_all_ended();
+}
+
 // Nothing more can come from it, but it has not ended.
 TEST(RunChild, EndsAProgramThatClosedItsStreamsWhenTimeIsUp) {
   const ChildRun run =
