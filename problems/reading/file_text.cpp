@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "problems/reading/file_text.hpp"
 
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@ namespace tribench {
 namespace {
 
 constexpr std::size_t kLargestText = std::size_t{16} << 30;
+constexpr std::size_t kMostTimes = 100;                       // its packed size
 constexpr std::size_t kLargestOfPipe = std::size_t{2} << 30;  // which may never end
 
 std::string read_bytes(const std::filesystem::path& file) {
@@ -21,7 +23,18 @@ std::string read_bytes(const std::filesystem::path& file) {
   return read_file(file, has_end ? kLargestText : kLargestOfPipe);
 }
 
-std::string unpacked(const std::string& packed, const std::string& file) {
+[[noreturn]] void refuse_unpacked(const std::string& file, std::size_t packed, std::size_t most) {
+  throw_bad_input(
+      fmt::format("its {} bytes unpack to more than {}, {}", packed, most,
+                  most == kLargestText ? "the most that is read of one file"
+                                       : "far more than a recording's (100 times its size)"),
+      file,
+      most == kLargestText ? "give a part of it"
+                           : "where that is meant: gunzip it and give the text");
+}
+
+std::string unpacked(const std::string& packed, const std::string& file, std::size_t always) {
+  const std::size_t most = std::min(kLargestText, std::max(always, kMostTimes * packed.size()));
   z_stream stream = {};
   constexpr int kGzip = 16 + MAX_WBITS;
   if (inflateInit2(&stream, kGzip) != Z_OK) {
@@ -35,7 +48,9 @@ std::string unpacked(const std::string& packed, const std::string& file) {
     return static_cast<uInt>(std::min<std::size_t>(bytes, std::numeric_limits<int>::max()));
   };
   while (true) {
-    if (filled == text.size()) text.resize(std::max<std::size_t>(2 * filled, 4 * packed.size()));
+    if (filled == text.size()) {
+      text.resize(std::min(most + 1, std::max<std::size_t>(2 * filled, 4 * packed.size())));
+    }
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + read));
     stream.avail_in = piece(packed.size() - read);
     stream.next_out = reinterpret_cast<Bytef*>(text.data() + filled);
@@ -49,13 +64,11 @@ std::string unpacked(const std::string& packed, const std::string& file) {
       inflateReset(&stream);  // several members in one file
       continue;
     }
-    if (status != Z_OK || filled > kLargestText) break;
+    if (status != Z_OK || filled > most) break;
     if (read == packed.size() && stream.avail_out > 0) break;
   }
   inflateEnd(&stream);
-  if (filled > kLargestText) {
-    throw_bad_input("it unpacks to more than 16 GiB", file, "give a part of it");
-  }
+  if (filled > most) refuse_unpacked(file, packed.size(), most);
   if (status != Z_STREAM_END) {
     throw_bad_input("the gzip file is damaged or cut off", file, "pack it again, or unpack it");
   }
@@ -115,9 +128,9 @@ std::string as_utf8(std::string text) {
 
 }  // namespace
 
-std::string read_file_text(const std::filesystem::path& file) {
+std::string read_file_text(const std::filesystem::path& file, std::size_t opens_always) {
   std::string text = read_bytes(file);
-  if (text.starts_with("\x1F\x8B")) text = unpacked(text, file.string());
+  if (text.starts_with("\x1F\x8B")) text = unpacked(text, file.string(), opens_always);
   text = as_utf8(std::move(text));
   // Lines that end with a carriage return alone.
   if (text.find('\n') == std::string::npos) std::ranges::replace(text, '\r', '\n');
