@@ -24,6 +24,23 @@ void choose(Expression formula, FitResult& fit) {
   fit.front.insert(place, std::move(formula));
 }
 
+// Shortened, a long formula may be the shortest. The chosen one stays chosen.
+void sort_by_complexity(FitResult& fit) {
+  std::vector<std::pair<int, std::size_t>> order;  // complexity, place before
+  for (std::size_t i = 0; i < fit.front.size(); ++i) {
+    order.emplace_back(paper_complexity(fit.front[i]), i);
+  }
+  std::ranges::sort(order);
+  std::vector<Expression> sorted;
+  std::size_t chosen = 0;
+  for (const auto& [complexity, before] : order) {
+    if (before == fit.chosen) chosen = sorted.size();
+    sorted.push_back(std::move(fit.front[before]));
+  }
+  fit.front = std::move(sorted);
+  fit.chosen = chosen;
+}
+
 }  // namespace
 
 void finish_front(const TrainingData& data, const OperatorSet& operators, Budget& budget,
@@ -44,6 +61,7 @@ void finish_front(const TrainingData& data, const OperatorSet& operators, Budget
   }
   fit.front = std::move(finished);
   fit.chosen = chosen;
+  sort_by_complexity(fit);
   if (fit.keeps_choice) return;
   if (const auto exact = simplest_exact(fit.front, rows.table(), rows.target)) {
     fit.chosen = *exact;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/expression/complexity.hpp"
 #include "algorithms/expression/text.hpp"
 #include "foundation/random.hpp"
 
@@ -63,6 +64,30 @@ TEST(FinishedFront, LeavesTheChoiceOfAMethodThatKeepsIt) {
   Budget budget({1'000'000, 1e6});
   finish_front(data, find_operator_set("full"), budget, fit);
   EXPECT_EQ(print(fit.front[fit.chosen], names), "0.7 + 0.37*v^2");
+}
+
+// Shortened, the second is the shorter of the two; it stays the chosen one.
+TEST(FinishedFront, StandsByComplexityAlsoWhereALongFormulaBecomesAShortOne) {
+  const std::vector<std::string> names = {"v"};
+  std::vector<double> v;
+  std::vector<double> target;
+  RandomStream random(7);
+  for (int r = 0; r < 30; ++r) {
+    v.push_back(0.1 * r);
+    target.push_back(2.17 * v.back() + 0.1 * random.normal());
+  }
+  const std::vector<Input> inputs = {{"v", "rad/s", Role::velocity, 0, 3, std::nullopt}};
+  const std::vector<const double*> columns = {v.data()};
+  const TrainingData data{inputs, columns, target, {}};
+  FitResult fit;
+  fit.front = {parse("0.7131 + 0.3717*v^2", names), parse("2.1713*v + sin(v) - sin(v)", names)};
+  fit.chosen = 1;
+  fit.keeps_choice = true;
+  Budget budget({1'000'000, 1e6});
+  finish_front(data, find_operator_set("full"), budget, fit);
+  ASSERT_EQ(fit.front.size(), 2U);
+  EXPECT_LT(paper_complexity(fit.front[0]), paper_complexity(fit.front[1]));
+  EXPECT_EQ(fit.chosen, 0U);
 }
 
 // Seconds of folds were spent beyond those that a fit was given.
