@@ -74,8 +74,13 @@ LoopFormula loop_formula_in(const nlohmann::json& json, std::span<const std::str
 }  // namespace
 
 LoopFormula read_loop_formula(const std::string& file, std::span<const std::string> stay) {
+  return loop_formula_of(read_json<nlohmann::json>(read_file(file)), file, stay);
+}
+
+LoopFormula loop_formula_of(const nlohmann::json& json, const std::string& file,
+                            std::span<const std::string> stay) {
   try {
-    return loop_formula_in(read_json<nlohmann::json>(read_file(file)), stay);
+    return loop_formula_in(json, stay);
   } catch (const nlohmann::json::exception&) {  // no JSON, no object, another type
     throw_bad_input("this is no loop.json: it has no formula and symbols", file,
                     "give a formula, or the loop.json that 'tribench loop --out' writes");

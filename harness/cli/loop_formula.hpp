@@ -3,6 +3,7 @@
 // What a command takes of a loop.json: the formula over what sensors give, and where it was fitted.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -23,5 +24,8 @@ struct LoopFormula {
 // stay: inputs even where the file has a formula for them ("g"). Throws Error (bad_input) where the
 // file is no loop.json.
 LoopFormula read_loop_formula(const std::string& file, std::span<const std::string> stay = {});
+// What was read of it already.
+LoopFormula loop_formula_of(const nlohmann::json& json, const std::string& file,
+                            std::span<const std::string> stay = {});
 
 }  // namespace tribench

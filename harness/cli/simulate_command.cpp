@@ -96,7 +96,7 @@ void read_model(const SimulateArguments& arguments, MotionSetup& setup) {
   const nlohmann::json model = model_argument(arguments.model);
   setup.formula = model["formula"].get<std::string>();
   if (!model.contains("symbols")) return;
-  if (arguments.gravity.empty()) setup.gravity = read_loop_formula(arguments.model).gravity;
+  if (arguments.gravity.empty()) setup.gravity = loop_formula_of(model, arguments.model).gravity;
 }
 
 // "4.9*sin(q)", "fit", "none", "1.2"
