@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "foundation/shell_word.hpp"
 #include "foundation/text.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/curves.hpp"
@@ -15,12 +16,16 @@
 namespace tribench {
 namespace {
 
-// As it was typed, words separated by blanks.
+// As it can be typed again.
 std::string own_command_line() {
-  std::string text = read_file_if_there("/proc/self/cmdline").value_or("");
-  if (!text.empty()) text.pop_back();
-  std::ranges::replace(text, '\0', ' ');
-  return text;
+  const std::string words = read_file_if_there("/proc/self/cmdline").value_or("");
+  std::string line;
+  for (std::size_t begin = 0; begin < words.size();) {
+    const std::size_t end = std::min(words.find('\0', begin), words.size());
+    line += (begin == 0 ? "" : " ") + shell_word(words.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return line;
 }
 
 }  // namespace

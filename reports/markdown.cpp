@@ -50,8 +50,15 @@ std::string shortened(std::string_view utf8, std::size_t width) {
 }
 
 std::string markdown_code(std::string_view text) {
-  const char* fence = text.find('`') == std::string_view::npos ? "`" : "``";
-  return fmt::format("{}{}{}", fence, text, fence);
+  std::size_t longest = 0;  // run of backticks
+  for (std::size_t i = 0, run = 0; i < text.size(); ++i) {
+    run = text[i] == '`' ? run + 1 : 0;
+    longest = std::max(longest, run);
+  }
+  const std::string fence(longest + 1, '`');
+  // A blank within each fence is not shown.
+  const char* space = text.starts_with('`') || text.ends_with('`') ? " " : "";
+  return fmt::format("{0}{1}{2}{1}{0}", fence, space, text);
 }
 
 std::string without_tags(std::string_view page) {

@@ -28,7 +28,10 @@ std::string portable(const std::string& command_line) {
   std::istringstream in(command_line);
   std::string text;
   for (std::string word; in >> word;) {
-    if (word.starts_with('/')) word = fs::path(word).filename().string();
+    const std::size_t quote = word.starts_with('\'') ? 1 : 0;
+    if (word.substr(quote).starts_with('/')) {
+      word = word.substr(0, quote) + fs::path(word).filename().string();
+    }
     text += (text.empty() ? "" : " ") + word;
   }
   return text;

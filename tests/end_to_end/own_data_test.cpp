@@ -183,6 +183,14 @@ TEST_F(OwnDataTest, AnotherMachineGivesTheSameBytes) {
   EXPECT_THAT(read_text(here / "results.csv"), HasSubstr("joint_0@" + hash.substr(0, 12) + "|"));
 }
 
+TEST_F(OwnDataTest, TheCommandIsKeptAsItCanBeTypedAgain) {
+  ASSERT_EQ(run_grid("here", "two words").status, 0);
+  const auto provenance =
+      nlohmann::json::parse(read_text(folder_ / "here" / "two words" / "provenance.json"));
+  const std::string line = provenance.at("sessions")[0].at("command_line");
+  EXPECT_THAT(line, HasSubstr("here/two words'"));
+}
+
 TEST_F(OwnDataTest, ShardsOnDifferentMachinesMerge) {
   fill(folder_ / "elsewhere/deeper");
   ASSERT_EQ(run_grid("here", "whole").status, 0);

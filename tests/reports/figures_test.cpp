@@ -53,6 +53,13 @@ TEST(Markdown, APageHasNoTagOfAnybodysName) {
             "# &lt;b>x|y?, p < 0.05, a <= b\n`&lt;/script>` &lt;!-- -->\n");
 }
 
+TEST(Markdown, CodeMayHoldAnyBackticks) {
+  EXPECT_EQ(markdown_code("a*b"), "`a*b`");
+  EXPECT_EQ(markdown_code("a`b"), "``a`b``");
+  EXPECT_EQ(markdown_code("a``b`c"), "```a``b`c```");
+  EXPECT_EQ(markdown_code("a`"), "`` a` ``");
+}
+
 TEST(Shortened, NeverCutsACodePoint) {
   EXPECT_EQ(shortened("abcdef", 6), "abcdef");
   EXPECT_EQ(shortened("abcdefg", 6), "abc...");
