@@ -5,14 +5,87 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "foundation/error.hpp"
 
 namespace tribench {
 namespace {
 
-// Stops the parser: a callback that answers `false` would let it read on.
-struct TooDeep {};
+// Builds the value from what the parser meets. The library's own reading with a callback, which
+// could bound the depth too, looks at every element of a list again after each of them.
+template <typename Json>
+class JsonBuilder : public nlohmann::json_sax<Json> {
+ public:
+  // first, where wanted: the object or array in front, once closed.
+  explicit JsonBuilder(Json* first) : first_(first) {}
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(std::int64_t value) override { return add(value); }
+  bool number_unsigned(std::uint64_t value) override { return add(value); }
+  bool number_float(double value, const std::string&) override { return add(value); }
+  bool string(std::string& value) override { return add(std::move(value)); }
+  bool binary(typename Json::binary_t&) override { return false; }  // no part of the text
+  bool start_object(std::size_t) override { return open(Json::value_t::object); }
+  bool start_array(std::size_t) override { return open(Json::value_t::array); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool key(std::string& name) override {
+    place_ = &(*open_.back())[name];
+    return true;
+  }
+  bool parse_error(std::size_t, const std::string&,
+                   const nlohmann::detail::exception& error) override {
+    const auto* wrong = dynamic_cast<const nlohmann::detail::parse_error*>(&error);
+    if (wrong != nullptr) wrong_at_ = wrong->byte;
+    return false;
+  }
+
+  Json take() { return std::move(root_); }
+  bool is_too_deep() const { return is_too_deep_; }
+  // The byte, from 1, at which the text is no JSON; none for a number that no double holds.
+  std::optional<std::size_t> wrong_at() const { return wrong_at_; }
+
+ private:
+  // In its place: behind a key, at the end of a list, or all there is.
+  Json* put(Json value) {
+    if (open_.empty()) {
+      root_ = std::move(value);
+      return &root_;
+    }
+    if (open_.back()->is_object()) {
+      *place_ = std::move(value);
+      return place_;
+    }
+    open_.back()->push_back(std::move(value));
+    return &open_.back()->back();
+  }
+  bool add(Json value) {
+    put(std::move(value));
+    return true;
+  }
+  bool open(typename Json::value_t kind) {
+    is_too_deep_ = open_.size() >= static_cast<std::size_t>(kMaxJsonDepth);
+    if (is_too_deep_) return false;
+    open_.push_back(put(Json(kind)));
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    if (open_.empty() && first_ != nullptr) *first_ = std::move(root_);
+    return true;
+  }
+
+  Json* first_;
+  Json root_ = Json(Json::value_t::discarded);
+  std::vector<Json*> open_;  // each the last of the one before it, which does not grow meanwhile
+  Json* place_ = nullptr;    // of the key read last
+  bool is_too_deep_ = false;
+  std::optional<std::size_t> wrong_at_;
+};
 
 constexpr std::size_t kLongestWord = 20;  // that is quoted
 
@@ -35,37 +108,27 @@ std::string word_in(std::string_view text, std::size_t at) {
   return fmt::format(" ({})", text.substr(begin, end - begin));
 }
 
-// The text from `at` on, which moves to where the reading ended. `first`, where wanted: the object
-// or array in front, once closed.
+// The text from `at` on, which moves to where the reading ended; `first` as above.
 template <typename Json>
 Json parse_from(std::string_view text, std::size_t& at, Json* first, std::string* reason) {
   const auto refuse = [reason](std::string why) {
     if (reason != nullptr) *reason = std::move(why);
     return Json(Json::value_t::discarded);
   };
-  // An object or array at depth d is announced with d open around it.
-  const auto bounded = [first](int depth, typename Json::parse_event_t event, Json& value) {
-    using Event = typename Json::parse_event_t;
-    const bool opens = event == Event::object_start || event == Event::array_start;
-    const bool closes = event == Event::object_end || event == Event::array_end;
-    if (opens && depth >= kMaxJsonDepth) throw TooDeep();
-    if (closes && depth == 0 && first != nullptr) *first = std::move(value);
-    return true;
-  };
   const std::size_t begin = at;
-  try {
-    Json all = Json::parse(text.begin() + static_cast<std::ptrdiff_t>(begin), text.end(), bounded);
+  JsonBuilder<Json> builder(first);
+  if (Json::sax_parse(text.begin() + static_cast<std::ptrdiff_t>(begin), text.end(), &builder)) {
     at = text.size();
-    return all;
-  } catch (const TooDeep&) {
-    return refuse(fmt::format("JSON nested deeper than {} levels", kMaxJsonDepth));
-  } catch (const nlohmann::detail::parse_error& error) {
-    at = std::min(begin + std::max<std::size_t>(error.byte, 1) - 1, text.size());
-    if (reason == nullptr) return refuse({});  // lines are not counted for nobody
-    return refuse("no JSON at " + place_in(text, begin + error.byte) + word_in(text, at));
-  } catch (const nlohmann::detail::exception&) {  // a number that no double holds
-    return refuse("a number out of range in JSON");
+    return builder.take();
   }
+  if (builder.is_too_deep()) {
+    return refuse(fmt::format("JSON nested deeper than {} levels", kMaxJsonDepth));
+  }
+  const std::optional<std::size_t> byte = builder.wrong_at();
+  if (!byte) return refuse("a number out of range in JSON");
+  at = std::min(begin + std::max<std::size_t>(*byte, 1) - 1, text.size());
+  if (reason == nullptr) return refuse({});  // lines are not counted for nobody
+  return refuse("no JSON at " + place_in(text, begin + *byte) + word_in(text, at));
 }
 
 }  // namespace

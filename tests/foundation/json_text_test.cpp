@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -27,6 +28,24 @@ TEST(JsonText, RefusesWhatNestsTooDeepWithoutRunningOutOfStack) {
     EXPECT_TRUE(read_json<Json>(text, &reason).is_discarded());
     EXPECT_EQ(reason, "JSON nested deeper than 64 levels");
   }
+}
+
+// Twice the objects took four times as long.
+TEST(JsonText, ALongListOfObjectsIsReadInTime) {
+  std::string text = "[{\"a\":[1]}";
+  for (int i = 0; i < 200'000; ++i) text += ",{\"a\":[1]}";
+  const std::clock_t begin = std::clock();
+  EXPECT_EQ(read_json<Json>(text + "]").size(), 200'001U);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 5);
+}
+
+TEST(JsonText, EveryKindOfValueIsReadAsItIs) {
+  const std::string text =
+      R"({"n":null,"t":true,"i":-7,"u":18446744073709551615,"d":0.25,"s":"a","l":[[],{},[1,{"k":2}]],"o":{"z":1,"a":2}})";
+  EXPECT_EQ(write_json(read_json<Json>(text)), text);
+  EXPECT_EQ(read_json<nlohmann::json>(text), nlohmann::json::parse(text));
+  EXPECT_EQ(read_json<Json>("{\"a\":1,\"b\":2,\"a\":[3]}"), Json::parse(R"({"a":[3],"b":2})"));
+  EXPECT_EQ(read_json<Json>("7"), Json(7));
 }
 
 TEST(JsonText, SaysWhereItIsNoJsonInPrintableText) {
