@@ -21,6 +21,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -56,9 +57,11 @@ struct CertificateCheck {
   std::string claim;  // in words
   std::size_t pieces = 0;
 };
+// Told before each entry is checked; `entries` are all there are.
+using CertificateProgress = std::function<void(std::size_t entries)>;
 // Never throws on a bad certificate: what cannot be read is rejected, with the reason. Throws
-// std::bad_alloc where there is not enough memory.
-CertificateCheck check_certificate(std::string_view text);
+// std::bad_alloc where there is not enough memory. Cost: nodes times pieces.
+CertificateCheck check_certificate(std::string_view text, const CertificateProgress& progress = {});
 
 // What the two sides share: how the box falls into cells, and the bounds on one piece. Each input
 // whose sign the formula looks at makes three of one; nothing where there would be more than

@@ -208,12 +208,13 @@ Range apply(Op op, const Range& a, const Range& b) {
 class Reader {
  public:
   Reader(const ClaimedFormula& formula, const ClaimedBox& box, const CertificateClaim& claim,
-         const Json& entries)
+         const Json& entries, const CertificateProgress& progress)
       : formula_(formula),
         box_(box),
         claim_(claim),
         velocity_(claim_velocity(claim, box)),
-        entries_(entries) {}
+        entries_(entries),
+        progress_(progress) {}
 
   // Empty where the entries prove the claim.
   std::string run() {
@@ -232,6 +233,7 @@ class Reader {
   // is as it was where nothing is said against it.
   std::string cover(Piece& piece, int depth) {
     if (next_ >= entries_.size()) return "the entries end before the box is covered";
+    if (progress_) progress_(entries_.size());
     const Json& entry = entries_[next_++];
     const std::string place = " (entry " + std::to_string(next_) + ")";
     if (!entry.contains("cut")) return close(piece, entry, place);
@@ -278,6 +280,7 @@ class Reader {
   const CertificateClaim& claim_;
   std::size_t velocity_;
   const Json& entries_;
+  const CertificateProgress& progress_;
   std::size_t next_ = 0;
   std::size_t pieces_ = 0;
 };
@@ -300,7 +303,7 @@ std::string claim_text(const CertificateClaim& claim) {
   }
 }
 
-void check_content(Json json, CertificateCheck& check) {
+void check_content(Json json, const CertificateProgress& progress, CertificateCheck& check) {
   const std::string digest = json.at("digest");
   json.erase("digest");
   if (json.at("format") != "tribench certificate 2") {
@@ -317,7 +320,7 @@ void check_content(Json json, CertificateCheck& check) {
   const ClaimedFormula formula = read_claimed_formula(check.formula, box);
   const CertificateClaim claim = read_claim(json.at("claim"));
   check.claim = claim_text(claim);
-  Reader reader(formula, box, claim, json.at("entries"));
+  Reader reader(formula, box, claim, json.at("entries"), progress);
   check.reason = reader.run();
   check.pieces = reader.pieces();
   check.accepted = check.reason.empty();
@@ -418,10 +421,10 @@ std::string certificate_digest(std::string_view content) {
   return text;
 }
 
-CertificateCheck check_certificate(std::string_view text) {
+CertificateCheck check_certificate(std::string_view text, const CertificateProgress& progress) {
   CertificateCheck check;
   try {
-    check_content(read_json_or_throw<Json>(text, "certificate"), check);
+    check_content(read_json_or_throw<Json>(text, "certificate"), progress, check);
   } catch (const nlohmann::detail::exception&) {
     check.reason = "the certificate cannot be read: a field is missing or of another kind";
   } catch (const std::bad_alloc&) {

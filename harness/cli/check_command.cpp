@@ -9,6 +9,7 @@
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -24,6 +25,7 @@
 #include "foundation/text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
+#include "harness/progress_line.hpp"
 
 namespace tribench {
 namespace {
@@ -170,7 +172,17 @@ ExitStatus verify(const CheckOptions& options) {
     throw_bad_input("a certificate is of its own formula on its own box", "--verify",
                     "give no formula and no --box: the answer says which they are");
   }
-  const CertificateCheck check = check_certificate(read_file(options.verify));
+  constexpr double kShownFromS = 2;
+  std::optional<ProgressLine> line;
+  const auto progress = [&line](std::size_t entries) {
+    if (!line) {
+      line.emplace(entries, static_cast<double>(entries), false,
+                   ProgressUnit{"entries", false, kShownFromS});
+    }
+    line->cell_ended(1, false);
+  };
+  const CertificateCheck check = check_certificate(read_file(options.verify), progress);
+  line.reset();  // before the answer
   if (options.json) {
     const Json json = {{"accepted", check.accepted}, {"reason", check.reason},
                        {"formula", check.formula},   {"box", check.box},

@@ -50,6 +50,17 @@ TEST(Certificate, IsAcceptedByTheChecker) {
   EXPECT_GE(check.pieces, 3U);
 }
 
+TEST(Certificate, TellsHowFarItsCheckIs) {
+  const std::string text = certify(kFormula, kBox);
+  const std::size_t entries = Json::parse(text)["entries"].size();
+  std::size_t told = 0;
+  check_certificate(text, [&](std::size_t all) {
+    EXPECT_EQ(all, entries);
+    ++told;
+  });
+  EXPECT_EQ(told, entries);
+}
+
 TEST(Certificate, ExistsForFormulasThatOnlySharperBoundsProveAtOnce) {
   for (const char* formula :
        {"1/(v^2 - 0.6*v + 0.09001)", "1/(v*v - 2*v + 2)", "1/(2 + sin(v*g))", "abs(v)^1.5",
