@@ -3,9 +3,10 @@
 // A program run beside this one, with pipes on its three standard streams, and the promise that
 // nothing of it is left: a keeper process stands between, to which every process that the program
 // starts falls back when its parent has gone (a child subreaper: setsid and double forks do not
-// lead away from it, and the program's parent, which it may kill, is yet another process). The keeper ends them all when the program has ended, when kill() is called,
-// and when this process is gone, by SIGKILL too. Linux only. It does nothing that is not allowed
-// between a fork and an exec in a program with threads.
+// lead away from it, and the program's parent, which it may kill, is yet another process). The
+// keeper ends them all when the program has ended, when kill() is called, and when this process is
+// gone, by SIGKILL too. Linux only. It does nothing that is not allowed between a fork and an exec
+// in a program with threads.
 //
 // Not a shell: the command is a list of words; the first is a path or is looked up in PATH.
 #pragma once
