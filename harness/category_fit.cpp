@@ -28,6 +28,10 @@ namespace tribench {
 namespace {
 
 constexpr std::size_t kFewestRows = 10;
+// Each category's search brings shapes of its own, and each shape is fitted to each category: of
+// more categories than this some are asked first, and the best shapes there go on to all.
+constexpr std::size_t kAskedFirst = 32;
+constexpr std::size_t kGoOn = 64;
 
 std::vector<std::size_t> rows_in(std::span<const double> column, double category) {
   std::vector<std::size_t> rows;
@@ -37,8 +41,10 @@ std::vector<std::size_t> rows_in(std::span<const double> column, double category
   return rows;
 }
 
-Problem problem_of(const Problem& problem, const CategoryColumn& column, double category) {
-  Problem part = problem;
+// frame: the problem without rows.
+Problem problem_of(const Problem& frame, const Problem& problem, const CategoryColumn& column,
+                   double category) {
+  Problem part = frame;
   part.stages[0].train = select_rows(problem.stages[0].train, rows_in(column.train, category));
   part.test = select_rows(problem.test, rows_in(column.test, category));
   return part;
@@ -83,29 +89,67 @@ class ShapeFits {
   // The shape with the most evidence, first by all rows, then by as many as count; none where none
   // is finite in every category.
   std::optional<Candidate> best_of(const std::vector<Expression>& shapes) {
+    if (parts_.size() <= kAskedFirst) return best_among(shapes);
+    const std::vector<Expression> ranked = ranked_by_some(shapes);
+    std::optional<Candidate> best;
+    for (std::size_t begin = 0; !best && begin < ranked.size(); begin += kGoOn) {
+      const std::size_t end = std::min(begin + kGoOn, ranked.size());
+      best = best_among(std::span(ranked).subspan(begin, end - begin));
+    }
+    return best;
+  }
+
+ private:
+  std::optional<Candidate> best_among(std::span<const Expression> shapes) {
     std::vector<Candidate> candidates;
     for (const Expression& shape : shapes) {
-      Candidate candidate = fit(shape);
+      Candidate candidate = fit(shape, every(parts_.size()));
       if (!candidate.formulas.empty()) candidates.push_back(std::move(candidate));
     }
     if (candidates.empty()) return std::nullopt;
     const auto with_most_evidence = [&](const std::vector<double>& counts) {
-      return *std::ranges::min_element(
-          candidates, {}, [&](const Candidate& each) { return against(each, counts); });
+      return *std::ranges::min_element(candidates, {}, [&](const Candidate& each) {
+        return against(each, every(parts_.size()), counts);
+      });
     };
-    std::vector<double> counts;
-    for (std::size_t k = 0; k < parts_.size(); ++k) counts.push_back(static_cast<double>(rows(k)));
-    return with_most_evidence(rows_that_count(with_most_evidence(counts)));
+    return with_most_evidence(rows_that_count(with_most_evidence(row_counts())));
   }
 
- private:
-  // Constants start from those given, and from those of the category before. Without formulas where
-  // the shape is not finite in one.
-  Candidate fit(const Expression& shape) {
+  // By their evidence in some categories; those that are not finite in one of these are left out.
+  std::vector<Expression> ranked_by_some(const std::vector<Expression>& shapes) {
+    const std::vector<std::size_t> asked = every(kAskedFirst);
+    const std::vector<double> counts = row_counts();
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t s = 0; s < shapes.size(); ++s) {
+      const Candidate candidate = fit(shapes[s], asked);
+      if (!candidate.formulas.empty()) order.emplace_back(against(candidate, asked, counts), s);
+    }
+    std::ranges::sort(order);
+    std::vector<Expression> ranked;
+    for (const auto& [nats, s] : order) ranked.push_back(shapes[s]);
+    return ranked;
+  }
+
+  // So many categories, evenly over all of them.
+  std::vector<std::size_t> every(std::size_t count) const {
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < count; ++i) places.push_back(i * parts_.size() / count);
+    return places;
+  }
+
+  std::vector<double> row_counts() const {
+    std::vector<double> counts;
+    for (std::size_t k = 0; k < parts_.size(); ++k) counts.push_back(static_cast<double>(rows(k)));
+    return counts;
+  }
+
+  // In these categories. Constants start from those given, and from those of the category before.
+  // Without formulas where the shape is not finite in one.
+  Candidate fit(const Expression& shape, const std::vector<std::size_t>& categories) {
     Candidate candidate;
-    for (std::size_t k = 0; k < parts_.size(); ++k) {
+    for (const std::size_t k : categories) {
       std::vector<Expression> starts = {shape};
-      if (k > 0) starts.push_back(candidate.formulas.back());
+      if (!candidate.formulas.empty()) starts.push_back(candidate.formulas.back());
       double least = HUGE_VAL;
       Expression best = shape;
       for (Expression& start : starts) {
@@ -143,10 +187,12 @@ class ShapeFits {
   }
 
   // Nodes are paid for once, numbers in each category.
-  double against(const Candidate& candidate, const std::vector<double>& counts) const {
+  double against(const Candidate& candidate, const std::vector<std::size_t>& categories,
+                 const std::vector<double>& counts) const {
     double nats = kNodePrice * static_cast<double>(candidate.formulas[0].size());
-    for (std::size_t k = 0; k < parts_.size(); ++k) {
-      nats += evidence_against(candidate.formulas[k], candidate.mean_squares[k], zero_losses_[k],
+    for (std::size_t i = 0; i < categories.size(); ++i) {
+      const std::size_t k = categories[i];
+      nats += evidence_against(candidate.formulas[i], candidate.mean_squares[i], zero_losses_[k],
                                static_cast<std::size_t>(std::max(2.0, counts[k])), 0);
     }
     return nats;
@@ -279,8 +325,11 @@ std::vector<double> values_of(const CategoryFit& fit, const Problem& problem, co
   TableEvaluator evaluator;
   for (const CategoryResult& each : fit.categories) {
     const Expression formula = read_problem_formula(each.record.formula, problem).formula;
-    const std::span<const double> all = evaluator.evaluate(formula, table);
-    for (const std::size_t r : rows_in(column, each.category)) values[r] = all[r];
+    const std::vector<std::size_t> rows = rows_in(column, each.category);
+    if (rows.empty()) continue;
+    const Table own = select_rows(table, rows);
+    const std::span<const double> its = evaluator.evaluate(formula, own);
+    for (std::size_t i = 0; i < rows.size(); ++i) values[rows[i]] = its[i];
   }
   return values;
 }
@@ -352,9 +401,11 @@ CategoryFit fit_by_category(const Problem& problem, const CategoryColumn& column
   CategoryFit result;
   Searches searches(method, task, widened, categories.size() + 1);
   searches.search(pooled(problem, column, categories), result);
+  Problem frame = problem;
+  frame.stages[0].train = frame.test = {};
   std::vector<Problem> parts;
   for (const double category : categories) {
-    parts.push_back(problem_of(problem, column, category));
+    parts.push_back(problem_of(frame, problem, column, category));
     result.categories.push_back({category, {}, empty_record(task.cell), {}});
     result.categories.back().own = searches.search(parts.back(), result);
   }
