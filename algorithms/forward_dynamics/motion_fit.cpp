@@ -89,7 +89,7 @@ Expression sum_of(std::span<const Expression> terms, std::span<const double> coe
 // The free parameters of a model, in one order.
 class ParameterList {
  public:
-  ParameterList(JointModel& model, const FreeParameters& free) : model_(model) {
+  ParameterList(JointModel& model, const FreeParameters& free) {
     if (free.inertia && model.inertia > 0) add(&model.inertia, kLeast);
     if (free.gravity && model.gravity) add_constants(*model.gravity);
     if (free.motor && model.motor) {
@@ -135,7 +135,6 @@ class ParameterList {
     }
   }
 
-  JointModel& model_;
   std::vector<One> list_;
   std::vector<double> low_;
 };
