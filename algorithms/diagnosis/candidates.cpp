@@ -335,6 +335,43 @@ Gain lead_of(const Candidate& winner, const FittedModel& extended, const Candida
   return fitted.losses.allFinite() ? lead_over(fitted, extended, campaign) : lead;
 }
 
+bool is_in_library(std::size_t family, const Campaign& campaign) {
+  return std::ranges::count(campaign.library.atoms, family, &Atom::family) > 0;
+}
+
+// Effects of signals that are withheld cannot be found, but they can be what was found: of one
+// movement in one direction the position goes with the time, and a spring is a drift.
+void add_withheld_aliases(const Candidate& winner, const Round& round, const FittedModel& model,
+                          const Campaign& campaign, std::vector<AliasFinding>& aliases) {
+  if (campaign.data.withheld.empty()) return;
+  const Eigen::MatrixXd block = campaign.library.block_of(round.columns, winner.atom);
+  const Eigen::MatrixXd beside_base = project_off(block, model.basis);
+  const Eigen::VectorXd losses = losses_beside(model, block, campaign);
+  Observations whole = campaign.data;
+  whole.withheld.clear();
+  const std::vector<double> ratios = gear_ratios_for(whole, campaign.options.gear_ratios);
+  for (std::size_t f = 0; f < campaign.families.size(); ++f) {
+    if (is_in_library(f, campaign)) continue;
+    const EffectFamily& family = campaign.families[f];
+    std::optional<AliasFinding> nearest;
+    std::vector<std::string> missing;
+    for (const Atom& atom : instantiate(family, f, whole, ratios, missing)) {
+      Eigen::MatrixXd columns = evaluate_columns(atom.columns, whole);
+      if (!columns.allFinite()) continue;
+      columns = whitened(std::move(columns), campaign.clusters, model.noise);
+      const double r = canonical_correlation(beside_base, project_off(columns, model.basis));
+      if (!(r >= kLeastLikeness)) continue;
+      const Gain lead = paired_gain(losses_beside(model, columns, campaign), losses);
+      const bool exact = r > kExactCorrelation;
+      if (!exact && !(lead.nats < kAliasErrors * lead.error)) continue;
+      if (nearest && nearest->correlation >= r) continue;
+      nearest =
+          AliasFinding{family.name, r, lead.nats, lead.error, exact, family.first_experiment()};
+    }
+    if (nearest) aliases.push_back(*nearest);
+  }
+}
+
 }  // namespace
 
 std::vector<AliasFinding> aliases_of(const Candidate& winner, const FittedModel& extended,
@@ -364,6 +401,7 @@ std::vector<AliasFinding> aliases_of(const Candidate& winner, const FittedModel&
     aliases.push_back(
         {campaign.families[f].name, r, lead.nats, lead.error, exact, taken.first_experiment()});
   }
+  add_withheld_aliases(winner, round, model, campaign, aliases);
   const std::vector<std::string>& coefficients = campaign.library.atoms[winner.atom].coefficients;
   for (const KnownAlias& known : taken.known_aliases) {
     const bool applies =

@@ -115,6 +115,61 @@ TEST(Aliases, AMassAndASpringAreToldApartByTheRangeOfMotionAlone) {
   }
 }
 
+// One movement of 300 s, in pieces: the joint turns on and on or to and fro, and friction is larger
+// by 1 N m at its end, or at the end of its way.
+Observations one_movement(bool turns_back, bool wears, std::uint64_t seed) {
+  RandomStream random(seed);
+  constexpr std::size_t kRows = 3000;
+  constexpr double kStep = 0.1;
+  std::vector<std::vector<double>> columns(4);  // time, position, velocity, friction
+  Dataset data;
+  double q = 0;
+  double farthest = 0;
+  double aim = 1;
+  double v = 1;
+  for (std::size_t i = 0; i < kRows; ++i) {
+    if (i % 40 == 0) aim = random.uniform(0.3, 1.7) * (turns_back && i % 80 == 0 ? -1 : 1);
+    v += 0.2 * (aim - v);
+    q += kStep * v;
+    farthest = std::max(farthest, std::abs(q));
+    const double row[] = {kStep * static_cast<double>(i), q, v, v > 0 ? 4 + 3 * v : -4 + 3 * v};
+    for (std::size_t k = 0; k < columns.size(); ++k) columns[k].push_back(row[k]);
+    data.movement.push_back(static_cast<int>(5 * i / kRows));
+  }
+  for (std::size_t i = 0; i < kRows; ++i) {
+    const double now = static_cast<double>(i) / kRows;
+    const double change = wears ? (columns[2][i] > 0 ? now : -now) : columns[1][i] / farthest;
+    columns[3][i] += change + 0.1 * random.normal();
+  }
+  for (int m = 0; m < 5; ++m) data.movement_names.push_back(std::to_string(m));
+  data.channels = {{"t", "s", Role::time, columns[0]},
+                   {"q", "rad", Role::position, columns[1]},
+                   {"v", "rad/s", Role::velocity, columns[2]},
+                   {"tau", "N m", Role::friction_torque, columns[3]}};
+  Observations observations = observe(data);
+  observations.withheld.push_back({"t", "there is one movement"});
+  return observations;
+}
+
+// Of one movement the time is withheld; where it goes with the position a spring may be a drift.
+TEST(Aliases, WhatIsWithheldMayStillBeWhatWasFound) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    for (const bool wears : {true, false}) {
+      const Diagnosis on_and_on =
+          diagnose(one_movement(false, wears, seed), coulomb_viscous_base, {});
+      ASSERT_FALSE(on_and_on.effects.empty()) << seed;
+      EXPECT_EQ(on_and_on.effects[0].family, "spring");
+      EXPECT_EQ(std::ranges::count(on_and_on.effects[0].aliases, "drift", &AliasFinding::family), 1)
+          << seed << wears;
+    }
+    const Diagnosis to_and_fro =
+        diagnose(one_movement(true, false, seed), coulomb_viscous_base, {});
+    ASSERT_EQ(families(to_and_fro), std::vector<std::string>{"spring"}) << seed;
+    EXPECT_EQ(std::ranges::count(to_and_fro.effects[0].aliases, "drift", &AliasFinding::family), 0)
+        << seed;
+  }
+}
+
 // Ten waves a turn over a quarter of one: no ripple of the library, but a sum of some and of a mass
 // whose torques cancel. What is there only to cancel the others is not sure.
 TEST(Aliases, WhatTheOtherEffectsCanTellIsProvisional) {
