@@ -45,46 +45,39 @@ TEST(FinishedFront, TakesAPlainSumOnFewRowsWhereTheMethodYieldsToIt) {
   EXPECT_LT(fit.front[0].size(), 8U) << print(fit.front[0], std::vector<std::string>{"v"});
 }
 
-// The shorter formula is exact, and the folds speak for it too.
-TEST(FinishedFront, LeavesTheChoiceOfAMethodThatKeepsIt) {
-  const std::vector<std::string> names = {"v"};
-  std::vector<double> v;
-  std::vector<double> target;
-  for (int r = 0; r < 30; ++r) {
-    v.push_back(0.1 * r);
-    target.push_back(2 * v.back());
-  }
-  const std::vector<Input> inputs = {{"v", "rad/s", Role::velocity, 0, 3, std::nullopt}};
-  const std::vector<const double*> columns = {v.data()};
-  const TrainingData data{inputs, columns, target, {}};
-  FitResult fit;
-  fit.front = {parse("2*v", names), parse("0.7 + 0.37*v^2", names)};
-  fit.chosen = 1;
-  fit.keeps_choice = true;
-  Budget budget({1'000'000, 1e6});
-  finish_front(data, find_operator_set("full"), budget, fit);
-  EXPECT_EQ(print(fit.front[fit.chosen], names), "0.7 + 0.37*v^2");
-}
-
-// Shortened, the second is the shorter of the two; it stays the chosen one.
-TEST(FinishedFront, StandsByComplexityAlsoWhereALongFormulaBecomesAShortOne) {
+// The front of a method that keeps its choice, the second, on 30 rows of slope*v and noise.
+FitResult finished_by_one_that_keeps(double slope, double noise,
+                                     const std::vector<std::string>& formulas) {
   const std::vector<std::string> names = {"v"};
   std::vector<double> v;
   std::vector<double> target;
   RandomStream random(7);
   for (int r = 0; r < 30; ++r) {
     v.push_back(0.1 * r);
-    target.push_back(2.17 * v.back() + 0.1 * random.normal());
+    target.push_back(slope * v.back() + noise * random.normal());
   }
   const std::vector<Input> inputs = {{"v", "rad/s", Role::velocity, 0, 3, std::nullopt}};
   const std::vector<const double*> columns = {v.data()};
   const TrainingData data{inputs, columns, target, {}};
   FitResult fit;
-  fit.front = {parse("0.7131 + 0.3717*v^2", names), parse("2.1713*v + sin(v) - sin(v)", names)};
+  for (const std::string& formula : formulas) fit.front.push_back(parse(formula, names));
   fit.chosen = 1;
   fit.keeps_choice = true;
   Budget budget({1'000'000, 1e6});
   finish_front(data, find_operator_set("full"), budget, fit);
+  return fit;
+}
+
+// The shorter formula is exact, and the folds speak for it too.
+TEST(FinishedFront, LeavesTheChoiceOfAMethodThatKeepsIt) {
+  const FitResult fit = finished_by_one_that_keeps(2, 0, {"2*v", "0.7 + 0.37*v^2"});
+  EXPECT_EQ(print(fit.front[fit.chosen], std::vector<std::string>{"v"}), "0.7 + 0.37*v^2");
+}
+
+// Shortened, the second is the shorter of the two; it stays the chosen one.
+TEST(FinishedFront, StandsByComplexityAlsoWhereALongFormulaBecomesAShortOne) {
+  const FitResult fit =
+      finished_by_one_that_keeps(2.17, 0.1, {"0.7131 + 0.3717*v^2", "2.1713*v + sin(v) - sin(v)"});
   ASSERT_EQ(fit.front.size(), 2U);
   EXPECT_LT(paper_complexity(fit.front[0]), paper_complexity(fit.front[1]));
   EXPECT_EQ(fit.chosen, 0U);
