@@ -120,6 +120,16 @@ void compare_families(FirstLook& look, const Round& round, const FittedModel& ba
   }
 }
 
+// A late velocity differs from the velocity where that changes.
+bool shows_in_turns(std::size_t family, const Campaign& campaign) {
+  LoopModel alone;
+  for (const Atom& atom : campaign.library.atoms) {
+    if (atom.family == family) alone.add(atom);
+  }
+  return std::ranges::any_of(signals_read(alone, family, campaign.data),
+                             [](const Signal* signal) { return signal->is_late_velocity(); });
+}
+
 // The root mean square of an effect of the family that would be found nine times in ten: its shift
 // of the score's root reaches the critical value, and the noise's spread beyond.
 double detectable(std::size_t family, const Round& round, double critical,
@@ -151,7 +161,9 @@ std::vector<CandidateFinding> candidate_findings(const Round& round, const Fitte
       const std::optional<Candidate> best = best_atom(f, round, base, campaign);
       if (best) finding.gain = best->gain.nats;
     }
-    finding.detectable = detectable(f, round, critical, campaign);
+    if (!campaign.data.turns_left_out || !shows_in_turns(f, campaign)) {
+      finding.detectable = detectable(f, round, critical, campaign);
+    }
     all.push_back(std::move(finding));
   }
   std::ranges::stable_sort(all, [](const auto& a, const auto& b) { return a.score > b.score; });

@@ -99,7 +99,7 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
       if (signal.name == name) signal.values[row] = value;
     }
   };
-  std::vector<FirstOrderLag> lags;
+  std::vector<TimeLag> lags;
   for (const int lag_ms : kLags_ms) lags.emplace_back(lag_ms * 1e-3);
   double distance = 0;
   double v_before = 0;

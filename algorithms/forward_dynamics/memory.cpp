@@ -137,8 +137,8 @@ std::unique_ptr<Memory> memory_of(std::string_view name) {
   int lag_ms = 0;
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), lag_ms);
   if (error != std::errc() || stop != digits.data() + digits.size() || lag_ms <= 0) return nullptr;
-  return make_memory(loop::FirstOrderLag(1e-3 * lag_ms),
-                     [](loop::FirstOrderLag& lag, double dt_s, const Reached& at) {
+  return make_memory(loop::TimeLag(1e-3 * lag_ms),
+                     [](loop::TimeLag& lag, double dt_s, const Reached& at) {
                        return lag.next(at.velocity, dt_s);
                      });
 }

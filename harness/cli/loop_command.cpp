@@ -260,8 +260,9 @@ loop::Observations read_observations(const LoopArguments& arguments,
     const char* part =
         recording.data.find(Role::friction_torque) != nullptr ? "velocity" : "acceleration";
     steps.push_back({fmt::format("{} resolved", part), recording.data.rows(),
-                     fmt::format("in {} of {} rows the {} changes faster than the position shows; "
-                                 "gentler starts, a finer encoder or a column of the {} would open "
+                     fmt::format("in {} of {} rows the {} changes faster than the position shows, "
+                                 "where late friction shows most; gentler starts, a finer "
+                                 "encoder or a column of the {} would open "
                                  "them",
                                  recording.unresolved, moving, part, part)});
   }
@@ -269,6 +270,7 @@ loop::Observations read_observations(const LoopArguments& arguments,
   rigid.insert(rigid.end(), recording.rigid.begin(), recording.rigid.end());
   loop::Observations data = loop::observe(
       recording.data, {rigid, arguments.min_speed, arguments.unordered, arguments.steady});
+  data.turns_left_out = recording.unresolved > 0;
   if (!arguments.leave_out.empty()) {
     data.group = groups_by(recording.data, arguments.leave_out);
     data.group_name = arguments.leave_out;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <iterator>
 #include <numbers>
 
@@ -100,6 +101,18 @@ Response lagging_friction(RandomStream random) {
              const Instant& now, double dt_s) mutable {
     const double friction = elementary::tanh(velocity(now) / width) + 0.5 * velocity(now);
     return lag.next(friction, dt_s) - friction;
+  };
+}
+
+// Friction of the velocity a fixed time before: a pure time lag (Hess and Soom 1990).
+Response late_friction(RandomStream random) {
+  return [lag_s = random.uniform(0.03, 0.12), width = random.uniform(0.06, 0.15),
+          before = std::deque<double>()](const Instant& now, double dt_s) mutable {
+    const auto friction = [&](double v) { return elementary::tanh(v / width) + 0.5 * v; };
+    before.push_back(velocity(now));
+    const auto kept = static_cast<std::size_t>(std::round(lag_s / dt_s)) + 1;
+    while (before.size() > kept) before.pop_front();
+    return friction(before.front()) - friction(velocity(now));
   };
 }
 
@@ -417,6 +430,15 @@ std::vector<Cause> later_causes() {
            {Role::position},
            false,
            spring,
+           false,
+           false},
+          {"lag_of_a_dead_time",
+           "friction of the velocity a fixed time before",
+           {"lag", "inertia"},
+           {"hysteresis"},
+           {Role::velocity, Role::acceleration},
+           true,
+           late_friction,
            false,
            false}};
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "foundation/elementary.hpp"
 #include "foundation/sign.hpp"
 
 namespace tribench::loop {
@@ -40,30 +39,41 @@ double DistanceSinceReversal::next(double v, double q, double dt) {
   return distance_;
 }
 
-double FirstOrderLag::next(double x, double dt_s) {
-  if (!started_) {
-    filtered_ = x;
-    started_ = true;
-  } else if (dt_s > 0) {
-    const double behind = (x - x_) / dt_s * constant_s_;  // of what grows straight on
-    filtered_ = x - behind + (filtered_ - x_ + behind) * elementary::exp(-dt_s / constant_s_);
+double TimeLag::next(double x, double dt_s) {
+  if (count_ == 0) {
+    now_ = 0;
+    first_ = 0;
+    count_ = 1;
+    oldest() = {0, x};
+    return x;
   }
-  x_ = x;
-  return filtered_;
+  now_ += dt_s;
+  const double then = now_ - lag_s_;
+  while (count_ > 1 && oldest(1).time <= then) {
+    first_ = (first_ + 1) % kSlots;
+    --count_;
+  }
+  const Row before = oldest();
+  const Row after = count_ > 1 ? oldest(1) : Row{now_, x};
+  // Of 33 spacings and a row over, none is forgotten before its time.
+  const double spacing = lag_s_ / 32;
+  if (count_ < kSlots && now_ - oldest(count_ - 1).time >= spacing) oldest(count_++) = {now_, x};
+  if (!(then > before.time)) return before.x;
+  return before.x + (then - before.time) / (after.time - before.time) * (after.x - before.x);
 }
 
 std::string lagged_velocity_name(int lag_ms) { return fmt::format("v_lag{}", lag_ms); }
 
 std::string lagged_velocity_recipe(int lag_ms) {
   return fmt::format(
-      "v after a first-order filter of {} ms, straight between rows; v in a movement's first row",
+      "v as it was {} ms before, straight between rows; until then v in a movement's first row",
       lag_ms);
 }
 
 std::vector<double> lagged_velocity(int lag_ms, std::span<const double> v,
                                     std::span<const double> time, std::span<const int> movement) {
   std::vector<double> late;
-  FirstOrderLag lag(lag_ms * 1e-3);
+  TimeLag lag(lag_ms * 1e-3);
   for (std::size_t i = 0; i < v.size(); ++i) {
     const bool starts = i == 0 || movement[i] != movement[i - 1];
     if (starts) lag.start_movement();

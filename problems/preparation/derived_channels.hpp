@@ -8,9 +8,9 @@
 //       0 in a movement's first row. At the first row after a change of the velocity's sign it is
 //       the path from the zero crossing, the velocity taken to be linear in time:
 //       |v| dt/2 * |v|/(|v| + |v_before|); else it grows by |q - q_before|, or |v| dt.
-//   v_lag30 ...  the velocity after a first-order filter of 30 ms (and so on), straight between the
-//       rows; starts with the velocity of a movement's first row. What friction that follows its
-//       velocity late is a function of.
+//   v_lag30 ...  the velocity as it was 30 ms before (and so on), straight between the rows; the
+//       velocity of a movement's first row until then. What friction that follows its velocity
+//       late is a function of (the pure time lag of Hess and Soom 1990).
 //
 // Nothing here throws; a value that is not finite makes the distance so until the next reversal.
 #pragma once
@@ -64,29 +64,39 @@ std::optional<DerivedSignal> derived_signal(std::string_view channel);
 // Slower than this share of its top speed a movement starts from standstill.
 inline constexpr double kStandstill = 0.05;
 
-// A quantity after a first-order filter, one movement row by row. Exact for what is straight
-// between the rows, however far apart they are.
-class FirstOrderLag {
+// A quantity as it was a fixed time before, one movement row by row; straight between the rows. At
+// most kSlots rows are remembered: of faster ones those a thirty-second of the time apart.
+class TimeLag {
  public:
-  explicit FirstOrderLag(double constant_s) : constant_s_(constant_s) {}
-  void start_movement() { started_ = false; }
+  explicit TimeLag(double lag_s) : lag_s_(lag_s) {}
+  void start_movement() { count_ = 0; }
   // dt_s: since the row before; not looked at in the first row.
   double next(double x, double dt_s);
 
  private:
-  double constant_s_;
-  bool started_ = false;
-  double x_ = 0;
-  double filtered_ = 0;
+  struct Row {
+    double time = 0;  // s since the movement began
+    double x = 0;
+  };
+  static constexpr std::size_t kSlots = 40;
+  Row& oldest(std::size_t after = 0) { return rows_[(first_ + after) % kSlots]; }
+
+  double lag_s_;
+  double now_ = 0;
+  std::array<Row, kSlots> rows_ = {};  // a ring
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
 };
 
-// A factor of two apart: what lies between is nearly a sum of its neighbours. From what a drive's
-// current loop and filters take (20 ms) to what bristles and lubricant do (0.2 s; Hess, Soom 1990).
-inline constexpr std::array<int, 3> kLags_ms = {30, 60, 120};
+// A factor of the square root of two apart: friction that is late by what lies between differs from
+// the nearest in a tenth of the lag. From what a drive's current loop and filters take to what
+// lubricant does. Two apart, a late friction was taken for two effects; a first-order filter's lag
+// is found by these as well as by filters (docs/decisions.md).
+inline constexpr std::array<int, 5> kLags_ms = {30, 42, 60, 85, 120};
 std::string lagged_velocity_name(int lag_ms);
 std::string lagged_velocity_recipe(int lag_ms);
 // time in s; starts anew with every movement. A clock tells the time between rows no better than
-// 10 us: a file whose time counts from 1970 gives the same filter as one that counts from 0.
+// 10 us: a file whose time counts from 1970 gives the same values as one that counts from 0.
 std::vector<double> lagged_velocity(int lag_ms, std::span<const double> v,
                                     std::span<const double> time, std::span<const int> movement);
 

@@ -280,6 +280,7 @@ Observations Observations::select(const std::vector<char>& keep) const {
   out.movement_names = movement_names;
   out.group = group;
   out.group_name = group_name;
+  out.turns_left_out = turns_left_out;
   out.rigid = rigid;
   out.withheld = withheld;
   out.warnings = warnings;

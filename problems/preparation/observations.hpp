@@ -9,7 +9,7 @@
 //   q        position                     v2 a2   the other joint's velocity and acceleration
 //   g sgn_g  gravity torque and its sign  d       distance since the last reversal
 //   d_seen   d, but far where a movement starts in motion: it has turned before the recording began
-//   v_lag30 v_lag60 v_lag120              velocity after a first-order filter of so many ms
+//   v_lag30 v_lag42 ... v_lag120          velocity as it was so many ms before
 //
 // NaN policy: rows in which a used channel or the target is not finite are dropped and counted in
 // the warnings. Bad input that no one can mend silently is an Error (bad_input).
@@ -36,13 +36,13 @@ struct Signal {
   std::string recipe;  // how it is computed where it is no column of the data, else empty
   std::vector<double> values;
   std::string formula = {};  // over q, where that says it: "sin(q)"
-  // A velocity after a filter, a distance read otherwise: nothing to look at beside the signal
+  // A velocity of before, a distance read otherwise: nothing to look at beside the signal
   // itself.
-  bool is_variant() const { return is_filtered_velocity() || name == kSeenDistance; }
-  bool is_filtered_velocity() const { return name.starts_with("v_lag"); }
+  bool is_variant() const { return is_late_velocity() || name == kSeenDistance; }
+  bool is_late_velocity() const { return name.starts_with("v_lag"); }
   // Seconds since a movement began: what a joint does differently after a rest.
   static constexpr std::string_view kSinceStart = "t_start";
-  // It follows from the motion before (a distance since reversal, a filtered velocity).
+  // It follows from the motion before (a distance since reversal, a late velocity).
   bool has_memory() const { return name == "d" || is_variant(); }
 };
 
@@ -72,6 +72,8 @@ struct Observations {
   std::vector<std::size_t> place;
   std::vector<std::string> rigid;  // signals whose coefficient is fitted with the base (see below)
   std::vector<WithheldSignal> withheld;  // of those in `signals`, or taken from them
+  // Rows in which the motion changes faster than could be told are not here: most turns and starts.
+  bool turns_left_out = false;
   std::vector<std::string> warnings;
 
   std::size_t rows() const { return target.size(); }

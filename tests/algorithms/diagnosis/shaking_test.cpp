@@ -31,7 +31,7 @@ Observations shaken_joint(double torque, double late) {
   for (int m = 0; m < 40; ++m) {
     data.movement_names.push_back(std::to_string(m));
     const double speed = random.uniform(0.05, 0.8);
-    FirstOrderLag filter(0.06);
+    TimeLag lag(0.06);
     for (int i = 0; i < 1000; ++i, t += kStep_s) {
       const double s = std::fmod(i * kStep_s, 2.0);  // of a stroke of 2 s
       const double ramp = std::clamp(std::min(s, 2 - s) / 0.4, 0.0, 1.0);
@@ -41,9 +41,9 @@ Observations shaken_joint(double torque, double late) {
       // A stiff controller gives way a little: the acceleration is against the torque.
       const double v = way * speed * ramp + 0.004 * torque * std::cos(angle);
       const double a = way * speed * slope - 0.004 * torque * kSwing * std::sin(angle);
-      const double slow = filter.next(v, kStep_s);
+      const double before = lag.next(v, kStep_s);
       const double friction =
-          8 * sign(v) + 14 * v + late * (std::tanh(slow / 0.05) - std::tanh(v / 0.05));
+          8 * sign(v) + 14 * v + late * (std::tanh(before / 0.05) - std::tanh(v / 0.05));
       data.movement.push_back(m);
       for (std::size_t c = 0;
            const double value :
@@ -67,6 +67,24 @@ TEST(Shaking, WhatADisturbanceMovesIsNoLateFriction) {
   const Observations data = shaken_joint(1, 0);
   EXPECT_FALSE(finds_lag(data, true));
   EXPECT_TRUE(finds_lag(data, false));
+}
+
+// Late friction shows where the motion turns: without those rows no size of it is promised.
+TEST(LateFriction, IsNotPromisedWhereTurnsAreLeftOut) {
+  Observations data = shaken_joint(0, 0);
+  const auto promises_lag = [&data] {
+    bool any_other = false;
+    bool lag = false;
+    for (const CandidateFinding& one :
+         diagnose(data, coulomb_viscous_base, DiagnosisOptions{}).candidates) {
+      (one.family == "lag" ? lag : any_other) |= std::isfinite(one.detectable);
+    }
+    EXPECT_TRUE(any_other);
+    return lag;
+  };
+  EXPECT_TRUE(promises_lag());
+  data.turns_left_out = true;
+  EXPECT_FALSE(promises_lag());
 }
 
 TEST(Shaking, FrictionThatIsLateInTheMotionItselfIsFound) {

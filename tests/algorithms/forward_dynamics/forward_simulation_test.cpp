@@ -299,18 +299,18 @@ TEST(ForwardSimulation, InputsThatRememberTheMotionAreThoseOfItsRows) {
   const SimulatedMotion motion =
       simulate_motion(joint(1, "0.5*sgn_v + 2*v_lag60 + 3*d"), nullptr, movement.rows(), {});
   ASSERT_EQ(motion.status, MotionStatus::complete);
-  loop::FirstOrderLag lag(0.060);
+  loop::TimeLag lag(0.060);
   loop::DistanceSinceReversal distance(loop::PathFrom::position);
   double worst = 0;
   double before = 0;
   for (std::size_t i = 0; i < movement.time.size(); ++i) {
     const double v = motion.velocity[i];
-    const double filtered = lag.next(v, i == 0 ? 0 : 0.005);
+    const double late = lag.next(v, i == 0 ? 0 : 0.005);
     const double d = distance.next(v, motion.position[i], i == 0 ? 0 : 0.005);
     if (i > 0 && i + 1 < movement.time.size() && before * v > 0) {
       const double a = (motion.velocity[i + 1] - motion.velocity[i - 1]) / 0.01;
       const bool turns = motion.velocity[i + 1] * v <= 0 || motion.velocity[i - 1] * v <= 0;
-      const double left = movement.drive[i] - a - (v > 0 ? 0.5 : -0.5) - 2 * filtered - 3 * d;
+      const double left = movement.drive[i] - a - (v > 0 ? 0.5 : -0.5) - 2 * late - 3 * d;
       if (!turns) worst = std::max(worst, std::abs(left));
     }
     before = v;

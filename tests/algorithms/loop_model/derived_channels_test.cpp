@@ -119,25 +119,33 @@ TEST(DerivedChannels, CCodeKeepsTheSameDistanceToTheLastBitByEitherPath) {
   }
 }
 
-// Behind a ramp of slope a by a times the constant, however far apart the rows are; exact for what
-// is straight between them.
-TEST(DerivedChannels, AFilterFollowsARampAtItsConstantsDistance) {
-  for (const double dt : {0.001, 0.1, 1.0}) {
-    FirstOrderLag lag(0.06);
+// However far apart the rows are, and where more come within the lag than are remembered.
+TEST(DerivedChannels, AVelocityOfBeforeIsThatOfItsTime) {
+  for (const double dt : {0.00002, 0.001, 0.045, 0.1, 1.0}) {
+    TimeLag lag(0.06);
     double t = 0;
-    double filtered = lag.next(0, 0);
-    EXPECT_EQ(filtered, 0);
-    for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(lag.next(0.7, 0), 0.7);
+    const auto rows = static_cast<int>(3 + 0.5 / dt);
+    for (int i = 0; i < rows; ++i) {
       t += dt;
-      filtered = lag.next(2 * t, dt);
-      EXPECT_NEAR(filtered, 2 * (t - 0.06 * (1 - std::exp(-t / 0.06))), 1e-12) << dt;
+      EXPECT_NEAR(lag.next(0.7 + 2 * t, dt), 0.7 + 2 * std::max(0.0, t - 0.06), 1e-9) << dt;
     }
     lag.start_movement();
     EXPECT_EQ(lag.next(-0.4, dt), -0.4);
   }
 }
 
-TEST(DerivedChannels, FilteredVelocitiesAreTheSameForAClockThatCountsFrom1970) {
+// A reversal is seen that much later; where not every row is remembered, two rows beside.
+TEST(DerivedChannels, AStepOfTheVelocityComesItsLagLater) {
+  TimeLag lag(0.06);
+  for (int i = 0; i < 200; ++i) {
+    const double late = lag.next(i < 100 ? -1 : 1, 0.001);
+    if (i < 157) EXPECT_EQ(late, -1) << i;
+    if (i > 162) EXPECT_EQ(late, 1) << i;
+  }
+}
+
+TEST(DerivedChannels, VelocitiesOfBeforeAreTheSameForAClockThatCountsFrom1970) {
   const Dataset early = kuka::make_planted({}, 3).data;
   Dataset late = early;
   for (Channel& channel : late.channels) {

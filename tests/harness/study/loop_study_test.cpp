@@ -121,7 +121,7 @@ LoopStudyOptions small_simulated_study() {
 TEST(LoopStudy, OnSimulatedCampaignsTheTruthMeetsEveryTargetAndSilenceIsNeverWrong) {
   const LoopStudy best = run_loop_study(small_simulated_study(), knows_all);
   for (const LoopFigure& one : best.figures) EXPECT_TRUE(one.met) << one.name;
-  EXPECT_EQ(figure(best, "named, k >= 1").trials, 96U);
+  EXPECT_EQ(figure(best, "named, k >= 1").trials, 100U);
   EXPECT_EQ(figure(best, "false alarm, noise skewed").trials, 2U);
   for (const CauseAnswers& one : best.answers) EXPECT_EQ(one.counts[0], one.runs) << one.cause;
   EXPECT_EQ(figure(best, "stiffness within 10 %, k >= 1").trials, 12U);
