@@ -353,7 +353,7 @@ EffectFamily lag() {
   for (const int lag_ms : kLags_ms) {
     const std::string late = lagged_velocity_name(lag_ms);
     f.atoms.push_back(
-        {{"tanh(" + late + "/vw) - tanh(v/vw)"}, {"late"}, {{"vw", "v", {0.07, 0.2}, 0.02, 0.6}}});
+        {{"tanh(" + late + "/vw) - tanh(v/vw)"}, {"late"}, {{"vw", "v", {0.025, 0.07, 0.2}, 0.02, 0.6}}});
   }
   for (const std::string_view name : {"lag", "late"}) {
     f.sanity.push_back({std::string(name), 1, 0, "friction that runs ahead of the velocity"});
