@@ -50,7 +50,28 @@ TEST(MarkdownTable, LetsNoTagAndNoControlCharacterThrough) {
 // Of a page what is no tag stays as it reads best.
 TEST(Markdown, APageHasNoTagOfAnybodysName) {
   EXPECT_EQ(without_tags("# <b>x|y\x07, p < 0.05, a <= b\n`</script>` <!-- -->\n"),
-            "# &lt;b>x|y?, p < 0.05, a <= b\n`&lt;/script>` &lt;!-- -->\n");
+            "# &lt;b>x|y?, p < 0.05, a <= b\n`</script>` &lt;!-- -->\n");
+}
+
+// In code a renderer shows `&lt;` as it stands, and `<b>` too; but code must it be whichever way
+// the backticks are paired: in a cell, in the line, or in the paragraph.
+TEST(Markdown, CodeShowsWhatIsLessAndStrayBackticksLetNoTagThrough) {
+  const auto row = [](const std::string& cell) {
+    MarkdownTable table({{"name"}});
+    table.add({cell});
+    const std::string text = table.text();
+    return text.substr(text.rfind("\n| ") + 3, text.rfind(" |") - text.rfind("\n| ") - 3);
+  };
+  EXPECT_EQ(row("`v<w` and `` a`<b> ``"), "`v<w` and `` a`<b> ``");
+  EXPECT_EQ(row("`a|<b>` <i>"), "`a\\|<b>` &lt;i>");
+  EXPECT_EQ(row("`<b>"), "`&lt;b>");
+  EXPECT_EQ(row("a` `<b>`"), "a` `&lt;b>`");
+  EXPECT_EQ(row("``<b>`"), "``&lt;b>`");
+  EXPECT_EQ(row("\\`<b>`"), "\\`&lt;b>`");
+  EXPECT_EQ(row("`a\\|<b>`"), "`a\\\\|&lt;b>`");
+  EXPECT_EQ(without_tags("| `v<w` | `<b>` |\n"), "| `v<w` | `<b>` |\n");
+  EXPECT_EQ(without_tags("| a` | b` `<b>` |\n"), "| a` | b` `&lt;b>` |\n");
+  EXPECT_EQ(without_tags("a`\n`<b>`\n\n`<b>`\n"), "a`\n`&lt;b>`\n\n`<b>`\n");
 }
 
 TEST(Markdown, CodeMayHoldAnyBackticks) {
