@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/budget.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -12,6 +14,12 @@ namespace {
 constexpr std::uint64_t kClockInterval = 2'000'000;
 
 }  // namespace
+
+std::string shortage(const Budget& budget, std::uint64_t node_rows) {
+  if (budget.out_of_time()) return "the CPU seconds are spent";
+  return fmt::format("it takes {} evaluations (node-rows), and {} are left", node_rows,
+                     budget.remaining());
+}
 
 double process_cpu_seconds() {
   timespec now{};

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <string>
 
 namespace tribench {
 
@@ -60,6 +61,10 @@ class Budget {
   std::shared_ptr<std::atomic<bool>> out_of_time_;   // shared by all with the same seconds
   std::shared_ptr<std::atomic<bool>> cut_by_clock_;  // shared by all parts
 };
+
+// Why a fit that takes so many node-rows at the least gives nothing: more than are left, or no
+// time.
+std::string shortage(const Budget& budget, std::uint64_t node_rows);
 
 // CPU seconds of this process so far, all threads.
 double process_cpu_seconds();

@@ -180,13 +180,18 @@ struct StagesResult {
   std::optional<Problem> extended;  // by the formulas' states, where they have any
 };
 
-FailureReason why_no_formula(const FitResult& result) {
+FailureReason why_no_formula(const FitResult& result, const CellLimits& limits) {
   if (result.reason == StopReason::unsupported) {
     return {FailureKind::unsupported, with_mend_of_role(result.note)};
   }
-  return {
-      FailureKind::error,
-      "no formula: " + (result.note.empty() ? "the method returned an empty front" : result.note)};
+  std::string why = result.note;
+  if (why.empty() && result.reason == StopReason::budget) {
+    why = fmt::format("the budget of {} evaluations and {} CPU seconds ended before a first one",
+                      limits.evaluations, limits.seconds);
+  } else if (why.empty()) {
+    why = "the method returned an empty front";
+  }
+  return {FailureKind::error, "no formula: " + why};
 }
 
 // Some parameters can be judged only beside the data (a template names the stage's inputs): what a
@@ -328,7 +333,7 @@ StagesResult fit_stages(const Problem& given, const Regressor& method, const Cel
     if (fit.front.empty()) {
       // A baseline that cannot fit what is left stands as it was, as in the paper's tables.
       if (s > 0 && fit.reason == StopReason::unsupported) continue;
-      result.failure = why_no_formula(fit);
+      result.failure = why_no_formula(fit, task.limits);
       return result;
     }
     result.front.clear();

@@ -62,8 +62,9 @@ class BranchPolynomial : public Regressor {
     const FiniteRows data(context.data);
     if (data.rows() == 0) return FitResult::unsupported("there is no row without missing values");
     const auto columns = make_columns(data, *inputs);
-    if (!context.budget.spend(columns.size() * columns.size() * data.rows())) {
-      return {{}, 0, StopReason::budget, "no budget"};
+    const std::size_t needed = columns.size() * columns.size() * data.rows();
+    if (!context.budget.spend(needed)) {
+      return {{}, 0, StopReason::budget, shortage(context.budget, needed)};
     }
     std::vector<const double*> pointers;
     for (const auto& column : columns) pointers.push_back(column.data());

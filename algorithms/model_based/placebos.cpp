@@ -20,8 +20,9 @@ class LinearModel : public Regressor {
     if (with_inputs_) {
       columns.insert(columns.end(), data.pointers().begin(), data.pointers().end());
     }
-    if (!context.budget.spend(columns.size() * columns.size() * data.rows())) {
-      return {{}, 0, StopReason::budget, "no budget"};
+    const std::size_t needed = columns.size() * columns.size() * data.rows();
+    if (!context.budget.spend(needed)) {
+      return {{}, 0, StopReason::budget, shortage(context.budget, needed)};
     }
     const LinearFit fit = solve_least_squares(columns, data.target);
     Expression formula = build::constant(fit.coefficients[0]);

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "algorithms/expression/text.hpp"
+#include "algorithms/registry.hpp"
 #include "foundation/error.hpp"
 #include "harness/run_cell.hpp"
 
@@ -134,6 +135,26 @@ TEST(FitAndJudge, FurtherRoundsOnFewRowsCountByExactFormulasAlone) {
   };
   EXPECT_THAT(formula_after("2*v + 1 + 0.25*cos(31.41592653589793*v)"), Not(HasSubstr("cos")));
   EXPECT_THAT(formula_after("2*v + 1 + 0.3*cos(31.41592653589793*v)"), HasSubstr("cos"));
+}
+
+// Too small a budget is to be told from a method that fails: how much it takes, or how little it
+// was.
+TEST(FitAndJudge, ABudgetThatEndsBeforeAFirstFormulaIsSaidToHave) {
+  const Problem problem = two_stage_problem();
+  const Registry registry;
+  const auto reason = [&](const std::string& method, std::uint64_t evaluations) {
+    CellTask task;
+    task.cell = {problem.name, method, "full", 1};
+    task.operators = find_operator_set("full");
+    task.limits.evaluations = evaluations;
+    return reason_text(fit_and_judge(problem, *registry.make(method), task).record.reason);
+  };
+  // A constant and a slope over 40 rows, of half of the budget: there are two stages.
+  EXPECT_THAT(reason("linear", 200),
+              HasSubstr("no formula: it takes 160 evaluations (node-rows), and 100 are left"));
+  EXPECT_EQ(reason("linear", 320), "");
+  EXPECT_THAT(reason("parfam", 50), HasSubstr("no formula: the budget of 50 evaluations and 60 CPU "
+                                              "seconds ended before a first one"));
 }
 
 // Notes the seconds that each search was given.
