@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <type_traits>
+#include <unordered_map>
 #include <vector>
 
 #include "foundation/error.hpp"
@@ -34,7 +37,7 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
   bool key(std::string& name) override {
-    place_ = &(*open_.back())[name];
+    place_ = &member(open_.back()->template get_ref<typename Json::object_t&>(), name);
     return true;
   }
   bool parse_error(std::size_t, const std::string&,
@@ -50,6 +53,22 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
   std::optional<std::size_t> wrong_at() const { return wrong_at_; }
 
  private:
+  // The library's ordered object compares a key with all before it.
+  Json& member(typename Json::object_t& object, std::string& name) {
+    constexpr std::size_t kFew = 16;
+    if constexpr (std::is_same_v<Json, nlohmann::ordered_json>) {
+      if (object.size() >= kFew) {
+        std::unordered_map<std::string, std::size_t>& places = places_.back();
+        for (std::size_t i = places.size(); i < object.size(); ++i) {
+          places.emplace((object.begin() + static_cast<std::ptrdiff_t>(i))->first, i);
+        }
+        const auto [place, is_new] = places.try_emplace(name, object.size());
+        if (is_new) object.emplace_back(std::move(name), nullptr);
+        return (object.begin() + static_cast<std::ptrdiff_t>(place->second))->second;
+      }
+    }
+    return object[name];
+  }
   // In its place: behind a key, at the end of a list, or all there is.
   Json* put(Json value) {
     if (open_.empty()) {
@@ -71,10 +90,12 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
     is_too_deep_ = open_.size() >= static_cast<std::size_t>(kMaxJsonDepth);
     if (is_too_deep_) return false;
     open_.push_back(put(Json(kind)));
+    places_.emplace_back();
     return true;
   }
   bool close() {
     open_.pop_back();
+    places_.pop_back();
     if (open_.empty() && first_ != nullptr) *first_ = std::move(root_);
     return true;
   }
@@ -82,7 +103,9 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
   Json* first_;
   Json root_ = Json(Json::value_t::discarded);
   std::vector<Json*> open_;  // each the last of the one before it, which does not grow meanwhile
-  Json* place_ = nullptr;    // of the key read last
+  // Of each open object: where its keys stand, once they are many.
+  std::vector<std::unordered_map<std::string, std::size_t>> places_;
+  Json* place_ = nullptr;  // of the key read last
   bool is_too_deep_ = false;
   std::optional<std::size_t> wrong_at_;
 };

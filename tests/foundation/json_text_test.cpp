@@ -30,6 +30,26 @@ TEST(JsonText, RefusesWhatNestsTooDeepWithoutRunningOutOfStack) {
   }
 }
 
+// Twice the keys took four times as long; a key that comes again keeps its place.
+TEST(JsonText, AnObjectOfManyKeysIsReadInTime) {
+  std::string text = "{\"a\":{\"b\":1}";
+  for (int i = 0; i < 100'000; ++i) {
+    text += ',';
+    text += write_json(Json("k" + std::to_string(i))) + ":" + std::to_string(i);
+  }
+  text += ",\"k3\":\"again\",\"z\":{}}";
+  const std::clock_t begin = std::clock();
+  const Json object = read_json<Json>(text);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 5);
+  ASSERT_EQ(object.size(), 100'002U);
+  const auto& members = object.get_ref<const Json::object_t&>();
+  EXPECT_EQ(members.front().first, "a");
+  EXPECT_EQ((members.begin() + 4)->first, "k3");
+  EXPECT_EQ((members.begin() + 4)->second, Json("again"));
+  EXPECT_EQ((members.begin() + 99'999)->second, Json(99'998));
+  EXPECT_EQ(members.back().first, "z");
+}
+
 // Twice the objects took four times as long.
 TEST(JsonText, ALongListOfObjectsIsReadInTime) {
   std::string text = "[{\"a\":[1]}";
