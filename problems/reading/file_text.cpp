@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "foundation/error.hpp"
 #include "foundation/text.hpp"
@@ -33,46 +34,54 @@ std::string read_bytes(const std::filesystem::path& file) {
                            : "where that is meant: gunzip it and give the text");
 }
 
-std::string unpacked(const std::string& packed, const std::string& file, std::size_t always) {
-  const std::size_t most = std::min(kLargestText, std::max(always, kMostTimes * packed.size()));
+// Unpacks to the end, or to more than `most` bytes, handing each piece on. Returns zlib's last
+// word.
+template <typename Take>
+int inflate_in_pieces(const std::string& packed, const std::string& file, std::size_t most,
+                      Take take) {
   z_stream stream = {};
   constexpr int kGzip = 16 + MAX_WBITS;
-  if (inflateInit2(&stream, kGzip) != Z_OK) {
-    throw Error(ErrorKind::failed, "cannot unpack the file", file);
-  }
-  std::string text;
+  int status = inflateInit2(&stream, kGzip);
+  if (status != Z_OK) throw Error(ErrorKind::failed, "cannot unpack the file", file);
+  std::vector<char> piece(std::size_t{1} << 20);
   std::size_t read = 0;
-  std::size_t filled = 0;
-  int status = Z_OK;
-  const auto piece = [](std::size_t bytes) {
-    return static_cast<uInt>(std::min<std::size_t>(bytes, std::numeric_limits<int>::max()));
-  };
-  while (true) {
-    if (filled == text.size()) {
-      text.resize(std::min(most + 1, std::max<std::size_t>(2 * filled, 4 * packed.size())));
-    }
+  std::size_t unpacked = 0;
+  while (unpacked <= most) {
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + read));
-    stream.avail_in = piece(packed.size() - read);
-    stream.next_out = reinterpret_cast<Bytef*>(text.data() + filled);
-    stream.avail_out = piece(text.size() - filled);
+    stream.avail_in = static_cast<uInt>(
+        std::min<std::size_t>(packed.size() - read, std::numeric_limits<int>::max()));
+    stream.next_out = reinterpret_cast<Bytef*>(piece.data());
+    stream.avail_out = static_cast<uInt>(piece.size());
     const std::size_t in_before = stream.avail_in;
-    const std::size_t out_before = stream.avail_out;
     status = inflate(&stream, Z_NO_FLUSH);
     read += in_before - stream.avail_in;
-    filled += out_before - stream.avail_out;
+    const std::size_t made = piece.size() - stream.avail_out;
+    unpacked += made;
+    take(std::string_view(piece.data(), made));
     if (status == Z_STREAM_END && read < packed.size()) {
       inflateReset(&stream);  // several members in one file
       continue;
     }
-    if (status != Z_OK || filled > most) break;
-    if (read == packed.size() && stream.avail_out > 0) break;
+    if (status != Z_OK || (read == packed.size() && stream.avail_out > 0)) break;
   }
   inflateEnd(&stream);
-  if (filled > most) refuse_unpacked(file, packed.size(), most);
+  return status;
+}
+
+std::string unpacked(const std::string& packed, const std::string& file, std::size_t always) {
+  const std::size_t most = std::min(kLargestText, std::max(always, kMostTimes * packed.size()));
+  // Twice, the first time for the size alone: what is refused then takes no memory, and what is not
+  // takes what it needs and no more.
+  std::size_t size = 0;
+  const int status =
+      inflate_in_pieces(packed, file, most, [&](std::string_view piece) { size += piece.size(); });
+  if (size > most) refuse_unpacked(file, packed.size(), most);
   if (status != Z_STREAM_END) {
     throw_bad_input("the gzip file is damaged or cut off", file, "pack it again, or unpack it");
   }
-  text.resize(filled);
+  std::string text;
+  text.reserve(size);
+  inflate_in_pieces(packed, file, most, [&](std::string_view piece) { text += piece; });
   return text;
 }
 

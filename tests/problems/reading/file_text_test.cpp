@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <fstream>
 #include <string>
 
 #include "foundation/error.hpp"
@@ -18,10 +19,12 @@ using ::testing::HasSubstr;
 
 class PackedText : public ::testing::Test {
  protected:
-  std::filesystem::path pack(const std::string& text) const {
+  std::filesystem::path pack(const std::string& text, int times = 1) const {
     const std::filesystem::path file = folder_.path() / "log.csv.gz";
     const gzFile out = gzopen(file.c_str(), "wb");
-    gzwrite(out, text.data(), static_cast<unsigned>(text.size()));
+    for (int i = 0; i < times; ++i) {
+      gzwrite(out, text.data(), static_cast<unsigned>(text.size()));
+    }
     gzclose(out);
     return file;
   }
@@ -45,6 +48,26 @@ TEST_F(PackedText, ThatOpensToAThousandTimesItsSizeIsRefused) {
                                     HasSubstr("more than 100000"), HasSubstr("gunzip")));
   }
   EXPECT_EQ(read_file_text(pack(std::string(kMost, '1')), kMost), std::string(kMost, '1'));
+}
+
+// The most memory that the process has had since the peak was last forgotten, in MiB.
+double peak_mib() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) / 1024;
+  }
+  return 0;
+}
+
+// It took twice what was allowed before it was refused.
+TEST_F(PackedText, ThatIsRefusedTakesNoMemory) {
+  constexpr std::size_t kMiB = std::size_t{1} << 20;
+  const std::filesystem::path file = pack(std::string(kMiB, '1'), 200);
+  std::ofstream("/proc/self/clear_refs") << "5";
+  const double before = peak_mib();
+  EXPECT_THROW(read_file_text(file, 199 * kMiB), Error);
+  EXPECT_LT(peak_mib() - before, 20);
+  EXPECT_EQ(read_file_text(file, 200 * kMiB).size(), 200 * kMiB);
 }
 
 TEST_F(PackedText, OfARecordingMayBeAsLongAsItIs) {
