@@ -26,7 +26,19 @@ constexpr std::string_view kC =
     " M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2 DOMAIN SING OVERFLOW UNDERFLOW"
     " PLOSS TLOSS X_TLOSS exception float_t double_t isless islessequal islessgreater isgreater"
     " isgreaterequal isunordered isnormal isfinite isnan isinf signbit fpclassify iscanonical"
-    " issignaling issubnormal iszero iseqsig signgam ";
+    " issignaling issubnormal iszero iseqsig signgam FP_LLOGB0 FP_LLOGBNAN FP_INT_UPWARD"
+    " FP_INT_DOWNWARD FP_INT_TOWARDZERO FP_INT_TONEARESTFROMZERO FP_INT_TONEAREST HUGE_VAL_F32"
+    " HUGE_VAL_F32X HUGE_VAL_F64 HUGE_VAL_F64X HUGE_VAL_F128 SNANF32 SNANF32X SNANF64 SNANF64X"
+    " SNANF128"
+    // what C++'s math.h has besides
+    " NULL RAND_MAX EXIT_FAILURE EXIT_SUCCESS MB_CUR_MAX alloca BIG_ENDIAN LITTLE_ENDIAN PDP_ENDIAN"
+    " BYTE_ORDER FD_CLR FD_ISSET FD_SET FD_SETSIZE FD_ZERO NFDBITS WCONTINUED WEXITED WEXITSTATUS"
+    " WIFCONTINUED WIFEXITED WIFSIGNALED WIFSTOPPED WNOHANG WNOWAIT WSTOPPED WSTOPSIG WTERMSIG"
+    " WUNTRACED be16toh be32toh be64toh htobe16 htobe32 htobe64 le16toh le32toh le64toh htole16"
+    " htole32 htole64"
+    // macros of headers that may stand before the code in one file
+    " I complex imaginary errno EOF BUFSIZ stdin stdout stderr assert offsetof CHAR_BIT INT_MAX"
+    " INT_MIN DBL_MAX DBL_MIN DBL_EPSILON FLT_MAX FLT_MIN FLT_EPSILON ";
 
 // Functions of math.h, each also with f or l behind.
 constexpr std::string_view kMath =
@@ -68,9 +80,11 @@ bool is_reserved_word(std::string_view name) {
   for (const std::string_view list : {kC, kMath, kPython, kMatlab, kOwn}) {
     if (holds(list, name)) return true;
   }
-  // M_PIf, M_PIl and their like.
-  if (name.starts_with("M_") && name.size() > 3 && is_capital(name[2]) && name.back() != '_') {
-    return true;
+  // M_PIf, M_1_PIl and their like.
+  if (name.starts_with("M_") && name.back() != '_') {
+    const bool is_numbered = name.starts_with("M_1_") || name.starts_with("M_2_");
+    const std::string_view rest = name.substr(is_numbered ? 4 : 2);
+    if (rest.size() > 1 && is_capital(rest.front())) return true;
   }
   return (name.back() == 'f' || name.back() == 'l') &&
          holds(kMath, name.substr(0, name.size() - 1));

@@ -376,12 +376,13 @@ TEST(Export, GivesArgumentsThatCollideWhenMendedNamesOfTheirOwn) {
 TEST(Export, CompilesWithEveryWordOfTheLanguagesAsAnInput) {
   // What the compilers themselves define beside keywords, and what they cannot define.
   std::string words = output_of(
-      "for c in 'cc -std=gnu17' 'cc -std=c99'; do "
+      "for c in 'cc -std=gnu17' 'cc -std=c99' 'c++ -std=gnu++20 -x c++'; do "
       "printf '#include <math.h>\n' | $c -dM -E -; done | sed 's/^#define //; s/[ (].*//'");
   words +=
       " _Bool _Complex _Imaginary _Noreturn _Static_assert _Thread_local _Atomic _Generic bool true"
       " false typeof asm auto register restrict class new this template operator NAN M_PI signgam"
-      " y0 j1 fabs sqrt exp2 cosf tanhl lambda None True match type np sp sign_of float tau end pi";
+      " y0 j1 fabs sqrt exp2 cosf tanhl lambda None True match type np sp sign_of float tau end pi"
+      " I complex errno EOF stdin assert DBL_MAX";
   std::istringstream in(words);
   std::set<std::string> names;
   for (std::string word; in >> word;) {
@@ -394,8 +395,13 @@ TEST(Export, CompilesWithEveryWordOfTheLanguagesAsAnInput) {
   std::vector<std::string> used = all;
   const Expression formula = parse(sum, used);
   const fs::path folder = fresh_folder("words");
-  write(folder / "f.c", export_code(formula, all, CodeForm::c, {}));
-  for (const char* compiler : {"cc -std=gnu17 -x c", "cc -std=c99 -pedantic -x c"}) {
+  // As a part of a larger file, too.
+  write(folder / "f.c",
+        "#include <assert.h>\n#include <errno.h>\n#include <float.h>\n"
+        "#include <stdio.h>\n#ifndef __cplusplus\n#include <complex.h>\n#endif\n" +
+            export_code(formula, all, CodeForm::c, {}));
+  for (const char* compiler :
+       {"cc -std=gnu17 -x c", "cc -std=c99 -pedantic -x c", "c++ -std=gnu++20 -x c++"}) {
     EXPECT_TRUE(
         runs(fmt::format("{} -Werror -fsyntax-only {}", compiler, (folder / "f.c").string())))
         << compiler;
@@ -423,7 +429,8 @@ TEST(Export, LetsNoTextFromOutsideIntoTheCode) {
 TEST(Export, RefusesUnknownFormsAndBadNames) {
   EXPECT_THROW(find_code_form("pyton"), Error);
   EXPECT_THROW(exported("v", "c", {.function = "2x"}), Error);
-  for (const char* word : {"while", "_Bool", "NAN", "M_PI", "asm", "linux", "cosf", "__x", "y0"}) {
+  for (const char* word :
+       {"while", "_Bool", "NAN", "M_PI", "asm", "linux", "cosf", "__x", "y0", "NULL", "I"}) {
     EXPECT_THROW(exported("v", "c", {.function = word}), Error) << word;
   }
 }
