@@ -18,6 +18,7 @@
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 #include "foundation/suggestion.hpp"
+#include "foundation/text.hpp"
 
 namespace tribench {
 namespace {
@@ -88,8 +89,9 @@ std::uint64_t count_in(const json& object, const char* key, std::uint64_t otherw
                              excerpt(write_json(value)), kExact));
 }
 
+// One line, which a terminal shows as it is and does not obey.
 std::string text_in(const json& value, const char* key) {
-  if (value.is_string()) return value.get<std::string>();
+  if (value.is_string()) return without_control_characters(value.get<std::string>());
   throw_unusable(fmt::format("'{}' is {}, not text", key, excerpt(write_json(value))));
 }
 

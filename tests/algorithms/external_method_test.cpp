@@ -15,8 +15,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// What ends a program of this shell line where nobody else watches it.
-std::string ended_by(const std::string& line, ProgramLimits limits) {
+// What a program of this shell line answers where nobody else watches it.
+FitResult answer_of(const std::string& line, ProgramLimits limits) {
   const std::vector<Input> inputs{{.name = "x", .low = 0, .high = 1}};
   const std::vector<double> x{0, 1};
   const std::vector<const double*> columns{x.data()};
@@ -24,8 +24,13 @@ std::string ended_by(const std::string& line, ProgramLimits limits) {
   const TrainingData data{inputs, columns, x, movement};
   Budget budget({});
   FitContext context{data, find_operator_set("full"), budget, RandomStream(1)};
+  return make_external_method({"bash", "-c", line}, {}, limits)->fit(context);
+}
+
+// What ends it.
+std::string ended_by(const std::string& line, ProgramLimits limits) {
   try {
-    make_external_method({"bash", "-c", line}, {}, limits)->fit(context);
+    answer_of(line, limits);
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::failed);
     return error.what();
@@ -40,6 +45,13 @@ TEST(ExternalMethod, EndsAProgramBeyondItsLimits) {
   EXPECT_THAT(ended_by("while :; do :; done", {.cpu_s = 0.3}),
               HasSubstr("more than 0.3 s of CPU time"));
   EXPECT_EQ(ended_by("echo '{\"front\": [\"x\"]}'", {.cpu_s = 60, .wall_s = 60}), "itself");
+}
+
+// A note is shown on a terminal, which obeys control characters.
+TEST(ExternalMethod, ItsWordsAreOneLineWithoutControlCharacters) {
+  EXPECT_EQ(answer_of(R"(echo '{"front": ["x"], "note": "red \u001b[31m\nand on"}')", {}).note,
+            "red ?[31m and on");
+  EXPECT_EQ(answer_of(R"(echo '{"unsupported": "no\u0007 data"}')", {}).note, "no? data");
 }
 
 }  // namespace
