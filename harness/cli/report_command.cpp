@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "foundation/output_file.hpp"
+#include "foundation/output_folder.hpp"
 #include "foundation/standard_streams.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
@@ -49,6 +50,10 @@ void refresh_files(const std::filesystem::path& folder, const std::string& data)
 
 void report(const ReportArguments& arguments) {
   const std::filesystem::path folder = arguments.folder;
+  // Before the work.
+  if (!arguments.pictures.empty()) make_output_folder(arguments.pictures);
+  if (!arguments.page.empty()) try_output_file(arguments.page);
+  if (!arguments.out.empty()) try_output_file(arguments.out);
   refresh_files(folder, arguments.data);
   if (!arguments.form.empty()) {
     const std::string tables = run_tables_latex(folder);

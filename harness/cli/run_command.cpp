@@ -246,6 +246,7 @@ void run(const RunArguments& arguments, const Registry& registry, ExitStatus& st
     return;
   }
   options.out = arguments.out.empty() ? fmt::format("run-{}", grid.name) : arguments.out;
+  if (!arguments.pictures.empty()) make_output_folder(arguments.pictures);  // before the work
   run_to_the_end(grid, arguments, options, status);
 }
 

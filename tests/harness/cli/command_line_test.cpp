@@ -315,6 +315,24 @@ TEST(CommandLine, ADeviceWithoutAnEndIsRefusedByEveryReader) {
   }
 }
 
+// A folder or file that cannot be written is found before the work and not after it.
+TEST(CommandLine, AnOutputThatCannotBeWrittenIsFoundFirst) {
+  const TemporaryFolder folder;
+  const std::string made = (folder / "run").string();
+  const ProgramRun run = run_tribench({"run", "quick", "--seeds", "1", "--evaluations", "1",
+                                       "--out", made, "--pictures", "/proc/no/such"});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_THAT(run.errors, HasSubstr("/proc/no/such: cannot make the folder"));
+  EXPECT_FALSE(std::filesystem::exists(made));
+  for (const Words& words :
+       {Words{"--page", "/proc/no/such.md"}, Words{"--pictures", "/proc/no/such"},
+        Words{"--as", "latex", "--out", "/proc/no/such.tex"}}) {
+    Words all = {"report", folder.path().string()};  // which is no run: that is found later
+    all.insert(all.end(), words.begin(), words.end());
+    EXPECT_THAT(run_tribench(all).errors, HasSubstr("/proc/no/such")) << words.front();
+  }
+}
+
 // `ulimit -f` counts in kilobytes, and the problem has 100 of them.
 TEST(CommandLine, ALimitOnFileSizesIsAnErrorAndLeavesNothing) {
   const TemporaryFolder folder;
