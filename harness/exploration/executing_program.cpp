@@ -62,6 +62,7 @@ class Program {
     options.command = command_;
     options.command.push_back(file.string());
     options.scratch = scratch.path();
+    options.environment.push_back("TMPDIR=" + scratch.path().string());
     const ChildRun run = run_child(options, {}, {limit_s_, kMostOutputBytes});
     if (run.timed_out) {
       fail(fmt::format("the program took longer than {} s", limit_s_),

@@ -16,6 +16,7 @@
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
 #include "foundation/plain_name.hpp"
+#include "foundation/scratch_folder.hpp"
 #include "foundation/suggestion.hpp"
 #include "foundation/text.hpp"
 #include "harness/exploration/world_folder.hpp"
@@ -38,7 +39,7 @@ constexpr const char* kVerdictLine =
 class Talk {
  public:
   Talk(const std::vector<std::string>& command, double wall_s)
-      : child_(ChildOptions{command}),
+      : child_(ChildOptions{command, {"TMPDIR=" + scratch_.path().string()}, {}, scratch_.path()}),
         end_(Clock::now() +
              std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wall_s))) {}
 
@@ -106,6 +107,7 @@ class Talk {
     return said;
   }
 
+  ScratchFolder scratch_;  // the program's own folder for temporary files
   ChildProcess child_;
   Clock::time_point end_;
   std::string text_;
