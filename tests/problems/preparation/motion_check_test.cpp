@@ -44,15 +44,18 @@ TEST(MotionCheck, TheSlopeIsTheFactorBetweenTheUnits) {
   EXPECT_LT(match.agreement, -0.99);
 }
 
-// A file of q, qd and qdd as they are given, SI throughout.
+// A file of q, qd and qdd as they are given, SI throughout; flipped: read with --flip-sign.
 std::string complaint_about(const std::vector<double>& time, const std::vector<double>& q,
-                            const std::vector<double>& qd, const std::vector<double>& qdd) {
+                            const std::vector<double>& qd, const std::vector<double>& qdd,
+                            bool flipped = false) {
   std::string text = "t,q,qd,qdd\n";
   for (std::size_t i = 0; i < time.size(); ++i) {
     text += fmt::format("{},{},{},{}\n", time[i], q[i], qd[i], qdd[i]);
   }
   try {
-    check_motion(parse_csv(text, "d.csv"), {});
+    DataFile file = parse_csv(text, "d.csv");
+    file.data.torques_flipped = flipped;
+    check_motion(file, {});
   } catch (const Error& error) {
     return error.what();
   }
@@ -83,6 +86,23 @@ TEST(MotionCheck, ColumnsThatTellOfDifferentMotionsAreRefused) {
   for (double& a : acceleration) a = -a;
   EXPECT_THAT(says(told.position, told.velocity, acceleration), HasSubstr("its sign is turned"));
   EXPECT_THAT(says(still, told.velocity, late), HasSubstr("'q' is 0.4 in every row"));
+}
+
+// The torques go with one of the two, and are turned or not already: the mend says what is to be
+// changed, and not what is so already.
+TEST(MotionCheck, AVelocityOfTheOtherSignIsMendedByTurningOneOfTheTwo) {
+  Told told = sine(0);
+  std::vector<double> acceleration;
+  for (const double t : told.time) acceleration.push_back(2.4 * std::sin(2 * t));
+  for (double& v : told.velocity) v = -v;
+  for (const bool flipped : {false, true}) {
+    const std::string says =
+        complaint_about(told.time, told.position, told.velocity, acceleration, flipped);
+    EXPECT_THAT(says, HasSubstr("'q' changes -1 times as fast as 'qd' says"));
+    EXPECT_THAT(says, HasSubstr("turn it with --roles 'qd=velocity[-1 rad/s]'"));
+    EXPECT_THAT(says, HasSubstr(flipped ? "goes with 'qd', without --flip-sign"
+                                        : "goes with 'qd', with --flip-sign"));
+  }
 }
 
 // Noise is not another joint's motion: a joint that rests, and one whose columns are mostly noise.
