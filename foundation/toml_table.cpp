@@ -87,15 +87,21 @@ bool take(const toml::node& node, bool& value) {
   return flag != nullptr;
 }
 
-std::string_view wanted(std::uint64_t) { return "a whole number, not negative"; }
+std::string_view wanted(std::uint64_t) {
+  return "a whole number, not negative, up to 9223372036854775807";
+}
 bool take(const toml::node& node, std::uint64_t& value) {
+  if (node.is_integer()) {
+    if (node.as_integer()->get() < 0) return false;
+    value = static_cast<std::uint64_t>(node.as_integer()->get());
+    return true;
+  }
   // 1e8 is a whole number too, and how people write budgets.
   const std::optional<double> number = node.value<double>();
   const bool whole = number && *number >= 0 && *number < 9.2e18 &&
                      *number == static_cast<double>(static_cast<std::uint64_t>(*number));
   if (!whole) return false;
-  value = node.is_integer() ? static_cast<std::uint64_t>(node.as_integer()->get())
-                            : static_cast<std::uint64_t>(*number);
+  value = static_cast<std::uint64_t>(*number);
   return true;
 }
 

@@ -72,6 +72,23 @@ TEST(Toml, AWholeNumberIsWrittenTheSameAloneAndInAnArray) {
   EXPECT_THROW(table.read("broken", some), Error);
 }
 
+TEST(Toml, TheLargestWholeNumberOfAFileIsReadAndLargerOnesAreToldOfIt) {
+  const toml::table file =
+      parse_toml("most = 9223372036854775807\nless = -1\nmore = 1e30\n", "grid.toml");
+  const TomlTable table(file, "grid.toml", "", {"most", "less", "more"});
+  std::uint64_t read = 0;
+  table.read("most", read);
+  EXPECT_EQ(read, 9223372036854775807U);
+  for (const char* key : {"less", "more"}) {
+    try {
+      table.read(key, read);
+      ADD_FAILURE() << key;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("not negative, up to 9223372036854775807"));
+    }
+  }
+}
+
 TEST(Toml, AValueOfAnotherKindIsRefusedWithWhatIsWanted) {
   const toml::table file = parse_toml("flag = 1\nname = [\"a\", 2]\nshare = 2\n", "grid.toml");
   const TomlTable table(file, "grid.toml", "[grid]", {"flag", "name", "share"});
