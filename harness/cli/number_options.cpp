@@ -19,9 +19,7 @@ std::string refusal(const std::string& text, const std::string& wanted) {
 }  // namespace
 
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
-  const std::string wanted = high == kAnyWhole
-                                 ? fmt::format("a whole number from {}", low)
-                                 : fmt::format("a whole number from {} to {}", low, high);
+  const std::string wanted = fmt::format("a whole number from {} to {}", low, high);
   return {[=](std::string& text) -> std::string {
             const std::optional<std::uint64_t> number = read_number<std::uint64_t>(text);
             if (!number || *number < low || *number > high) return refusal(text, wanted);

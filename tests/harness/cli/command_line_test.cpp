@@ -125,6 +125,13 @@ TEST(CommandLine, EveryNumberIsReadStrictly) {
   EXPECT_GT(asked, 200U);
 }
 
+TEST(CommandLine, ANumberBeyondAllIsAnsweredWithTheLargest) {
+  for (const char* number : {"1e30", "99999999999999999999", "0"}) {
+    EXPECT_THAT(run_tribench({"fit", "log.csv", "--evaluations", number}).errors,
+                HasSubstr("use a whole number from 1 to 18446744073709551615"));
+  }
+}
+
 TEST(CommandLine, BudgetsMayBeWrittenWithAnExponent) {
   const ProgramRun run = run_tribench({"fit", "no-such-file.csv", "--target", "t", "--inputs", "v",
                                        "--method", "linear", "--evaluations", "1e11"});
