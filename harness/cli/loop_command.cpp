@@ -307,13 +307,14 @@ void explain(const LoopArguments& arguments) {
 }
 
 ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) {
+  // Before any work, and before it is said what would be done: a level that cannot be reached, and
+  // a file of effects that has none.
+  const loop::DiagnosisOptions options = diagnosis_options(arguments);
   if (arguments.explain) {
     explain(arguments);
     return ExitStatus::done;
   }
-  // Before any work: a level that cannot be reached, a folder that cannot be written to, an unknown
-  // name, and a file that nothing would be written to.
-  const loop::DiagnosisOptions options = diagnosis_options(arguments);
+  // A folder that cannot be written to, an unknown name, a file that nothing would be written to.
   if (!arguments.out.empty()) make_output_folder(arguments.out);
   if (!arguments.pictures.empty()) make_output_folder(arguments.pictures);
   if (!arguments.save_effect.empty()) try_output_file(arguments.save_effect);

@@ -478,10 +478,12 @@ TEST(LoopCommand, GrowsAnEffectFromWhatIsLeftOverSavesItAndReadsItBack) {
   EXPECT_LT(known["error"]["mae_after"], 0.75 * known["error"]["mae_before"].get<double>());
 
   testing::write_text(folder / "broken.toml", "[[effect]]\nname = \"x\"\n");
-  const testing::ProgramRun broken =
-      run_tribench({"loop", second, "--learned", (folder / "broken.toml").string()});
-  EXPECT_EQ(broken.status, 2);
-  EXPECT_THAT(broken.errors, HasSubstr("phrase"));
+  for (const char* more : {"--json", "--explain"}) {
+    const testing::ProgramRun broken =
+        run_tribench({"loop", second, "--learned", (folder / "broken.toml").string(), more});
+    EXPECT_EQ(broken.status, 2) << more;
+    EXPECT_THAT(broken.errors, HasSubstr("phrase")) << more;
+  }
 }
 
 }  // namespace
