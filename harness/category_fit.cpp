@@ -79,7 +79,8 @@ struct Candidate {
 // Fits the constants of shapes to each category.
 class ShapeFits {
  public:
-  explicit ShapeFits(const std::vector<Problem>& parts) : parts_(parts) {
+  // Of more shapes than one until so many CPU seconds of the process.
+  ShapeFits(const std::vector<Problem>& parts, double end_s) : parts_(parts), end_s_(end_s) {
     for (const Problem& part : parts) {
       const double size = root_mean_square(part.stages[0].train.target);
       zero_losses_.push_back(size * size);
@@ -98,11 +99,18 @@ class ShapeFits {
     }
     return best;
   }
+  bool was_cut_by_clock() const { return was_cut_; }
 
  private:
+  bool out_of_time() {
+    was_cut_ = was_cut_ || process_cpu_seconds() > end_s_;
+    return was_cut_;
+  }
+
   std::optional<Candidate> best_among(std::span<const Expression> shapes) {
     std::vector<Candidate> candidates;
     for (const Expression& shape : shapes) {
+      if (!candidates.empty() && out_of_time()) break;
       Candidate candidate = fit(shape, every(parts_.size()));
       if (!candidate.formulas.empty()) candidates.push_back(std::move(candidate));
     }
@@ -121,6 +129,7 @@ class ShapeFits {
     const std::vector<double> counts = row_counts();
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t s = 0; s < shapes.size(); ++s) {
+      if (!order.empty() && out_of_time()) break;
       const Candidate candidate = fit(shapes[s], asked);
       if (!candidate.formulas.empty()) order.emplace_back(against(candidate, asked, counts), s);
     }
@@ -210,6 +219,8 @@ class ShapeFits {
   }
 
   const std::vector<Problem>& parts_;
+  double end_s_;
+  bool was_cut_ = false;
   std::vector<double> zero_losses_;
   ConstantFitter fitter_;
   Evaluator evaluator_;
@@ -407,10 +418,22 @@ CategoryFit fit_by_category(const Problem& problem, const CategoryColumn& column
   for (const double category : categories) {
     parts.push_back(problem_of(frame, problem, column, category));
     result.categories.push_back({category, {}, empty_record(task.cell), {}});
-    result.categories.back().own = searches.search(parts.back(), result);
+    Record& own = result.categories.back().own;
+    // A share of a millisecond is no search: even its judgement takes longer.
+    if (result.fit_cpu_s < task.limits.seconds) {
+      own = searches.search(parts.back(), result);
+    } else {
+      own = empty_record(task.cell);
+      mark_failed(own, FailureKind::error, "the seconds were spent on the categories before it");
+      result.was_ended_by_clock = true;
+    }
   }
   const double cpu_start = process_cpu_seconds();
-  const std::optional<Candidate> best = ShapeFits(parts).best_of(searches.shapes());
+  // What the searches have left, and a tenth at the least: they end a little late themselves.
+  const double seconds = task.limits.seconds;
+  ShapeFits fits(parts, cpu_start + std::max(0.1 * seconds, seconds - result.fit_cpu_s));
+  const std::optional<Candidate> best = fits.best_of(searches.shapes());
+  result.was_ended_by_clock = result.was_ended_by_clock || fits.was_cut_by_clock();
   result.fit_cpu_s += process_cpu_seconds() - cpu_start;
   if (!best) {
     result.failure = searches.failure();

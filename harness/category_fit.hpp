@@ -51,7 +51,8 @@ struct CategoryColumn {
 // What travels with the rows as the last input, and no method sees, taken out again.
 CategoryColumn take_last_input(Problem& problem);
 
-// `problem` has one stage and no states. Each search may spend an equal share of the task's limits.
+// `problem` has one stage and no states. Each search may spend an equal share of the task's limits;
+// categories that the seconds do not reach have no formula of their own.
 // Throws Error (bad_input) with fewer than two categories, fewer than ten rows in one, and test
 // rows of one that has no others.
 CategoryFit fit_by_category(const Problem& problem, const CategoryColumn& column,

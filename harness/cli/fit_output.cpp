@@ -145,7 +145,8 @@ void print_category_fit(const CategoryFit& fit) {
   }
   fmt::print("\neach one's own formula:\n");
   for (const CategoryResult& each : fit.categories) {
-    fmt::print("{:>10}  {}\n", figure(each.category), each.own.formula);
+    fmt::print("{:>10}  {}\n", figure(each.category),
+               is_ok(each.own) ? each.own.formula : "- " + reason_text(each.own.reason));
   }
   fmt::print("{} node-rows, {:.3g} CPU seconds; ended by: {}\n", fit.evaluations, fit.fit_cpu_s,
              fit.was_ended_by_clock ? "seconds" : "finished");
