@@ -349,13 +349,17 @@ EffectFamily lag() {
   f.atoms = {{{"exp(-abs(v)/vl)*(sgn(a - al) + sgn(a + al))/2"},
               {"lag"},
               {{"vl", "v", {0.07, 0.15, 0.3}, 0.02, 0.6}, {"al", "a", {0.03}}}}};
-  // Friction of the velocity as it was (a pure time lag); its viscous part is an inertia, and no
-  // lag.
+  // Friction of the velocity as it was (a pure time lag). Its viscous part is next to an inertia,
+  // and no lag by itself.
   for (const int lag_ms : kLags_ms) {
     const std::string late = lagged_velocity_name(lag_ms);
-    f.atoms.push_back({{"tanh(" + late + "/vw) - tanh(v/vw)"},
-                       {"late"},
-                       {{"vw", "v", {0.025, 0.07, 0.2}, 0.02, 0.6}}});
+    const std::string sign = "tanh(" + late + "/vw) - tanh(v/vw)";
+    const ShapeTemplate width = {"vw", "v", {0.025, 0.07, 0.2}, 0.02, 0.6};
+    f.atoms.push_back({{sign}, {"late"}, {width}});
+    f.atoms.push_back({.columns = {sign, late + " - v"},
+                       .coefficients = {"late", "late_viscous"},
+                       .shapes = {width},
+                       .without_inertia = true});
   }
   for (const std::string_view name : {"lag", "late"}) {
     f.sanity.push_back({std::string(name), 1, 0, "friction that runs ahead of the velocity"});

@@ -33,9 +33,9 @@ constexpr std::size_t kMostColumns = 2000;  // of the file, every shape of the g
 const std::vector<std::string> kFamilyKeys = {"id",     "phrase", "summary",    "source",
                                               "origin", "title",  "angular",    "changeable",
                                               "sanity", "alias",  "separate_by"};
-const std::vector<std::string> kAtomKeys = {"name",         "columns", "coefficients",
-                                            "shape",        "curve",   "beside_another",
-                                            "by_direction", "one_way", "last_resort"};
+const std::vector<std::string> kAtomKeys = {
+    "name",           "columns",      "coefficients", "shape",       "curve",
+    "beside_another", "by_direction", "one_way",      "last_resort", "without_inertia"};
 
 // A table of the file, its keys checked against what may stand there. Every error names the line.
 class Entry {
@@ -202,6 +202,7 @@ AtomTemplate read_atom(const Entry& entry) {
   atom.by_direction = entry.find<bool>("by_direction").value_or(false);
   atom.one_way = entry.find<bool>("one_way").value_or(false);
   atom.last_resort = entry.find<bool>("last_resort").value_or(false);
+  atom.without_inertia = entry.find<bool>("without_inertia").value_or(false);
   atom.curve = read_curve(entry);
   check_atom(atom, entry.place());
   return atom;
@@ -305,6 +306,7 @@ toml::table table_of(const AtomTemplate& atom) {
   if (atom.by_direction) table.insert("by_direction", true);
   if (atom.one_way) table.insert("one_way", true);
   if (atom.last_resort) table.insert("last_resort", true);
+  if (atom.without_inertia) table.insert("without_inertia", true);
   if (atom.curve != SpeedCurve::any) table.insert("curve", std::string(curve_name(atom.curve)));
   toml::array shapes;
   for (const ShapeTemplate& shape : atom.shapes) {

@@ -87,6 +87,13 @@ bool moves_both_ways(const Observations& data) {
   return low < 0 && high > 0;
 }
 
+bool fits_inertia(const Observations& data) {
+  return std::ranges::any_of(data.rigid, [&](const std::string& name) {
+    const Signal* signal = data.find(name);
+    return signal != nullptr && signal->role == Role::acceleration;
+  });
+}
+
 std::vector<std::string> variables_of(const AtomTemplate& atom) {
   std::vector<std::string> names;
   for (const std::string& column : atom.columns) parse_collecting_names(column, names);
@@ -105,6 +112,7 @@ Atom make_atom(const AtomTemplate& source, std::size_t family, ScaledData& over,
   atom.coefficients = source.coefficients;
   atom.beside_another = source.beside_another || source.by_direction;
   atom.one_way = source.one_way;
+  atom.without_inertia = source.without_inertia;
   atom.last_resort = source.last_resort;
   atom.curve = source.curve;
   for (std::size_t k = 0; k < source.shapes.size(); ++k) {
@@ -216,6 +224,7 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
   }
   for (const AtomTemplate& source : family.atoms) {
     if ((source.by_direction || source.one_way) && !moves_both_ways(data)) continue;
+    if (source.without_inertia && fits_inertia(data)) continue;
     std::vector<std::string> lacking;
     for (const std::string& name : variables_of(source)) {
       const auto withheld = std::ranges::find(data.withheld, name, &WithheldSignal::name);

@@ -61,6 +61,8 @@ struct AtomTemplate {
   // Rare, and looked for only where the others leave something over: beside them it would make each
   // of them harder to find.
   bool last_resort = false;
+  // Only where no inertia is fitted with the base: what a part of it is next to.
+  bool without_inertia = false;
   SpeedCurve curve = SpeedCurve::any;
 };
 
@@ -143,6 +145,7 @@ struct Atom {
   bool beside_another = false;
   bool one_way = false;
   bool last_resort = false;
+  bool without_inertia = false;
   SpeedCurve curve = SpeedCurve::any;
 
   void set_shape(std::size_t shape, double value);

@@ -190,7 +190,7 @@ void ExplanationSpace::add_library(const std::vector<double>& gear_ratios) {
         instantiate(library[f], f, reference_, gear_ratios_for(reference_, gear_ratios), missing);
     // A column and what of it differs by direction are a block, and so is either direction of it.
     std::erase_if(atoms, [](const Atom& atom) {
-      return atom.one_way || atom.last_resort || holds_inertia(atom);
+      return atom.one_way || atom.last_resort || atom.without_inertia || holds_inertia(atom);
     });
     if (atoms.empty()) {
       untestable_.push_back(library[f].name);

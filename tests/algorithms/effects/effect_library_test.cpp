@@ -71,6 +71,19 @@ TEST(EffectLibrary, AnEffectOfOneDirectionNeedsMotionBothWays) {
   EXPECT_EQ(std::ranges::count(atoms_of("stribeck", data), true, &Atom::one_way), 0);
 }
 
+// The viscous part of late friction is next to an inertia: where one is fitted it has no room.
+TEST(EffectLibrary, LateFrictionHasAViscousPartWhereNoInertiaIsFitted) {
+  Observations data = observe(kuka::make_planted({}, 1).data);
+  const auto with_viscous = [&data] {
+    return std::ranges::count_if(atoms_of("lag", data), [](const Atom& atom) {
+      return std::ranges::count(atom.coefficients, "late_viscous") > 0;
+    });
+  };
+  EXPECT_EQ(with_viscous(), 15);
+  data.rigid = {"a"};
+  EXPECT_EQ(with_viscous(), 0);
+}
+
 // Whether the rigid body is in the recording's torque or was taken off before.
 TEST(EffectLibrary, TheLoadHoldsTheInertiaBehindTheGear) {
   Observations data = observe(kuka::make_planted({}, 1).data);
@@ -135,7 +148,8 @@ bool same(const AtomTemplate& a, const AtomTemplate& b) {
   };
   return a.columns == b.columns && a.coefficients == b.coefficients &&
          a.beside_another == b.beside_another && a.by_direction == b.by_direction &&
-         a.one_way == b.one_way && a.last_resort == b.last_resort && a.curve == b.curve &&
+         a.one_way == b.one_way && a.last_resort == b.last_resort &&
+         a.without_inertia == b.without_inertia && a.curve == b.curve &&
          std::ranges::equal(a.shapes, b.shapes, same_shape);
 }
 
