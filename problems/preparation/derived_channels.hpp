@@ -89,9 +89,9 @@ class TimeLag {
 };
 
 // A factor of the square root of two apart: friction that is late by what lies between differs from
-// the nearest in a tenth of the lag. From what a drive's current loop and filters take to what
-// lubricant does. Two apart, a late friction was taken for two effects; a first-order filter's lag
-// is found by these as well as by filters (docs/decisions.md).
+// the nearest in a fifth of the lag at most. From what a drive's current loop and filters take to
+// what lubricant does. Two apart, a late friction was taken for two effects; a first-order filter's
+// lag is found by these as well as by filters (docs/decisions.md).
 inline constexpr std::array<int, 5> kLags_ms = {30, 42, 60, 85, 120};
 std::string lagged_velocity_name(int lag_ms);
 std::string lagged_velocity_recipe(int lag_ms);
