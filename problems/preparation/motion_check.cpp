@@ -5,22 +5,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "problems/preparation/segments.hpp"
+#include "problems/reading/units.hpp"
 
 namespace tribench {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kTurn = 2 * std::numbers::pi;
 
 constexpr double kGood = 0.15;         // of the slope's logarithm: the same motion
 constexpr double kSameFactor = 0.08;   // a known factor explains the slope
+constexpr double kAsNear = 0.02;       // two factors are one
 constexpr double kTellsMotion = 0.9;   // correlation from which the slope says something
 constexpr double kTellsNothing = 0.5;  // correlation of a rate that is another quantity's
 constexpr double kLongWindow = 0.8;    // s: what noise does is small beside what motion does
@@ -39,64 +42,84 @@ const ColumnReading* reading_of(const DataFile& file, Role role) {
 
 // A factor that a wrong unit makes, and the mend for the column it belongs to.
 struct Suspect {
-  double factor;  // of (change of position) / (integral of velocity)
+  double factor;  // of (change of the quantity) / (integral of its rate)
   Role role;
-  std::string unit;
-  bool at_motor = false;  // the unit that it has, at the motor
+  std::string unit;    // that it has
+  std::string remark;  // in place of a unit to say
 };
 
-std::vector<Suspect> suspects(std::optional<double> gear_ratio) {
-  std::vector<Suspect> list = {{kDegrees, Role::position, "deg"},
-                               {1 / kDegrees, Role::velocity, "deg/s"},
-                               {kTurn, Role::velocity, "rev/s"},
-                               {1 / kTurn, Role::position, "rev"},
-                               {kTurn / 60, Role::velocity, "rpm"},
-                               {1e-3, Role::time, "ms"},
-                               {1e-6, Role::time, "us"},
-                               {1e-9, Role::time, "ns"},
-                               {1e3, Role::position, "mm or mrad"},
-                               {1e-3, Role::velocity, "mm/s or mrad/s"},
-                               {4, Role::position, "counts, after quadrature"},
-                               {0.25, Role::position, "counts, before quadrature"}};
-  if (gear_ratio) {
-    const double n = *gear_ratio;
-    list.push_back({n, Role::position, "rad", true});
-    list.push_back({1 / n, Role::velocity, "rad/s", true});
-    list.push_back({kTurn / 60 / n, Role::velocity, "rpm@motor"});
-    list.push_back({1 / n / kDegrees, Role::velocity, "deg/s@motor"});
-    list.push_back({n * kDegrees, Role::position, "deg@motor"});
+// What the factor becomes where a column's unit is `times` as large as the one it was read in.
+double factor_of(Role role, double times) { return role == Role::position ? 1 / times : times; }
+
+// Every other usual unit of the column, on either side of the gear.
+void add_units(std::vector<Suspect>& list, const DataFile& file, Role role,
+               std::initializer_list<const char*> units, std::optional<double> gear_ratio) {
+  const ColumnReading* reading = reading_of(file, role);
+  if (reading == nullptr || reading->factor == 0) return;
+  const double read_as = std::abs(reading->factor);
+  for (const char* symbol : units) {
+    const Unit& unit = *find_unit(symbol);
+    if (unit.si != reading->si) continue;
+    const auto add = [&](double size, const std::string& text) {
+      if (text != reading->unit) list.push_back({factor_of(role, size / read_as), role, text, ""});
+    };
+    add(unit.factor, symbol);
+    if (gear_ratio && unit.si.starts_with("rad")) {
+      add(unit.factor / *gear_ratio, fmt::format("{}@motor", symbol));
+    }
+  }
+}
+
+// The likelier one first, of those that make the same factor.
+std::vector<Suspect> suspects(const DataFile& file, std::optional<double> gear_ratio) {
+  std::vector<Suspect> list;
+  add_units(list, file, Role::time, {"s", "ms", "us", "ns"}, gear_ratio);
+  add_units(list, file, Role::position, {"rad", "deg", "rev", "m", "mm", "cm"}, gear_ratio);
+  add_units(list, file, Role::velocity,
+            {"rad/s", "deg/s", "rev/s", "rpm", "m/s", "mm/s", "cm/s", "m/min", "mm/min"},
+            gear_ratio);
+  const ColumnReading* position = reading_of(file, Role::position);
+  if (position != nullptr && position->unit.starts_with("counts")) {
+    list.push_back({4, Role::position, "", "counts, after quadrature"});
+    list.push_back({0.25, Role::position, "", "counts, before quadrature"});
   }
   return list;
 }
 
-std::vector<Suspect> suspects_of_acceleration(std::optional<double> gear_ratio) {
-  std::vector<Suspect> list = {{1 / kDegrees, Role::acceleration, "deg/s^2"}};
-  if (gear_ratio) list.push_back({1 / *gear_ratio, Role::acceleration, "rad/s^2", true});
+std::vector<Suspect> suspects_of_acceleration(const DataFile& file,
+                                              std::optional<double> gear_ratio) {
+  std::vector<Suspect> list;
+  add_units(list, file, Role::acceleration, {"rad/s^2", "deg/s^2", "m/s^2", "mm/s^2"}, gear_ratio);
   return list;
 }
 
-std::string mend_for(const DataFile& file, const Suspect& suspect) {
-  const ColumnReading* reading = reading_of(file, suspect.role);
-  const bool plain = suspect.unit.find(' ') == std::string::npos;
-  if (reading == nullptr) return "check the units";
-  if (suspect.at_motor) {
-    return fmt::format("say --roles '{}={}[{}@motor]'", reading->column, role_name(suspect.role),
-                       reading->unit.empty() ? suspect.unit : reading->unit);
+// Where another column's unit, which was not its plain one, makes the same factor, both are said.
+std::string mend_for(const DataFile& file, const std::vector<Suspect>& list,
+                     const Suspect& suspect) {
+  if (!suspect.remark.empty()) {
+    return fmt::format("check the {}: {}", role_name(suspect.role), suspect.remark);
   }
-  return plain ? fmt::format("say --roles '{}={}[{}]'", reading->column, role_name(suspect.role),
-                             suspect.unit)
-               : fmt::format("check the {}: {}", role_name(suspect.role), suspect.unit);
+  const auto role = [&](const Suspect& one) {
+    return fmt::format("'{}={}[{}]'", reading_of(file, one.role)->column, role_name(one.role),
+                       one.unit);
+  };
+  std::string mend = "say --roles " + role(suspect);
+  for (const Suspect& other : list) {
+    const ColumnReading* reading = reading_of(file, other.role);
+    if (other.role == suspect.role || reading->unit_assumed || other.unit != reading->si) continue;
+    if (std::abs(elementary::log(other.factor / suspect.factor)) > kAsNear) continue;
+    mend += " or " + role(other);
+  }
+  return mend;
 }
 
 // The factor nearest to the slope; of two as near the one whose unit was only assumed.
 const Suspect* find_suspect(const DataFile& file, const std::vector<Suspect>& list, double slope) {
-  constexpr double kAsNear = 0.02;
   const Suspect* found = nullptr;
   double nearest = kSameFactor;
   bool assumed = false;
   for (const Suspect& one : list) {
     const ColumnReading* reading = reading_of(file, one.role);
-    if (reading == nullptr) continue;
     const double away = std::abs(elementary::log(std::abs(slope) / one.factor));
     const bool better = reading->unit_assumed && !assumed
                             ? away < nearest + kAsNear
@@ -142,10 +165,10 @@ void check_match(const DataFile& file, const MotionMatch& match, std::optional<d
                                 velocity, unit.empty() ? "rad/s" : unit,
                                 file.data.torques_flipped ? "without" : "with"));
   }
-  const std::vector<Suspect> list = suspects(gear_ratio);
+  const std::vector<Suspect> list = suspects(file, gear_ratio);
   const Suspect* suspect = find_suspect(file, list, match.slope);
   throw_bad_input(what, file.data.name,
-                  suspect != nullptr ? mend_for(file, *suspect)
+                  suspect != nullptr ? mend_for(file, list, *suspect)
                                      : "check the units of position, velocity and time (--roles "
                                        "COLUMN=ROLE[UNIT]), --counts-per-turn and --gear-ratio");
 }
@@ -174,7 +197,7 @@ void check_acceleration(const DataFile& file, const MotionMatch& match,
   const ColumnReading* velocity = reading_of(file, Role::velocity);
   if (acceleration == nullptr || velocity == nullptr) return;
   if (std::abs(match.agreement) < kTellsMotion) return;
-  const std::vector<Suspect> list = suspects_of_acceleration(gear_ratio);
+  const std::vector<Suspect> list = suspects_of_acceleration(file, gear_ratio);
   const Suspect* suspect = find_suspect(file, list, match.slope);
   if (match.slope > 0 && suspect == nullptr) return;
   throw_bad_input(
@@ -182,7 +205,7 @@ void check_acceleration(const DataFile& file, const MotionMatch& match,
                   acceleration->column),
       file.data.name,
       match.slope > 0
-          ? mend_for(file, *suspect)
+          ? mend_for(file, list, *suspect)
           : fmt::format("its sign is turned, or it is another joint's; without it it is "
                         "derived: --roles '{}=none'",
                         acceleration->column));

@@ -69,7 +69,9 @@ double known_turn(const Channel& q, bool at_motor, const Drive& drive, double co
 }
 
 // How far the position jumps where it starts again; 0: it does not. Without a gap in time, and
-// across what a turn or a counter holds or by the same over and over: a wrong reading is neither.
+// across what a turn or a counter holds or by the same over and over, over all the way that it ever
+// goes: a wrong reading is neither, nor is a movement that begins elsewhere than the last one
+// ended.
 double turn_of(const Channel& q, bool at_motor, const Drive& drive, double count,
                const Jumps& jumps) {
   if (jumps.steps.size() < 10 || jumps.usual <= 0) return 0;
@@ -83,7 +85,8 @@ double turn_of(const Channel& q, bool at_motor, const Drive& drive, double count
   }
   const auto alike = std::ranges::count_if(
       jumps.steps, [&](double step) { return std::abs(step - jumps.largest) < 2 * jumps.usual; });
-  return alike >= 3 ? jumps.largest : 0;
+  const double way = quantile(q.values, 0.999) - quantile(q.values, 0.001);
+  return alike >= 3 && way < jumps.largest + 2 * jumps.usual ? jumps.largest : 0;
 }
 
 }  // namespace

@@ -182,13 +182,14 @@ std::string take_brackets(std::string_view& name) {
   return {};
 }
 
-// "angle_0.01deg": what one count is, behind the last line. A larger number ("load_cell_10Nm") is a
-// range.
-std::string take_count(std::string_view& name) {
+// Behind the last line "angle_0.01deg", what one count is (a larger number, "load_cell_10Nm", is a
+// range), or "speed_1/min", whose stroke is no path's.
+std::string take_last_word(std::string_view& name) {
   const std::size_t cut = name.find_last_of("_ ");
   if (cut == std::string_view::npos || cut == 0) return {};
   const std::string_view last = name.substr(cut + 1);
-  if (!last.starts_with("0.") || find_written_unit(last).unit == nullptr) return {};
+  const bool may_be_unit = last.starts_with("0.") || last.find('/') != std::string_view::npos;
+  if (!may_be_unit || find_written_unit(last).unit == nullptr) return {};
   name = name.substr(0, cut);
   return std::string(last);
 }
@@ -245,7 +246,7 @@ bool read_unit_twice(std::string_view name, const NameReading& reading, NameRead
 NameReading read_last(std::string_view whole) {
   std::string_view name = whole;
   std::string inside = take_brackets(name);
-  if (inside.empty()) inside = take_count(name);
+  if (inside.empty()) inside = take_last_word(name);
   NameReading reading;
   reading.known = find_written_unit(inside);
   reading.at_motor = reading.known.at_motor;

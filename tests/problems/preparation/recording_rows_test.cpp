@@ -185,6 +185,24 @@ TEST(RecordingRows, CountersAndTurnsThatStartAgainAreLaidEndToEnd) {
   expect_same_motion(prepared(lost, "deg@motor", drive, 3), "laid end to end");
 }
 
+// Movements that begin elsewhere than the last one ended, some of them by as much: no counter.
+TEST(RecordingRows, MovementsThatBeginElsewhereAreNotLaidEndToEnd) {
+  std::string text = "q_deg,dq_deg_s,tau_Nm\n";
+  const double ends[] = {0.6, -0.4, 0.6, 0.2, 0.6, -0.55, 0.1};
+  for (const double end : ends) {
+    for (int i = 0; i < 800; ++i) {
+      const double phase = (kTurn + std::asin(end)) * i / 799;
+      const double v = std::cos(phase);
+      text += std::to_string(std::sin(phase) * 360 / kTurn) + "," +
+              std::to_string(v * 360 / kTurn) + "," + std::to_string(v > 0 ? 5.0 : -5.0) + "\n";
+    }
+  }
+  CsvOptions csv;
+  csv.used.emplace();
+  const PreparedRecording recording = prepare(parse_csv(text, "log.csv", csv), {});
+  EXPECT_THAT(recording.notes, Not(Contains(HasSubstr("laid end to end"))));
+}
+
 // The counter's span is as exact as its count, which is a billionth of it.
 TEST(RecordingRows, ACounterOf32BitsIsLaidEndToEndToTheCount) {
   std::vector<Row> rows = swings();

@@ -296,6 +296,18 @@ TEST(PreparedRecording, AStoryThatIsNotPossibleIsRefusedWithTheMend) {
   EXPECT_THAT(complaint(told_wrong(1, 954.9297, 1), geared), HasSubstr("velocity[rpm@motor]"));
 }
 
+TEST(PreparedRecording, AUnitThatWasSaidWrongIsMendedByTheOneThatFits) {
+  DataOptions options;
+  options.roles = parse_roles("dq=velocity[deg/s]", "--roles");
+  EXPECT_THAT(complaint(told_wrong(1, 9.549297, 1), options), HasSubstr("dq=velocity[rpm]"));
+  EXPECT_THAT(complaint(told_wrong(1, 1, 1), options),
+              HasSubstr("'q=position[deg]' or 'dq=velocity[rad/s]'"));
+  options.roles = parse_roles("q=position[rev]", "--roles");
+  EXPECT_THAT(complaint(told_wrong(57.29578, 1, 1), options), HasSubstr("q=position[deg]"));
+  options.roles = parse_roles("time=time[ms]", "--roles");
+  EXPECT_THAT(complaint(told_wrong(1, 1, 1e6), options), HasSubstr("time=time[us]"));
+}
+
 TEST(PreparedRecording, ASlideBesideItsMotorsSpeedIsRefusedWithTheScrewsLead) {
   DataOptions options;  // 20 mm a turn
   options.roles = parse_roles("q=position[mm],dq=velocity[rpm]", "--roles");

@@ -53,6 +53,8 @@ TEST(ChannelNames, SayRoleAndUnit) {
       {"Motor Current (mA)", Role::motor_current, "mA"},
       {"vel_dps", Role::velocity, "deg/s"},
       {"motor_speed_rpm", Role::velocity, "rpm"},
+      {"speed_1/min", Role::velocity, "rpm"},
+      {"speed_deg/s", Role::velocity, "deg/s"},
       {"pos", Role::position, "-"},
       {"cur", Role::motor_current, "-"},
       {"stamp", Role::time, "-"},

@@ -173,8 +173,11 @@ TEST(VendorLogs, ARowOfUnitsMayHoldOneThatIsNotKnown) {
 }
 
 TEST(VendorLogs, TorquesInPoundsAndKilogramsAreConverted) {
-  const std::pair<const char*, double> kUnits[] = {
-      {"in-lb", 0.112985}, {"lbf.ft", 1.35582}, {"oz-in", 0.0070616}, {"kgf cm", 0.0980665}};
+  const std::pair<const char*, double> kUnits[] = {{"in-lb", 0.112985},
+                                                   {"lbf_in", 0.112985},
+                                                   {"lbf.ft", 1.35582},
+                                                   {"oz-in", 0.0070616},
+                                                   {"kgf cm", 0.0980665}};
   for (const auto& [unit, factor] : kUnits) {
     const std::string text = fmt::format("t [s];q [rad];effort [{}]\n0;1;10\n1;2;10\n", unit);
     const DataFile file = parse_csv(text, "log.csv", told(""));
