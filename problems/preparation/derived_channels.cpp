@@ -39,6 +39,11 @@ double DistanceSinceReversal::next(double v, double q, double dt) {
   return distance_;
 }
 
+bool starts_from_rest(double first, double second, double standstill) {
+  const double one = std::abs(first);
+  return std::min(one, 2 * one - std::abs(second)) < standstill;
+}
+
 double TimeLag::next(double x, double dt_s) {
   if (count_ == 0) {
     now_ = 0;

@@ -61,8 +61,12 @@ struct DerivedSignal {
 // Of such a name; empty for any other.
 std::optional<DerivedSignal> derived_signal(std::string_view channel);
 
-// Slower than this share of its top speed a movement starts from standstill.
+// Slower than this share of its top speed a movement stands still.
 inline constexpr double kStandstill = 0.05;
+
+// Whether a movement that begins with these two velocities starts from rest: at rest, or it was one
+// row earlier, as it accelerates: rows far apart miss the rest itself. standstill: a speed.
+bool starts_from_rest(double first, double second, double standstill);
 
 // A quantity as it was a fixed time before, one movement row by row; straight between the rows. At
 // most kSlots rows are remembered: of faster ones those a thirty-second of the time apart.

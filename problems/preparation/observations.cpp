@@ -78,7 +78,7 @@ std::vector<char> reversal_is_seen(const Observations& data, const std::vector<d
       top = std::max(top, std::abs(v[end]));
     }
     std::size_t from = begin;
-    if (!(std::abs(v[begin]) < kStandstill * top)) {
+    if (!starts_from_rest(v[begin], v[std::min(begin + 1, end - 1)], kStandstill * top)) {
       while (from < end && !(v[from] * v[begin] < 0)) ++from;
     }
     std::fill(seen.begin() + static_cast<std::ptrdiff_t>(from),

@@ -83,11 +83,9 @@ std::vector<ChainedStroke> without_ends(const std::vector<ChainedStroke>& stroke
   return inner;
 }
 
-// At rest, or it was one row earlier, as it accelerates: rows far apart miss the rest itself.
 bool starts_from_rest(const RowRange& stroke, const std::vector<double>& v, double standstill) {
-  const double first = std::abs(v[stroke.begin]);
-  const double second = stroke.begin + 1 < stroke.end ? std::abs(v[stroke.begin + 1]) : first;
-  return std::min(first, 2 * first - second) < standstill;
+  const std::size_t second = std::min(stroke.begin + 1, stroke.end - 1);
+  return loop::starts_from_rest(v[stroke.begin], v[second], standstill);
 }
 
 bool knows_distance(const Dataset& data) {
@@ -97,11 +95,29 @@ bool knows_distance(const Dataset& data) {
   });
 }
 
+// Strokes one after the other in time, whatever the order of their movements; as they stand where
+// movements have clocks of their own.
+struct StrokesInTime {
+  std::vector<RowRange> strokes;
+  bool one_clock = true;  // no two movements overlap
+};
+
+StrokesInTime in_time(std::vector<RowRange> strokes, const std::vector<double>& t) {
+  StrokesInTime out{strokes, true};
+  const auto begin = [&](const RowRange& stroke) { return t[stroke.begin]; };
+  std::ranges::stable_sort(out.strokes, {}, begin);
+  for (std::size_t k = 1; k < out.strokes.size(); ++k) {
+    if (begin(out.strokes[k]) <= t[out.strokes[k - 1].end - 1]) return {std::move(strokes), false};
+  }
+  return out;
+}
+
 // The path since the direction last changed, told before a stroke's ends are cut off: the position
 // knows it where the velocity is blurred. Lost messages do not make it start anew. A reversal is
 // seen where a stroke follows another or starts from standstill, but not where it goes on from
-// where the last one the same way ended: bristles may stay bent over a rest.
-void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) {
+// where the last one the same way ended: bristles may stay bent over a rest. None where no reversal
+// is seen: "distance" would be a name for the place within a recording.
+void add_distance(PreparedRecording& out, const std::vector<RowRange>& as_cut) {
   const Channel* q = find_channel(out.data, Role::position);
   if (q == nullptr || knows_distance(out.data)) return;
   const std::vector<double>& v = find_channel(out.data, Role::velocity)->values;
@@ -110,13 +126,17 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
                    std::vector<double>(out.data.rows(), 0.0)};
   loop::DistanceSinceReversal path(loop::PathFrom::position);
   const auto [low, high] = std::ranges::minmax(q->values);
+  const StrokesInTime all = in_time(as_cut, t);
+  const auto follows_on = [&](const RowRange& stroke, const RowRange& last) {
+    const bool one_movement = out.data.movement[stroke.begin] == out.data.movement[last.begin];
+    return (one_movement ? last.end == stroke.begin : all.one_clock) &&
+           t[stroke.begin] - t[last.end - 1] < kForgotten;
+  };
   const RowRange* before = nullptr;
   std::vector<char> seen(out.data.rows(), 1);
-  for (const RowRange& stroke : strokes) {
+  for (const RowRange& stroke : all.strokes) {
     const std::size_t middle = stroke.begin + (stroke.end - stroke.begin) / 2;
-    const bool follows = before != nullptr && before->end == stroke.begin &&
-                         out.data.movement[stroke.begin] == out.data.movement[stroke.begin - 1] &&
-                         t[stroke.begin] - t[stroke.begin - 1] < kForgotten;
+    const bool follows = before != nullptr && follows_on(stroke, *before);
     const bool same_way =
         before != nullptr && v[middle] * v[before->begin + (before->end - before->begin) / 2] > 0;
     const bool goes_on = follows && same_way;
@@ -126,7 +146,7 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
     const bool still_bent =
         same_way &&
         std::abs(q->values[stroke.begin] - q->values[before->end - 1]) < kSamePlace * (high - low);
-    const bool is_seen = goes_on ? seen[stroke.begin - 1] != 0 : turned && !still_bent;
+    const bool is_seen = goes_on ? seen[before->end - 1] != 0 : turned && !still_bent;
     std::fill(seen.begin() + static_cast<std::ptrdiff_t>(stroke.begin),
               seen.begin() + static_cast<std::ptrdiff_t>(stroke.end), is_seen ? char{1} : char{0});
     for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
@@ -136,6 +156,9 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
     }
     before = &stroke;
   }
+  const bool any_seen = std::ranges::any_of(
+      all.strokes, [&](const RowRange& stroke) { return seen[stroke.begin] != 0; });
+  if (!any_seen) return;
   out.data.channels.push_back(distance);
   distance.values = loop::seen_distance(std::move(distance.values), seen);
   if (distance.values.empty()) return;
@@ -303,10 +326,7 @@ void settle_strokes(PreparedRecording& out, double noise) {
   const std::vector<RowRange> strokes = strokes_of_movements(out.data, *t, *v, noise);
   Slow slow(strokes, t->values, v->values, noise);
   slow.way = 0;  // somebody has told them apart: each small stroke is wanted
-  const bool from_rest = std::ranges::any_of(strokes, [&](const RowRange& stroke) {
-    return starts_from_rest(stroke, v->values, slow.speed);
-  });
-  if (from_rest) add_distance(out, strokes);  // else nobody knows how far back the last one lies
+  add_distance(out, strokes);
   std::vector<std::size_t> rows;
   for (const RowRange& stroke : strokes) add_moving(rows, stroke, slow, out.data, noise);
   if (rows.empty() || rows.size() == out.data.rows()) return;

@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "foundation/error.hpp"
 #include "problems/preparation/derived_channels.hpp"
 #include "problems/preparation/recording_steps.hpp"
 
@@ -113,6 +115,41 @@ TEST(RecordingMovements, AStrokeStartsFromRestWhereItsRowsAreTooFarApartToShowIt
     EXPECT_LT(distances.front(), 0.01);
     EXPECT_NEAR(distances.back(), 1.9, 0.1);
   }
+}
+
+// There and back at one speed, a movement each, in this order; their first rows are in motion, as
+// those are of which a derived motion has lost its ends. pause: s between two.
+PreparedRecording there_and_back(const std::vector<int>& order, double pause) {
+  PreparedRecording out;
+  Channel time{"t", "s", Role::time, {}};
+  Channel position{"q", "rad", Role::position, {}};
+  Channel velocity{"v", "rad/s", Role::velocity, {}};
+  for (const int m : order) {
+    const double s = m % 2 == 0 ? 1 : -1;
+    for (int i = 0; i < 200; ++i) {
+      time.values.push_back(kStep * i + (200 * kStep + pause) * m);
+      position.values.push_back(s * (kStep * i - 1));
+      velocity.values.push_back(s);
+      out.data.movement.push_back(m);
+    }
+  }
+  out.data.channels = {time, position, velocity};
+  out.data.movement_names = {"a", "b", "c", "d"};
+  return out;
+}
+
+TEST(RecordingMovements, AMovementHasTurnedWhereAnotherTheOtherWayHasJustEnded) {
+  PreparedRecording one = there_and_back({0, 1, 2, 3}, 0.03);
+  PreparedRecording other = there_and_back({2, 0, 3, 1}, 0.03);
+  settle_strokes(one, 0);
+  settle_strokes(other, 0);
+  const Channel& seen = one.data.at(loop::derived_channel_name(loop::kSeenDistance));
+  EXPECT_LT(*std::ranges::min_element(seen.values), 0.02);
+  for (const int m : {0, 1, 2, 3}) EXPECT_EQ(distances_in(one, m), distances_in(other, m)) << m;
+  // What has happened in two seconds nobody has seen.
+  PreparedRecording apart = there_and_back({0, 1, 2, 3}, 2);
+  settle_strokes(apart, 0);
+  EXPECT_THROW(distances_in(apart, 0), Error);
 }
 
 // A program that names a movement a moment late puts a stop and the next start the same way into

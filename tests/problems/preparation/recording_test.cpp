@@ -432,8 +432,8 @@ TEST(PreparedRecording, AStrokeThatGoesOnWhereTheLastOneEndedHasSeenNoReversal) 
   }
 }
 
-// Two movements named by a column: one from rest to 1 rad/s and back to rest, one that creeps with
-// a hundredth of it from one place to another.
+// Two movements named by a column: one from rest to 1 rad/s and back to rest, and after two seconds
+// one that creeps with a hundredth of it from one place to another.
 std::string told_movements() {
   std::string text = "movement,time_s,position_rad,velocity_rad_s,acceleration_rad_s2,torque_Nm\n";
   double position = 0;
@@ -444,8 +444,9 @@ std::string told_movements() {
     const double speed = creeps ? 0.01 : std::sin(phase);
     const double change = creeps ? 0 : std::cos(phase) * 3.14159265358979 / 3.99;
     position += 0.01 * speed;
-    text += fmt::format("{},{:.2f},{:.9f},{},{},{}\n", creeps ? "slow" : "fast", 0.01 * i, position,
-                        speed, change, 2 + speed + 0.01 * (i * 37 % 11));
+    text += fmt::format("{},{:.2f},{:.9f},{},{},{}\n", creeps ? "slow" : "fast",
+                        0.01 * i + (creeps ? 2 : 0), position, speed, change,
+                        2 + speed + 0.01 * (i * 37 % 11));
   }
   return text;
 }
