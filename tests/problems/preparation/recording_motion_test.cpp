@@ -53,11 +53,11 @@ RampedRide ramped_ride(double step, double seconds, const Speeds& speeds = {}) {
 using PerRow = std::function<double(std::size_t row)>;
 
 PreparedRecording recording_of(const RampedRide& ride, const PerRow& position,
-                               const PerRow& velocity) {
+                               const PerRow& velocity, std::size_t every = 1) {
   std::string text =
       fmt::format("time_s,position_rad,{}friction_torque_Nm\n", velocity ? "velocity_rad_s," : "");
   RandomStream noise(key_of("ride"));
-  for (std::size_t i = 1; i + 1 < ride.position.size(); ++i) {
+  for (std::size_t i = 1; i + 1 < ride.position.size(); i += every) {
     const double v = ride.velocity[i];
     const double sign = v > 0 ? 1 : v < 0 ? -1 : 0;
     text += fmt::format("{:.4f},{:.9f},", ride.step * static_cast<double>(i), position(i));
@@ -87,6 +87,11 @@ TEST(RecordedMotion, ADifferenceOfPositionsIsHalfARowLate) {
   const auto position = [&](std::size_t i) { return count * std::round(one.position[i] / count); };
   const auto difference = [&](std::size_t i) { return (position(i) - position(i - 1)) / one.step; };
   EXPECT_TRUE(recording_of(one, position, difference).derived_velocity);
+  // Of every second row it is late by a quarter of a row.
+  const RampedRide fast = ramped_ride(0.01, 240);
+  const auto place = [&](std::size_t i) { return count * std::round(fast.position[i] / count); };
+  const auto quarter = [&](std::size_t i) { return (place(i) - place(i - 1)) / fast.step; };
+  EXPECT_TRUE(recording_of(fast, place, quarter, 2).derived_velocity);
 }
 
 // A simulator of semi-implicit steps tells the same columns; there the position is half a row late.
