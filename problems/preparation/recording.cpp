@@ -58,6 +58,7 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
   note_no_position(out, file);
   out.data = std::move(file.data);
   note_no_time(out);
+  sort_movements(out);
   if (std::string made = make_torque(out.data, options); !made.empty()) {
     out.notes.push_back(std::move(made));
   }

@@ -9,6 +9,7 @@
 #include "foundation/error.hpp"
 #include "problems/preparation/derived_channels.hpp"
 #include "problems/preparation/segments.hpp"
+#include "problems/table.hpp"
 
 namespace tribench {
 namespace {
@@ -23,6 +24,25 @@ constexpr double kNear = 4e-4;       // of the longest stroke's way
 constexpr double kSomewhere = 0.01;  // of the longest stroke's way
 constexpr double kNoisy = 3;         // of the velocity's noise
 constexpr double kSamePlace = 1e-3;  // of the position's range
+
+// The rows of each movement in turn, as they stand.
+std::vector<RowRange> blocks_of(const Dataset& data) {
+  std::vector<RowRange> blocks;
+  for (std::size_t begin = 0, end = 0; begin < data.rows(); begin = end) {
+    for (end = begin + 1; end < data.rows() && data.movement[end] == data.movement[begin];) ++end;
+    blocks.push_back({begin, end});
+  }
+  return blocks;
+}
+
+// Whether no movement begins before the one above has ended: else each has a clock of its own.
+bool is_one_clock(const Dataset& data) {
+  const std::vector<double>& t = data.find(Role::time)->values;
+  for (std::size_t i = 1; i < data.rows(); ++i) {
+    if (data.movement[i] != data.movement[i - 1] && t[i] < t[i - 1]) return false;
+  }
+  return true;
+}
 
 // A stroke, and which of the stretches between two rests it belongs to.
 struct ChainedStroke {
@@ -95,29 +115,12 @@ bool knows_distance(const Dataset& data) {
   });
 }
 
-// Strokes one after the other in time, whatever the order of their movements; as they stand where
-// movements have clocks of their own.
-struct StrokesInTime {
-  std::vector<RowRange> strokes;
-  bool one_clock = true;  // no two movements overlap
-};
-
-StrokesInTime in_time(std::vector<RowRange> strokes, const std::vector<double>& t) {
-  StrokesInTime out{strokes, true};
-  const auto begin = [&](const RowRange& stroke) { return t[stroke.begin]; };
-  std::ranges::stable_sort(out.strokes, {}, begin);
-  for (std::size_t k = 1; k < out.strokes.size(); ++k) {
-    if (begin(out.strokes[k]) <= t[out.strokes[k - 1].end - 1]) return {std::move(strokes), false};
-  }
-  return out;
-}
-
 // The path since the direction last changed, told before a stroke's ends are cut off: the position
 // knows it where the velocity is blurred. Lost messages do not make it start anew. A reversal is
 // seen where a stroke follows another or starts from standstill, but not where it goes on from
 // where the last one the same way ended: bristles may stay bent over a rest. None where no reversal
 // is seen: "distance" would be a name for the place within a recording.
-void add_distance(PreparedRecording& out, const std::vector<RowRange>& as_cut) {
+void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) {
   const Channel* q = find_channel(out.data, Role::position);
   if (q == nullptr || knows_distance(out.data)) return;
   const std::vector<double>& v = find_channel(out.data, Role::velocity)->values;
@@ -126,15 +129,15 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& as_cut) {
                    std::vector<double>(out.data.rows(), 0.0)};
   loop::DistanceSinceReversal path(loop::PathFrom::position);
   const auto [low, high] = std::ranges::minmax(q->values);
-  const StrokesInTime all = in_time(as_cut, t);
+  const bool one_clock = is_one_clock(out.data);
   const auto follows_on = [&](const RowRange& stroke, const RowRange& last) {
     const bool one_movement = out.data.movement[stroke.begin] == out.data.movement[last.begin];
-    return (one_movement ? last.end == stroke.begin : all.one_clock) &&
+    return (one_movement ? last.end == stroke.begin : one_clock) &&
            t[stroke.begin] - t[last.end - 1] < kForgotten;
   };
   const RowRange* before = nullptr;
   std::vector<char> seen(out.data.rows(), 1);
-  for (const RowRange& stroke : all.strokes) {
+  for (const RowRange& stroke : strokes) {
     const std::size_t middle = stroke.begin + (stroke.end - stroke.begin) / 2;
     const bool follows = before != nullptr && follows_on(stroke, *before);
     const bool same_way =
@@ -156,8 +159,8 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& as_cut) {
     }
     before = &stroke;
   }
-  const bool any_seen = std::ranges::any_of(
-      all.strokes, [&](const RowRange& stroke) { return seen[stroke.begin] != 0; });
+  const bool any_seen =
+      std::ranges::any_of(strokes, [&](const RowRange& stroke) { return seen[stroke.begin] != 0; });
   if (!any_seen) return;
   out.data.channels.push_back(distance);
   distance.values = loop::seen_distance(std::move(distance.values), seen);
@@ -183,17 +186,15 @@ void add_lagged_velocities(PreparedRecording& out) {
 std::vector<RowRange> strokes_of_movements(const Dataset& data, const Channel& t, const Channel& v,
                                            double noise) {
   std::vector<RowRange> strokes;
-  for (std::size_t begin = 0; begin < data.rows();) {
-    std::size_t end = begin + 1;
-    while (end < data.rows() && data.movement[end] == data.movement[begin]) ++end;
-    const auto time = std::span(t.values).subspan(begin, end - begin);
-    const auto movement = std::span(data.movement).subspan(begin, end - begin);
-    const Strokes found = strokes_of(time, std::span(v.values).subspan(begin, end - begin),
-                                     pieces_of(time, movement, {}), noise, 1);
+  for (const RowRange& block : blocks_of(data)) {
+    const auto time = std::span(t.values).subspan(block.begin, block.end - block.begin);
+    const auto movement = std::span(data.movement).subspan(block.begin, block.end - block.begin);
+    const Strokes found =
+        strokes_of(time, std::span(v.values).subspan(block.begin, block.end - block.begin),
+                   pieces_of(time, movement, {}), noise, 1);
     for (const RowRange& stroke : found.strokes) {
-      strokes.push_back({begin + stroke.begin, begin + stroke.end});
+      strokes.push_back({block.begin + stroke.begin, block.begin + stroke.end});
     }
-    begin = end;
   }
   return strokes;
 }
@@ -272,6 +273,35 @@ void add_moving(std::vector<std::size_t>& rows, RowRange stroke, const Slow& slo
 }
 
 }  // namespace
+
+void sort_movements(PreparedRecording& out) {
+  const Channel* time = find_channel(out.data, Role::time);
+  if (time == nullptr) return;
+  const std::vector<double>& t = time->values;
+  const std::vector<RowRange> blocks = blocks_of(out.data);
+  std::vector<RowRange> sorted = blocks;
+  std::ranges::stable_sort(sorted, {}, [&](const RowRange& block) { return t[block.begin]; });
+  for (std::size_t k = 1; k < sorted.size(); ++k) {
+    if (t[sorted[k].begin] < t[sorted[k - 1].end - 1]) return;
+  }
+  std::vector<std::size_t> rows;
+  std::vector<std::string> names;
+  std::vector<int> renamed(out.data.movement_names.size(), -1);
+  for (const RowRange& block : sorted) {
+    for (std::size_t i = block.begin; i < block.end; ++i) rows.push_back(i);
+    int& name = renamed[static_cast<std::size_t>(out.data.movement[block.begin])];
+    if (name >= 0) continue;
+    name = static_cast<int>(names.size());
+    names.push_back(
+        out.data.movement_names[static_cast<std::size_t>(out.data.movement[block.begin])]);
+  }
+  if (std::ranges::is_sorted(rows)) return;
+  std::vector<TextCell> texts = std::move(out.data.texts);
+  out.data = select_rows({std::move(out.data), {}}, rows).data;
+  out.data.texts = std::move(texts);
+  for (int& movement : out.data.movement) movement = renamed[static_cast<std::size_t>(movement)];
+  out.data.movement_names = std::move(names);
+}
 
 void cut_strokes(PreparedRecording& out, double noise, double blur) {
   const Channel* t = find_channel(out.data, Role::time);

@@ -80,6 +80,9 @@ void drop_edges(PreparedRecording& out, const DerivedMotion& derived);
 
 // ---- movements (recording_movements.cpp)
 
+// Movements as they came in time, in whatever order the file has them: what is told of rows that
+// follow one another is told of the same ones. As they stand where their clocks overlap.
+void sort_movements(PreparedRecording& out);
 // Strokes for movements. noise: of the velocity; blur: s that it is uncertain around a rest or a
 // reversal.
 void cut_strokes(PreparedRecording& out, double noise, double blur);
