@@ -17,13 +17,14 @@
 namespace tribench {
 namespace {
 
-constexpr std::size_t kEdgeRows = 3;   // of a derived motion, at the ends of a piece
-constexpr double kUnresolved = 0.6;    // standard errors of the acceleration
-constexpr double kMatters = 0.33;      // of the acceleration that the torque's noise leaves visible
-constexpr double kMoreThanHalf = 0.6;  // of a step of time
-constexpr double kSurely = 3;          // standard errors
-constexpr double kMuchCoarser = 4;     // than the derived velocity's noise
-constexpr double kMuchNoisier = 10;    // a little: what a good controller knows beside its encoder
+constexpr std::size_t kEdgeRows = 3;  // of a derived motion, at the ends of a piece
+constexpr double kUnresolved = 0.6;   // standard errors of the acceleration
+constexpr double kMatters = 0.33;     // of the acceleration that the torque's noise leaves visible
+constexpr double kQuarterStep = 0.2;  // of time, at least
+constexpr double kMoreThanHalf = 0.6;
+constexpr double kSurely = 3;        // standard errors
+constexpr double kMuchCoarser = 4;   // than the derived velocity's noise
+constexpr double kMuchNoisier = 10;  // a little: what a good controller knows beside its encoder
 
 // Shorter ones make no stroke.
 std::vector<RowRange> pieces_to_smooth(std::span<const double> time,
@@ -127,7 +128,7 @@ void settle_velocity(PreparedRecording& out, const DerivedMotion& derived) {
   // that were then thinned by less than half), or the position, as a simulator has it
   // (semi-implicit Euler). Of more it says nothing: friction that lags is like a velocity that
   // does.
-  if (delay >= kMoreThanHalf || (delay > 0 && preferred > kSurely)) {
+  if (delay >= kMoreThanHalf || (delay >= kQuarterStep && preferred > kSurely)) {
     why = fmt::format("lags behind its position by {:.3g} ms, as a {} velocity does",
                       1e3 * step * delay, delay >= kMoreThanHalf ? "filtered" : "differenced");
   } else if (preferred < -kSurely) {
