@@ -214,6 +214,10 @@ bool ChildProcess::ends_within(double timeout_s) const {
   return ::poll(&report, 1, static_cast<int>(timeout_s * 1000) + 1) > 0;
 }
 
+void ChildProcess::ask_to_end() const {
+  if (!ends_within(0)) ::kill(pid_, SIGTERM);
+}
+
 void ChildProcess::kill() {
   if (life_ >= 0) ::close(std::exchange(life_, -1));
 }
@@ -246,11 +250,18 @@ ChildRun run_child(const ChildOptions& options, std::string_view input, const Ch
   child.close_input();
   ChildRun run;
   bool is_silent = false;  // it has closed its streams
+  bool is_asked = false;   // to end
+  double wall_s = limits.wall_s;
   for (bool ended = false; !ended;) {
-    const double left_s =
-        limits.wall_s - std::chrono::duration<double>(Clock::now() - start).count();
+    const double gone_s = std::chrono::duration<double>(Clock::now() - start).count();
+    if (limits.end != nullptr && *limits.end && !is_asked) {
+      is_asked = true;
+      child.ask_to_end();
+      wall_s = std::min(wall_s, gone_s + kSecondsToEnd);
+    }
+    const double left_s = wall_s - gone_s;
     if (left_s <= 0) {
-      run.timed_out = true;
+      run.timed_out = !is_asked;
       child.kill();
       break;
     }
@@ -267,6 +278,7 @@ ChildRun run_child(const ChildOptions& options, std::string_view input, const Ch
     is_silent = part.ended;
   }
   run.exit = child.wait();
+  run.broken_off = is_asked && !run.exit.ok();
   return run;
 }
 

@@ -14,6 +14,7 @@
 #include <sys/types.h>
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -64,6 +65,8 @@ class ChildProcess {
   // Waits up to `timeout_s` for output; returns at once when there is some.
   ChildOutput read(double timeout_s);
 
+  // SIGTERM to the program alone, which may ignore it. No error where it has ended already.
+  void ask_to_end() const;
   // SIGKILL to the program and to all it has started. No error where it has ended already.
   void kill();
   // Waits up to `timeout_s` for the program's end; it can close its streams long before.
@@ -90,12 +93,18 @@ struct ChildRun {
   ChildExit exit;
   std::string output;
   std::string errors;
-  bool timed_out = false;  // it was ended because its time was up
+  bool timed_out = false;   // it was ended because its time was up
+  bool broken_off = false;  // it was asked to end, and has not exited with status 0 all the same
 };
+// A program that was asked to end may bring to a stop what it moves.
+inline constexpr double kSecondsToEnd = 5;
 // What a program may take; beyond that it is ended.
 struct ChildLimits {
   double wall_s = 1e9;
   std::size_t output_bytes = SIZE_MAX;  // of both streams together
+  // Once true the program is asked to end, and ended kSecondsToEnd later; looked at every second,
+  // and when a signal comes.
+  const std::atomic<bool>* end = nullptr;
 };
 // Hands `input` to the program, closes its standard input and waits for its end. For programs that
 // read their input before they print much. Throws Error (failed) where it cannot be started or

@@ -79,6 +79,7 @@ ExitStatus run_challenge_command(ChallengeArguments arguments) {
                     "letters, digits, - and _");
   }
   arguments.plan.quiet = false;
+  arguments.plan.end = &end_requested_by_signal();
   const ChallengeScore score = run_challenge(arguments.plan, arguments.name, arguments.command,
                                              arguments.out, stop_requested_by_signal());
   if (arguments.json) {
@@ -105,7 +106,9 @@ void add_challenge_command(CLI::App& app, ExitStatus& status) {
   command->footer(
       "Example: tribench challenge --out board --name mine --command python3 mine.py\n"
       "The protocol: docs/challenge.md; an entry to begin with: adapters/challenge_entry.py.\n"
-      "Exit status 3 where the program failed in a world, or Ctrl-C stopped it before the last.");
+      "Exit status 3 where the program failed in a world, or where Ctrl-C (after the world under "
+      "way)\n"
+      "or SIGTERM (at once) stopped it before the last.");
   auto arguments = std::make_shared<ChallengeArguments>();
   command->add_option("--command", arguments->command,
                       "the program and its words, run without a shell once a world");

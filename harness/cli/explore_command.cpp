@@ -108,7 +108,8 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
     };
   } else {
     limits = read_limits(read_file_text(arguments.limits), arguments.limits);
-    execute = executing_program(arguments.command, limits, arguments.command_seconds);
+    execute = executing_program(arguments.command, limits, arguments.command_seconds,
+                                &end_requested_by_signal());
   }
   options.smallest_effect = arguments.smallest_effect.value_or(options.smallest_effect);
   std::optional<ExplorationFolder> answers;
@@ -165,7 +166,9 @@ void add_explore_command(CLI::App& app, ExitStatus& status) {
   command->footer(
       "Example: tribench world 7 --out w && tribench explore w --budget 600s --out answer\n"
       "         tribench explore --command ./robot.py --limits limits.json --budget 300s\n"
-      "Exit status 4 where it is not sure when the seconds are spent.");
+      "Exit status 4 where it is not sure when the seconds are spent, or at Ctrl-C, which waits "
+      "for "
+      "the movement\nunder way; 3 at SIGTERM, which breaks it off.");
   auto arguments = std::make_shared<ExploreArguments>();
   command->add_option("WORLD", arguments->world, "a world's folder (tribench world)");
   command->add_option("--command", arguments->command,

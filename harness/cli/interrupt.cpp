@@ -11,6 +11,7 @@ namespace {
 
 // A signal handler can reach nothing but a global.
 std::atomic<bool> stop_requested{false};
+std::atomic<bool> end_requested{false};
 
 constexpr std::string_view kStopping =
     "\nstopping once what is under way has ended; Ctrl-C again stops at once\n";
@@ -18,6 +19,7 @@ constexpr std::string_view kStopping =
 // What it calls may be called in a signal handler.
 extern "C" void request_stop(int signal) {
   stop_requested = true;
+  if (signal == SIGTERM) end_requested = true;
   if (signal == SIGINT) {
     [[maybe_unused]] const auto told = ::write(STDERR_FILENO, kStopping.data(), kStopping.size());
   }
@@ -31,5 +33,7 @@ const std::atomic<bool>& stop_requested_by_signal() {
   if (std::signal(SIGHUP, request_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   return stop_requested;
 }
+
+const std::atomic<bool>& end_requested_by_signal() { return end_requested; }
 
 }  // namespace tribench

@@ -12,4 +12,8 @@ namespace tribench {
 // signal again ends the program at once.
 const std::atomic<bool>& stop_requested_by_signal();
 
+// True once the machine asked (SIGTERM): it ends this program itself half a minute or so later, so
+// that nobody else's program may be waited for. Nothing but a flag; the above has to be called.
+const std::atomic<bool>& end_requested_by_signal();
+
 }  // namespace tribench

@@ -29,8 +29,12 @@ std::string end_of_text(const std::string& text) {
 
 class Program {
  public:
-  Program(std::vector<std::string> command, const MotionLimits& limits, double limit_s)
-      : command_(std::move(command)), has_gravity_(limits.gravity_nm != 0), limit_s_(limit_s) {}
+  Program(std::vector<std::string> command, const MotionLimits& limits, double limit_s,
+          const std::atomic<bool>* end)
+      : command_(std::move(command)),
+        has_gravity_(limits.gravity_nm != 0),
+        limit_s_(limit_s),
+        end_(end) {}
 
   Dataset execute(const PlannedMovement& movement) const {
     const std::string output = run(movement);
@@ -63,7 +67,8 @@ class Program {
     options.command.push_back(file.string());
     options.scratch = scratch.path();
     options.environment.push_back("TMPDIR=" + scratch.path().string());
-    const ChildRun run = run_child(options, {}, {limit_s_, kMostOutputBytes});
+    const ChildRun run = run_child(options, {}, {limit_s_, kMostOutputBytes, end_});
+    if (run.broken_off) fail("the movement was broken off, since an end was asked for", {});
     if (run.timed_out) {
       fail(fmt::format("the program took longer than {} s", limit_s_),
            "--command-seconds gives it more");
@@ -107,6 +112,7 @@ class Program {
   std::vector<std::string> command_;
   bool has_gravity_;
   double limit_s_;
+  const std::atomic<bool>* end_;
 };
 
 // Runs on from `ended_s`, which becomes the end of these rows.
@@ -124,10 +130,10 @@ void run_clock_on(Dataset& data, double rest_s, double& ended_s) {
 }  // namespace
 
 loop::ExecuteMovement executing_program(std::vector<std::string> command,
-                                        const MotionLimits& limits, double limit_s) {
-  return [program = Program(std::move(command), limits, limit_s)](const PlannedMovement& movement) {
-    return program.execute(movement);
-  };
+                                        const MotionLimits& limits, double limit_s,
+                                        const std::atomic<bool>* end) {
+  return [program = Program(std::move(command), limits, limit_s, end)](
+             const PlannedMovement& movement) { return program.execute(movement); };
 }
 
 loop::ExecuteMovement with_running_clock(loop::ExecuteMovement execute) {

@@ -8,9 +8,11 @@
 // torque), named and in units as in any file of data; rows in which a value is missing are left
 // out. Exit status 2 with a reason on standard error
 // refuses the movement; another one is chosen. Any other failure, or an answer that cannot be read,
-// ends the exploration with an Error (failed).
+// ends the exploration with an Error (failed), and so does `end` once it is true: the program is
+// asked to end then (SIGTERM) and ended if it does not.
 #pragma once
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -20,7 +22,8 @@
 namespace tribench {
 
 loop::ExecuteMovement executing_program(std::vector<std::string> command,
-                                        const MotionLimits& limits, double limit_s);
+                                        const MotionLimits& limits, double limit_s,
+                                        const std::atomic<bool>* end = nullptr);
 
 // A clock that begins anew with each recording runs on from where the last one ended: a robot's
 // program need not remember. The rows have a time and are not empty.

@@ -35,13 +35,17 @@ constexpr std::size_t kMostRequests = 5000;
 constexpr const char* kVerdictLine =
     "print {\"verdict\": ...} on a line at the end, null where there is none (docs/challenge.md)";
 
+// Thrown where an end was asked for while the program was waited for.
+struct BrokenOff {};
+
 // A program that answers lines with lines.
 class Talk {
  public:
-  Talk(const std::vector<std::string>& command, double wall_s)
+  Talk(const std::vector<std::string>& command, double wall_s, const std::atomic<bool>* end)
       : child_(ChildOptions{command, {"TMPDIR=" + scratch_.path().string()}, {}, scratch_.path()}),
         end_(Clock::now() +
-             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wall_s))) {}
+             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wall_s))),
+        asked_to_end_(end) {}
 
   // What ended is heard out: it may have said its verdict, and how it ended is worth more than that
   // it no longer reads.
@@ -65,6 +69,7 @@ class Talk {
       if (text_.size() > kLongestLine) {
         throw Error(ErrorKind::failed, "the program prints a line without end");
       }
+      if (asked_to_end_ != nullptr && *asked_to_end_) throw BrokenOff();
       const double left_s = std::chrono::duration<double>(end_ - Clock::now()).count();
       if (left_s <= 0) {
         throw Error(ErrorKind::failed, "the program took too long", {},
@@ -110,6 +115,7 @@ class Talk {
   ScratchFolder scratch_;  // the program's own folder for temporary files
   ChildProcess child_;
   Clock::time_point end_;
+  const std::atomic<bool>* asked_to_end_;
   std::string text_;
   std::string errors_;
   std::string last_line_;  // of chatter
@@ -323,15 +329,18 @@ std::vector<simulation::WorldPlan> challenge_worlds(const ChallengePlan& plan) {
   return worlds;
 }
 
-ChallengeResult run_challenge_world(const std::vector<std::string>& command,
-                                    const simulation::WorldPlan& plan, double wall_s) {
+std::optional<ChallengeResult> run_challenge_world(const std::vector<std::string>& command,
+                                                   const simulation::WorldPlan& plan, double wall_s,
+                                                   const std::atomic<bool>* end) {
   simulation::World world(plan);
   ChallengeResult result;
   result.seal = seal_of(world.truth());
   result.kind = world_kind_name(world.truth().kind);
-  Talk talk(command, wall_s);
+  Talk talk(command, wall_s, end);
   try {
     converse(talk, world, result);
+  } catch (const BrokenOff&) {
+    return std::nullopt;
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::environment) throw;
     result.verdict = "failed";
@@ -361,7 +370,10 @@ ChallengeScore run_challenge(const ChallengePlan& plan, const std::string& name,
   ProgressLine progress(worlds.size(), static_cast<double>(worlds.size()), plan.quiet, {"worlds"});
   for (const simulation::WorldPlan& one : worlds) {
     if (stop) break;
-    score.results.push_back(run_challenge_world(command, one, plan.wall_s));
+    std::optional<ChallengeResult> result =
+        run_challenge_world(command, one, plan.wall_s, plan.end);
+    if (!result) break;
+    score.results.push_back(std::move(*result));
     progress.cell_ended(1, score.results.back().verdict == "failed");
     write_file(scored, write_json(score_json(score), 1) + "\n");
   }

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct ChallengePlan {
   simulation::WorldLevel level = simulation::WorldLevel::medium;
   double wall_s = 600;  // that a program may take for a world
   bool quiet = true;    // no progress line
+  // Once true, the world under way is dropped and its program ended; looked at every second.
+  const std::atomic<bool>* end = nullptr;
 };
 
 std::vector<simulation::WorldPlan> challenge_worlds(const ChallengePlan& plan);
@@ -49,10 +52,11 @@ struct ChallengeScore {
   double median_seconds() const;
 };
 
-// One world; a program that fails or hangs fails that world alone. Throws Error (failed) where it
-// cannot be started.
-ChallengeResult run_challenge_world(const std::vector<std::string>& command,
-                                    const simulation::WorldPlan& plan, double wall_s);
+// One world; a program that fails or hangs fails that world alone. Nothing where `end` became true
+// before the verdict. Throws Error (failed) where it cannot be started.
+std::optional<ChallengeResult> run_challenge_world(const std::vector<std::string>& command,
+                                                   const simulation::WorldPlan& plan, double wall_s,
+                                                   const std::atomic<bool>* end = nullptr);
 
 // Writes seals.json before the first program is started, NAME.json after each world, and at the end
 // leaderboard.md, which has a line for every score on all of these worlds in the folder and names

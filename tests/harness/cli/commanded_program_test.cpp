@@ -96,11 +96,19 @@ TEST_P(CommandedProgram, IsEndedWithACommandThatIsKilled) {
   expect_nothing_left(command);
 }
 
-// A first signal may let the program come to its end; the second one does not.
+// A first signal may let the program come to its end; the second one does not. (SIGINT is ignored
+// in what a shell starts beside itself.)
 TEST_P(CommandedProgram, IsEndedWithACommandThatIsAskedTwice) {
   const int command = start();
-  ::kill(command, SIGTERM);
+  ::kill(command, SIGHUP);
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  ::kill(command, SIGHUP);
+  expect_nothing_left(command);
+}
+
+// Whoever sends SIGTERM sends SIGKILL next, half a minute or so later.
+TEST_P(CommandedProgram, IsEndedWithACommandThatTheMachineEnds) {
+  const int command = start();
   ::kill(command, SIGTERM);
   expect_nothing_left(command);
 }
@@ -110,6 +118,22 @@ TEST_P(CommandedProgram, IsNotRunWhereThereIsNoFolderForIt) {
   EXPECT_EQ(run.status, 3) << run.errors;
   EXPECT_THAT(run.errors, HasSubstr("TMPDIR"));
   EXPECT_FALSE(std::filesystem::exists(path("pids")));
+}
+
+// The first world's program says its verdict, the second's waits.
+TEST(ChallengeCommand, TheMachinesSignalDropsTheWorldUnderWayAlone) {
+  const TemporaryFolder folder;
+  write_text(folder / "slow.sh",
+             "read hello\nif [ -e first ]; then touch second; sleep 20; fi\n"
+             "touch first\necho '{\"verdict\": null}'\n");
+  write_text(folder / "end.sh", "cd \"$1\"\n'" + program().string() +
+                                    "' challenge --worlds 3 --out board --command sh slow.sh &\n"
+                                    "while [ ! -e second ]; do sleep 0.01; done\n"
+                                    "kill -TERM $!; wait $!\n");
+  const ProgramRun done = run_to_end({"sh", (folder / "end.sh").string(), folder.path().string()});
+  EXPECT_EQ(done.status, 3) << done.errors;
+  EXPECT_THAT(done.errors, HasSubstr("stopped: 1 of 3 worlds are done"));
+  EXPECT_THAT(read_text(folder / "board/leaderboard.md"), HasSubstr("entry (1 of 3)"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, CommandedProgram,

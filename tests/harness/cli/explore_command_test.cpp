@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -64,6 +65,28 @@ TEST_F(ExploreByProgram, AFailureLosesNothingAndTheSameCommandGoesOn) {
   ASSERT_EQ(explore(make_robot("b"), "whole").status, 4);
   EXPECT_EQ(path_of("x"), path_of("whole"));
   EXPECT_EQ(read_text(folder_ / "x/data.csv"), read_text(folder_ / "whole/data.csv"));
+}
+
+// A person's Ctrl-C waits for the movement; the machine's SIGTERM lets the program brake.
+TEST_F(ExploreByProgram, TheMachinesSignalBreaksTheMovementOff) {
+  const std::string robot =
+      make_robot("a", "cd '" + folder_.path().string() + "'; echo >> calls\n" +
+                          "if [ $(wc -l < calls) = 4 ]; then trap 'touch braked; exit 9' TERM\n" +
+                          "touch moving; for i in $(seq 400); do sleep 0.05; done; fi");
+  write_text(folder_ / "end.sh", "cd \"$1\"\n'" + program().string() +
+                                     "' explore --limits limits.json --budget 25 --seed 1 --out x "
+                                     "--command sh " +
+                                     robot +
+                                     " &\n"
+                                     "while [ ! -e moving ]; do sleep 0.01; done\n"
+                                     "kill -TERM $!; wait $!\n");
+  const ProgramRun ended =
+      run_to_end({"sh", (folder_ / "end.sh").string(), folder_.path().string()});
+  EXPECT_EQ(ended.status, 3);
+  EXPECT_THAT(ended.errors, AllOf(HasSubstr("the movement was broken off"),
+                                  HasSubstr("the same command goes on from there")));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "braked"));
+  EXPECT_EQ(path_of("x").size(), 3U);
 }
 
 // What was cut off was not answered: it is asked for again, in a line of its own.

@@ -398,7 +398,7 @@ TEST(ChallengeCommand, WhatWasInterruptedIsNotRanked) {
                                      "--name whole --command sh silent.sh || exit\n" + challenge +
                                      "--name cut --command sh cut.sh . &\n"
                                      "while [ ! -e begun ]; do sleep 0.01; done\n"
-                                     "kill -TERM $!; touch asked; wait $!\n");
+                                     "kill -INT $!; touch asked; wait $!\n");
   const ProgramRun done = run_to_end({"sh", (folder / "both.sh").string(), folder.path().string()});
   EXPECT_EQ(done.status, 3) << done.errors;
   EXPECT_THAT(done.errors, HasSubstr("stopped: 1 of 3 worlds are done"));

@@ -13,7 +13,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 ChallengeResult result_of(const std::string& script) {
-  return run_challenge_world({"bash", "-c", script}, {}, 20);
+  return run_challenge_world({"bash", "-c", script}, {}, 20).value();
 }
 
 TEST(ChallengeWorld, AProgramWithoutAVerdictIsTold) {
