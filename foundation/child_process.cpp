@@ -142,7 +142,9 @@ ChildProcess::ChildProcess(const ChildOptions& options) {
   }
   input_ = Pipe::release(input.write_end);
   streams_ = {Pipe::release(output.read_end), Pipe::release(errors.read_end)};
-  for (const int stream : streams_) ::fcntl(stream, F_SETFL, O_NONBLOCK);
+  for (const int stream : {input_, streams_[0], streams_[1]}) {
+    ::fcntl(stream, F_SETFL, O_NONBLOCK);
+  }
 }
 
 ChildProcess::~ChildProcess() {
@@ -155,25 +157,32 @@ ChildProcess::~ChildProcess() {
 }
 
 bool ChildProcess::write(std::string_view text) {
+  constexpr double kPatienceS = 1000;
+  while (!text.empty()) {
+    if (!write_some(text, kPatienceS)) return false;
+  }
+  return input_ >= 0;
+}
+
+bool ChildProcess::write_some(std::string_view& text, double timeout_s) {
+  pollfd polled{input_, POLLOUT, 0};
+  if (input_ < 0) return false;
+  if (::poll(&polled, 1, static_cast<int>(timeout_s * 1000) + 1) <= 0) return true;
   // A reader that has gone away is an answer here, not a reason to die.
   sigset_t pipe_signal;
   sigset_t before;
   sigemptyset(&pipe_signal);
   sigaddset(&pipe_signal, SIGPIPE);
   pthread_sigmask(SIG_BLOCK, &pipe_signal, &before);
-  bool written = input_ >= 0;
-  while (written && !text.empty()) {
-    const ssize_t count = ::write(input_, text.data(), text.size());
-    if (count > 0) {
-      text.remove_prefix(static_cast<std::size_t>(count));
-    } else if (errno != EINTR) {
-      written = false;
-      const timespec at_once{};
-      sigtimedwait(&pipe_signal, nullptr, &at_once);
-    }
+  const ssize_t count = ::write(input_, text.data(), text.size());
+  const bool is_read = count >= 0 || errno == EINTR || errno == EAGAIN;
+  if (count > 0) text.remove_prefix(static_cast<std::size_t>(count));
+  if (!is_read) {
+    const timespec at_once{};
+    sigtimedwait(&pipe_signal, nullptr, &at_once);
   }
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  return written;
+  return is_read;
 }
 
 void ChildProcess::close_input() {

@@ -61,6 +61,9 @@ class ChildProcess {
 
   // False where the process no longer reads. Blocks while the pipe is full.
   bool write(std::string_view text);
+  // Takes off `text` what the pipe takes, once it takes something; waits for that up to
+  // `timeout_s`, less where a signal comes. False where the process no longer reads.
+  bool write_some(std::string_view& text, double timeout_s);
   void close_input();
   // Waits up to `timeout_s` for output; returns at once when there is some.
   ChildOutput read(double timeout_s);

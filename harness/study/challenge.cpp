@@ -50,7 +50,10 @@ class Talk {
   // What ended is heard out: it may have said its verdict, and how it ended is worth more than that
   // it no longer reads.
   void say(const Json& message) {
-    if (!child_.write(write_json(message) + "\n") && !child_.ends_within(1)) {
+    const std::string line = write_json(message) + "\n";
+    for (std::string_view left = line; !left.empty();) {
+      if (child_.write_some(left, seconds_to_wait())) continue;
+      if (child_.ends_within(1)) return;
       throw Error(ErrorKind::failed, "the program no longer reads", {}, kVerdictLine);
     }
   }
@@ -69,13 +72,7 @@ class Talk {
       if (text_.size() > kLongestLine) {
         throw Error(ErrorKind::failed, "the program prints a line without end");
       }
-      if (asked_to_end_ != nullptr && *asked_to_end_) throw BrokenOff();
-      const double left_s = std::chrono::duration<double>(end_ - Clock::now()).count();
-      if (left_s <= 0) {
-        throw Error(ErrorKind::failed, "the program took too long", {},
-                    "--wall-seconds gives it more");
-      }
-      const ChildOutput heard = child_.read(std::min(left_s, 1.0));
+      const ChildOutput heard = child_.read(seconds_to_wait());
       text_ += heard.output;
       errors_ = (errors_ + heard.errors);
       if (errors_.size() > 400) errors_.erase(0, errors_.size() - 400);
@@ -87,6 +84,14 @@ class Talk {
   }
 
  private:
+  // Before the end is looked for again.
+  double seconds_to_wait() const {
+    if (asked_to_end_ != nullptr && *asked_to_end_) throw BrokenOff();
+    const double left_s = std::chrono::duration<double>(end_ - Clock::now()).count();
+    if (left_s > 0) return std::min(left_s, 1.0);
+    throw Error(ErrorKind::failed, "the program took too long", {}, "--wall-seconds gives it more");
+  }
+
   [[noreturn]] void refuse_silence() {
     constexpr std::size_t kMost = 100;  // bytes of a line
     const std::string printed =

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <string>
 
 namespace tribench {
@@ -12,8 +13,8 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-ChallengeResult result_of(const std::string& script) {
-  return run_challenge_world({"bash", "-c", script}, {}, 20).value();
+ChallengeResult result_of(const std::string& script, double wall_s = 20) {
+  return run_challenge_world({"bash", "-c", script}, {}, wall_s).value();
 }
 
 TEST(ChallengeWorld, AProgramWithoutAVerdictIsTold) {
@@ -27,6 +28,19 @@ TEST(ChallengeWorld, AProgramWithoutAVerdictIsTold) {
 
 TEST(ChallengeWorld, AProgramThatEndsBeforeItIsSpokenToIsTold) {
   EXPECT_THAT(result_of("exec 0<&-; echo lost >&2; exit 4").reason, HasSubstr("status 4: lost"));
+}
+
+// Of what it asks for more than a pipe holds is never read.
+TEST(ChallengeWorld, AProgramThatDoesNotReadHasNoMoreTimeThanAnyOther) {
+  const std::string asks =
+      R"(echo '{"movement": {"kind": "constant", "velocity_rad_s": 0.1, "from_rad": -0.5, )"
+      R"("to_rad": 0.5, "rest_s": 0}}')";
+  const auto begin = std::chrono::steady_clock::now();
+  const ChallengeResult result =
+      result_of("read hello; for i in $(seq 40); do " + asks + "; done; sleep 30", 1);
+  EXPECT_THAT(result.reason, HasSubstr("took too long"));
+  EXPECT_GT(result.movements, 1U);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(15));
 }
 
 TEST(ChallengeWorld, TheLastLineNeedsNoEnd) {
