@@ -37,8 +37,12 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
   bool key(std::string& name) override {
-    place_ = &member(open_.back()->template get_ref<typename Json::object_t&>(), name);
-    return true;
+    auto& object = open_.back()->template get_ref<typename Json::object_t&>();
+    const std::size_t before = object.size();
+    std::string read = name;  // below it may be moved into the object
+    place_ = &member(object, name);
+    if (object.size() == before) repeated_key_ = std::move(read);
+    return !repeated_key_;
   }
   bool parse_error(std::size_t, const std::string&,
                    const nlohmann::detail::exception& error) override {
@@ -49,6 +53,7 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
 
   Json take() { return std::move(root_); }
   bool is_too_deep() const { return is_too_deep_; }
+  const std::optional<std::string>& repeated_key() const { return repeated_key_; }
   // The byte, from 1, at which the text is no JSON; none for a number that no double holds.
   std::optional<std::size_t> wrong_at() const { return wrong_at_; }
 
@@ -107,10 +112,12 @@ class JsonBuilder : public nlohmann::json_sax<Json> {
   std::vector<std::unordered_map<std::string, std::size_t>> places_;
   Json* place_ = nullptr;  // of the key read last
   bool is_too_deep_ = false;
+  std::optional<std::string> repeated_key_;
   std::optional<std::size_t> wrong_at_;
 };
 
 constexpr std::size_t kLongestWord = 20;  // that is quoted
+constexpr std::size_t kLongestKey = 60;   // the same, in bytes
 
 std::string place_in(std::string_view text, std::size_t byte) {
   const std::string_view before = text.substr(0, std::min(byte, text.size()));
@@ -146,6 +153,10 @@ Json parse_from(std::string_view text, std::size_t& at, Json* first, std::string
   }
   if (builder.is_too_deep()) {
     return refuse(fmt::format("JSON nested deeper than {} levels", kMaxJsonDepth));
+  }
+  if (builder.repeated_key()) {
+    const std::string key = builder.repeated_key()->substr(0, kLongestKey);
+    return refuse(fmt::format("the key {} stands twice in one object", write_json(Json(key))));
   }
   const std::optional<std::size_t> byte = builder.wrong_at();
   if (!byte) return refuse("a number out of range in JSON");

@@ -2,7 +2,8 @@
 //
 // JSON from outside, and JSON for outside. Reading is bounded: what nests deeper than kMaxJsonDepth
 // is refused, because writing, comparing and walking a value are recursive and would run out of
-// stack. Writing never throws: bytes that are no UTF-8 become U+FFFD.
+// stack, and so is an object in which a key stands twice, of which readers would take one or the
+// other. Writing never throws: bytes that are no UTF-8 become U+FFFD.
 //
 // Every text that this process did not make itself (certificates, run folders, lines of external
 // methods, weights, parameters) is read here.
@@ -21,9 +22,9 @@ namespace tribench {
 
 inline constexpr int kMaxJsonDepth = 64;
 
-// The value, or a discarded one (is_discarded()) where the text is not JSON or nests too deep;
+// The value, or a discarded one (is_discarded()) where the text is not JSON or is refused as above;
 // `reason` then says why in one line of printable text, with the line and column, and the word
-// there (NaN).
+// there (NaN), or with the key that stands twice.
 template <typename Json>
 Json read_json(std::string_view text, std::string* reason = nullptr);
 

@@ -186,19 +186,27 @@ FitResult AnswerReader::finish(const ChildExit& exit, std::string_view errors) {
     throw_unusable(
         fmt::format("the program ended with status {}: {}", exit.status, last_line(errors)));
   }
+  if (!unread_.empty()) throw_unusable(unread_);
   if (result_) return std::move(*result_);
   throw_unusable(other_output_.empty()
                      ? std::string("the program printed no front")
                      : fmt::format("the program printed no front but '{}'", other_output_));
 }
 
-// Lines that are no JSON object, or one of the program's own log, are its chatter.
+// Lines that are no JSON object, or one of the program's own log, are its chatter; one that cannot
+// be read is, too, unless it has a key of an answer.
 void AnswerReader::take_line(const std::string& line) {
   const std::size_t start = std::min(line.find_first_not_of(" \t"), line.size());
-  const json object =
-      line.substr(start, 1) == "{" ? read_json<json>(line) : json(json::value_t::discarded);
+  std::string reason;
+  const json object = line.substr(start, 1) == "{" ? read_json<json>(line, &reason)
+                                                   : json(json::value_t::discarded);
   if (!is_answer(object)) {
     if (other_output_.empty()) other_output_ = excerpt(line);
+    const bool is_meant = holds_any(line, {"\"front\"", "\"unsupported\"", "\"improved\""});
+    if (unread_.empty() && !reason.empty() && is_meant) {
+      unread_ =
+          fmt::format("the program's answer cannot be read: {} of '{}'", reason, excerpt(line));
+    }
     return;
   }
   require_known_keys(object);

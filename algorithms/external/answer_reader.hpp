@@ -37,6 +37,7 @@ class AnswerReader {
   std::vector<std::string> names_;
   std::string pending_;
   std::string other_output_;  // the first line that is no answer
+  std::string unread_;        // why the first that was meant as one cannot be read
   std::optional<FitResult> result_;
 };
 

@@ -72,7 +72,11 @@ Whole count_in(const Json& file, const char* key, std::string_view place) {
 
 // A weight file whose hash matches. Throws Json::exception where a value is of another type.
 Json parse_checked(std::string_view text, std::string_view place) {
-  Json file = read_json<Json>(text);
+  std::string reason;
+  Json file = read_json<Json>(text, &reason);
+  if (file.is_discarded()) {
+    throw_bad_input("this is not a policy's weight file: " + reason, place, kMend);
+  }
   if (!file.is_object() || file.value("format", "") != kFormat) {
     throw_bad_input("this is not a policy's weight file", place, kMend);
   }

@@ -74,7 +74,13 @@ LoopFormula loop_formula_in(const nlohmann::json& json, std::span<const std::str
 }  // namespace
 
 LoopFormula read_loop_formula(const std::string& file, std::span<const std::string> stay) {
-  return loop_formula_of(read_json<nlohmann::json>(read_file(file)), file, stay);
+  std::string reason;
+  const auto json = read_json<nlohmann::json>(read_file(file), &reason);
+  if (json.is_discarded()) {
+    throw_bad_input("this is no loop.json: " + reason, file,
+                    "give a formula, or the loop.json that 'tribench loop --out' writes");
+  }
+  return loop_formula_of(json, file, stay);
 }
 
 LoopFormula loop_formula_of(const nlohmann::json& json, const std::string& file,

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
@@ -16,10 +17,10 @@ nlohmann::json model_argument(const std::string& model) {
     if (model.ends_with(".json")) throw_bad_input("there is no such file", model);
     return {{"formula", model}};
   }
-  const nlohmann::json json = read_json<nlohmann::json>(read_file(model));
-  if (json.is_discarded() || !json.is_object() || !json.contains("formula") ||
-      !json["formula"].is_string()) {
-    throw_bad_input("this is no model: it has no formula", model,
+  std::string reason;
+  const nlohmann::json json = read_json<nlohmann::json>(read_file(model), &reason);
+  if (!json.is_object() || !json.contains("formula") || !json["formula"].is_string()) {
+    throw_bad_input("this is no model: " + (reason.empty() ? "it has no formula" : reason), model,
                     "give a formula, or what 'tribench fit --json' prints");
   }
   return json;

@@ -54,5 +54,13 @@ TEST(ExternalMethod, ItsWordsAreOneLineWithoutControlCharacters) {
   EXPECT_EQ(answer_of(R"(echo '{"unsupported": "no\u0007 data"}')", {}).note, "no? data");
 }
 
+// Which of two values was meant nobody knows; a log's line that is no JSON stays chatter.
+TEST(ExternalMethod, AnAnswerThatCannotBeReadIsRefusedWithTheReason) {
+  EXPECT_THAT(ended_by(R"(echo '{"front": ["x"]}'; echo '{"front": ["1"], "front": ["2"]}')", {}),
+              HasSubstr("the key \"front\" stands twice"));
+  EXPECT_THAT(ended_by(R"(echo '{"front": ["x"], "chosen": NaN}')", {}), HasSubstr("(NaN)"));
+  EXPECT_EQ(ended_by(R"(echo '{"a": 1, "a": 2}'; echo '{"front": ["x"]}')", {}), "itself");
+}
+
 }  // namespace
 }  // namespace tribench

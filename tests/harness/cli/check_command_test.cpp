@@ -102,6 +102,26 @@ TEST(CheckCommand, WritesACertificateThatItVerifiesAndRejectsOnceTamperedWith) {
   EXPECT_EQ(run_check("--verify " + path.string()).status, 2);
 }
 
+// Whose reader takes the first of two would check another formula than ours.
+TEST(CheckCommand, AKeyThatStandsTwiceInAUsersFileIsNamed) {
+  const testing::TemporaryFolder folder;
+  const std::string file = (folder / "file.json").string();
+  ASSERT_EQ(run_check("'v/(v^2 - 2*v + 2)' --box v=-2:2 --certificate " + file).status, 0);
+  testing::write_text(file, "{\"formula\": \"1/v\"," + testing::read_text(file).substr(1));
+  const ProgramRun certificate = run_check("--verify " + file);
+  EXPECT_EQ(certificate.status, 1);
+  testing::write_text(file, R"({"formula": "v", "formula": "2*v"})");
+  testing::write_text(folder / "data.csv", "v\n1\n");
+  const ProgramRun model =
+      testing::run_tribench_in_shell("predict " + file + " " + (folder / "data.csv").string());
+  EXPECT_EQ(model.status, 2);
+  const ProgramRun loop = testing::run_tribench_in_shell("export " + file + " --as c");
+  EXPECT_EQ(loop.status, 2);
+  for (const ProgramRun& run : {certificate, model, loop}) {
+    EXPECT_NE(run.output.find("the key \"formula\" stands twice"), std::string::npos) << run.output;
+  }
+}
+
 TEST(CheckCommand, DoesNotVerifyAnotherFormulaThanTheCertificates) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("tribench_other_" + std::to_string(getpid()) + ".json");
