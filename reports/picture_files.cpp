@@ -10,11 +10,27 @@
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 #include "foundation/output_file.hpp"
+#include "foundation/output_folder.hpp"
 #include "foundation/scratch_folder.hpp"
 #include "reports/html/embedded.hpp"
 
 namespace tribench {
 namespace {
+
+constexpr const char* kDrawing = "node";
+constexpr const char* kDrawingPackage = "nodejs";
+constexpr const char* kPng = "rsvg-convert";
+constexpr const char* kPngPackage = "librsvg2-bin";
+
+[[noreturn]] void throw_not_started(std::string_view program, std::string_view why,
+                                    std::string_view package) {
+  throw Error(ErrorKind::failed, fmt::format("{} cannot be started ({})", program, why), "pictures",
+              fmt::format("apt-get install {}", package));
+}
+
+void require_program(const char* program, std::string_view package) {
+  if (found_in_path(program) == program) throw_not_started(program, "it is not there", package);
+}
 
 // Runs a program that draws; returns what it printed.
 std::string run_drawing(const ChildOptions& options, const std::string& input,
@@ -27,12 +43,17 @@ std::string run_drawing(const ChildOptions& options, const std::string& input,
                 program);
   } catch (const Error& error) {
     if (error.place() == program) throw;
-    throw Error(ErrorKind::failed, fmt::format("{} cannot be started ({})", program, error.what()),
-                "pictures", fmt::format("apt-get install {}", package));
+    throw_not_started(program, error.what(), package);
   }
 }
 
 }  // namespace
+
+void make_picture_folder(const std::filesystem::path& folder) {
+  make_output_folder(folder);
+  require_program(kDrawing, kDrawingPackage);
+  require_program(kPng, kPngPackage);
+}
 
 std::vector<std::string> draw_picture_files(const std::vector<std::string_view>& scripts,
                                             const nlohmann::ordered_json& data,
@@ -52,10 +73,10 @@ std::vector<std::string> draw_picture_files(const std::vector<std::string_view>&
     script += '\n';
   }
   ChildOptions options;
-  options.command = {"node", "-", data_file.string(), folder.string()};
+  options.command = {kDrawing, "-", data_file.string(), folder.string()};
   options.command.insert(options.command.end(), only.begin(), only.end());
   options.scratch = scratch.path();
-  std::istringstream printed(run_drawing(options, script, "nodejs"));
+  std::istringstream printed(run_drawing(options, script, kDrawingPackage));
   std::vector<std::string> names;
   for (std::string name; std::getline(printed, name);) names.push_back(name);
   return names;
@@ -67,9 +88,9 @@ std::vector<std::string> write_png_beside(const std::filesystem::path& folder,
   for (const std::string& name : svg) {
     names.push_back(std::filesystem::path(name).replace_extension(".png").string());
     // Printed and not written by rsvg-convert: half a picture would stay where it is killed.
-    write_file(folder / names.back(),
-               run_drawing({.command = {"rsvg-convert", "--zoom", "2", (folder / name).string()}},
-                           {}, "librsvg2-bin"));
+    write_file(
+        folder / names.back(),
+        run_drawing({.command = {kPng, "--zoom", "2", (folder / name).string()}}, {}, kPngPackage));
   }
   return names;
 }

@@ -12,6 +12,10 @@
 
 namespace tribench {
 
+// For before the work: makes the folder, and throws Error (failed) with the package to install
+// where a program that draws is not there.
+void make_picture_folder(const std::filesystem::path& folder);
+
 // scripts: what follows Vega and plots.js; the last one reads its data from the file named first
 // and writes into the folder named second, or only the files named after it, and prints each name.
 // Returns the names. Throws Error (failed) where node cannot be started, with the package to

@@ -37,6 +37,7 @@
 #include "problems/reading/explanation.hpp"
 #include "reports/loop_report.hpp"
 #include "reports/loop_words.hpp"
+#include "reports/picture_files.hpp"
 #include "reports/record/loop_json.hpp"
 
 namespace tribench {
@@ -316,7 +317,7 @@ ExitStatus close_loop(const LoopArguments& arguments, const Registry& registry) 
   }
   // A folder that cannot be written to, an unknown name, a file that nothing would be written to.
   if (!arguments.out.empty()) make_output_folder(arguments.out);
-  if (!arguments.pictures.empty()) make_output_folder(arguments.pictures);
+  if (!arguments.pictures.empty()) make_picture_folder(arguments.pictures);
   if (!arguments.save_effect.empty()) try_output_file(arguments.save_effect);
   if (arguments.learn != "none") {
     registry.make(arguments.learn);

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "foundation/output_file.hpp"
-#include "foundation/output_folder.hpp"
 #include "foundation/standard_streams.hpp"
 #include "harness/catalogue.hpp"
 #include "harness/cli/commands.hpp"
@@ -19,6 +18,7 @@
 #include "harness/curves.hpp"
 #include "harness/run_files.hpp"
 #include "harness/study/external_torque_study.hpp"
+#include "reports/picture_files.hpp"
 #include "reports/run_reports.hpp"
 #include "reports/study_page.hpp"
 
@@ -51,7 +51,7 @@ void refresh_files(const std::filesystem::path& folder, const std::string& data)
 void report(const ReportArguments& arguments) {
   const std::filesystem::path folder = arguments.folder;
   // Before the work.
-  if (!arguments.pictures.empty()) make_output_folder(arguments.pictures);
+  if (!arguments.pictures.empty()) make_picture_folder(arguments.pictures);
   if (!arguments.page.empty()) try_output_file(arguments.page);
   if (!arguments.out.empty()) try_output_file(arguments.out);
   refresh_files(folder, arguments.data);

@@ -37,6 +37,7 @@
 #include "harness/verify.hpp"
 #include "harness/whole_run.hpp"
 #include "problems/measured/data_folder.hpp"
+#include "reports/picture_files.hpp"
 #include "reports/run_folder.hpp"
 
 namespace tribench {
@@ -246,7 +247,7 @@ void run(const RunArguments& arguments, const Registry& registry, ExitStatus& st
     return;
   }
   options.out = arguments.out.empty() ? fmt::format("run-{}", grid.name) : arguments.out;
-  if (!arguments.pictures.empty()) make_output_folder(arguments.pictures);  // before the work
+  if (!arguments.pictures.empty()) make_picture_folder(arguments.pictures);  // before the work
   run_to_the_end(grid, arguments, options, status);
 }
 

@@ -340,6 +340,22 @@ TEST(CommandLine, AnOutputThatCannotBeWrittenIsFoundFirst) {
   }
 }
 
+TEST(CommandLine, AProgramThatDrawsIsMissedBeforeTheWork) {
+  const TemporaryFolder folder;
+  const std::string made = (folder / "run").string();
+  const std::string pictures = (folder / "pictures").string();
+  const Words run = {"run", "quick", "--seeds", "1", "--evaluations", "1", "--out", made};
+  // A folder that is no run, a recording that is none: these are found later.
+  for (Words words : {run, Words{"report", folder.path().string()}, Words{"loop", "/dev/null"}}) {
+    words.insert(words.end(), {"--pictures", pictures});
+    words.insert(words.begin(), program().string());
+    const ProgramRun done = run_to_end(words, {"PATH=" + folder.path().string()});
+    EXPECT_EQ(done.status, 3);
+    EXPECT_THAT(done.errors, HasSubstr("apt-get install nodejs")) << words[1];
+  }
+  EXPECT_FALSE(std::filesystem::exists(made));
+}
+
 // `ulimit -f` counts in kilobytes, and the problem has 100 of them.
 TEST(CommandLine, ALimitOnFileSizesIsAnErrorAndLeavesNothing) {
   const TemporaryFolder folder;
