@@ -49,13 +49,20 @@ TEST(SourceStyle, ThreadsAreBegunWhereExceptionsAreHeld) {
               ::testing::ElementsAre("run.cpp: #pragma omp parallel"));
 }
 
-// Whose name another user can foretell.
+// Whose name another user can foretell, or the same tests of another checkout use as well.
 TEST(SourceStyle, TemporaryFoldersAreScratchFolders) {
   EXPECT_THAT(
       matches({"foundation", "problems", "algorithms", "reports", "harness"},
               std::regex(R"(mkdtemp\(|mkstemp\(|tmpnam\(|temp_directory_path\(|"/tmp)")),
       ::testing::UnorderedElementsAre("output_folder.cpp: mkstemp(", "scratch_folder.cpp: \"/tmp",
                                       "scratch_folder.cpp: mkdtemp("));
+  std::vector<std::string> in_tests =
+      matches({"tests"}, std::regex(R"(mkdtemp\(|mkstemp\(|TempDir\(|temp_directory_path\()"));
+  std::erase_if(in_tests, [](const std::string& found) {
+    return found.starts_with("source_style_test.cpp: ");  // what is expected here
+  });
+  EXPECT_THAT(in_tests, ::testing::UnorderedElementsAre("run_program.cpp: mkdtemp(",
+                                                        "run_program.cpp: temp_directory_path("));
 }
 
 // dump() throws where a text is not UTF-8, as a file's name may be.

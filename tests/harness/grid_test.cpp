@@ -10,6 +10,7 @@
 #include "foundation/error.hpp"
 #include "foundation/output_file.hpp"
 #include "harness/run_files.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench {
 namespace {
@@ -50,8 +51,7 @@ constexpr const char* kAxes =
 
 // A grid names a file of published figures beside itself; a run's folder holds a copy.
 TEST(Grid, TakesPublishedFiguresAlongIntoTheRunsFolder) {
-  const std::filesystem::path folder =
-      std::filesystem::path(::testing::TempDir()) / "tribench_grid_reference";
+  const std::filesystem::path folder = testing::scratch_folder() / "tribench_grid_reference";
   std::filesystem::create_directories(folder / "run");
   const std::string figures =
       "table,problem,published_method,kind,methods,mae,complexity,note\n"

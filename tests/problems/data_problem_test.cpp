@@ -13,6 +13,7 @@
 #include "foundation/error.hpp"
 #include "problems/preparation/data_options.hpp"
 #include "problems/reading/csv.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench {
 namespace {
@@ -142,7 +143,7 @@ TEST(DataProblem, TakesEveryPairOfColumnsWhateverTheyAreCalled) {
     }
     text += "\n";
   }
-  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "innocent.csv";
+  const std::filesystem::path file = testing::scratch_folder() / "innocent.csv";
   std::ofstream(file) << text;
   int pairs = 0;
   for (const std::string& target : names) {

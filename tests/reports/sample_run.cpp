@@ -96,7 +96,7 @@ std::vector<Record> sample_records(std::uint64_t seeds) {
 }
 
 fs::path fresh_folder(const std::string& name) {
-  const fs::path folder = fs::path(::testing::TempDir()) / ("tribench_reports_" + name);
+  const fs::path folder = testing::scratch_folder() / ("tribench_reports_" + name);
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;

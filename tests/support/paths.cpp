@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "tests/support/paths.hpp"
 
+#include <unistd.h>
+
+#include <memory>
+
+#include "foundation/scratch_folder.hpp"
+
 namespace tribench::testing {
 namespace {
 
@@ -10,7 +16,21 @@ std::optional<std::filesystem::path> beside(const std::string& folder) {
   return path;
 }
 
+// What a test forks may leave by exit(), which ends statics too: the folder is its parent's.
+struct OwnScratch {
+  std::unique_ptr<const ScratchFolder> folder = std::make_unique<const ScratchFolder>();
+  pid_t owner = ::getpid();
+  ~OwnScratch() {
+    if (owner != ::getpid()) static_cast<void>(folder.release());
+  }
+};
+
 }  // namespace
+
+const std::filesystem::path& scratch_folder() {
+  static const OwnScratch own;
+  return own.folder->path();
+}
 
 std::filesystem::path source_dir() { return TRIBENCH_SOURCE_DIR; }
 std::filesystem::path program() { return TRIBENCH_PROGRAM; }

@@ -22,6 +22,10 @@ std::optional<std::filesystem::path> shared_reference();
 // A public suite beside the checkout (../shared/suites/NAME), if it is there.
 std::optional<std::filesystem::path> shared_suite(const std::string& name);
 
+// A folder of this process's own, made when first asked for and removed when it ends. Not
+// ::testing::TempDir(), which everybody's tests share.
+const std::filesystem::path& scratch_folder();
+
 inline constexpr const char* kNoSharedData =
     "no measured data: ../shared is not beside the checkout";
 

@@ -17,6 +17,7 @@
 
 #include "algorithms/expression/evaluate.hpp"
 #include "foundation/error.hpp"
+#include "foundation/scratch_folder.hpp"
 
 namespace tribench {
 namespace {
@@ -84,12 +85,10 @@ FitResult spin(FitContext& context, double seconds) {
 }
 
 [[noreturn]] FitResult fill_disk() {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("tribench-fill-" + std::to_string(::getpid()));
-  std::ofstream stream(file);
+  const ScratchFolder folder;
+  std::ofstream stream(folder.path() / "fill");
   const std::string block(1U << 20, 'x');
   for (int i = 0; i < 64 && stream; ++i) stream << block << std::flush;
-  std::filesystem::remove(file);
   throw Error(ErrorKind::failed, "no room is left on the device");
 }
 

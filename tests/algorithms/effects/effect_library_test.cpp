@@ -171,8 +171,7 @@ bool same(const EffectFamily& a, const EffectFamily& b) {
 }
 
 TEST(EffectFile, HoldsAllThatABuiltInEffectHas) {
-  const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / "tribench_effects.toml";
+  const std::filesystem::path file = testing::scratch_folder() / "tribench_effects.toml";
   std::ofstream(file) << write_effects(builtin_effects());
   const std::vector<EffectFamily> read = read_effects(file);
   ASSERT_EQ(read.size(), builtin_effects().size());
@@ -183,8 +182,7 @@ TEST(EffectFile, HoldsAllThatABuiltInEffectHas) {
 
 // What a shape is called says nothing of where its values come from.
 TEST(EffectFile, AShapeIsTheGearRatioBecauseItSaysSoWhateverItsName) {
-  const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / "tribench_gear_shapes.toml";
+  const std::filesystem::path file = testing::scratch_folder() / "tribench_gear_shapes.toml";
   std::ofstream(file)
       << "[[effect]]\nname = 'x'\nphrase = 'y'\ncolumns = ['exp(-abs(v)/N)']\n"
          "shape = [{name = 'N', scale = 'v', grid = [0.5, 2.0], low = 0.1, high = 3}]\n"
@@ -209,8 +207,7 @@ TEST(EffectFile, AShapeIsTheGearRatioBecauseItSaysSoWhateverItsName) {
 }
 
 TEST(EffectFile, SaysWhereAnEffectIsIncomplete) {
-  const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / "tribench_bad_effects.toml";
+  const std::filesystem::path file = testing::scratch_folder() / "tribench_bad_effects.toml";
   const auto complaint = [&](const std::string& text) {
     std::ofstream(file) << text;
     try {
@@ -232,8 +229,7 @@ TEST(EffectFile, SaysWhereAnEffectIsIncomplete) {
 
 // What a file says is used or refused, with the line.
 TEST(EffectFile, RefusesWhatItDoesNotKnow) {
-  const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / "tribench_strict_effects.toml";
+  const std::filesystem::path file = testing::scratch_folder() / "tribench_strict_effects.toml";
   const std::string head = "[[effect]]\nname = \"x\"\nphrase = \"y\"\n";
   const auto complaint = [&](const std::string& text) {
     std::ofstream(file) << head << text;
@@ -277,8 +273,7 @@ TEST(EffectFile, RefusesWhatItDoesNotKnow) {
 
 // What would be tested and found nowhere: it names what is not there, or says nothing.
 TEST(EffectFile, RefusesWhatMeansNothing) {
-  const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / "tribench_idle_effects.toml";
+  const std::filesystem::path file = testing::scratch_folder() / "tribench_idle_effects.toml";
   const auto complaint = [&](const std::string& text) {
     std::ofstream(file) << text;
     try {
@@ -328,8 +323,7 @@ TEST(EffectFile, RefusesWhatMeansNothing) {
 
 // A file of a few hundred bytes whose grids multiply is refused before any column is made.
 TEST(EffectFile, RefusesGridsThatMultiply) {
-  const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / "tribench_large_effects.toml";
+  const std::filesystem::path file = testing::scratch_folder() / "tribench_large_effects.toml";
   std::string grid;
   for (int k = 1; k <= 40; ++k) grid += fmt::format("{}{}.0", k > 1 ? ", " : "", k);
   std::ofstream(file)

@@ -20,6 +20,7 @@
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
 #include "foundation/formula_name.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench {
@@ -34,7 +35,7 @@ constexpr int kPoints = 40;
 const std::vector<std::string> kNames = {"v", "sgn_v", "g"};
 
 fs::path fresh_folder(const std::string& name) {
-  const fs::path folder = fs::path(::testing::TempDir()) / ("tribench_export_" + name);
+  const fs::path folder = testing::scratch_folder() / ("tribench_export_" + name);
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;

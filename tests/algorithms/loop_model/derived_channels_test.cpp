@@ -16,6 +16,7 @@
 #include "algorithms/expression/text.hpp"
 #include "algorithms/loop_model/loop_model.hpp"
 #include "problems/kuka/planted.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -37,7 +38,7 @@ class Compiled {
     const Expression parsed = parse_collecting_names(formula, names);
     const std::string code = export_code(parsed, names, CodeForm::c) +
                              c_history_code("friction", export_arguments(parsed, names), from);
-    const fs::path folder = fs::path(::testing::TempDir()) / "tribench_history";
+    const fs::path folder = testing::scratch_folder() / "tribench_history";
     fs::create_directories(folder);
     std::ofstream(folder / "f.c") << code;
     const fs::path library = folder / fmt::format("f{}.so", static_cast<int>(from));

@@ -22,6 +22,7 @@
 #include "algorithms/expression/evaluate.hpp"
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench {
@@ -101,7 +102,7 @@ std::vector<T> expected(const StatefulFormula& formula, const Sampled& motion) {
 }
 
 fs::path fresh_folder(const std::string& name) {
-  const fs::path folder = fs::path(::testing::TempDir()) / ("tribench_states_" + name);
+  const fs::path folder = testing::scratch_folder() / ("tribench_states_" + name);
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace tribench {
@@ -87,8 +87,7 @@ TEST(CheckCommand, SaysWhichSpeedsAProofOfMonotonyIsAbout) {
 }
 
 TEST(CheckCommand, WritesACertificateThatItVerifiesAndRejectsOnceTamperedWith) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("tribench_certificate_" + std::to_string(getpid()) + ".json");
+  const auto path = testing::scratch_folder() / "certificate.json";
   EXPECT_EQ(run_check("'v/(v^2 - 2*v + 2)' --box v=-2:2 --certificate " + path.string()).status, 0);
   const ProgramRun accepted = run_check("--json --verify " + path.string());
   EXPECT_EQ(accepted.status, 0);
@@ -123,8 +122,7 @@ TEST(CheckCommand, AKeyThatStandsTwiceInAUsersFileIsNamed) {
 }
 
 TEST(CheckCommand, DoesNotVerifyAnotherFormulaThanTheCertificates) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("tribench_other_" + std::to_string(getpid()) + ".json");
+  const auto path = testing::scratch_folder() / "other.json";
   EXPECT_EQ(run_check("'1/(v^2 + 1)' --box v=-3:3 --certificate " + path.string()).status, 0);
   EXPECT_EQ(run_check("'1/v' --verify " + path.string()).status, 2);
   EXPECT_EQ(run_check("--box v=-9:9 --verify " + path.string()).status, 2);
@@ -138,8 +136,7 @@ TEST(CheckCommand, AConstantNeedsNoBox) {
 }
 
 TEST(CheckCommand, CertifiesThePropertyAskedForOrSaysThatItCannot) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("tribench_claim_" + std::to_string(getpid()) + ".json");
+  const auto path = testing::scratch_folder() / "claim.json";
   const std::string asked = "'3*sgn_v + 2*v' --box v=-2:2 --certificate " + path.string();
   EXPECT_EQ(run_check(asked + " --property dissipative").status, 0);
   const auto dissipative =

@@ -9,6 +9,7 @@
 #include "foundation/output_file.hpp"
 #include "problems/kuka/joint.hpp"
 #include "reports/record/record_csv.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench {
 namespace {
@@ -31,7 +32,7 @@ Record loaded_record(const std::string& method, std::uint64_t seed, const std::s
 }
 
 TEST(ExternalTorqueStudy, RanksTheTrueLawBeforeAConstantBeforeNothing) {
-  const fs::path run = fs::path(::testing::TempDir()) / "tribench_external_torque";
+  const fs::path run = testing::scratch_folder() / "tribench_external_torque";
   fs::create_directories(run);
   std::vector<Record> records;
   for (const std::uint64_t seed : {1U, 2U}) {
@@ -57,7 +58,7 @@ TEST(ExternalTorqueStudy, RanksTheTrueLawBeforeAConstantBeforeNothing) {
 }
 
 TEST(ExternalTorqueStudy, ARunWithoutLoadedBIsAnError) {
-  const fs::path run = fs::path(::testing::TempDir()) / "tribench_no_external_torque";
+  const fs::path run = testing::scratch_folder() / "tribench_no_external_torque";
   fs::create_directories(run);
   write_file(run / "results.csv", results_csv({}));
   EXPECT_THROW(run_external_torque_study(run), Error);

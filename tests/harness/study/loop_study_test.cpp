@@ -86,7 +86,7 @@ TEST(LoopStudy, AMethodThatSaysNothingRaisesNoAlarmAndFindsNothing) {
 }
 
 TEST(LoopStudy, AStudyThatWasStoppedGoesOnWhereItWas) {
-  const fs::path out = fs::path(::testing::TempDir()) / "loop_study_resumed";
+  const fs::path out = testing::scratch_folder() / "loop_study_resumed";
   fs::remove_all(out);
   std::atomic<int> calls = 0;
   LoopStudyOptions options = small_study();
@@ -266,7 +266,7 @@ TEST(LoopStudy, AProgramThatFailsIsNamedWithItsCase) {
 }
 
 TEST(LoopStudy, AFileOfSomethingElseIsRefused) {
-  const fs::path out = fs::path(::testing::TempDir()) / "loop_study_foreign";
+  const fs::path out = testing::scratch_folder() / "loop_study_foreign";
   fs::create_directories(out);
   std::ofstream(out / "runs.csv") << "cell,problem\n1,2\n";
   LoopStudyOptions options = small_study();

@@ -10,13 +10,14 @@
 
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench {
 namespace {
 
 // Four recordings of 20 s at 33 Hz; bristles of 60 N m/rad or none.
 std::filesystem::path recordings(const char* name, bool bristles) {
-  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / name;
+  const std::filesystem::path file = testing::scratch_folder() / name;
   std::ofstream out(file);
   out << "run,t,v,tau\n";
   RandomStream random(key_of("memory_study"));

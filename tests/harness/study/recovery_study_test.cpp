@@ -8,6 +8,7 @@
 #include "foundation/error.hpp"
 #include "foundation/output_file.hpp"
 #include "reports/record/record_csv.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench {
 namespace {
@@ -29,7 +30,7 @@ Record nguyen_record(int number, std::uint64_t seed, double r2_test) {
 }
 
 fs::path folder_with(const std::string& name, std::vector<Record> records) {
-  const fs::path run = fs::path(::testing::TempDir()) / name;
+  const fs::path run = testing::scratch_folder() / name;
   fs::create_directories(run);
   write_file(run / "results.csv", results_csv(std::move(records)));
   return run;

@@ -23,7 +23,7 @@ constexpr const char* kHashOfAbc =
 class DataFolder : public ::testing::Test {
  protected:
   void SetUp() override {
-    root_ = fs::path(::testing::TempDir()) /
+    root_ = testing::scratch_folder() /
             ("tribench_data_" +
              std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(root_);

@@ -15,7 +15,7 @@ namespace tribench::measured {
 namespace {
 
 TEST(MeasuredEntries, AreListedWithoutDataAndSayWhereTheyLooked) {
-  const Catalogue catalogue{std::filesystem::path(::testing::TempDir())};
+  const Catalogue catalogue{testing::scratch_folder()};
   const ProblemEntry& entry = catalogue.find("emps/estimation");
   try {
     entry.make(1);

@@ -12,6 +12,7 @@
 #include "foundation/error.hpp"
 #include "problems/file_hash.hpp"
 #include "problems/measured/entries.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench::measured {
 namespace {
@@ -125,8 +126,7 @@ class OwnManifests : public ::testing::Test {
     return "accepted";
   }
 
-  const std::filesystem::path data_ =
-      std::filesystem::path(::testing::TempDir()) / "tribench_own_manifests";
+  const std::filesystem::path data_ = testing::scratch_folder() / "tribench_own_manifests";
 };
 
 TEST_F(OwnManifests, LieBesideTheirDataAndMakeProblems) {

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "foundation/error.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench::measured {
 namespace {
@@ -14,8 +15,7 @@ namespace {
 class Recording : public ::testing::Test {
  protected:
   void SetUp() override {
-    // A folder of this test's own: ctest may run the programs side by side.
-    folder_ = std::filesystem::path(::testing::TempDir()) /
+    folder_ = testing::scratch_folder() /
               ("tribench_recording_" +
                std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
     std::filesystem::create_directories(folder_);

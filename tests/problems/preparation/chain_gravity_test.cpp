@@ -3,13 +3,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
 
 #include "foundation/error.hpp"
 #include "problems/preparation/data_options.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench {
 namespace {
@@ -41,8 +41,7 @@ constexpr const char* kLog =
 class ChainGravity : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("tribench-urdf-" + std::to_string(::getpid()));
+    folder_ = testing::scratch_folder() / "urdf";
     std::filesystem::create_directories(folder_);
     write("arm.urdf", kArm);
     write("log.csv", kLog);

@@ -12,6 +12,7 @@
 
 #include "foundation/error.hpp"
 #include "problems/reading/csv.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench {
 namespace {
@@ -20,8 +21,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 TEST(CsvFiles, SpareColumnsThatNotAllFilesHaveAreLeftOut) {
-  const std::filesystem::path folder =
-      std::filesystem::path(::testing::TempDir()) / "spare_columns";
+  const std::filesystem::path folder = testing::scratch_folder() / "spare_columns";
   std::filesystem::create_directories(folder);
   const auto write = [&](const char* name, const char* text) {
     std::ofstream(folder / name) << text;
@@ -41,7 +41,7 @@ TEST(CsvFiles, SpareColumnsThatNotAllFilesHaveAreLeftOut) {
 }
 
 TEST(CsvFiles, FilesThatDoNotNameTheSameUnitsAreNotJoined) {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "csv_units";
+  const std::filesystem::path folder = testing::scratch_folder() / "csv_units";
   std::filesystem::create_directories(folder);
   const auto joined = [&](const char* first, const char* second) -> std::string {
     std::ofstream(folder / "a.csv") << first << "\n0,1\n1,2\n";

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <cmath>
@@ -17,6 +16,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench {
 namespace {
@@ -452,8 +452,7 @@ TEST(Csv, AHundredThousandColumnsAreReadInTimeThatGrowsWithTheirNumber) {
 }
 
 TEST(Csv, GzipIsUnpackedAndDamageNamed) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path();
-  const std::filesystem::path file = folder / fmt::format("tribench-csv-{}.csv.gz", ::getpid());
+  const std::filesystem::path file = testing::scratch_folder() / "packed.csv.gz";
   gzFile out = gzopen(file.c_str(), "wb");
   const std::string text = "v,y\n1,2\n3,4\n";
   gzwrite(out, text.data(), static_cast<unsigned>(text.size()));

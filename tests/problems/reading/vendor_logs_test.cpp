@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include "problems/reading/csv.hpp"
 #include "problems/reading/explanation.hpp"
 #include "problems/reading/time_text.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench {
 namespace {
@@ -205,8 +205,7 @@ TEST(VendorLogs, EvenRowsWithoutATimeAreToldTheirRate) {
 }
 
 TEST(VendorLogs, SpreadsheetsAndTheirEncodings) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("tribench-vendor-" + std::to_string(::getpid()));
+  const std::filesystem::path file = testing::scratch_folder() / "vendor";
   const auto read = [&](const std::string& bytes) {
     std::ofstream(file, std::ios::binary) << bytes;
     return read_csv(file, told(""));

@@ -9,6 +9,7 @@
 
 #include "foundation/error.hpp"
 #include "problems/suite/suite_problem.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench::suite {
 namespace {
@@ -56,8 +57,7 @@ std::string with_input(const std::string& input) {
 
 // A file of results as others publish them, in a folder of its own.
 std::filesystem::path published_folder(const std::string& text) {
-  const std::filesystem::path folder =
-      std::filesystem::path(::testing::TempDir()) / "tribench published results";
+  const std::filesystem::path folder = testing::scratch_folder() / "tribench published results";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "published.csv") << text;
   return folder;
@@ -186,7 +186,7 @@ TEST(Suite, ALawThatIsFiniteNowhereIsRefused) {
 }
 
 TEST(Suite, TablesAndSuitesOfOnesOwnLieInTheFolderOfData) {
-  const std::filesystem::path data = std::filesystem::path(::testing::TempDir()) / "suite_data";
+  const std::filesystem::path data = testing::scratch_folder() / "suite_data";
   std::filesystem::remove_all(data);
   std::filesystem::create_directories(data / "suites");
   std::ofstream table(data / "rows.csv");

@@ -12,6 +12,7 @@
 #include "foundation/error.hpp"
 #include "problems/file_hash.hpp"
 #include "problems/user/user_problem_text.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench::user {
 namespace {
@@ -24,7 +25,7 @@ using ::testing::HasSubstr;
 class UserProblems : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) /
+    folder_ = testing::scratch_folder() /
               ("tribench_own_" +
                std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(folder_);
@@ -356,7 +357,7 @@ TEST_F(UserProblems, RefusesWhatCannotBeMeant) {
 }
 
 TEST(DataFiles, AreFoundInTheOrderOfTheirNames) {
-  const fs::path folder = fs::path(::testing::TempDir()) / "tribench_data_files";
+  const fs::path folder = testing::scratch_folder() / "tribench_data_files";
   fs::remove_all(folder);
   fs::create_directories(folder);
   for (const char* name : {"b.csv", "a.csv", "C.tsv", "notes.md", ".hidden.csv", "z.csv.gz"}) {
