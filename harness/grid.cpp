@@ -123,18 +123,27 @@ void Grid::require_runnable(std::string_view place) const {
   }
 }
 
-std::vector<Cell> Grid::cells() const {
+std::vector<Cell> Grid::series() const {
   std::vector<Cell> all;
-  all.reserve(cell_count());
   for (const std::string& problem : problems) {
     const user::UserProblem* brought = own_problem(problem);
     const std::string data = brought == nullptr ? std::string() : brought->hash();
     for (const Method& method : methods) {
       for (const std::string& set : sets_of(method)) {
-        for (std::uint64_t i = 0; i < seed_count; ++i) {
-          all.push_back({problem, method.name, set, first_seed + i, data});
-        }
+        all.push_back({problem, method.name, set, first_seed, data});
       }
+    }
+  }
+  return all;
+}
+
+std::vector<Cell> Grid::cells() const {
+  std::vector<Cell> all;
+  all.reserve(cell_count());
+  for (const Cell& first : series()) {
+    for (std::uint64_t i = 0; i < seed_count; ++i) {
+      all.push_back(first);
+      all.back().seed += i;
     }
   }
   return all;
@@ -172,8 +181,8 @@ std::vector<std::string> Grid::idle_quarantine() const {
   std::vector<std::string> idle = quarantine;
   if (idle.empty()) return idle;
   for (const Cell& cell : cells()) {
-    const CellName name(cell);
-    std::erase_if(idle, [&name](const std::string& glob) { return name.is_matched_by(glob); });
+    const CellName key(cell);
+    std::erase_if(idle, [&key](const std::string& glob) { return key.is_matched_by(glob); });
     if (idle.empty()) break;
   }
   return idle;

@@ -105,7 +105,10 @@ struct Grid {
   std::vector<suite::Suite> suites;    // those that have problems of this grid
   std::vector<user::UserProblem> own;  // problems of this grid that it brings itself
 
-  // Every cell, in the order of the results: problem, method, operator set, seed.
+  // The first cell of each problem, method and operator set; from seed to seed all else is equal.
+  std::vector<Cell> series() const;
+  // Every cell, in the order of the results: problem, method, operator set, seed. Some 150 bytes
+  // each: for a look at one after the other there are the series.
   std::vector<Cell> cells() const;
   std::size_t cell_count() const;
   // Throws Error (bad_input) at `place` where there is no cell, or more than a run can hold.

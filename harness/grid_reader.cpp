@@ -345,7 +345,7 @@ void require_quarantined_cells(const Grid& grid, const std::string& place) {
   throw_bad_input(fmt::format("no cell of the grid is '{}'", idle.front()), place,
                   fmt::format("cells are PROBLEM|METHOD|OPERATORS|SEED, the first here is '{}'; "
                               "--dry-run lists them",
-                              grid.cells().front().key()));
+                              grid.series().front().key()));
 }
 
 }  // namespace

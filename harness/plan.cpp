@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -56,27 +57,44 @@ double predict_seconds(const Grid& grid, const Cell& cell, const MeasuredCosts& 
          std::min(limits.seconds, static_cast<double>(limits.evaluations) / kNodeRowsPerSecond);
 }
 
-std::vector<PlannedWork> plan_work(const Grid& grid, const Shard& shard,
-                                   const MeasuredCosts& costs) {
-  std::vector<PlannedWork> all;
-  for (Cell& cell : grid.cells()) {
-    const double predicted_s = predict_seconds(grid, cell, costs);
-    all.push_back({std::move(cell), predicted_s});
-  }
+void for_each_planned(const Grid& grid, const Shard& shard, const MeasuredCosts& costs,
+                      const std::function<void(const PlannedWork&)>& take) {
   // Among cells of equal cost those that share their data stand together: making data costs time.
-  std::map<std::string, std::size_t> place_of_problem;
+  std::map<std::string, std::uint32_t> place_of_problem;
   for (const std::string& name : grid.problems) {
     place_of_problem.emplace(name, place_of_problem.size());
   }
-  const auto order = [&](const PlannedWork& item) {
-    return std::make_tuple(-item.predicted_s, place_of_problem.at(item.cell.problem),
-                           item.cell.seed);
+  struct Place {
+    double predicted_s;
+    std::uint32_t problem;
+    std::uint32_t series;
+    std::uint64_t seed;
   };
-  std::ranges::stable_sort(all, {}, order);
-  std::vector<PlannedWork> part;
-  for (std::size_t i = shard.index - 1; i < all.size(); i += shard.count) {
-    part.push_back(std::move(all[i]));
+  const std::vector<Cell> series = grid.series();
+  std::vector<Place> places;
+  places.reserve(series.size() * grid.seed_count);
+  for (std::uint32_t s = 0; s < series.size(); ++s) {
+    const double predicted_s = predict_seconds(grid, series[s], costs);
+    const std::uint32_t problem = place_of_problem.at(series[s].problem);
+    for (std::uint64_t i = 0; i < grid.seed_count; ++i) {
+      places.push_back({predicted_s, problem, s, series[s].seed + i});
+    }
   }
+  std::ranges::sort(places, {}, [](const Place& place) {
+    return std::make_tuple(-place.predicted_s, place.problem, place.seed, place.series);
+  });
+  for (std::size_t i = shard.index - 1; i < places.size(); i += shard.count) {
+    PlannedWork item{series[places[i].series], places[i].predicted_s};
+    item.cell.seed = places[i].seed;
+    take(item);
+  }
+}
+
+std::vector<PlannedWork> plan_work(const Grid& grid, const Shard& shard,
+                                   const MeasuredCosts& costs) {
+  std::vector<PlannedWork> part;
+  part.reserve(grid.cell_count() / shard.count + 1);
+  for_each_planned(grid, shard, costs, [&](const PlannedWork& item) { part.push_back(item); });
   return part;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -43,6 +44,9 @@ double predict_seconds(const Grid& grid, const Cell& cell, const MeasuredCosts& 
 // The shard's cells, the most expensive first, so that the last to end are short. Cells are dealt
 // to the shards in that order, one each in turn: every shard gets about the same work, and which
 // cell goes where depends on the grid alone.
+void for_each_planned(const Grid& grid, const Shard& shard, const MeasuredCosts& costs,
+                      const std::function<void(const PlannedWork&)>& take);
+// The same as a list, which takes six times as much memory.
 std::vector<PlannedWork> plan_work(const Grid& grid, const Shard& shard = {},
                                    const MeasuredCosts& costs = {});
 

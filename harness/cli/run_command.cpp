@@ -69,32 +69,34 @@ struct RunArguments {
   bool changes_grid() const { return !own->files.empty() || seeds || evaluations || seconds; }
 };
 
-double total_seconds(const std::vector<PlannedWork>& work) {
-  double total_s = 0;
-  for (const PlannedWork& item : work) total_s += item.predicted_s;
-  return total_s;
-}
-
 // What the figure rests on is said with it: without a run to go by it is what budgets allow at
 // most.
 void print_dry_run(const Grid& grid, const RunArguments& arguments, const RunOptions& options) {
-  const std::vector<PlannedWork> work = plan_work(grid, options.shard, options.costs);
-  const double total_s = total_seconds(work);
-  const double most_s = total_seconds(plan_work(grid, options.shard));
+  std::size_t count = 0;
+  double total_s = 0;
+  // Without a run to go by nothing is predicted.
+  const auto predicted = [&](double seconds) {
+    return options.costs.empty() ? nlohmann::json() : nlohmann::json(seconds);
+  };
+  nlohmann::json cells = nlohmann::json::array();
+  for_each_planned(grid, options.shard, options.costs, [&](const PlannedWork& item) {
+    count += 1;
+    total_s += item.predicted_s;
+    if (arguments.json) {
+      cells.push_back({{"cell", item.cell.key()}, {"predicted_s", predicted(item.predicted_s)}});
+    } else {
+      fmt::print("{:8.2f} s  {}\n", item.predicted_s, item.cell.key());
+    }
+  });
+  double most_s = 0;
+  for_each_planned(grid, options.shard, {},
+                   [&](const PlannedWork& item) { most_s += item.predicted_s; });
   const std::string basis =
       options.costs.empty() ? std::string("budgets") : "medians of " + arguments.like;
   if (arguments.json) {
-    // Without a run to go by nothing is predicted.
-    const auto predicted = [&](double seconds) {
-      return options.costs.empty() ? nlohmann::json() : nlohmann::json(seconds);
-    };
-    nlohmann::json cells = nlohmann::json::array();
-    for (const PlannedWork& item : work) {
-      cells.push_back({{"cell", item.cell.key()}, {"predicted_s", predicted(item.predicted_s)}});
-    }
     fmt::print("{}\n",
                write_json(nlohmann::json{{"grid", grid.name},
-                                         {"cells", cells},
+                                         {"cells", std::move(cells)},
                                          {"basis", basis},
                                          {"predicted_cpu_s", predicted(total_s)},
                                          {"predicted_wall_s", predicted(total_s / options.jobs)},
@@ -102,16 +104,13 @@ void print_dry_run(const Grid& grid, const RunArguments& arguments, const RunOpt
                           2));
     return;
   }
-  for (const PlannedWork& item : work) {
-    fmt::print("{:8.2f} s  {}\n", item.predicted_s, item.cell.key());
-  }
   if (options.costs.empty()) {
     fmt::print(
         "{} cells, at most {:.0f} s with {} jobs: what their budgets allow. Most methods end long\n"
         "before; for an estimate name a run to go by: --like DIR\n",
-        work.size(), total_s / options.jobs, options.jobs);
+        count, total_s / options.jobs, options.jobs);
   } else {
-    fmt::print("{} cells, about {:.0f} s with {} jobs by the {}; at most {:.0f} s\n", work.size(),
+    fmt::print("{} cells, about {:.0f} s with {} jobs by the {}; at most {:.0f} s\n", count,
                total_s / options.jobs, options.jobs, basis, most_s / options.jobs);
   }
 }

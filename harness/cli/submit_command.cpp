@@ -49,7 +49,7 @@ void submit(const SubmitArguments& arguments, const Registry& registry, ExitStat
   options.largest_array = arguments.largest_array;
   const Grid grid = load_named_grid(arguments.grid, registry, full_catalogue(data));
   const SlurmPlan plan = plan_slurm(grid, options);
-  fmt::print("{} cells in {} elements of about {:.0f} s each\n", grid.cells().size(), plan.shards,
+  fmt::print("{} cells in {} elements of about {:.0f} s each\n", grid.cell_count(), plan.shards,
              plan.predicted_element_s);
   if (arguments.dry_run) {
     fmt::print("{}\n{}", plan.array_script, plan.merge_script);

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "foundation/child_process.hpp"
 #include "harness/cli/program.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
@@ -164,6 +165,19 @@ TEST(CommandLine, MoreCellsThanARunCanHoldAreRefusedBeforeTheyAreMade) {
   EXPECT_EQ(run.status, 2);
   EXPECT_THAT(run.errors, HasSubstr("--seeds: the grid has "));
   EXPECT_THAT(run.errors, HasSubstr("use at most 1000000"));
+}
+
+// Each as a list of words took 0.7 kB.
+TEST(CommandLine, ADryRunOfAMillionCellsTakesLittleMemory) {
+  const TemporaryFolder folder;
+  write_text(folder / "grid.toml",
+             "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"linear\"]\n"
+             "operators = [\"paper\"]\nseeds = { first = 1, count = 1_000_000 }\n");
+  reset_peak_memory_of_children();
+  const ProgramRun run = run_tribench({"run", (folder / "grid.toml").string(), "--dry-run"});
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("\n1000000 cells, at most "));
+  EXPECT_LT(peak_memory_of_children_mib(), 200);
 }
 
 // What budgets allow at most is no prediction.
