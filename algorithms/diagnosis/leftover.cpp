@@ -326,14 +326,17 @@ bool LeftoverSearch::drop_if_superfluous(const Smoother& smoother, std::size_t f
 // too. What is left over is what the whole model leaves, and its proxies have to explain less
 // together: each one dropped leaves more for the smoother, which would make the next one look
 // superfluous. A family that asked for more columns than an effect has is not excused
-// (specification, 11.6: a defect at one place is absorbed by many harmonics).
+// (specification, 11.6: a defect at one place is absorbed by many harmonics), but for a curve of
+// the speed alone: that is the curve in another shape.
 void LeftoverSearch::drop_proxies(const Smoother& smoother) {
   LoopModel model = this->model().model;
   bool dropped = false;
   for (const bool excused : {false, true}) {
     for (const std::size_t family : state().families()) {
       const bool asked_more = std::ranges::count(state().asked_more, family) > 0;
-      if (asked_more == excused) continue;
+      const bool absorbs = asked_more && inputs_of(family, this->model().model, campaign_.data) !=
+                                             std::vector<std::string>{"v"};
+      if (absorbs == excused) continue;
       dropped = drop_if_superfluous(smoother, family, excused, model) || dropped;
     }
     if (!excused && dropped) {

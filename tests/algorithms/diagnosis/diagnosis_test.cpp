@@ -222,6 +222,20 @@ TEST(Diagnosis, AWideCurveIsStribeckWhereFrictionFallsAndNonlinearWhereItRises) 
   }
 }
 
+// No two columns of one curve draw it; a third that is asked for makes it no less friction that
+// changes with the speed.
+TEST(Diagnosis, ACurveThatFallsAndRisesIsNamedThoughItAsksForAThirdColumn) {
+  for (const double rise : {6, 20}) {
+    const Diagnosis diagnosis =
+        diagnose_most(campaign_with([&](double v, double) {
+                        return std::copysign(3 * std::exp(-v * v / 0.04) + rise * v * v, v);
+                      }),
+                      {});
+    EXPECT_EQ(diagnosis.verdict, Verdict::effects) << rise;
+    EXPECT_EQ(families(diagnosis), std::vector<std::string>{"nonlinear_viscous"}) << rise;
+  }
+}
+
 // Half of it is a curve in both directions, too small to be told first.
 TEST(Diagnosis, AStribeckCurveInOneDirectionIsNamed) {
   const simulation::ControlledRun run =
