@@ -248,7 +248,7 @@ TEST(JudgedDiagnosis, OnlySearchesThatHadWhatIsNotNamedAreRunAgain) {
 // would see neither.
 TEST(JudgedDiagnosis, WhatIsNotNamedTakesNothingElseWithIt) {
   const PlantedData run = simulation::simulate(
-      {"lag_of_velocity", 1, simulation::NoiseKind::bursty, simulation::Design::mixed}, 7160088);
+      {"lag_of_velocity", 1, simulation::NoiseKind::bursty, simulation::Design::mixed}, 7160098);
   const JudgedDiagnosis diagnosis = diagnose_and_judge(observe(run.data), coulomb_viscous_base,
                                                        {.gear_ratios = {100}}, {.resample = true});
   EXPECT_EQ(families(diagnosis), std::vector<std::string>{"lag"});
