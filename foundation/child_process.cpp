@@ -254,9 +254,9 @@ ChildExit ChildProcess::wait() {
 ChildRun run_child(const ChildOptions& options, std::string_view input, const ChildLimits& limits) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
+  constexpr double kShortS = 0.05;  // for the one side of the pipes, while the other may be full
   ChildProcess child(options);
-  if (!input.empty()) child.write(input);
-  child.close_input();
+  if (input.empty()) child.close_input();
   ChildRun run;
   bool is_silent = false;  // it has closed its streams
   bool is_asked = false;   // to end
@@ -274,11 +274,17 @@ ChildRun run_child(const ChildOptions& options, std::string_view input, const Ch
       child.kill();
       break;
     }
+    double wait_s = std::min(left_s, 1.0);
+    if (const std::size_t before = input.size(); before > 0) {
+      if (!child.write_some(input, std::min(left_s, kShortS))) input = {};
+      if (input.empty()) child.close_input();
+      wait_s = input.size() < before ? 0 : std::min(left_s, kShortS);
+    }
     if (is_silent) {
-      ended = child.ends_within(std::min(left_s, 1.0));
+      ended = child.ends_within(wait_s);
       continue;
     }
-    const ChildOutput part = child.read(std::min(left_s, 1.0));
+    const ChildOutput part = child.read(wait_s);
     run.output += part.output;
     run.errors += part.errors;
     if (run.output.size() + run.errors.size() > limits.output_bytes) {

@@ -142,6 +142,17 @@ TEST(RunChild, EndsAProgramThatClosedItsStreamsWhenTimeIsUp) {
   EXPECT_TRUE(run.timed_out);
 }
 
+TEST(RunChild, HandsOverMoreThanAPipeHoldsToWhoeverReadsOrDoesNot) {
+  const std::string much(1U << 22, 'x');
+  const ChildRun all = run_child({.command = {"sh", "-c", "head -c 1000000 /dev/zero; cat"}}, much);
+  EXPECT_EQ(all.output.size(), 1'000'000 + much.size());
+  const ChildRun none = run_child({.command = {"sleep", "60"}}, much, {.wall_s = 0.5});
+  EXPECT_TRUE(none.timed_out);
+  const ChildRun some = run_child({.command = {"head", "-c", "3"}}, much);
+  EXPECT_EQ(some.output, "xxx");
+  EXPECT_EQ(some.exit.status, 0);
+}
+
 TEST(RunChild, StopsAProgramThatPrintsWithoutEnd) {
   EXPECT_THROW(run_child({.command = {"yes"}}, {}, {.output_bytes = 1U << 20}), Error);
 }

@@ -282,7 +282,7 @@ TEST(JudgedDiagnosis, IsTheSameOnAnyNumberOfThreads) {
 }
 
 // The searches without some movements begin beside the first, and where that names nothing their
-// number hangs on the threads; the answer does not.
+// number hangs on the threads and on what else the machine does; the answer does not.
 TEST(JudgedDiagnosis, WhereNothingIsNamedWhatBeganBesideItIsForgotten) {
   for (const int threads : {1, 2}) {
     std::size_t ended = 0;
@@ -290,7 +290,7 @@ TEST(JudgedDiagnosis, WhereNothingIsNamedWhatBeganBesideItIsForgotten) {
     const JudgedDiagnosis nothing =
         diagnose_planted({}, 8, {.resample = true, .threads = threads, .progress = progress});
     EXPECT_EQ(nothing.verdict, Verdict::none);
-    EXPECT_LE(ended, static_cast<std::size_t>(threads) + 1) << "of eleven";
+    EXPECT_LT(ended, threads == 1 ? 2U : 11U) << "of eleven";
     EXPECT_EQ(nothing.error.mae_after, nothing.error.mae_before);
   }
 }
