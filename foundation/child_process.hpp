@@ -109,8 +109,8 @@ struct ChildLimits {
   // and when a signal comes.
   const std::atomic<bool>* end = nullptr;
 };
-// Hands `input` to the program, as far as it reads, closes its standard input and waits for its end.
-// Throws Error (failed) where it cannot be started or prints without end.
+// Hands `input` to the program, as far as it reads, closes its standard input and waits for its
+// end. Throws Error (failed) where it cannot be started or prints without end.
 ChildRun run_child(const ChildOptions& options, std::string_view input = {},
                    const ChildLimits& limits = {});
 

@@ -64,16 +64,29 @@ const Channel* Dataset::find(Role role) const {
   return nullptr;
 }
 
+std::string mend_for_list(std::string_view column, std::string_view cell) {
+  const bool is_list =
+      cell.size() > 1 && std::string_view("[({").find(cell.front()) != std::string_view::npos;
+  return is_list ? fmt::format(
+                       "a cell holds one number: write the list as columns, '{0}[0]', "
+                       "'{0}[1]'",
+                       column)
+                 : std::string();
+}
+
 const Channel& Dataset::at(std::string_view channel_name) const {
   if (const Channel* channel = find(channel_name)) return *channel;
   const auto text = std::ranges::find(texts, channel_name, &TextCell::column);
   if (text != texts.end()) {
+    std::string mend = mend_for_list(channel_name, text->text);
+    if (mend.empty()) {
+      mend = text->text.find(',') == std::string::npos
+                 ? "name a column of numbers, or write numbers"
+                 : "write numbers with a decimal point and without signs for thousands";
+    }
     throw_bad_input(
         fmt::format("column '{}' holds text: '{}' is no number", channel_name, text->text),
-        text->place,
-        text->text.find(',') == std::string::npos
-            ? "name a column of numbers, or write numbers"
-            : "write numbers with a decimal point and without signs for thousands");
+        text->place, mend);
   }
   std::vector<std::string> names;
   for (const Channel& channel : channels) names.push_back(channel.name);

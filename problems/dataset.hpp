@@ -84,6 +84,9 @@ class ChannelIndex {
   std::unordered_map<std::string_view, const Channel*> by_name_;  // the first of a name
 };
 
+// What to write in place of a list in a cell, "[0.1, 0.2]", which is no number; empty for others.
+std::string mend_for_list(std::string_view column, std::string_view cell);
+
 // Lets a movement begin in each of these rows, which increase: 'NAME, part 1', 'NAME, part 2'.
 void cut_movements(Dataset& data, std::span<const std::size_t> first_rows);
 

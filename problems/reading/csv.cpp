@@ -54,9 +54,13 @@ double largest_of(const ColumnPlan& plan) {
                                : fmt::format("'{}' is not a finite number", cell);
   const bool mixed = cell.find(',') != std::string::npos &&
                      (cell.find('.') != std::string::npos || !in.layout.decimal_comma);
+  std::string mend = mend_for_list(in.layout.header[column], cell);
+  if (mend.empty()) {
+    mend = mixed ? "write numbers in one way, and without signs for thousands"
+                 : "mend the value, or drop such rows with --drop-missing";
+  }
   throw_bad_input(what, csv_place(in.file, line_of(in.text, place), in.layout.header[column]),
-                  mixed ? "write numbers in one way, and without signs for thousands"
-                        : "mend the value, or drop such rows with --drop-missing");
+                  mend);
 }
 
 // Text in a column of numbers is never dropped silently: only missing values are.

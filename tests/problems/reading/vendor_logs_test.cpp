@@ -279,6 +279,17 @@ TEST(VendorLogs, ACommaThatMayPartThousandsIsRefused) {
               AllOf(HasSubstr("data.csv:3:v: '1,050'"), HasSubstr("without signs for thousands")));
 }
 
+TEST(VendorLogs, AListInACellIsRefusedWithTheColumnsToWrite) {
+  const char* text = "stamp,position,effort\n0.1,\"[0.1, 0.2]\",\"[1, 2]\"\n";
+  try {
+    parse_csv(text, "data.csv").data.at("position");
+    ADD_FAILURE() << "it was read";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("data.csv:2:position"), HasSubstr("'[0.1, 0.2]'"),
+                                    HasSubstr("'position[0]', 'position[1]'")));
+  }
+}
+
 TEST(VendorLogs, TimesInWords) {
   expect_read(
       "timestamp,q_rad,tau_Nm\n2024-05-14T09:12:33.500000Z,0.1,1\n2024-05-14T09:12:33.502Z,0.2,2\n",
