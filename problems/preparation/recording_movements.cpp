@@ -278,16 +278,17 @@ void sort_movements(PreparedRecording& out) {
   const Channel* time = find_channel(out.data, Role::time);
   if (time == nullptr) return;
   const std::vector<double>& t = time->values;
-  const std::vector<RowRange> blocks = blocks_of(out.data);
-  std::vector<RowRange> sorted = blocks;
-  std::ranges::stable_sort(sorted, {}, [&](const RowRange& block) { return t[block.begin]; });
-  for (std::size_t k = 1; k < sorted.size(); ++k) {
-    if (t[sorted[k].begin] < t[sorted[k - 1].end - 1]) return;
+  const auto begin_of = [&](const RowRange& block) { return t[block.begin]; };
+  std::vector<RowRange> blocks = blocks_of(out.data);
+  if (std::ranges::is_sorted(blocks, {}, begin_of)) return;
+  std::ranges::stable_sort(blocks, {}, begin_of);
+  for (std::size_t k = 1; k < blocks.size(); ++k) {
+    if (t[blocks[k].begin] < t[blocks[k - 1].end - 1]) return;
   }
   std::vector<std::size_t> rows;
   std::vector<std::string> names;
   std::vector<int> renamed(out.data.movement_names.size(), -1);
-  for (const RowRange& block : sorted) {
+  for (const RowRange& block : blocks) {
     for (std::size_t i = block.begin; i < block.end; ++i) rows.push_back(i);
     int& name = renamed[static_cast<std::size_t>(out.data.movement[block.begin])];
     if (name >= 0) continue;
@@ -295,7 +296,6 @@ void sort_movements(PreparedRecording& out) {
     names.push_back(
         out.data.movement_names[static_cast<std::size_t>(out.data.movement[block.begin])]);
   }
-  if (std::ranges::is_sorted(rows)) return;
   std::vector<TextCell> texts = std::move(out.data.texts);
   out.data = select_rows({std::move(out.data), {}}, rows).data;
   out.data.texts = std::move(texts);
