@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -120,17 +121,31 @@ TEST_P(CommandedProgram, IsNotRunWhereThereIsNoFolderForIt) {
   EXPECT_FALSE(std::filesystem::exists(path("pids")));
 }
 
-// The first world's program says its verdict, the second's waits.
+// A challenge of three worlds that gets the signal in its second: the first one's program says its
+// verdict, the second's waits.
+ProgramRun signalled_in_the_second_world(const TemporaryFolder& folder, const char* signal) {
+  write_text(folder / "slow.sh",
+             "read hello\nif [ -e first ]; then touch second; sleep 60; fi\n"
+             "touch first\necho '{\"verdict\": null}'\n");
+  write_text(folder / "signal.sh", "cd \"$1\"\n'" + program().string() +
+                                       "' challenge --worlds 3 --out board --command sh slow.sh &\n"
+                                       "while [ ! -e second ]; do sleep 0.01; done\n"
+                                       "kill -" +
+                                       signal + " $!; wait $!\n");
+  return run_to_end({"sh", (folder / "signal.sh").string(), folder.path().string()});
+}
+
+TEST(ChallengeCommand, WhatWasScoredBeforeItWasKilledIsOnDisk) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(signalled_in_the_second_world(folder, "KILL").status, 137);
+  const std::filesystem::path score = folder / "board/entry.json";
+  ASSERT_TRUE(std::filesystem::exists(score));
+  EXPECT_EQ(nlohmann::json::parse(read_text(score))["results"].size(), 1U);
+}
+
 TEST(ChallengeCommand, TheMachinesSignalDropsTheWorldUnderWayAlone) {
   const TemporaryFolder folder;
-  write_text(folder / "slow.sh",
-             "read hello\nif [ -e first ]; then touch second; sleep 20; fi\n"
-             "touch first\necho '{\"verdict\": null}'\n");
-  write_text(folder / "end.sh", "cd \"$1\"\n'" + program().string() +
-                                    "' challenge --worlds 3 --out board --command sh slow.sh &\n"
-                                    "while [ ! -e second ]; do sleep 0.01; done\n"
-                                    "kill -TERM $!; wait $!\n");
-  const ProgramRun done = run_to_end({"sh", (folder / "end.sh").string(), folder.path().string()});
+  const ProgramRun done = signalled_in_the_second_world(folder, "TERM");
   EXPECT_EQ(done.status, 3) << done.errors;
   EXPECT_THAT(done.errors, HasSubstr("stopped: 1 of 3 worlds are done"));
   EXPECT_THAT(read_text(folder / "board/leaderboard.md"), HasSubstr("entry (1 of 3)"));

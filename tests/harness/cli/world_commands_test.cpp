@@ -369,22 +369,6 @@ TEST(ChallengeCommand, RanksOnlyScoresOnTheSameWorlds) {
   EXPECT_THAT(leaderboard, HasSubstr("seals.json: practice"));
 }
 
-TEST(ChallengeCommand, WhatWasScoredBeforeItWasKilledIsOnDisk) {
-  const TemporaryFolder folder;
-  // The first world's program says its verdict, the second's waits.
-  write_text(folder / "slow.sh",
-             "read hello\nif [ -e first ]; then touch second; sleep 60; fi\n"
-             "touch first\necho '{\"verdict\": null}'\n");
-  write_text(folder / "kill.sh", "cd \"$1\"\n'" + program().string() +
-                                     "' challenge --worlds 3 --out board --command sh slow.sh &\n"
-                                     "while [ ! -e second ]; do sleep 0.01; done\n"
-                                     "kill -KILL $!; wait $!\n");
-  EXPECT_EQ(run_to_end({"sh", (folder / "kill.sh").string(), folder.path().string()}).status, 137);
-  const std::filesystem::path score = folder / "board/entry.json";
-  ASSERT_TRUE(std::filesystem::exists(score));
-  EXPECT_EQ(json::parse(read_text(score))["results"].size(), 1U);
-}
-
 // The first program of "cut" waits until the challenge has been asked to end.
 TEST(ChallengeCommand, WhatWasInterruptedIsNotRanked) {
   const TemporaryFolder folder;
