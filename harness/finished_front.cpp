@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "harness/finished_front.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "algorithms/admission.hpp"
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/finite_rows.hpp"
+#include "algorithms/fitting/crossed_rows.hpp"
+#include "algorithms/fitting/evidence.hpp"
 #include "algorithms/fitting/exact_choice.hpp"
 #include "algorithms/fitting/finish.hpp"
 #include "algorithms/fitting/held_out_choice.hpp"
@@ -41,6 +48,44 @@ void sort_by_complexity(FitResult& fit) {
   fit.chosen = chosen;
 }
 
+// The place of the one with the most evidence.
+std::size_t likeliest(std::span<const Expression> front, const FiniteRows& rows) {
+  Evaluator evaluator;
+  double zero_loss = 0;
+  for (const double y : rows.target) zero_loss += y * y / static_cast<double>(rows.rows());
+  std::vector<double> against;
+  for (const Expression& formula : front) {
+    const ErrorSum sum = evaluator.sum_squared_errors(formula, rows.table(), rows.target);
+    against.push_back(sum.status == ErrorSumStatus::complete
+                          ? evidence_against(formula, sum.sum / static_cast<double>(rows.rows()),
+                                             zero_loss, rows.rows())
+                          : std::numeric_limits<double>::infinity());
+  }
+  return static_cast<std::size_t>(std::ranges::min_element(against) - against.begin());
+}
+
+// Formulas that nobody would want between the rows go, unless nothing else is there. A choice that
+// goes gives way to what has the most evidence of the rest.
+void drop_strays(const FiniteRows& rows, const InputBox& box, FitResult& fit) {
+  CrossedRows crossed(rows.table(), rows.target, box);
+  std::vector<Expression> kept;
+  std::optional<std::size_t> chosen;
+  for (std::size_t i = 0; i < fit.front.size(); ++i) {
+    if (crossed.strays(fit.front[i])) continue;
+    if (i == fit.chosen) chosen = kept.size();
+    kept.push_back(fit.front[i]);
+  }
+  const std::size_t strays = fit.front.size() - kept.size();
+  if (strays == 0 || kept.empty()) return;
+  fit.front = std::move(kept);
+  fit.chosen = chosen ? *chosen : likeliest(fit.front, rows);
+  if (chosen) return;
+  fit.note += fmt::format(
+      "{}another choice: with inputs as in the rows, combined otherwise, that of "
+      "the search is ten times the target's range away",
+      fit.note.empty() ? "" : "; ");
+}
+
 }  // namespace
 
 void finish_front(const TrainingData& data, const OperatorSet& operators, Budget& budget,
@@ -48,7 +93,8 @@ void finish_front(const TrainingData& data, const OperatorSet& operators, Budget
   // With states, a formula's numbers stand in the laws too: it is left as it is.
   if (fit.keeps_form || fit.front.empty() || !fit.states.empty()) return;
   const FiniteRows rows(data);
-  FormulaFinisher finisher(rows.table(), rows.target, input_box(data.inputs),
+  const InputBox box = input_box(data.inputs);
+  FormulaFinisher finisher(rows.table(), rows.target, box,
                            [&](const Expression& formula) { return operators.admits(formula); });
   std::vector<Expression> finished;
   std::size_t chosen = 0;
@@ -67,6 +113,7 @@ void finish_front(const TrainingData& data, const OperatorSet& operators, Budget
     fit.chosen = *exact;
     return;
   }
+  drop_strays(rows, box, fit);
   const auto in_time = [&budget] { return budget.in_time(); };
   fit.chosen =
       held_out_choice(fit.front, fit.chosen, rows.table(), rows.target, rows.movement, in_time);

@@ -252,7 +252,7 @@ class StageFits {
       bearable =
           bearable_search(first, search, data_, budget_, random.split("held out").split(stage));
     }
-    if (bearable) keep_within(*bearable, data_, first);
+    if (bearable) keep_bearable(*bearable, data_, first);
     if (bearable && !bearable->is_more_worth_it) return first;
     const FitResult judged = first;
     // The trace is the first round's: a later one starts from nothing.

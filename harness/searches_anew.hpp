@@ -2,13 +2,15 @@
 //
 // How much searching few rows bear: the search that was made is made again without a fifth of
 // the movements (of the rows, where none are named), five times, its fronts judged on what was held
-// out (fitting/search_validation.hpp). For budgets that shall be spent: it costs five searches.
+// out (fitting/search_validation.hpp), and the most typical of the six choices stands. For budgets
+// that shall be spent: it costs five searches.
 //
 // Not for exact formulas, nor for models with states, nor on fewer rows than say anything.
 #pragma once
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "algorithms/regressor.hpp"
 
@@ -30,6 +32,7 @@ struct Bearable {
   // Whether a wider search may find more than noise: what this one chooses errs no plainly more on
   // rows that it has not seen than on those that it has.
   bool is_more_worth_it = true;
+  std::vector<Expression> choices;  // of the searches made anew, within that complexity
 };
 
 // Whether each search may spend at least a quarter of what the first one did: what was left of the
@@ -45,8 +48,10 @@ std::optional<Bearable> bearable_search(const FitResult& fit, const SearchOfRows
 // Whether a formula of the front explains the rows exactly (fitting/exact_choice.hpp).
 bool holds_exact(const FitResult& fit, const TrainingData& data);
 
-// Chooses the most accurate of the front within the bound where the choice is beyond it and none is
-// exact. The note says so, and where more searching is not worth it.
-void keep_within(const Bearable& bearable, const TrainingData& data, FitResult& fit);
+// Chooses the most accurate of the front within the bound where the choice is beyond it; then,
+// where another search's choice is more typical of them all, that one, which joins the front with
+// its constants fitted to all rows. Exact formulas stay. The note says so, and where more searching
+// is not worth it.
+void keep_bearable(const Bearable& bearable, const TrainingData& data, FitResult& fit);
 
 }  // namespace tribench

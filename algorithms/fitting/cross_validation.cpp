@@ -107,14 +107,14 @@ std::vector<Side> sides_beyond(const Inputs& inputs, const InputBox& box) {
   return sides;
 }
 
-constexpr std::size_t kFewestRows = 10;  // held out, or left
-constexpr std::size_t kFewRows = 20;     // fitted, where single ones tell a formula's numbers
+constexpr std::size_t kFewestBeyond = 10;  // held out, or left
+constexpr std::size_t kFewFitted = 20;     // fitted, where single ones tell a formula's numbers
 
 // The fifth of the rows that lies farthest on each such side.
 std::vector<Marks> edge_holdouts(const Inputs& inputs, const InputBox& box) {
   constexpr std::size_t kPart = 5;
   std::vector<Marks> result;
-  if (inputs.rows < kPart * kFewestRows) return result;
+  if (inputs.rows < kPart * kFewestBeyond) return result;
   for (const Side& side : sides_beyond(inputs, box)) {
     const double* column = inputs.columns[side.input];
     std::vector<double> sorted(column, column + inputs.rows);
@@ -125,7 +125,7 @@ std::vector<Marks> edge_holdouts(const Inputs& inputs, const InputBox& box) {
     for (std::size_t r = 0; r < inputs.rows; ++r) {
       marks[r] = (side.upper ? column[r] > limit : column[r] < limit) ? 1 : 0;
     }
-    if (std::ranges::count(marks, 1) >= static_cast<std::ptrdiff_t>(kFewestRows)) {
+    if (std::ranges::count(marks, 1) >= static_cast<std::ptrdiff_t>(kFewestBeyond)) {
       result.push_back(std::move(marks));
     }
   }
@@ -150,7 +150,7 @@ std::vector<Marks> outer_holdout(const Inputs& inputs, const InputBox& box) {
     }
   }
   const auto held_out = static_cast<std::size_t>(std::ranges::count(marks, 1));
-  if (held_out < kFewestRows || inputs.rows < held_out + kFewestRows) return {};
+  if (held_out < kFewestBeyond || inputs.rows < held_out + kFewestBeyond) return {};
   return {marks};
 }
 
@@ -211,7 +211,7 @@ class Refit {
     }
     node_rows_ += fitter_.fit(formula, train.inputs(), train.target).node_rows;
     const double error = std::max(rounding_, mean_square(evaluator_, formula, held_out));
-    if (train.target.size() > kFewRows) return error;
+    if (train.target.size() > kFewFitted) return error;
     return std::max(error,
                     mean_curve_variance(formula, train.inputs(), train.target, held_out.inputs()));
   }

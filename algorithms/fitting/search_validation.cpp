@@ -2,11 +2,14 @@
 #include "algorithms/fitting/search_validation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/held_out_choice.hpp"
+#include "foundation/order_statistics.hpp"
 
 namespace tribench {
 namespace {
@@ -84,6 +87,36 @@ int SearchValidation::bound(std::span<const Expression> front, std::size_t chose
   const int as_good = paper_complexity(front[simplest_as_good(within)]);
   const bool stands = mean_square() <= std::min(kClearly * std::ranges::min(within), variance());
   return stands ? std::max(as_good, paper_complexity(front[chosen])) : as_good;
+}
+
+std::size_t most_typical(std::span<const Expression> candidates,
+                         std::span<const Expression> searched, const Inputs& inputs) {
+  const auto values_of = [&inputs](const Expression& formula) {
+    std::vector<double> values(inputs.rows);
+    Evaluator().evaluate(formula, inputs, values);
+    return values;
+  };
+  std::vector<std::vector<double>> said;
+  for (const Expression& formula : searched) said.push_back(values_of(formula));
+  std::vector<std::optional<double>> middle(inputs.rows);
+  std::vector<double> at_row;
+  for (std::size_t row = 0; row < inputs.rows; ++row) {
+    at_row.clear();
+    for (const std::vector<double>& one : said) {
+      if (std::isfinite(one[row])) at_row.push_back(one[row]);
+    }
+    if (!at_row.empty()) middle[row] = median(at_row);
+  }
+  std::vector<double> distance;
+  for (const Expression& formula : candidates) {
+    const std::vector<double> values = values_of(formula);
+    double sum = 0;
+    for (std::size_t row = 0; row < inputs.rows; ++row) {
+      if (middle[row]) sum += (values[row] - *middle[row]) * (values[row] - *middle[row]);
+    }
+    distance.push_back(std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity());
+  }
+  return static_cast<std::size_t>(std::ranges::min_element(distance) - distance.begin());
 }
 
 }  // namespace tribench

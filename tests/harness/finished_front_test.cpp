@@ -45,6 +45,33 @@ TEST(FinishedFront, TakesAPlainSumOnFewRowsWhereTheMethodYieldsToIt) {
   EXPECT_LT(fit.front[0].size(), 8U) << print(fit.front[0], std::vector<std::string>{"v"});
 }
 
+// y falls with x; a power of both is large where one is and the other is not, which is in no row.
+TEST(FinishedFront, HasNoFormulaThatIsFarAwayBetweenTheRows) {
+  const std::vector<std::string> names = {"x", "y"};
+  std::vector<double> x;
+  std::vector<double> y;
+  std::vector<double> target;
+  RandomStream random(3);
+  for (int r = 0; r < 500; ++r) {
+    x.push_back(random.uniform(1, 2));
+    y.push_back(3 - x.back());
+    target.push_back(x.back() + 0.1 * random.normal());
+  }
+  const std::vector<Input> inputs = {{"x", "-", Role::none, 1, 2, std::nullopt},
+                                     {"y", "-", Role::none, 1, 2, std::nullopt}};
+  const std::vector<const double*> columns = {x.data(), y.data()};
+  FitResult fit;
+  for (const char* formula : {"1.5", "x", "x + 1e-9*x^40", "x + 1e-16*x^60*y^30"}) {
+    fit.front.push_back(parse(formula, names));
+  }
+  fit.chosen = 3;
+  Budget budget({1'000'000, 1e6});
+  finish_front({inputs, columns, target, {}}, find_operator_set("full"), budget, fit);
+  ASSERT_EQ(fit.front.size(), 2U);
+  EXPECT_EQ(print(fit.front[fit.chosen], names), "x");
+  EXPECT_NE(fit.note.find("ten times the target's range"), std::string::npos);
+}
+
 // The front of a method that keeps its choice, the second, on 30 rows of slope*v and noise.
 FitResult finished_by_one_that_keeps(double slope, double noise,
                                      const std::vector<std::string>& formulas) {

@@ -57,7 +57,7 @@ class SearchesAnewTest : public ::testing::Test {
     return bearable_search(fit, search, data(), budget, RandomStream(3));
   }
   FitResult kept_within(int complexity, FitResult fit) {
-    keep_within({complexity, true}, data(), fit);
+    keep_bearable({complexity, true, {}}, data(), fit);
     return fit;
   }
 
@@ -123,6 +123,25 @@ TEST_F(SearchesAnewTest, TheChoiceIsKeptWithinTheBoundUnlessItIsExact) {
   EXPECT_EQ(kept_within(5, fit).note, "");
   target_ = v_;
   EXPECT_EQ(kept_within(0, front_of({"0", "v"}, 1)).chosen, 1U);
+}
+
+TEST_F(SearchesAnewTest, AChoiceThatHasGoneAstrayGivesWayToWhatTheOthersFound) {
+  fill(60);
+  const FitResult fit = front_of({"0", "0.5*v", "v + 40*v^9"}, 2);
+  const std::vector<Expression> found =
+      front_of({"0.9*v", "0.8*v", "1.1*v", "v + v^3", "1.2*v"}, 0).front;
+  FitResult kept = fit;
+  keep_bearable({9, true, found}, data(), kept);
+  ASSERT_EQ(kept.front.size(), 4U);
+  EXPECT_EQ(kept.chosen, 2U);
+  EXPECT_THAT(kept.note, HasSubstr("median"));
+  // Its number is fitted to all rows: 1, but for the noise.
+  EXPECT_NEAR(kept.front[2].nodes()[0].value + kept.front[2].nodes()[1].value, 1, 0.2);
+
+  FitResult typical = front_of({"0", "1.1*v"}, 1);
+  keep_bearable({9, true, found}, data(), typical);
+  EXPECT_EQ(typical.front.size(), 2U);
+  EXPECT_EQ(typical.note, "");
 }
 
 }  // namespace

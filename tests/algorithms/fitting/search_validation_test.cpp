@@ -76,5 +76,15 @@ TEST_F(SearchValidationTest, OneFoldThatLeavesAllBoundsIsOneOfMany) {
   EXPECT_EQ(bound(3), 2);
 }
 
+// Of three that were found one has gone astray, and one has no value in half of the rows.
+TEST_F(SearchValidationTest, TheMostTypicalIsNearestToTheMedian) {
+  const double* column = v_.data();
+  const Inputs rows = {{&column, 1}, v_.size()};
+  const std::vector<Expression> found = front_of({"2*v", "2.2*v", "2*v + 99*v^9"});
+  EXPECT_EQ(most_typical(front_of({"3*v", "2.1*v", "2*v + 99*v^9"}), found, rows), 1U);
+  EXPECT_EQ(most_typical(front_of({"2.1*v", "2.1*v"}), found, rows), 0U);
+  EXPECT_EQ(most_typical(front_of({"log(0.5 - v)", "3*v"}), found, rows), 1U);
+}
+
 }  // namespace
 }  // namespace tribench::search_validation_test
