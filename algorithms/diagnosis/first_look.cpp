@@ -127,7 +127,7 @@ bool shows_in_turns(std::size_t family, const Campaign& campaign) {
     if (atom.family == family) alone.add(atom);
   }
   return std::ranges::any_of(signals_read(alone, family, campaign.data),
-                             [](const Signal* signal) { return signal->is_late_velocity(); });
+                             [](const Signal* signal) { return signal->is_late(); });
 }
 
 // The root mean square of an effect of the family that would be found nine times in ten: its shift

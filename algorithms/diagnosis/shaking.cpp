@@ -20,7 +20,7 @@ constexpr double kLeastShare = 0.5;
 constexpr double kErrors = 2;
 
 bool is_shaken(const Signal& signal) {
-  return signal.role == Role::acceleration || signal.is_late_velocity();
+  return signal.role == Role::acceleration || signal.is_late();
 }
 
 // Means over the rows of the movement within half a window on either side.
@@ -100,7 +100,7 @@ Factor instrumented_factor(const Eigen::MatrixXd& x, const Eigen::MatrixXd& inst
 bool goes_with_shaking(const FittedModel& fit, std::size_t family, const Campaign& campaign) {
   const Observations& data = campaign.data;
   // Late velocities are there where time is in s, whether the movements' order counts or not.
-  const bool is_timed = std::ranges::any_of(data.signals, &Signal::is_late_velocity);
+  const bool is_timed = std::ranges::any_of(data.signals, &Signal::is_late);
   const std::vector<const Signal*> read = signals_read(fit.model, family, data);
   const bool is_asked = is_timed && campaign.options.has("shaking") &&
                         std::ranges::any_of(read, [](const Signal* s) { return is_shaken(*s); });

@@ -352,7 +352,7 @@ EffectFamily lag() {
   // Friction of the velocity as it was (a pure time lag). Its viscous part is next to an inertia,
   // and no lag by itself.
   for (const int lag_ms : kLags_ms) {
-    const std::string late = lagged_velocity_name(lag_ms);
+    const std::string late = LateChannel::velocity(lag_ms).name();
     const std::string sign = "tanh(" + late + "/vw) - tanh(v/vw)";
     const ShapeTemplate width = {"vw", "v", {0.025, 0.07, 0.2}, 0.02, 0.6};
     f.atoms.push_back({{sign}, {"late"}, {width}});
@@ -360,6 +360,10 @@ EffectFamily lag() {
                        .coefficients = {"late", "late_viscous"},
                        .shapes = {width},
                        .without_inertia = true});
+  }
+  // Friction that settles on its value, as behind a first-order filter.
+  for (const int time_constant_ms : kSettling_ms) {
+    f.atoms.push_back({{LateChannel::sign(time_constant_ms).name() + " - sgn_v"}, {"late"}, {}});
   }
   for (const std::string_view name : {"lag", "late"}) {
     f.sanity.push_back({std::string(name), 1, 0, "friction that runs ahead of the velocity"});

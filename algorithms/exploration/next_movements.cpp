@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <variant>
 
 #include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/elementary.hpp"
@@ -99,8 +100,9 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
       if (signal.name == name) signal.values[row] = value;
     }
   };
-  std::vector<TimeLag> lags;
-  for (const int lag_ms : kLags_ms) lags.emplace_back(lag_ms * 1e-3);
+  const std::vector<LateChannel> channels = LateChannel::all();
+  std::vector<std::variant<TimeLag, SettlingSign>> memories;
+  for (const LateChannel& late : channels) memories.push_back(late.memory());
   double distance = 0;
   double v_before = 0;
   double q_before = movement.kind == "two_tone" ? middle : movement.from;
@@ -135,8 +137,10 @@ Observations simulate(const ProposedMovement& movement, const Observations& data
       set("d", i, distance);
       set(kSeenDistance, i, distance);
     }
-    for (std::size_t k = 0; k < lags.size(); ++k) {
-      set(lagged_velocity_name(kLags_ms[k]), i, lags[k].next(v, movement.duration / kRows));
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      const double dt_s = movement.duration / kRows;
+      set(channels[k].name(), i,
+          std::visit([&](auto& memory) { return memory.next(v, dt_s); }, memories[k]));
     }
     if (gravity.norm() > 0) {
       set("g", i, g);

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <variant>
 #include <vector>
 
 #include "foundation/elementary.hpp"
@@ -131,16 +131,15 @@ std::unique_ptr<Memory> memory_of(std::string_view name) {
                          return channel.next(at.velocity, at.position, dt_s);
                        });
   }
-  constexpr std::string_view kLag = "v_lag";
-  if (!name.starts_with(kLag)) return nullptr;
-  const std::string_view digits = name.substr(kLag.size());
-  int lag_ms = 0;
-  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), lag_ms);
-  if (error != std::errc() || stop != digits.data() + digits.size() || lag_ms <= 0) return nullptr;
-  return make_memory(loop::TimeLag(1e-3 * lag_ms),
-                     [](loop::TimeLag& lag, double dt_s, const Reached& at) {
-                       return lag.next(at.velocity, dt_s);
-                     });
+  const auto late = loop::LateChannel::of(name);
+  if (!late) return nullptr;
+  return std::visit(
+      [](auto memory) {
+        return make_memory(memory, [](decltype(memory)& channel, double dt_s, const Reached& at) {
+          return channel.next(at.velocity, dt_s);
+        });
+      },
+      late->memory());
 }
 
 }  // namespace tribench::forward

@@ -43,7 +43,7 @@ class Memory {
 };
 
 // Of the channels in problems/preparation/derived_channels.hpp, by their names in formulas: "d",
-// "d_seen", "v_lag30" (any whole number of ms). Null for any other name.
+// "d_seen", "v_lag30", "sgn_v_lag20" (any whole number of ms). Null for any other name.
 std::unique_ptr<Memory> memory_of(std::string_view name);
 
 // Of a declared state. drives: what each of its law's drives means. Throws Error (bad_input) where

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
+#include "foundation/elementary.hpp"
 #include "foundation/sign.hpp"
 
 namespace tribench::loop {
@@ -17,6 +19,8 @@ double rounded_step(double dt) {
 }
 
 constexpr std::string_view kDerived = " (derived)";
+constexpr std::string_view kLate = "v_lag";
+constexpr std::string_view kSettles = "sgn_v_lag";
 
 }  // namespace
 
@@ -67,24 +71,74 @@ double TimeLag::next(double x, double dt_s) {
   return before.x + (then - before.time) / (after.time - before.time) * (after.x - before.x);
 }
 
-std::string lagged_velocity_name(int lag_ms) { return fmt::format("v_lag{}", lag_ms); }
-
-std::string lagged_velocity_recipe(int lag_ms) {
-  return fmt::format(
-      "v as it was {} ms before, straight between rows; until then v in a movement's first row",
-      lag_ms);
+double SettlingSign::next(double v, double dt_s) {
+  const double now = sign(v);
+  if (std::isnan(now)) return now;
+  value_ = is_started_ ? now + (value_ - now) * elementary::exp(-dt_s / time_constant_s_) : now;
+  is_started_ = true;
+  return value_;
 }
 
-std::vector<double> lagged_velocity(int lag_ms, std::span<const double> v,
-                                    std::span<const double> time, std::span<const int> movement) {
-  std::vector<double> late;
-  TimeLag lag(lag_ms * 1e-3);
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    const bool starts = i == 0 || movement[i] != movement[i - 1];
-    if (starts) lag.start_movement();
-    late.push_back(lag.next(v[i], starts ? 0 : rounded_step(time[i] - time[i - 1])));
+std::vector<LateChannel> LateChannel::all() {
+  std::vector<LateChannel> channels;
+  for (const int lag_ms : kLags_ms) channels.push_back(velocity(lag_ms));
+  for (const int time_ms : kSettling_ms) channels.push_back(sign(time_ms));
+  return channels;
+}
+
+std::optional<LateChannel> LateChannel::of(std::string_view name) {
+  for (const bool settles : {false, true}) {
+    const std::string_view stem = settles ? kSettles : kLate;
+    if (!name.starts_with(stem)) continue;
+    const std::string_view digits = name.substr(stem.size());
+    int late_ms = 0;
+    const auto [stop, error] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), late_ms);
+    if (error != std::errc() || stop != digits.data() + digits.size() || late_ms <= 0) continue;
+    return LateChannel(late_ms, settles);
   }
+  return std::nullopt;
+}
+
+std::string LateChannel::name() const {
+  return fmt::format("{}{}", settles_ ? kSettles : kLate, late_ms_);
+}
+
+std::string LateChannel::recipe() const {
+  return settles_ ? fmt::format(
+                        "the sign of v through a first-order filter of {} ms, from that in "
+                        "a movement's first row",
+                        late_ms_)
+                  : fmt::format(
+                        "v as it was {} ms before, straight between rows; until then v in "
+                        "a movement's first row",
+                        late_ms_);
+}
+
+std::string LateChannel::unit(const std::string& velocity_unit) const {
+  return settles_ ? "-" : velocity_unit;
+}
+
+std::vector<double> LateChannel::values(std::span<const double> v, std::span<const double> time,
+                                        std::span<const int> movement) const {
+  std::vector<double> late;
+  auto memory_of_either = memory();
+  std::visit(
+      [&](auto& of) {
+        for (std::size_t i = 0; i < v.size(); ++i) {
+          const bool starts = i == 0 || movement[i] != movement[i - 1];
+          if (starts) of.start_movement();
+          late.push_back(of.next(v[i], starts ? 0 : rounded_step(time[i] - time[i - 1])));
+        }
+      },
+      memory_of_either);
   return late;
+}
+
+std::variant<TimeLag, SettlingSign> LateChannel::memory() const {
+  const double late_s = late_ms_ * 1e-3;
+  if (settles_) return SettlingSign(late_s);
+  return TimeLag(late_s);
 }
 
 std::string derived_channel_name(std::string_view signal) {
@@ -96,11 +150,7 @@ std::optional<DerivedSignal> derived_signal(std::string_view channel) {
   const std::string signal(channel.substr(0, channel.size() - kDerived.size()));
   if (signal == "d") return DerivedSignal{signal, distance_recipe()};
   if (signal == kSeenDistance) return DerivedSignal{signal, seen_distance_recipe()};
-  for (const int lag_ms : kLags_ms) {
-    if (signal == lagged_velocity_name(lag_ms)) {
-      return DerivedSignal{signal, lagged_velocity_recipe(lag_ms)};
-    }
-  }
+  if (const auto late = LateChannel::of(signal)) return DerivedSignal{signal, late->recipe()};
   return std::nullopt;
 }
 

@@ -11,6 +11,8 @@
 //   v_lag30 ...  the velocity as it was 30 ms before (and so on), straight between the rows; the
 //       velocity of a movement's first row until then. What friction that follows its velocity
 //       late is a function of (the pure time lag of Hess and Soom 1990).
+//   sgn_v_lag20 ...  the velocity's sign through a first-order filter of 20 ms (and so on), from
+//       the sign in a movement's first row. What friction is that settles on its value so late.
 //
 // Nothing here throws; a value that is not finite makes the distance so until the next reversal.
 #pragma once
@@ -20,6 +22,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace tribench::loop {
@@ -92,17 +95,52 @@ class TimeLag {
   std::size_t count_ = 0;
 };
 
+// The sign of a velocity through a first-order filter, exact for a sign that holds between rows.
+class SettlingSign {
+ public:
+  explicit SettlingSign(double time_constant_s) : time_constant_s_(time_constant_s) {}
+  void start_movement() { is_started_ = false; }
+  // dt_s: since the row before; not looked at in the first row.
+  double next(double v, double dt_s);
+
+ private:
+  double time_constant_s_;
+  bool is_started_ = false;
+  double value_ = 0;
+};
+
 // A factor of the square root of two apart: friction that is late by what lies between differs from
 // the nearest in a fifth of the lag at most. From what a drive's current loop and filters take to
-// what lubricant does. Two apart, a late friction was taken for two effects; a first-order filter's
-// lag is found by these as well as by filters (docs/decisions.md).
+// what lubricant does. Two apart, a late friction was taken for two effects.
 inline constexpr std::array<int, 5> kLags_ms = {30, 42, 60, 85, 120};
-std::string lagged_velocity_name(int lag_ms);
-std::string lagged_velocity_recipe(int lag_ms);
-// time in s; starts anew with every movement. A clock tells the time between rows no better than
-// 10 us: a file whose time counts from 1970 gives the same values as one that counts from 0.
-std::vector<double> lagged_velocity(int lag_ms, std::span<const double> v,
-                                    std::span<const double> time, std::span<const int> movement);
+// Two apart: a filter between two is their sum but for 3 %.
+inline constexpr std::array<int, 3> kSettling_ms = {20, 40, 80};
+
+// What late friction is a function of: v_lag30 ..., sgn_v_lag20 ...
+class LateChannel {
+ public:
+  static LateChannel velocity(int lag_ms) { return {lag_ms, false}; }
+  static LateChannel sign(int time_constant_ms) { return {time_constant_ms, true}; }
+  static std::vector<LateChannel> all();
+  // Of such a name, with any whole number of ms; empty for any other.
+  static std::optional<LateChannel> of(std::string_view name);
+
+  std::string name() const;
+  std::string recipe() const;
+  std::string unit(const std::string& velocity_unit) const;
+  // time in s; starts anew with every movement. A clock tells the time between rows no better than
+  // 10 us: a file whose time counts from 1970 gives the same values as one that counts from 0.
+  std::vector<double> values(std::span<const double> v, std::span<const double> time,
+                             std::span<const int> movement) const;
+  // Row by row: its start_movement() and next(v, dt_s).
+  std::variant<TimeLag, SettlingSign> memory() const;
+
+ private:
+  LateChannel(int late_ms, bool settles) : late_ms_(late_ms), settles_(settles) {}
+
+  int late_ms_;
+  bool settles_;
+};
 
 bool is_distance(std::string_view name);  // d or d_seen
 std::string seen_distance_recipe();

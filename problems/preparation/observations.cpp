@@ -152,16 +152,15 @@ void add_time_since_start(Observations& data) {
 
 // To first order a late velocity differs from the velocity by the acceleration: without one, an
 // inertia that the data do not hold would pass for late friction.
-void add_lagged_velocities(Observations& data) {
+void add_late_channels(Observations& data) {
   const Signal* t = data.find("t");
   if (t == nullptr || t->unit != "s" || data.find("a") == nullptr) return;
   const std::vector<double> time = t->values;
   const Signal v = *data.find("v");
-  for (const int lag_ms : kLags_ms) {
-    const std::string name = lagged_velocity_name(lag_ms);
-    if (data.find(name) != nullptr) continue;  // told before rows were cut
-    data.signals.push_back({name, v.channel, v.unit, Role::none, lagged_velocity_recipe(lag_ms),
-                            lagged_velocity(lag_ms, v.values, time, data.movement)});
+  for (const LateChannel& late : LateChannel::all()) {
+    if (data.find(late.name()) != nullptr) continue;  // told before rows were cut
+    data.signals.push_back({late.name(), v.channel, late.unit(v.unit), Role::none, late.recipe(),
+                            late.values(v.values, time, data.movement)});
   }
 }
 
@@ -198,7 +197,7 @@ std::vector<std::string> known_signal_names() {
   for (const std::string_view name : {std::string_view("d"), kSeenDistance, Signal::kSinceStart}) {
     names.emplace_back(name);
   }
-  for (const int lag_ms : kLags_ms) names.push_back(lagged_velocity_name(lag_ms));
+  for (const LateChannel& late : LateChannel::all()) names.push_back(late.name());
   return names;
 }
 
@@ -476,7 +475,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   smooth_temperature(out);
   add_distance(out);
   if (!options.steady) add_time_since_start(out);
-  add_lagged_velocities(out);
+  add_late_channels(out);
   out.time = out.find("t")->values;
   check_moving(out);
   if (options.unordered) out.take_away("t", "the movements' order says nothing");

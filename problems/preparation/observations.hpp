@@ -10,6 +10,7 @@
 //   g sgn_g  gravity torque and its sign  d       distance since the last reversal
 //   d_seen   d, but far where a movement starts in motion: it has turned before the recording began
 //   v_lag30 v_lag42 ... v_lag120          velocity as it was so many ms before
+//   sgn_v_lag20 sgn_v_lag40 sgn_v_lag80   its sign through a filter of so many ms
 //
 // NaN policy: rows in which a used channel or the target is not finite are dropped and counted in
 // the warnings. Bad input that no one can mend silently is an Error (bad_input).
@@ -36,10 +37,10 @@ struct Signal {
   std::string recipe;  // how it is computed where it is no column of the data, else empty
   std::vector<double> values;
   std::string formula = {};  // over q, where that says it: "sin(q)"
-  // A velocity of before, a distance read otherwise: nothing to look at beside the signal
-  // itself.
-  bool is_variant() const { return is_late_velocity() || name == kSeenDistance; }
-  bool is_late_velocity() const { return name.starts_with("v_lag"); }
+  // A velocity of before or its sign, a distance read otherwise: nothing to look at beside the
+  // signal itself.
+  bool is_variant() const { return is_late() || name == kSeenDistance; }
+  bool is_late() const { return LateChannel::of(name).has_value(); }
   // Seconds since a movement began: what a joint does differently after a rest.
   static constexpr std::string_view kSinceStart = "t_start";
   // It follows from the motion before (a distance since reversal, a late velocity).

@@ -171,14 +171,13 @@ void add_distance(PreparedRecording& out, const std::vector<RowRange>& strokes) 
 
 // The velocities that late friction follows, told before rows are cut: what is slow is where they
 // differ from the velocity most.
-void add_lagged_velocities(PreparedRecording& out) {
+void add_late_channels(PreparedRecording& out) {
   if (find_channel(out.data, Role::acceleration) == nullptr) return;
   const Channel v = *find_channel(out.data, Role::velocity);
   const std::vector<double> time = find_channel(out.data, Role::time)->values;
-  for (const int lag_ms : loop::kLags_ms) {
-    out.data.channels.push_back({loop::derived_channel_name(loop::lagged_velocity_name(lag_ms)),
-                                 v.unit, Role::none,
-                                 loop::lagged_velocity(lag_ms, v.values, time, out.data.movement)});
+  for (const loop::LateChannel& late : loop::LateChannel::all()) {
+    out.data.channels.push_back({loop::derived_channel_name(late.name()), late.unit(v.unit),
+                                 Role::none, late.values(v.values, time, out.data.movement)});
   }
 }
 
@@ -310,7 +309,7 @@ void cut_strokes(PreparedRecording& out, double noise, double blur) {
   const Strokes found = strokes_of(t->values, v->values,
                                    pieces_of(t->values, out.data.movement, {}), noise, kFewestRows);
   add_distance(out, found.strokes);
-  add_lagged_velocities(out);
+  add_late_channels(out);
   t = find_channel(out.data, Role::time);
   v = find_channel(out.data, Role::velocity);
   const std::vector<ChainedStroke> strokes =
@@ -360,7 +359,7 @@ void settle_strokes(PreparedRecording& out, double noise) {
   std::vector<std::size_t> rows;
   for (const RowRange& stroke : strokes) add_moving(rows, stroke, slow, out.data, noise);
   if (rows.empty() || rows.size() == out.data.rows()) return;
-  add_lagged_velocities(out);
+  add_late_channels(out);
   const std::size_t all = out.data.rows();
   keep_rows(out.data, rows);
   out.notes.push_back(

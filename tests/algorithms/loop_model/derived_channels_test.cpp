@@ -146,6 +146,34 @@ TEST(DerivedChannels, AStepOfTheVelocityComesItsLagLater) {
   }
 }
 
+// A step of a first-order filter, whatever the rows' spacing.
+TEST(DerivedChannels, ASignSettlesExponentiallyAfterAReversal) {
+  for (const double dt : {0.001, 0.01, 0.05}) {
+    SettlingSign settling(0.04);
+    EXPECT_EQ(settling.next(-0.3, 0), -1) << dt;
+    double t = 0;
+    for (int i = 0; i < 5; ++i) {
+      t += dt;
+      EXPECT_NEAR(settling.next(0.2, dt), 1 - 2 * std::exp(-t / 0.04), 1e-12) << dt;
+    }
+    settling.start_movement();
+    EXPECT_EQ(settling.next(0.5, dt), 1);
+  }
+}
+
+TEST(DerivedChannels, LateChannelsAreKnownByTheirNames) {
+  for (const LateChannel& late : LateChannel::all()) {
+    const auto same = LateChannel::of(late.name());
+    ASSERT_TRUE(same);
+    EXPECT_EQ(same->recipe(), late.recipe());
+  }
+  EXPECT_EQ(LateChannel::of("sgn_v_lag7")->unit("rad/s"), "-");
+  EXPECT_EQ(LateChannel::of("v_lag7")->unit("rad/s"), "rad/s");
+  for (const char* name : {"v_lag", "v_lag0", "v_lag30_", "sgn_v_lag-20", "sgn_v", "d"}) {
+    EXPECT_FALSE(LateChannel::of(name)) << name;
+  }
+}
+
 TEST(DerivedChannels, VelocitiesOfBeforeAreTheSameForAClockThatCountsFrom1970) {
   const Dataset early = kuka::make_planted({}, 3).data;
   Dataset late = early;
@@ -155,8 +183,8 @@ TEST(DerivedChannels, VelocitiesOfBeforeAreTheSameForAClockThatCountsFrom1970) {
   }
   const Observations one = observe(early);
   const Observations other = observe(late);
-  for (const int lag_ms : kLags_ms) {
-    const std::string name = lagged_velocity_name(lag_ms);
+  for (const LateChannel& late : LateChannel::all()) {
+    const std::string name = late.name();
     ASSERT_NE(one.find(name), nullptr);
     EXPECT_EQ(one.find(name)->values, other.find(name)->values) << name;
   }
