@@ -201,6 +201,28 @@ double named_ripple(const Diagnosis& diagnosis) {
   return largest;
 }
 
+// Whole numbers of waves a turn of the joint up to the fourth harmonic of those that the library
+// has; a tenth of a wave more or less over the travel is none.
+constexpr double kMostWavesATurn = 4 * kMostWavesOfOutput;
+constexpr double kWaveMore = 0.1;
+
+// A ripple found at a whole number of waves a turn of the joint, whose bearings and teeth have such
+// ones, may be the joint's as well as the motor's.
+void tell_of_the_joint(Diagnosis& out, double wavenumber, const Signal& position) {
+  const auto [low, high] = std::ranges::minmax(position.values);
+  const double turns = (high - low) / (2 * std::numbers::pi);
+  const double whole = std::round(wavenumber);
+  const bool is_of_a_turn = position.unit == "rad" && whole >= 1 && whole <= kMostWavesATurn &&
+                            std::abs(wavenumber - whole) * turns <= kWaveMore;
+  if (!is_of_a_turn) return;
+  for (EffectFinding& effect : out.effects) {
+    const auto family = std::ranges::find(out.families, effect.family, &EffectFamily::name);
+    if (!repeats_with_the_gear(*family)) continue;
+    effect.aliases.push_back({fmt::format("output_ripple ({:.0f} a turn)", whole), 1, 0, 0, true,
+                              "tell the gear's ratio (--gear-ratio)"});
+  }
+}
+
 // The same once more, what repeats taken for a turn of the motor. As it was where that names no
 // ripple, where something still lives in the position or where what else repeats is nearly as
 // large: a notch has a spectrum, too.
@@ -218,6 +240,7 @@ Diagnosis knowing_the_ripple(Diagnosis first, const Observations& data, const Ba
                            std::ranges::count(again.leftover.signals, "q") == 0 &&
                            (!more || more->mean_square < kNearlyAsLarge * ripple.mean_square);
   if (!explains_it) return first;
+  tell_of_the_joint(again, ripple.wavenumber, *data.find("q"));
   again.notes.push_back(fmt::format(
       "the ripple's period, {:.4g} {}, was found in these data: whether it is a turn of "
       "the motor, a tooth or a bearing they do not say",

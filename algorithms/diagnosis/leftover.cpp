@@ -9,6 +9,7 @@
 #include <set>
 
 #include "algorithms/diagnosis/local_defect.hpp"
+#include "algorithms/diagnosis/serial_offsets.hpp"
 #include "algorithms/diagnosis/unknown_ripple.hpp"
 #include "algorithms/diagnosis/worth.hpp"
 #include "algorithms/inference/feature_scores.hpp"
@@ -20,6 +21,8 @@ namespace {
 constexpr double kSmootherRidge = 0.02;  // of the mean diagonal (specification, 3.8)
 // Of what an effect adds: what adds less in the same inputs is its shape.
 constexpr double kShapeShare = 0.1;
+// Of the level of what is left over: half, beside the signals together.
+constexpr double kShareOfOffsets = 0.5;
 
 // Somewhere to look: a smooth function of one or two signals, or a found effect times another
 // signal: what there is where the effect's size varies with it, far sharper than a smoother in
@@ -67,6 +70,7 @@ class LeftoverSearch {
   void test_residual();
   void look_for_waves();
   void look_for_defect();
+  void look_for_serial_offsets();
   void name_shapes();
 
  private:
@@ -305,6 +309,24 @@ void LeftoverSearch::look_for_defect() {
   result_.leftover.inputs = {input_name(campaign_.data, "q")};
 }
 
+// In no signal, and in the order of the movements all the same: it is in what changes with time.
+void LeftoverSearch::look_for_serial_offsets() {
+  LeftoverFinding& leftover = result_.leftover;
+  const bool is_asked =
+      result_.leftover_tested && leftover.inputs.empty() && campaign_.options.has("serial_offsets");
+  if (!is_asked) return;
+  const auto p = serial_offsets_p(model(), campaign_, random_.split("offsets"));
+  if (!p || *p > kShareOfOffsets * campaign_.options.alpha_leftover) return;
+  const Eigen::MatrixXd columns = time_of_movements(campaign_);
+  if (is_next_to_nothing(worth_of(columns, model().model, campaign_, kSmootherRidge))) return;
+  leftover.p = *p;
+  leftover.signals = {"t"};
+  leftover.inputs = {input_name(campaign_.data, "t")};
+  const Eigen::MatrixXd z = whitened(columns, campaign_.clusters, model().noise);
+  leftover.gain =
+      paired_gain(model().losses, losses_beside(model(), z, campaign_, kSmootherRidge)).nats;
+}
+
 // Whether the leftover's smoother makes a family superfluous; then the model loses it.
 bool LeftoverSearch::drop_if_superfluous(const Smoother& smoother, std::size_t family, bool excused,
                                          LoopModel& model) {
@@ -416,6 +438,7 @@ void find_leftover(SearchResult& result, const Campaign& campaign, RandomStream 
   search.test_residual();
   search.look_for_defect();
   search.look_for_waves();
+  search.look_for_serial_offsets();
   search.name_shapes();
 }
 

@@ -76,6 +76,18 @@ TEST(UnknownRipple, IsFoundThoughTheNoiseHasTakenMostOfIt) {
   }
 }
 
+// The joint's own teeth and bearings have whole numbers of waves a turn, too.
+TEST(UnknownRipple, OfAWholeNumberOfWavesATurnMayBeTheJoints) {
+  for (const double wavenumber : {12.0, 12.4}) {
+    const Diagnosis diagnosis = diagnose_strokes(
+        [&](double q) { return 2 * kHalfSinesNoise * std::cos(wavenumber * q + 1); });
+    ASSERT_EQ(diagnosis.effects.size(), 1U) << wavenumber;
+    const auto& aliases = diagnosis.effects[0].aliases;
+    EXPECT_EQ(std::ranges::count(aliases, "output_ripple (12 a turn)", &AliasFinding::family),
+              wavenumber == 12.0 ? 1 : 0);
+  }
+}
+
 // What is there at one place alone has waves of all lengths.
 TEST(UnknownRipple, IsNoNotch) {
   const auto notch = [](double q) {
