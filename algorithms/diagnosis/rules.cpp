@@ -32,7 +32,8 @@ constexpr std::array kRules = {
          "ripples and loads that one bump in the position predicts better are dropped"},
     Rule{"random_slopes",
          "what differs from movement to movement is told though no signal says why"},
-    Rule{"serial_offsets", "offsets of movements that are like their neighbours' are told"}};
+    Rule{"serial_offsets",
+         "offsets and friction of movements that are like their neighbours' are told"}};
 
 }  // namespace
 

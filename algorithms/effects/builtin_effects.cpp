@@ -181,14 +181,17 @@ EffectFamily spring() {
   return f;
 }
 
-// Twice and three times the wave with this angle: what a wave that is no sine has beside itself.
-AtomTemplate harmonics_of(const std::string& angle, std::vector<ShapeTemplate> shapes) {
+// Twice and three times the wave with this angle, or twice alone: what a wave that is no sine has
+// beside itself.
+AtomTemplate harmonics_of(const std::string& angle, std::vector<ShapeTemplate> shapes,
+                          int most = 3) {
   AtomTemplate atom{{}, {}, std::move(shapes)};
   atom.beside_another = true;
-  for (const char* k : {"2", "3"}) {
+  for (int k = 2; k <= most; ++k) {
+    const std::string times = std::to_string(k);
     for (const char* wave : {"cos", "sin"}) {
-      atom.columns.push_back(std::string(wave) + "(" + k + "*" + angle + ")");
-      atom.coefficients.push_back(std::string(wave) + "_" + k);
+      atom.columns.push_back(std::string(wave) + "(" + times + "*" + angle + ")");
+      atom.coefficients.push_back(std::string(wave) + "_" + times);
     }
   }
   return atom;
@@ -223,7 +226,7 @@ EffectFamily output_ripple() {
   }
   for (int k = 2; k <= kMostWavesOfOutput; ++k) {
     const std::string angle = std::to_string(k) + "*q";
-    if (3 * k <= 12) f.atoms.push_back(harmonics_of(angle, {}));
+    f.atoms.push_back(harmonics_of(angle, {}, 3 * k <= 12 ? 3 : 2));
     f.atoms.push_back(drifting(angle, {}));
   }
   // Of the friction itself (a bearing or seal that runs out). Under a load that nobody has told it

@@ -33,10 +33,8 @@ constexpr std::array<OneSignal, 9> kSingles = {{{"v", 16},
 constexpr std::array<SignalPair, 5> kPairs = {
     {{"v", "q"}, {"q", "T"}, {"v", "T"}, {"v", "g"}, {"g", "T"}}};
 constexpr Eigen::Index kFourierFeatures = 30;
-// Of the unit interval into which a signal is mapped.
+// Of the unit interval into which a signal is mapped; kSmoothCentres radial functions are as wide.
 constexpr double kFourierLength = 0.22;
-// Radial functions as wide as that.
-constexpr int kSmoothCentres = 6;
 
 // Of a radial function, in widths: 1e-10 is nothing, but products of such numbers are denormal,
 // which takes the processor thirty times as long.
@@ -139,10 +137,10 @@ Eigen::MatrixXd with_direction(const Smoother& smoother, const Observations& dat
   return out;
 }
 
-Smoother smooth_single(const Observations& data, std::string_view signal) {
+Smoother smooth_single(const Observations& data, std::string_view signal, int centres) {
   return {{std::string(signal)},
           {input_name(data, signal)},
-          radial(unit_values(data, signal), kSmoothCentres)};
+          radial(unit_values(data, signal), centres)};
 }
 
 std::vector<Smoother> make_smoothers(const Observations& data, RandomStream random) {

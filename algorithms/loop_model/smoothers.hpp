@@ -27,8 +27,10 @@ struct Smoother {
 // All smoothers that the data have the signals for.
 std::vector<Smoother> make_smoothers(const Observations& data, RandomStream random);
 
-// In one signal that varies, as smooth as those in two.
-Smoother smooth_single(const Observations& data, std::string_view signal);
+// In one signal that varies; so many radial functions, by default as smooth as those in two.
+inline constexpr int kSmoothCentres = 6;
+Smoother smooth_single(const Observations& data, std::string_view signal,
+                       int centres = kSmoothCentres);
 
 // The direction of motion, a row, the first one positive (mirror_sign); empty where the data have
 // none.

@@ -170,8 +170,8 @@ TEST(Aliases, WhatIsWithheldMayStillBeWhatWasFound) {
   }
 }
 
-// Ten waves a turn over a quarter of one: no ripple of the library, but a sum of some and of a mass
-// whose torques cancel. What is there only to cancel the others is not sure.
+// Twelve and a half waves a turn over a fifth of one: no ripple of the library, but a sum of some
+// and of a mass whose torques cancel. What is there only to cancel the others is not sure.
 TEST(Aliases, WhatTheOtherEffectsCanTellIsProvisional) {
   RandomStream random(3);
   constexpr std::size_t kStroke = 150;
@@ -181,9 +181,9 @@ TEST(Aliases, WhatTheOtherEffectsCanTellIsProvisional) {
     data.movement_names.push_back(std::to_string(m));
     const double v = (m % 2 == 0 ? 1 : -1) * (0.2 + 0.02 * m);
     for (std::size_t i = 0; i < kStroke; ++i) {
-      const double way = 1.6 * static_cast<double>(i) / (kStroke - 1) - 0.8;
+      const double way = 1.2 * static_cast<double>(i) / (kStroke - 1) - 0.6;
       const double q = v > 0 ? way : -way;
-      const double friction = (v > 0 ? 5 : -5) + 3 * v + std::cos(10 * q + 0.3);
+      const double friction = (v > 0 ? 5 : -5) + 3 * v + std::cos(12.5 * q + 0.3);
       const double row[] = {q, v, 14 * std::sin(q + 0.4), friction + 0.1 * random.normal()};
       for (std::size_t k = 0; k < columns.size(); ++k) columns[k].push_back(row[k]);
       data.movement.push_back(m);

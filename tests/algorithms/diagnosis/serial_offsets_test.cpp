@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
+#include <string>
 #include <vector>
 
 #include "tests/algorithms/diagnosis/half_sines.hpp"
@@ -13,13 +15,14 @@
 namespace tribench::loop {
 namespace {
 
-// 40 movements without an effect but an offset of each: of the part of the campaign that has gone
-// by.
-Observations with_offsets(const std::function<double(double)>& offset) {
+// 40 strokes, there and back, without an effect but an offset of each, or friction: of the part of
+// the campaign that has gone by.
+Observations with_offsets(const std::function<double(double)>& offset, bool is_friction = false) {
   Observations data =
       half_sines_over({.movements = 40, .rows = 80, .seed = 3}, [](double) { return 0; });
   for (std::size_t i = 0; i < data.rows(); ++i) {
-    data.target[i] += kHalfSinesNoise * offset(data.movement[i] / 40.);
+    const double direction = is_friction ? data.find("sgn_v")->values[i] : 1;
+    data.target[i] += kHalfSinesNoise * direction * offset(data.movement[i] / 40.);
   }
   return data;
 }
@@ -42,6 +45,17 @@ TEST(SerialOffsets, AZeroThatJumpsIsNoStraightDrift) {
   DiagnosisOptions options;
   options.without = {"serial_offsets"};
   EXPECT_TRUE(is_sure_of_a_drift(diagnose_most(data, options)));
+}
+
+TEST(SerialOffsets, FrictionThatComesAndGoesIsNotNothing) {
+  const Observations data = with_offsets(
+      [](double part) { return 1.2 * std::sin(2 * std::numbers::pi * 3 * part); }, true);
+  const Diagnosis diagnosis = diagnose_most(data, {});
+  EXPECT_EQ(diagnosis.verdict, Verdict::unknown);
+  EXPECT_EQ(diagnosis.leftover.inputs, std::vector<std::string>{"time"});
+  DiagnosisOptions options;
+  options.without = {"serial_offsets"};
+  EXPECT_NE(diagnose_most(data, options).verdict, Verdict::unknown);
 }
 
 TEST(SerialOffsets, AStraightDriftStaysOne) {
