@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Whether movements that follow one another have offsets, or Coulomb friction, that are alike though
-// no effect says why: a zero that jumped, an afternoon that was warmer, grease that comes and goes,
-// a drift of another shape. To the noise model the offset of a movement is chance, one movement's
-// as good as any other's; a smooth function of time is then worth next to nothing, since what it
-// tells is what the random intercept takes up. Their order is what no chance has.
+// Whether movements that follow one another have offsets, or Coulomb friction, that are alike
+// though no effect says why: a zero that jumped, an afternoon that was warmer, grease that comes
+// and goes, a drift of another shape. To the noise model the offset of a movement is chance, one
+// movement's as good as any other's; a smooth function of time is then worth next to nothing, since
+// what it tells is what the random intercept takes up. Their order is what no chance has.
 //
 // Not for campaigns whose order does not count, nor for what changes within movements.
 // Source: von Neumann 1941 (the ratio of the mean square successive difference to the variance), by
