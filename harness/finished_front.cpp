@@ -67,6 +67,7 @@ std::size_t likeliest(std::span<const Expression> front, const FiniteRows& rows)
 // Formulas that nobody would want between the rows go, unless nothing else is there. A choice that
 // goes gives way to what has the most evidence of the rest.
 void drop_strays(const FiniteRows& rows, const InputBox& box, FitResult& fit) {
+  if (rows.rows() == 0) return;
   CrossedRows crossed(rows.table(), rows.target, box);
   std::vector<Expression> kept;
   std::optional<std::size_t> chosen;

@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "algorithms/diagnosis/fitted_model.hpp"
+#include "foundation/random.hpp"
 
 namespace tribench::loop {
 
