@@ -211,15 +211,22 @@ void check_acceleration(const DataFile& file, const MotionMatch& match,
                         acceleration->column));
 }
 
+// How many turns a joint's position ranges over; 0 where it is none, or the motor's by its name.
+double turns_of(const DataFile& file) {
+  const ColumnReading* position = reading_of(file, Role::position);
+  const Channel* q = file.data.find(Role::position);
+  if (position == nullptr || q == nullptr || q->unit != "rad") return 0;
+  if (position->unit.ends_with("@motor")) return 0;
+  const auto [low, high] = std::ranges::minmax(q->values);
+  return (high - low) / kTurn;
+}
+
 // A joint that turns over and over, in a unit that was only assumed or on a side of the gear that
 // nobody named: counts and, beside a gear ratio, turns may well be the motor's.
 void check_turns(const DataFile& file, std::optional<double> gear_ratio) {
+  const double turns = turns_of(file);
+  if (turns <= kMostTurns) return;
   const ColumnReading* position = reading_of(file, Role::position);
-  const Channel* q = file.data.find(Role::position);
-  if (position == nullptr || q == nullptr || q->unit != "rad") return;
-  const auto [low, high] = std::ranges::minmax(q->values);
-  const double turns = (high - low) / kTurn;
-  if (turns <= kMostTurns || position->unit.ends_with("@motor")) return;
   const bool may_be_motor = position->unit_from != "--roles" &&
                             (position->unit == "counts" || (gear_ratio && !position->unit_assumed));
   if (may_be_motor) {
@@ -234,7 +241,7 @@ void check_turns(const DataFile& file, std::optional<double> gear_ratio) {
   if (!position->unit_assumed) return;
   throw_bad_input(
       fmt::format("'{}' ranges over {:.4g} rad, {:.3g} turns: its unit was only assumed",
-                  position->column, high - low, turns),
+                  position->column, turns * kTurn, turns),
       file.data.name,
       fmt::format("say it: --roles '{0}=position[deg]', or '{0}=position[rad]' if it "
                   "is so",
@@ -359,6 +366,17 @@ void check_motion(const DataFile& file, std::optional<double> gear_ratio) {
   }
   check_turns(file, gear_ratio);
   check_assumed_time(file);
+}
+
+std::optional<std::string> remark_on_turns(const DataFile& file) {
+  const double turns = turns_of(file);
+  if (turns <= kMostTurns) return std::nullopt;
+  const ColumnReading& position = *reading_of(file, Role::position);
+  if (position.unit_from == "--roles") return std::nullopt;
+  return fmt::format(
+      "'{0}' ranges over {1:.3g} turns, taken for the joint's: if they are the motor's, say --roles "
+      "'{0}=position[{2}@motor]' with --gear-ratio (and so of the velocity)",
+      position.column, turns, position.unit);
 }
 
 std::optional<double> delay_of(std::span<const double> time,

@@ -32,6 +32,10 @@ MotionMatch match_motion(std::span<const double> time, std::span<const double> q
 // steps of seconds).
 void check_motion(const DataFile& file, std::optional<double> gear_ratio);
 
+// What to say of a joint that turns over and over in a unit that the file itself names: it may be
+// the motor. Nothing where --roles names the unit. After check_motion.
+std::optional<std::string> remark_on_turns(const DataFile& file);
+
 // By how much the velocity lags behind the position's own (s; negative: it leads); nothing where
 // the rows do not tell. velocity_of_position: zero-phase.
 std::optional<double> delay_of(std::span<const double> time,

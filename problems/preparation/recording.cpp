@@ -74,6 +74,7 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
   }
   file.data = std::move(out.data);
   check_motion(file, options.drive.gear_ratio);
+  if (std::optional<std::string> one = remark_on_turns(file)) out.notes.push_back(std::move(*one));
   out.data = std::move(file.data);
   settle_other_acceleration(out);
   double noise = 0;

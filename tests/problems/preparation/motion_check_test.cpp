@@ -121,6 +121,25 @@ TEST(MotionCheck, NoiseIsNotRefused) {
   }
 }
 
+// Turns in a unit that the header names may be the motor's all the same: it is said, not refused.
+TEST(MotionCheck, AJointThatTurnsOverAndOverMayBeTheMotor) {
+  const auto remark = [](double turns, const char* column) {
+    std::string text = fmt::format("t [s],{},qd [deg/s]\n", column);
+    for (int i = 0; i < 400; ++i) {
+      const double angle = turns * std::numbers::pi;
+      text += fmt::format("{},{},{}\n", 0.01 * i, -angle * std::cos(0.02 * i) * 57.29578,
+                          2 * angle * std::sin(0.02 * i) * 57.29578);
+    }
+    const DataFile file = parse_csv(text, "d.csv");
+    check_motion(file, {});
+    return remark_on_turns(file).value_or("");
+  };
+  EXPECT_THAT(remark(44, "q [deg]"),
+              AllOf(HasSubstr("'q [deg]' ranges over 44 turns"), HasSubstr("position[deg@motor]"),
+                    HasSubstr("--gear-ratio")));
+  EXPECT_EQ(remark(1.9, "q [deg]"), "");
+}
+
 TEST(MotionCheck, ADelayIsFoundToATenthOfAStep) {
   const Told truth = sine(0);
   const std::vector<RowRange> whole = {{0, truth.time.size()}};
