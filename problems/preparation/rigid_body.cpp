@@ -8,6 +8,7 @@
 #include "foundation/elementary.hpp"
 #include "foundation/order_statistics.hpp"
 #include "foundation/pivoted_qr.hpp"
+#include "problems/preparation/derived_channels.hpp"
 #include "problems/preparation/segments.hpp"
 
 namespace tribench {
@@ -56,14 +57,29 @@ struct Rows {
   double speed = 0;  // typical
 };
 
-// Rows slower than `slowest` take no part.
-Rows rows_of(const Dataset& data, const Channel& torque, Eigen::Index more, double slowest = 0) {
+// Whether friction that is as late as the library knows has followed the last reversal.
+std::vector<char> settled_rows(const Dataset& data) {
+  constexpr double kLatest = loop::kLags_ms.back() / 1000.0;  // s
+  const std::vector<double>& t = data.find(Role::time)->values;
+  const std::vector<double>& v = data.find(Role::velocity)->values;
+  std::vector<char> settled(data.rows(), 0);
+  std::size_t turned = 0;
+  for (std::size_t i = 0; i < settled.size(); ++i) {
+    if (i > 0 && (v[i] * v[i - 1] <= 0 || data.movement[i] != data.movement[i - 1])) turned = i;
+    settled[i] = t[i] - t[turned] > kLatest ? 1 : 0;
+  }
+  return settled;
+}
+
+// Rows slower than `slowest` take no part, nor do those that are not in `only`, if it is not empty.
+Rows rows_of(const Dataset& data, const Channel& torque, Eigen::Index more, double slowest = 0,
+             const std::vector<char>& only = {}) {
   const std::vector<double>& v = data.find(Role::velocity)->values;
   const Channel* a = data.find(Role::acceleration);
   const std::size_t step = std::max<std::size_t>(1, data.rows() / kRows);
   Rows rows;
   for (std::size_t i = 0; i < data.rows(); i += step) {
-    if (std::abs(v[i]) > slowest) rows.places.push_back(i);
+    if (std::abs(v[i]) > slowest && (only.empty() || only[i] != 0)) rows.places.push_back(i);
   }
   const auto n = static_cast<Eigen::Index>(rows.places.size());
   rows.base = a != nullptr ? 5 : 4;
@@ -187,20 +203,32 @@ double torque_noise(const std::vector<double>& torque, std::size_t rows_each) {
   return kMadToSd * upper_median_magnitude(std::move(bends)) / std::sqrt(6.0);
 }
 
-// The change of a column that the torque would show: its noise over the column's coefficient.
-std::optional<double> visible_change(const Dataset& data, const Channel* torque,
-                                     Eigen::Index column) {
-  constexpr double kSurely = 5;         // standard errors
-  constexpr std::size_t kMeans = 6000;  // that a diagnosis averages a recording to
-  const Channel* v = data.find(Role::velocity);
-  if (torque == nullptr || v == nullptr) return {};
-  Rows rows = rows_of(data, *torque, load_columns(data), kCreeping * top_speed(v->values));
+// The column's coefficient, where the rows (of `only`, if it is not empty) surely tell it.
+std::optional<double> sure_coefficient(const Dataset& data, const Channel& torque,
+                                       Eigen::Index column, const std::vector<char>& only) {
+  constexpr double kSurely = 5;  // standard errors
+  const std::vector<double>& v = data.find(Role::velocity)->values;
+  Rows rows = rows_of(data, torque, load_columns(data), kCreeping * top_speed(v), only);
   if (rows.places.size() < kFewestFitRows) return {};
   fill_load_columns(data, rows, rows.base);
   const Fit fit = least_squares(rows.x, rows.y);
   if (!(fit.coefficients(column) > kSurely * fit.errors(column))) return {};
+  return fit.coefficients(column);
+}
+
+// The change of a column that the torque would show: its noise over the column's coefficient.
+// Friction that comes late goes against the acceleration after every reversal: the rows that it has
+// left behind are asked first, the others where those do not tell.
+std::optional<double> visible_change(const Dataset& data, const Channel* torque,
+                                     Eigen::Index column) {
+  constexpr std::size_t kMeans = 6000;  // that a diagnosis averages a recording to
+  if (torque == nullptr || !data.find(Role::velocity)) return {};
+  std::optional<double> size;
+  if (data.find(Role::time)) size = sure_coefficient(data, *torque, column, settled_rows(data));
+  if (!size) size = sure_coefficient(data, *torque, column, {});
+  if (!size) return {};
   const std::size_t rows_each = std::max<std::size_t>(1, data.rows() / kMeans);
-  return torque_noise(torque->values, rows_each) / fit.coefficients(column);
+  return torque_noise(torque->values, rows_each) / *size;
 }
 
 }  // namespace
