@@ -292,7 +292,7 @@ std::vector<std::size_t> better_atoms(std::size_t family, const Round& round,
     return std::ranges::count(own, campaign.library.atoms[atom].label) > 0;
   };
   const LoopModel rest = model.model.without(family);
-  const Eigen::MatrixXd x = whitened(tangent(rest, campaign.data), campaign.clusters, model.noise);
+  const Eigen::MatrixXd x = whitened(told_tangent(rest, campaign), campaign.clusters, model.noise);
   const Eigen::VectorXd y = whitened(target_vector(campaign.data) - predict(rest, campaign.data),
                                      campaign.clusters, model.noise);
   const StretchGrams of_rest = stretch_grams(x, y, campaign.clusters);

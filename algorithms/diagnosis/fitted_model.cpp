@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/diagnosis/fitted_model.hpp"
 
+#include <numeric>
+
+#include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/inference/whitening.hpp"
 
 namespace tribench::loop {
@@ -35,7 +38,46 @@ bool whitening_is_safe(const LoopModel& model, const Observations& data, const C
   return (weighted * (one - other)).squaredNorm() < most * static_cast<double>(x.cols());
 }
 
+// Of a column's squares, what all folds but one have to have of it to say how large it is.
+constexpr double kToldElsewhere = 0.05;
+
+bool is_told_by_one_fold(const Eigen::VectorXd& column, const Clusters& clusters) {
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(clusters.folds);
+  for (std::size_t c = 0; c < clusters.stretches.size(); ++c) {
+    const RowRange& rows = clusters.stretches[c];
+    squares[clusters.fold_of[c]] +=
+        column
+            .segment(static_cast<Eigen::Index>(rows.begin), static_cast<Eigen::Index>(rows.size()))
+            .squaredNorm();
+  }
+  const double all = squares.sum();
+  return all > 0 && all - squares.maxCoeff() <= kToldElsewhere * all;
+}
+
+// The tangent's columns that are the base's: its linear terms, and behind all linear columns its
+// constants.
+std::vector<Eigen::Index> columns_of_base(const LoopModel& model) {
+  std::vector<Eigen::Index> columns(model.base.linear_terms.size());
+  std::iota(columns.begin(), columns.end(), Eigen::Index{0});
+  const std::size_t linear = linear_columns(model).size();
+  for (std::size_t k = 0; k < free_constants(model.base.formula).size(); ++k) {
+    columns.push_back(static_cast<Eigen::Index>(linear + k));
+  }
+  return columns;
+}
+
+Eigen::MatrixXd told_part(Eigen::MatrixXd x, const LoopModel& model, const Clusters& clusters) {
+  for (const Eigen::Index j : columns_of_base(model)) {
+    if (is_told_by_one_fold(x.col(j), clusters)) x.col(j).setZero();
+  }
+  return x;
+}
+
 }  // namespace
+
+Eigen::MatrixXd told_tangent(const LoopModel& model, const Campaign& campaign) {
+  return told_part(tangent(model, campaign.data), model, campaign.clusters);
+}
 
 FittedModel fit_in_its_noise(LoopModel model, const Campaign& campaign, FitScope scope) {
   const Observations& data = campaign.data;
@@ -67,10 +109,11 @@ FittedModel fit_in_its_noise(LoopModel model, const Campaign& campaign, FitScope
     safe = whitening_is_safe(model, data, clusters, noise);
     plainly = !safe;
   }
-  out.raw_tangent = tangent(model, data);
+  const Eigen::MatrixXd whole = tangent(model, data);
+  out.raw_tangent = told_part(whole, model, clusters);
   out.raw_residual = target_vector(data) - predict(model, data);
   out.x = whitened(out.raw_tangent, clusters, noise);
-  out.basis = orthonormal_basis(out.x);
+  out.basis = orthonormal_basis(whitened(whole, clusters, noise));
   out.residual = project_off(whitened(out.raw_residual, clusters, noise), out.basis);
   out.grams = stretch_grams(out.x, out.residual, clusters);
   out.losses = held_out_losses(out.grams, clusters, noise);
@@ -93,7 +136,7 @@ Gain lead_over(const FittedModel& present, const FittedModel& other, const Campa
   };
   const Eigen::VectorXd y =
       in_its_noise(target_vector(campaign.data) - predict(other.model, campaign.data));
-  const Eigen::MatrixXd x = in_its_noise(tangent(other.model, campaign.data));
+  const Eigen::MatrixXd x = in_its_noise(told_tangent(other.model, campaign));
   return paired_gain(present.losses, held_out_losses(x, y, campaign.clusters, present.noise));
 }
 

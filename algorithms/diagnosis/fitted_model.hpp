@@ -15,14 +15,20 @@ namespace tribench::loop {
 struct FittedModel {
   LoopModel model;
   Noise noise;
-  Eigen::MatrixXd x;         // whitened tangent
-  Eigen::MatrixXd basis;     // of x, orthonormal
-  Eigen::VectorXd residual;  // whitened, orthogonal to the basis
-  StretchGrams grams;        // of [x residual]
-  Eigen::VectorXd losses;    // held-out, by stretch
-  Eigen::MatrixXd raw_tangent;
+  Eigen::MatrixXd x;            // whitened raw_tangent
+  Eigen::MatrixXd basis;        // of the whole whitened tangent, orthonormal
+  Eigen::VectorXd residual;     // whitened, orthogonal to the basis
+  StretchGrams grams;           // of [x residual]
+  Eigen::VectorXd losses;       // held-out, by stretch
+  Eigen::MatrixXd raw_tangent;  // told_tangent
   Eigen::VectorXd raw_residual;
 };
+
+// The tangent, with zeros for those constants of the base that one fold alone tells: how well they
+// predict elsewhere nobody can say, and they stay as they are fitted. A base's curve that is not
+// there in the data can go anywhere (a power of the speed that rises within two rows), and no
+// effect could be judged beside it.
+Eigen::MatrixXd told_tangent(const LoopModel& model, const Campaign& campaign);
 
 // Noise and coefficients in turn. scope: what is fitted besides the coefficients.
 FittedModel fit_in_its_noise(LoopModel model, const Campaign& campaign, FitScope scope);

@@ -118,7 +118,7 @@ void doubt_stand_ins(SearchState& state, double varying, const std::vector<Varyi
     Found& found = state.found[k];
     const Eigen::VectorXd torque = contribution(model.model, found.family, campaign.data);
     const AskedColumn asked = {white(torque),
-                               white(tangent(model.model.without(found.family), campaign.data)),
+                               white(told_tangent(model.model.without(found.family), campaign)),
                                white(model.raw_residual + torque)};
     const Eigen::MatrixXd own =
         white(own_terms(terms, campaign.families[found.family].name, campaign));

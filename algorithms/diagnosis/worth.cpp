@@ -18,7 +18,7 @@ double squared_error(const LoopModel& model, const Campaign& campaign,
   Noise plain;
   plain.within_sd = 1;
   const Eigen::VectorXd residual = target_vector(campaign.data) - predict(model, campaign.data);
-  Eigen::MatrixXd x = tangent(model, campaign.data);
+  Eigen::MatrixXd x = told_tangent(model, campaign);
   if (columns.size() > 0) x = beside(x, columns);
   return held_out_losses(whitened(std::move(x), campaign.clusters, plain),
                          whitened(residual, campaign.clusters, plain), campaign.clusters, plain,
