@@ -107,17 +107,30 @@ std::string LateChannel::name() const {
 std::string LateChannel::recipe() const {
   return settles_ ? fmt::format(
                         "the sign of v through a first-order filter of {} ms, from that in "
-                        "a movement's first row",
+                        "the first row of a movement that does not follow on",
                         late_ms_)
                   : fmt::format(
                         "v as it was {} ms before, straight between rows; until then v in "
-                        "a movement's first row",
+                        "the first row of a movement that does not follow on",
                         late_ms_);
 }
 
 std::string LateChannel::unit(const std::string& velocity_unit) const {
   return settles_ ? "-" : velocity_unit;
 }
+
+namespace {
+
+// Whether a movement that begins in row i goes on where the one before it ended, a row or two at
+// standstill left out: strokes of one motion.
+bool follows_on(std::size_t i, std::span<const double> time) {
+  constexpr double kFewSteps = 3.5;  // as the one before it
+  if (i < 2) return false;
+  const double step = time[i] - time[i - 1];
+  return step > 0 && step <= kFewSteps * (time[i - 1] - time[i - 2]);
+}
+
+}  // namespace
 
 std::vector<double> LateChannel::values(std::span<const double> v, std::span<const double> time,
                                         std::span<const int> movement) const {
@@ -126,7 +139,7 @@ std::vector<double> LateChannel::values(std::span<const double> v, std::span<con
   std::visit(
       [&](auto& of) {
         for (std::size_t i = 0; i < v.size(); ++i) {
-          const bool starts = i == 0 || movement[i] != movement[i - 1];
+          const bool starts = i == 0 || (movement[i] != movement[i - 1] && !follows_on(i, time));
           if (starts) of.start_movement();
           late.push_back(of.next(v[i], starts ? 0 : rounded_step(time[i] - time[i - 1])));
         }

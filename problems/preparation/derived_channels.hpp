@@ -9,8 +9,9 @@
 //       the path from the zero crossing, the velocity taken to be linear in time:
 //       |v| dt/2 * |v|/(|v| + |v_before|); else it grows by |q - q_before|, or |v| dt.
 //   v_lag30 ...  the velocity as it was 30 ms before (and so on), straight between the rows; the
-//       velocity of a movement's first row until then. What friction that follows its velocity
-//       late is a function of (the pure time lag of Hess and Soom 1990).
+//       velocity of a movement's first row until then, if it does not follow on from another. What
+//       friction that follows its velocity late is a function of (the pure time lag of Hess and
+//       Soom 1990).
 //   sgn_v_lag20 ...  the velocity's sign through a first-order filter of 20 ms (and so on), from
 //       the sign in a movement's first row. What friction is that settles on its value so late.
 //
@@ -128,8 +129,10 @@ class LateChannel {
   std::string name() const;
   std::string recipe() const;
   std::string unit(const std::string& velocity_unit) const;
-  // time in s; starts anew with every movement. A clock tells the time between rows no better than
-  // 10 us: a file whose time counts from 1970 gives the same values as one that counts from 0.
+  // time in s; starts anew with every movement but one that goes on where the one before it ended,
+  // as strokes of one motion do: their late friction is where they begin. A clock tells the time
+  // between rows no better than 10 us: a file whose time counts from 1970 gives the same values as
+  // one that counts from 0.
   std::vector<double> values(std::span<const double> v, std::span<const double> time,
                              std::span<const int> movement) const;
   // Row by row: its start_movement() and next(v, dt_s).

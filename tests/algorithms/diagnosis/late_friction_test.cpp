@@ -55,5 +55,42 @@ TEST(LateFriction, OfAFilterIsALagAndNoPreslidingBeside) {
   }
 }
 
+// Strokes of half a sine one way and the other, every third of three halves, as one motion.
+Observations late_strokes(std::uint64_t seed) {
+  constexpr double kStroke_s = 0.004;
+  constexpr double kTimeConstant_s = 0.03;
+  RandomStream random(seed);
+  std::string text = "movement,time_s,position_rad,velocity_rad_s,acceleration_rad_s2,";
+  text += "friction_torque_Nm\n";
+  double begin = 0;
+  for (int m = 0; m < 60; ++m) {
+    const double s = m % 2 == 0 ? 1 : -1;
+    const double w = random.uniform(1, 3);
+    const double size = random.uniform(0.2, 0.5);
+    const int rows = static_cast<int>((m % 3 == 0 ? 3 : 1) * std::numbers::pi / w / kStroke_s);
+    double late = -11 * s;
+    for (int i = 1; i < rows; ++i) {
+      const double t = i * kStroke_s;
+      const double v = s * size * w * std::sin(w * t);
+      const double friction = (v > 0 ? 11 : -11) + 6 * v;
+      late = friction + (late - friction) * std::exp(-kStroke_s / kTimeConstant_s);
+      text += fmt::format("{},{},{},{},{},{}\n", m, begin + t, -s * size * std::cos(w * t), v,
+                          s * size * w * w * std::cos(w * t), late + 0.4 * random.normal());
+    }
+    begin += rows * kStroke_s;
+  }
+  return observe(parse_csv(text, "late.csv").data);
+}
+
+// Late friction of strokes is where they begin: with a memory that began anew there it was
+// presliding in another shape, a lag and a curve of the speed.
+TEST(LateFriction, GoesOnFromStrokeToStroke) {
+  for (const std::uint64_t seed : {17U, 18U}) {
+    const Diagnosis diagnosis = diagnose(late_strokes(seed), coulomb_viscous_base, {});
+    EXPECT_EQ(families(diagnosis), std::vector<std::string>{"lag"}) << seed;
+    EXPECT_EQ(diagnosis.verdict, Verdict::effects) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace tribench::loop

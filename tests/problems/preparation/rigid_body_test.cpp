@@ -86,5 +86,27 @@ TEST(RigidBody, WhatChangeOfTheAccelerationTheTorqueWouldShow) {
   EXPECT_NEAR(*visible, 0.1 / 2, 0.02);
 }
 
+// Friction of 4 that turns 0.1 s after the motion goes against the acceleration, by more than an
+// inertia of 0.3 goes with it.
+TEST(RigidBody, LateFrictionHidesNoInertia) {
+  Dataset data = lifted(true);
+  RandomStream random(6);
+  data.channels[0].unit = "m";
+  Channel time{"t", "s", Role::time, {}};
+  Channel acceleration{"a", "m/s^2", Role::acceleration, {}};
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    const double t = 0.001 * static_cast<double>(i);
+    time.values.push_back(t);
+    acceleration.values.push_back(0.6 * 4 * std::cos(2 * t));
+    const double late = std::sin(2 * (t - 0.1)) > 0 ? 4 : -4;
+    data.channels[2].values[i] = late + 0.3 * acceleration.values.back() + 0.1 * random.normal();
+  }
+  data.channels.push_back(time);
+  data.channels.push_back(acceleration);
+  const std::optional<double> visible = visible_acceleration(data);
+  ASSERT_TRUE(visible);
+  EXPECT_NEAR(*visible, 0.1 / 0.3, 0.07);
+}
+
 }  // namespace
 }  // namespace tribench
