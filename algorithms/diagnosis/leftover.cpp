@@ -93,6 +93,7 @@ class LeftoverSearch {
                            LoopModel& model);
   bool explains_more_than_is_left(const FittedModel& rest) const;
   bool remembers(std::size_t family) const;
+  bool absorbs_a_defect(std::size_t family) const;
   Found* home_of(const std::vector<std::string>& inputs, std::size_t end, double nats);
 
   SearchState& state() { return result_.state; }
@@ -343,22 +344,26 @@ bool LeftoverSearch::drop_if_superfluous(const Smoother& smoother, std::size_t f
   return true;
 }
 
+// Whether a family asked for more columns than an effect has, as many harmonics absorb a defect at
+// one place (specification, 11.6). A curve of the speed or of what the motion was before that asks
+// for more is that curve in another shape.
+bool LeftoverSearch::absorbs_a_defect(std::size_t family) const {
+  if (std::ranges::count(result_.state.asked_more, family) == 0) return false;
+  const std::vector<std::string> inputs = inputs_of(family, model().model, campaign_.data);
+  return inputs != std::vector<std::string>{"v"} && !remembers(family);
+}
+
 // A family that the leftover's smoother makes superfluous is a proxy of what is left over, unless
 // it explains more than that: the smoother in v takes the place of any effect of v, the true one
 // too. What is left over is what the whole model leaves, and its proxies have to explain less
 // together: each one dropped leaves more for the smoother, which would make the next one look
-// superfluous. A family that asked for more columns than an effect has is not excused
-// (specification, 11.6: a defect at one place is absorbed by many harmonics), but for a curve of
-// the speed alone: that is the curve in another shape.
+// superfluous. A family that absorbs a defect is not excused.
 void LeftoverSearch::drop_proxies(const Smoother& smoother) {
   LoopModel model = this->model().model;
   bool dropped = false;
   for (const bool excused : {false, true}) {
     for (const std::size_t family : state().families()) {
-      const bool asked_more = std::ranges::count(state().asked_more, family) > 0;
-      const bool absorbs = asked_more && inputs_of(family, this->model().model, campaign_.data) !=
-                                             std::vector<std::string>{"v"};
-      if (absorbs == excused) continue;
+      if (absorbs_a_defect(family) == excused) continue;
       dropped = drop_if_superfluous(smoother, family, excused, model) || dropped;
     }
     if (!excused && dropped) {
