@@ -105,11 +105,15 @@ std::string error_sentence(const LoopRecord& record) {
   return text + '.' + motion_sentence(record);
 }
 
+bool is_very_sure(const LoopEffect& effect) {
+  return known(effect.chosen_share) && effect.chosen_share >= kVerySure;
+}
+
 std::string grade_of(const LoopEffect& effect) {
   if (!effect.objection.empty()) return "not physical";
   if (effect.provisional) return "provisional";
   if (!known(effect.chosen_share)) return "passes the test";
-  if (effect.chosen_share >= kVerySure) return "very sure";
+  if (is_very_sure(effect)) return "very sure";
   if (effect.chosen_share >= kSure) return "sure";
   return "likely";
 }
@@ -132,7 +136,10 @@ std::vector<std::string> doubts_of(const LoopRecord& record, const LoopEffect& e
     all.push_back("It shares an input with what is still unexplained.");
   }
   if (effect.another_shape) all.push_back("This cause, but another curve than those known.");
-  if (effect.few_movements) all.push_back("Few movements carry it: record more.");
+  // That searches without some of them find it all the same says more than their number.
+  if (effect.few_movements && !is_very_sure(effect)) {
+    all.push_back("Few movements carry it: record more.");
+  }
   return all;
 }
 

@@ -124,22 +124,25 @@ namespace {
 // Whether a movement that begins in row i goes on where the one before it ended, a row or two at
 // standstill left out: strokes of one motion.
 bool follows_on(std::size_t i, std::span<const double> time) {
-  constexpr double kFewSteps = 3.5;  // as the one before it
+  constexpr double kOneStep = 0.5;  // at least, of the one before it: less is laid end to end
+  constexpr double kFewSteps = 3.5;
   if (i < 2) return false;
   const double step = time[i] - time[i - 1];
-  return step > 0 && step <= kFewSteps * (time[i - 1] - time[i - 2]);
+  const double before = time[i - 1] - time[i - 2];
+  return step >= kOneStep * before && step <= kFewSteps * before;
 }
 
 }  // namespace
 
 std::vector<double> LateChannel::values(std::span<const double> v, std::span<const double> time,
-                                        std::span<const int> movement) const {
+                                        std::span<const int> movement, MovementOrder order) const {
   std::vector<double> late;
   auto memory_of_either = memory();
   std::visit(
       [&](auto& of) {
         for (std::size_t i = 0; i < v.size(); ++i) {
-          const bool starts = i == 0 || (movement[i] != movement[i - 1] && !follows_on(i, time));
+          const bool starts = i == 0 || (movement[i] != movement[i - 1] &&
+                                         (order == MovementOrder::unknown || !follows_on(i, time)));
           if (starts) of.start_movement();
           late.push_back(of.next(v[i], starts ? 0 : rounded_step(time[i] - time[i - 1])));
         }

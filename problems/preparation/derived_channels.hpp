@@ -117,6 +117,9 @@ inline constexpr std::array<int, 5> kLags_ms = {30, 42, 60, 85, 120};
 // Two apart: a filter between two is their sum but for 3 %.
 inline constexpr std::array<int, 3> kSettling_ms = {20, 40, 80};
 
+// Whether movements that stand one after the other came so.
+enum class MovementOrder { told, unknown };
+
 // What late friction is a function of: v_lag30 ..., sgn_v_lag20 ...
 class LateChannel {
  public:
@@ -134,7 +137,7 @@ class LateChannel {
   // between rows no better than 10 us: a file whose time counts from 1970 gives the same values as
   // one that counts from 0.
   std::vector<double> values(std::span<const double> v, std::span<const double> time,
-                             std::span<const int> movement) const;
+                             std::span<const int> movement, MovementOrder order) const;
   // Row by row: its start_movement() and next(v, dt_s).
   std::variant<TimeLag, SettlingSign> memory() const;
 

@@ -152,7 +152,7 @@ void add_time_since_start(Observations& data) {
 
 // To first order a late velocity differs from the velocity by the acceleration: without one, an
 // inertia that the data do not hold would pass for late friction.
-void add_late_channels(Observations& data) {
+void add_late_channels(Observations& data, MovementOrder order) {
   const Signal* t = data.find("t");
   if (t == nullptr || t->unit != "s" || data.find("a") == nullptr) return;
   const std::vector<double> time = t->values;
@@ -160,7 +160,7 @@ void add_late_channels(Observations& data) {
   for (const LateChannel& late : LateChannel::all()) {
     if (data.find(late.name()) != nullptr) continue;  // told before rows were cut
     data.signals.push_back({late.name(), v.channel, late.unit(v.unit), Role::none, late.recipe(),
-                            late.values(v.values, time, data.movement)});
+                            late.values(v.values, time, data.movement, order)});
   }
 }
 
@@ -475,7 +475,7 @@ Observations observe(const Dataset& data, const ObservationOptions& options) {
   smooth_temperature(out);
   add_distance(out);
   if (!options.steady) add_time_since_start(out);
-  add_late_channels(out);
+  add_late_channels(out, options.unordered ? MovementOrder::unknown : MovementOrder::told);
   out.time = out.find("t")->values;
   check_moving(out);
   if (options.unordered) out.take_away("t", "the movements' order says nothing");

@@ -176,8 +176,9 @@ void add_late_channels(PreparedRecording& out) {
   const Channel v = *find_channel(out.data, Role::velocity);
   const std::vector<double> time = find_channel(out.data, Role::time)->values;
   for (const loop::LateChannel& late : loop::LateChannel::all()) {
-    out.data.channels.push_back({loop::derived_channel_name(late.name()), late.unit(v.unit),
-                                 Role::none, late.values(v.values, time, out.data.movement)});
+    out.data.channels.push_back(
+        {loop::derived_channel_name(late.name()), late.unit(v.unit), Role::none,
+         late.values(v.values, time, out.data.movement, loop::MovementOrder::told)});
   }
 }
 

@@ -203,32 +203,37 @@ double torque_noise(const std::vector<double>& torque, std::size_t rows_each) {
   return kMadToSd * upper_median_magnitude(std::move(bends)) / std::sqrt(6.0);
 }
 
-// The column's coefficient, where the rows (of `only`, if it is not empty) surely tell it.
-std::optional<double> sure_coefficient(const Dataset& data, const Channel& torque,
-                                       Eigen::Index column, const std::vector<char>& only) {
-  constexpr double kSurely = 5;  // standard errors
+struct Coefficient {
+  double value = 0;
+  double error = 0;
+};
+
+// A column's, told by the rows (of `only`, if it is not empty).
+std::optional<Coefficient> coefficient_of(const Dataset& data, const Channel& torque,
+                                          Eigen::Index column, const std::vector<char>& only) {
   const std::vector<double>& v = data.find(Role::velocity)->values;
   Rows rows = rows_of(data, torque, load_columns(data), kCreeping * top_speed(v), only);
   if (rows.places.size() < kFewestFitRows) return {};
   fill_load_columns(data, rows, rows.base);
   const Fit fit = least_squares(rows.x, rows.y);
-  if (!(fit.coefficients(column) > kSurely * fit.errors(column))) return {};
-  return fit.coefficients(column);
+  return Coefficient{fit.coefficients(column), fit.errors(column)};
 }
 
 // The change of a column that the torque would show: its noise over the column's coefficient.
-// Friction that comes late goes against the acceleration after every reversal: the rows that it has
-// left behind are asked first, the others where those do not tell.
+// Friction that comes late goes against the acceleration after every reversal: where an inertia
+// comes out negative by it, the rows that it has left behind are asked.
 std::optional<double> visible_change(const Dataset& data, const Channel* torque,
                                      Eigen::Index column) {
+  constexpr double kSurely = 5;         // standard errors
   constexpr std::size_t kMeans = 6000;  // that a diagnosis averages a recording to
   if (torque == nullptr || !data.find(Role::velocity)) return {};
-  std::optional<double> size;
-  if (data.find(Role::time)) size = sure_coefficient(data, *torque, column, settled_rows(data));
-  if (!size) size = sure_coefficient(data, *torque, column, {});
-  if (!size) return {};
+  std::optional<Coefficient> size = coefficient_of(data, *torque, column, {});
+  if (size && size->value < 0 && data.find(Role::time)) {
+    size = coefficient_of(data, *torque, column, settled_rows(data));
+  }
+  if (!size || !(size->value > kSurely * size->error)) return {};
   const std::size_t rows_each = std::max<std::size_t>(1, data.rows() / kMeans);
-  return torque_noise(torque->values, rows_each) / *size;
+  return torque_noise(torque->values, rows_each) / size->value;
 }
 
 }  // namespace

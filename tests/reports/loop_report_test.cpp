@@ -125,6 +125,9 @@ TEST(LoopWords, SayWhatSpeaksAgainstAFinding) {
   EXPECT_THAT(words.error, HasSubstr("do not confirm"));
   EXPECT_EQ(words.cards[0].grade, "likely");
   EXPECT_THAT(words.cards[0].doubts, ::testing::Contains(HasSubstr("Few movements")));
+  record.effects[0].chosen_share = 1;
+  EXPECT_THAT(loop_words(record).cards[0].doubts,
+              ::testing::Not(::testing::Contains(HasSubstr("Few movements"))));
   EXPECT_EQ(words.cards[1].grade, "not physical");
   EXPECT_THAT(words.cards[1].doubts, ::testing::Contains(HasSubstr("above 20 %")));
   EXPECT_EQ(words.cards[1].rivals, "These data cannot tell it from sensor offset.");
