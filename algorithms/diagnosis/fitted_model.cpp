@@ -66,17 +66,20 @@ std::vector<Eigen::Index> columns_of_base(const LoopModel& model) {
   return columns;
 }
 
-Eigen::MatrixXd told_part(Eigen::MatrixXd x, const LoopModel& model, const Clusters& clusters) {
-  for (const Eigen::Index j : columns_of_base(model)) {
-    if (is_told_by_one_fold(x.col(j), clusters)) x.col(j).setZero();
-  }
-  return x;
+std::vector<Eigen::Index> untold_columns(const Eigen::MatrixXd& tangent, const LoopModel& model,
+                                         const Clusters& clusters) {
+  std::vector<Eigen::Index> columns = columns_of_base(model);
+  std::erase_if(columns,
+                [&](Eigen::Index j) { return !is_told_by_one_fold(tangent.col(j), clusters); });
+  return columns;
 }
 
 }  // namespace
 
 Eigen::MatrixXd told_tangent(const LoopModel& model, const Campaign& campaign) {
-  return told_part(tangent(model, campaign.data), model, campaign.clusters);
+  Eigen::MatrixXd x = tangent(model, campaign.data);
+  for (const Eigen::Index j : untold_columns(x, model, campaign.clusters)) x.col(j).setZero();
+  return x;
 }
 
 FittedModel fit_in_its_noise(LoopModel model, const Campaign& campaign, FitScope scope) {
@@ -109,11 +112,14 @@ FittedModel fit_in_its_noise(LoopModel model, const Campaign& campaign, FitScope
     safe = whitening_is_safe(model, data, clusters, noise);
     plainly = !safe;
   }
-  const Eigen::MatrixXd whole = tangent(model, data);
-  out.raw_tangent = told_part(whole, model, clusters);
+  out.raw_tangent = tangent(model, data);
   out.raw_residual = target_vector(data) - predict(model, data);
   out.x = whitened(out.raw_tangent, clusters, noise);
-  out.basis = orthonormal_basis(whitened(whole, clusters, noise));
+  out.basis = orthonormal_basis(out.x);
+  for (const Eigen::Index j : untold_columns(out.raw_tangent, model, clusters)) {
+    out.raw_tangent.col(j).setZero();
+    out.x.col(j).setZero();
+  }
   out.residual = project_off(whitened(out.raw_residual, clusters, noise), out.basis);
   out.grams = stretch_grams(out.x, out.residual, clusters);
   out.losses = held_out_losses(out.grams, clusters, noise);

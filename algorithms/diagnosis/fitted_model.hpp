@@ -26,8 +26,8 @@ struct FittedModel {
 
 // The tangent, with zeros for those constants of the base that one fold alone tells: how well they
 // predict elsewhere nobody can say, and they stay as they are fitted. A base's curve that is not
-// there in the data can go anywhere (a power of the speed that rises within two rows), and no
-// effect could be judged beside it.
+// there in the data can go anywhere (a Stribeck curve that falls within a row), and no effect could
+// be judged beside it.
 Eigen::MatrixXd told_tangent(const LoopModel& model, const Campaign& campaign);
 
 // Noise and coefficients in turn. scope: what is fitted besides the coefficients.

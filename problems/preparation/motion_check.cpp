@@ -375,8 +375,7 @@ std::optional<std::string> remark_on_turns(const DataFile& file) {
   if (position.unit_from == "--roles") return std::nullopt;
   return fmt::format(
       "'{0}' ranges over {1:.3g} turns, taken for the joint's: if they are the motor's, say "
-      "--roles "
-      "'{0}=position[{2}@motor]' with --gear-ratio (and so of the velocity)",
+      "--roles '{0}=position[{2}@motor]' with --gear-ratio (and so of the velocity)",
       position.column, turns, position.unit);
 }
 
