@@ -115,7 +115,7 @@ std::optional<Candidate> Rescue::of(std::size_t family) {
     if (!(carriers(round_, k, model_, campaign_) < kFewClusters)) continue;
     Eigen::VectorXd losses = losses_with_own_offsets(k, filtered(), model_, campaign_);
     const Gain gain = paired_gain(model_.losses + offsets, losses);
-    if (!(gain.nats > kRescueGain && gain.nats > kRescueErrors * gain.error)) continue;
+    if (!(gain.nats > kRescueGain && is_more_than_error(gain))) continue;
     if (!best || gain.nats > best->gain.nats) {
       losses -= offsets;
       best = {family, k, gain, std::move(losses), true};

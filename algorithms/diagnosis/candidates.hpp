@@ -15,8 +15,9 @@ namespace tribench::loop {
 
 // Up to this p a family carried by few clusters may be rescued by its gain (specification, 6.4).
 inline constexpr double kRescueP = 0.15;
-// So many standard errors its gain has to be.
+// So many standard errors its gain has to be, or so many where no cluster counts for much.
 inline constexpr double kRescueErrors = 2;
+inline constexpr double kRescueErrorsSteadily = 3;
 // Up to this p a family is a rival of the one that was taken.
 inline constexpr double kNearAliasP = 0.05;
 inline constexpr double kExactCorrelation = 0.995;
@@ -28,6 +29,11 @@ struct Candidate {
   Eigen::VectorXd losses;
   bool rescued = false;  // carried by few clusters, admitted by its gain
 };
+
+// Whether its gain alone may admit what few movements carry.
+inline bool is_more_than_error(const Gain& gain) {
+  return gain.nats > kRescueErrors * gain.error || gain.steadily > kRescueErrorsSteadily;
+}
 
 // The family's atom that predicts best beside the model. None where none can be judged: none is
 // testable, or the folds of the cross-validation do not know its columns.

@@ -24,7 +24,6 @@ namespace {
 
 constexpr double kNormalQuantile = 1.959964;
 constexpr std::size_t kEnoughMovements = 20;
-constexpr double kLargeVif = 10;
 
 // Sandwich covariance of the tangent's parameters, clusters being the movements where there are
 // enough of them, else the stretches.
@@ -116,27 +115,6 @@ std::vector<std::string> notes_of(const EffectFinding& finding) {
     notes.emplace_back("carried by few movements: record more of them (R5, R7)");
   }
   return notes;
-}
-
-// Whether little of the effect's torque, beside what the base can do, is left beside the other
-// effects: the variance inflation of the effect as a whole.
-bool is_told_by_others(std::size_t family, const FittedModel& fit, const Campaign& campaign) {
-  if (!campaign.options.has("cancelling")) return false;
-  const LoopModel& model = fit.model;
-  const auto base = static_cast<Eigen::Index>(model.first_column(0));
-  Eigen::MatrixXd rest = fit.x.leftCols(base);
-  const Eigen::MatrixXd base_basis = orthonormal_basis(rest);
-  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
-    if (model.atoms[k].family == family) continue;
-    rest = beside(rest, fit.x.middleCols(static_cast<Eigen::Index>(model.first_column(k)),
-                                         static_cast<Eigen::Index>(model.atoms[k].columns.size())));
-  }
-  if (rest.cols() == base) return false;
-  const Eigen::MatrixXd torque =
-      whitened(contribution(model, family, campaign.data), campaign.clusters, fit.noise);
-  const double own = project_off(torque, orthonormal_basis(rest)).squaredNorm();
-  const double all = project_off(torque, base_basis).squaredNorm();
-  return own * kLargeVif < all;
 }
 
 // An effect's torque without what the base can do as well: how the two share that is no news, and

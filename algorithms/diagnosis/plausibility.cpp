@@ -129,4 +129,23 @@ std::string physical_objection(const EffectFinding& finding, const LoopModel& mo
   return {};
 }
 
+bool is_told_by_others(std::size_t family, const FittedModel& fit, const Campaign& campaign) {
+  if (!campaign.options.has("cancelling")) return false;
+  const LoopModel& model = fit.model;
+  const auto base = static_cast<Eigen::Index>(model.first_column(0));
+  Eigen::MatrixXd rest = fit.x.leftCols(base);
+  const Eigen::MatrixXd base_basis = orthonormal_basis(rest);
+  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
+    if (model.atoms[k].family == family) continue;
+    rest = beside(rest, fit.x.middleCols(static_cast<Eigen::Index>(model.first_column(k)),
+                                         static_cast<Eigen::Index>(model.atoms[k].columns.size())));
+  }
+  if (rest.cols() == base) return false;
+  const Eigen::MatrixXd torque =
+      whitened(contribution(model, family, campaign.data), campaign.clusters, fit.noise);
+  const double own = project_off(torque, orthonormal_basis(rest)).squaredNorm();
+  const double all = project_off(torque, base_basis).squaredNorm();
+  return own * kLargeVif < all;
+}
+
 }  // namespace tribench::loop

@@ -3,7 +3,7 @@
 // Whether an effect, as it was fitted, can be what its name says. Internal to the room.
 #pragma once
 
-#include "algorithms/diagnosis/campaign.hpp"
+#include "algorithms/diagnosis/fitted_model.hpp"
 
 namespace tribench::loop {
 
@@ -11,6 +11,13 @@ namespace tribench::loop {
 // cause draws: beside Coulomb and viscous friction two families can draw the same curve, told apart
 // by whether friction falls. Nothing where the options ask for no physics.
 bool stands_for_another_cause(const LoopModel& model, const Campaign& campaign);
+
+// So little is its own that effects may cancel each other (Marquardt 1970).
+inline constexpr double kLargeVif = 10;
+
+// Whether little of the effect's torque, beside what the base can do, is left beside the other
+// effects: the variance inflation of the effect as a whole.
+bool is_told_by_others(std::size_t family, const FittedModel& fit, const Campaign& campaign);
 
 // What an effect's parameters say against its being physical; empty where nothing. model: in which
 // the effect is that of `family`, whose description is `known`.

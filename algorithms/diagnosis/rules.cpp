@@ -26,7 +26,7 @@ constexpr std::array kRules = {
     Rule{"shape_of_leftover", "a leftover in the inputs of a larger effect is its shape"},
     Rule{"last_resort", "rare effects are looked for where the usual ones leave something over"},
     Rule{"unknown_ripple", "waves of any length in the position are looked for in the leftover"},
-    Rule{"cancelling", "what the other effects together can tell is provisional"},
+    Rule{"cancelling", "what the other effects together can tell gives way or is provisional"},
     Rule{"shaking", "what goes with what shakes the joint and not with its motion is no effect"},
     Rule{"local_defect",
          "ripples and loads that one bump in the position predicts better are dropped"},

@@ -51,7 +51,8 @@ bool add(SearchState& state, const Candidate& winner, const Round& round,
   // What its gain alone admits has to have it still once its shapes are fitted.
   if (winner.rescued || !(winner.gain.nats > winner.gain.error)) {
     const Gain fitted = gain_of({winner.family}, extended, campaign);
-    if (!(fitted.nats > (winner.rescued ? kRescueErrors : 1) * fitted.error)) return false;
+    const bool has_it = winner.rescued ? is_more_than_error(fitted) : fitted.nats > fitted.error;
+    if (!has_it) return false;
   }
   if (stands_for_another_cause(extended.model, campaign)) return false;
   if (goes_with_shaking(extended, winner.family, campaign)) return false;
@@ -230,22 +231,48 @@ SearchResult Searches::named(SearchResult out) const {
   return out;
 }
 
+// The families of a search's end that the others together can tell as well.
+std::vector<std::size_t> told_by_others(const SearchResult& end, const Campaign& campaign) {
+  std::vector<std::size_t> all = end.taken;
+  std::erase_if(
+      all, [&](std::size_t family) { return !is_told_by_others(family, end.whole, campaign); });
+  return all;
+}
+
+std::size_t fitted_parameters(const LoopModel& model) {
+  std::size_t count = 0;
+  for (const Atom& atom : model.atoms) {
+    count += atom.columns.size();
+    count += static_cast<std::size_t>(std::ranges::count_if(atom.shapes, &Shape::refined));
+  }
+  return count;
+}
+
 // The effect that is taken first stands for what others share with it, and the right ones may find
 // too little left. Where something is left over in the end, the search begins again without it:
-// what then predicts better and leaves nothing over is taken.
+// what then predicts better and leaves nothing over is taken. So it does where effects can tell
+// each other: fewer that cannot, and predict no worse, are the simpler story.
 SearchResult begin_otherwise(SearchResult one, Searches& searches, const Campaign& campaign) {
-  if (one.leftover.inputs.empty() || one.taken.empty()) return one;
-  const SearchStart how = {.left_out = {one.taken.front()}};
+  if (one.taken.empty()) return one;
+  const bool leaves_something = !one.leftover.inputs.empty();
+  const std::vector<std::size_t> cancelling = told_by_others(one, campaign);
+  if (!leaves_something && cancelling.empty()) return one;
+  SearchStart how;
+  how.left_out = leaves_something ? std::vector{one.taken.front()} : cancelling;
   SearchResult other = searches.end_of(how);
   one.tried.insert(other.tried.begin(), other.tried.end());
-  const auto predicts_better = [&](const FittedModel& model) {
-    return lead_over(one.whole, model, campaign).nats > 0;
+  const auto is_better = [&](const FittedModel& model) {
+    const Gain lead = lead_over(one.whole, model, campaign);
+    const bool is_simpler =
+        !cancelling.empty() && fitted_parameters(model.model) < fitted_parameters(one.whole.model);
+    return lead.nats > (is_simpler ? -lead.error : 0);
   };
   // What gives way to its leftover makes it no better: most need not be asked for that.
-  if (!predicts_better(other.whole)) return one;
+  if (!is_better(other.whole)) return one;
   searches.look_for_leftover(other, how);
   if (!other.leftover.inputs.empty() || other.state.found.empty()) return one;
-  if (!predicts_better(other.state.model)) return one;
+  if (!is_better(other.state.model)) return one;
+  if (!leaves_something && !told_by_others(other, campaign).empty()) return one;
   other.tried = one.tried;
   return other;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/inference/cross_validation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -131,15 +132,23 @@ Eigen::VectorXd held_out_losses(const Eigen::MatrixXd& x, const Eigen::VectorXd&
   return held_out_losses(stretch_grams(x, y, clusters), clusters, noise, penalised, ridge);
 }
 
+namespace {
+
+// The standard error of the sum of what the clusters gain.
+double error_of_sum(const Eigen::VectorXd& gains) {
+  const auto count = static_cast<double>(gains.size());
+  const double squares = (gains.array() - gains.mean()).square().sum();
+  return count > 1 ? std::sqrt(squares / (count - 1) * count) : 0;
+}
+
+}  // namespace
+
 Gain paired_gain(const Eigen::VectorXd& losses_before, const Eigen::VectorXd& losses_after) {
-  const Eigen::VectorXd difference = losses_before - losses_after;
-  const auto count = static_cast<double>(difference.size());
-  Gain gain;
-  gain.nats = difference.sum();
-  const double mean = gain.nats / count;
-  const double squares = (difference.array() - mean).square().sum();
-  gain.error = count > 1 ? std::sqrt(squares / (count - 1) * count) : 0;
-  return gain;
+  const Eigen::VectorXd gains = losses_before - losses_after;
+  const Eigen::VectorXd bounded = gains.cwiseMax(-kMostOfOneCluster).cwiseMin(kMostOfOneCluster);
+  // Where every cluster gains as much as counts there is no error.
+  const double error = std::max(error_of_sum(bounded), std::numeric_limits<double>::min());
+  return {gains.sum(), error_of_sum(gains), gains.size() > 1 ? bounded.sum() / error : 0};
 }
 
 }  // namespace tribench::loop

@@ -42,9 +42,15 @@ Eigen::VectorXd held_out_losses(const Eigen::MatrixXd& x, const Eigen::VectorXd&
                                 const Clusters& clusters, const Noise& noise,
                                 Eigen::Index penalised = 0, double ridge = 0);
 
+// So much a cluster counts for at most in what a gain is steadily.
+inline constexpr double kMostOfOneCluster = 12;  // nats
+
 struct Gain {
   double nats = 0;
   double error = 0;  // standard error over the clusters
+  // How many standard errors it is where no cluster counts for more than kMostOfOneCluster either
+  // way: of a sum that a few clusters make, those few are the error, too.
+  double steadily = 0;
 };
 
 // What the second model gains over the first.

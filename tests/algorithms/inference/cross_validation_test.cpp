@@ -112,10 +112,26 @@ TEST(PairedGain, IsASumWithItsStandardError) {
   EXPECT_DOUBLE_EQ(gain.error, 2);
 }
 
+// Two movements gain hundreds, which makes the error as large as the gain; the others gain, too.
+TEST(PairedGain, IsSteadyWhereManyGainWhateverAFewDo) {
+  Eigen::VectorXd gains = Eigen::VectorXd::Constant(40, 2);
+  gains[0] = 600;
+  gains[20] = 500;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(40);
+  const Gain many = paired_gain(gains, none);
+  EXPECT_LT(many.nats, 2 * many.error);
+  EXPECT_GT(many.steadily, 6);
+  gains = gains.cwiseProduct((gains.array() < 100).select(none.array(), 1).matrix());
+  EXPECT_LT(paired_gain(gains, none).steadily, 2);
+  EXPECT_LT(paired_gain(none, gains).steadily, 0);
+  EXPECT_GT(paired_gain(Eigen::VectorXd::Constant(40, 50), none).steadily, 1e9);
+}
+
 TEST(PairedGain, OfOneStretchHasNoErrorToKnow) {
   const Gain gain = paired_gain(Eigen::VectorXd::Constant(1, 3.5), Eigen::VectorXd::Constant(1, 2));
   EXPECT_EQ(gain.nats, 1.5);
   EXPECT_EQ(gain.error, 0);
+  EXPECT_EQ(gain.steadily, 0);
 }
 
 }  // namespace
