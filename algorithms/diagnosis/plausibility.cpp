@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "algorithms/inference/whitening.hpp"
+
 namespace tribench::loop {
 namespace {
 
