@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "algorithms/diagnosis/round.hpp"
+#include "algorithms/campaign/round.hpp"
 
 namespace tribench::loop {
 

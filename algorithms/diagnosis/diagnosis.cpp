@@ -8,12 +8,12 @@
 #include <numbers>
 #include <span>
 
+#include "algorithms/campaign/rich_model.hpp"
 #include "algorithms/diagnosis/findings.hpp"
-#include "algorithms/diagnosis/rich_model.hpp"
 #include "algorithms/diagnosis/search.hpp"
-#include "algorithms/diagnosis/unknown_ripple.hpp"
-#include "algorithms/diagnosis/varying_terms.hpp"
 #include "algorithms/inference/bursts.hpp"
+#include "algorithms/leftover/unknown_ripple.hpp"
+#include "algorithms/leftover/varying_terms.hpp"
 #include "foundation/error.hpp"
 #include "foundation/suggestion.hpp"
 #include "problems/preparation/canonical.hpp"
@@ -78,16 +78,6 @@ std::vector<char> usable_rows(const Observations& data, const std::vector<int>& 
     keep[i] = is_in == in_them && long_enough && (masked.empty() || masked[i] == 0) ? 1 : 0;
   }
   return keep;
-}
-
-void require_enough_flips(const DiagnosisOptions& options) {
-  const double level = std::min(options.alpha_library, options.alpha_leftover);
-  // A millionth: of a level that has no exact decimal.
-  const auto fewest = static_cast<std::size_t>(std::ceil((1 - 1e-6) / level)) - 1;
-  if (options.flips >= fewest) return;
-  throw_bad_input(fmt::format("{} sign flips reach no level below {:.2g}, and {} is asked for",
-                              options.flips, 1 / (1.0 + static_cast<double>(options.flips)), level),
-                  "flips", fmt::format("take {} or more, or a higher level", fewest));
 }
 
 std::string_view verdict_name(Verdict verdict) {
@@ -185,7 +175,7 @@ Diagnosis diagnose_canonical(const Observations& data, const std::vector<int>& h
   const RandomStream own = random.split("search");
   const Campaign campaign(train, out.families, options, clusters, own.split("flips"));
   SearchResult found = search(base, campaign, own, known);
-  find_varying_term(found, train_rich, campaign, own.split("random slopes"));
+  find_varying_term(found.state, found.leftover, train_rich, campaign, own.split("random slopes"));
   write_findings(out, found, campaign);
   return out;
 }

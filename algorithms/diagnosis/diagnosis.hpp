@@ -14,7 +14,10 @@
 #include <string_view>
 #include <vector>
 
+#include "algorithms/campaign/findings.hpp"
+#include "algorithms/campaign/options.hpp"
 #include "algorithms/inference/noise.hpp"
+#include "algorithms/leftover/leftover_finding.hpp"
 #include "algorithms/loop_model/loop_model.hpp"
 #include "foundation/random.hpp"
 
@@ -22,30 +25,6 @@ namespace tribench::loop {
 
 // Shorter movements are left out.
 inline constexpr std::size_t kFewestRowsOfMovement = 5;
-
-struct DiagnosisOptions {
-  double alpha_library = 0.003;
-  double alpha_leftover = 0.002;
-  std::size_t flips = 1999;
-  // The paper's own raw data hold seven at once: both branches, their curvature, three terms of the
-  // load and two ripples.
-  std::size_t max_effects = 8;
-  // Empty: the usual ratios are scanned, and the scan is paid for in the statistics.
-  std::vector<double> gear_ratios;
-  bool physical_vetoes = true;
-  std::vector<EffectFamily> learned;  // families beside the built-in ones
-  std::vector<std::string> families;  // to be tested; empty: all
-  std::vector<std::string> unnamed;   // looked for like others, but taken out in the end
-  std::vector<std::string> without;   // rules left out, to see what they are worth (rules.hpp)
-  // Whether the answer says which families look alike in these data (alias_map, aliased): not for
-  // searches of which only the effects are asked.
-  bool compares_families = true;
-  bool has(std::string_view rule) const { return std::ranges::count(without, rule) == 0; }
-};
-
-// Throws bad input where so few flips cannot reach a level that is asked for: the smallest p of n
-// flips is 1 / (n + 1), and above the level nothing would ever be found.
-void require_enough_flips(const DiagnosisOptions& options);
 
 // cannot_tell: nothing could be tested, neither the library nor what is left over; or something is
 // there that too few movements show.
@@ -58,15 +37,6 @@ struct ParameterFinding {
   double value = 0;
   double low = 0;  // 95 %
   double high = 0;
-};
-
-struct AliasFinding {
-  std::string family;
-  double correlation = 0;
-  double gain_difference = 0;
-  double error = 0;
-  bool exact = false;
-  std::string separate_by;
 };
 
 struct EffectFinding {
@@ -98,54 +68,6 @@ struct EffectFinding {
   // there are none.
   double chosen_share = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::string> notes;
-};
-
-struct CurvePoint {
-  double x = 0;
-  double y = 0;
-  double error = 0;
-};
-
-// What repeats along the position with a period that nobody has named.
-struct RepeatingFinding {
-  double wavenumber = 0;   // 2 pi over its length in rad or m: the gear's ratio were it the motor's
-  double mean_square = 0;  // of its torque, told on movements left out
-};
-
-// A term whose coefficient differs from movement to movement though no signal says why.
-struct VaryingFinding {
-  struct OfMovement {
-    int movement = 0;
-    std::string movement_name;
-    // Root mean square of its own part of the term, with the sign of the coefficient where the term
-    // has but one; in the target's unit.
-    double torque = 0;
-  };
-  std::string term;  // "coulomb_friction", "viscous_friction" or a family
-  double share = 0;  // of what is left about the movements' means: what it foretells of it
-  std::vector<OfMovement> movements;
-};
-
-struct LeftoverFinding {
-  double p = 1;
-  double gain = 0;  // nats that the best function of its inputs adds on movements left out
-  // Role names, or "movement" where it lives in no signal (varying); empty where nothing is left.
-  std::vector<std::string> inputs;
-  std::vector<std::string> signals;  // the same as signals; empty beside "movement"
-  // Without inputs it is a doubt: too few movements to be sure, too much to be passed over.
-  std::optional<VaryingFinding> varying;
-  bool is_in_doubt() const { return varying && inputs.empty(); }
-  std::optional<RepeatingFinding> repeating;
-  std::vector<std::string> proxies_removed;
-  std::vector<CurvePoint> curve;  // over the one input
-};
-
-struct UntestableFinding {
-  std::string family;
-  std::string reason;
-  double share = 0;
-  std::size_t clusters = 0;
-  std::string ask;
 };
 
 struct CoincidingFamilies {

@@ -12,11 +12,11 @@
 #include <span>
 
 #include "algorithms/diagnosis/plausibility.hpp"
-#include "algorithms/diagnosis/unknown_ripple.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/column_products.hpp"
 #include "algorithms/inference/score_test.hpp"
 #include "algorithms/inference/whitening.hpp"
+#include "algorithms/leftover/unknown_ripple.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
 
 namespace tribench::loop {
@@ -246,11 +246,11 @@ void doubt_stand_ins(Diagnosis& out) {
   }
 }
 
-Verdict verdict_of(const Diagnosis& diagnosis, bool leftover_tested) {
+Verdict verdict_of(const Diagnosis& diagnosis) {
   if (!diagnosis.leftover.inputs.empty()) return Verdict::unknown;
   if (!std::ranges::all_of(diagnosis.effects, &EffectFinding::stands_in)) return Verdict::effects;
   if (diagnosis.leftover.is_in_doubt()) return Verdict::cannot_tell;
-  const bool tested = leftover_tested || !diagnosis.candidates.empty();
+  const bool tested = diagnosis.leftover.tested || !diagnosis.candidates.empty();
   return tested ? Verdict::none : Verdict::cannot_tell;
 }
 
@@ -310,7 +310,7 @@ void write_findings(Diagnosis& out, const SearchResult& result, const Campaign& 
   }
   doubt_stand_ins(out);
   tell_offsets(out, campaign.data.target_unit);
-  out.verdict = verdict_of(out, result.leftover_tested);
+  out.verdict = verdict_of(out);
   if (out.verdict == Verdict::cannot_tell) out.needed = needed_to_tell(out);
 }
 

@@ -7,7 +7,8 @@
 
 #include <vector>
 
-#include "algorithms/diagnosis/round.hpp"
+#include "algorithms/campaign/round.hpp"
+#include "algorithms/diagnosis/diagnosis.hpp"
 
 namespace tribench::loop {
 

@@ -3,7 +3,8 @@
 // Whether an effect, as it was fitted, can be what its name says. Internal to the room.
 #pragma once
 
-#include "algorithms/diagnosis/fitted_model.hpp"
+#include "algorithms/campaign/fitted_model.hpp"
+#include "algorithms/diagnosis/diagnosis.hpp"
 
 namespace tribench::loop {
 

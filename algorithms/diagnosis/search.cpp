@@ -7,12 +7,12 @@
 #include <numeric>
 #include <utility>
 
+#include "algorithms/campaign/worth.hpp"
 #include "algorithms/diagnosis/candidates.hpp"
-#include "algorithms/diagnosis/leftover.hpp"
 #include "algorithms/diagnosis/plausibility.hpp"
 #include "algorithms/diagnosis/shaking.hpp"
-#include "algorithms/diagnosis/worth.hpp"
 #include "algorithms/inference/whitening.hpp"
+#include "algorithms/leftover/leftover.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -218,7 +218,7 @@ void Searches::look_for_leftover(SearchResult& end, const SearchStart& how) {
     end = known->second;
     return;
   }
-  find_leftover(end, campaign_, smoothers_);
+  end.leftover = find_leftover(end.state, campaign_, smoothers_);
   known_.leftovers.emplace(key, end);
 }
 
@@ -336,16 +336,6 @@ SearchResult go_further(SearchResult one, Searches& searches, const Campaign& ca
 
 }  // namespace
 
-std::vector<std::size_t> SearchState::families() const {
-  std::vector<std::size_t> all;
-  for (const Found& one : found) all.push_back(one.family);
-  return all;
-}
-
-void SearchState::note(std::string text) {
-  if (std::ranges::count(notes, text) == 0) notes.push_back(std::move(text));
-}
-
 SearchResult search(const BaseModel& base, const Campaign& campaign, RandomStream random,
                     KnownSearch& known) {
   Searches searches(base, campaign, random, known);
@@ -353,7 +343,7 @@ SearchResult search(const BaseModel& base, const Campaign& campaign, RandomStrea
     SearchResult out = searches.start();
     out.state.note("the base model leaves no residual");
     out.first.untestable = campaign.library.missing;
-    out.leftover_tested = true;
+    out.leftover.tested = true;
     return out;
   }
   SearchResult out = searches.end_of({});

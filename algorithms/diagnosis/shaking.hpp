@@ -12,7 +12,7 @@
 
 #include <cstddef>
 
-#include "algorithms/diagnosis/fitted_model.hpp"
+#include "algorithms/campaign/fitted_model.hpp"
 
 namespace tribench::loop {
 

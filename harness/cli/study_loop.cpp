@@ -10,7 +10,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "algorithms/diagnosis/rules.hpp"
+#include "algorithms/campaign/rules.hpp"
 #include "foundation/json_text.hpp"
 #include "harness/cli/choice_option.hpp"
 #include "harness/cli/number_options.hpp"

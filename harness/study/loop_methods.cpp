@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "algorithms/diagnosis/rules.hpp"
+#include "algorithms/campaign/rules.hpp"
 #include "harness/loop/bristles_of.hpp"
 #include "harness/loop/judged_diagnosis.hpp"
 

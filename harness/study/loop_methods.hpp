@@ -15,7 +15,7 @@ namespace tribench {
 using LoopMethod = std::function<LoopAnswer(const LoopCase&, const PlantedData&)>;
 
 // The closed loop itself, from Coulomb and viscous friction by direction, with rules left out to
-// see what they are worth (algorithms/diagnosis/rules.hpp); none: as it is. Throws Error
+// see what they are worth (algorithms/campaign/rules.hpp); none: as it is. Throws Error
 // (bad_input) where there is no such rule.
 LoopMethod diagnosis_without(std::vector<std::string> rules);
 

@@ -22,9 +22,9 @@ using Rooms = std::set<std::string>;
 // What a room may include besides itself. A method's room is "method:<folder>".
 const std::map<std::string, Rooms>& allowed() {
   static const Rooms kBelowTheHarness = {
-      "foundation",       "problems",    "expression", "interface",  "fitting",  "inference",
-      "states",           "effects",     "method",     "diagnosis",  "registry", "reports",
-      "forward_dynamics", "exploration", "loop_model", "closed_loop"};
+      "foundation",       "problems",    "expression", "interface",   "fitting",  "inference",
+      "states",           "effects",     "method",     "diagnosis",   "registry", "reports",
+      "forward_dynamics", "exploration", "loop_model", "closed_loop", "campaign", "leftover"};
   const auto with = [](Rooms rooms, const Rooms& more) {
     rooms.insert(more.begin(), more.end());
     return rooms;
@@ -43,15 +43,20 @@ const std::map<std::string, Rooms>& allowed() {
       {"loop_model",
        {"foundation", "problems", "expression", "interface", "fitting", "inference", "effects",
         "states"}},
+      {"campaign",
+       {"foundation", "problems", "expression", "fitting", "inference", "effects", "loop_model"}},
+      {"leftover",
+       {"foundation", "problems", "expression", "fitting", "inference", "effects", "loop_model",
+        "campaign"}},
       {"diagnosis",
        {"foundation", "problems", "expression", "interface", "fitting", "inference", "effects",
-        "loop_model"}},
+        "loop_model", "campaign", "leftover"}},
       {"closed_loop",
        {"foundation", "problems", "expression", "interface", "inference", "effects", "loop_model",
-        "diagnosis"}},
+        "campaign", "diagnosis"}},
       {"exploration",  // above the diagnosis, which it asks
        {"foundation", "problems", "expression", "interface", "fitting", "inference", "effects",
-        "loop_model", "diagnosis"}},
+        "loop_model", "campaign", "diagnosis"}},
       {"registry",
        {"foundation", "problems", "expression", "interface", "fitting", "states", "method",
         "closed_loop"}},
@@ -75,7 +80,7 @@ std::string room_of(const std::string& path) {
   const std::string folder = rest.substr(0, slash);
   for (const char* floor :
        {"expression", "fitting", "inference", "states", "effects", "forward_dynamics", "loop_model",
-        "diagnosis", "closed_loop", "exploration"}) {
+        "campaign", "leftover", "diagnosis", "closed_loop", "exploration"}) {
     if (folder == floor) return folder;
   }
   return "method:" + folder;
@@ -135,6 +140,9 @@ TEST(IncludeDirection, TheRuleItselfCatchesAnArrowThatRunsBack) {
   EXPECT_NE(objection("algorithms/closed_loop/closed_loop.cpp", "algorithms/registry.hpp"), "");
   EXPECT_NE(objection("algorithms/closed_loop/closed_loop.cpp", "algorithms/pysr/pysr.hpp"), "");
   EXPECT_NE(objection("algorithms/diagnosis/search.cpp", "algorithms/closed_loop/closed_loop.hpp"),
+            "");
+  EXPECT_NE(objection("algorithms/campaign/worth.cpp", "algorithms/leftover/leftover.hpp"), "");
+  EXPECT_NE(objection("algorithms/leftover/leftover.cpp", "algorithms/diagnosis/diagnosis.hpp"),
             "");
   EXPECT_NE(objection("algorithms/pysr/pysr.cpp", "algorithms/diagnosis/diagnosis.hpp"), "");
   EXPECT_NE(objection("algorithms/pysr/pysr.cpp", "algorithms/effects/effect_file.hpp"), "");

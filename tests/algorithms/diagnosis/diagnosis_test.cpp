@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/diagnosis/rules.hpp"
+#include "algorithms/campaign/rules.hpp"
 #include "foundation/error.hpp"
 #include "foundation/random.hpp"
 #include "problems/data_problem.hpp"

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
 // What one search looks at: rows, the library's columns over them, clusters and flips. Nothing of
-// it changes while the search runs. Internal to the room.
+// it changes while the search runs.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
 #include <vector>
 
-#include "algorithms/diagnosis/diagnosis.hpp"
+#include "algorithms/campaign/findings.hpp"
+#include "algorithms/campaign/options.hpp"
 #include "algorithms/inference/clusters.hpp"
 #include "algorithms/inference/flips.hpp"
 #include "algorithms/inference/score_test.hpp"
+#include "algorithms/loop_model/loop_model.hpp"
 
 namespace tribench::loop {
 

@@ -14,7 +14,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "algorithms/diagnosis/fitted_model.hpp"
+#include "algorithms/campaign/fitted_model.hpp"
 #include "foundation/random.hpp"
 
 namespace tribench::loop {

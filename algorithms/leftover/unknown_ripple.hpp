@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
 // A ripple whose period nobody has named: waves of any length along the position in what a model
-// leaves over. Internal to the room.
+// leaves over.
 #pragma once
 
 #include <Eigen/Core>
 #include <optional>
 
-#include "algorithms/diagnosis/fitted_model.hpp"
+#include "algorithms/campaign/fitted_model.hpp"
 #include "algorithms/inference/wave_scan.hpp"
 
 namespace tribench::loop {

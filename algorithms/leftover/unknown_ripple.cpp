@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/unknown_ripple.hpp"
+#include "algorithms/leftover/unknown_ripple.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "algorithms/diagnosis/round.hpp"
-#include "algorithms/diagnosis/worth.hpp"
+#include "algorithms/campaign/round.hpp"
+#include "algorithms/campaign/worth.hpp"
 #include "algorithms/inference/whitening.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
 #include "foundation/elementary.hpp"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// The tests of the whole library beside one fitted model. Internal to the room.
+// The tests of the whole library beside one fitted model.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
 #include <vector>
 
-#include "algorithms/diagnosis/fitted_model.hpp"
+#include "algorithms/campaign/fitted_model.hpp"
 
 namespace tribench::loop {
 

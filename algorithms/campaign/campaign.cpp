@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/campaign.hpp"
+#include "algorithms/campaign/campaign.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/leftover.hpp"
+#include "algorithms/leftover/leftover.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,12 @@
 #include <optional>
 #include <set>
 
-#include "algorithms/diagnosis/local_defect.hpp"
-#include "algorithms/diagnosis/serial_offsets.hpp"
-#include "algorithms/diagnosis/unknown_ripple.hpp"
-#include "algorithms/diagnosis/worth.hpp"
+#include "algorithms/campaign/round.hpp"
+#include "algorithms/campaign/worth.hpp"
 #include "algorithms/inference/feature_scores.hpp"
+#include "algorithms/leftover/local_defect.hpp"
+#include "algorithms/leftover/serial_offsets.hpp"
+#include "algorithms/leftover/unknown_ripple.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
 
 namespace tribench::loop {
@@ -61,11 +62,13 @@ std::vector<std::string> inputs_of(std::size_t family, const LoopModel& model,
 
 class LeftoverSearch {
  public:
-  LeftoverSearch(SearchResult& result, const Campaign& campaign, RandomStream random)
-      : result_(result),
+  LeftoverSearch(SearchState& state, const Campaign& campaign, RandomStream random)
+      : state_(state),
         campaign_(campaign),
         random_(random),
         smoothers_(make_smoothers(campaign.data, random)) {}
+
+  const LeftoverFinding& finding() const { return leftover_; }
 
   void test_residual();
   void look_for_waves();
@@ -96,13 +99,13 @@ class LeftoverSearch {
   bool absorbs_a_defect(std::size_t family) const;
   Found* home_of(const std::vector<std::string>& inputs, std::size_t end, double nats);
 
-  SearchState& state() { return result_.state; }
-  const FittedModel& model() const { return result_.state.model; }
+  const FittedModel& model() const { return state_.model; }
 
-  SearchResult& result_;
+  SearchState& state_;
   const Campaign& campaign_;
   RandomStream random_;
   std::vector<Smoother> smoothers_;
+  LeftoverFinding leftover_;
   // With all that was found, before the proxies of what it leaves over were dropped.
   struct WholeModel {
     FittedModel fit;
@@ -138,7 +141,7 @@ std::vector<Place> LeftoverSearch::products_of(std::size_t family) const {
 std::vector<Place> LeftoverSearch::places() const {
   std::vector<Place> all;
   for (const Smoother& smoother : smoothers_) all.push_back({smoother.signals, &smoother, {}});
-  for (const Found& one : result_.state.found) {
+  for (const Found& one : state_.found) {
     for (Place& product : products_of(one.family)) all.push_back(std::move(product));
   }
   return all;
@@ -154,13 +157,13 @@ BlockScores LeftoverSearch::score_product(const Eigen::MatrixXd& columns) const 
 void LeftoverSearch::test_residual() {
   const std::size_t stretches = campaign_.clusters.stretches.size();
   if (stretches < kFewestClusters) {
-    state().note(fmt::format(
+    state_.note(fmt::format(
         "{} stretches of movement are too few to tell whether anything is left over; {} "
         "are needed",
         stretches, kFewestClusters));
     return;
   }
-  result_.leftover_tested = true;
+  leftover_.tested = true;
   const std::vector<Place> looked_at = places();
   const FeatureScorer scorer(model().basis, model().residual, campaign_.clusters, model().noise,
                              direction_of(campaign_.data));
@@ -177,8 +180,8 @@ void LeftoverSearch::test_residual() {
   const auto stop =
       static_cast<std::size_t>(std::ceil(alpha * static_cast<double>(campaign_.options.flips + 1)));
   const std::vector<double> maxima = flip_maxima(blocks, campaign_.flips, largest, stop);
-  result_.leftover.p = adjusted_p(largest, maxima);
-  if (result_.leftover.p > alpha) return;
+  leftover_.p = adjusted_p(largest, maxima);
+  if (leftover_.p > alpha) return;
   if (const std::optional<Home> home = best_place(looked_at, blocks, maxima)) locate(*home);
 }
 
@@ -223,64 +226,62 @@ std::optional<LeftoverSearch::Home> LeftoverSearch::best_place(
 
 // Less of the squared error than what is left over has to be worth.
 bool LeftoverSearch::is_next_to_nothing(double worth) {
-  return worth < least_worth_of_leftover(model().model, state().families(), campaign_);
+  return worth < least_worth_of_leftover(model().model, state_.families(), campaign_);
 }
 
 void LeftoverSearch::locate(const Home& home) {
   const double worth =
       worth_of(home.place->features(campaign_.data), model().model, campaign_, home.place->ridge());
   if (is_next_to_nothing(worth)) {
-    state().note("what is left over is next to nothing");
+    state_.note("what is left over is next to nothing");
     return;
   }
-  LeftoverFinding& leftover = result_.leftover;
-  leftover.gain = home.nats;
-  leftover.signals = home.place->signals;
-  leftover.inputs.clear();
-  for (const std::string& signal : leftover.signals) {
-    leftover.inputs.push_back(input_name(campaign_.data, signal));
+  leftover_.gain = home.nats;
+  leftover_.signals = home.place->signals;
+  leftover_.inputs.clear();
+  for (const std::string& signal : leftover_.signals) {
+    leftover_.inputs.push_back(input_name(campaign_.data, signal));
   }
   if (!whole_) whole_ = WholeModel{model(), home.nats};
-  const std::size_t before = state().found.size();
-  const auto smoother = std::ranges::find(smoothers_, leftover.signals, &Smoother::signals);
+  const std::size_t before = state_.found.size();
+  const auto smoother = std::ranges::find(smoothers_, leftover_.signals, &Smoother::signals);
   if (smoother != smoothers_.end() && campaign_.options.has("proxies")) drop_proxies(*smoother);
-  if (state().found.size() == before) return;
+  if (state_.found.size() == before) return;
   // Without its proxies the leftover shows better where it lives.
-  const LeftoverFinding known = leftover;
+  const LeftoverFinding known = leftover_;
   test_residual();
-  if (leftover.inputs.empty()) {
-    leftover.inputs = known.inputs;
-    leftover.signals = known.signals;
+  if (leftover_.inputs.empty()) {
+    leftover_.inputs = known.inputs;
+    leftover_.signals = known.signals;
   }
 }
 
 // A smoother of the position sees no wave that is shorter than the distance of its centres. What is
 // left of a ripple that was found is its shape.
 void LeftoverSearch::look_for_waves() {
-  if (!result_.leftover_tested || !campaign_.options.has("unknown_ripple")) return;
+  if (!leftover_.tested || !campaign_.options.has("unknown_ripple")) return;
   const std::optional<Wave> wave = unknown_ripple(model(), campaign_, random_.split("waves"));
   if (!wave) return;
   const Eigen::MatrixXd columns = wave_columns(*wave, campaign_.data);
   const double worth = worth_of(columns, model().model, campaign_, 0);
   if (is_next_to_nothing(worth)) return;
-  LeftoverFinding& leftover = result_.leftover;
   const auto rows = static_cast<double>(campaign_.data.rows());
-  leftover.repeating = {wave->wavenumber, worth * model().raw_residual.squaredNorm() / rows};
-  const bool is_named = std::ranges::any_of(state().families(), [&](std::size_t family) {
+  leftover_.repeating = {wave->wavenumber, worth * model().raw_residual.squaredNorm() / rows};
+  const bool is_named = std::ranges::any_of(state_.families(), [&](std::size_t family) {
     return repeats_with_the_gear(campaign_.families[family]);
   });
-  if (is_named || !leftover.inputs.empty()) return;
-  leftover.p = wave->p;
-  leftover.signals = {"q"};
-  leftover.inputs = {input_name(campaign_.data, "q")};
+  if (is_named || !leftover_.inputs.empty()) return;
+  leftover_.p = wave->p;
+  leftover_.signals = {"q"};
+  leftover_.inputs = {input_name(campaign_.data, "q")};
   const Eigen::MatrixXd z = whitened(columns, campaign_.clusters, model().noise);
-  leftover.gain = paired_gain(model().losses, losses_beside(model(), z, campaign_)).nats;
+  leftover_.gain = paired_gain(model().losses, losses_beside(model(), z, campaign_)).nats;
 }
 
 // But for learned ones: those may be of one place themselves.
 std::vector<std::size_t> LeftoverSearch::families_along_the_position() const {
   std::vector<std::size_t> families;
-  for (const std::size_t family : result_.state.families()) {
+  for (const std::size_t family : state_.families()) {
     const auto inputs = inputs_of(family, model().model, campaign_.data);
     const bool is_learned =
         std::ranges::count(campaign_.options.learned, campaign_.families[family].name,
@@ -292,39 +293,38 @@ std::vector<std::size_t> LeftoverSearch::families_along_the_position() const {
 
 // What stands for a bump at one place is no effect: without it the bump is what is left over.
 void LeftoverSearch::look_for_defect() {
-  if (!result_.leftover_tested || !campaign_.options.has("local_defect")) return;
+  if (!leftover_.tested || !campaign_.options.has("local_defect")) return;
   const std::vector<std::size_t> families = families_along_the_position();
   if (families.empty()) return;
   const std::optional<double> gain = gain_as_a_defect(families, model(), campaign_);
   if (!gain) return;
   LoopModel rest = model().model;
   for (const std::size_t family : families) {
-    result_.leftover.proxies_removed.push_back(campaign_.families[family].name);
-    std::erase_if(state().found, [&](const Found& one) { return one.family == family; });
+    leftover_.proxies_removed.push_back(campaign_.families[family].name);
+    std::erase_if(state_.found, [&](const Found& one) { return one.family == family; });
     rest = rest.without(family);
   }
-  state().model = fit_in_its_noise(std::move(rest), campaign_, FitScope::everything);
+  state_.model = fit_in_its_noise(std::move(rest), campaign_, FitScope::everything);
   test_residual();
-  result_.leftover.gain = *gain;
-  result_.leftover.signals = {"q"};
-  result_.leftover.inputs = {input_name(campaign_.data, "q")};
+  leftover_.gain = *gain;
+  leftover_.signals = {"q"};
+  leftover_.inputs = {input_name(campaign_.data, "q")};
 }
 
 // In no signal, and in the order of the movements all the same: it is in what changes with time.
 void LeftoverSearch::look_for_serial_offsets() {
-  LeftoverFinding& leftover = result_.leftover;
   const bool is_asked =
-      result_.leftover_tested && leftover.inputs.empty() && campaign_.options.has("serial_offsets");
+      leftover_.tested && leftover_.inputs.empty() && campaign_.options.has("serial_offsets");
   if (!is_asked) return;
   const auto p = serial_offsets_p(model(), campaign_, random_.split("offsets"));
   if (!p || *p > kShareOfOffsets * campaign_.options.alpha_leftover) return;
   const Eigen::MatrixXd columns = time_of_movements(campaign_);
   if (is_next_to_nothing(worth_of(columns, model().model, campaign_, kSmootherRidge))) return;
-  leftover.p = *p;
-  leftover.signals = {"t"};
-  leftover.inputs = {input_name(campaign_.data, "t")};
+  leftover_.p = *p;
+  leftover_.signals = {"t"};
+  leftover_.inputs = {input_name(campaign_.data, "t")};
   const Eigen::MatrixXd z = whitened(columns, campaign_.clusters, model().noise);
-  leftover.gain =
+  leftover_.gain =
       paired_gain(model().losses, losses_beside(model(), z, campaign_, kSmootherRidge)).nats;
 }
 
@@ -338,8 +338,8 @@ bool LeftoverSearch::drop_if_superfluous(const Smoother& smoother, std::size_t f
   rest.basis = orthonormal_basis(beside(rest.x, features));
   rest.residual = project_off(rest.residual, rest.basis);
   if (tells_beside(rest, family, this->model(), campaign_)) return false;
-  result_.leftover.proxies_removed.push_back(campaign_.families[family].name);
-  std::erase_if(state().found, [&](const Found& one) { return one.family == family; });
+  leftover_.proxies_removed.push_back(campaign_.families[family].name);
+  std::erase_if(state_.found, [&](const Found& one) { return one.family == family; });
   model = model.without(family);
   return true;
 }
@@ -348,7 +348,7 @@ bool LeftoverSearch::drop_if_superfluous(const Smoother& smoother, std::size_t f
 // one place (specification, 11.6). A curve of the speed or of what the motion was before that asks
 // for more is that curve in another shape.
 bool LeftoverSearch::absorbs_a_defect(std::size_t family) const {
-  if (std::ranges::count(result_.state.asked_more, family) == 0) return false;
+  if (std::ranges::count(state_.asked_more, family) == 0) return false;
   const std::vector<std::string> inputs = inputs_of(family, model().model, campaign_.data);
   return inputs != std::vector<std::string>{"v"} && !remembers(family);
 }
@@ -362,7 +362,7 @@ void LeftoverSearch::drop_proxies(const Smoother& smoother) {
   LoopModel model = this->model().model;
   bool dropped = false;
   for (const bool excused : {false, true}) {
-    for (const std::size_t family : state().families()) {
+    for (const std::size_t family : state_.families()) {
       if (absorbs_a_defect(family) == excused) continue;
       dropped = drop_if_superfluous(smoother, family, excused, model) || dropped;
     }
@@ -370,7 +370,7 @@ void LeftoverSearch::drop_proxies(const Smoother& smoother) {
       whole_->fit = fit_in_its_noise(model, campaign_, FitScope::everything);
     }
   }
-  if (dropped) state().model = fit_in_its_noise(std::move(model), campaign_, FitScope::everything);
+  if (dropped) state_.model = fit_in_its_noise(std::move(model), campaign_, FitScope::everything);
 }
 
 // What the whole model has and `rest` has not, against what the whole model leaves over.
@@ -393,7 +393,7 @@ Found* LeftoverSearch::home_of(const std::vector<std::string>& inputs, std::size
   Found* home = nullptr;
   std::vector<std::size_t> families;
   for (std::size_t k = 0; k < end; ++k) {
-    Found& one = state().found[k];
+    Found& one = state_.found[k];
     if (!std::ranges::includes(inputs_of(one.family, model().model, campaign_.data), inputs)) {
       continue;
     }
@@ -408,7 +408,7 @@ Found* LeftoverSearch::home_of(const std::vector<std::string>& inputs, std::size
 // name, and where that effect remembers the motion, one that came after it and adds far less gives
 // it its columns.
 void LeftoverSearch::name_shapes() {
-  std::vector<Found>& found = state().found;
+  std::vector<Found>& found = state_.found;
   const bool takes_small_ones = campaign_.options.has("shape_of_memory");
   for (std::size_t k = takes_small_ones ? found.size() : 0; k-- > 1;) {
     const std::size_t family = found[k].family;
@@ -417,34 +417,34 @@ void LeftoverSearch::name_shapes() {
     Found* home = inputs.empty() ? nullptr : home_of(inputs, k, nats);
     if (home == nullptr || !remembers(home->family)) continue;
     home->another_shape = true;
-    state().note(fmt::format(
+    state_.note(fmt::format(
         "'{}' only shapes '{}': in the same inputs more than {:.0f} times as much is "
         "explained without it",
         campaign_.families[family].name, campaign_.families[home->family].name, 1 / kShapeShare));
-    for (Atom& atom : state().model.model.atoms) {
+    for (Atom& atom : state_.model.model.atoms) {
       if (atom.family == family) atom.family = home->family;
     }
     found.erase(found.begin() + static_cast<std::ptrdiff_t>(k));
   }
-  LeftoverFinding& leftover = result_.leftover;
-  if (leftover.inputs.empty() || !campaign_.options.has("shape_of_leftover")) return;
-  std::vector<std::string> inputs = leftover.signals;
+  if (leftover_.inputs.empty() || !campaign_.options.has("shape_of_leftover")) return;
+  std::vector<std::string> inputs = leftover_.signals;
   std::ranges::sort(inputs);
-  Found* home = home_of(inputs, found.size(), leftover.gain);
+  Found* home = home_of(inputs, found.size(), leftover_.gain);
   if (home == nullptr) return;
   home->another_shape = true;
-  leftover.inputs.clear();
+  leftover_.inputs.clear();
 }
 
 }  // namespace
 
-void find_leftover(SearchResult& result, const Campaign& campaign, RandomStream random) {
-  LeftoverSearch search(result, campaign, random);
+LeftoverFinding find_leftover(SearchState& state, const Campaign& campaign, RandomStream random) {
+  LeftoverSearch search(state, campaign, random);
   search.test_residual();
   search.look_for_defect();
   search.look_for_waves();
   search.look_for_serial_offsets();
   search.name_shapes();
+  return search.finding();
 }
 
 }  // namespace tribench::loop

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/varying_terms.hpp"
+#include "algorithms/leftover/varying_terms.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/diagnosis/rich_model.hpp"
-#include "algorithms/diagnosis/worth.hpp"
+#include "algorithms/campaign/rich_model.hpp"
+#include "algorithms/campaign/worth.hpp"
 #include "algorithms/inference/random_slopes.hpp"
 #include "algorithms/inference/robust_ridge.hpp"
 #include "algorithms/inference/whitening.hpp"
@@ -65,10 +65,10 @@ double own_torque(const Eigen::MatrixXd& columns, const RowRange& rows,
 
 // What neither the rich model nor what was found explains: that has no rare effects, and of shapes
 // a few.
-Eigen::VectorXd unexplained(const SearchResult& result, const Eigen::VectorXd& rich_residual,
+Eigen::VectorXd unexplained(const SearchState& state, const Eigen::VectorXd& rich_residual,
                             const Campaign& campaign) {
-  if (result.state.found.empty()) return rich_residual;
-  const FittedModel& model = result.state.model;
+  if (state.found.empty()) return rich_residual;
+  const FittedModel& model = state.model;
   std::vector<Eigen::Index> rows(campaign.data.rows());
   std::iota(rows.begin(), rows.end(), Eigen::Index{0});
   return robust_ridge_residual(beside(rich_columns(campaign.data, model.model.base,
@@ -130,15 +130,15 @@ void doubt_stand_ins(SearchState& state, double varying, const std::vector<Varyi
 
 }  // namespace
 
-void find_varying_term(SearchResult& result, const Eigen::VectorXd& rich_residual,
-                       const Campaign& campaign, const RandomStream& random) {
-  LeftoverFinding& leftover = result.leftover;
+void find_varying_term(SearchState& state, LeftoverFinding& leftover,
+                       const Eigen::VectorXd& rich_residual, const Campaign& campaign,
+                       const RandomStream& random) {
   if (!leftover.inputs.empty() || !campaign.options.has("random_slopes")) return;
   const std::vector<VaryingTerm> terms = varying_terms(campaign);
   std::vector<Eigen::MatrixXd> columns;
   for (const VaryingTerm& term : terms) columns.push_back(term.columns);
   const std::vector<RandomSlopes> all =
-      random_slopes(columns, unexplained(result, rich_residual, campaign),
+      random_slopes(columns, unexplained(state, rich_residual, campaign),
                     campaign.clusters.movements, campaign.options.flips, random);
   if (all.empty()) return;
   auto told = std::ranges::max_element(all, {}, &RandomSlopes::mean_share);
@@ -146,7 +146,6 @@ void find_varying_term(SearchResult& result, const Eigen::VectorXd& rich_residua
   if (!is_sure) told = std::ranges::max_element(all, {}, &RandomSlopes::share);
   if (!(told->share > 0)) return;
   const double worth = told->share / (1 - told->share);
-  SearchState& state = result.state;
   doubt_stand_ins(state, worth, terms, campaign, random.split("whole movements"));
   const bool is_much =
       (is_sure || told->share >= kMuch) &&

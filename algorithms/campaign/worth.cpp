@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/worth.hpp"
+#include "algorithms/campaign/worth.hpp"
 
 #include <algorithm>
 

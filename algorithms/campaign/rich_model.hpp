@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// What is noise, before anything is known of what is missing. Internal to the room.
+// What is noise, before anything is known of what is missing.
 #pragma once
 
 #include <vector>
 
-#include "algorithms/diagnosis/diagnosis.hpp"
+#include "algorithms/campaign/options.hpp"
+#include "algorithms/loop_model/loop_model.hpp"
 
 namespace tribench::loop {
 

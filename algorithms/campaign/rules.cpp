@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/rules.hpp"
+#include "algorithms/campaign/rules.hpp"
 
 #include <fmt/format.h>
 

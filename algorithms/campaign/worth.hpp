@@ -4,13 +4,13 @@
 // from the others: what decides whether an effect is next to nothing. No form of the library is
 // the true one to the last per cent, and what a large effect's form lacks some small effect can
 // mimic. However many rows say so, that is no cause; and it is where stories change when the
-// recording is told again. Internal to the room.
+// recording is told again.
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
-#include "algorithms/diagnosis/fitted_model.hpp"
+#include "algorithms/campaign/fitted_model.hpp"
 
 namespace tribench::loop {
 

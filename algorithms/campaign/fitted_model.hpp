@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
 // A model fitted to a campaign in the coordinates of its own noise, and what one model predicts
-// better than another. Internal to the room.
+// better than another.
 #pragma once
 
 #include <Eigen/Core>
 
-#include "algorithms/diagnosis/campaign.hpp"
+#include "algorithms/campaign/campaign.hpp"
 #include "algorithms/inference/cross_validation.hpp"
 #include "algorithms/loop_model/model_fit.hpp"
 

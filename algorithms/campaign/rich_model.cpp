@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/rich_model.hpp"
+#include "algorithms/campaign/rich_model.hpp"
 
 #include <algorithm>
 

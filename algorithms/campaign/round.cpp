@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/round.hpp"
+#include "algorithms/campaign/round.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/local_defect.hpp"
+#include "algorithms/leftover/local_defect.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "algorithms/diagnosis/serial_offsets.hpp"
+#include "algorithms/leftover/serial_offsets.hpp"
 
 #include <algorithm>
 #include <cstddef>

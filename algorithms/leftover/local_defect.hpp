@@ -2,14 +2,14 @@
 //
 // Ripples and loads against something at one place of the travel: a dent in a race, a chipped
 // tooth, a cable that catches. A few harmonics together come near it, but a bump, which has one
-// height for either direction, predicts it better. Internal to the room.
+// height for either direction, predicts it better.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <vector>
 
-#include "algorithms/diagnosis/fitted_model.hpp"
+#include "algorithms/campaign/fitted_model.hpp"
 
 namespace tribench::loop {
 
