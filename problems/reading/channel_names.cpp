@@ -194,17 +194,31 @@ std::string take_last_word(std::string_view& name) {
   return std::string(last);
 }
 
+// What the end of a name may say, the usual first: a unit; one that has lost its stroke, "rads" of
+// a velocity and "rads2"; several, "rads" of a position.
+std::vector<const Unit*> units_at_the_end(const std::string& word) {
+  std::vector<const Unit*> units = {find_unit(word)};
+  for (const std::string_view second : {"s", "s2"}) {
+    if (!word.ends_with(second)) continue;
+    const std::string first = word.substr(0, word.size() - second.size());
+    units.push_back(find_unit(first + "/" + std::string(second)));
+    if (second == "s") units.push_back(find_unit(first));
+  }
+  std::erase(units, nullptr);
+  return units;
+}
+
 // A unit as the last words: the longest that leaves a name that goes with it.
 bool read_written_unit(const Words& words, NameReading& reading) {
   for (std::size_t cut = 1; cut < words.size(); ++cut) {
-    const Unit* unit = find_unit(joined(words, cut, words.size()));
-    if (unit == nullptr) continue;
-    NameReading stem;
-    stem.known.unit = unit;
-    if (!read_stem(joined(words, 0, cut), stem) || !suits(*unit, stem.role)) continue;
-    reading = stem;
-    reading.unit_written = true;
-    return true;
+    for (const Unit* unit : units_at_the_end(joined(words, cut, words.size()))) {
+      NameReading stem;
+      stem.known.unit = unit;
+      if (!read_stem(joined(words, 0, cut), stem) || !suits(*unit, stem.role)) continue;
+      reading = stem;
+      reading.unit_written = true;
+      return true;
+    }
   }
   return false;
 }
