@@ -97,6 +97,7 @@ class Rescue {
 std::optional<Candidate> Rescue::of(std::size_t family) {
   std::optional<Candidate> best;
   if (!campaign_.options.has("rescue")) return best;
+  const bool may_be_unsteady = round_.family_p[family] < kRescueP;
   // All atoms: with few carriers their scores tell next to nothing. Those that may gain most come
   // first, so that most need not be looked at.
   std::vector<std::size_t> atoms;
@@ -115,7 +116,8 @@ std::optional<Candidate> Rescue::of(std::size_t family) {
     if (!(carriers(round_, k, model_, campaign_) < kFewClusters)) continue;
     Eigen::VectorXd losses = losses_with_own_offsets(k, filtered(), model_, campaign_);
     const Gain gain = paired_gain(model_.losses + offsets, losses);
-    if (!(gain.nats > kRescueGain && is_more_than_error(gain))) continue;
+    if (!(gain.nats > kRescueGain)) continue;
+    if (!(may_be_unsteady ? is_more_than_error(gain) : is_steady(gain))) continue;
     if (!best || gain.nats > best->gain.nats) {
       losses -= offsets;
       best = {family, k, gain, std::move(losses), true};
@@ -182,7 +184,6 @@ std::vector<Candidate> admitted(const Round& round, const FittedModel& model,
     if (!(round.family_score[f] > 0)) continue;
     const bool significant =
         round.rescue_only[f] == 0 && round.family_p[f] <= campaign.options.alpha_library;
-    if (!significant && round.family_p[f] >= kRescueP) continue;
     // What few movements carry gains by their offsets, significant or not: a smaller p must not
     // make it harder to be admitted.
     if (std::optional<Candidate> one = rescue.of(f)) all.push_back(std::move(*one));

@@ -13,9 +13,9 @@
 
 namespace tribench::loop {
 
-// Up to this p a family carried by few clusters may be rescued by its gain (specification, 6.4).
+// Up to this p a family carried by few clusters may be rescued by a gain of so many standard errors
+// (specification, 6.4), whatever its p by one that is so many where no cluster counts for much.
 inline constexpr double kRescueP = 0.15;
-// So many standard errors its gain has to be, or so many where no cluster counts for much.
 inline constexpr double kRescueErrors = 2;
 inline constexpr double kRescueErrorsSteadily = 3;
 // Up to this p a family is a rival of the one that was taken.
@@ -31,8 +31,9 @@ struct Candidate {
 };
 
 // Whether its gain alone may admit what few movements carry.
+inline bool is_steady(const Gain& gain) { return gain.steadily > kRescueErrorsSteadily; }
 inline bool is_more_than_error(const Gain& gain) {
-  return gain.nats > kRescueErrors * gain.error || gain.steadily > kRescueErrorsSteadily;
+  return gain.nats > kRescueErrors * gain.error || is_steady(gain);
 }
 
 // The family's atom that predicts best beside the model. None where none can be judged: none is
