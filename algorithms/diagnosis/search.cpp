@@ -264,7 +264,7 @@ SearchResult begin_otherwise(SearchResult one, Searches& searches, const Campaig
   const auto is_better = [&](const FittedModel& model) {
     const Gain lead = lead_over(one.whole, model, campaign);
     const bool is_simpler =
-        !cancelling.empty() && fitted_parameters(model.model) < fitted_parameters(one.whole.model);
+        !leaves_something && fitted_parameters(model.model) < fitted_parameters(one.whole.model);
     return lead.nats > (is_simpler ? -lead.error : 0);
   };
   // What gives way to its leftover makes it no better: most need not be asked for that.
