@@ -152,7 +152,7 @@ Gain gain_of(const std::vector<std::size_t>& families, const FittedModel& presen
   for (const std::size_t family : families) rest = rest.without(family);
   const FittedModel other = fit_in_its_noise(std::move(rest), campaign, FitScope::linear);
   const Gain lead = lead_over(present, other, campaign);
-  return {-lead.nats, lead.error, -lead.steadily};
+  return {-lead.nats, lead.error, -lead.bounded_z};
 }
 
 }  // namespace tribench::loop

@@ -17,7 +17,7 @@ namespace tribench::loop {
 // (specification, 6.4), whatever its p by one that is so many where no cluster counts for much.
 inline constexpr double kRescueP = 0.15;
 inline constexpr double kRescueErrors = 2;
-inline constexpr double kRescueErrorsSteadily = 3;
+inline constexpr double kRescueBoundedZ = 3;
 // Up to this p a family is a rival of the one that was taken.
 inline constexpr double kNearAliasP = 0.05;
 inline constexpr double kExactCorrelation = 0.995;
@@ -31,7 +31,7 @@ struct Candidate {
 };
 
 // Whether its gain alone may admit what few movements carry.
-inline bool is_steady(const Gain& gain) { return gain.steadily > kRescueErrorsSteadily; }
+inline bool is_steady(const Gain& gain) { return gain.bounded_z > kRescueBoundedZ; }
 inline bool is_more_than_error(const Gain& gain) {
   return gain.nats > kRescueErrors * gain.error || is_steady(gain);
 }

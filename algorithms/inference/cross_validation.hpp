@@ -42,7 +42,7 @@ Eigen::VectorXd held_out_losses(const Eigen::MatrixXd& x, const Eigen::VectorXd&
                                 const Clusters& clusters, const Noise& noise,
                                 Eigen::Index penalised = 0, double ridge = 0);
 
-// So much a cluster counts for at most in what a gain is steadily.
+// So much a cluster counts for at most in Gain::bounded_z.
 inline constexpr double kMostOfOneCluster = 12;  // nats
 
 struct Gain {
@@ -50,7 +50,7 @@ struct Gain {
   double error = 0;  // standard error over the clusters
   // How many standard errors it is where no cluster counts for more than kMostOfOneCluster either
   // way: of a sum that a few clusters make, those few are the error, too.
-  double steadily = 0;
+  double bounded_z = 0;
 };
 
 // What the second model gains over the first.

@@ -120,18 +120,18 @@ TEST(PairedGain, IsSteadyWhereManyGainWhateverAFewDo) {
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(40);
   const Gain many = paired_gain(gains, none);
   EXPECT_LT(many.nats, 2 * many.error);
-  EXPECT_GT(many.steadily, 6);
+  EXPECT_GT(many.bounded_z, 6);
   gains = gains.cwiseProduct((gains.array() < 100).select(none.array(), 1).matrix());
-  EXPECT_LT(paired_gain(gains, none).steadily, 2);
-  EXPECT_LT(paired_gain(none, gains).steadily, 0);
-  EXPECT_GT(paired_gain(Eigen::VectorXd::Constant(40, 50), none).steadily, 1e9);
+  EXPECT_LT(paired_gain(gains, none).bounded_z, 2);
+  EXPECT_LT(paired_gain(none, gains).bounded_z, 0);
+  EXPECT_GT(paired_gain(Eigen::VectorXd::Constant(40, 50), none).bounded_z, 1e9);
 }
 
 TEST(PairedGain, OfOneStretchHasNoErrorToKnow) {
   const Gain gain = paired_gain(Eigen::VectorXd::Constant(1, 3.5), Eigen::VectorXd::Constant(1, 2));
   EXPECT_EQ(gain.nats, 1.5);
   EXPECT_EQ(gain.error, 0);
-  EXPECT_EQ(gain.steadily, 0);
+  EXPECT_EQ(gain.bounded_z, 0);
 }
 
 }  // namespace
