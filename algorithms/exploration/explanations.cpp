@@ -9,10 +9,12 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <span>
 
 #include "algorithms/effects/effect_library.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/score_test.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
 #include "foundation/pivoted_qr.hpp"
 
@@ -360,20 +362,32 @@ void ExplanationSpace::add_misfits() {
 // Something narrow that a family of the library draws is that family's, and nothing else: a bump at
 // standstill is a Stribeck curve. all: the columns on the reference, without the base.
 void ExplanationSpace::leave_to_the_library(const Eigen::MatrixXd& all) {
-  const Eigen::RowVectorXd squares = all.colwise().squaredNorm();
+  const auto is_narrow = [](const EffectBlock& block) { return block.columns.size() == 1; };
+  std::vector<Eigen::Index> narrow;
+  for (const ExplainingFamily& family : families_) {
+    if (!family.unknown) continue;
+    for (const EffectBlock& block : family.blocks) {
+      if (is_narrow(block)) narrow.push_back(block.columns.front());
+    }
+  }
+  const Eigen::MatrixXd bumps = all(Eigen::all, narrow);
+  const Eigen::RowVectorXd squares = bumps.colwise().squaredNorm();
   Eigen::RowVectorXd left = squares;
   for (const ExplainingFamily& family : families_) {
     if (family.unknown) continue;
     for (const EffectBlock& block : family.blocks) {
-      const Eigen::MatrixXd own = all(Eigen::all, block.columns);
-      left = left.cwiseMin((all - own * PivotedQr(own).solve_each(all)).colwise().squaredNorm());
+      const Eigen::MatrixXd basis = orthonormal_basis(all(Eigen::all, block.columns));
+      left = left.cwiseMin(squares - (basis.transpose() * bumps).colwise().squaredNorm());
     }
+  }
+  std::set<Eigen::Index> drawn;
+  for (Eigen::Index k = 0; k < left.size(); ++k) {
+    if (left[k] < kDrawnByOther * squares[k]) drawn.insert(narrow[static_cast<std::size_t>(k)]);
   }
   for (ExplainingFamily& family : families_) {
     if (!family.unknown) continue;
     std::erase_if(family.blocks, [&](const EffectBlock& block) {
-      const Eigen::Index first = block.columns.front();
-      return block.columns.size() == 1 && left[first] < kDrawnByOther * squares[first];
+      return is_narrow(block) && drawn.contains(block.columns.front());
     });
   }
 }
