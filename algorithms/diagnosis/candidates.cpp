@@ -98,8 +98,8 @@ std::optional<Candidate> Rescue::of(std::size_t family) {
   std::optional<Candidate> best;
   if (!campaign_.options.has("rescue")) return best;
   const bool may_be_unsteady = round_.family_p[family] < kRescueP;
-  // All atoms: with few carriers their scores tell next to nothing. Those that may gain most come
-  // first, so that most need not be looked at.
+  // All atoms where their flips say something: with few carriers their scores tell next to nothing.
+  // Those that may gain most come first, so that most need not be looked at.
   std::vector<std::size_t> atoms;
   for (std::size_t k = 0; k < campaign_.library.atoms.size(); ++k) {
     if (campaign_.library.atoms[k].family == family && round_.blocks[k].test.testable) {
@@ -108,6 +108,7 @@ std::optional<Candidate> Rescue::of(std::size_t family) {
   }
   std::ranges::stable_sort(atoms, std::ranges::greater(),
                            [&](std::size_t k) { return round_.blocks[k].test.statistic; });
+  if (!may_be_unsteady && atoms.size() > kAtomsTried) atoms.resize(kAtomsTried);
   const Eigen::VectorXd offsets = offset_nats(campaign_.clusters, model_.noise);
   const double all_offsets = offsets.sum();
   for (const std::size_t k : atoms) {
