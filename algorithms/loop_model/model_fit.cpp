@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "algorithms/expression/differentiate.hpp"
 #include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/column_products.hpp"
@@ -72,8 +73,20 @@ Eigen::VectorXd moved_part(const LoopModel& model, const Nonlinear& p, const Sig
   return sum;
 }
 
+Eigen::VectorXd base_derivative(const LoopModel& model, std::size_t place,
+                                const SignalTable& table) {
+  Differentiator differentiator;
+  differentiator.prepare(model.base.formula, std::span(&place, 1));
+  Eigen::VectorXd column(static_cast<Eigen::Index>(table.inputs().rows));
+  differentiator.jacobian(table.inputs(), {},
+                          std::span(column.data(), static_cast<std::size_t>(column.size())));
+  return column;
+}
+
 Eigen::VectorXd derivative(LoopModel& model, const Nonlinear& p, const SignalTable& table) {
   const double value = value_of(model, p);
+  // Zero says nothing of the size of a step, and a size of our own would depend on the units.
+  if (p.of_base && value == 0) return base_derivative(model, p.place, table);
   const double step = kRelativeStep * (value != 0 ? std::abs(value) : 1e-3);
   const double above = std::min(value + step, p.high);
   const double below = std::max(value - step, p.low);
@@ -239,8 +252,9 @@ double take_step(LoopModel& model, const std::vector<Nonlinear>& parameters,
     const double change = step[static_cast<Eigen::Index>(j)];
     if (!std::isfinite(change)) continue;
     set_value(model, parameters[j], before + change);
-    const double after = value_of(model, parameters[j]);
-    largest = std::max(largest, std::abs(after - before) / (before != 0 ? std::abs(before) : 1.0));
+    const double moved = std::abs(value_of(model, parameters[j]) - before);
+    // From zero every step is a large one.
+    if (moved > 0) largest = std::max(largest, before != 0 ? moved / std::abs(before) : 1.0);
   }
   return largest;
 }

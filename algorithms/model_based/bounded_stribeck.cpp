@@ -12,7 +12,8 @@
 namespace tribench {
 namespace {
 
-// Grid over (vs, delta): vs evenly in its logarithm down to this share of the highest speed.
+// Grid over (vs, delta): vs evenly in its logarithm down to this share of the highest speed, which
+// is 1 here.
 constexpr double kLeastVelocityShare = 1e-3;
 constexpr std::size_t kVelocities = 24;
 constexpr std::size_t kExponents = 10;
@@ -38,14 +39,54 @@ struct Candidate {
   double with_target = 0;
 };
 
+// Rows whose columns have 1 as their largest magnitude, and the way back.
+class NormalisedRows {
+ public:
+  explicit NormalisedRows(const StribeckRows& rows)
+      : rows_(rows),
+        velocity_(normalise(rows_.velocity)),
+        acceleration_(normalise(rows_.acceleration)),
+        target_(normalise(rows_.target)) {}
+
+  const StribeckRows& rows() const { return rows_; }
+  StribeckModel in_their_units(StribeckModel model) const;
+
+ private:
+  static double normalise(std::vector<double>& column);
+
+  StribeckRows rows_;
+  double velocity_;
+  double acceleration_;
+  double target_;
+};
+
+double NormalisedRows::normalise(std::vector<double>& column) {
+  double largest = 0;
+  for (const double x : column) largest = std::max(largest, std::abs(x));
+  if (largest == 0) return 1;
+  for (double& x : column) x /= largest;
+  return largest;
+}
+
+StribeckModel NormalisedRows::in_their_units(StribeckModel model) const {
+  for (StribeckBranch& branch : model.branches) {
+    branch.coulomb *= target_;
+    branch.breakaway_excess *= target_;
+    branch.stribeck_velocity *= velocity_;
+    branch.viscous *= target_ / velocity_;
+  }
+  model.offset *= target_;
+  model.inertia *= target_ / acceleration_;
+  return model;
+}
+
+// For normalised rows.
 class ShapeSearch {
  public:
   ShapeSearch(const StribeckRows& rows, const StribeckModel& model, Budget& budget)
       : rows_(rows), model_(model), budget_(budget) {
     make_fixed_columns();
     take_apart_by_branch();
-    for (double v : rows.velocity) highest_ = std::max(highest_, std::abs(v));
-    if (highest_ == 0) highest_ = 1;
   }
 
   // The best shapes found, one a branch, and their linear parameters, written into `model`.
@@ -61,13 +102,12 @@ class ShapeSearch {
   void refine(std::vector<Candidate>& chosen, double& best);
   void write(std::span<const Candidate> chosen, StribeckModel& model) const;
   std::size_t branches() const { return model_.branches.size(); }
-  double low_log() const { return elementary::log(highest_ * kLeastVelocityShare); }
-  double high_log() const { return elementary::log(highest_); }
+  double low_log() const { return elementary::log(kLeastVelocityShare); }
+  double high_log() const { return 0; }
 
   const StribeckRows& rows_;
   const StribeckModel& model_;
   Budget& budget_;
-  double highest_ = 0;
   std::vector<std::vector<double>> fixed_;  // per branch sign and v; then offset and a
   std::vector<double> fixed_products_;
   std::vector<double> fixed_target_;
@@ -225,10 +265,9 @@ void ShapeSearch::write(std::span<const Candidate> chosen, StribeckModel& model)
   std::vector<double> solution;
   solve(all, solution);
   for (std::size_t branch = 0; branch < branches(); ++branch) {
-    model.branches[branch] = {
-        solution[2 * branch], solution[fixed_.size() + branch],
-        std::min(elementary::exp(chosen[branch].shape.log_velocity), highest_),
-        chosen[branch].shape.exponent, solution[2 * branch + 1]};
+    model.branches[branch] = {solution[2 * branch], solution[fixed_.size() + branch],
+                              std::min(elementary::exp(chosen[branch].shape.log_velocity), 1.0),
+                              chosen[branch].shape.exponent, solution[2 * branch + 1]};
   }
   std::size_t next = 2 * branches();
   if (model.has_offset) model.offset = solution[next++];
@@ -275,14 +314,11 @@ double ShapeSearch::run(StribeckModel& model) {
 
 // All parameters together under the physical constraints.
 void polish(const StribeckRows& rows, StribeckModel& model, Budget& budget, StribeckFit& fit) {
-  double highest = 0;
-  for (double v : rows.velocity) highest = std::max(highest, std::abs(v));
   const double infinity = std::numeric_limits<double>::infinity();
   Bounds bounds;
   for (std::size_t i = 0; i < model.branches.size(); ++i) {
-    bounds.low.insert(bounds.low.end(),
-                      {0, 0, highest * kLeastVelocityShare, kLeastExponent, -infinity});
-    bounds.high.insert(bounds.high.end(), {infinity, infinity, highest, kMostExponent, infinity});
+    bounds.low.insert(bounds.low.end(), {0, 0, kLeastVelocityShare, kLeastExponent, -infinity});
+    bounds.high.insert(bounds.high.end(), {infinity, infinity, 1, kMostExponent, infinity});
   }
   bounds.low.resize(model.parameter_count(), -infinity);
   bounds.high.resize(model.parameter_count(), infinity);
@@ -317,10 +353,13 @@ StribeckRows rows_of_branch(const StribeckRows& rows, std::size_t branch) {
 StribeckFit fit_together(const StribeckRows& rows, StribeckModel& model, Budget& budget) {
   StribeckFit fit;
   if (rows.size() == 0) return fit;
-  const double found = ShapeSearch(rows, model, budget).run(model);
+  const NormalisedRows normalised(rows);
+  const double found = ShapeSearch(normalised.rows(), model, budget).run(model);
   fit.out_of_budget = budget.exhausted();
+  fit.sum_squares = model.sum_squares(normalised.rows(), {});
+  if (std::isfinite(found) && !fit.out_of_budget) polish(normalised.rows(), model, budget, fit);
+  model = normalised.in_their_units(model);
   fit.sum_squares = model.sum_squares(rows, {});
-  if (std::isfinite(found) && !fit.out_of_budget) polish(rows, model, budget, fit);
   return fit;
 }
 

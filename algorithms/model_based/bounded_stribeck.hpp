@@ -22,7 +22,8 @@ struct StribeckFit {
 };
 
 // `model` says which terms there are; its parameters are written. Data are centred on no value and
-// need no scaling. At least one row.
+// need no scaling: in another unit the same parameters are found, to the bit where the units differ
+// by a power of two, else to roundoff. At least one row.
 StribeckFit fit_bounded_stribeck(const StribeckRows& rows, StribeckModel& model, Budget& budget);
 
 }  // namespace tribench

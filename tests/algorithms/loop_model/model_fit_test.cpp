@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/loop_model/model_fit.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,6 +52,30 @@ TEST(ModelFit, TwoEffectsOfOneKindDoNotBecomeOne) {
   const double ratio = model.atoms[0].shapes[0].value / model.atoms[1].shapes[0].value;
   EXPECT_GE(std::max(ratio, 1 / ratio), 1.5);
   EXPECT_LT(model.coefficients.cwiseAbs().maxCoeff(), 20);
+}
+
+// A constant at its bound, as Fc = 0 is: its first step must not be one of a unit of ours.
+TEST(ModelFit, AConstantAtZeroIsFittedTheSameInAnotherUnit) {
+  constexpr double kUnit = 1024;
+  Observations data =
+      half_sines_over({.movements = 12, .rows = 200, .seed = 7}, [](double) { return 0; });
+  const std::vector<double>& v = data.find("v")->values;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    data.target[i] -= std::copysign(0.3 - 2 * std::exp(-std::abs(v[i]) / 0.4), v[i]);
+  }
+  const auto fitted = [](const Observations& rows, double unit) {
+    LoopModel model{
+        formula_base(rows, fmt::format("sgn_v*(0 + {}*exp(-abs(v/0.3)))", unit)), {}, {}};
+    model.coefficients =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.base.linear_terms.size()));
+    Noise noise;
+    noise.within_sd = kHalfSinesNoise * unit;
+    fit_model(model, rows, make_clusters(rows.movement, 1), noise, FitScope::everything);
+    return predict(model, rows);
+  };
+  const Eigen::VectorXd once = fitted(data, 1);
+  for (double& y : data.target) y *= kUnit;
+  EXPECT_EQ(fitted(data, kUnit), kUnit * once);
 }
 
 }  // namespace

@@ -116,6 +116,32 @@ TEST(StaticFriction, BoundedIsNoWorseThanAnyOfManyLocalFits) {
   }
 }
 
+// A unit that differs by a power of two changes no digit of the parameters.
+TEST(StaticFriction, BoundedSaysTheSameInAnotherUnit) {
+  const Problem problem = averaged(2, 3);
+  const Training training(problem);
+  std::vector<double> target = training.table->target;
+  std::vector<double> velocity(training.columns[0], training.columns[0] + target.size());
+  for (double& y : target) y *= 1024;
+  for (double& v : velocity) v *= 64;
+  TrainingData other = training.data();
+  std::vector<const double*> columns = training.columns;
+  columns[0] = velocity.data();
+  other.columns = columns;
+  other.target = target;
+  for (const char* algorithm : {"symmetric", "asymmetric"}) {
+    const Expression one = run_fit(training.data(), algorithm).front.at(0);
+    const Expression again = run_fit(other, algorithm).front.at(0);
+    std::vector<double> values(target.size());
+    std::vector<double> others(target.size());
+    Evaluator().evaluate(one, training.data().table(), values);
+    Evaluator().evaluate(again, other.table(), others);
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      ASSERT_EQ(others[row], 1024 * values[row]) << algorithm << ", row " << row;
+    }
+  }
+}
+
 struct PlantedCase {
   const char* algorithm;
   const char* law;
