@@ -177,6 +177,16 @@ struct ProjectedSums {
   }
 };
 
+// Of the columns of a block those of which something survives beside the basis.
+std::vector<Eigen::Index> surviving(const Eigen::VectorXd& before, const Eigen::VectorXd& after,
+                                    Eigen::Index first, Eigen::Index count) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index j = first; j < first + count; ++j) {
+    if (after[j] > kSmallestShare * before[j]) kept.push_back(j);
+  }
+  return kept;
+}
+
 BlockScores score_one(const Eigen::MatrixXd& z, const ProjectedSums& all, const Block& block) {
   BlockScores out;
   const auto first = static_cast<Eigen::Index>(block.first);
@@ -184,10 +194,7 @@ BlockScores score_one(const Eigen::MatrixXd& z, const ProjectedSums& all, const 
   const double before = all.before.segment(first, count).sum();
   const double after = all.after.segment(first, count).sum();
   out.test.share = before > 0 ? std::sqrt(after / before) : 0;
-  std::vector<Eigen::Index> kept;
-  for (Eigen::Index j = first; j < first + count; ++j) {
-    if (all.after[j] > kSmallestShare * all.before[j]) kept.push_back(j);
-  }
+  const std::vector<Eigen::Index> kept = surviving(all.before, all.after, first, count);
   if (kept.empty()) return out;
   out.test.testable = true;
   out.test.information = after / static_cast<double>(count);
@@ -217,6 +224,23 @@ BlockScores score_block(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
                         const Eigen::VectorXd& residual, const Clusters& clusters) {
   const Block whole{0, static_cast<std::size_t>(z.cols())};
   return score_blocks(z, std::span(&whole, 1), basis, residual, clusters).front();
+}
+
+double score_statistic(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
+                       const Eigen::VectorXd& residual) {
+  const Eigen::MatrixXd along = cross_products(basis, z);
+  const Eigen::VectorXd before = z.colwise().squaredNorm();
+  const Eigen::VectorXd after = before - along.colwise().squaredNorm().transpose();
+  const std::vector<Eigen::Index> kept = surviving(before, after, 0, z.cols());
+  if (kept.empty()) return 0;
+  const Eigen::VectorXd scale = before(kept).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd gram =
+      gram_of(z)(kept, kept) - along(Eigen::all, kept).transpose() * along(Eigen::all, kept);
+  const Eigen::VectorXd sums = (z.transpose() * residual)(kept);
+  return factor_of(scale.asDiagonal() * gram * scale.asDiagonal(), 0)
+      .triangularView<Eigen::Lower>()
+      .solve(scale.cwiseProduct(sums))
+      .squaredNorm();
 }
 
 BlockScores score_block_evenly(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,

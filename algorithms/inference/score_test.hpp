@@ -58,9 +58,13 @@ std::vector<BlockScores> score_blocks(const Eigen::MatrixXd& z, std::span<const 
 // All columns as one block.
 BlockScores score_block(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
                         const Eigen::VectorXd& residual, const Clusters& clusters);
-// The same with every stretch counting alike, whatever it holds of the block. For a block that a
-// few stretches hold nearly all of: k of them have 2^k signs, so that its plain p stays above 2^-k
-// whatever the many others say.
+// The statistic alone, in one reading of the basis: for what looks at hundreds of blocks one after
+// another. 0 where all columns are all but in the basis.
+double score_statistic(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
+                       const Eigen::VectorXd& residual);
+// All columns as one block with every stretch counting alike, whatever it holds of the block. For a
+// block that a few stretches hold nearly all of: k of them have 2^k signs, so that its plain p
+// stays above 2^-k whatever the many others say.
 BlockScores score_block_evenly(const Eigen::MatrixXd& z, const Eigen::MatrixXd& basis,
                                const Eigen::VectorXd& residual, const Clusters& clusters);
 

@@ -38,7 +38,7 @@ class BesideTheRest {
         residual_(project_off(y_, basis_)) {}
 
   double explained(const Bump& bump) const {
-    return score_block(columns(bump), basis_, residual_, campaign_.clusters).test.statistic;
+    return score_statistic(columns(bump), basis_, residual_);
   }
   Eigen::VectorXd losses(const Bump& bump) const {
     return held_out_losses(beside(x_, columns(bump)), y_, campaign_.clusters, noise_);
@@ -51,9 +51,10 @@ class BesideTheRest {
     Eigen::MatrixXd z(direction_.size(), 2);
     for (Eigen::Index i = 0; i < z.rows(); ++i) {
       const double x = (position_[static_cast<std::size_t>(i)] - bump.place) / bump.width;
-      z(i, 0) = elementary::exp(-x * x / 2);
-      z(i, 1) = direction_[i] * z(i, 0);
+      z(i, 0) = -x * x / 2;
     }
+    elementary::exp_of_each({z.col(0).data(), position_.size()});
+    z.col(1) = direction_.cwiseProduct(z.col(0));
     return whitened(std::move(z), campaign_.clusters, noise_);
   }
 

@@ -57,7 +57,7 @@ class WaveSearch {
     wave.wavenumber = wavenumber;
     const Eigen::MatrixXd z =
         whitened(wave_columns(wave, campaign_.data), campaign_.clusters, noise_);
-    return score_block(z, basis_, residual_, campaign_.clusters).test.statistic;
+    return score_statistic(z, basis_, residual_);
   }
 
   // Up the hill, step by step, then golden section. What is most certain stands beside the top:
@@ -145,12 +145,11 @@ std::optional<Wave> unknown_ripple(const FittedModel& model, const Campaign& cam
 
 Eigen::MatrixXd wave_columns(const Wave& wave, const Observations& data) {
   const std::vector<double>& position = data.find("q")->values;
-  Eigen::MatrixXd columns(static_cast<Eigen::Index>(position.size()), 2);
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    columns(row, 0) = elementary::cos(wave.wavenumber * position[i]);
-    columns(row, 1) = elementary::sin(wave.wavenumber * position[i]);
-  }
+  const Eigen::Map<const Eigen::VectorXd> q(position.data(),
+                                            static_cast<Eigen::Index>(position.size()));
+  Eigen::MatrixXd columns = (wave.wavenumber * q).replicate(1, 2);
+  elementary::cos_of_each({columns.col(0).data(), position.size()});
+  elementary::sin_of_each({columns.col(1).data(), position.size()});
   if (wave.is_turned) columns = direction_of(data).cast<double>().asDiagonal() * columns;
   return columns;
 }

@@ -152,12 +152,24 @@ TEST(ScoreTest, AColumnOfZerosIsNotTestableAndSpoilsNoOther) {
   const BlockScores nothing = score_block(zeros, basis, residual, e.clusters);
   EXPECT_FALSE(nothing.test.testable);
   EXPECT_EQ(nothing.test.share, 0);
+  EXPECT_EQ(score_statistic(zeros, basis, residual), 0);
   const BlockScores alone = score_block(one, basis, residual, e.clusters);
   const BlockScores both = score_block(beside(one, zeros), basis, residual, e.clusters);
   ASSERT_TRUE(alone.test.testable);
   EXPECT_NEAR(both.test.statistic, alone.test.statistic, 1e-9 * alone.test.statistic);
   EXPECT_NEAR(both.test.score, alone.test.score, 1e-9);
   EXPECT_NEAR(both.test.share, alone.test.share, 1e-9);
+  EXPECT_NEAR(score_statistic(beside(one, zeros), basis, residual), alone.test.statistic,
+              1e-9 * alone.test.statistic);
+}
+
+TEST(ScoreTest, TheStatisticAloneIsTheBlocks) {
+  const Example e = clustered_example(5, 1);
+  const Eigen::MatrixXd basis = orthonormal_basis(e.x);
+  const Eigen::VectorXd residual = project_off(e.y, basis);
+  const double whole = score_block(e.candidates, basis, residual, e.clusters).test.statistic;
+  EXPECT_GT(whole, 1);
+  EXPECT_NEAR(score_statistic(e.candidates, basis, residual), whole, 1e-9 * whole);
 }
 
 TEST(ScoreTest, DependentColumnsOfAModelAreLeftOutOfItsBasis) {
