@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -104,6 +105,13 @@ struct FitContext {
 
 enum class StopReason { converged, budget, unsupported };
 
+// What a method's model says of a constant; both ends belong to it.
+struct ConstantRange {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool is_fixed() const { return low == high; }
+};
+
 struct FitResult {
   // Over data.inputs and, behind them, `states`; by increasing complexity, no two alike.
   std::vector<Expression> front;
@@ -124,6 +132,9 @@ struct FitResult {
   std::size_t held_out_rows = 0;
   // What the formulas remember: column data.inputs.size() + k is states[k], driven by data.inputs.
   std::vector<StateDeclaration> states = {};
+  // Of the constants of front[chosen], in the order of its tape, for whoever fits them anew; empty
+  // where the method bounds none.
+  std::vector<ConstantRange> ranges = {};
 
   static FitResult unsupported(std::string why) {
     return {{}, 0, StopReason::unsupported, std::move(why), false, {}};

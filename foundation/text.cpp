@@ -127,6 +127,30 @@ bool may_be_text(std::string_view start) {
 
 }  // namespace
 
+std::vector<std::string> words_of_command(std::string_view text, std::string_view place) {
+  std::vector<std::string> words;
+  char quote = 0;
+  bool inside = false;
+  for (const char c : text) {
+    if (quote != 0 ? c == quote : (c == '\'' || c == '"')) {
+      quote = quote != 0 ? 0 : c;
+      if (!inside) words.emplace_back();
+      inside = true;
+    } else if (c == ' ' && quote == 0) {
+      inside = false;
+    } else {
+      if (!inside) words.emplace_back();
+      inside = true;
+      words.back() += c;
+    }
+  }
+  if (quote != 0 || words.empty()) {
+    throw_bad_input(fmt::format("'{}' is no command", text), place,
+                    fmt::format("as in {} 'python3 mine.py'", place));
+  }
+  return words;
+}
+
 std::string read_file(const std::filesystem::path& file, std::size_t largest) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) {

@@ -34,6 +34,10 @@ std::string lines_without_control_characters(std::string_view text);
 // piece; an empty or blank text has none.
 std::vector<std::string> split(std::string_view text, char separator);
 
+// The words of a command as a shell would part them; quotes hold words together. Throws Error
+// (bad_input) at `place` where there is none, or a quote is left open.
+std::vector<std::string> words_of_command(std::string_view text, std::string_view place);
+
 // What a reader takes of one file: settings, answers, proofs. Data files have a bound of their own.
 inline constexpr std::size_t kLargestTextFile = std::size_t{256} << 20;
 

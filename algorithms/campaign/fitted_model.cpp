@@ -3,7 +3,6 @@
 
 #include <numeric>
 
-#include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/inference/whitening.hpp"
 
 namespace tribench::loop {
@@ -60,7 +59,7 @@ std::vector<Eigen::Index> columns_of_base(const LoopModel& model) {
   std::vector<Eigen::Index> columns(model.base.linear_terms.size());
   std::iota(columns.begin(), columns.end(), Eigen::Index{0});
   const std::size_t linear = linear_columns(model).size();
-  for (std::size_t k = 0; k < free_constants(model.base.formula).size(); ++k) {
+  for (std::size_t k = 0; k < fitted_constants(model.base).size(); ++k) {
     columns.push_back(static_cast<Eigen::Index>(linear + k));
   }
   return columns;

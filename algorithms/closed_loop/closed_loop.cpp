@@ -214,7 +214,7 @@ BaseMaker method_base(const Regressor& method, std::string name, RandomStream ra
     }
     BaseModel base;
     base.name = name;
-    base.formula = renumbered(fitted.front[fitted.chosen], signals);
+    add_formula(base, renumbered(fitted.front[fitted.chosen], signals), fitted.ranges);
     // The method has seen the acceleration; what it made of it need not be linear.
     add_rigid_terms(base, data);
     return base;

@@ -53,7 +53,7 @@ void check_enough(const Observations& train, const BaseModel& base) {
                     "give the recorded rows, not a mean a movement; without a 'movement' column a "
                     "file is one movement");
   }
-  const std::size_t parameters = base.linear_terms.size() + constant_positions(base.formula).size();
+  const std::size_t parameters = base.linear_terms.size() + fitted_constants(base).size();
   if (train.rows() >= 3 * parameters + 10) return;
   throw_bad_input(fmt::format("{} rows are too few to fit {} parameters of the base model",
                               train.rows(), parameters),

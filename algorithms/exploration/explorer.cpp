@@ -275,8 +275,10 @@ class Explorer {
   // What was said before the rows came says so, what they say in hindsight does, and the diagnosis.
   bool sure() {
     const WeighedVerdict leader = verdicts_of(*last(), false).front();
-    if (leader.weight < 1 - kHindsight * options_.alpha) return false;
-    if (log_e_value_of(leader.verdict) < -elementary::log(options_.alpha)) return false;
+    // Neither holds of what is not a number.
+    const bool in_hindsight = leader.weight >= 1 - kHindsight * options_.alpha;
+    const bool before = log_e_value_of(leader.verdict) >= -elementary::log(options_.alpha);
+    if (!in_hindsight || !before) return false;
     if (diagnosis_agrees()) return true;
     denied_ = leader.verdict;
     return false;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "algorithms/expression/text.hpp"
 #include "algorithms/fitting/free_constants.hpp"
@@ -33,26 +34,71 @@ std::optional<Expression> over_its_factor(const Expression& formula) {
   return in_left ? Expression::binary(op, *rest, other) : Expression::binary(op, other, *rest);
 }
 
-// Adds what the free constants of a sum multiply; false where the sum is not linear in them.
-bool add_linear_terms(const Expression& sum, std::vector<Expression>& terms) {
+struct Addend {
+  Expression term;
+  bool is_taken_off = false;
+};
+
+void add_addends(const Expression& sum, bool is_taken_off, std::vector<Addend>& addends) {
   const std::size_t root = sum.size() - 1;
   const Op op = sum.node(root).op;
-  if (op == Op::neg) return add_linear_terms(subtree(sum, root - 1), terms);
-  if (op == Op::add || op == Op::sub) {
-    return add_linear_terms(subtree(sum, sum.begin(root - 1) - 1), terms) &&
-           add_linear_terms(subtree(sum, root - 1), terms);
+  if (op == Op::neg) return add_addends(subtree(sum, root - 1), !is_taken_off, addends);
+  if (op != Op::add && op != Op::sub) {
+    addends.push_back({sum, is_taken_off});
+    return;
   }
-  std::optional<Expression> term = over_its_factor(sum);
-  if (term) terms.push_back(std::move(*term));
-  return term.has_value();
+  add_addends(subtree(sum, sum.begin(root - 1) - 1), is_taken_off, addends);
+  add_addends(subtree(sum, root - 1), is_taken_off != (op == Op::sub), addends);
+}
+
+void add_linear_term(BaseModel& base, Expression term) {
+  if (std::ranges::count(base.linear_terms, term) == 0) {
+    base.linear_terms.push_back(std::move(term));
+  }
 }
 
 }  // namespace
 
+std::vector<std::size_t> fitted_constants(const BaseModel& base) {
+  std::vector<std::size_t> places = free_constants(base.formula);
+  if (base.ranges.empty()) return places;
+  const std::vector<std::size_t> all = constant_positions(base.formula);
+  std::erase_if(places, [&](std::size_t place) {
+    const auto k = static_cast<std::size_t>(std::ranges::find(all, place) - all.begin());
+    return base.ranges[k].is_fixed();
+  });
+  return places;
+}
+
+void add_formula(BaseModel& base, const Expression& formula,
+                 std::span<const ConstantRange> ranges) {
+  std::vector<Addend> addends;
+  add_addends(formula, false, addends);
+  std::size_t before = 0;  // constants of the addends so far
+  for (const Addend& addend : addends) {
+    const std::size_t count = constant_positions(addend.term).size();
+    const std::size_t first = std::exchange(before, before + count);
+    if (std::optional<Expression> term = over_its_factor(addend.term)) {
+      add_linear_term(base, std::move(*term));
+      continue;
+    }
+    if (!ranges.empty()) {
+      const auto own = ranges.subspan(first, count);
+      base.ranges.insert(base.ranges.end(), own.begin(), own.end());
+    }
+    if (base.formula.empty()) {
+      base.formula = addend.is_taken_off ? Expression::unary(Op::neg, addend.term) : addend.term;
+    } else {
+      base.formula =
+          Expression::binary(addend.is_taken_off ? Op::sub : Op::add, base.formula, addend.term);
+    }
+  }
+}
+
 void add_rigid_terms(BaseModel& base, const Observations& data) {
   const std::vector<std::string> names = data.names();
   for (const std::string& name : data.rigid) {
-    if (data.find(name) != nullptr) base.linear_terms.push_back(parse(name, names));
+    if (data.find(name) != nullptr) add_linear_term(base, parse(name, names));
   }
 }
 
@@ -85,13 +131,7 @@ BaseModel formula_base(const Observations& data, std::string_view text) {
   }
   BaseModel base;
   base.name = "formula";
-  base.formula = Expression(std::move(nodes));
-  // Fitted exactly where that can be, wherever the constants stand at first.
-  if (add_linear_terms(base.formula, base.linear_terms)) {
-    base.formula = {};
-  } else {
-    base.linear_terms.clear();
-  }
+  add_formula(base, Expression(std::move(nodes)));
   add_rigid_terms(base, data);
   return base;
 }

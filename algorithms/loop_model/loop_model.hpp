@@ -16,16 +16,21 @@
 #include "algorithms/effects/effect_library.hpp"
 #include "algorithms/inference/clusters.hpp"
 #include "algorithms/loop_model/signal_table.hpp"
+#include "algorithms/regressor.hpp"
 
 namespace tribench::loop {
 
 struct BaseModel {
   std::string name;  // "coulomb_viscous", a method, "formula"
-  // Over the signals; may be empty. Its free constants are fitted; what is linear in them stands in
-  // linear_terms instead.
+  // Over the signals; may be empty. Its free constants are fitted; addends with one that is a
+  // factor stand in linear_terms instead.
   Expression formula;
+  std::vector<ConstantRange> ranges;     // of the formula's constants; empty: all have any value
   std::vector<Expression> linear_terms;  // each with a coefficient
 };
+
+// The places of the formula's constants that are fitted: those of its form and fixed ones are not.
+std::vector<std::size_t> fitted_constants(const BaseModel& base);
 
 // Makes the base from training movements; the loop calls it on nothing else.
 using BaseMaker = std::function<BaseModel(const Observations&)>;
@@ -35,6 +40,11 @@ BaseModel coulomb_viscous_base(const Observations& data);
 // A formula over the signals' names (or the channels'), with the rigid signals beside it. Throws
 // Error (bad_input) that names what is unknown.
 BaseModel formula_base(const Observations& data, std::string_view text);
+// What is fitted exactly, wherever its constants stand at first, goes to the linear terms.
+// `ranges`: of the formula's constants in the order of its tape, or empty. Those of linear terms
+// are dropped.
+void add_formula(BaseModel& base, const Expression& formula,
+                 std::span<const ConstantRange> ranges = {});
 void add_rigid_terms(BaseModel& base, const Observations& data);
 
 struct LoopModel {

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <utility>
 
 #include "algorithms/expression/differentiate.hpp"
-#include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/column_products.hpp"
 #include "algorithms/inference/whitening.hpp"
@@ -22,7 +20,6 @@ constexpr double kRelativeStep = 1e-5;  // of the central differences
 // Of a column's square: less beside the others is rounding.
 constexpr double kDependent = 1e-11;
 constexpr double kSameShape = 1.5;  // one within that factor of another
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // One non-linear parameter: where it is, its value and its bounds.
 struct Nonlinear {
@@ -35,8 +32,11 @@ struct Nonlinear {
 
 std::vector<Nonlinear> nonlinear_parameters(const LoopModel& model) {
   std::vector<Nonlinear> all;
-  for (const std::size_t at : free_constants(model.base.formula)) {
-    all.push_back({true, 0, at, -kUnbounded, kUnbounded});
+  const std::vector<std::size_t> constants = constant_positions(model.base.formula);
+  for (const std::size_t at : fitted_constants(model.base)) {
+    const auto k = static_cast<std::size_t>(std::ranges::find(constants, at) - constants.begin());
+    const ConstantRange range = model.base.ranges.empty() ? ConstantRange() : model.base.ranges[k];
+    all.push_back({true, 0, at, range.low, range.high});
   }
   for (std::size_t k = 0; k < model.atoms.size(); ++k) {
     for (std::size_t s = 0; s < model.atoms[k].shapes.size(); ++s) {
@@ -53,16 +53,16 @@ double value_of(const LoopModel& model, const Nonlinear& p) {
 }
 
 void set_value(LoopModel& model, const Nonlinear& p, double value) {
+  const double within = std::clamp(value, p.low, p.high);
   if (p.of_base) {
-    set_constant(model.base.formula, p.place, value);
+    set_constant(model.base.formula, p.place, within);
   } else {
-    model.atoms[p.atom].set_shape(p.place, std::clamp(value, p.low, p.high));
+    model.atoms[p.atom].set_shape(p.place, within);
   }
 }
 
-// What the parameter moves: the base's formula or the atom's columns times their coefficients.
+// What a shape moves: its atom's columns times their coefficients.
 Eigen::VectorXd moved_part(const LoopModel& model, const Nonlinear& p, const SignalTable& table) {
-  if (p.of_base) return evaluate_column(model.base.formula, table);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(table.inputs().rows));
   const std::size_t first = model.first_column(p.atom);
   const Atom& atom = model.atoms[p.atom];
@@ -73,20 +73,22 @@ Eigen::VectorXd moved_part(const LoopModel& model, const Nonlinear& p, const Sig
   return sum;
 }
 
-Eigen::VectorXd base_derivative(const LoopModel& model, std::size_t place,
-                                const SignalTable& table) {
+// Of the base's constants, exactly. Where there is none (of 0^c by c, of a root at 0) a row says
+// nothing: 0.
+Eigen::MatrixXd base_derivatives(const Expression& formula, std::span<const std::size_t> places,
+                                 const SignalTable& table) {
+  const std::size_t rows = table.inputs().rows;
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(rows),
+                          static_cast<Eigen::Index>(places.size()));
+  if (places.empty()) return columns;
   Differentiator differentiator;
-  differentiator.prepare(model.base.formula, std::span(&place, 1));
-  Eigen::VectorXd column(static_cast<Eigen::Index>(table.inputs().rows));
-  differentiator.jacobian(table.inputs(), {},
-                          std::span(column.data(), static_cast<std::size_t>(column.size())));
-  return column;
+  differentiator.prepare(formula, places);
+  differentiator.jacobian(table.inputs(), {}, {columns.data(), rows * places.size()});
+  return columns.unaryExpr([](double x) { return std::isfinite(x) ? x : 0; });
 }
 
-Eigen::VectorXd derivative(LoopModel& model, const Nonlinear& p, const SignalTable& table) {
+Eigen::VectorXd shape_derivative(LoopModel& model, const Nonlinear& p, const SignalTable& table) {
   const double value = value_of(model, p);
-  // Zero says nothing of the size of a step, and a size of our own would depend on the units.
-  if (p.of_base && value == 0) return base_derivative(model, p.place, table);
   const double step = kRelativeStep * (value != 0 ? std::abs(value) : 1e-3);
   const double above = std::min(value + step, p.high);
   const double below = std::max(value - step, p.low);
@@ -98,11 +100,29 @@ Eigen::VectorXd derivative(LoopModel& model, const Nonlinear& p, const SignalTab
   return (up - down) / (above - below);
 }
 
-// A shape that a fit has driven to its bound cannot follow its derivative: to project what it
-// cannot do out of other effects would hide them (a wide step of the load would hide a gain).
+// What a fit has driven to its bound cannot follow its derivative: to project what it cannot do out
+// of other effects would hide them (a wide step of the load would hide a gain).
 bool held_by_bound(const LoopModel& model, const Nonlinear& p) {
   const double value = value_of(model, p);
-  return !p.of_base && (value <= p.low || value >= p.high);
+  return value <= p.low || value >= p.high;
+}
+
+// The derivatives of the prediction, one column a parameter.
+Eigen::MatrixXd jacobian_of(LoopModel& model, const std::vector<Nonlinear>& parameters,
+                            const Observations& data) {
+  const SignalTable table(data);
+  std::vector<std::size_t> places;  // the base's come first
+  for (const Nonlinear& p : parameters) {
+    if (p.of_base) places.push_back(p.place);
+  }
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(data.rows()),
+                      static_cast<Eigen::Index>(parameters.size()));
+  out.leftCols(static_cast<Eigen::Index>(places.size())) =
+      base_derivatives(model.base.formula, places, table);
+  for (std::size_t j = places.size(); j < parameters.size(); ++j) {
+    out.col(static_cast<Eigen::Index>(j)) = shape_derivative(model, parameters[j], table);
+  }
+  return out;
 }
 
 // The linear part at the present shapes: whitened columns of unit length, their products, and what
@@ -195,13 +215,7 @@ struct NonlinearNormal {
 NonlinearNormal nonlinear_normal(LoopModel& model, const std::vector<Nonlinear>& parameters,
                                  const Observations& data, const Clusters& clusters,
                                  const Noise& noise, const LinearPart& fit) {
-  const SignalTable table(data);
-  Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(data.rows()),
-                           static_cast<Eigen::Index>(parameters.size()));
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    jacobian.col(static_cast<Eigen::Index>(j)) = derivative(model, parameters[j], table);
-  }
-  jacobian = whitened(std::move(jacobian), clusters, noise);
+  const Eigen::MatrixXd jacobian = whitened(jacobian_of(model, parameters, data), clusters, noise);
   NonlinearNormal out{gram_of(jacobian), cross_products(jacobian, fit.residual())};
   if (fit.columns().cols() == 0) return out;
   const Eigen::VectorXd whole = out.gram.diagonal();
@@ -237,6 +251,38 @@ bool has_merged_atoms(const LoopModel& model) {
   return false;
 }
 
+// The parameters whose step leads out of the bound at which they stand.
+std::vector<std::size_t> led_out(const LoopModel& model, const std::vector<Nonlinear>& parameters,
+                                 const Eigen::VectorXd& step) {
+  std::vector<std::size_t> out;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    const double value = value_of(model, parameters[j]);
+    const double change = step[static_cast<Eigen::Index>(j)];
+    if ((change < 0 && value <= parameters[j].low) || (change > 0 && value >= parameters[j].high)) {
+      out.push_back(j);
+    }
+  }
+  return out;
+}
+
+// The solution of a step's equations in which no parameter is led out of its bound: the others must
+// not reckon with what it cannot do (an active set, Gill, Murray and Wright 1981, section 5.2).
+Eigen::VectorXd step_within(const LoopModel& model, const std::vector<Nonlinear>& parameters,
+                            Eigen::MatrixXd normal, Eigen::VectorXd gradient) {
+  for (std::size_t held = 0;; ++held) {
+    const Eigen::VectorXd step = solve_symmetric(normal, gradient);
+    const std::vector<std::size_t> out = led_out(model, parameters, step);
+    if (out.empty() || held == parameters.size()) return step;
+    for (const std::size_t j : out) {
+      const auto at = static_cast<Eigen::Index>(j);
+      normal.row(at).setZero();
+      normal.col(at).setZero();
+      normal(at, at) = 1;
+      gradient[at] = 0;
+    }
+  }
+}
+
 // A damped step; parameters that would leave their bounds stop at them. Returns its relative size.
 double take_step(LoopModel& model, const std::vector<Nonlinear>& parameters,
                  const NonlinearNormal& normal, double damping) {
@@ -245,7 +291,8 @@ double take_step(LoopModel& model, const std::vector<Nonlinear>& parameters,
       scale.cwiseInverse().asDiagonal() * normal.gram * scale.cwiseInverse().asDiagonal();
   damped.diagonal().array() += damping;
   const Eigen::VectorXd step =
-      solve_symmetric(damped, normal.gradient.cwiseQuotient(scale)).cwiseQuotient(scale);
+      step_within(model, parameters, damped, normal.gradient.cwiseQuotient(scale))
+          .cwiseQuotient(scale);
   double largest = 0;
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const double before = value_of(model, parameters[j]);
@@ -271,17 +318,13 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen::Vecto
 
 Eigen::MatrixXd tangent(const LoopModel& model, const Observations& data) {
   LoopModel copy = model;
-  const SignalTable table(data);
   const std::vector<Nonlinear> parameters = nonlinear_parameters(model);
   const Eigen::MatrixXd linear = evaluate_columns(linear_columns(model), data);
   Eigen::MatrixXd out(linear.rows(), linear.cols() + static_cast<Eigen::Index>(parameters.size()));
-  out.leftCols(linear.cols()) = linear;
+  out << linear, jacobian_of(copy, parameters, data);
   for (std::size_t j = 0; j < parameters.size(); ++j) {
-    auto column = out.col(linear.cols() + static_cast<Eigen::Index>(j));
     if (held_by_bound(model, parameters[j])) {
-      column.setZero();
-    } else {
-      column = derivative(copy, parameters[j], table);
+      out.col(linear.cols() + static_cast<Eigen::Index>(j)).setZero();
     }
   }
   return out;

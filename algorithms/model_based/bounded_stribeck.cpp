@@ -15,6 +15,8 @@ namespace {
 // Grid over (vs, delta): vs evenly in its logarithm down to this share of the highest speed, which
 // is 1 here.
 constexpr double kLeastVelocityShare = 1e-3;
+constexpr double kLeastExponent = 0.5;
+constexpr double kMostExponent = 4;
 constexpr std::size_t kVelocities = 24;
 constexpr std::size_t kExponents = 10;
 // Two branches that share a parameter are searched together, over pairs of a coarser grid.
@@ -314,14 +316,20 @@ double ShapeSearch::run(StribeckModel& model) {
 
 // All parameters together under the physical constraints.
 void polish(const StribeckRows& rows, StribeckModel& model, Budget& budget, StribeckFit& fit) {
-  const double infinity = std::numeric_limits<double>::infinity();
+  const BranchRanges ranges = physical_ranges(rows);
+  constexpr ConstantRange kAny;
   Bounds bounds;
+  const auto add = [&](const ConstantRange& range) {
+    bounds.low.push_back(range.low);
+    bounds.high.push_back(range.high);
+  };
   for (std::size_t i = 0; i < model.branches.size(); ++i) {
-    bounds.low.insert(bounds.low.end(), {0, 0, kLeastVelocityShare, kLeastExponent, -infinity});
-    bounds.high.insert(bounds.high.end(), {infinity, infinity, 1, kMostExponent, infinity});
+    for (const ConstantRange& range : {ranges.coulomb, ranges.breakaway_excess,
+                                       ranges.stribeck_velocity, ranges.exponent, kAny}) {
+      add(range);
+    }
   }
-  bounds.low.resize(model.parameter_count(), -infinity);
-  bounds.high.resize(model.parameter_count(), infinity);
+  while (bounds.low.size() < model.parameter_count()) add(kAny);
   bool stop = false;
   StribeckModel trial = model;
   const Objective objective = mean_squares(trial, rows, budget, 2 * kPassNodes, stop);
@@ -364,6 +372,17 @@ StribeckFit fit_together(const StribeckRows& rows, StribeckModel& model, Budget&
 }
 
 }  // namespace
+
+BranchRanges physical_ranges(const StribeckRows& rows) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double highest = 0;
+  for (const double v : rows.velocity) highest = std::max(highest, std::abs(v));
+  if (highest == 0) highest = 1;
+  return {{0, kInfinity},
+          {0, kInfinity},
+          {highest * kLeastVelocityShare, highest},
+          {kLeastExponent, kMostExponent}};
+}
 
 StribeckFit fit_bounded_stribeck(const StribeckRows& rows, StribeckModel& model, Budget& budget) {
   const bool shares_parameters = model.has_offset || model.has_inertia;

@@ -13,8 +13,8 @@
 
 namespace tribench {
 
-inline constexpr double kLeastExponent = 0.5;
-inline constexpr double kMostExponent = 4;
+// Fc >= 0, Fs >= Fc, vs between a thousandth of the highest speed and that, 0.5 <= delta <= 4.
+BranchRanges physical_ranges(const StribeckRows& rows);
 
 struct StribeckFit {
   double sum_squares = 0;

@@ -99,6 +99,7 @@ FitResult StaticFriction::fit(FitContext& context) const {
   FitResult result;
   result.reason = fit.out_of_budget ? StopReason::budget : StopReason::converged;
   result.front = {model.formula(*inputs)};
+  result.ranges = model.formula_ranges(form_ == "bounded" ? physical_ranges(rows) : BranchRanges{});
   if (context.progress != nullptr) {
     context.progress->improved(fit.sum_squares / static_cast<double>(rows.size()),
                                context.budget.spent());

@@ -88,6 +88,15 @@ Expression branch_formula(const StribeckBranch& b, const FrictionInputs& inputs)
   return inputs.sign() * level + constant(b.viscous) * velocity;
 }
 
+void add_branch_ranges(const StribeckBranch& b, const BranchRanges& ranges,
+                       std::vector<ConstantRange>& all) {
+  all.push_back(ranges.coulomb);
+  if (b.breakaway_excess != 0) {
+    all.insert(all.end(), {ranges.breakaway_excess, ranges.stribeck_velocity, ranges.exponent});
+  }
+  all.push_back({});
+}
+
 }  // namespace
 
 Expression StribeckModel::formula(const FrictionInputs& inputs) const {
@@ -101,6 +110,17 @@ Expression StribeckModel::formula(const FrictionInputs& inputs) const {
   if (has_inertia) result = result + constant(inertia) * input(*inputs.acceleration);
   if (has_offset) result = result + constant(offset);
   return result;
+}
+
+std::vector<ConstantRange> StribeckModel::formula_ranges(const BranchRanges& ranges) const {
+  constexpr ConstantRange kHalf{0.5, 0.5};
+  std::vector<ConstantRange> all;
+  for (const StribeckBranch& branch : branches) {
+    add_branch_ranges(branch, ranges, all);
+    if (branches.size() == 2) all.insert(all.end(), {kHalf, kHalf});
+  }
+  all.resize(all.size() + (has_inertia ? 1U : 0U) + (has_offset ? 1U : 0U));
+  return all;
 }
 
 Objective mean_squares(StribeckModel& trial, const StribeckRows& rows, Budget& budget,

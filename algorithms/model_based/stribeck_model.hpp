@@ -12,6 +12,7 @@
 #include "algorithms/expression/expression.hpp"
 #include "algorithms/fitting/objective.hpp"
 #include "algorithms/model_based/friction_inputs.hpp"
+#include "algorithms/regressor.hpp"
 
 namespace tribench {
 
@@ -24,6 +25,14 @@ struct StribeckBranch {
   double viscous = 0;            // Fv
 };
 inline constexpr std::size_t kBranchParameters = 5;
+
+// Of a branch's parameters; viscous friction has none.
+struct BranchRanges {
+  ConstantRange coulomb;
+  ConstantRange breakaway_excess;
+  ConstantRange stribeck_velocity;
+  ConstantRange exponent;
+};
 
 // A row of data belongs to one branch: the only one, or that of its direction (0 for v >= 0).
 struct StribeckRows {
@@ -54,6 +63,8 @@ struct StribeckModel {
   double sum_squares(const StribeckRows& rows, std::span<double> gradient) const;
   // As a formula over the problem's inputs; terms that are exactly 0 are left out.
   Expression formula(const FrictionInputs& inputs) const;
+  // Of the formula's constants, in the order of its tape.
+  std::vector<ConstantRange> formula_ranges(const BranchRanges& ranges) const;
 };
 
 // The mean squared error of `trial` over the rows with its gradient, for a minimiser. Every call

@@ -16,6 +16,7 @@
 #include "foundation/error.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/standard_streams.hpp"
+#include "foundation/text.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
@@ -67,6 +68,14 @@ void check(const ExploreArguments& arguments) {
   }
 }
 
+// A program with its words may come as one of them, in quotes; so may a path with a blank.
+std::vector<std::string> program_of(const ExploreArguments& arguments) {
+  if (arguments.command.size() != 1 || std::filesystem::exists(arguments.command.front())) {
+    return arguments.command;
+  }
+  return words_of_command(arguments.command.front(), "--command");
+}
+
 ExplorationSetting setting_of(const ExploreArguments& arguments,
                               const loop::ExplorerOptions& options, const MotionLimits& limits) {
   MotionLimits lasting = limits;
@@ -108,7 +117,7 @@ ExitStatus run_explore(const ExploreArguments& arguments) {
     };
   } else {
     limits = read_limits(read_file_text(arguments.limits), arguments.limits);
-    execute = executing_program(arguments.command, limits, arguments.command_seconds,
+    execute = executing_program(program_of(arguments), limits, arguments.command_seconds,
                                 &end_requested_by_signal());
   }
   options.smallest_effect = arguments.smallest_effect.value_or(options.smallest_effect);
@@ -173,7 +182,8 @@ void add_explore_command(CLI::App& app, ExitStatus& status) {
   command->add_option("WORLD", arguments->world, "a world's folder (tribench world)");
   command->add_option("--command", arguments->command,
                       "a program and its words in the place of a world: a movements file in, a "
-                      "recording as CSV out (docs/explore.md)");
+                      "recording as CSV out (docs/explore.md); words that begin with a dash go "
+                      "with it in quotes: --command 'python3 -u robot.py'");
   command->add_option("--limits", arguments->limits,
                       "what the program's joint allows: JSON as in world.json");
   command

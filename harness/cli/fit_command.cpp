@@ -83,31 +83,6 @@ std::vector<std::string> used_columns(const FitArguments& arguments) {
   return used;
 }
 
-// The words of a command as a shell would part them; quotes hold words together.
-std::vector<std::string> words_of(const std::string& text) {
-  std::vector<std::string> words;
-  char quote = 0;
-  bool inside = false;
-  for (const char c : text) {
-    if (quote != 0 ? c == quote : (c == '\'' || c == '"')) {
-      quote = quote != 0 ? 0 : c;
-      if (!inside) words.emplace_back();
-      inside = true;
-    } else if (c == ' ' && quote == 0) {
-      inside = false;
-    } else {
-      if (!inside) words.emplace_back();
-      inside = true;
-      words.back() += c;
-    }
-  }
-  if (quote != 0 || words.empty()) {
-    throw_bad_input(fmt::format("'{}' is no command", text), "--external",
-                    "as in --external 'python3 mine.py'");
-  }
-  return words;
-}
-
 CellLimits limits_of(const FitArguments& arguments) {
   CellLimits limits;
   set_seconds(limits, arguments.seconds);
@@ -119,7 +94,8 @@ CellLimits limits_of(const FitArguments& arguments) {
 CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fixed_form) {
   CellTask task;
   const std::string& method = arguments.method.empty() ? arguments.external : arguments.method;
-  if (!arguments.external.empty()) task.method.command = words_of(arguments.external);
+  if (!arguments.external.empty())
+    task.method.command = words_of_command(arguments.external, "--external");
   task.cell = {problem.name, method, fixed_form ? kFixedForm : arguments.operators, arguments.seed};
   task.operators = find_operator_set(arguments.operators);
   if (fixed_form) task.operators = fixed_form_operators();
@@ -151,7 +127,7 @@ ChosenMethod choose_method(const FitArguments& arguments, const Registry& regist
     }
     // As in a grid's worker; here nobody else watches it.
     const CellLimits limits = limits_of(arguments);
-    return {make_external_method(words_of(arguments.external), parameters,
+    return {make_external_method(words_of_command(arguments.external, "--external"), parameters,
                                  {limits.cpu_limit_seconds, limits.wall_seconds}),
             false};
   }

@@ -12,6 +12,7 @@
 #include "foundation/output_file.hpp"
 #include "foundation/scratch_folder.hpp"
 #include "foundation/text.hpp"
+#include "harness/exploration/recorded_motion.hpp"
 #include "problems/campaign_channels.hpp"
 #include "problems/reading/csv.hpp"
 
@@ -31,10 +32,7 @@ class Program {
  public:
   Program(std::vector<std::string> command, const MotionLimits& limits, double limit_s,
           const std::atomic<bool>* end)
-      : command_(std::move(command)),
-        has_gravity_(limits.gravity_nm != 0),
-        limit_s_(limit_s),
-        end_(end) {}
+      : command_(std::move(command)), limits_(limits), limit_s_(limit_s), end_(end) {}
 
   Dataset execute(const PlannedMovement& movement) const {
     const std::string output = run(movement);
@@ -50,6 +48,9 @@ class Program {
       fail("the recording has no rows", "exit status 2 refuses a movement");
     check_channels(file.data);
     name_as_read(file.data);
+    if (const Misfit misfit = misfit_of(file.data, movement, limits_); misfit.is_one()) {
+      fail(misfit.what, misfit.mend);
+    }
     return std::move(file.data);
   }
 
@@ -97,7 +98,7 @@ class Program {
            "print the friction torque, or the motor torque with gravity_torque_Nm beside it; a "
            "current is turned into a torque by its constant");
     }
-    if (!has_gravity_ || data.find(Role::gravity_torque) != nullptr) return;
+    if (limits_.gravity_nm == 0 || data.find(Role::gravity_torque) != nullptr) return;
     fail("the motor torque holds gravity, and no gravity_torque_Nm is beside it",
          "print it too, or the friction torque; without gravity, gravity_Nm is 0 in the limits");
   }
@@ -110,7 +111,7 @@ class Program {
   }
 
   std::vector<std::string> command_;
-  bool has_gravity_;
+  MotionLimits limits_;
   double limit_s_;
   const std::atomic<bool>* end_;
 };

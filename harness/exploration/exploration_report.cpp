@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
@@ -141,6 +142,24 @@ std::string exploration_json(const Exploration& done, const SecondOpinion& secon
          "\n";
 }
 
+namespace {
+
+bool names_the_same(const Exploration& done, const SecondOpinion& second) {
+  const std::set<std::string> ours(done.families.begin(), done.families.end());
+  return ours == std::set<std::string>(second.effects.begin(), second.effects.end());
+}
+
+std::string title_of(const Exploration& done, const SecondOpinion& second) {
+  if (done.end == ExplorationEnd::sure) return fmt::format("What is missing: {}", done.verdict);
+  if (done.verdict.empty()) return "Not sure what is missing";
+  std::string title = fmt::format("Not sure what is missing: {} leads", done.verdict);
+  if (second.verdict.empty() || names_the_same(done, second)) return title;
+  const std::string said = fmt::format("{}", fmt::join(second.effects, "+"));
+  return fmt::format("{}, the diagnosis says {}", title, said.empty() ? second.verdict : said);
+}
+
+}  // namespace
+
 std::string exploration_terminal(const Exploration& done, const SecondOpinion& second,
                                  const loop::ExplorerOptions& options) {
   std::string text =
@@ -163,7 +182,8 @@ std::string exploration_terminal(const Exploration& done, const SecondOpinion& s
     text += fmt::format("  cannot be tested here: {}\n", fmt::join(done.untestable, ", "));
   }
   if (!second.verdict.empty()) {
-    text += fmt::format("  the loop's diagnosis of these rows: {} {}\n", second.verdict,
+    text += fmt::format("  the loop's diagnosis of these rows{}: {} {}\n",
+                        names_the_same(done, second) ? "" : " says otherwise", second.verdict,
                         fmt::join(second.effects, " "));
   }
   return text;
@@ -176,7 +196,7 @@ std::string step_line(const ExplorationStep& step) {
 
 std::string exploration_markdown(const Exploration& done, const SecondOpinion& second,
                                  const loop::ExplorerOptions& options) {
-  std::string text = fmt::format("# What is missing: {}\n\n{}\n", done.verdict,
+  std::string text = fmt::format("# {}\n\n{}\n", title_of(done, second),
                                  exploration_terminal(done, second, options));
   if (!done.failure.empty()) text += fmt::format("The failure: {}\n\n", done.failure);
   text += "| | movement | s | asked to tell apart | expected nats | what it told | left |\n";

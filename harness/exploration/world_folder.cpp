@@ -27,15 +27,18 @@ struct LimitField {
   double MotionLimits::*value;
   double low;
   double high;
+  // A joint is not moved by limits that nobody has set; the others say "none" where they are
+  // absent.
+  bool must_be_there = false;
 };
 
 constexpr double kLargest = 1e9;
 constexpr std::array kFields = {
-    LimitField{"lowest_rad", &MotionLimits::lowest_rad, -kLargest, kLargest},
-    LimitField{"highest_rad", &MotionLimits::highest_rad, -kLargest, kLargest},
-    LimitField{"speed_rad_s", &MotionLimits::speed_rad_s, 1e-9, kLargest},
-    LimitField{"acceleration_rad_s2", &MotionLimits::acceleration_rad_s2, 1e-9, kLargest},
-    LimitField{"torque_Nm", &MotionLimits::torque_nm, 0, kLargest},
+    LimitField{"lowest_rad", &MotionLimits::lowest_rad, -kLargest, kLargest, true},
+    LimitField{"highest_rad", &MotionLimits::highest_rad, -kLargest, kLargest, true},
+    LimitField{"speed_rad_s", &MotionLimits::speed_rad_s, 1e-9, kLargest, true},
+    LimitField{"acceleration_rad_s2", &MotionLimits::acceleration_rad_s2, 1e-9, kLargest, true},
+    LimitField{"torque_Nm", &MotionLimits::torque_nm, 0, kLargest, true},
     LimitField{"temperature_rise_K", &MotionLimits::temperature_rise_k, 0, 1000},
     LimitField{"ambient_degC", &MotionLimits::ambient_degc, -273, 1000},
     LimitField{"seconds", &MotionLimits::seconds, 1e-3, kLargest},
@@ -43,8 +46,8 @@ constexpr std::array kFields = {
     LimitField{"greatest_load_factor", &MotionLimits::greatest_load_factor, -1000, 1000},
     LimitField{"other_velocity_rad_s", &MotionLimits::greatest_other_velocity_rad_s, 0, kLargest},
     LimitField{"longest_rest_s", &MotionLimits::longest_rest_s, 0, kLargest},
-    LimitField{"rate_Hz", &MotionLimits::rate_hz, 1e-3, 1e6},
-    LimitField{"gear_ratio", &MotionLimits::gear_ratio, 0, 1e6},
+    LimitField{"rate_Hz", &MotionLimits::rate_hz, 1e-3, 1e6, true},
+    LimitField{"gear_ratio", &MotionLimits::gear_ratio, 0, 1e6, true},
     LimitField{"gravity_Nm", &MotionLimits::gravity_nm, 0, kLargest},
     LimitField{"gravity_phase_rad", &MotionLimits::gravity_phase_rad, -10, 10}};
 
@@ -131,6 +134,20 @@ std::string limits_json(const MotionLimits& limits) {
   return write_json(json, 1);
 }
 
+namespace {
+
+void check_all_there(const Json& limits, const std::string& place) {
+  std::vector<std::string> missing;
+  for (const LimitField& field : kFields) {
+    if (field.must_be_there && !limits.contains(field.name)) missing.emplace_back(field.name);
+  }
+  if (missing.empty()) return;
+  throw_bad_input(fmt::format("the limits lack {}", fmt::join(missing, ", ")), place,
+                  "set them; gear_ratio is 0 where it is not known");
+}
+
+}  // namespace
+
 MotionLimits read_limits(std::string_view text, const std::string& place) {
   Json json = read_json_or_throw<Json>(text, place);
   if (json.is_object() && json.contains("limits")) json = json.at("limits");
@@ -152,6 +169,7 @@ MotionLimits read_limits(std::string_view text, const std::string& place) {
     }
     limits.*(found->value) = value.get<double>();
   }
+  check_all_there(json, place);
   if (!(limits.lowest_rad < limits.highest_rad)) {
     throw_bad_input("lowest_rad is not below highest_rad", place, "give a range of positions");
   }

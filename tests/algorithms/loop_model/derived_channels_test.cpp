@@ -72,8 +72,8 @@ const std::string kFormula = "8*sgn_v + 14*v - 5*sgn_v*exp(-d/0.05) + 0.1*a";
 TEST(DerivedChannels, CCodeGivesTheLoopsOwnValuesOnMovementsWithReversals) {
   if (!has_compiler()) GTEST_SKIP() << "no C compiler";
   const Observations data = observe(kuka::make_planted({}, 3).data);
-  const BaseModel model = formula_base(data, kFormula);
-  const Eigen::MatrixXd expected = evaluate_columns(std::vector{model.formula}, data);
+  const Eigen::MatrixXd expected =
+      evaluate_columns(std::vector{parse(kFormula, data.names())}, data);
   const Compiled code(kFormula, PathFrom::position);
   const auto start = code.function<Start>("friction_start");
   const auto step =

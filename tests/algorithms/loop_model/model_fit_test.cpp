@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/expression/text.hpp"
 #include "tests/algorithms/diagnosis/half_sines.hpp"
 
 namespace tribench::loop {
@@ -76,6 +77,62 @@ TEST(ModelFit, AConstantAtZeroIsFittedTheSameInAnotherUnit) {
   const Eigen::VectorXd once = fitted(data, 1);
   for (double& y : data.target) y *= kUnit;
   EXPECT_EQ(fitted(data, kUnit), kUnit * once);
+}
+
+TEST(ModelFit, WhatHasAConstantOfItsOwnIsLinear) {
+  const Observations data =
+      half_sines_over({.movements = 12, .rows = 200, .seed = 7}, [](double) { return 0; });
+  BaseModel base;
+  const Expression formula =
+      parse("2*v - 4*sgn_v - sgn_v*(5 + 3*exp(-abs(v/0.2)^1.5)) + 6*v", data.names());
+  const std::vector<ConstantRange> ranges = {{0, 9}, {1, 9}, {2, 9}, {3, 9},
+                                             {4, 9}, {5, 9}, {6, 9}};
+  add_formula(base, formula, ranges);
+  ASSERT_EQ(base.linear_terms.size(), 2U);  // v once
+  EXPECT_EQ(print(base.linear_terms[0], data.names()), "v");
+  EXPECT_EQ(print(base.linear_terms[1], data.names()), "sgn_v");
+  EXPECT_EQ(print(base.formula, data.names()), "-(sgn_v*(5 + 3*exp(-abs(v/0.2)^1.5)))");
+  ASSERT_EQ(base.ranges.size(), 4U);
+  EXPECT_EQ(base.ranges.front().low, 2);
+  EXPECT_EQ(base.ranges.back().low, 5);
+}
+
+// As Fc >= 0 of a joint whose friction falls and falls. The others reckon with what is held.
+TEST(ModelFit, ABasesConstantsKeepTheirRanges) {
+  Observations data =
+      half_sines_over({.movements = 12, .rows = 200, .seed = 7}, [](double) { return 0; });
+  const std::vector<double>& v = data.find("v")->values;
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    data.target[i] =
+        std::copysign(1, v[i]) * (3 * std::exp(-std::pow(std::abs(v[i]) / 0.9, 1.2)) - 1);
+  }
+  const auto fitted = [&data](double start, const ConstantRange& coulomb) {
+    const std::string text = fmt::format("0.5*sgn_v*({} + exp(-abs(v/0.3)^1.5)*1)*2", start);
+    const std::vector<ConstantRange> ranges = {{0.5, 0.5}, coulomb, {0.01, 0.5},
+                                               {0.6, 4},   {0, 99}, {2, 2}};
+    LoopModel model;
+    add_formula(model.base, parse(text, data.names()), ranges);
+    Noise noise;
+    noise.within_sd = kHalfSinesNoise;
+    fit_model(model, data, make_clusters(data.movement, 1), noise, FitScope::everything);
+    return model;
+  };
+  const LoopModel free = fitted(0.2, {-99, 99});
+  const LoopModel bounded = fitted(0.2, {0, 99});
+  const auto constant = [](const LoopModel& model, std::size_t k) {
+    return model.base.formula.node(constant_positions(model.base.formula)[k]).value;
+  };
+  EXPECT_LT(constant(free, 1), -0.1);
+  EXPECT_EQ(constant(bounded, 1), 0);
+  EXPECT_EQ(constant(bounded, 0), 0.5);
+  EXPECT_EQ(constant(bounded, 5), 2);
+  EXPECT_LE(constant(bounded, 2), 0.5);
+  const LoopModel held = fitted(0, {0, 0});
+  const auto miss = [&data](const LoopModel& model) {
+    return (target_vector(data) - predict(model, data)).squaredNorm();
+  };
+  EXPECT_GT(miss(bounded), miss(free));
+  EXPECT_NEAR(miss(bounded), miss(held), 1e-3 * miss(held));
 }
 
 }  // namespace

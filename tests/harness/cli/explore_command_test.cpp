@@ -145,5 +145,43 @@ TEST_F(ExploreByProgram, AClockThatBeginsAnewRunsOn) {
   }
 }
 
+// Each was believed, and became effects or, in numbers that are none, a sure NONE.
+TEST_F(ExploreByProgram, RefusesARecordingThatIsNotTheMovement) {
+  const auto says = [&](const std::string& name, const std::string& change) {
+    const std::string robot =
+        make_robot(name, "", "awk -F, -v OFS=, 'NR > 1 { " + change + " } { print }'");
+    const ProgramRun run = explore(robot, name + ".x");
+    EXPECT_EQ(run.status, 3);
+    return run.errors;
+  };
+  EXPECT_THAT(says("degrees", "$3 *= 57.29578; $4 *= 57.29578"),
+              AllOf(HasSubstr("the recording goes from"), HasSubstr("and the limits from"),
+                    HasSubstr("position_deg")));
+  EXPECT_THAT(says("rpm", "$4 *= 9.549297"), HasSubstr("where the velocity says"));
+  EXPECT_THAT(says("turned", "$4 = -$4"), HasSubstr("where the velocity says"));
+  EXPECT_THAT(says("still", "$3 = 0.1"), HasSubstr("was asked for"));
+}
+
+TEST_F(ExploreByProgram, LimitsThatNobodyHasSetMoveNoJoint) {
+  const std::string robot = make_robot("a");
+  write_text(folder_ / "limits.json", R"({"lowest_rad": -1, "highest_rad": 1, "torque_Nm": 9})");
+  const ProgramRun run = explore(robot, "x");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors,
+              HasSubstr("the limits lack speed_rad_s, acceleration_rad_s2, rate_Hz, gear_ratio"));
+}
+
+TEST_F(ExploreByProgram, AProgramAndItsWordsMayComeInQuotes) {
+  const std::string robot = make_robot("a");
+  const auto run = [&](const std::string& command) {
+    return run_tribench({"explore", "--limits", (folder_ / "limits.json").string(), "--budget",
+                         "10", "--command", command});
+  };
+  EXPECT_EQ(run("sh -e '" + robot + "'").status, 4);
+  const ProgramRun open = run("sh -e '" + robot);
+  EXPECT_EQ(open.status, 2);
+  EXPECT_THAT(open.errors, HasSubstr("is no command"));
+}
+
 }  // namespace
 }  // namespace tribench::testing
