@@ -37,7 +37,12 @@ std::uint64_t Budget::remaining() const {
   return limits_.evaluations - std::min(spent_, limits_.evaluations);
 }
 
+bool Budget::is_stopped() const {
+  return limits_.stop != nullptr && limits_.stop->load(std::memory_order_relaxed);
+}
+
 double Budget::remaining_seconds() const {
+  if (is_stopped()) return 0;
   return std::max(0.0, limits_.cpu_seconds - (process_cpu_seconds() - cpu_start_));
 }
 
@@ -48,7 +53,7 @@ void Budget::book(std::uint64_t node_rows) {
 
 bool Budget::in_time() {
   spent_at_next_clock_check_ = spent_ + kClockInterval;
-  if (process_cpu_seconds() - cpu_start_ > limits_.cpu_seconds) {
+  if (is_stopped() || process_cpu_seconds() - cpu_start_ > limits_.cpu_seconds) {
     out_of_time_->store(true);
     cut_by_clock_->store(true);
   }

@@ -18,6 +18,9 @@ namespace tribench {
 struct BudgetLimits {
   std::uint64_t evaluations = std::numeric_limits<std::uint64_t>::max();  // node-rows
   double cpu_seconds = std::numeric_limits<double>::infinity();           // of the process
+  // From when on the seconds are spent, whatever is left of them: a user's Ctrl-C. May be null;
+  // outlives the budget.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 // Thread safety: one Budget per thread; shares of one budget may be spent in different threads.
@@ -53,6 +56,8 @@ class Budget {
   void settle(const Budget& part);
 
  private:
+  bool is_stopped() const;
+
   BudgetLimits limits_;
   std::uint64_t spent_ = 0;
   std::uint64_t spent_at_next_clock_check_ = 0;

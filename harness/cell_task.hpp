@@ -4,6 +4,7 @@
 // worker processes. Both go as one line of JSON; doubles come back bit for bit.
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,6 +25,7 @@ struct CellTask {
   std::string data;  // folder of the measured sets; empty where there is none
   Prior prior = {};
   std::optional<user::UserProblem> own = {};  // what cell.problem is, where the grid brings it
+  const std::atomic<bool>* stop = nullptr;  // as BudgetLimits has it; of this process, not written
 };
 
 struct CellResult {

@@ -388,7 +388,7 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
   const auto wall_start = std::chrono::steady_clock::now();
   const double cpu_start = cpu_seconds_with_children();
   const InstructionCounter instructions;
-  Budget budget({task.limits.evaluations, task.limits.seconds});
+  Budget budget({task.limits.evaluations, task.limits.seconds, task.stop});
   StagesResult fit;
   try {
     fit = fit_stages(problem, method, task, widened, budget, trace);

@@ -251,11 +251,12 @@ bool has_merged_atoms(const LoopModel& model) {
   return false;
 }
 
-// The parameters whose step leads out of the bound at which they stand.
+// The base's constants whose step leads out of the bound at which they stand. A shape that is
+// driven to its bound stands for another cause, and need not become better at that.
 std::vector<std::size_t> led_out(const LoopModel& model, const std::vector<Nonlinear>& parameters,
                                  const Eigen::VectorXd& step) {
   std::vector<std::size_t> out;
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
+  for (std::size_t j = 0; j < parameters.size() && parameters[j].of_base; ++j) {
     const double value = value_of(model, parameters[j]);
     const double change = step[static_cast<Eigen::Index>(j)];
     if ((change < 0 && value <= parameters[j].low) || (change > 0 && value >= parameters[j].high)) {
@@ -265,7 +266,7 @@ std::vector<std::size_t> led_out(const LoopModel& model, const std::vector<Nonli
   return out;
 }
 
-// The solution of a step's equations in which no parameter is led out of its bound: the others must
+// The solution of a step's equations in which no constant is led out of its bound: the others must
 // not reckon with what it cannot do (an active set, Gill, Murray and Wright 1981, section 5.2).
 Eigen::VectorXd step_within(const LoopModel& model, const std::vector<Nonlinear>& parameters,
                             Eigen::MatrixXd normal, Eigen::VectorXd gradient) {

@@ -27,6 +27,7 @@
 #include "harness/cli/commands.hpp"
 #include "harness/cli/data_options.hpp"
 #include "harness/cli/fit_output.hpp"
+#include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
 #include "harness/machine.hpp"
 #include "harness/run_cell.hpp"
@@ -101,6 +102,7 @@ CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fix
   if (fixed_form) task.operators = fixed_form_operators();
   task.limits = limits_of(arguments);
   task.threads = usable_processors();
+  task.stop = &stop_requested_by_signal();
   return task;
 }
 
@@ -258,7 +260,12 @@ void fit_shared_shape(const FitArguments& arguments, Problem& problem, const Cho
   }
 }
 
-void fit(const FitArguments& arguments, const Registry& registry) {
+// What a fit found before it was told to stop is its answer; but not what it was asked for.
+ExitStatus status_of_end() {
+  return stop_requested_by_signal() ? ExitStatus::undecided : ExitStatus::done;
+}
+
+ExitStatus fit(const FitArguments& arguments, const Registry& registry) {
   if (!arguments.save.empty()) try_output_file(arguments.save);
   const ChosenMethod chosen = choose_method(arguments, registry);
   std::vector<std::string> inputs = arguments.inputs;
@@ -266,7 +273,10 @@ void fit(const FitArguments& arguments, const Registry& registry) {
     if (!column->empty()) inputs.push_back(*column);
   }
   Problem problem = make_problem(arguments, inputs);
-  if (!arguments.category.empty()) return fit_shared_shape(arguments, problem, chosen);
+  if (!arguments.category.empty()) {
+    fit_shared_shape(arguments, problem, chosen);
+    return status_of_end();
+  }
   const std::vector<double> weights = take_weights(arguments, problem);
   const CellTask task = task_of(arguments, problem, chosen.fixed_form);
   FitAnswer answer;
@@ -283,7 +293,10 @@ void fit(const FitArguments& arguments, const Registry& registry) {
   constexpr double kSpent = 0.99;
   const bool by_evaluations = static_cast<double>(record.evaluations) >=
                               kSpent * static_cast<double>(arguments.evaluations);
-  answer.ended = by_clock ? "seconds" : by_evaluations ? "evaluations" : "finished";
+  answer.ended = stop_requested_by_signal() ? "stopped"
+                 : by_clock                 ? "seconds"
+                 : by_evaluations           ? "evaluations"
+                                            : "finished";
   answer.reproduce = reproducing(arguments, record, by_clock);
   answer.reproduces_exactly = !by_clock;
   answer.inputs = problem.input_names();
@@ -296,6 +309,7 @@ void fit(const FitArguments& arguments, const Registry& registry) {
   } else {
     print_fit(answer);
   }
+  return status_of_end();
 }
 
 // As they were typed.
@@ -385,12 +399,13 @@ void add_judging_options(CLI::App& command, FitArguments& arguments) {
 
 }  // namespace
 
-void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& registry) {
+void add_fit_command(CLI::App& app, ExitStatus& status, const Registry& registry) {
   CLI::App* command = app.add_subcommand("fit", "Fit one method to a data file");
   command->footer(
       "Example: tribench fit joint.csv --target tau_f --inputs v,sgn_v --method pysr --test "
       "later.csv\n"
-      "Without --test the errors on test rows stay empty: nothing is held out.");
+      "Without --test the errors on test rows stay empty: nothing is held out.\n"
+      "Ctrl-C ends the search, and what it has found by then is the answer (exit status 4).");
   auto arguments = std::make_shared<FitArguments>();
   add_method_options(*command, *arguments);
   add_data_options(*command, arguments->reading);
@@ -404,14 +419,14 @@ void add_fit_command(CLI::App& app, ExitStatus& /*status*/, const Registry& regi
                                           "a file for `tribench predict`, with intervals");
   command->get_option("--category")->excludes(states)->excludes(save);
   command->add_flag("--json", arguments->json, "print JSON");
-  command->callback([arguments, &registry, budget] {
+  command->callback([arguments, &registry, &status, budget] {
     if (arguments->external.empty() && arguments->method.empty()) arguments->method = "relay";
     arguments->words = own_words();
     arguments->spends_all = budget.seconds->count() > 0;
     if (arguments->spends_all && budget.evaluations->count() == 0) {
       arguments->evaluations = CellLimits::kAmple;
     }
-    fit(*arguments, registry);
+    status = fit(*arguments, registry);
   });
 }
 

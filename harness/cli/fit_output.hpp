@@ -18,7 +18,7 @@ struct FitAnswer {
   CellResult result;
   std::optional<FitIntervals> intervals;
   std::string no_intervals;  // why there are none
-  std::string ended;         // "finished", "evaluations", "seconds"
+  std::string ended;         // "finished", "evaluations", "seconds", "stopped"
   std::string reproduce;     // the command that gives the same again, or nearly
   bool reproduces_exactly = true;
   std::vector<std::string> inputs;

@@ -402,5 +402,21 @@ TEST_F(UnequalRowsTest, AFileOfAnotherNameGivesTheSameAnswer) {
             formula_of("Monday's run.csv", {"--split", "0.25"}));
 }
 
+// Minutes of search were lost with it.
+TEST_F(FitTest, CtrlCEndsTheSearchAndGivesWhatItHasFound) {
+  std::string noisy = "x,z,y\n";
+  for (int i = 0; i < 300; ++i) {
+    const double x = 0.05 * i;
+    const double z = std::fmod(0.37 * i, 2.0);
+    noisy += fmt::format("{},{},{}\n", x, z, std::sin(x * x) / (1 + z) + std::fmod(7.13 * i, 1.0));
+  }
+  write_text(folder_ / "noisy.csv", noisy);
+  const ProgramRun run = run_to_end({"timeout", "--preserve-status", "--signal=INT", "2",
+                                     program().string(), "fit", (folder_ / "noisy.csv").string(),
+                                     "--target", "y", "--inputs", "x,z", "--seconds", "600"});
+  EXPECT_EQ(run.status, 4) << run.errors;
+  EXPECT_THAT(run.output, AllOf(HasSubstr("ended by: stopped"), HasSubstr("complexity")));
+}
+
 }  // namespace
 }  // namespace tribench::testing
