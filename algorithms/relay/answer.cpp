@@ -18,10 +18,15 @@
 namespace tribench::relay {
 namespace {
 
-constexpr std::size_t kShort = 14;         // nodes of an exact formula
+constexpr std::size_t kShort = 14;    // nodes of an exact formula
+constexpr std::size_t kShortest = 7;  // of one that no other search is asked to shorten
+// How long a shorter explanation is looked for: of what had been spent, and at the least.
+constexpr std::uint64_t kLookOfSpent = 2;
+constexpr std::uint64_t kLeastLook = 1'000'000'000;
 constexpr std::size_t kLikelyFitted = 25;  // of those that structure proposes under noise
 constexpr std::size_t kLikelyTaken = 5;    // of these
 constexpr std::size_t kAskedAgainstRival = 3;
+constexpr std::string_view kByLikely = "what is likely under noise";
 constexpr double kLate = 0.1;       // of all seconds
 constexpr double kOfPruning = 0.5;  // of the seconds that are left
 
@@ -44,13 +49,32 @@ Answer::Answer(FitContext& context)
       joint_(rows_.table(), rows_.target, rows_.movement, input_box(context.data.inputs)),
       seconds_(context.budget.remaining_seconds()) {}
 
-bool Answer::is_short() {
-  return has_formula() && joint_.formulas()[joint_.chosen()].size() <= kShort;
+std::size_t Answer::chosen_nodes() { return joint_.formulas()[joint_.chosen()].size(); }
+
+bool Answer::is_short() { return has_formula() && chosen_nodes() <= kShort; }
+
+bool Answer::is_done() {
+  if (context_.budget.remaining() == 0 || context_.budget.out_of_time() ||
+      context_.budget.exhausted()) {
+    return true;
+  }
+  if (!joint_.is_explained()) return false;
+  return chosen_nodes() <= kShortest || context_.budget.spent() >= look_ends_;
 }
 
-bool Answer::is_done() const {
-  return joint_.is_explained() || context_.budget.remaining() == 0 ||
-         context_.budget.out_of_time() || context_.budget.exhausted();
+void Answer::add_explaining(std::span<const Expression> front, std::optional<std::size_t> chosen,
+                            std::string_view found_by) {
+  const Expression before = is_explained() ? joint_.formulas()[joint_.chosen()] : Expression();
+  joint_.add(front, chosen);
+  if (!is_explained()) return;
+  const std::uint64_t spent = context_.budget.spent();
+  if (!look_ends_) look_ends_ = spent + std::max(kLookOfSpent * spent, kLeastLook);
+  if (!(joint_.formulas()[joint_.chosen()] == before)) explained_by_ = found_by;
+}
+
+std::uint64_t Answer::left_to_look() const {
+  const std::uint64_t spent = context_.budget.spent();
+  return look_ends_ && *look_ends_ > spent ? *look_ends_ - spent : 0;
 }
 
 bool Answer::is_late() const { return context_.budget.remaining_seconds() < kLate * seconds_; }
@@ -60,12 +84,12 @@ void Answer::offer(std::optional<Expression> found, std::string_view found_by) {
   Expression formula = std::move(*found);
   ConstantFitOptions options;
   options.function_tolerance = 1e-14;
+  options.step_tolerance = 1e-15;  // else exact forms stop at 1e-12 of the target, as near ones do
   const ConstantFitResult fit =
       ConstantFitter().fit(formula, rows_.table(), rows_.target, {}, options);
   context_.budget.spend(fit.node_rows);
   if (fit.status == FitStatus::not_finite) return;
-  joint_.add(std::array{std::move(formula)}, std::nullopt);
-  if (joint_.is_explained() && explained_by_.empty()) explained_by_ = found_by;
+  add_explaining(std::array{std::move(formula)}, std::nullopt, found_by);
 }
 
 void Answer::offer_likeliest(std::span<const Expression> formulas, Budget& budget) {
@@ -85,7 +109,7 @@ void Answer::offer_likeliest(std::span<const Expression> formulas, Budget& budge
   for (const Expression& formula : likely.likeliest(kLikelyTaken)) {
     if (!budget.in_time()) break;
     if (prove_free(formula, box).verdict == Verdict::refuted) continue;
-    joint_.add(std::array{formula}, 0);
+    add_explaining(std::array{formula}, 0, kByLikely);
   }
 }
 
@@ -94,8 +118,7 @@ void Answer::add(const FitResult& result, std::string_view found_by) {
     if (!result.note.empty()) say(fmt::format("{}: {}", found_by, result.note));
     return;
   }
-  joint_.add(result.front, result.chosen);
-  if (joint_.is_explained() && explained_by_.empty()) explained_by_ = found_by;
+  add_explaining(result.front, result.chosen, found_by);
 }
 
 void Answer::prune(const Expression& formula) {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,10 +30,17 @@ class Answer {
 
   const FiniteRows& rows() const { return rows_; }
   bool has_formula() const { return !joint_.empty(); }
-  // Whether the chosen formula is so short that another way is hardly shorter.
+  // A formula explains the rows to rounding: only a shorter one is still of use.
+  bool is_explained() const { return joint_.is_explained(); }
+  // Whether the chosen formula is so short that another method hardly finds a shorter one.
   bool is_short();
-  // The rows are explained to rounding, or nothing is left to spend.
-  bool is_done() const;
+  // Nothing is left to spend; or the rows are explained and a shorter way is hardly possible, or
+  // was looked for long enough: in proportion to what had been spent when they were explained.
+  bool is_done();
+  // No shorter explanation is looked for.
+  void end_look() { look_ends_ = 0; }
+  // Evaluations that may still be spent on a shorter explanation of rows that are explained.
+  std::uint64_t left_to_look() const;
   // So little time is left that another method would hardly have prepared its rows.
   bool is_late() const;
 
@@ -58,6 +66,10 @@ class Answer {
 
  private:
   void say(std::string_view what);  // in the note
+  // `found_by` is noted where the rows are explained by one of these formulas.
+  void add_explaining(std::span<const Expression> front, std::optional<std::size_t> chosen,
+                      std::string_view found_by);
+  std::size_t chosen_nodes();
   std::optional<std::size_t> best_against_rival(std::span<const Expression> front,
                                                 std::size_t chosen);
 
@@ -66,6 +78,8 @@ class Answer {
   Admission admission_;
   JointFront joint_;
   double seconds_;  // to spend, in all
+  // Evaluations at which the look for a shorter explanation ends, once there is one.
+  std::optional<std::uint64_t> look_ends_;
   std::optional<LongSum> rival_;
   std::size_t rival_rows_ = 0;
   std::string note_;

@@ -38,6 +38,11 @@ class List {
     add(FactorKind::other, function(Op::exp, x) - constant(1), {j});
     add(FactorKind::exponential, function(Op::exp, x), {j});
   }
+  void add_root_products(std::size_t i) {
+    for (std::size_t j = i + 1; j < rows_.inputs().size(); ++j) {
+      add(FactorKind::root_product, function(Op::sqrt, input(i) * input(j)), {i, j});
+    }
+  }
   void add_slow(std::size_t j) {
     add(FactorKind::root, function(Op::sqrt, input(j)), {j});
     add(FactorKind::logarithm, function(Op::log, input(j)), {j});
@@ -106,6 +111,7 @@ std::vector<KnownFactor> known_factors(const LogRows& rows, const OperatorSet& o
   }
 
   for (std::size_t j = 0; j < n; ++j) list.add_slow(j);
+  for (std::size_t j = 0; j < n && n <= kMostPaired; ++j) list.add_root_products(j);
   if (n <= kMostWavesTogether) list.add_wave_products(0, {}, {});
   for (std::size_t i = 0; i < n && n <= kMostPaired; ++i) {
     for (std::size_t j = 0; j < n; ++j) {

@@ -22,12 +22,13 @@ enum class FactorKind {
   wave_product,  // of sines and cosines of different inputs, of few inputs
   difference,    // of two inputs
   sum,
-  root,         // of a positive input
-  power,        // x^y; (1 - x)^y and (1 + x)^y of a share x
-  logarithm,    // of a positive input x; of 1 - x of a share
-  exponential,  // of an input of order one
-  decay,        // exp(-x y) of two of them
-  other,        // 1 + x, tanh x, ...
+  root,          // of a positive input
+  root_product,  // of two positive inputs
+  power,         // x^y; (1 - x)^y and (1 + x)^y of a share x
+  logarithm,     // of a positive input x; of 1 - x of a share
+  exponential,   // of an input of order one
+  decay,         // exp(-x y) of two of them
+  other,         // 1 + x, tanh x, ...
 };
 
 struct KnownFactor {

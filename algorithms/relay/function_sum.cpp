@@ -225,12 +225,13 @@ class FunctionSumSearch {
     return trials;
   }
 
-  std::optional<Expression> find_exact() {
+  std::vector<Expression> find_exact() {
+    std::vector<Expression> formulas;
     for (const SumTrial& trial : best_trials(kFittedTrials)) {
       if (trial.left > kPromisingTrial) break;
-      if (auto found = exact(trial)) return found;
+      if (auto found = exact(trial)) formulas.push_back(std::move(*found));
     }
-    return std::nullopt;
+    return formulas;
   }
 
   std::vector<Expression> find_likely() {
@@ -416,18 +417,18 @@ constexpr std::array kManyStages = {Stage{SumTerms::few, 3}, Stage{SumTerms::man
 
 }  // namespace
 
-std::optional<Expression> find_function_sum(const LogRows& rows, const OperatorSet& operators,
-                                            SumTerms terms, Budget& budget) {
-  if (!is_possible(rows, operators)) return std::nullopt;
+std::vector<Expression> find_function_sums(const LogRows& rows, const OperatorSet& operators,
+                                           SumTerms terms, Budget& budget) {
+  if (!is_possible(rows, operators)) return {};
   const auto stages = terms == SumTerms::few ? std::span<const Stage>(kFewStages) : kManyStages;
   for (const Stage& stage : stages) {
     const SumOfTerms of_stage = terms_of(stage.terms, rows);
     auto found =
         FunctionSumSearch(rows, operators, of_stage, stage.inputs_of_u, kRowsOfAColumn, budget)
             .find_exact();
-    if (found) return found;
+    if (!found.empty()) return found;
   }
-  return std::nullopt;
+  return {};
 }
 
 std::vector<Expression> likely_function_sums(const LogRows& rows, const OperatorSet& operators,

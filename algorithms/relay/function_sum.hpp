@@ -27,9 +27,11 @@ namespace tribench::relay {
 // ratios of two, and u of one to three. Up to seconds; the budget ends it.
 enum class SumTerms { few, many };
 
-// Exact to rounding; none where none is, and where there are not 2 to 6 inputs and 60 rows.
-std::optional<Expression> find_function_sum(const LogRows& rows, const OperatorSet& operators,
-                                            SumTerms terms, Budget& budget);
+// Exact to rounding, or nearly so: several ways to write one law differ in length, and a sum of
+// many terms may come near to a law that it is not. None where none is, and where there are not 2
+// to 6 inputs and 60 rows.
+std::vector<Expression> find_function_sums(const LogRows& rows, const OperatorSet& operators,
+                                           SumTerms terms, Budget& budget);
 
 // Under noise, the same in all rows: those that leave least, with few terms, to be fitted and
 // weighed by the caller. Some 0.2 s for four inputs.

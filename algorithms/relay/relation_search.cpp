@@ -47,6 +47,10 @@ struct Product {
   }
 };
 
+bool is_root(FactorKind kind) {
+  return kind == FactorKind::root || kind == FactorKind::root_product;
+}
+
 // What the columns marked as beside are: none are taken, multiples of T(y), or of y beside y^2.
 enum class Shape { sum, ratio, quadratic };
 
@@ -67,6 +71,11 @@ class Search {
   Search(const LogRows& rows, const OperatorSet& operators, Columns columns, std::size_t most,
          std::size_t most_beside)
       : rows_(rows), operators_(operators), signs_(signs_of_target(rows)) {
+    if (columns == Columns::with_roots) {
+      factors_ = known_factors(rows, operators, {FactorKind::root, FactorKind::root_product});
+      std::erase_if(factors_,
+                    [](const KnownFactor& known) { return known.kind == FactorKind::input; });
+    }
     if (columns == Columns::with_factors) {
       factors_ = known_factors(rows, operators,
                                {FactorKind::wave, FactorKind::angle_sum, FactorKind::decay,
@@ -78,10 +87,11 @@ class Search {
             {FactorKind::wave, FactorKind::angle_sum, FactorKind::wave_product, FactorKind::decay,
              FactorKind::difference, FactorKind::power, FactorKind::logarithm});
       } else if (n <= kFewInputs) {
-        factors_ = known_factors(
-            rows, operators,
-            {FactorKind::wave, FactorKind::wave_product, FactorKind::difference, FactorKind::sum,
-             FactorKind::root, FactorKind::power, FactorKind::logarithm, FactorKind::exponential});
+        factors_ =
+            known_factors(rows, operators,
+                          {FactorKind::wave, FactorKind::wave_product, FactorKind::difference,
+                           FactorKind::sum, FactorKind::root, FactorKind::power,
+                           FactorKind::logarithm, FactorKind::exponential, FactorKind::angle_sum});
       }
       std::erase_if(factors_,
                     [](const KnownFactor& known) { return known.kind == FactorKind::input; });
@@ -162,13 +172,16 @@ void Search::list_products(std::size_t most, std::size_t most_beside) {
       for (const auto& powers : by_degree[static_cast<std::size_t>(degree - rest)]) {
         if (products_.size() >= most) break;
         for (std::size_t f = 0; f < factors_.size(); ++f) {
+          // The square of a root is an input's power again.
+          if (is_root(factors_[f].kind) && rest > 2) continue;
           // Products of waves stand alone: they are many.
           if (factors_[f].kind == FactorKind::wave_product && degree > rest) continue;
           // A length times a wave of its angle.
           if (factors_[f].kind == FactorKind::angle_sum && (degree > rest + 1 || rest > 2))
             continue;
           products_.push_back({f, rest - 1, powers, false});
-          if (n > kFewInputs || !factors_[f].factor.has_logs()) continue;
+          if (!factors_[f].factor.has_logs()) continue;
+          if (n > kFewInputs && !is_root(factors_[f].kind)) continue;
           products_.push_back({f, 1 - rest, powers, false});
         }
       }
@@ -437,6 +450,11 @@ std::optional<Expression> find_relation(const LogRows& rows, const OperatorSet& 
     auto found = search.run(form, shape, budget);
     if (found && (!shortest || found->size() < shortest->size())) shortest = std::move(found);
   };
+  // Roots of roots and roots in ratios are no laws that are known here.
+  if (columns == Columns::with_roots) {
+    look(TargetForm::plain, Shape::sum);
+    return shortest;
+  }
   for (const TargetForm form : kTargetForms) look(form, Shape::sum);
   if (!shortest) look(TargetForm::plain, Shape::ratio);
   if (!shortest && rows.inputs().size() <= kFewInputs) look(TargetForm::logarithm, Shape::ratio);

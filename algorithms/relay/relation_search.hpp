@@ -22,7 +22,8 @@
 
 namespace tribench::relay {
 
-enum class Columns { powers_alone, with_factors };  // factors.hpp: waves, sums and differences
+// With square roots of inputs and of products of two; with factors.hpp's waves, sums, differences.
+enum class Columns { powers_alone, with_roots, with_factors };
 
 // The shortest sum that is exact to rounding on the rows, of at most `most` columns; none where
 // none is, or the budget is spent.

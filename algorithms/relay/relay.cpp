@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/relay/relay.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -21,6 +22,7 @@ using relay::StructureSearch;
 // In the order in which they run: where time is short, the one that finds most alone comes first.
 constexpr std::array kMembers = {"pysr", "udsr", "parfam"};
 constexpr double kOfAMember = 0.9;  // of the seconds; the rest is for what is done with its choice
+constexpr double kOfShortening = 0.25;  // of the seconds, for a shorter form of what is exact
 
 // What can be left out besides the searches for structure and the members, by their names.
 constexpr std::string_view kNothing = "nothing";
@@ -43,11 +45,16 @@ class Relay : public Regressor {
     StructureSearch structure(context, answer, *solver_, round_, without_);
     structure.search();
     structure.search_long_sum();
-    if (answer.is_done() && answer.has_formula() && !answer.is_short()) structure.search_guesses();
+    if (answer.is_explained() && !answer.is_short()) structure.search_guesses();
     for (std::size_t k = 0; k < members_.size(); ++k) {
       // The first runs whatever is left; the others where there is something to spend, and to find.
       if ((answer.is_done() || answer.is_late()) && answer.has_formula()) break;
-      run(members_[k], context.budget.remaining() / (members_.size() - k), context, answer);
+      if (answer.is_explained()) {
+        if (!answer.is_short()) shorten(members_[k], context, answer);
+        break;
+      }
+      run(members_[k], context.budget.remaining() / (members_.size() - k), kOfAMember, context,
+          answer);
       if (k > 0 || answer.is_done()) continue;
       structure.search_wide_sums();
       structure.search_guesses();
@@ -64,9 +71,15 @@ class Relay : public Regressor {
 
   bool prunes() const { return without_ != kPruning; }
 
-  void run(const Member& member, std::uint64_t evaluations, FitContext& context,
+  // A turn of a member on rows that are explained by a long formula.
+  void shorten(const Member& member, FitContext& context, Answer& answer) const {
+    run(member, std::min(context.budget.remaining() / members_.size(), answer.left_to_look()),
+        kOfShortening, context, answer);
+  }
+
+  void run(const Member& member, std::uint64_t evaluations, double of_seconds, FitContext& context,
            Answer& answer) const {
-    Budget part = context.budget.share(evaluations, kOfAMember);
+    Budget part = context.budget.share(evaluations, of_seconds);
     FitContext turn{context.data,    context.operators, part, context.random.split(member.name),
                     context.threads, context.progress};
     const FitResult result = member.method->fit(turn);

@@ -34,6 +34,7 @@ constexpr std::size_t kFewRows = 300;        // that tell a sum of six among 700
 constexpr std::size_t kLikelyColumns = 150;  // under noise, where the best of many fits it
 constexpr std::size_t kLikelyWaves = 400;
 constexpr std::size_t kColumns = 500;            // of the search for relations, a round
+constexpr std::size_t kRootColumns = 300;        // with square roots
 constexpr std::size_t kMoreColumns = 700;        // with waves
 constexpr std::size_t kLongSum = 16;             // nodes
 constexpr std::size_t kOrders = 1500;            // of the search for fewer variables, a round
@@ -96,11 +97,12 @@ void StructureSearch::search() {
   Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
   auto simpler = find_structure(rows, part);
   context_.budget.settle(part);
+  search_roots();
   find_parts(rows);
   const bool has_parts = parts_ && parts_->error < kSurelyExact;
   search_wave_sum();
   search_function_sum(SumTerms::few);
-  if (!has_parts) search_likely();
+  if (!has_parts && !answer_.is_explained()) search_likely();
   if (is_noise_left_) return;
   if (has(kReductions)) {
     auto reduced = reduce(Guesses::no);
@@ -109,8 +111,18 @@ void StructureSearch::search() {
   // Fewer variables are as exact as the rows, parts are not.
   if (!simpler) search_parts();
   if (round_ == 0 && has(kSums) && !answer_.is_done()) search_waves();
-  if (simpler && !answer_.is_done()) search_by_solver(*simpler);
+  if (simpler && !is_over()) search_by_solver(*simpler);
   if (simpler) search_parts();
+}
+
+void StructureSearch::search_roots() {
+  const LogRows rows(answer_.rows(), kFewRows);
+  const bool is_possible = has(kSums) && context_.operators.allows(Op::sqrt);
+  if (round_ > 0 || is_over() || rows.rows() == 0 || !is_possible) return;
+  Budget budget = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
+  answer_.offer(find_relation(rows, context_.operators, Columns::with_roots, kRootColumns, budget),
+                kBySum);
+  context_.budget.settle(budget);
 }
 
 // Before the rest is judged: a fast wave looks like noise.
@@ -126,7 +138,9 @@ void StructureSearch::search_function_sum(SumTerms terms) {
   const LogRows rows(answer_.rows(), kFewRows);
   if (round_ > 0 || answer_.is_done() || rows.rows() == 0 || !has(kFunctionSums)) return;
   Budget budget = context_.budget.share(context_.budget.remaining() / 4, kHalf);
-  answer_.offer(find_function_sum(rows, context_.operators, terms, budget), kByFunctionSum);
+  for (Expression& sum : find_function_sums(rows, context_.operators, terms, budget)) {
+    answer_.offer(std::move(sum), kByFunctionSum);
+  }
   context_.budget.settle(budget);
 }
 
@@ -160,7 +174,7 @@ void StructureSearch::search_long_sum() {
   // Beyond the rows products of distances grow as they like.
   const bool stays_within =
       !reaches_beyond(answer_.rows().table(), input_box(context_.data.inputs));
-  if (answer_.is_done() || !has(kLongSums) || !stays_within) return;
+  if (is_over() || !has(kLongSums) || !stays_within) return;
   Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
   for (const std::size_t most_rows : kRivalRows) {
     auto sum = fit_long_sum(answer_.rows(), context_.operators, most_rows, part);
@@ -174,7 +188,7 @@ void StructureSearch::search_long_sum() {
 void StructureSearch::search_guesses() {
   if (!has(kGuesses)) return;
   const auto simpler = reduce(Guesses::yes);
-  if (simpler && !answer_.is_done()) search_by_solver(*simpler);
+  if (simpler && !is_over()) search_by_solver(*simpler);
 }
 
 void StructureSearch::search_wide_sums() {
@@ -227,6 +241,7 @@ void StructureSearch::search_parts() {
 void StructureSearch::find_products_and_sums(const LogRows& rows, Budget& budget) {
   const OperatorSet& operators = context_.operators;
   if (has(kProducts)) answer_.offer(find_product(rows, operators, budget), kByProduct);
+  if (answer_.is_explained()) answer_.end_look();  // no way to write a product is shorter
   if (answer_.is_done()) return;
   std::optional<Expression> sum;
   if (has(kSums)) sum = find_relation(rows, operators, Columns::powers_alone, kColumns, budget);
@@ -242,7 +257,7 @@ void StructureSearch::find_products_and_sums(const LogRows& rows, Budget& budget
 std::optional<ReducedProblem> StructureSearch::find_structure(const LogRows& rows, Budget& budget) {
   if (round_ == 0) {
     find_products_and_sums(rows, budget);
-    if (!answer_.is_done()) find_angles(budget);
+    if (!is_over()) find_angles(budget);
     if (answer_.is_done()) return std::nullopt;
   }
   if (!has(kCollapses)) return std::nullopt;
@@ -281,8 +296,8 @@ void StructureSearch::solve(const ReducedProblem& problem, Budget& budget) {
   try_g(find_relation(rows, operators, Columns::powers_alone, kColumns, budget));
   if (problem.inputs() == 1) {
     try_g(find_function(rows, operators, budget));
-    if (!answer_.is_done()) try_g(find_scaled_function(rows, operators, budget));
-    if (!answer_.is_done()) try_g(find_waves(rows, operators, budget));
+    if (!is_over()) try_g(find_scaled_function(rows, operators, budget));
+    if (!is_over()) try_g(find_waves(rows, operators, budget));
   }
 }
 
@@ -309,8 +324,7 @@ void StructureSearch::search_by_solver(const ReducedProblem& problem) {
 std::optional<ReducedProblem> StructureSearch::reduce(Guesses guesses) {
   const OperatorSet& operators = context_.operators;
   const bool is_possible = operators.allows(Op::mul) && operators.allows(Op::div);
-  if ((answer_.is_done() && answer_.is_short()) || round_ > 0 || !is_possible ||
-      answer_.rows().rows() == 0) {
+  if (answer_.is_done() || round_ > 0 || !is_possible || answer_.rows().rows() == 0) {
     return std::nullopt;
   }
   const std::uint64_t most = guesses == Guesses::yes ? 3 * kReduced : kReduced;
@@ -327,10 +341,10 @@ std::optional<ReducedProblem> StructureSearch::reduce(Guesses guesses) {
     ++tried;
     if (!look_at(*problem, guesses, open, budget)) continue;
     seen.push_back(std::move(*problem));
-    if (answer_.is_done() && seen.back().depth() > 0) ++after;
+    if (answer_.is_explained() && seen.back().depth() > 0) ++after;
   }
   for (const ReducedProblem& problem : seen) {
-    if (answer_.is_done() || budget.exhausted()) break;
+    if (is_over() || budget.exhausted()) break;
     if (problem.depth() > 0) solve_with_factors(problem, budget);
   }
   context_.budget.settle(budget);

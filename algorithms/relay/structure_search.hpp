@@ -67,6 +67,7 @@ class StructureSearch {
   void find_angles(Budget& budget);
   void find_products_and_sums(const LogRows& rows, Budget& budget);
   void search_waves();
+  void search_roots();  // sums with square roots
   void search_wave_sum();
   void search_function_sum(SumTerms terms);
   // A sum or a product of parts without a common input.
@@ -84,6 +85,8 @@ class StructureSearch {
   void solve_with_factors(const ReducedProblem& problem, Budget& budget);
   void search_by_solver(const ReducedProblem& problem);
   ReducedProblem whole() const { return {context_.data.inputs, answer_.rows()}; }
+  // What is as dear as all of the cheap searches is not worth it once the rows are explained.
+  bool is_over() { return answer_.is_explained() || answer_.is_done(); }
   bool has(std::string_view search) const { return without_ != search; }
 
   FitContext& context_;

@@ -184,6 +184,14 @@ TEST_F(JointFrontTest, KnowsWhenTheRowsAreExplainedToRoundingAndStandsForTheShor
   EXPECT_EQ(chosen(joint), "v^2");
 }
 
+// Long sums come so near to laws that they are not.
+TEST_F(JointFrontTest, TakesWhatIsNearButNotToRoundingForNoExplanation) {
+  for (std::size_t r = 0; r < v_.size(); ++r) target_[r] = v_[r] * v_[r];
+  JointFront joint = joint_front();
+  joint.add(front({"v^2 + 1e-12*v"}), 0);
+  EXPECT_FALSE(joint.is_explained());
+}
+
 TEST_F(JointFrontTest, KeepsAChoiceThatIsNotFiniteUntilThereIsABetterOne) {
   JointFront joint = joint_front();
   joint.add(front({"log(v)"}), 0);

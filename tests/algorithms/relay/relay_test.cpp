@@ -55,6 +55,25 @@ TEST(Relay, FindsWhatAnAngleIsTheSineCosineOrTangentOf) {
   }
 }
 
+// Sums of a dozen terms explain these rows, or come as near as 1e-12, long before the law is found.
+TEST(Relay, LooksForAShorterFormOfWhatALongOneExplains) {
+  const std::vector<testing::DrawnInput> two = {{"x", 0.1, 10}, {"q", 0.1, 10}};
+  const std::vector<testing::DrawnInput> three = {{"x", 0.1, 10}, {"q", 0.1, 10}, {"z", 0.1, 10}};
+  const DrawnLaw laws[] = {{"(x - 1)^2*(q - 2)", two, 100},
+                           {"2*x^-0.5 - 3*q^2", two, 100},
+                           {"7.7*sqrt(x) + 2.5*q + 4", two, 100},
+                           {"5.1*x^0.75 + 2.5*q", two, 100},
+                           {"sin(x + q)", two, 100},
+                           {"sqrt(x*q) + 2*z + 1", three, 100}};
+  for (const DrawnLaw& law : laws) {
+    FitOptions options = with_evaluations(8'000'000'000);
+    const FitResult result = run_fit(law.data(), "relay", options);
+    const Expression& chosen = result.front[result.chosen];
+    EXPECT_LT(law.error_of(chosen), 1e-13) << print(chosen, law.names);
+    EXPECT_LE(chosen.size(), 13U) << print(chosen, law.names) << ": " << result.note;
+  }
+}
+
 TEST(Relay, StaysWithItsMembersWhereNoStructureIsExact) {
   const DrawnLaw law("2*x + 0.5", {{"x", -1, 1}}, 60, 0.05);
   const FitResult result = run_fit(law.data(), "relay", with_evaluations(30'000'000));
