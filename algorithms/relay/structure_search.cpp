@@ -241,7 +241,8 @@ void StructureSearch::search_parts() {
 void StructureSearch::find_products_and_sums(const LogRows& rows, Budget& budget) {
   const OperatorSet& operators = context_.operators;
   if (has(kProducts)) answer_.offer(find_product(rows, operators, budget), kByProduct);
-  if (answer_.is_explained()) answer_.end_look();  // no way to write a product is shorter
+  // No way to write a short product is shorter.
+  if (answer_.is_explained() && answer_.is_short()) answer_.end_look();
   if (answer_.is_done()) return;
   std::optional<Expression> sum;
   if (has(kSums)) sum = find_relation(rows, operators, Columns::powers_alone, kColumns, budget);
