@@ -478,7 +478,7 @@ CellResult fit_and_judge_by_category(const Problem& problem, const CategoryColum
   judge_shape(fit, column, record);
   judge_errors(fit, problem, column, record);
   result.front = {{record.cell, record.complexity, record.nodes, record.mae_train, record.mae_test,
-                   record.singularity, true, record.formula}};
+                   record.singularity, true, record.formula, kMissing}};
   if (fit.was_ended_by_clock) note_end_by_clock(record);
   return result;
 }

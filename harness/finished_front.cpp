@@ -14,6 +14,7 @@
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/crossed_rows.hpp"
+#include "algorithms/fitting/evaluation_error.hpp"
 #include "algorithms/fitting/evidence.hpp"
 #include "algorithms/fitting/exact_choice.hpp"
 #include "algorithms/fitting/finish.hpp"
@@ -64,15 +65,19 @@ std::size_t likeliest(std::span<const Expression> front, const FiniteRows& rows)
   return static_cast<std::size_t>(std::ranges::min_element(against) - against.begin());
 }
 
-// Formulas that nobody would want between the rows go, unless nothing else is there. A choice that
-// goes gives way to what has the most evidence of the rest.
+// Formulas that nobody would want between the rows go, and those whose value is lost in rounding,
+// unless nothing else is there. A choice that goes gives way to what has the most evidence of the
+// rest.
 void drop_strays(const FiniteRows& rows, const InputBox& box, FitResult& fit) {
   if (rows.rows() == 0) return;
   CrossedRows crossed(rows.table(), rows.target, box);
+  bool is_choice_lost = false;
   std::vector<Expression> kept;
   std::optional<std::size_t> chosen;
   for (std::size_t i = 0; i < fit.front.size(); ++i) {
-    if (crossed.strays(fit.front[i])) continue;
+    const bool is_lost = loses_its_digits(fit.front[i], rows.table(), rows.target);
+    if (i == fit.chosen && is_lost) is_choice_lost = true;
+    if (is_lost || crossed.strays(fit.front[i])) continue;
     if (i == fit.chosen) chosen = kept.size();
     kept.push_back(fit.front[i]);
   }
@@ -81,10 +86,11 @@ void drop_strays(const FiniteRows& rows, const InputBox& box, FitResult& fit) {
   fit.front = std::move(kept);
   fit.chosen = chosen ? *chosen : likeliest(fit.front, rows);
   if (chosen) return;
-  fit.note += fmt::format(
-      "{}another choice: with inputs as in the rows, combined otherwise, that of "
-      "the search is ten times the target's range away",
-      fit.note.empty() ? "" : "; ");
+  fit.note +=
+      fmt::format("{}another choice: {}", fit.note.empty() ? "" : "; ",
+                  is_choice_lost ? "the value of the search's is lost in rounding"
+                                 : "with inputs as in the rows, combined otherwise, that of "
+                                   "the search is ten times the target's range away");
 }
 
 }  // namespace

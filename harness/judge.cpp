@@ -133,11 +133,29 @@ void judge_singularity(const Problem& problem, const Expression& formula, Record
   }
 }
 
+// What a place on the front is for.
+double front_error(const FrontRecord& entry) {
+  return std::isnan(entry.weighted_rms) ? entry.mae_train : entry.weighted_rms;
+}
+
 bool dominates(const FrontRecord& a, const FrontRecord& b) {
-  if (std::isnan(a.mae_train)) return false;
-  if (std::isnan(b.mae_train)) return true;
-  return a.mae_train <= b.mae_train && a.complexity <= b.complexity &&
-         (a.mae_train < b.mae_train || a.complexity < b.complexity);
+  const double error = front_error(a);
+  const double other = front_error(b);
+  if (std::isnan(error)) return false;
+  if (std::isnan(other)) return true;
+  return error <= other && a.complexity <= b.complexity &&
+         (error < other || a.complexity < b.complexity);
+}
+
+double weighted_rms_of(std::span<const double> values, std::span<const double> target,
+                       std::span<const double> weights) {
+  double whole = 0;
+  double sum = 0;
+  for (std::size_t r = 0; r < target.size(); ++r) {
+    whole += weights[r];
+    sum += weights[r] * (values[r] - target[r]) * (values[r] - target[r]);
+  }
+  return std::isfinite(sum) && whole > 0 ? std::sqrt(sum / whole) : kMissing;
 }
 
 }  // namespace
@@ -182,7 +200,8 @@ void judge_formula(const Problem& problem, const StagedFormula& staged, Record& 
 }
 
 std::vector<FrontRecord> judge_front(const Problem& problem, const std::vector<Expression>& front,
-                                     std::size_t chosen, const Record& judged) {
+                                     std::size_t chosen, const Record& judged,
+                                     std::span<const double> weights) {
   TableEvaluator evaluator;
   std::vector<FrontRecord> all;
   for (std::size_t i = 0; i < front.size(); ++i) {
@@ -191,7 +210,9 @@ std::vector<FrontRecord> judge_front(const Problem& problem, const std::vector<E
     entry.complexity = paper_complexity(front[i]);
     entry.nodes = node_count(front[i]);
     const Table& train = fitted_rows(problem);
-    entry.mae_train = compute_errors(evaluator.evaluate(front[i], train), train.target).mae;
+    const std::span<const double> fitted = evaluator.evaluate(front[i], train);
+    entry.mae_train = compute_errors(fitted, train.target).mae;
+    if (!weights.empty()) entry.weighted_rms = weighted_rms_of(fitted, train.target, weights);
     entry.mae_test =
         compute_errors(evaluator.evaluate(front[i], problem.test), problem.test.target).mae;
     entry.chosen = i == chosen;

@@ -30,8 +30,10 @@ void judge_formula(const Problem& problem, const StagedFormula& formula, Record&
 
 // The cell's front: formulas that none of the others beats in both training error and complexity,
 // by increasing complexity; the chosen one is always among them, with what `judged`, the cell's
-// record, says of its singularity: it is not proved again.
+// record, says of its singularity: it is not proved again. With weights of the training rows, the
+// weighted error stands for the training error.
 std::vector<FrontRecord> judge_front(const Problem& problem, const std::vector<Expression>& front,
-                                     std::size_t chosen, const Record& judged);
+                                     std::size_t chosen, const Record& judged,
+                                     std::span<const double> weights = {});
 
 }  // namespace tribench

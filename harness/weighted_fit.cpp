@@ -3,9 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "algorithms/admission.hpp"
+#include "algorithms/expression/build.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
+#include "algorithms/fitting/evaluation_error.hpp"
+#include "algorithms/fitting/held_out_choice.hpp"
+#include "algorithms/fitting/joint_front.hpp"
 #include "foundation/error.hpp"
 #include "harness/judge.hpp"
 #include "harness/stateful_problem.hpp"
@@ -14,6 +23,8 @@
 
 namespace tribench {
 namespace {
+
+using build::operator*;
 
 // Row k is taken as often as points (i + 1/2) / n of the whole weight fall into its part.
 std::vector<std::size_t> sampled_rows(std::span<const double> weights) {
@@ -38,6 +49,59 @@ std::vector<std::size_t> sampled_rows(std::span<const double> weights) {
   return rows;
 }
 
+// The front as a problem without weights: every row times the root of its weight, which is one more
+// column, so that whatever chooses among formulas can choose here.
+class WeightedRows {
+ public:
+  WeightedRows(const Table& table, std::span<const double> weights) {
+    std::vector<std::size_t> counting;
+    for (std::size_t r = 0; r < weights.size(); ++r) {
+      if (weights[r] > 0) counting.push_back(r);
+    }
+    table_ = select_rows(table, counting);
+    double largest = 0;
+    for (const std::size_t r : counting) largest = std::max(largest, weights[r]);
+    for (const std::size_t r : counting) roots_.push_back(std::sqrt(weights[r] / largest));
+    for (std::size_t r = 0; r < roots_.size(); ++r) table_.target[r] *= roots_[r];
+    for (const std::vector<double>& column : table_.columns) pointers_.push_back(column.data());
+    pointers_.push_back(roots_.data());
+  }
+  WeightedRows(const WeightedRows&) = delete;
+  WeightedRows& operator=(const WeightedRows&) = delete;
+
+  // The place of what stands for the front.
+  std::size_t choice(std::span<const Expression> front, InputBox box) const {
+    const Inputs inputs{pointers_, roots_.size()};
+    const auto [least, most] = std::ranges::minmax(roots_);
+    box.push_back({least, most});
+    std::vector<Expression> weighted;
+    for (const Expression& formula : front) {
+      weighted.push_back(build::input(pointers_.size() - 1) * formula);
+    }
+    JointFront joint(inputs, table_.target, table_.movement, box);
+    joint.add(weighted, std::nullopt);
+    const std::vector<Expression>& kept = joint.formulas();
+    const std::size_t chosen = held_out_choice(kept, joint.chosen(), inputs, table_.target,
+                                               table_.movement, [] { return true; });
+    return static_cast<std::size_t>(std::ranges::find(weighted, kept[chosen]) - weighted.begin());
+  }
+
+ private:
+  Table table_;
+  std::vector<double> roots_;  // of the weights
+  std::vector<const double*> pointers_;
+};
+
+// Without those whose value is lost in rounding, unless nothing else is there.
+std::vector<Expression> with_their_digits(std::vector<Expression> front, const Inputs& inputs,
+                                          std::span<const double> target) {
+  std::vector<Expression> kept;
+  for (const Expression& formula : front) {
+    if (!loses_its_digits(formula, inputs, target)) kept.push_back(formula);
+  }
+  return kept.empty() ? front : kept;
+}
+
 }  // namespace
 
 CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
@@ -60,8 +124,14 @@ CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
     front.push_back(read_problem_formula(entry.formula, problem).formula);
     fitter.fit(front.back(), inputs.inputs(), table.target, weights);
   }
+  // What a program of the user's stands for is its own to say.
+  if (!task.method.is_external()) {
+    front = with_their_digits(std::move(front), inputs.inputs(), table.target);
+    chosen =
+        WeightedRows(judged.stages.front().train, weights).choice(front, input_box(judged.inputs));
+  }
   judge_formula(judged, {front.at(chosen), {}}, result.record);
-  result.front = judge_front(judged, front, chosen, result.record);
+  result.front = judge_front(judged, front, chosen, result.record, weights);
   return result;
 }
 

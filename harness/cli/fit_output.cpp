@@ -53,11 +53,13 @@ Json fit_json(const FitAnswer& answer) {
   const Record& record = answer.result.record;
   Json front = Json::array();
   for (const FrontRecord& entry : answer.result.front) {
-    front.push_back({{"formula", entry.formula},
-                     {"complexity", entry.complexity},
-                     {"mae_train", json_number(entry.mae_train)},
-                     {"mae_test", json_number(entry.mae_test)},
-                     {"singularity", record_word(entry.singularity)}});
+    Json one = {{"formula", entry.formula},
+                {"complexity", entry.complexity},
+                {"mae_train", json_number(entry.mae_train)},
+                {"mae_test", json_number(entry.mae_test)},
+                {"singularity", record_word(entry.singularity)}};
+    if (!std::isnan(entry.weighted_rms)) one["weighted_rms"] = entry.weighted_rms;
+    front.push_back(std::move(one));
   }
   Json all = {{"formula", record.formula},
               {"complexity", record.complexity},
@@ -81,11 +83,18 @@ Json fit_json(const FitAnswer& answer) {
 }
 
 void print_fit(const FitAnswer& answer) {
-  fmt::print("  complexity     MAE train      MAE test  singularity  formula\n");
+  // The error that the choice was made by comes first.
+  const bool is_weighted = std::ranges::any_of(answer.result.front, [](const FrontRecord& entry) {
+    return !std::isnan(entry.weighted_rms);
+  });
+  fmt::print("  complexity{}     MAE train      MAE test  singularity  formula\n",
+             is_weighted ? "  weighted RMS" : "");
   for (const FrontRecord& entry : answer.result.front) {
-    fmt::print("{} {:10}  {:>12}  {:>12}  {:11}  {}\n", entry.chosen ? '*' : ' ', entry.complexity,
-               figure(entry.mae_train), figure(entry.mae_test), record_word(entry.singularity),
-               entry.formula);
+    const std::string weighted =
+        is_weighted ? fmt::format("  {:>12}", figure(entry.weighted_rms)) : "";
+    fmt::print("{} {:10}{}  {:>12}  {:>12}  {:11}  {}\n", entry.chosen ? '*' : ' ',
+               entry.complexity, weighted, figure(entry.mae_train), figure(entry.mae_test),
+               record_word(entry.singularity), entry.formula);
   }
   const Record& record = answer.result.record;
   fmt::print("\nchosen: {}\n", record.formula);

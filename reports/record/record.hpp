@@ -147,6 +147,7 @@ struct FrontRecord {
   std::optional<Singularity> singularity;
   bool chosen = false;
   std::string formula;
+  double weighted_rms = kMissing;  // of the rows that were fitted, where they were weighted
 };
 
 // A cell that the grid asks for; planned.csv lets a report say what is still missing.

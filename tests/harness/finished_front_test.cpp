@@ -72,6 +72,26 @@ TEST(FinishedFront, HasNoFormulaThatIsFarAwayBetweenTheRows) {
   EXPECT_NE(fit.note.find("ten times the target's range"), std::string::npos);
 }
 
+// In double precision the second is a staircase, on which some of the noise rests.
+TEST(FinishedFront, HasNoFormulaWhoseValueIsLostInRounding) {
+  const std::vector<std::string> names = {"x"};
+  std::vector<double> x;
+  std::vector<double> target;
+  RandomStream random(3);
+  for (int r = 0; r < 500; ++r) {
+    x.push_back(random.uniform(1, 2));
+    target.push_back(x.back() + 0.1 * random.normal());
+  }
+  const std::vector<Input> inputs = {{"x", "-", Role::none, 1, 2, std::nullopt}};
+  const std::vector<const double*> columns = {x.data()};
+  FitResult fit;
+  fit.front = {parse("x", names), parse("1.03e13*(x + 1e-13*x - abs(x)) - 0.02*x^2", names)};
+  fit.chosen = 1;
+  Budget budget({1'000'000, 1e6});
+  finish_front({inputs, columns, target, {}}, find_operator_set("full"), budget, fit);
+  EXPECT_EQ(print(fit.front[fit.chosen], names), "x");
+}
+
 // The front of a method that keeps its choice, the second, on 30 rows of slope*v and noise.
 FitResult finished_by_one_that_keeps(double slope, double noise,
                                      const std::vector<std::string>& formulas) {
