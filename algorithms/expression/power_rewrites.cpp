@@ -252,6 +252,69 @@ void merge_powers(const SumTerm& term, const RangeOf& range, std::vector<Express
   }
 }
 
+namespace {
+
+struct PowerOfBase {
+  Expression base;
+  double exponent = 1;
+};
+
+// What a factor is a power of: roots and constant exponents are looked through.
+PowerOfBase power_of(const TermFactor& factor) {
+  const double power = factor.power;
+  if (op_of(factor.base) == Op::sqrt) return {inside_of(factor.base), 0.5 * power};
+  if (op_of(factor.base) == Op::pow) {
+    const Node& exponent = factor.base.node(factor.base.last_child(factor.base.root()));
+    const Expression base = subtree(factor.base, factor.base.left_child(factor.base.root()));
+    if (exponent.is_constant()) return {base, exponent.value * power};
+  }
+  return {factor.base, power};
+}
+
+}  // namespace
+
+void merge_powers_of_one_base(const SumTerm& term, const RangeOf& range,
+                              std::vector<Expression>& out) {
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    const PowerOfBase first = power_of(term.factors[i]);
+    for (std::size_t j = i + 1; j < term.factors.size(); ++j) {
+      const PowerOfBase second = power_of(term.factors[j]);
+      if (!(second.base == first.base)) continue;
+      const double exponent = first.exponent + second.exponent;
+      // At 0 the product may have no value where the power has one, never the other way round.
+      const double low = range(first.base).low;
+      if (!(low > 0) && !(low >= 0 && exponent > 0)) continue;
+      SumTerm merged = without(without(term, j), i);
+      const Expression power =
+          exponent == 0.5 ? Expression::unary(Op::sqrt, first.base)
+                          : Expression::binary(Op::pow, first.base, build::constant(exponent));
+      multiply_by(merged, {power, 1});
+      out.push_back(formula_of(merged));
+    }
+  }
+}
+
+void take_below_root(const SumTerm& term, const RangeOf& range, std::vector<Expression>& out) {
+  for (std::size_t i = 0; i < term.factors.size(); ++i) {
+    const TermFactor& root = term.factors[i];
+    if (root.power != 1 || op_of(root.base) != Op::sqrt) continue;
+    const Expression inside = inside_of(root.base);
+    if (!is_a_sum(inside)) continue;
+    const SumOfProducts sum = sum_of_products(inside, inside.root());
+    for (const TermFactor& below : bases_below(sum, {})) {
+      const auto taken = std::ranges::find_if(term.factors, [&](const TermFactor& factor) {
+        return factor.base == below.base && factor.power == 1;
+      });
+      if (taken == term.factors.end() || !(range(below.base).low > 0)) continue;
+      SumTerm result = term;
+      result.factors[i].base =
+          Expression::unary(Op::sqrt, formula_of(multiplied(sum, {below.base, 2})));
+      out.push_back(
+          formula_of(without(result, static_cast<std::size_t>(taken - term.factors.begin()))));
+    }
+  }
+}
+
 void merge_whole_powers(const SumTerm& term, std::vector<Expression>& out) {
   for (std::size_t i = 0; i < term.factors.size(); ++i) {
     const int power = std::abs(term.factors[i].power);
@@ -342,6 +405,9 @@ void rewrite_power(const Expression& base, const Expression& exponent, const Ran
   if (power.is_constant() && power.value == 0.5) {
     out.push_back(Expression::unary(Op::sqrt, base));
   }
+  if (power.is_constant() && op_of(base) == Op::sqrt) {
+    out.push_back(Expression::binary(Op::pow, inside_of(base), build::constant(0.5 * power.value)));
+  }
   const Interval x = range(base);
   if (!(x.low > 0) || !x.is_bounded()) return;
   const double largest_log =
@@ -353,7 +419,14 @@ void rewrite_power(const Expression& base, const Expression& exponent, const Ran
   if (sum.size() != 1 || !power.is_constant() || !(sum[0].coefficient > 0)) return;
   const std::optional<SumTerm> below = turned(sum[0]);
   const double scale = apply(Op::pow, sum[0].coefficient, power.value);
-  if (!below || !(scale > 1e-300 && scale < 1e300)) return;
+  if (!(scale > 1e-300 && scale < 1e300)) return;
+  if (sum[0].coefficient != 1 && !sum[0].factors.empty()) {
+    const SumTerm plain{1, sum[0].factors};
+    SumTerm scaled{scale, {}};
+    multiply_by(scaled, {Expression::binary(Op::pow, formula_of(plain), exponent), 1});
+    out.push_back(formula_of(scaled));
+  }
+  if (!below) return;
   SumTerm result{scale, {}};
   multiply_by(result,
               {Expression::binary(Op::pow, formula_of(*below), build::constant(-power.value)), 1});

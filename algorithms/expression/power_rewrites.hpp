@@ -30,6 +30,11 @@ using RangeOf = std::function<Interval(const Expression&)>;
 void complete_squares(const SumOfProducts& sum, std::vector<Expression>& out);
 void merge_powers(const SumTerm& term, const RangeOf& range, std::vector<Expression>& out);
 void merge_whole_powers(const SumTerm& term, std::vector<Expression>& out);
+// x sqrt(x) = x^1.5, x x^c = x^(1 + c), x/sqrt(x) = sqrt(x)
+void merge_powers_of_one_base(const SumTerm& term, const RangeOf& range,
+                              std::vector<Expression>& out);
+// a sqrt(b/a^2 + c) = sqrt(b + c a^2)
+void take_below_root(const SumTerm& term, const RangeOf& range, std::vector<Expression>& out);
 void open_denominators(const SumTerm& term, std::vector<Expression>& out);
 void spread_exponentials(const SumTerm& term, std::vector<Expression>& out);
 void clear_fractions(const SumTerm& term, std::vector<Expression>& out);

@@ -307,6 +307,8 @@ void Rewriter::rewrite_product(const SumTerm& term, std::vector<Expression>& out
   spread_exponentials(term, out);
   merge_powers(term, range_, out);
   merge_whole_powers(term, out);
+  merge_powers_of_one_base(term, range_, out);
+  take_below_root(term, range_, out);
   absorb_numbers(term, out);
   use_sign(term, out);
   merge_pairs(term, out);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "algorithms/expression/complexity.hpp"
@@ -167,6 +168,34 @@ TEST(Finish, IsLongerByOneForAProof) {
   const Expression finished = finisher.finish(parse("17/(237/t + 1)", names));
   EXPECT_EQ(print(finished, names), "17*t/(t + 237)");
   EXPECT_EQ(prove_free(finished, box).verdict, Verdict::proved_free);
+}
+
+// Where the inputs are above 0.
+TEST(Finish, MergesPowersOfOneBaseAndTakesFactorsBelowARoot) {
+  const std::vector<std::string> names = {"x", "y"};
+  std::vector<double> x;
+  std::vector<double> y;
+  for (int r = 0; r < 40; ++r) {
+    x.push_back(0.1 + 0.2 * r);
+    y.push_back(9 - 0.17 * r);
+  }
+  const std::vector<const double*> columns = {x.data(), y.data()};
+  const InputBox box = {{0.1, 10}, {0.1, 10}};
+  const std::vector<std::pair<std::string, std::string>> pairs = {
+      {"3*x*sqrt(x)", "3*x^1.5"},
+      {"4*x/sqrt(x) + 1", "4*sqrt(x) + 1"},
+      {"y*sqrt((x/y)^2 + 1)", "sqrt(x^2 + y^2)"},
+      {"26*x*(26.66*sqrt(x))^-0.5", "5*x^0.75"},
+      {"sqrt(x)^1.2 + y", "x^0.6 + y"}};
+  for (const auto& [given, shortest] : pairs) {
+    std::vector<double> target(x.size());
+    Evaluator().evaluate(parse(given, names), {columns, x.size()}, target);
+    FormulaFinisher finisher({columns, x.size()}, target, box,
+                             [](const Expression&) { return true; });
+    const Expression finished = finisher.finish(parse(given, names));
+    EXPECT_EQ(node_count(finished), node_count(parse(shortest, names)))
+        << given << " -> " << print(finished, names);
+  }
 }
 
 TEST(Finish, NamesNoConstantThatKeepsThePoleAway) {
