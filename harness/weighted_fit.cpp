@@ -93,8 +93,8 @@ class WeightedRows {
 };
 
 // Without those whose value is lost in rounding, unless nothing else is there.
-std::vector<Expression> with_their_digits(std::vector<Expression> front, const Inputs& inputs,
-                                          std::span<const double> target) {
+std::vector<Expression> with_their_digits(const std::vector<Expression>& front,
+                                          const Inputs& inputs, std::span<const double> target) {
   std::vector<Expression> kept;
   for (const Expression& formula : front) {
     if (!loses_its_digits(formula, inputs, target)) kept.push_back(formula);
@@ -126,7 +126,7 @@ CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
   }
   // What a program of the user's stands for is its own to say.
   if (!task.method.is_external()) {
-    front = with_their_digits(std::move(front), inputs.inputs(), table.target);
+    front = with_their_digits(front, inputs.inputs(), table.target);
     chosen =
         WeightedRows(judged.stages.front().train, weights).choice(front, input_box(judged.inputs));
   }

@@ -280,7 +280,7 @@ class FunctionSumSearch {
     const double scale = least_by_golden_sections(
         [&](double a) { return screen_.left_of(u, trial.function, a); },
         trial.scale / kHalfReachStep, trial.scale * kHalfReachStep, kTrialNarrowings);
-    budget_.spend(2 * kTrialNarrowings * screen_.node_rows());
+    budget_.spend(2 * std::uint64_t{kTrialNarrowings} * screen_.node_rows());
     look_at(u, scale, trial);
   }
 
