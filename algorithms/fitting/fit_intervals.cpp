@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "algorithms/expression/differentiate.hpp"
@@ -137,6 +138,41 @@ LinearisedRows linearise(const Expression& formula, const std::vector<std::size_
   return rows;
 }
 
+// Of what no row determines, and is not told by it that way: of an eigenvector of length 1.
+constexpr double kLost = 1e-6;
+
+std::optional<Eigen::Index> redundant_number(const Expression& formula,
+                                             const std::vector<std::size_t>& places,
+                                             const Eigen::MatrixXd& null_space) {
+  std::optional<Eigen::Index> smallest;
+  const auto size_at = [&](Eigen::Index k) {
+    return std::abs(formula.node(places[static_cast<std::size_t>(k)]).value);
+  };
+  for (Eigen::Index k = 0; k < null_space.rows(); ++k) {
+    const bool is_candidate =
+        size_at(k) == std::round(size_at(k)) && null_space.row(k).norm() > kLost;
+    if (is_candidate && (!smallest || size_at(k) < size_at(*smallest))) smallest = k;
+  }
+  return smallest;
+}
+
+// Whole numbers without which the rows tell as much are the formula's form, as the 1 of
+// 1 / (a + b x) is: beside them nothing would be determined.
+void hold_redundant_numbers(const Expression& formula, std::vector<std::size_t>& places,
+                            LinearisedRows& rows) {
+  while (!places.empty()) {
+    const PseudoInverse base = pseudo_inverse(rows.jacobian.transpose() * rows.jacobian);
+    const auto number = redundant_number(formula, places, base.null_space);
+    if (!number) return;
+    places.erase(places.begin() + *number);
+    std::vector<Eigen::Index> others(places.size());
+    std::iota(others.begin(), others.begin() + *number, Eigen::Index{0});
+    std::iota(others.begin() + *number, others.end(), *number + 1);
+    rows.jacobian = rows.jacobian(Eigen::all, others).eval();
+    rows.scale = rows.scale(others).eval();
+  }
+}
+
 using RowsOfMovements = std::map<int, std::vector<Eigen::Index>>;
 
 RowsOfMovements rows_of_movements(std::span<const int> movement) {
@@ -154,14 +190,13 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
                            std::span<const double> weights, bool known_variance) {
   FitIntervals result;
   result.places = free_constants(formula);
-  const auto p = static_cast<Eigen::Index>(result.places.size());
   const auto n = static_cast<Eigen::Index>(inputs.rows);
   result.unit = "row";
   result.units = inputs.rows;
-  if (p == 0) return result;
-  constexpr Eigen::Index kMostConstants = 1000;  // a second; the time grows with the cube
-  if (p > kMostConstants) {
-    throw_bad_input(fmt::format("the formula has {} constants", p), {},
+  if (result.places.empty()) return result;
+  constexpr std::size_t kMostConstants = 1000;  // a second; the time grows with the cube
+  if (result.places.size() > kMostConstants) {
+    throw_bad_input(fmt::format("the formula has {} constants", result.places.size()), {},
                     fmt::format("intervals are made of {} at most", kMostConstants));
   }
   LinearisedRows rows = linearise(formula, result.places, inputs, target, weights);
@@ -169,6 +204,9 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
     throw_bad_input("the formula has no finite derivative in some row", {},
                     "its constants have no intervals");
   }
+  hold_redundant_numbers(formula, result.places, rows);
+  const auto p = static_cast<Eigen::Index>(result.places.size());
+  if (p == 0) return result;
   const PseudoInverse base = pseudo_inverse(rows.jacobian.transpose() * rows.jacobian);
   const Eigen::Index rank = base.rank();
   if (n <= rank) {
@@ -197,7 +235,6 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
   covariance = own.asDiagonal() * covariance * own.asDiagonal();
   for (Eigen::Index k = 0; k < p; ++k) {
     const double value = formula.node(result.places[static_cast<std::size_t>(k)]).value;
-    constexpr double kLost = 1e-6;
     const bool lost = rank < p && base.null_space.row(k).norm() > kLost;
     const double half = lost ? kMissing : result.quantile * std::sqrt(covariance(k, k));
     result.constants.push_back({value, value - half, value + half});

@@ -9,7 +9,8 @@
 // degrees of freedom. That the form was searched for is not in them: they are too narrow where the
 // rows hardly tell several forms apart.
 //
-// Whole exponents are part of the form. A constant that the rows do not determine (a product of
+// Whole exponents are part of the form, and so are whole numbers that the others can stand for: the
+// 1 of 1 / (a + b x). A constant that the rows do not determine (a product of
 // two) has no interval: NaN. Deterministic. Cost: one Jacobian and O(rows p^2 + movements p^3).
 #pragma once
 

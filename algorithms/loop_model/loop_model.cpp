@@ -59,15 +59,16 @@ void add_linear_term(BaseModel& base, Expression term) {
 
 }  // namespace
 
-std::vector<std::size_t> fitted_constants(const BaseModel& base) {
-  std::vector<std::size_t> places = free_constants(base.formula);
-  if (base.ranges.empty()) return places;
+std::vector<FittedConstant> fitted_constants(const BaseModel& base) {
   const std::vector<std::size_t> all = constant_positions(base.formula);
-  std::erase_if(places, [&](std::size_t place) {
-    const auto k = static_cast<std::size_t>(std::ranges::find(all, place) - all.begin());
-    return base.ranges[k].is_fixed();
-  });
-  return places;
+  const std::vector<std::size_t> free = free_constants(base.formula);
+  std::vector<FittedConstant> fitted;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const ConstantRange range = base.ranges.empty() ? ConstantRange() : base.ranges[k];
+    if (range.is_fixed() || !std::ranges::binary_search(free, all[k])) continue;
+    fitted.push_back({all[k], range});
+  }
+  return fitted;
 }
 
 void add_formula(BaseModel& base, const Expression& formula,

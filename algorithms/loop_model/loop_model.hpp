@@ -29,8 +29,13 @@ struct BaseModel {
   std::vector<Expression> linear_terms;  // each with a coefficient
 };
 
-// The places of the formula's constants that are fitted: those of its form and fixed ones are not.
-std::vector<std::size_t> fitted_constants(const BaseModel& base);
+struct FittedConstant {
+  std::size_t place;  // node of the base's formula
+  ConstantRange range;
+};
+
+// The formula's constants that are fitted: those of its form and fixed ones are not.
+std::vector<FittedConstant> fitted_constants(const BaseModel& base);
 
 // Makes the base from training movements; the loop calls it on nothing else.
 using BaseMaker = std::function<BaseModel(const Observations&)>;

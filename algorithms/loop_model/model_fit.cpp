@@ -32,11 +32,8 @@ struct Nonlinear {
 
 std::vector<Nonlinear> nonlinear_parameters(const LoopModel& model) {
   std::vector<Nonlinear> all;
-  const std::vector<std::size_t> constants = constant_positions(model.base.formula);
-  for (const std::size_t at : fitted_constants(model.base)) {
-    const auto k = static_cast<std::size_t>(std::ranges::find(constants, at) - constants.begin());
-    const ConstantRange range = model.base.ranges.empty() ? ConstantRange() : model.base.ranges[k];
-    all.push_back({true, 0, at, range.low, range.high});
+  for (const FittedConstant& constant : fitted_constants(model.base)) {
+    all.push_back({true, 0, constant.place, constant.range.low, constant.range.high});
   }
   for (std::size_t k = 0; k < model.atoms.size(); ++k) {
     for (std::size_t s = 0; s < model.atoms[k].shapes.size(); ++s) {

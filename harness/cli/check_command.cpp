@@ -111,6 +111,7 @@ void print_json(const Expression& formula, const NamedBox& box, Property propert
 // What a proof says of the box, in words where the property's name leaves the region open.
 std::string claim_text(const NamedBox& box, const PropertyQuestion& question) {
   const std::string name(property_name(question.property));
+  if (question.property == Property::bounded) return fmt::format("{} by {}", name, question.limit);
   if (question.property != Property::monotone) return name;
   const std::string& v = box.names[question.velocity];
   const std::string region =
@@ -142,9 +143,6 @@ CertificateClaim claim_of(const PropertyQuestion& question, const NamedBox& box)
     case Property::finite:
       return {};
     case Property::bounded:
-      if (question.limit == kInfinity) {
-        throw_bad_input("a certificate of a bound needs the bound", "--certificate", "add --limit");
-      }
       return {CertificateClaim::Kind::bounded, question.limit, ""};
     case Property::dissipative:
       return {CertificateClaim::Kind::dissipative, 0, box.names[question.velocity]};
@@ -240,6 +238,10 @@ ExitStatus run_check(const CheckOptions& options) {
   PropertyQuestion question;
   question.property = property_of(options.property);
   question.limit = options.limit;
+  if (question.property == Property::bounded && question.limit == kInfinity) {
+    throw_bad_input("a bound needs its limit", "--property bounded",
+                    "add --limit N, in the formula's unit; without one ask for finite");
+  }
   question.from = options.from;
   if (question.property != Property::finite) question.velocity = velocity_of(options, box);
   const bool has_memory = !read.states.empty();

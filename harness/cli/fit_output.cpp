@@ -113,7 +113,8 @@ void print_fit(const FitAnswer& answer) {
   }
   fmt::print("{} node-rows, {:.3g} CPU seconds; ended by: {}\nagain{}: {}\n", record.evaluations,
              record.fit_cpu_s, answer.ended,
-             answer.reproduces_exactly ? "" : " (nearly: the clock had a say)", answer.reproduce);
+             answer.reproduces_exactly ? "" : " (the clock had a say: perhaps another formula)",
+             answer.reproduce);
 }
 
 Json category_json(const CategoryFit& fit) {

@@ -68,6 +68,27 @@ TEST(FitIntervals, AreTheTextbooksForAStraightLine) {
 }
 
 // In units in which squares of the rows are below any number.
+// With the 1 above the line none of the three was determined, and users doubted their data.
+TEST(FitIntervals, TheOneAboveALineIsNoConstant) {
+  RandomStream random(5);
+  Rows rows;
+  for (int r = 0; r < 200; ++r) {
+    rows.x.push_back(random.uniform(0, 20));
+    rows.y.push_back(1 / (0.003 + 0.05 * std::exp(-0.45 * rows.x.back())) + random.normal());
+    rows.movement.push_back(r);
+  }
+  // As the finishing step leaves it: a fit need not come back to a whole number.
+  const Expression logistic = parse("1/(0.003 + 0.05*exp(-0.45*x))", kNames);
+  const std::vector<const double*> columns = rows.columns();
+  const FitIntervals intervals =
+      fit_intervals(logistic, {columns, rows.x.size()}, rows.y, rows.movement);
+  ASSERT_EQ(intervals.constants.size(), 3U);
+  for (const ConstantInterval& one : intervals.constants) {
+    EXPECT_LT(one.low, one.high);
+    EXPECT_LT(one.high - one.low, 0.2 * std::abs(one.value));
+  }
+}
+
 TEST(FitIntervals, AreTheSameInUnitsOfPhysicalConstants) {
   Rows rows = draw(5, 60, 0.1, 0);
   const Expression line = parse("0.6*x", kNames);

@@ -63,6 +63,7 @@ TEST(CheckCommand, DecidesPropertiesOfFrictionLaws) {
   EXPECT_EQ(run_check("'3*sgn_v - 2*v' --box v=-2:2 --property dissipative").status, 1);
   EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property odd").status, 0);
   EXPECT_EQ(run_check("'3*sgn_v + 2*v' --box v=-2:2 --property bounded --limit 6.9").status, 1);
+  EXPECT_EQ(run_check("'exp(v)' --box v=-700:700 --property bounded").status, 2);
   EXPECT_EQ(run_check("'sgn_w*exp(-w*sgn_w) + w' --box w=-2:2 --velocity w --from 0.1"
                       " --property monotone")
                 .status,
