@@ -10,6 +10,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "algorithms/expression/differentiate.hpp"
 #include "algorithms/fitting/free_constants.hpp"
@@ -156,21 +157,37 @@ std::optional<Eigen::Index> redundant_number(const Expression& formula,
   return smallest;
 }
 
+// Those of the directions in `null_space` that do not move constant k, without its row.
+Eigen::MatrixXd without(Eigen::MatrixXd null_space, Eigen::Index k) {
+  // A reflection that leaves the row one entry, in the last column (Householder 1958).
+  const Eigen::Index last = null_space.cols() - 1;
+  Eigen::VectorXd v = null_space.row(k).transpose();
+  v[last] += std::copysign(v.norm(), v[last]);
+  const Eigen::VectorXd along = null_space * v * (2 / v.squaredNorm());
+  null_space -= along * v.transpose();
+  Eigen::MatrixXd rest(null_space.rows() - 1, last);
+  rest << null_space.topLeftCorner(k, last),
+      null_space.bottomLeftCorner(null_space.rows() - 1 - k, last);
+  return rest;
+}
+
 // Whole numbers without which the rows tell as much are the formula's form, as the 1 of
-// 1 / (a + b x) is: beside them nothing would be determined.
-void hold_redundant_numbers(const Expression& formula, std::vector<std::size_t>& places,
-                            LinearisedRows& rows) {
-  while (!places.empty()) {
-    const PseudoInverse base = pseudo_inverse(rows.jacobian.transpose() * rows.jacobian);
-    const auto number = redundant_number(formula, places, base.null_space);
-    if (!number) return;
+// 1 / (a + b x) is: beside them nothing would be determined. False where there is none.
+bool hold_redundant_numbers(const Expression& formula, Eigen::MatrixXd null_space,
+                            std::vector<std::size_t>& places, LinearisedRows& rows) {
+  std::vector<Eigen::Index> kept(places.size());
+  std::iota(kept.begin(), kept.end(), Eigen::Index{0});
+  while (null_space.cols() > 0) {
+    const auto number = redundant_number(formula, places, null_space);
+    if (!number) break;
     places.erase(places.begin() + *number);
-    std::vector<Eigen::Index> others(places.size());
-    std::iota(others.begin(), others.begin() + *number, Eigen::Index{0});
-    std::iota(others.begin() + *number, others.end(), *number + 1);
-    rows.jacobian = rows.jacobian(Eigen::all, others).eval();
-    rows.scale = rows.scale(others).eval();
+    kept.erase(kept.begin() + *number);
+    null_space = without(std::move(null_space), *number);
   }
+  if (kept.size() == static_cast<std::size_t>(rows.scale.size())) return false;
+  rows.jacobian = rows.jacobian(Eigen::all, kept).eval();
+  rows.scale = rows.scale(kept).eval();
+  return true;
 }
 
 using RowsOfMovements = std::map<int, std::vector<Eigen::Index>>;
@@ -204,10 +221,12 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
     throw_bad_input("the formula has no finite derivative in some row", {},
                     "its constants have no intervals");
   }
-  hold_redundant_numbers(formula, result.places, rows);
+  PseudoInverse base = pseudo_inverse(rows.jacobian.transpose() * rows.jacobian);
+  if (hold_redundant_numbers(formula, base.null_space, result.places, rows)) {
+    if (result.places.empty()) return result;
+    base = pseudo_inverse(rows.jacobian.transpose() * rows.jacobian);
+  }
   const auto p = static_cast<Eigen::Index>(result.places.size());
-  if (p == 0) return result;
-  const PseudoInverse base = pseudo_inverse(rows.jacobian.transpose() * rows.jacobian);
   const Eigen::Index rank = base.rank();
   if (n <= rank) {
     throw_bad_input(fmt::format("{} rows for {} constants", n, p), {},

@@ -130,6 +130,12 @@ TEST(FitIntervals, SayWhatTheRowsDoNotDetermine) {
   const std::vector<const double*> two = {few.data()};
   const std::vector<int> one = {0, 0};
   EXPECT_THROW(fit_intervals(parse("1 + 2*x", kNames), {two, 2}, few, one), Error);
+  // Of three numbers that say the same one is left, and determined.
+  const FitIntervals held = fit_intervals(parse("2*sin(x) + 3*sin(x) + 0.5*sin(x)", kNames),
+                                          {columns, rows.x.size()}, rows.y, rows.movement);
+  ASSERT_EQ(held.constants.size(), 1U);
+  EXPECT_EQ(held.constants[0].value, 0.5);
+  EXPECT_LT(held.constants[0].low, held.constants[0].high);
   // The time grows with the cube of the constants.
   std::string sum = "1";
   for (int k = 0; k < 1000; ++k) sum += " + 2*sin(x)";
