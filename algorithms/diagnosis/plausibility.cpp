@@ -42,26 +42,6 @@ Eigen::VectorXd friction_of_speed(const LoopModel& model, std::size_t family,
                                            static_cast<Eigen::Index>(coefficients.size()));
 }
 
-// Whether there is less friction somewhere than at the slowest row, in one direction.
-bool falls_with_speed(const Eigen::VectorXd& friction, const std::vector<double>& v) {
-  for (const double direction : {1.0, -1.0}) {
-    double slowest = std::numeric_limits<double>::infinity();
-    double there = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      if (!(direction * v[i] > 0)) continue;
-      const double against = direction * friction[static_cast<Eigen::Index>(i)];
-      least = std::min(least, against);
-      if (std::abs(v[i]) < slowest) {
-        slowest = std::abs(v[i]);
-        there = against;
-      }
-    }
-    if (least < there) return true;
-  }
-  return false;
-}
-
 // Whether this coefficient's sign says what the family does: its columns share one name. Beside a
 // column of another kind (the other direction, a square) none of them has a sign of its own.
 bool is_alone(const std::string& coefficient, const LoopModel& model, std::size_t family) {
@@ -104,8 +84,9 @@ bool stands_for_another_cause(const LoopModel& model, const Campaign& campaign) 
   if (!model.base.formula.empty()) return false;
   return std::ranges::any_of(model.atoms, [&](const Atom& atom) {
     if (atom.curve == SpeedCurve::any) return false;
-    const bool falls = falls_with_speed(friction_of_speed(model, atom.family, campaign.data),
-                                        campaign.data.find("v")->values);
+    const Eigen::VectorXd friction = friction_of_speed(model, atom.family, campaign.data);
+    const std::span<const double> rows(friction.data(), static_cast<std::size_t>(friction.size()));
+    const bool falls = falls_with_speed(rows, campaign.data.find("v")->values);
     return falls != (atom.curve == SpeedCurve::falls);
   });
 }

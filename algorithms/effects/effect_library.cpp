@@ -247,4 +247,23 @@ std::vector<Atom> instantiate(const EffectFamily& family, std::size_t number,
   return atoms;
 }
 
+bool falls_with_speed(std::span<const double> friction, std::span<const double> v) {
+  for (const double direction : {1.0, -1.0}) {
+    double slowest = std::numeric_limits<double>::infinity();
+    double there = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      if (!(direction * v[i] > 0)) continue;
+      const double against = direction * friction[i];
+      least = std::min(least, against);
+      if (std::abs(v[i]) < slowest) {
+        slowest = std::abs(v[i]);
+        there = against;
+      }
+    }
+    if (least < there) return true;
+  }
+  return false;
+}
+
 }  // namespace tribench::loop

@@ -46,6 +46,9 @@ struct ShapeTemplate {
 // to speed. Of friction against speed, with the base.
 enum class SpeedCurve { any, falls, rises };
 
+// Whether there is less friction somewhere than at the slowest row, in one direction. A row each.
+bool falls_with_speed(std::span<const double> friction, std::span<const double> v);
+
 struct AtomTemplate {
   std::vector<std::string> columns;
   std::vector<std::string> coefficients;  // names of the columns' coefficients, for the report

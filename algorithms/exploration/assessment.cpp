@@ -13,6 +13,7 @@
 #include "algorithms/inference/whitening.hpp"
 #include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/elementary.hpp"
+#include "foundation/order_statistics.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -24,6 +25,11 @@ constexpr double kLeastOffset = 0.15;
 // Changes of the noise that are worth summing up all rows again.
 constexpr double kOtherCorrelation = 0.04;
 constexpr double kOtherRatio = 1.2;
+constexpr double kOtherCut = 1;  // of a row, in the noise's
+
+// Of a row, in what most rows have: what is beyond it says that something is wrong with the row (a
+// sensor that was late, a velocity of the wrong sign at standstill), and no more than that.
+constexpr double kBelieved = 4;
 
 // Posterior and e-values; the most likely first.
 void weigh(std::vector<Explanation>& all) {
@@ -57,6 +63,14 @@ Clusters clusters_of(std::span<const std::size_t> sizes) {
   return make_clusters(movement, 1);
 }
 
+// What of each row is beyond what is believed of it (winsorised residuals, Huber 1981).
+Eigen::VectorXd beyond_belief(const Eigen::VectorXd& rest) {
+  const double usual = kMadToSd * upper_median_magnitude({rest.begin(), rest.end()});
+  if (!(usual > 0)) return Eigen::VectorXd::Zero(rest.size());
+  const double limit = kBelieved * usual;
+  return rest - rest.cwiseMin(limit).cwiseMax(-limit);
+}
+
 bool alike(double a, double b) { return a <= kOtherRatio * b && b <= kOtherRatio * a; }
 
 }  // namespace
@@ -80,7 +94,7 @@ void Assessor::add(const Observations& rows) {
   }
 }
 
-Noise Assessor::noise_left_by(const Explanation& one, std::vector<double>& weights) const {
+Assessor::Leftover Assessor::left_by(const Explanation& one) const {
   std::vector<std::size_t> sizes;
   std::size_t rows = 0;
   for (const SeenMovement& movement : seen_) {
@@ -127,18 +141,26 @@ Noise Assessor::noise_left_by(const Explanation& one, std::vector<double>& weigh
     rest -= own * EvidenceTable(sums).posterior(pointers).mean;
   }
   rest -= base * least_squares(base, rest);
+  const Eigen::VectorXd cut = beyond_belief(rest);
+  rest -= cut;
+  Leftover left;
   Clusters clusters = clusters_of(sizes);
-  weights = movement_weights(rest, clusters);
-  clusters.weight = weights;
+  for (const RowRange& range : clusters.movements) {
+    left.cuts.emplace_back(cut.segment(static_cast<Eigen::Index>(range.begin),
+                                       static_cast<Eigen::Index>(range.size())));
+  }
+  left.weights = movement_weights(rest, clusters);
+  clusters.weight = left.weights;
   const double floor = 1e-9 * std::sqrt(squares / static_cast<double>(rows));
-  Noise noise =
+  left.noise =
       estimate_noise(rest, clusters, static_cast<std::size_t>(base_count + own_count), floor);
-  noise.whitened = true;
-  noise.between_sd = std::max(noise.between_sd, kLeastOffset * noise.within_sd);
-  return noise;
+  left.noise.whitened = true;
+  left.noise.between_sd = std::max(left.noise.between_sd, kLeastOffset * left.noise.within_sd);
+  return left;
 }
 
-bool Assessor::noise_is_as_it_was(const Noise& noise, const std::vector<double>& weights) const {
+bool Assessor::is_as_it_was(const Leftover& left) const {
+  const Noise& noise = left.noise;
   if (last_.sums.rows() == 0) return false;
   const Noise& before = last_.noise;
   if (std::abs(noise.rho() - before.rho()) > kOtherCorrelation) return false;
@@ -149,48 +171,55 @@ bool Assessor::noise_is_as_it_was(const Noise& noise, const std::vector<double>&
   };
   if (!alike(offsets(noise), offsets(before))) return false;
   for (std::size_t m = 0; m < seen_.size(); ++m) {
-    if (seen_[m].weight > 0 && !alike(seen_[m].weight, weights[m])) return false;
+    if (seen_[m].weight == 0) continue;
+    if (!alike(seen_[m].weight, left.weights[m])) return false;
+    const double other_cut = (seen_[m].cut - left.cuts[m]).cwiseAbs().maxCoeff();
+    if (other_cut > kOtherCut * noise.within_sd) return false;
   }
   return true;
 }
 
-void Assessor::add_to(EvidenceSums& sums, const SeenMovement& movement, double weight) const {
+void Assessor::add_to(EvidenceSums& sums, const SeenMovement& movement) const {
   const std::array<std::size_t, 1> size = {static_cast<std::size_t>(movement.base.rows())};
   Clusters clusters = clusters_of(size);
-  clusters.weight = {weight};
+  clusters.weight = {movement.weight};
   sums.add(whitened(movement.base, clusters, last_.noise),
            whitened(movement.columns, clusters, last_.noise),
-           whitened(movement.target, clusters, last_.noise));
+           whitened(movement.target - movement.cut, clusters, last_.noise));
 }
 
 // Movements that no look has seen yet, with what was known before them. How loud each of them is
 // nobody could foresee, and all explanations are told alike.
-void Assessor::hold_forecasts_against_rows(std::span<const double> weights) {
+void Assessor::hold_forecasts_against_rows(const Leftover& left) {
   const auto is_new = [](const SeenMovement& one) { return one.weight == 0; };
   if (last_.explanations.empty() || std::ranges::none_of(seen_, is_new)) return;
   EvidenceSums further = last_.sums;
   for (std::size_t m = 0; m < seen_.size(); ++m) {
-    if (is_new(seen_[m])) add_to(further, seen_[m], weights[m]);
+    if (!is_new(seen_[m])) continue;
+    SeenMovement counted = seen_[m];
+    counted.weight = left.weights[m];
+    counted.cut = left.cuts[m];
+    add_to(further, counted);
   }
   forecasts_.add(last_.explanations, last_.table, EvidenceTable(further));
 }
 
 const Assessment& Assessor::look() {
-  std::vector<double> weights;
   const Explanation before = last_.explanations.empty() ? Explanation() : Explanation(last_.best());
-  const Noise noise = noise_left_by(before, weights);
-  hold_forecasts_against_rows(weights);
-  if (!noise_is_as_it_was(noise, weights)) {
+  const Leftover left = left_by(before);
+  hold_forecasts_against_rows(left);
+  if (!is_as_it_was(left)) {
     // What was said under another noise says nothing: the rows so far are the opening.
     forecasts_ = {};
-    last_.noise = noise;
+    last_.noise = left.noise;
     last_.sums = {};
     for (SeenMovement& movement : seen_) movement.weight = 0;
   }
   for (std::size_t m = 0; m < seen_.size(); ++m) {
     if (seen_[m].weight > 0) continue;
-    add_to(last_.sums, seen_[m], weights[m]);
-    seen_[m].weight = weights[m];
+    seen_[m].weight = left.weights[m];
+    seen_[m].cut = left.cuts[m];
+    add_to(last_.sums, seen_[m]);
   }
   last_.table = EvidenceTable(last_.sums);
   FoundExplanations found = find_explanations(space_, last_.table);

@@ -62,14 +62,20 @@ class Assessor {
     Eigen::MatrixXd base;
     Eigen::MatrixXd columns;
     Eigen::VectorXd target;
-    double weight = 0;  // with which it is in the sums; 0: it is not
+    Eigen::VectorXd cut = {};  // from the target, of rows that nothing explains
+    double weight = 0;         // with which it is in the sums; 0: it is not
+  };
+  // What an explanation leaves: of all rows, and by movement.
+  struct Leftover {
+    Noise noise;
+    std::vector<double> weights;
+    std::vector<Eigen::VectorXd> cuts;
   };
 
-  // Of all rows, with the movements' weights.
-  Noise noise_left_by(const Explanation& one, std::vector<double>& weights) const;
-  bool noise_is_as_it_was(const Noise& noise, const std::vector<double>& weights) const;
-  void add_to(EvidenceSums& sums, const SeenMovement& movement, double weight) const;
-  void hold_forecasts_against_rows(std::span<const double> weights);
+  Leftover left_by(const Explanation& one) const;
+  bool is_as_it_was(const Leftover& left) const;
+  void add_to(EvidenceSums& sums, const SeenMovement& movement) const;
+  void hold_forecasts_against_rows(const Leftover& left);
 
   const ExplanationSpace& space_;
   double alpha_;

@@ -149,6 +149,35 @@ class ExplanationSearch {
     return wide;
   }
 
+  // Whether every block that has one draws its curve of speed: else another family draws it.
+  bool draw_their_curves(const std::vector<const EffectBlock*>& blocks) const {
+    std::vector<SpeedCurve> curves;
+    for (const EffectBlock* block : blocks) curves.push_back(space_.curve_of(*block));
+    const auto has_curve = [](SpeedCurve curve) { return curve != SpeedCurve::any; };
+    if (std::ranges::none_of(curves, has_curve)) return true;
+    const EvidenceTable::Posterior found = table_.posterior(blocks);
+    const ExplanationSpace::Speeds& speeds = space_.speeds();
+    const Eigen::VectorXd base = speeds.base * found.base;
+    Eigen::Index own = 0;
+    Eigen::Index misfit = 0;
+    for (const EffectBlock* block : blocks) misfit += std::ssize(block->columns);
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      const ColumnBlock& columns = blocks[k]->columns;
+      const ColumnBlock& further = blocks[k]->misfit;
+      if (has_curve(curves[k])) {
+        const Eigen::VectorXd friction =
+            base +
+            speeds.columns(Eigen::all, columns) * found.mean.segment(own, std::ssize(columns)) +
+            speeds.columns(Eigen::all, further) * found.mean.segment(misfit, std::ssize(further));
+        const bool falls = falls_with_speed({friction.data(), speeds.v.size()}, speeds.v);
+        if (falls != (curves[k] == SpeedCurve::falls)) return false;
+      }
+      own += std::ssize(columns);
+      misfit += std::ssize(further);
+    }
+    return true;
+  }
+
   // Every further family beside explanation i, all of its blocks.
   void extend(std::size_t i) {
     const Explanation from = out.explanations[i];
@@ -167,10 +196,12 @@ class ExplanationSearch {
       std::vector<double> logs;
       for (const EffectBlock* block : candidates(f, left)) {
         blocks.back() = block;
+        if (!draw_their_curves(blocks)) continue;
         const double log = table_.log_factor(blocks);
         if (best == nullptr || log > *std::ranges::max_element(logs)) best = block;
         logs.push_back(log);
       }
+      if (best == nullptr) continue;
       blocks.back() = best;
       const double mean =
           log_sum(logs) - elementary::log(static_cast<double>(out.blocks[f].size()));

@@ -9,10 +9,12 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <span>
 
 #include "algorithms/effects/effect_library.hpp"
+#include "algorithms/exploration/effect_templates.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/score_test.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
@@ -21,20 +23,19 @@
 namespace tribench::loop {
 namespace {
 
-// More columns than this are not tried as one block: most would be there for nothing.
-constexpr std::size_t kWholeFamily = 10;
 // Root mean squares of an effect that one expects, in the smallest of interest: for one of these
 // the prior of the smaller size is likeliest about there (evidence.hpp).
-constexpr std::array<double, 2> kSizes = {3, 0.8};
+constexpr std::array<double, 3> kSizes = {11, 3, 0.8};
 constexpr double kExplainedByBase = 1e-4;  // of a column's squares, on the reference
 
 // Of a narrow column's squares: where a family's own columns leave less, it is that family's.
 constexpr double kDrawnByOther = 0.1;
 
-constexpr double kMisfit = 0.27;  // of a family's size: what one expects of its misfit
+constexpr double kMisfit = 0.15;  // of a family's size: what one expects of its misfit
 constexpr Eigen::Index kMisfitColumns = 14;
 constexpr Eigen::Index kMisfitCentres = 3;
-constexpr double kLeastMisfit = 1e-4;  // of the variance of the direction of most
+constexpr std::size_t kSpeedRows = 16;  // in either direction
+constexpr double kLeastMisfit = 1e-4;   // of the variance of the direction of most
 // Of the mean squares of a block's columns: sums of them that are smaller are no effect of it.
 constexpr double kSameShape = 1e-4;
 
@@ -53,40 +54,6 @@ const std::vector<PlaceGrid>& place_grids() {
 // Of a product: the coarser, the position finer.
 constexpr Eigen::Index kCoarse = 3;
 constexpr Eigen::Index kFiner = 6;
-
-// Atoms of one template: a curve whose shape parameter lies between grid points is nearly a sum of
-// its neighbours.
-struct Template {
-  ColumnBlock columns;
-  bool beside = false;
-};
-
-std::vector<Template> templates_of(const std::vector<Atom>& atoms,
-                                   std::vector<Expression>& formulas) {
-  std::vector<Template> all;
-  std::map<std::string, std::size_t> place;
-  for (const Atom& atom : atoms) {
-    // Gear ratios exclude one another: each is a template of its own.
-    std::string key = atom.label;
-    for (const Shape& shape : atom.shapes) {
-      if (shape.values != ShapeValues::gear_ratios) continue;
-      key += fmt::format(" {}={}", shape.name, shape.value);
-    }
-    const auto [found, is_new] = place.try_emplace(key, all.size());
-    if (is_new) all.push_back({{}, atom.beside_another});
-    for (const Expression& column : atom.columns) {
-      all[found->second].columns.push_back(static_cast<Eigen::Index>(formulas.size()));
-      formulas.push_back(column);
-    }
-  }
-  return all;
-}
-
-ColumnBlock merged(const ColumnBlock& first, const ColumnBlock& second) {
-  ColumnBlock out = first;
-  out.insert(out.end(), second.begin(), second.end());
-  return out;
-}
 
 // How fast the temperature changes in each movement: the slope of a line [K/s].
 Eigen::ArrayXd warming(const Observations& rows) {
@@ -116,22 +83,6 @@ ColumnBlock neighbours(Eigen::Index k, Eigen::Index centres, Eigen::Index first)
     if (j != k) out.push_back(first + j);
   }
   return out;
-}
-
-std::vector<EffectBlock> blocks_of(const std::vector<Template>& templates) {
-  std::vector<EffectBlock> blocks;
-  ColumnBlock whole;
-  for (const Template& main : templates) {
-    if (main.beside) continue;
-    blocks.push_back({main.columns});
-    whole = merged(whole, main.columns);
-    for (const Template& beside : templates) {
-      if (beside.beside) blocks.push_back({merged(main.columns, beside.columns)});
-    }
-  }
-  const bool several = !blocks.empty() && whole.size() > blocks.front().columns.size();
-  if (several && whole.size() <= kWholeFamily) blocks.push_back({whole});
-  return blocks;
 }
 
 // What remembers the motion lives in all of it.
@@ -181,6 +132,7 @@ ExplanationSpace::ExplanationSpace(const Observations& reference,
   settle_scale();
   add_misfits();
   measure_blocks(smallest_effect);
+  settle_speeds();
   std::erase_if(families_, [](const ExplainingFamily& family) { return family.blocks.empty(); });
 }
 
@@ -202,7 +154,7 @@ void ExplanationSpace::add_library(const std::vector<double>& gear_ratios) {
     misfit.first = static_cast<Eigen::Index>(formulas_.size());
     ExplainingFamily family;
     family.name = library[f].name;
-    family.blocks = blocks_of(templates_of(atoms, formulas_));
+    family.blocks = blocks_of(templates_of(atoms, formulas_, curves_));
     misfit.count = static_cast<Eigen::Index>(formulas_.size()) - misfit.first;
     const std::vector<std::string> signals = signals_of(
         std::span(formulas_).subspan(static_cast<std::size_t>(misfit.first)), reference_);
@@ -418,6 +370,32 @@ void ExplanationSpace::measure_blocks(double smallest_effect) {
     }
     family.blocks = std::move(sized);
   }
+}
+
+SpeedCurve ExplanationSpace::curve_of(const EffectBlock& block) const {
+  for (const Eigen::Index j : block.columns) {
+    const auto column = static_cast<std::size_t>(j);
+    if (column < curves_.size() && curves_[column] != SpeedCurve::any) return curves_[column];
+  }
+  return SpeedCurve::any;
+}
+
+void ExplanationSpace::settle_speeds() {
+  const std::vector<double>& v = reference_.find("v")->values;
+  std::vector<std::size_t> order(v.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return std::abs(v[i]); });
+  std::vector<char> kept(v.size(), 0);
+  for (const double direction : {1.0, -1.0}) {
+    std::vector<std::size_t> same;
+    std::ranges::copy_if(order, std::back_inserter(same),
+                         [&](std::size_t i) { return direction * v[i] > 0; });
+    for (std::size_t k = 0; k < kSpeedRows && !same.empty(); ++k) {
+      kept[same[k * (same.size() - 1) / (kSpeedRows - 1)]] = 1;
+    }
+  }
+  const Observations rows = reference_.select(kept);
+  speeds_ = {rows.find("v")->values, base_columns(rows), columns(rows)};
 }
 
 Eigen::MatrixXd ExplanationSpace::place_columns(const Place& place,

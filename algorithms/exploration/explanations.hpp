@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/effects/effect_library.hpp"
 #include "algorithms/exploration/smooth_columns.hpp"
 #include "algorithms/inference/evidence.hpp"
 #include "algorithms/loop_model/loop_model.hpp"
@@ -55,6 +56,18 @@ class ExplanationSpace {
   Eigen::MatrixXd columns(const Observations& rows) const;
   Eigen::MatrixXd base_columns(const Observations& rows) const;
 
+  // Of the block's friction against speed, with the base's: what tells it from one of another
+  // family that draws the same.
+  SpeedCurve curve_of(const EffectBlock& block) const;
+
+  // Rows of the reference at its speeds in either direction, and their columns.
+  struct Speeds {
+    std::vector<double> v;
+    Eigen::MatrixXd base;
+    Eigen::MatrixXd columns;
+  };
+  const Speeds& speeds() const { return speeds_; }
+
  private:
   // Where something else may live; one axis or two.
   struct Place {
@@ -77,6 +90,7 @@ class ExplanationSpace {
   void add_misfits();
   void leave_to_the_library(const Eigen::MatrixXd& all);
   void measure_blocks(double smallest_effect);
+  void settle_speeds();
   Eigen::MatrixXd shaped(const Misfit& misfit, const Observations& rows,
                          const Eigen::MatrixXd& formulas) const;
   // Unscaled; without the misfits' columns.
@@ -87,8 +101,10 @@ class ExplanationSpace {
   std::vector<ExplainingFamily> families_;
   std::vector<std::string> untestable_;
   std::vector<Expression> formulas_;
+  std::vector<SpeedCurve> curves_;  // of each formula
   std::vector<Place> places_;
   std::vector<Misfit> misfits_;
+  Speeds speeds_;
   Eigen::VectorXd scale_;  // of the formulas, the places, then the misfits (1)
 };
 

@@ -29,9 +29,19 @@ constexpr double kRestCounts = 0.25;  // of a second of motion: it is waited for
 // Of the level: the rest is for what the weights do not know, a truth that is no explanation.
 constexpr double kHindsight = 0.5;
 
+// Rows that pass standstill: the measured velocity hardly says which way friction acts, and nothing
+// that is asked for is as slow.
+constexpr double kAtStandstill = 0.01;  // of the speed that is allowed
+
+Observations moving_rows(const Dataset& data, const MotionLimits& limits) {
+  ObservationOptions moving;
+  moving.min_speed = kAtStandstill * limits.speed_rad_s;
+  return observe(data, moving);
+}
+
 // What is asked for starts from rest: how far back it has turned is known.
-Observations executed(const Dataset& data) {
-  Observations rows = observe(data);
+Observations executed(const Dataset& data, const MotionLimits& limits) {
+  Observations rows = moving_rows(data, limits);
   rows.take_away(kSeenDistance, "movements that are asked for start from rest");
   return rows;
 }
@@ -289,7 +299,7 @@ class Explorer {
   bool diagnosis_agrees() {
     DiagnosisOptions options;
     if (limits_.gear_ratio > 0) options.gear_ratios = {limits_.gear_ratio};
-    const DiagnosedFamilies found = diagnosed_families(executed(out_.data), options);
+    const DiagnosedFamilies found = diagnosed_families(executed(out_.data, limits_), options);
     out_.diagnosis = verdict_text(found.names, found.unknown);
     std::vector<std::string> ours;
     for (const std::size_t f : last()->best().families) {
@@ -351,7 +361,8 @@ class Explorer {
   void look() {
     const bool first = !space_;
     if (first) make_space();
-    const Observations rows = with_signals_of(space_->reference(), observe(out_.data), out_.data);
+    const Observations rows =
+        with_signals_of(space_->reference(), moving_rows(out_.data, limits_), out_.data);
     std::vector<char> fresh;
     for (const int m : rows.movement) fresh.push_back(std::cmp_less(m, assessed_) ? 0 : 1);
     assessor_->add(rows.select(fresh));

@@ -124,6 +124,7 @@ EvidenceTable::EvidenceTable(const EvidenceSums& sums) {
   const Eigen::MatrixXd own = lower.topLeftCorner(base, base).selfadjointView<Eigen::Lower>();
   const Eigen::MatrixXd root = inverse_root(own);
   const Eigen::MatrixXd across = lower.bottomLeftCorner(rest, base) * root;
+  base_ = root * across.transpose();
   Eigen::MatrixXd left = lower.bottomRightCorner(rest, rest);
   left.selfadjointView<Eigen::Lower>().rankUpdate(across, -1.0);
   gram_ = left.topLeftCorner(rest - 1, rest - 1).selfadjointView<Eigen::Lower>();
@@ -244,6 +245,7 @@ double EvidenceTable::log_factor(std::span<const EffectBlock* const> blocks) con
 EvidenceTable::Posterior EvidenceTable::posterior(
     std::span<const EffectBlock* const> blocks) const {
   Posterior out;
+  out.base = base_.rightCols(1);
   if (blocks.empty()) {
     out.variance = squares_ / dof_;
     return out;
@@ -258,6 +260,7 @@ EvidenceTable::Posterior EvidenceTable::posterior(
     out.mean.segment(places[b].own, shared.rows()) -=
         shared * out.mean.segment(places[b].misfit, shared.cols());
   }
+  out.base -= base_(Eigen::all, solved.columns) * out.mean;
   out.variance = solved.squares / dof_;
   return out;
 }

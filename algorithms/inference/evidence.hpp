@@ -83,6 +83,7 @@ class EvidenceTable {
   struct Posterior {
     Eigen::VectorXd mean;     // of the blocks' columns in order, then their misfits', as scaled
     Eigen::VectorXd effects;  // of the blocks' columns, what the misfits share with them included
+    Eigen::VectorXd base;     // of the base's columns
     double variance = 0;      // sigma^2
   };
   Posterior posterior(std::span<const EffectBlock* const> blocks) const;
@@ -103,6 +104,7 @@ class EvidenceTable {
                               Eigen::VectorXd& cross);
   Solved solve(std::span<const EffectBlock* const> blocks) const;
 
+  Eigen::MatrixXd base_;  // what the base does best of the columns and, last, of the target
   Eigen::MatrixXd gram_;
   Eigen::VectorXd cross_;  // with the target
   double squares_ = 0;     // of what the base leaves of the target

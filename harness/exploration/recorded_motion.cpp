@@ -10,8 +10,12 @@ namespace tribench {
 namespace {
 
 constexpr double kBeyondLimits = 0.2;  // of their range: overshoot, and an encoder's zero
-constexpr double kLeastCovered = 0.5;  // of the way that was asked for
-constexpr double kSameRate = 1.5;      // units differ by a factor of 6 or more
+// Of the way that was asked for. Tones that swell from standstill reach two fifths of it;
+// revolutions called rad reach a sixth.
+constexpr double kLeastCovered = 0.25;
+constexpr double kSameRate = 2.5;  // units differ by a factor of 6 or more
+// Of shorter movements a joint that starts gently leaves out the most, and few rows hold the rest.
+constexpr double kLongEnough_s = 1;
 
 constexpr const char* kUnits =
     "are the units those of the columns' names (position_deg, velocity_deg_s), and on the joint's "
@@ -45,6 +49,8 @@ Misfit misfit_of(const Dataset& rows, const PlannedMovement& asked, const Motion
                         *lowest, *highest, limits.lowest_rad, limits.highest_rad),
             kUnits};
   }
+  const std::span<const double> t = values_of(rows, Role::time);
+  if (t.back() - t.front() < kLongEnough_s) return {};
   const auto [low, high] = std::minmax(asked.from, asked.to);
   const double covered = std::min(*highest, high) - std::max(*lowest, low);
   if (covered < kLeastCovered * (high - low)) {

@@ -19,9 +19,10 @@ struct Misfit {
   bool is_one() const { return !what.empty(); }
 };
 
-// The position stays within the limits, widened by a fifth of their range; it covers half of the
-// way that was asked for; and the velocity is its rate, within a factor of 1.5. The way to the
-// start may be in the recording. rows: at least one, with time, position and velocity in SI units.
+// The position stays within the limits, widened by a fifth of their range; and where the recording
+// lasts a second, it covers a quarter of the way that was asked for, and the velocity is its rate,
+// within a factor of 2.5. The way to the start may be in the recording. rows: at least one, with
+// time, position and velocity in SI units.
 Misfit misfit_of(const Dataset& rows, const PlannedMovement& asked, const MotionLimits& limits);
 
 }  // namespace tribench

@@ -233,6 +233,51 @@ TEST(Assessor, AStribeckCurveIsNotSomethingElseOfTheVelocity) {
   EXPECT_GT(assessor.look().weight_of("stribeck"), 30 * assessor.look().weight_of("UNKNOWN"));
 }
 
+Observations rows_that_lack_nothing() {
+  simulation::World world({8, simulation::WorldLevel::easy, simulation::WorldKind::none});
+  return observe(recorded(world, some_movements(world.limits())));
+}
+
+double weight_in(const Observations& rows, const std::string& verdict, double smallest_effect) {
+  const ExplanationSpace space(rows, {100}, smallest_effect);
+  Assessor assessor(space, 0.01);
+  assessor.add(rows);
+  assessor.look();
+  return assessor.look().weight_of(verdict);
+}
+
+// Beside Coulomb and viscous friction a viscous curve upside down falls as Stribeck's does.
+TEST(Assessor, FrictionThatFallsIsAStribeckCurve) {
+  Observations rows = rows_that_lack_nothing();
+  const std::vector<double>& v = rows.find("v")->values;
+  for (std::size_t i = 0; i < rows.rows(); ++i) {
+    rows.target[i] += 6 * sign(v[i]) * std::exp(-v[i] * v[i] / (0.12 * 0.12));
+  }
+  const double stribeck = weight_in(rows, "stribeck", 0.5);
+  EXPECT_GT(stribeck, 0.5);
+  EXPECT_GT(stribeck, 10 * weight_in(rows, "nonlinear_viscous", 0.5));
+}
+
+// Where the smallest effect of interest is small, one that is many times larger is itself as well.
+TEST(Assessor, AnEffectManyTimesTheSmallestIsOneEffect) {
+  Observations rows = rows_that_lack_nothing();
+  const std::vector<double>& g = rows.find("g")->values;
+  const std::vector<double>& v = rows.find("v")->values;
+  for (std::size_t i = 0; i < rows.rows(); ++i) rows.target[i] += 0.4 * std::abs(g[i]) * sign(v[i]);
+  EXPECT_GT(weight_in(rows, "load_coulomb", 0.3), 0.9);
+}
+
+// A sensor that was late, a lost message, a velocity of the wrong sign.
+TEST(Assessor, ARowThatIsWrongIsNoEffect) {
+  Observations rows = rows_that_lack_nothing();
+  const double without = weight_in(rows, "NONE", 1);
+  const std::vector<double>& v = rows.find("v")->values;
+  const auto slowest = std::ranges::min_element(v, {}, [](double x) { return std::abs(x); });
+  rows.target[static_cast<std::size_t>(slowest - v.begin())] *= -60;
+  EXPECT_GT(without, 0.5);
+  EXPECT_GT(weight_in(rows, "NONE", 1), 0.8 * without);
+}
+
 // A notch where nobody has been may be there however much was recorded elsewhere.
 TEST(Assessor, RulesNothingOutAtPositionsThatNoRowWasNear) {
   simulation::World world({8, simulation::WorldLevel::easy, simulation::WorldKind::none});
