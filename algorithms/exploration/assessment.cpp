@@ -179,13 +179,14 @@ bool Assessor::is_as_it_was(const Leftover& left) const {
   return true;
 }
 
-void Assessor::add_to(EvidenceSums& sums, const SeenMovement& movement) const {
+void Assessor::add_to(EvidenceSums& sums, const SeenMovement& movement, double weight,
+                      const Eigen::VectorXd& cut) const {
   const std::array<std::size_t, 1> size = {static_cast<std::size_t>(movement.base.rows())};
   Clusters clusters = clusters_of(size);
-  clusters.weight = {movement.weight};
+  clusters.weight = {weight};
   sums.add(whitened(movement.base, clusters, last_.noise),
            whitened(movement.columns, clusters, last_.noise),
-           whitened(movement.target - movement.cut, clusters, last_.noise));
+           whitened(movement.target - cut, clusters, last_.noise));
 }
 
 // Movements that no look has seen yet, with what was known before them. How loud each of them is
@@ -195,11 +196,7 @@ void Assessor::hold_forecasts_against_rows(const Leftover& left) {
   if (last_.explanations.empty() || std::ranges::none_of(seen_, is_new)) return;
   EvidenceSums further = last_.sums;
   for (std::size_t m = 0; m < seen_.size(); ++m) {
-    if (!is_new(seen_[m])) continue;
-    SeenMovement counted = seen_[m];
-    counted.weight = left.weights[m];
-    counted.cut = left.cuts[m];
-    add_to(further, counted);
+    if (is_new(seen_[m])) add_to(further, seen_[m], left.weights[m], left.cuts[m]);
   }
   forecasts_.add(last_.explanations, last_.table, EvidenceTable(further));
 }
@@ -219,7 +216,7 @@ const Assessment& Assessor::look() {
     if (seen_[m].weight > 0) continue;
     seen_[m].weight = left.weights[m];
     seen_[m].cut = left.cuts[m];
-    add_to(last_.sums, seen_[m]);
+    add_to(last_.sums, seen_[m], left.weights[m], left.cuts[m]);
   }
   last_.table = EvidenceTable(last_.sums);
   FoundExplanations found = find_explanations(space_, last_.table);

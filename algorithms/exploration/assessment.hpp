@@ -74,7 +74,8 @@ class Assessor {
 
   Leftover left_by(const Explanation& one) const;
   bool is_as_it_was(const Leftover& left) const;
-  void add_to(EvidenceSums& sums, const SeenMovement& movement) const;
+  void add_to(EvidenceSums& sums, const SeenMovement& movement, double weight,
+              const Eigen::VectorXd& cut) const;
   void hold_forecasts_against_rows(const Leftover& left);
 
   const ExplanationSpace& space_;

@@ -27,6 +27,7 @@ namespace {
 // the prior of the smaller size is likeliest about there (evidence.hpp).
 constexpr std::array<double, 3> kSizes = {11, 3, 0.8};
 constexpr double kExplainedByBase = 1e-4;  // of a column's squares, on the reference
+constexpr std::size_t kSpeedRows = 16;     // in either direction
 
 // Of a narrow column's squares: where a family's own columns leave less, it is that family's.
 constexpr double kDrawnByOther = 0.1;
@@ -34,8 +35,7 @@ constexpr double kDrawnByOther = 0.1;
 constexpr double kMisfit = 0.15;  // of a family's size: what one expects of its misfit
 constexpr Eigen::Index kMisfitColumns = 14;
 constexpr Eigen::Index kMisfitCentres = 3;
-constexpr std::size_t kSpeedRows = 16;  // in either direction
-constexpr double kLeastMisfit = 1e-4;   // of the variance of the direction of most
+constexpr double kLeastMisfit = 1e-4;  // of the variance of the direction of most
 // Of the mean squares of a block's columns: sums of them that are smaller are no effect of it.
 constexpr double kSameShape = 1e-4;
 
