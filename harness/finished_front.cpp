@@ -49,36 +49,53 @@ void sort_by_complexity(FitResult& fit) {
   fit.chosen = chosen;
 }
 
-// The place of the one with the most evidence.
-std::size_t likeliest(std::span<const Expression> front, const FiniteRows& rows) {
+// How many times the mean square of what strays the rest may have and still be as good: a power
+// that fits the noise of a row wins a few hundredths (docs/settled.md).
+constexpr double kAsGood = 4;
+
+// Infinite where a value is not finite.
+std::vector<double> mean_squares(std::span<const Expression> front, const FiniteRows& rows) {
   Evaluator evaluator;
-  double zero_loss = 0;
-  for (const double y : rows.target) zero_loss += y * y / static_cast<double>(rows.rows());
-  std::vector<double> against;
+  std::vector<double> squares;
   for (const Expression& formula : front) {
     const ErrorSum sum = evaluator.sum_squared_errors(formula, rows.table(), rows.target);
-    against.push_back(sum.status == ErrorSumStatus::complete
-                          ? evidence_against(formula, sum.sum / static_cast<double>(rows.rows()),
-                                             zero_loss, rows.rows())
+    squares.push_back(sum.status == ErrorSumStatus::complete
+                          ? sum.sum / static_cast<double>(rows.rows())
                           : std::numeric_limits<double>::infinity());
+  }
+  return squares;
+}
+
+// The place of the one with the most evidence.
+std::size_t likeliest(std::span<const Expression> front, const FiniteRows& rows) {
+  double zero_loss = 0;
+  for (const double y : rows.target) zero_loss += y * y / static_cast<double>(rows.rows());
+  const std::vector<double> squares = mean_squares(front, rows);
+  std::vector<double> against;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    against.push_back(evidence_against(front[i], squares[i], zero_loss, rows.rows()));
   }
   return static_cast<std::size_t>(std::ranges::min_element(against) - against.begin());
 }
 
-// Formulas that nobody would want between the rows go, and those whose value is lost in rounding,
-// unless nothing else is there. A choice that goes gives way to what has the most evidence of the
-// rest.
+// Formulas whose value is lost in rounding go, and those that nobody would want between the rows
+// where a simpler one is as good on them, unless nothing else is there. A choice that goes gives
+// way to what has the most evidence of the rest.
 void drop_strays(const FiniteRows& rows, const InputBox& box, FitResult& fit) {
   if (rows.rows() == 0) return;
   CrossedRows crossed(rows.table(), rows.target, box);
+  const std::vector<double> squares = mean_squares(fit.front, rows);
   bool is_choice_lost = false;
   std::vector<Expression> kept;
   std::optional<std::size_t> chosen;
+  double least = std::numeric_limits<double>::infinity();  // of what is kept
   for (std::size_t i = 0; i < fit.front.size(); ++i) {
     const bool is_lost = loses_its_digits(fit.front[i], rows.table(), rows.target);
     if (i == fit.chosen && is_lost) is_choice_lost = true;
-    if (is_lost || crossed.strays(fit.front[i])) continue;
+    const bool has_equal = least <= kAsGood * squares[i];
+    if (is_lost || (has_equal && crossed.strays(fit.front[i]))) continue;
     if (i == fit.chosen) chosen = kept.size();
+    least = std::min(least, squares[i]);
     kept.push_back(fit.front[i]);
   }
   const std::size_t strays = fit.front.size() - kept.size();

@@ -13,16 +13,13 @@ namespace {
 constexpr std::size_t kCrossings = 1000;
 // Times the target's range (docs/settled.md).
 constexpr double kStrays = 10;
-// Of the target's variance.
-constexpr double kAllButExplained = 1e-6;
 
 }  // namespace
 
 CrossedRows::CrossedRows(const Inputs& inputs, std::span<const double> target, const InputBox& box)
-    : inputs_(inputs), target_(target), values_(kCrossings) {
+    : values_(kCrossings) {
   const auto n = static_cast<double>(target.size());
   for (const double y : target) mean_ += y / n;
-  for (const double y : target) variance_ += (y - mean_) * (y - mean_) / n;
   const auto [least, most] = std::ranges::minmax(target);
   range_ = most - least;
   const std::size_t width = inputs.columns.size();
@@ -40,9 +37,6 @@ CrossedRows::CrossedRows(const Inputs& inputs, std::span<const double> target, c
 }
 
 bool CrossedRows::strays(const Expression& formula) {
-  const ErrorSum seen = evaluator_.sum_squared_errors(formula, inputs_, target_);
-  const double explained = kAllButExplained * variance_ * static_cast<double>(target_.size());
-  if (seen.status == ErrorSumStatus::complete && seen.sum <= explained) return false;
   evaluator_.evaluate(formula, {pointers_, kCrossings}, values_);
   return range_ > 0 && std::ranges::any_of(values_, [this](double value) {
            return std::abs(value - mean_) > kStrays * range_;  // never where it is no number

@@ -16,6 +16,7 @@
 #include "algorithms/relay/index_fit.hpp"
 #include "algorithms/relay/long_sum.hpp"
 #include "algorithms/relay/part_search.hpp"
+#include "algorithms/relay/power_law.hpp"
 #include "algorithms/relay/product_search.hpp"
 #include "algorithms/relay/relation_search.hpp"
 #include "algorithms/relay/scaled_function.hpp"
@@ -149,7 +150,8 @@ void StructureSearch::search_likely() {
   if (round_ > 0 || answer_.is_done() || rows.rows() == 0 || !has(kLikely)) return;
   if (roughness_of(rows, rows.target().values, context_.budget) < kSurelyExact) return;
   Budget part = context_.budget.share(context_.budget.remaining() / 4, kQuarter);
-  std::vector<Expression> likely = likely_products(rows, context_.operators, part);
+  std::vector<Expression> likely = likely_power_laws(rows, context_.operators, part);
+  std::ranges::move(likely_products(rows, context_.operators, part), std::back_inserter(likely));
   if (has(kFunctionSums)) {
     std::ranges::move(likely_function_sums(rows, context_.operators, part),
                       std::back_inserter(likely));

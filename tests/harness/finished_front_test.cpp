@@ -72,6 +72,35 @@ TEST(FinishedFront, HasNoFormulaThatIsFarAwayBetweenTheRows) {
   EXPECT_NE(fit.note.find("ten times the target's range"), std::string::npos);
 }
 
+// A product over decades is a hundred times the target's range where all its factors are large at
+// once, which is in no row; and nothing simpler comes near.
+TEST(FinishedFront, KeepsALawThatIsFarAwayBetweenTheRowsWhereNothingElseFits) {
+  const std::vector<std::string> names = {"x", "y"};
+  std::vector<double> x;
+  std::vector<double> y;
+  std::vector<double> target;
+  RandomStream random(3);
+  for (int r = 0; r < 300; ++r) {
+    const double share = random.uniform(0, 1);
+    x.push_back(1 + 99 * share * share);
+    y.push_back(1 + 99 * (1 - share) * (1 - share));
+    target.push_back(x.back() * y.back() / 100 * (1 + 0.1 * random.normal()));
+  }
+  const std::vector<Input> inputs = {{"x", "-", Role::none, 1, 100, std::nullopt},
+                                     {"y", "-", Role::none, 1, 100, std::nullopt}};
+  const std::vector<const double*> columns = {x.data(), y.data()};
+  FitResult fit;
+  for (const char* formula : {"2.5", "0.05*x", "0.01*x*y", "0.01*x*y + 1e-60*x^30*y^10"}) {
+    fit.front.push_back(parse(formula, names));
+  }
+  fit.chosen = 2;
+  Budget budget({1'000'000, 1e6});
+  finish_front({inputs, columns, target, {}}, find_operator_set("full"), budget, fit);
+  ASSERT_EQ(fit.front.size(), 3U) << "what fits one row more goes";
+  EXPECT_EQ(fit.note, "");
+  EXPECT_EQ(fit.chosen, 2U);
+}
+
 // In double precision the second is a staircase, on which some of the noise rests.
 TEST(FinishedFront, HasNoFormulaWhoseValueIsLostInRounding) {
   const std::vector<std::string> names = {"x"};
