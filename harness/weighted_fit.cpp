@@ -15,6 +15,7 @@
 #include "algorithms/fitting/evaluation_error.hpp"
 #include "algorithms/fitting/held_out_choice.hpp"
 #include "algorithms/fitting/joint_front.hpp"
+#include "algorithms/fitting/relative_noise.hpp"
 #include "foundation/error.hpp"
 #include "harness/judge.hpp"
 #include "harness/stateful_problem.hpp"
@@ -23,6 +24,9 @@
 
 namespace tribench {
 namespace {
+
+// The weights come from a formula that was fitted without them, then from one fitted with them.
+constexpr int kRoundsOfWeights = 2;
 
 using build::operator*;
 
@@ -102,16 +106,35 @@ std::vector<Expression> with_their_digits(const std::vector<Expression>& front,
   return kept.empty() ? front : kept;
 }
 
+// One result of two searches; of one of them where the other found nothing.
+CellResult joined(CellResult first, CellResult second) {
+  if (!is_ok(first.record)) std::swap(first, second);
+  first.record.fit_cpu_s += second.record.fit_cpu_s;
+  first.record.fit_wall_s += second.record.fit_wall_s;
+  first.record.evaluations += second.record.evaluations;
+  first.record.fit_instructions += second.record.fit_instructions;
+  first.record.peak_memory_mib =
+      std::max(first.record.peak_memory_mib, second.record.peak_memory_mib);
+  // States have their parameters of one search.
+  const bool has_states = declares_states(first.record.formula);
+  if (!is_ok(second.record) || has_states) return first;
+  if (was_ended_by_clock(second.record) && !was_ended_by_clock(first.record)) {
+    note_end_by_clock(first.record);
+  }
+  for (FrontRecord& entry : second.front) {
+    if (std::ranges::count(first.front, entry.formula, &FrontRecord::formula) > 0) continue;
+    first.front.push_back(std::move(entry));
+    first.front.back().chosen = false;
+  }
+  std::ranges::stable_sort(first.front, {}, &FrontRecord::complexity);
+  return first;
+}
+
 }  // namespace
 
-CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
-                        const Regressor& method, const CellTask& task,
-                        const WidenedMethod& widened) {
+void choose_by_weights(const Problem& problem, std::span<const double> weights,
+                       const CellTask& task, CellResult& result) {
   const Table& table = problem.stages.front().train;
-  Problem searched = problem;
-  searched.stages.front().train = select_rows(table, sampled_rows(weights));
-  CellResult result = fit_and_judge(searched, method, task, widened);
-  if (!is_ok(result.record)) return result;
   // A method's formulas have the same states: their columns are those of the chosen one.
   const ProblemFormula own = read_problem_formula(result.record.formula, problem);
   const Problem& judged = own.over(problem);
@@ -122,7 +145,8 @@ CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
   for (const FrontRecord& entry : result.front) {
     if (entry.chosen) chosen = front.size();
     front.push_back(read_problem_formula(entry.formula, problem).formula);
-    fitter.fit(front.back(), inputs.inputs(), table.target, weights);
+    fitter.fit(front.back(), inputs.inputs(), table.target, weights,
+               {.exponents = FitExponents::not_simple});
   }
   // What a program of the user's stands for is its own to say.
   if (!task.method.is_external()) {
@@ -132,6 +156,58 @@ CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
   }
   judge_formula(judged, {front.at(chosen), {}}, result.record);
   result.front = judge_front(judged, front, chosen, result.record, weights);
+}
+
+std::vector<double> choose_by_relative_noise(const Problem& problem, const CellTask& task,
+                                             CellResult& result) {
+  const Table& table = problem.stages.front().train;
+  const TableInputs inputs(table);
+  const auto formula_of = [&](const auto& record) {
+    return read_problem_formula(record.formula, problem).formula;
+  };
+  CellResult weighted = result;
+  std::vector<double> weights;
+  for (int round = 0; round < kRoundsOfWeights; ++round) {
+    std::vector<Expression> front;
+    for (const FrontRecord& entry : weighted.front) front.push_back(formula_of(entry));
+    auto next = weights_of_relative_noise(front, inputs.inputs(), table.target);
+    if (!next) return {};
+    weights = std::move(*next);
+    choose_by_weights(problem, weights, task, weighted);
+  }
+  if (!leaves_noise_alone(formula_of(weighted.record), inputs.inputs(), table.target)) return {};
+  result = std::move(weighted);
+  std::string& note = result.record.note;
+  note += fmt::format("{}the noise grows with the target: fitted and chosen by relative errors",
+                      note.empty() ? "" : "; ");
+  return weights;
+}
+
+CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
+                        const Regressor& method, const CellTask& task,
+                        const WidenedMethod& widened) {
+  const Table& all = problem.stages.front().train;
+  std::vector<std::size_t> counting;
+  for (std::size_t r = 0; r < weights.size(); ++r) {
+    if (weights[r] > 0) counting.push_back(r);
+  }
+  const std::vector<std::size_t> sampled = sampled_rows(weights);
+  const auto search = [&](const std::vector<std::size_t>& rows, const CellTask& part) {
+    Problem searched = problem;
+    searched.stages.front().train = select_rows(all, rows);
+    return fit_and_judge(searched, method, part, widened);
+  };
+  // What a program of the user's stands for is of one search.
+  if (sampled == counting || task.method.is_external()) {
+    CellResult result = search(sampled, task);
+    if (is_ok(result.record)) choose_by_weights(problem, weights, task, result);
+    return result;
+  }
+  CellTask half = task;
+  half.limits.seconds /= 2;
+  half.limits.evaluations /= 2;
+  CellResult result = joined(search(sampled, half), search(counting, half));
+  if (is_ok(result.record)) choose_by_weights(problem, weights, task, result);
   return result;
 }
 

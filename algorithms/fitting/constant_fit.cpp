@@ -14,6 +14,7 @@
 #include "algorithms/expression/differentiate.hpp"
 #include "algorithms/expression/edit.hpp"
 #include "algorithms/fitting/cholesky.hpp"
+#include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/linear_constants.hpp"
 
 namespace tribench {
@@ -50,7 +51,7 @@ struct ConstantFitter::Workspace : public LeastSquaresProblem {
   std::vector<double> step;
   std::vector<double> cross;
 
-  void choose_constants(const Expression& formula, bool fit_exponents);
+  void choose_constants(const Expression& formula, FitExponents exponents);
   void put_linear_first(const Expression& formula);
   double plain_sum_squares();
   void solve_linear();
@@ -59,11 +60,15 @@ struct ConstantFitter::Workspace : public LeastSquaresProblem {
   bool may_go_on() const override { return !cut; }
 };
 
-void ConstantFitter::Workspace::choose_constants(const Expression& formula, bool fit_exponents) {
+void ConstantFitter::Workspace::choose_constants(const Expression& formula,
+                                                 FitExponents exponents) {
   places.clear();
   for (std::size_t i = 0; i < formula.size(); ++i) {
     if (!formula.node(i).is_constant()) continue;
-    if (!is_exponent(formula, i) || fit_exponents) places.push_back(i);
+    const bool is_held =
+        is_exponent(formula, i) && exponents != FitExponents::all &&
+        (exponents == FitExponents::none || is_simple_exponent(formula.node(i).value));
+    if (!is_held) places.push_back(i);
   }
 }
 
@@ -172,7 +177,7 @@ ConstantFitResult ConstantFitter::fit(Expression& formula, const Inputs& inputs,
   work.pass_cost = node_rows(formula, inputs.rows);
   work.spent = 0;
   work.linear = 0;
-  work.choose_constants(formula, options.fit_exponents);
+  work.choose_constants(formula, options.exponents);
   if (options.low.empty() && options.high.empty()) work.put_linear_first(formula);
   work.constants.clear();
   for (std::size_t place : work.places) work.constants.push_back(formula.node(place).value);

@@ -17,12 +17,16 @@
 
 namespace tribench {
 
+// none: they are part of the form; not_simple: those that a fit has found (free_constants.hpp).
+enum class FitExponents { none, not_simple, all };
+
 struct ConstantFitOptions {
   int max_iterations = 30;
   double gradient_tolerance = 1e-10;  // cosine between the residual and a column of J
   double step_tolerance = 1e-10;      // relative to the constants
   double function_tolerance = 1e-8;   // relative decrease of the sum of squares
-  bool fit_exponents = false;         // constants that are the exponent of ^ move too
+  // Constants that are the exponent of ^ move too.
+  FitExponents exponents = FitExponents::none;
   // Bounds on the constants that are fitted, in the order of the tape; empty for none. The
   // constants given must keep to them.
   std::span<const double> low = {};

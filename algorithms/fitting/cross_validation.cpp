@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "algorithms/fitting/constant_fit.hpp"
-#include "algorithms/fitting/evidence_pruning.hpp"
 #include "algorithms/fitting/fit_intervals.hpp"
+#include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/shape_dimension.hpp"
 #include "foundation/random.hpp"
 

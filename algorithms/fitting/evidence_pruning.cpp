@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/fitting/evidence_pruning.hpp"
+#include "algorithms/fitting/free_constants.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,11 +21,6 @@ constexpr double kFarOff = 0.3;  // of an exponent from the value it may be
 constexpr int kIterations = 8;   // of the others' fit
 constexpr std::size_t kMostConstants = 14;
 constexpr double kNodesSaved = 2;  // that a 0 or a 1 takes with it: itself and its operation
-
-bool is_simple_exponent(double c) {
-  return 2 * c == std::nearbyint(2 * c) ||
-         std::abs(3 * c - std::nearbyint(3 * c)) <= 1e-12 * std::abs(c);
-}
 
 class Pruning {
  public:
@@ -99,7 +95,7 @@ class Pruning {
     }
     ConstantFitOptions options;
     options.max_iterations = kIterations;
-    options.fit_exponents = true;
+    options.exponents = FitExponents::all;
     options.low = low;
     options.high = high;
     const ConstantFitResult fit = fitter_.fit(candidate, inputs_, target_, {}, options);
@@ -154,14 +150,6 @@ class Pruning {
 };
 
 }  // namespace
-
-std::size_t free_exponents(const Expression& formula) {
-  std::size_t count = 0;
-  for (const std::size_t p : constant_positions(formula)) {
-    if (is_exponent(formula, p) && !is_simple_exponent(formula.node(p).value)) ++count;
-  }
-  return count;
-}
 
 Expression pruned_by_evidence(const Expression& formula, const Inputs& inputs,
                               std::span<const double> target, const InputBox& box,

@@ -19,10 +19,6 @@
 
 namespace tribench {
 
-// How many exponents of the formula are neither multiples of a half nor of a third: numbers that
-// were fitted, which evidence_price does not count.
-std::size_t free_exponents(const Expression& formula);
-
 // The formula itself where nothing can go or it is not finite on the rows. `spend` is told the
 // node-rows of each fit; false ends with what there is.
 // Cost: a fit of a few iterations for each constant, value and step; 10 to 100 ms for ten constants

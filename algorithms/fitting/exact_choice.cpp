@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "algorithms/expression/complexity.hpp"
-#include "algorithms/fitting/evidence_pruning.hpp"
+#include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/shape_dimension.hpp"
 #include "foundation/elementary.hpp"
 

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "algorithms/expression/edit.hpp"
+
 namespace tribench {
 
 std::vector<std::size_t> free_constants(const Expression& formula) {
@@ -14,6 +16,19 @@ std::vector<std::size_t> free_constants(const Expression& formula) {
   std::vector<std::size_t> places = constant_positions(formula);
   std::erase_if(places, is_form);
   return places;
+}
+
+bool is_simple_exponent(double exponent) {
+  return 2 * exponent == std::nearbyint(2 * exponent) ||
+         std::abs(3 * exponent - std::nearbyint(3 * exponent)) <= 1e-12 * std::abs(exponent);
+}
+
+std::size_t free_exponents(const Expression& formula) {
+  std::size_t count = 0;
+  for (const std::size_t p : constant_positions(formula)) {
+    if (is_exponent(formula, p) && !is_simple_exponent(formula.node(p).value)) ++count;
+  }
+  return count;
 }
 
 }  // namespace tribench

@@ -8,8 +8,8 @@
 #include "algorithms/expression/complexity.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
 #include "algorithms/fitting/evidence.hpp"
-#include "algorithms/fitting/evidence_pruning.hpp"
 #include "algorithms/fitting/exact_choice.hpp"
+#include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/posterior_choice.hpp"
 #include "foundation/elementary.hpp"
 

@@ -44,7 +44,7 @@ std::optional<double> Scorer::fit(Expression& formula, const Rows& rows, int ite
   const std::uint64_t affordable = budget.remaining() / std::max<std::uint64_t>(pass, 1);
   ConstantFitOptions options;
   options.max_iterations = iterations;
-  options.fit_exponents = rule_.fit_exponents;
+  options.exponents = rule_.fit_exponents ? FitExponents::all : FitExponents::none;
   if (affordable < kStepCost * static_cast<std::uint64_t>(iterations + 1)) {
     options.max_iterations = static_cast<int>(affordable / kStepCost) - 1;
   }

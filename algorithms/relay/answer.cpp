@@ -101,7 +101,8 @@ void Answer::offer_likeliest(std::span<const Expression> formulas, Budget& budge
   ConstantFitter fitter;
   for (Expression& formula : proposed.likeliest(kLikelyFitted)) {
     if (!budget.in_time()) break;
-    const ConstantFitResult fit = fitter.fit(formula, rows_.table(), rows_.target);
+    const ConstantFitResult fit = fitter.fit(formula, rows_.table(), rows_.target, {},
+                                             {.exponents = FitExponents::not_simple});
     budget.spend(fit.node_rows);
     if (fit.status != FitStatus::not_finite) likely.add(std::array{std::move(formula)}, 0);
   }

@@ -53,22 +53,16 @@ class LogLink {
   // numbers leave their range.
   std::optional<PowerLaw> fit(const std::vector<std::size_t>& places,
                               const std::vector<double>& fixed) const {
-    // Logarithms of the target's sizes, as sure as these are large.
-    std::vector<double> weights;
-    std::vector<double> response;
+    LinkedRows start = rows_by_size(rows_);
     for (std::size_t r = 0; r < target_.size(); ++r) {
-      weights.push_back(std::abs(target_[r]));
-      response.push_back(weights[r] * (rows_.target().logs[r] - fixed[r]));
+      start.response[r] -= start.weights[r] * fixed[r];
     }
-    std::optional<PowerLaw> law = regressed(places, weights, response);
+    std::optional<PowerLaw> law = regressed(places, start);
     if (!law) return std::nullopt;
     std::vector<double> values = values_of(*law, fixed);
     law->sum_squares = sum_squares_between(target_, values);
     for (int step = 0; step < kMostSteps; ++step) {
-      for (std::size_t r = 0; r < target_.size(); ++r) {
-        response[r] = values[r] * logarithm(*law, r) + target_[r] - values[r];
-      }
-      const std::optional<PowerLaw> full = regressed(places, values, response);
+      const std::optional<PowerLaw> full = regressed(places, linearised(*law, values));
       if (!full) return std::nullopt;
       const double before = law->sum_squares;
       if (!take_step(*law, *full, fixed, values) || before - law->sum_squares < kSettled * before) {
@@ -79,18 +73,18 @@ class LogLink {
     return law;
   }
 
+  LinkedRows linearised(const PowerLaw& law) const {
+    return linearised(law, values_of(law, std::vector<double>(target_.size(), 0.0)));
+  }
+
   // By how much the sum of squares would grow without each input, in the linearised model.
   std::vector<double> worth_of_inputs(const PowerLaw& law, const std::vector<double>& fixed) const {
-    const std::vector<double> values = values_of(law, fixed);
-    std::vector<double> response;
-    for (std::size_t r = 0; r < target_.size(); ++r) {
-      response.push_back(values[r] * logarithm(law, r) + target_[r] - values[r]);
-    }
+    const LinkedRows linear = linearised(law, values_of(law, fixed));
     std::vector<double> worth;
     for (std::size_t k = 0; k < law.places.size(); ++k) {
       std::vector<std::size_t> others = law.places;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-      const std::optional<PowerLaw> without = regressed(others, values, response);
+      const std::optional<PowerLaw> without = regressed(others, linear);
       worth.push_back(without ? std::max(without->sum_squares - law.sum_squares, 0.0) : HUGE_VAL);
     }
     return worth;
@@ -113,10 +107,19 @@ class LogLink {
     return values;
   }
 
+  // `values` are the law's, what is fixed among them; the response is without that.
+  LinkedRows linearised(const PowerLaw& law, const std::vector<double>& values) const {
+    LinkedRows linear{values, {}};
+    for (std::size_t r = 0; r < target_.size(); ++r) {
+      linear.response.push_back(values[r] * logarithm(law, r) + target_[r] - values[r]);
+    }
+    return linear;
+  }
+
   // Its sum of squares is that of the regression.
   std::optional<PowerLaw> regressed(const std::vector<std::size_t>& places,
-                                    const std::vector<double>& weights,
-                                    const std::vector<double>& response) const {
+                                    const LinkedRows& linked) const {
+    const auto& [weights, response] = linked;
     const std::size_t n = target_.size();
     const std::size_t p = places.size() + 1;
     const auto is_finite = [](double x) { return std::isfinite(x); };
@@ -197,6 +200,17 @@ std::optional<PowerLaw> with_halves(const LogLink& link, const LogRows& rows, co
   return halves;
 }
 
+// Of the inputs; none where there are more than rows can tell of.
+std::vector<std::size_t> places_with_logs(const LogRows& rows) {
+  std::vector<std::size_t> places;
+  for (std::size_t j = 0; j < rows.inputs().size(); ++j) {
+    if (rows.inputs()[j].has_logs()) places.push_back(j);
+  }
+  const bool is_possible = rows.target().has_logs() && places.size() <= kMostInputs &&
+                           kRowsPerNumber * (places.size() + 1) <= rows.rows();
+  return is_possible ? places : std::vector<std::size_t>();
+}
+
 Expression formula_of(const PowerLaw& law, double sign) {
   std::vector<Expression> factors;
   for (const std::size_t place : law.places) factors.push_back(Expression::variable(place));
@@ -205,17 +219,28 @@ Expression formula_of(const PowerLaw& law, double sign) {
 
 }  // namespace
 
+LinkedRows rows_by_size(const LogRows& rows) {
+  LinkedRows linked;
+  for (std::size_t r = 0; r < rows.rows(); ++r) {
+    linked.weights.push_back(std::abs(rows.target().values[r]));
+    linked.response.push_back(linked.weights[r] * rows.target().logs[r]);
+  }
+  return linked;
+}
+
+std::optional<LinkedRows> rows_by_power_law(const LogRows& rows, Budget& budget) {
+  const std::vector<std::size_t> places = places_with_logs(rows);
+  if (places.empty()) return std::nullopt;
+  const LogLink link(rows, budget);
+  const auto law = link.fit(places, std::vector<double>(rows.rows(), 0.0));
+  if (!law) return std::nullopt;
+  return link.linearised(*law);
+}
+
 std::vector<Expression> likely_power_laws(const LogRows& rows, const OperatorSet& operators,
                                           Budget& budget) {
   std::vector<Expression> likely;
-  std::vector<std::size_t> places;
-  for (std::size_t j = 0; j < rows.inputs().size(); ++j) {
-    if (rows.inputs()[j].has_logs()) places.push_back(j);
-  }
-  const bool is_possible = rows.target().has_logs() && !places.empty() &&
-                           places.size() <= kMostInputs &&
-                           kRowsPerNumber * (places.size() + 1) <= rows.rows();
-  if (!is_possible) return likely;
+  std::vector<std::size_t> places = places_with_logs(rows);
   const LogLink link(rows, budget);
   const std::vector<double> nothing(rows.rows(), 0.0);
   const auto propose = [&](const PowerLaw& law) {

@@ -11,6 +11,7 @@
 #include "algorithms/expression/column_kernels.hpp"
 #include "algorithms/fitting/linear_least_squares.hpp"
 #include "algorithms/relay/factors.hpp"
+#include "algorithms/relay/power_law.hpp"
 #include "algorithms/relay/subset_fits.hpp"
 #include "foundation/elementary.hpp"
 
@@ -34,6 +35,7 @@ struct Column {
   Expression formula;
   std::vector<double> values;
   bool is_exponent = false;
+  bool is_divisor = false;  // in the exponential; the values are one over the formula's
 };
 
 std::vector<Column> columns_of(const LogRows& rows, const OperatorSet& operators, int stage) {
@@ -49,16 +51,21 @@ std::vector<Column> columns_of(const LogRows& rows, const OperatorSet& operators
     columns.push_back({known.factor.formula, known.factor.logs, false});
   }
   const auto add_exponent = [&](const Expression& formula) {
-    if (!operators.admits(function(Op::exp, formula))) return;
+    if (!operators.admits(function(Op::exp, formula))) return false;
     Factor factor = factor_of(formula, rows);
-    if (std::ranges::all_of(factor.values, [](double x) { return std::isfinite(x); })) {
-      columns.push_back({formula, std::move(factor.values), true});
-    }
+    const auto is_finite = [](double x) { return std::isfinite(x); };
+    if (!std::ranges::all_of(factor.values, is_finite)) return false;
+    columns.push_back({formula, std::move(factor.values), true});
+    return true;
   };
   const std::size_t n = rows.inputs().size();
   for (std::size_t i = 0; i < n && stage > 0; ++i) {
     add_exponent(input(i));
     add_exponent(power(input(i), 2));
+    if (rows.inputs()[i].has_logs() && add_exponent(constant(1) / input(i))) {
+      columns.back().formula = input(i);
+      columns.back().is_divisor = true;
+    }
     for (std::size_t j = i + 1; j < n && stage > 1 && n <= kMostPaired; ++j) {
       add_exponent(input(i) * input(j));
       add_exponent(input(i) / input(j));
@@ -159,7 +166,8 @@ Expression formula_of(const std::vector<Column>& columns, const Regression& foun
     const Column& column = columns[found.places[k]];
     const double c = found.coefficients[k];
     if (column.is_exponent) {
-      exponent = sum_of(exponent, constant(c) * column.formula);
+      exponent = sum_of(exponent, column.is_divisor ? constant(c) / column.formula
+                                                    : constant(c) * column.formula);
       continue;
     }
     factors.push_back(column.formula);
@@ -184,26 +192,20 @@ Expression with_likely_sign(const std::vector<Column>& columns, const Regression
   return 2 * opposite > rows.rows() ? formula_of(columns, found, -1, kOffRationalInNoise) : formula;
 }
 
-}  // namespace
-
-std::vector<Expression> likely_products(const LogRows& rows, const OperatorSet& operators,
-                                        Budget& budget) {
-  std::vector<Expression> likely;
-  if (!rows.target().has_logs() || !operators.allows(Op::mul) || rows.rows() < 20) return likely;
-  const std::vector<Column> columns = columns_of(rows, operators, 2);
+// The best products of every number of factors.
+void add_likely(const std::vector<Column>& columns, const LinkedRows& linked, const LogRows& rows,
+                const OperatorSet& operators, Budget& budget, std::vector<Expression>& likely) {
   const std::size_t n = rows.rows();
-  std::vector<std::vector<double>> weighted;
-  const auto add_weighted = [&](const std::vector<double>& values) {
-    weighted.push_back(values);
-    for (std::size_t r = 0; r < n; ++r) weighted.back()[r] *= std::abs(rows.target().values[r]);
-  };
-  add_weighted(std::vector<double>(n, 1.0));
-  for (const Column& column : columns) add_weighted(column.values);
-  add_weighted(rows.target().logs);
+  std::vector<std::vector<double>> weighted = {linked.weights};
+  for (const Column& column : columns) {
+    weighted.push_back(column.values);
+    for (std::size_t r = 0; r < n; ++r) weighted.back()[r] *= linked.weights[r];
+  }
+  weighted.push_back(linked.response);
   const std::size_t count = weighted.size();
   std::vector<const double*> pointers;
   for (const auto& column : weighted) pointers.push_back(column.data());
-  if (count > kMostColumns || !budget.spend(count * count / 16 * n)) return likely;
+  if (count > kMostColumns || !budget.spend(count * count / 16 * n)) return;
   std::vector<double> gram(count * count);
   columns::gram(pointers.data(), count, n, gram.data());
   const SubsetFits fits(std::move(gram), std::vector<char>(count - 1, 0));
@@ -227,6 +229,19 @@ std::vector<Expression> likely_products(const LogRows& rows, const OperatorSet& 
     }
     if (terms == kMostFactors || !budget.spend(sums.size() * count * terms * terms)) break;
     sums = fits.grown(sums, budget);
+  }
+}
+
+}  // namespace
+
+std::vector<Expression> likely_products(const LogRows& rows, const OperatorSet& operators,
+                                        Budget& budget) {
+  std::vector<Expression> likely;
+  if (!rows.target().has_logs() || !operators.allows(Op::mul) || rows.rows() < 20) return likely;
+  const std::vector<Column> columns = columns_of(rows, operators, 2);
+  add_likely(columns, rows_by_size(rows), rows, operators, budget, likely);
+  if (const auto linked = rows_by_power_law(rows, budget)) {
+    add_likely(columns, *linked, rows, operators, budget, likely);
   }
   return likely;
 }

@@ -287,7 +287,7 @@ class ScaledFunctionSearch {
     ConstantFitOptions options;
     options.function_tolerance = 1e-15;
     options.max_iterations = 40;
-    options.fit_exponents = tried.function.kind == Kind::power;
+    if (tried.function.kind == Kind::power) options.exponents = FitExponents::all;
     const ConstantFitResult fit =
         ConstantFitter().fit(formed, {{&column, 1}, x_.size()}, z, weights, options);
     budget.spend(fit.node_rows);

@@ -231,15 +231,21 @@ void add_intervals(const FitArguments& arguments, const Problem& problem,
 }
 
 // Declared states are inputs of the search; what it finds is fitted once more together with them.
+// `weights`: those that were told; where none were, those that the rows ask for.
 CellResult run_method(const FitArguments& arguments, const Problem& problem,
-                      std::span<const double> weights, const ChosenMethod& chosen,
+                      std::vector<double>& weights, const ChosenMethod& chosen,
                       const CellTask& task) {
   const bool has_states = !arguments.states.empty();
   const Problem declared = has_states ? with_declared_states(problem, arguments.states) : Problem();
   const Problem& seen = has_states ? declared : problem;
   if (!weights.empty()) return fit_weighted(seen, weights, *chosen.method, task, chosen.widened);
   CellResult result = fit_and_judge(seen, *chosen.method, task, chosen.widened);
-  if (has_states && is_ok(result.record)) refit_states(problem, result);
+  if (!is_ok(result.record)) return result;
+  if (has_states) {
+    refit_states(problem, result);
+  } else if (!chosen.fixed_form && !task.method.is_external()) {
+    weights = choose_by_relative_noise(problem, task, result);
+  }
   return result;
 }
 
@@ -277,7 +283,7 @@ ExitStatus fit(const FitArguments& arguments, const Registry& registry) {
     fit_shared_shape(arguments, problem, chosen);
     return status_of_end();
   }
-  const std::vector<double> weights = take_weights(arguments, problem);
+  std::vector<double> weights = take_weights(arguments, problem);
   const CellTask task = task_of(arguments, problem, chosen.fixed_form);
   FitAnswer answer;
   answer.result = run_method(arguments, problem, weights, chosen, task);
@@ -387,7 +393,9 @@ void add_judging_options(CLI::App& command, FitArguments& arguments) {
   CLI::Option* weights = command.add_option("--weights", arguments.weights,
                                             "a column: how much each row's squared error counts");
   CLI::Option* sigma = command.add_option("--sigma", arguments.sigma,
-                                          "a column: the standard deviation of each row's target");
+                                          "a column: the standard deviation of each row's target; "
+                                          "else one for all rows, or in proportion with the "
+                                          "target where the rows say so");
   sigma->excludes(weights);
   command
       .add_option("--category", arguments.category,

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -83,6 +85,75 @@ TEST_F(WeightedFitTest, TellsTheErrorsThatItChoseBy) {
     EXPECT_LT(entry.weighted_rms, before) << entry.formula;
     before = entry.weighted_rms;
   }
+}
+
+// A search that hears only of large errors misses what small rows tell, one of sampled rows the
+// large ones: each finds a part of the front.
+class FrontByRows : public Regressor {
+ public:
+  FitResult fit(FitContext& context) const override {
+    const std::span<const double> x(context.data.columns[0], context.data.rows());
+    const bool is_sampled = std::ranges::adjacent_find(x) != x.end();
+    FitResult result;
+    for (const char* formula : {"1.2", is_sampled ? "2*exp(-0.3*x)" : "3*exp(-0.95*x) + 0.69"}) {
+      result.front.push_back(parse(formula, kNames));
+    }
+    result.chosen = 0;
+    EXPECT_TRUE(context.budget.spend(100));
+    return result;
+  }
+};
+
+TEST_F(WeightedFitTest, SearchesTheRowsAsTheyAreToo) {
+  const CellResult result = fit_weighted(problem_, weights_, FrontByRows(), task_);
+  ASSERT_TRUE(is_ok(result.record));
+  EXPECT_EQ(result.record.complexity, 5) << result.record.formula;
+  EXPECT_EQ(result.record.evaluations, 200U) << "of both searches";
+  EXPECT_EQ(std::ranges::count(result.front, true, &FrontRecord::chosen), 1);
+}
+
+// The same law and front, of which the noise decides what is chosen.
+class RelativeNoiseFit : public ::testing::Test {
+ protected:
+  CellResult fit(double relative, double constant) {
+    Problem problem;
+    problem.name = "test/power";
+    problem.dataset = "test";
+    problem.inputs = {{"x", "", Role::none, 1, 100, {}}};
+    Table table;
+    table.columns.resize(1);
+    RandomStream random(5);
+    for (int r = 0; r < kRows; ++r) {
+      const double x = elementary::exp(4.6 * r / kRows);
+      table.columns[0].push_back(x);
+      const double noise = relative * x * random.normal() + constant * random.normal();
+      table.target.push_back(x + noise);
+      table.movement.push_back(r);
+    }
+    problem.stages = {{"fit", {0}, table}};
+    problem.test = table;
+    CellTask task;
+    task.cell = {problem.name, "front", "full", 1};
+    task.operators = find_operator_set("full");
+    const FrontMethod method({"40", "1.05*x", "1.3*x^0.93 + 0.2*sin(0.3*x) + 1e-30*x^15"});
+    CellResult result = fit_and_judge(problem, method, task);
+    weights_ = choose_by_relative_noise(problem, task, result);
+    return result;
+  }
+  std::vector<double> weights_;
+};
+
+TEST_F(RelativeNoiseFit, IsChosenByRelativeErrorsAndSaysSo) {
+  const CellResult result = fit(0.1, 0);
+  EXPECT_EQ(weights_.size(), static_cast<std::size_t>(kRows));
+  EXPECT_EQ(result.record.complexity, 2) << result.record.formula;
+  EXPECT_NE(result.record.note.find("relative errors"), std::string::npos);
+}
+
+TEST_F(RelativeNoiseFit, IsLeftAloneWhereNoiseHasOneSize) {
+  const CellResult result = fit(0, 3);
+  EXPECT_TRUE(weights_.empty());
+  EXPECT_EQ(result.record.note.find("relative errors"), std::string::npos);
 }
 
 TEST_F(WeightedFitTest, LeavesAProgramItsChoice) {

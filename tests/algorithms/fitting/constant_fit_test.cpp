@@ -122,10 +122,22 @@ TEST(ConstantFit, LeavesExponentsAloneUnlessTold) {
   fitter.fit(fixed, curve.inputs(), curve.y);
   EXPECT_EQ(fixed.node(2).value, 3);
   Expression free = parse("1*v^3", kNames);
-  const ConstantFitResult result =
-      fitter.fit(free, curve.inputs(), curve.y, {}, {.max_iterations = 100, .fit_exponents = true});
+  const ConstantFitResult result = fitter.fit(
+      free, curve.inputs(), curve.y, {}, {.max_iterations = 100, .exponents = FitExponents::all});
   EXPECT_NEAR(free.node(2).value, 4, 1e-6);
   EXPECT_LT(result.sum_squares, 1e-15);
+}
+
+TEST(ConstantFit, ThoseThatWereFittedMoveAloneOnRequest) {
+  Curve curve = curve_of("2*v^4");
+  for (double& v : curve.v) v = std::abs(v);
+  const ConstantFitOptions options{.max_iterations = 100, .exponents = FitExponents::not_simple};
+  Expression simple = parse("1*v^3.5", kNames);
+  ConstantFitter().fit(simple, curve.inputs(), curve.y, {}, options);
+  EXPECT_EQ(simple.node(2).value, 3.5);
+  Expression fitted = parse("1*v^3.4", kNames);
+  ConstantFitter().fit(fitted, curve.inputs(), curve.y, {}, options);
+  EXPECT_NEAR(fitted.node(2).value, 4, 1e-6);
 }
 
 TEST(ConstantFit, KeepsToBoundsAndFindsTheMinimumOnThem) {

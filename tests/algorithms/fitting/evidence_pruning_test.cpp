@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "algorithms/fitting/evidence_pruning.hpp"
+#include "algorithms/fitting/free_constants.hpp"
 
 #include <gtest/gtest.h>
 

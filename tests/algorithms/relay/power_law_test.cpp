@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "algorithms/finite_rows.hpp"
+#include "algorithms/relay/product_search.hpp"
 #include "tests/algorithms/relay/drawn_law.hpp"
 
 namespace tribench {
@@ -80,6 +81,18 @@ TEST(PowerLaws, AreOfInputsThatHaveLogarithms) {
   for (const Expression& law : laws) {
     EXPECT_EQ(print(law, noisy.names).find('b'), std::string::npos);
   }
+}
+
+// Six decades, most of them below the noise: the regression of log |y| does not see them.
+TEST(LikelyProducts, HaveAnActivationEnergyWhereNoiseIsLargerThanMostOfTheTarget) {
+  const std::string form = "1.3e12*a*exp(-10223/t)";
+  const std::vector<DrawnInput> inputs = {{"t", 280, 450}, {"a", 1, 7, true}};
+  const DrawnLaw noisy(form, inputs, 200, 0.01);
+  const FiniteRows rows(noisy.data());
+  Budget budget({});
+  const std::vector<Expression> likely =
+      relay::likely_products(relay::LogRows(rows, 300), find_operator_set("full"), budget);
+  EXPECT_LT(nearest_error(likely, DrawnLaw(form, inputs, 2000, 0, 2)), 0.005);
 }
 
 TEST(PowerLaws, OfMoreInputsThanRowsTellAreNotLookedFor) {
