@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "algorithms/expression/complexity.hpp"
+#include "algorithms/expression/differences.hpp"
 #include "algorithms/expression/edit.hpp"
 #include "algorithms/expression/simplify.hpp"
 #include "algorithms/expression/singularity.hpp"
@@ -186,7 +187,12 @@ bool FormulaFinisher::name_a_constant(Expression& formula) {
 }
 
 Expression FormulaFinisher::finish(const Expression& formula) {
-  if (formula.size() > kTooLong) return formula;
+  Expression finished = formula.size() > kTooLong ? formula : with_names(formula);
+  Expression written = with_differences(finished);
+  return admits_(written) ? written : finished;
+}
+
+Expression FormulaFinisher::with_names(const Expression& formula) {
   const RowErrors before = errors_of(formula);
   if (!std::isfinite(before.square)) return formula;
   Expression finished = shortest(formula);

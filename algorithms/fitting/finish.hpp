@@ -3,7 +3,8 @@
 // The last step of every formula that leaves a method: the shortest form of the same function
 // (expression/simplify.hpp), and constants that are a whole number, a small fraction, a multiple of
 // pi or a root, or a short decimal (named_values.hpp), where the rows cannot tell them apart; of
-// what is known but for a common multiple (common_multiple.hpp) the one with such numbers.
+// what is known but for a common multiple (common_multiple.hpp) the one with such numbers. Written
+// with differences where numbers are negative (expression/differences.hpp).
 //
 // Guarantees: neither the mean squared nor the mean absolute error on the rows grows (beyond 1e-9
 // of itself, and beyond 1e-12 of the target's size, which is rounding); complexity does not grow,
@@ -12,7 +13,7 @@
 // constants alone: at a least-squares optimum every other value errs more.
 //
 // Cost: a few milliseconds for 30 nodes and 1000 rows (bench/fitting_bench). Formulas of more than
-// 150 nodes, which are sums of a table's many terms, are left as they are.
+// 150 nodes, which are sums of a table's many terms, are only written with differences.
 #pragma once
 
 #include <functional>
@@ -39,6 +40,8 @@ class FormulaFinisher {
     double absolute = 0;
   };
 
+  // In its shortest form, with named numbers.
+  Expression with_names(const Expression& formula);
   RowErrors errors_of(const Expression& formula);
   bool is_no_worse(const RowErrors& errors, const RowErrors& than) const;
   bool is_proved(const Expression& formula) const;
