@@ -307,6 +307,7 @@ ExitStatus fit(const FitArguments& arguments, const Registry& registry) {
   answer.reproduces_exactly = !by_clock;
   answer.inputs = problem.input_names();
   answer.target = problem.target;
+  if (!chosen.fixed_form) answer.operators = arguments.operators;
   answer.reading = *arguments.reading;
   add_intervals(arguments, problem, weights, answer);
   if (!arguments.save.empty()) write_file(arguments.save, write_json(fit_json(answer), 2) + "\n");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "algorithms/expression/operator_set.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 #include "foundation/toml_table.hpp"
@@ -13,6 +14,8 @@
 
 namespace tribench {
 namespace {
+
+constexpr const char* kWidestSet = "full";
 
 using Json = nlohmann::ordered_json;
 
@@ -47,6 +50,17 @@ Json reading_json(const DataOptions& reading) {
   return Json::parse(text.str());
 }
 
+// Who leaves the set at its default hardly knows what it does without.
+void print_operators(const std::string& name) {
+  if (name.empty()) return;
+  const OperatorSet& set = find_operator_set(name);
+  const OperatorSet& widest = find_operator_set(kWidestSet);
+  fmt::print("operators {}: {}{}\n", name, set.summary(),
+             name == kWidestSet
+                 ? ""
+                 : fmt::format("; --operators {} has {}", kWidestSet, widest.summary()));
+}
+
 }  // namespace
 
 Json fit_json(const FitAnswer& answer) {
@@ -74,6 +88,7 @@ Json fit_json(const FitAnswer& answer) {
   all["target"] = answer.target;
   all["inputs"] = answer.inputs;
   if (Json reading = reading_json(answer.reading); !reading.empty()) all["reading"] = reading;
+  if (!answer.operators.empty()) all["operators"] = answer.operators;
   all["ended"] = answer.ended;
   all["reproduce"] = answer.reproduce;
   all["reproduces_exactly"] = answer.reproduces_exactly;
@@ -111,6 +126,7 @@ void print_fit(const FitAnswer& answer) {
   } else {
     fmt::print("no intervals: {}\n", answer.no_intervals);
   }
+  print_operators(answer.operators);
   fmt::print("{} node-rows, {:.3g} CPU seconds; ended by: {}\nagain{}: {}\n", record.evaluations,
              record.fit_cpu_s, answer.ended,
              answer.reproduces_exactly ? "" : " (the clock had a say: perhaps another formula)",

@@ -23,7 +23,8 @@ struct FitAnswer {
   bool reproduces_exactly = true;
   std::vector<std::string> inputs;
   std::string target;
-  DataOptions reading;  // of the data
+  std::string operators;  // the set's name; empty where the form is fixed
+  DataOptions reading;    // of the data
 };
 
 nlohmann::ordered_json fit_json(const FitAnswer& answer);

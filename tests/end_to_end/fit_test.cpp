@@ -89,6 +89,21 @@ TEST_F(FitTest, WithoutAMethodRelayIsUsedAndOneMemberThatExplainsTheRowsEndsIt) 
   EXPECT_EQ(json::parse(alone.output).at("formula"), answer.at("formula"));
 }
 
+TEST_F(FitTest, SaysWhatItHadToBuildWithAndWhatItHadNot) {
+  const std::vector<std::string> words = {"--target", "friction_torque_Nm", "--inputs",
+                                          "velocity_rad_s", "--method"};
+  const auto fit_by = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), words.begin(), words.end());
+    return fit(std::move(more)).output;
+  };
+  const std::string plain = fit_by({"random_search", "--evaluations", "100000"});
+  EXPECT_THAT(plain, AllOf(HasSubstr("operators paper: + - * exp"), HasSubstr("--operators full")));
+  const json wide = json::parse(
+      fit_by({"random_search", "--evaluations", "100000", "--operators", "full", "--json"}));
+  EXPECT_EQ(wide.at("operators"), "full");
+  EXPECT_THAT(fit_by({"linear"}), Not(HasSubstr("operators"))) << "its form is fixed";
+}
+
 TEST_F(FitTest, IsTheSameForTheSameSeed) {
   const std::vector<std::string> words = {
       "--target",      "friction_torque_Nm", "--inputs", "velocity_rad_s", "--method",
