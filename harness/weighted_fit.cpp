@@ -16,6 +16,7 @@
 #include "algorithms/fitting/held_out_choice.hpp"
 #include "algorithms/fitting/joint_front.hpp"
 #include "algorithms/fitting/relative_noise.hpp"
+#include "algorithms/states/state_text.hpp"
 #include "foundation/error.hpp"
 #include "harness/judge.hpp"
 #include "harness/stateful_problem.hpp"
