@@ -58,7 +58,7 @@ struct FitArguments {
   std::vector<std::string> parameters;  // name=value
   std::vector<std::string> states;      // declarations
   std::uint64_t seed = 1;
-  std::uint64_t evaluations = 2'000'000'000;
+  std::optional<std::uint64_t> evaluations;
   double seconds = 60;
   bool spends_all = false;  // seconds were asked for
   std::string test;
@@ -84,12 +84,23 @@ std::vector<std::string> used_columns(const FitArguments& arguments) {
   return used;
 }
 
+// But for evaluations, which depend on the rows.
 CellLimits limits_of(const FitArguments& arguments) {
   CellLimits limits;
   set_seconds(limits, arguments.seconds);
-  limits.evaluations = arguments.evaluations;
   limits.spend = arguments.spends_all;
   return limits;
+}
+
+// Told neither evaluations nor seconds: a second's worth for a file of few rows, and as many
+// evaluations of formulas for one of more, up to what 60 s mostly allow.
+std::uint64_t evaluations_of(const FitArguments& arguments, std::size_t rows) {
+  if (arguments.evaluations) return *arguments.evaluations;
+  if (arguments.spends_all) return CellLimits::kAmple;
+  constexpr std::uint64_t kNodeRows = 2'000'000'000;
+  constexpr std::size_t kFewRows = 10'000;
+  constexpr std::size_t kMostTimes = 20;
+  return kNodeRows * std::clamp<std::size_t>(rows / kFewRows, 1, kMostTimes);
 }
 
 CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fixed_form) {
@@ -101,6 +112,7 @@ CellTask task_of(const FitArguments& arguments, const Problem& problem, bool fix
   task.operators = find_operator_set(arguments.operators);
   if (fixed_form) task.operators = fixed_form_operators();
   task.limits = limits_of(arguments);
+  task.limits.evaluations = evaluations_of(arguments, problem.stages.front().train.rows());
   task.threads = usable_processors();
   task.stop = &stop_requested_by_signal();
   return task;
@@ -298,7 +310,7 @@ ExitStatus fit(const FitArguments& arguments, const Registry& registry) {
   // A search stops before the step that would overdraw its budget.
   constexpr double kSpent = 0.99;
   const bool by_evaluations = static_cast<double>(record.evaluations) >=
-                              kSpent * static_cast<double>(arguments.evaluations);
+                              kSpent * static_cast<double>(task.limits.evaluations);
   answer.ended = stop_requested_by_signal() ? "stopped"
                  : by_clock                 ? "seconds"
                  : by_evaluations           ? "evaluations"
@@ -351,30 +363,22 @@ void add_method_options(CLI::App& command, FitArguments& arguments) {
   command.add_option("--parameter", arguments.parameters, "name=value of the method; repeatable");
 }
 
-struct BudgetOptions {
-  const CLI::Option* evaluations = nullptr;
-  const CLI::Option* seconds = nullptr;
-};
-
-// What it may spend.
-BudgetOptions add_budget_options(CLI::App& command, FitArguments& arguments) {
+// What it may spend; the option of seconds.
+const CLI::Option* add_budget_options(CLI::App& command, FitArguments& arguments) {
   command.add_option("--seed", arguments.seed, "same seed, same result")
       ->transform(whole_number(0))
       ->capture_default_str();
-  BudgetOptions budget;
-  budget.evaluations =
-      command.add_option("--evaluations", arguments.evaluations, "budget in node-rows")
-          ->transform(whole_number(1))
-          ->capture_default_str();
-  budget.seconds =
-      command
-          .add_option(
-              "--seconds", arguments.seconds,
-              "CPU seconds to spend: fits again from other starts until they are, or the data "
-              "are explained to rounding, and on at most 400 rows looks how complex a formula "
-              "they bear; without it one fit of at most 60")
-          ->transform(real_number(0.0, 1e9));
-  return budget;
+  command
+      .add_option("--evaluations", arguments.evaluations,
+                  "budget in node-rows; where neither it nor seconds are told 2e9, and of more "
+                  "than 20000 rows 2e5 a row, at most 4e10")
+      ->transform(whole_number(1));
+  return command
+      .add_option("--seconds", arguments.seconds,
+                  "CPU seconds to spend: fits again from other starts until they are, or the data "
+                  "are explained to rounding, and on at most 400 rows looks how complex a formula "
+                  "they bear; without it one fit of at most 60")
+      ->transform(real_number(0.0, 1e9));
 }
 
 // By what it is judged, and how much each row counts.
@@ -422,19 +426,16 @@ void add_fit_command(CLI::App& app, ExitStatus& status, const Registry& registry
       "--state", arguments->states,
       "a state as an input, as in 'z = dahl(v, sliding=1e-4)': its parameters are "
       "fitted with what is found; needs a column with role time; repeatable");
-  const BudgetOptions budget = add_budget_options(*command, *arguments);
+  const CLI::Option* seconds = add_budget_options(*command, *arguments);
   add_judging_options(*command, *arguments);
   CLI::Option* save = command->add_option("--save", arguments->save,
                                           "a file for `tribench predict`, with intervals");
   command->get_option("--category")->excludes(states)->excludes(save);
   command->add_flag("--json", arguments->json, "print JSON");
-  command->callback([arguments, &registry, &status, budget] {
+  command->callback([arguments, &registry, &status, seconds] {
     if (arguments->external.empty() && arguments->method.empty()) arguments->method = "relay";
     arguments->words = own_words();
-    arguments->spends_all = budget.seconds->count() > 0;
-    if (arguments->spends_all && budget.evaluations->count() == 0) {
-      arguments->evaluations = CellLimits::kAmple;
-    }
+    arguments->spends_all = seconds->count() > 0;
     status = fit(*arguments, registry);
   });
 }

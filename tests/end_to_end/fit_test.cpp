@@ -89,6 +89,19 @@ TEST_F(FitTest, WithoutAMethodRelayIsUsedAndOneMemberThatExplainsTheRowsEndsIt) 
   EXPECT_EQ(json::parse(alone.output).at("formula"), answer.at("formula"));
 }
 
+TEST_F(FitTest, HasAsManyEvaluationsOfFormulasForManyRowsAsForFew) {
+  std::string text = "x,y\n";
+  for (int i = 0; i < 20'000; ++i) text += fmt::format("{},{}\n", i, 17 * i % 1001);
+  write_text(folder_ / "long.csv", text);
+  const ProgramRun run =
+      run_tribench({"fit", (folder_ / "long.csv").string(), "--target", "y", "--inputs", "x",
+                    "--method", "random_search", "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const json answer = json::parse(run.output);
+  EXPECT_EQ(answer.at("ended"), "evaluations");
+  EXPECT_GT(answer.at("evaluations").get<double>(), 3.9e9);
+}
+
 TEST_F(FitTest, SaysWhatItHadToBuildWithAndWhatItHadNot) {
   const std::vector<std::string> words = {"--target", "friction_torque_Nm", "--inputs",
                                           "velocity_rad_s", "--method"};
