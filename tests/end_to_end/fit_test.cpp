@@ -93,9 +93,8 @@ TEST_F(FitTest, HasAsManyEvaluationsOfFormulasForManyRowsAsForFew) {
   std::string text = "x,y\n";
   for (int i = 0; i < 20'000; ++i) text += fmt::format("{},{}\n", i, 17 * i % 1001);
   write_text(folder_ / "long.csv", text);
-  const ProgramRun run =
-      run_tribench({"fit", (folder_ / "long.csv").string(), "--target", "y", "--inputs", "x",
-                    "--method", "random_search", "--json"});
+  const ProgramRun run = run_tribench({"fit", (folder_ / "long.csv").string(), "--target", "y",
+                                       "--inputs", "x", "--method", "random_search", "--json"});
   ASSERT_EQ(run.status, 0) << run.errors;
   const json answer = json::parse(run.output);
   EXPECT_EQ(answer.at("ended"), "evaluations");
