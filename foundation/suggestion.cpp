@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <span>
 
@@ -27,10 +28,21 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+bool is_same_but_for_case(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  return std::ranges::equal(a, b, {}, lower, lower);
+}
+
 }  // namespace
 
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates) {
-  const std::size_t limit = std::max<std::size_t>(2, word.size() / 3);
+  const auto same = std::ranges::find_if(candidates, [word](const std::string& candidate) {
+    return !word.empty() && is_same_but_for_case(candidate, word);
+  });
+  if (same != candidates.end()) return *same;
+  // Something of the word stays: any name of two letters is near to one of one.
+  const std::size_t limit = std::min(std::max<std::size_t>(2, word.size() / 3),
+                                     std::max<std::size_t>(word.size(), 1) - 1);
   std::string best;
   std::size_t best_distance = limit + 1;
   for (const std::string& candidate : candidates) {

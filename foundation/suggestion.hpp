@@ -10,10 +10,11 @@
 
 namespace tribench {
 
-// The candidate closest to `word` by edit distance; empty where none is near (more than a third of
-// the word's length, at least 2, would have to change), except a candidate in parts
-// (peer/friction1d) whose last part is the word, and one that begins with the word's three letters
-// or more. Cost: the product of the lengths a candidate.
+// The candidate that differs in upper and lower case alone, else the closest to `word` by edit
+// distance; empty where none is near (more than a third of the word's length, at least 2, or all of
+// it would have to change), except a candidate in parts (peer/friction1d) whose last part is the
+// word, and one that begins with the word's three letters or more. Cost: the product of the lengths
+// a candidate.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates);
 
 // The mend of an Error about an unknown name: "did you mean NAME?" where one is near, else

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -206,8 +207,9 @@ CellResult fit_weighted(const Problem& problem, std::span<const double> weights,
   }
   CellTask half = task;
   half.limits.seconds /= 2;
-  half.limits.evaluations /= 2;
-  CellResult result = joined(search(sampled, half), search(counting, half));
+  half.limits.evaluations = std::max<std::uint64_t>(half.limits.evaluations / 2, 1);
+  CellResult by_weight = search(sampled, half);
+  CellResult result = joined(std::move(by_weight), search(counting, half));
   if (is_ok(result.record)) choose_by_weights(problem, weights, task, result);
   return result;
 }

@@ -21,6 +21,14 @@ TEST(NearestName, OfANameInPartsTheLastIsEnough) {
   EXPECT_EQ(nearest_name("", names), "");
 }
 
+// Two letters away is any other name of two letters.
+TEST(NearestName, OfAShortNameSomethingStays) {
+  EXPECT_EQ(nearest_name("y", {"q", "qd", "tau"}), "");
+  EXPECT_EQ(nearest_name("dq", {"t", "i"}), "");
+  EXPECT_EQ(nearest_name("qdd", {"qd", "tau"}), "qd");
+  EXPECT_EQ(nearest_name("Y", {"x", "y"}), "y");
+}
+
 TEST(NearestName, ABeginningIsEnough) {
   const std::vector<std::string> names = {"--help", "--version"};
   EXPECT_EQ(nearest_name("--vers", names), "--version");
