@@ -177,7 +177,7 @@ std::vector<double> choose_by_relative_noise(const Problem& problem, const CellT
     weights = std::move(*next);
     choose_by_weights(problem, weights, task, weighted);
   }
-  if (!leaves_noise_alone(formula_of(weighted.record), inputs.inputs(), table.target)) return {};
+  if (!leaves_only_noise(formula_of(weighted.record), inputs.inputs(), table.target)) return {};
   result = std::move(weighted);
   std::string& note = result.record.note;
   note += fmt::format("{}the noise grows with the target: fitted and chosen by relative errors",

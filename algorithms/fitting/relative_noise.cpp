@@ -58,8 +58,8 @@ std::size_t nearest_row(const std::vector<std::vector<double>>& columns, std::si
 
 }  // namespace
 
-bool leaves_noise_alone(const Expression& formula, const Inputs& inputs,
-                        std::span<const double> target) {
+bool leaves_only_noise(const Expression& formula, const Inputs& inputs,
+                       std::span<const double> target) {
   std::vector<double> values(target.size());
   Evaluator().evaluate(formula, inputs, values);
   const std::size_t count = std::min(kComparedRows, target.size());

@@ -32,7 +32,7 @@ std::optional<std::vector<double>> weights_of_relative_noise(std::span<const Exp
 // Whether what a formula leaves, over its value, is not alike where the inputs are alike: else the
 // law is not found, and what is left says nothing of noise. Compares ranks, of each row and the one
 // nearest to it, by three standard errors. Finite rows; of at most 1000 of them, O(rows^2 inputs).
-bool leaves_noise_alone(const Expression& formula, const Inputs& inputs,
-                        std::span<const double> target);
+bool leaves_only_noise(const Expression& formula, const Inputs& inputs,
+                       std::span<const double> target);
 
 }  // namespace tribench

@@ -79,8 +79,8 @@ class LogLink {
   }
 
   // By how much the sum of squares would grow without each input, in the linearised model.
-  std::vector<double> worth_of_inputs(const PowerLaw& law, const std::vector<double>& fixed) const {
-    const LinkedRows linear = linearised(law, values_of(law, fixed));
+  std::vector<double> worth_of_inputs(const PowerLaw& law) const {
+    const LinkedRows linear = linearised(law);
     std::vector<double> worth;
     for (std::size_t k = 0; k < law.places.size(); ++k) {
       std::vector<std::size_t> others = law.places;
@@ -251,7 +251,7 @@ std::vector<Expression> likely_power_laws(const LogRows& rows, const OperatorSet
   while (!places.empty()) {
     const std::optional<PowerLaw> law = link.fit(places, nothing);
     if (!law) break;
-    const std::vector<double> worth = link.worth_of_inputs(*law, nothing);
+    const std::vector<double> worth = link.worth_of_inputs(*law);
     propose(*law);
     if (const auto halves = with_halves(link, rows, *law, worth)) propose(*halves);
     const auto least = std::ranges::min_element(worth) - worth.begin();

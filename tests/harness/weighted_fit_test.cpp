@@ -112,7 +112,7 @@ TEST_F(WeightedFitTest, SearchesTheRowsAsTheyAreToo) {
   EXPECT_EQ(std::ranges::count(result.front, true, &FrontRecord::chosen), 1);
 }
 
-// The same law and front, of which the noise decides what is chosen.
+// One law and one front, of which the kind of noise decides what is chosen.
 class RelativeNoiseFit : public ::testing::Test {
  protected:
   CellResult fit(double relative, double constant) {

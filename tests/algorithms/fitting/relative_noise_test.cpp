@@ -71,8 +71,8 @@ TEST(RelativeNoise, IsNotOfALawThatGoesThroughZero) {
 
 TEST(RelativeNoise, IsNotWhatAMissingTermLeaves) {
   const NoisyLaw law(0.02, 0);
-  EXPECT_TRUE(leaves_noise_alone(parse(kPowerLaw, kInputsOfLaw), law.inputs(), law.target));
-  EXPECT_FALSE(leaves_noise_alone(parse("2*x^1.6/y", kInputsOfLaw), law.inputs(), law.target));
+  EXPECT_TRUE(leaves_only_noise(parse(kPowerLaw, kInputsOfLaw), law.inputs(), law.target));
+  EXPECT_FALSE(leaves_only_noise(parse("2*x^1.6/y", kInputsOfLaw), law.inputs(), law.target));
 }
 
 }  // namespace
