@@ -15,6 +15,7 @@
 
 #include "algorithms/effects/effect_library.hpp"
 #include "algorithms/exploration/effect_templates.hpp"
+#include "algorithms/exploration/foresight.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "algorithms/inference/score_test.hpp"
 #include "algorithms/loop_model/smoothers.hpp"
@@ -32,7 +33,10 @@ constexpr std::size_t kSpeedRows = 16;     // in either direction
 // Of a narrow column's squares: where a family's own columns leave less, it is that family's.
 constexpr double kDrawnByOther = 0.1;
 
-constexpr double kMisfit = 0.15;  // of a family's size: what one expects of its misfit
+// Of a family's size: what one expects of its misfit, and of what a sensor of temperature that is
+// late does not know yet.
+constexpr double kMisfit = 0.15;
+constexpr double kLateSensor = 0.3;
 constexpr Eigen::Index kMisfitColumns = 14;
 constexpr Eigen::Index kMisfitCentres = 3;
 constexpr double kLeastMisfit = 1e-4;  // of the variance of the direction of most
@@ -54,25 +58,6 @@ const std::vector<PlaceGrid>& place_grids() {
 // Of a product: the coarser, the position finer.
 constexpr Eigen::Index kCoarse = 3;
 constexpr Eigen::Index kFiner = 6;
-
-// How fast the temperature changes in each movement: the slope of a line [K/s].
-Eigen::ArrayXd warming(const Observations& rows) {
-  Eigen::ArrayXd out = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(rows.rows()));
-  const Signal* sensor = rows.find("T");
-  if (sensor == nullptr) return out;
-  const Eigen::Map<const Eigen::ArrayXd> warmth(sensor->values.data(), out.size());
-  const Eigen::Map<const Eigen::ArrayXd> clock(rows.time.data(), out.size());
-  for (const RowRange& range : make_clusters(rows.movement, 1).movements) {
-    const auto first = static_cast<Eigen::Index>(range.begin);
-    const auto count = static_cast<Eigen::Index>(range.size());
-    const Eigen::ArrayXd time = clock.segment(first, count) - clock.segment(first, count).mean();
-    const double squares = time.square().sum();
-    if (squares > 0) {
-      out.segment(first, count) = (time * warmth.segment(first, count)).sum() / squares;
-    }
-  }
-  return out;
-}
 
 // What is narrow need not be as wide as a radial function, or where one is: of those in rows of
 // `centres` from column `first` on, the two to either side of number k.
@@ -170,18 +155,35 @@ void ExplanationSpace::add_library(const std::vector<double>& gear_ratios) {
     for (const std::string& signal : signals) {
       if (SignalAxis axis(reference_, signal); axis.varies()) misfit.axes.push_back(axis);
     }
-    if (std::ranges::count(signals, "T") > 0) misfit.late = late_scale();
+    misfit.late = std::ranges::count(signals, "T") > 0;
     families_.push_back(std::move(family));
     misfits_.push_back(std::move(misfit));
   }
 }
 
-// Empty where no movement of the reference warms or cools.
-Eigen::RowVectorXd ExplanationSpace::late_scale() const {
-  const Eigen::MatrixXd late = warming(reference_).matrix().asDiagonal() * base_columns(reference_);
+// Where some movement of the reference warms or cools.
+void ExplanationSpace::add_late_sensor() {
+  const Signal* warming = reference_.find(kWarming);
+  if (warming == nullptr) return;
+  const Eigen::Map<const Eigen::VectorXd> rate(warming->values.data(), std::ssize(warming->values));
+  const Eigen::MatrixXd late = rate.asDiagonal() * base_columns(reference_);
   const Eigen::RowVectorXd squares = late.colwise().squaredNorm();
-  if (!(squares.minCoeff() > 0)) return {};
-  return (squares / static_cast<double>(late.rows())).cwiseSqrt().cwiseInverse();
+  if (!(squares.minCoeff() > 0)) return;
+  const Eigen::RowVectorXd mean = squares / static_cast<double>(late.rows());
+  late_sensor_ = LateSensor{{reference_, "T"}, mean.cwiseSqrt().cwiseInverse(), {}};
+}
+
+// f(T) is the base times a function of the temperature, and with the sensor a time s behind it is
+// f + s (dT/dt) f'(T): the base times the warming, at each temperature its own.
+Eigen::MatrixXd ExplanationSpace::late_columns(const Observations& rows) const {
+  const Signal& warming = *rows.find(kWarming);
+  const Eigen::Map<const Eigen::VectorXd> rate(warming.values.data(), std::ssize(warming.values));
+  const Eigen::MatrixXd late =
+      rate.asDiagonal() * base_columns(rows) * late_sensor_->scale.asDiagonal();
+  const Eigen::MatrixXd radial = radial_columns(late_sensor_->axis.unit(rows), kMisfitCentres);
+  Eigen::MatrixXd out(late.rows(), late.cols() * (1 + kMisfitCentres));
+  out << late, column_products(radial, late);
+  return out;
 }
 
 void ExplanationSpace::add_places() {
@@ -259,14 +261,13 @@ void ExplanationSpace::settle_scale() {
   }
 }
 
-// The family's shapes, the same times radial functions of each of its signals, then the base times
-// the warming where it lives in a temperature.
+// The family's shapes, the same times radial functions of each of its signals.
 Eigen::MatrixXd ExplanationSpace::shaped(const Misfit& misfit, const Observations& rows,
                                          const Eigen::MatrixXd& formulas) const {
   const Eigen::MatrixXd own = formulas.middleCols(misfit.first, misfit.count) *
                               scale_.segment(misfit.first, misfit.count).asDiagonal();
   const auto axes = static_cast<Eigen::Index>(misfit.axes.size());
-  Eigen::MatrixXd out(own.rows(), own.cols() * (1 + kMisfitCentres * axes) + misfit.late.size());
+  Eigen::MatrixXd out(own.rows(), own.cols() * (1 + kMisfitCentres * axes));
   out.leftCols(own.cols()) = own;
   Eigen::Index next = own.cols();
   for (const SignalAxis& axis : misfit.axes) {
@@ -274,40 +275,53 @@ Eigen::MatrixXd ExplanationSpace::shaped(const Misfit& misfit, const Observation
     out.middleCols(next, own.cols() * kMisfitCentres) = column_products(radial, own);
     next += own.cols() * kMisfitCentres;
   }
-  if (misfit.late.size() > 0) {
-    out.rightCols(misfit.late.size()) =
-        warming(rows).matrix().asDiagonal() * base_columns(rows) * misfit.late.asDiagonal();
-  }
   return out;
 }
 
-// The directions of most variance over the reference that the base does not have.
-void ExplanationSpace::add_misfits() {
-  const Eigen::MatrixXd formulas = evaluate_columns(formulas_, reference_);
+// Columns -> the directions of most variance over the reference that the base does not have; the
+// first is expected to be as large as `size`.
+Eigen::MatrixXd ExplanationSpace::fold_of(const Eigen::MatrixXd& all, double size) const {
   const Eigen::MatrixXd base = base_columns(reference_);
   const auto rows = static_cast<double>(reference_.rows());
-  std::vector<Eigen::Index> sizes;
+  EvidenceSums sums;
+  sums.add(base, all, Eigen::VectorXd::Zero(base.rows()));  // no torque is looked at
+  const EigenParts parts = eigen_parts_symmetric(EvidenceTable(sums).gram());
+  const double most = parts.values.maxCoeff();
+  const Eigen::Index kept =
+      std::min<Eigen::Index>(kMisfitColumns, (parts.values.array() > kLeastMisfit * most).count());
+  Eigen::MatrixXd fold = parts.vectors.rightCols(kept);
+  const Eigen::VectorXd values = parts.values.tail(kept);
+  for (Eigen::Index k = 0; k < kept; ++k) {
+    // Later directions are smaller, but less than variance would have it: nobody knows the misfit.
+    fold.col(k) *= size * std::sqrt(std::sqrt(values[k] / most) * rows / values[k]);
+  }
+  return fold;
+}
+
+void ExplanationSpace::add_misfits() {
+  const Eigen::MatrixXd formulas = evaluate_columns(formulas_, reference_);
+  const auto numbers_of = [&](const Eigen::MatrixXd& fold) {
+    ColumnBlock added(static_cast<std::size_t>(fold.cols()));
+    std::iota(added.begin(), added.end(), scale_.size());
+    scale_.conservativeResize(scale_.size() + fold.cols());
+    scale_.tail(fold.cols()).setOnes();
+    return added;
+  };
+  const auto give = [&](std::size_t family, const ColumnBlock& added) {
+    for (EffectBlock& block : families_[family].blocks) {
+      block.misfit.insert(block.misfit.end(), added.begin(), added.end());
+    }
+  };
   for (std::size_t f = 0; f < misfits_.size(); ++f) {
-    const Eigen::MatrixXd all = shaped(misfits_[f], reference_, formulas);
-    EvidenceSums sums;
-    sums.add(base, all, Eigen::VectorXd::Zero(base.rows()));  // no torque is looked at
-    const EigenParts parts = eigen_parts_symmetric(EvidenceTable(sums).gram());
-    const double most = parts.values.maxCoeff();
-    const Eigen::Index kept = std::min<Eigen::Index>(
-        kMisfitColumns, (parts.values.array() > kLeastMisfit * most).count());
-    Eigen::MatrixXd fold = parts.vectors.rightCols(kept);
-    const Eigen::VectorXd values = parts.values.tail(kept);
-    for (Eigen::Index k = 0; k < kept; ++k) {
-      // Later directions are smaller, but less than variance would have it: nobody knows the
-      // misfit.
-      fold.col(k) *= kMisfit * std::sqrt(std::sqrt(values[k] / most) * rows / values[k]);
-    }
-    for (EffectBlock& block : families_[f].blocks) {
-      for (Eigen::Index k = 0; k < kept; ++k) block.misfit.push_back(scale_.size() + k);
-    }
-    scale_.conservativeResize(scale_.size() + kept);
-    scale_.tail(kept).setOnes();
-    misfits_[f].fold = std::move(fold);
+    misfits_[f].fold = fold_of(shaped(misfits_[f], reference_, formulas), kMisfit);
+    give(f, numbers_of(misfits_[f].fold));
+  }
+  add_late_sensor();
+  if (!late_sensor_) return;
+  late_sensor_->fold = fold_of(late_columns(reference_), kLateSensor);
+  const ColumnBlock late = numbers_of(late_sensor_->fold);
+  for (std::size_t f = 0; f < misfits_.size(); ++f) {
+    if (misfits_[f].late) give(f, late);
   }
 }
 
@@ -434,6 +448,9 @@ Eigen::MatrixXd ExplanationSpace::columns(const Observations& rows) const {
   for (const Misfit& misfit : misfits_) {
     out.middleCols(next, misfit.fold.cols()) = shaped(misfit, rows, raw) * misfit.fold;
     next += misfit.fold.cols();
+  }
+  if (late_sensor_) {
+    out.rightCols(late_sensor_->fold.cols()) = late_columns(rows) * late_sensor_->fold;
   }
   return out;
 }

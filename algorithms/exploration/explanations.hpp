@@ -10,13 +10,15 @@
 // signals, the few directions of most variance over the reference. Where the family's shapes vanish
 // (a lag at constant speed, a ripple's mean over a turn) they vanish too, so that a misfit is no
 // reason to name another family. What it has of the block's own shapes over the reference is the
-// effect and no misfit. A sensor of temperature is late, too: what lives in a temperature
-// may live in where the temperature is going.
+// effect and no misfit. A sensor of temperature is late, too: what lives in a temperature may live
+// in where it is going, the base times the rate of the reading (the signal kWarming, where the
+// reference has it), and has a room of its own for that.
 //
 // Columns of a row depend on its movement and the reference alone.
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -79,20 +81,28 @@ class ExplanationSpace {
     Eigen::Index first = 0;  // of the formulas
     Eigen::Index count = 0;
     std::vector<SignalAxis> axes;
-    Eigen::RowVectorXd late;  // scale of the base times the warming; empty: not of a temperature
-    Eigen::MatrixXd fold;     // shapes x (1 + axes), late -> columns
+    bool late = false;     // lives in a temperature
+    Eigen::MatrixXd fold;  // shapes x (1 + centres) -> columns
+  };
+  // What lives in a temperature that the sensor will show later.
+  struct LateSensor {
+    SignalAxis axis;           // the temperature
+    Eigen::RowVectorXd scale;  // of the base times the warming
+    Eigen::MatrixXd fold;      // of these times (1 + centres) -> columns
   };
 
   void add_library(const std::vector<double>& gear_ratios);
-  Eigen::RowVectorXd late_scale() const;
   void add_places();
   void settle_scale();
   void add_misfits();
+  void add_late_sensor();
   void leave_to_the_library(const Eigen::MatrixXd& all);
   void measure_blocks(double smallest_effect);
   void settle_speeds();
   Eigen::MatrixXd shaped(const Misfit& misfit, const Observations& rows,
                          const Eigen::MatrixXd& formulas) const;
+  Eigen::MatrixXd late_columns(const Observations& rows) const;
+  Eigen::MatrixXd fold_of(const Eigen::MatrixXd& all, double size) const;
   // Unscaled; without the misfits' columns.
   Eigen::MatrixXd raw_columns(const Observations& rows) const;
   Eigen::MatrixXd place_columns(const Place& place, const Observations& rows) const;
@@ -104,8 +114,9 @@ class ExplanationSpace {
   std::vector<SpeedCurve> curves_;  // of each formula
   std::vector<Place> places_;
   std::vector<Misfit> misfits_;
+  std::optional<LateSensor> late_sensor_;
   Speeds speeds_;
-  Eigen::VectorXd scale_;  // of the formulas, the places, then the misfits (1)
+  Eigen::VectorXd scale_;  // of the formulas, the places, then misfits and late sensor (1)
 };
 
 }  // namespace tribench::loop

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "algorithms/exploration/movement_choice.hpp"
+#include "algorithms/exploration/second_opinion.hpp"
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 
@@ -294,19 +295,17 @@ class Explorer {
     return false;
   }
 
-  // The loop's own diagnosis of the rows so far, which knows nothing of weights, names as many
-  // families and the same, and finds something of no library left over just where the verdict does.
+  // Of the rows so far; it knows nothing of weights.
   bool diagnosis_agrees() {
     DiagnosisOptions options;
     if (limits_.gear_ratio > 0) options.gear_ratios = {limits_.gear_ratio};
-    const DiagnosedFamilies found = diagnosed_families(executed(out_.data, limits_), options);
+    const NamedFamilies found = diagnosed_families(executed(out_.data, limits_), options);
     out_.diagnosis = verdict_text(found.names, found.unknown);
-    std::vector<std::string> ours;
+    NamedFamilies ours{{}, last()->best().verdict.ends_with(kUnknownVerdict)};
     for (const std::size_t f : last()->best().families) {
-      if (!space_->families()[f].unknown) ours.push_back(space_->families()[f].name);
+      if (!space_->families()[f].unknown) ours.names.push_back(space_->families()[f].name);
     }
-    return found.unknown == last()->best().verdict.ends_with(kUnknownVerdict) &&
-           name_the_same(found.names, ours, space_->families());
+    return bears_out(found, ours, space_->families());
   }
 
   // Until the diagnosis agrees, what it says is a rival: it asks for an effect in several
@@ -361,8 +360,9 @@ class Explorer {
   void look() {
     const bool first = !space_;
     if (first) make_space();
-    const Observations rows =
-        with_signals_of(space_->reference(), moving_rows(out_.data, limits_), out_.data);
+    Observations recorded = moving_rows(out_.data, limits_);
+    add_warming(recorded, EarlierMovements::remembered);
+    const Observations rows = with_signals_of(space_->reference(), recorded, out_.data);
     std::vector<char> fresh;
     for (const int m : rows.movement) fresh.push_back(std::cmp_less(m, assessed_) ? 0 : 1);
     assessor_->add(rows.select(fresh));
@@ -441,33 +441,6 @@ MovementPlan informative_movements() {
     }
     return ranked.best(state);
   };
-}
-
-bool name_the_same(const std::vector<std::string>& names, const std::vector<std::string>& others,
-                   std::span<const ExplainingFamily> families) {
-  const auto is_transient = [&](const std::string& name) {
-    const auto family = std::ranges::find(families, name, &ExplainingFamily::name);
-    return family != families.end() &&
-           std::ranges::count(family->characteristic, role_name(Role::acceleration)) > 0;
-  };
-  const auto are_among = [&](const std::vector<std::string>& some,
-                             const std::vector<std::string>& all) {
-    return std::ranges::all_of(some, [&](const std::string& name) {
-      return std::ranges::count(all, name) > 0 ||
-             (is_transient(name) && std::ranges::any_of(all, is_transient));
-    });
-  };
-  return names.size() == others.size() && are_among(names, others) && are_among(others, names);
-}
-
-DiagnosedFamilies diagnosed_families(const Observations& rows, const DiagnosisOptions& options) {
-  DiagnosisOptions effects_alone = options;
-  effects_alone.compares_families = false;
-  const Diagnosis found = diagnose(rows, coulomb_viscous_base, effects_alone);
-  DiagnosedFamilies out;
-  for (const EffectFinding& effect : found.effects) out.names.push_back(effect.family);
-  out.unknown = found.verdict == Verdict::unknown;
-  return out;
 }
 
 void append_movement(Dataset& data, const Dataset& movement) {

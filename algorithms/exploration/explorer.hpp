@@ -112,18 +112,6 @@ MovementPlan informative_movements();
 Exploration explore(const MotionLimits& limits, const ExecuteMovement& execute,
                     const ExplorerOptions& options, const MovementPlan& plan);
 
-// What the loop's own diagnosis says of rows. Throws what it throws.
-struct DiagnosedFamilies {
-  std::vector<std::string> names;
-  bool unknown = false;
-};
-DiagnosedFamilies diagnosed_families(const Observations& rows, const DiagnosisOptions& options);
-
-// As many families, each of the one among the others; what shows where motion changes alone (lag,
-// presliding, inertia) either may call by another of its names.
-bool name_the_same(const std::vector<std::string>& names, const std::vector<std::string>& others,
-                   std::span<const ExplainingFamily> families);
-
 // Appends the rows of a movement, under its own number. Throws Error (failed) where a channel is
 // missing that the movements before had.
 void append_movement(Dataset& data, const Dataset& movement);

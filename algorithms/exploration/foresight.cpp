@@ -175,6 +175,14 @@ Dataset reference_rows(std::span<const PlannedMovement> movements, const Dataset
   });
 }
 
+void add_warming(Observations& rows, EarlierMovements earlier) {
+  const Signal* sensor = rows.find("T");
+  if (sensor == nullptr) return;
+  Signal warming{std::string(kWarming), "", "K/s", Role::none, "slope of T", {}};
+  warming.values = temperature_rate(sensor->values, rows.time, rows.movement, earlier);
+  rows.signals.push_back(std::move(warming));
+}
+
 Observations observe_plan(const Dataset& rows) {
   ObservationOptions every_row;
   every_row.min_speed = 0;
@@ -186,6 +194,7 @@ Observations observe_plan(const Dataset& rows) {
     if (signal.name == "t") signal.values = time->values;
   }
   out.time = time->values;
+  add_warming(out, EarlierMovements::forgotten);
   return out;
 }
 

@@ -8,12 +8,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "problems/dataset.hpp"
 #include "problems/experiment/motion_limits.hpp"
 #include "problems/experiment/planned_movement.hpp"
 #include "problems/preparation/observations.hpp"
+#include "problems/preparation/slow_temperature.hpp"
 
 namespace tribench::loop {
 
@@ -38,8 +40,13 @@ Dataset foreseen_rows(std::span<const PlannedMovement> movements, const Dataset&
 Dataset reference_rows(std::span<const PlannedMovement> movements, const Dataset& like,
                        const MotionLimits& limits, double rate_hz);
 
+// How fast the temperature changes [K/s], a further signal: what a late sensor does not know yet.
+inline constexpr std::string_view kWarming = "T_rate";
+// Nothing where no temperature varies.
+void add_warming(Observations& rows, EarlierMovements earlier);
+
 // Foreseen or reference rows as signals; each movement keeps its own time, wherever the one before
-// it ended.
+// it ended, and its own warming.
 Observations observe_plan(const Dataset& rows);
 
 // `data` with the signals of `model`, in its order: those that never vary in `data` are filled with

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "algorithms/exploration/assessment.hpp"
+#include "algorithms/exploration/foresight.hpp"
 #include "algorithms/exploration/log_determinant.hpp"
 #include "algorithms/exploration/movement_choice.hpp"
 #include "foundation/error.hpp"
@@ -172,11 +173,14 @@ double AskedRecordings::seconds() const {
   return sum;
 }
 
-AskedRecordings ask_for_recordings(const ExplanationSpace& space, const Observations& data,
+AskedRecordings ask_for_recordings(const Observations& data, const std::vector<double>& gear_ratios,
                                    double alpha, const VerdictOf& verdict,
                                    const std::string& whole) {
   const Offered offered = offered_of(data);
-  Foreseen foreseen{space.base_columns(data), space.columns(data), {}};
+  Observations known = data;
+  add_warming(known, EarlierMovements::remembered);
+  const ExplanationSpace space(known, gear_ratios);
+  Foreseen foreseen{space.base_columns(known), space.columns(known), {}};
   for (const RowRange& range : offered.rows) foreseen.movements.push_back({range, 1});
   Assessor assessor(space, alpha);
   const auto choose = [&](const std::vector<char>& asked) {
@@ -186,7 +190,7 @@ AskedRecordings ask_for_recordings(const ExplanationSpace& space, const Observat
   const auto told = [&](std::size_t movement) {
     std::vector<char> one(offered.rows.size(), 0);
     one[movement] = 1;
-    assessor.add(rows_of(data, offered, one));
+    assessor.add(rows_of(known, offered, one));
     if (assessor.movements() >= kOpening) assessor.look();
   };
   return ask(data, offered, verdict, whole, choose, told);

@@ -39,10 +39,10 @@ struct AskedRecordings {
 };
 
 // Each time the movement with the most expected evidence a second against the rivals left; at first
-// what tells most of Coulomb and viscous friction. `whole`: the verdict of all movements. Throws
-// Error (bad_input) where there are fewer than three movements. Cost: an assessment and a verdict a
-// movement.
-AskedRecordings ask_for_recordings(const ExplanationSpace& space, const Observations& data,
+// what tells most of Coulomb and viscous friction. gear_ratios as of DiagnosisOptions; `whole`: the
+// verdict of all movements. Throws Error (bad_input) where there are fewer than three movements.
+// Cost: an assessment and a verdict a movement.
+AskedRecordings ask_for_recordings(const Observations& data, const std::vector<double>& gear_ratios,
                                    double alpha, const VerdictOf& verdict,
                                    const std::string& whole);
 // In an order drawn from the seed.

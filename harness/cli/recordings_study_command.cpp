@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/exploration/explorer.hpp"
 #include "algorithms/exploration/recorded_movements.hpp"
+#include "algorithms/exploration/second_opinion.hpp"
 #include "foundation/error.hpp"
 #include "foundation/json_text.hpp"
 #include "harness/cli/commands.hpp"
@@ -121,18 +121,18 @@ void run_recordings(const RecordingsArguments& arguments) {
   // Of rows that are too few for a diagnosis nothing is said.
   const loop::VerdictOf verdict = [&](const loop::Observations& rows) -> std::string {
     try {
-      const loop::DiagnosedFamilies found = loop::diagnosed_families(rows, options);
+      const loop::NamedFamilies found = loop::diagnosed_families(rows, options);
       return loop::verdict_text(found.names, found.unknown);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::bad_input || rows.rows() == data.rows()) throw;
       return {};
     }
   };
-  const loop::ExplanationSpace space(data, options.gear_ratios);
   RecordingsFindings found;
   found.verdict = verdict(data);
   found.all = data.movements().size();
-  found.asked = loop::ask_for_recordings(space, data, arguments.alpha, verdict, found.verdict);
+  found.asked =
+      loop::ask_for_recordings(data, options.gear_ratios, arguments.alpha, verdict, found.verdict);
   std::vector<double> movements(static_cast<std::size_t>(arguments.orders));
   std::vector<double> seconds(movements.size());
   for_each_case(movements.size(), arguments.threads, arguments.json, [&](std::size_t k) {

@@ -20,4 +20,16 @@ inline constexpr double kThermalSeconds = 20;
 std::vector<double> slow_temperature(std::span<const double> values, std::span<const double> time,
                                      std::span<const int> movement);
 
+enum class EarlierMovements : bool { forgotten, remembered };
+
+// Fewer seconds than that: how fast it changes turns as often as the joint starts and rests.
+inline constexpr double kWarmingSeconds = 10;
+
+// How fast the temperature changes at each row [unit/s]: the slope of the straight line through the
+// rows within half of kWarmingSeconds. A movement tells little through a sensor's steps: rows of
+// earlier ones can count too, as far back as time runs on. Rows of later ones never do: what is
+// recorded next changes nothing. 0 where there is one instant alone or a movement's time runs back.
+std::vector<double> temperature_rate(std::span<const double> values, std::span<const double> time,
+                                     std::span<const int> movement, EarlierMovements earlier);
+
 }  // namespace tribench::loop
