@@ -360,6 +360,7 @@ bool StructureSearch::look_at(ReducedProblem& problem, Guesses guesses,
                               std::vector<ReducedProblem>& open, Budget& budget) {
   const FiniteRows all(problem.data());
   const LogRows rows(all, kSearchedRows);
+  if (rows.rows() == 0) return false;  // a factor that overflows leaves none
   Reductions further = find_reductions(rows, guesses, budget);
   if (!(further.roughness <= problem.most_roughness())) return false;
   problem.set_roughness(further.roughness);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "foundation/elementary.hpp"
+#include "foundation/random.hpp"
 #include "tests/algorithms/relay/drawn_law.hpp"
 #include "tests/support/fit.hpp"
 
@@ -156,6 +158,33 @@ TEST(Relay, TakesDozensOfInputs) {
   EXPECT_LT(product.error_of(found.front[found.chosen]), 1e-9);
   const DrawnLaw sum("2.5*x3^2/x31 + exp(x7)", inputs, 120, 0.1);
   EXPECT_FALSE(run_fit(sum.data(), "relay", with_evaluations(100'000'000)).front.empty());
+}
+
+// A power of an input that no double holds leaves no rows to look at.
+TEST(Relay, LeavesOutAVariableThatOverflows) {
+  RandomStream random(2);
+  std::vector<std::vector<double>> columns(4);
+  std::vector<double> target;
+  std::vector<int> movement;
+  for (int r = 0; r < 120; ++r) {
+    const double x = random.uniform(280, 600);
+    const double log_c = random.uniform(-2.3, 2.3);
+    columns[0].push_back(elementary::exp(log_c));
+    columns[1].push_back(elementary::log(x));
+    columns[2].push_back(log_c);
+    columns[3].push_back(x);
+    target.push_back(5 + log_c - 5000 / x + 0.03 * random.normal());
+    movement.push_back(r);
+  }
+  const std::vector<Input> inputs = {{"c", "", Role::none, 0.1, 10, {}},
+                                     {"log_x", "", Role::none, 5.6, 6.4, {}},
+                                     {"log_c", "", Role::none, -2.3, 2.3, {}},
+                                     {"x", "", Role::none, 280, 600, {}}};
+  std::vector<const double*> pointers;
+  for (const std::vector<double>& column : columns) pointers.push_back(column.data());
+  const FitResult result =
+      run_fit({inputs, pointers, target, movement}, "relay", with_evaluations(30'000'000));
+  EXPECT_FALSE(result.front.empty());
 }
 
 }  // namespace
