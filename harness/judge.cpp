@@ -221,8 +221,10 @@ std::vector<FrontRecord> judge_front(const Problem& problem, const std::vector<E
   }
   std::vector<FrontRecord> kept;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool beaten = std::ranges::any_of(
-        all, [&](const FrontRecord& other) { return dominates(other, all[i]); });
+    const bool beaten = std::ranges::any_of(all, [&](const FrontRecord& other) {
+      const bool is_told = other.formula == all[i].formula && (other.chosen || &other < &all[i]);
+      return is_told || dominates(other, all[i]);
+    });
     if (beaten && !all[i].chosen) continue;
     all[i].singularity =
         all[i].chosen

@@ -12,12 +12,16 @@
 
 #include "algorithms/admission.hpp"
 #include "algorithms/expression/build.hpp"
+#include "algorithms/expression/edit.hpp"
+#include "algorithms/expression/simplify.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/fitting/evaluation_error.hpp"
+#include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/held_out_choice.hpp"
 #include "algorithms/fitting/joint_front.hpp"
 #include "algorithms/fitting/relative_noise.hpp"
 #include "algorithms/states/state_text.hpp"
+#include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "harness/judge.hpp"
 #include "harness/stateful_problem.hpp"
@@ -98,6 +102,54 @@ class WeightedRows {
   std::vector<const double*> pointers_;
 };
 
+// The constants fitted to the weighted rows, and with them exponents that a search has found. Such
+// a one is the simple number nearest to it where that costs the rows no more than half of their
+// number's logarithm, the price of a constant (Schwarz 1978): evidence takes exponents for a part
+// of the form, which costs nothing.
+class WeightedConstants {
+ public:
+  WeightedConstants(const Problem& problem, const Inputs& inputs, std::span<const double> weights,
+                    const OperatorSet& operators)
+      : problem_(problem), inputs_(inputs), weights_(weights), operators_(operators) {
+    for (const double weight : weights) rows_ += weight > 0 ? 1 : 0;
+  }
+
+  void fit(Expression& formula) {
+    double squares = fitted(formula);
+    bool changed = false;
+    for (const std::size_t place : constant_positions(formula)) {
+      const double exponent = formula.node(place).value;
+      if (!is_exponent(formula, place) || is_simple_exponent(exponent)) continue;
+      std::vector<Node> nodes(formula.nodes().begin(), formula.nodes().end());
+      nodes[place].value = nearest_simple_exponent(exponent);
+      Expression simple(std::move(nodes));
+      const double of_simple = fitted(simple);
+      // False for what is not a number.
+      if (!(of_simple <= squares * elementary::pow(rows_, 1 / rows_))) continue;
+      formula = std::move(simple);
+      squares = of_simple;
+      changed = true;
+    }
+    const auto admits = [&](const Expression& one) { return operators_.admits(one); };
+    if (changed) formula = simplify(formula, input_box(problem_.inputs), admits);
+  }
+
+ private:
+  double fitted(Expression& formula) {
+    return fitter_
+        .fit(formula, inputs_, problem_.stages.front().train.target, weights_,
+             {.exponents = FitExponents::not_simple})
+        .sum_squares;
+  }
+
+  const Problem& problem_;
+  Inputs inputs_;
+  std::span<const double> weights_;
+  const OperatorSet& operators_;
+  double rows_ = 0;
+  ConstantFitter fitter_;
+};
+
 // Without those whose value is lost in rounding, unless nothing else is there.
 std::vector<Expression> with_their_digits(const std::vector<Expression>& front,
                                           const Inputs& inputs, std::span<const double> target) {
@@ -111,12 +163,7 @@ std::vector<Expression> with_their_digits(const std::vector<Expression>& front,
 // One result of two searches; of one of them where the other found nothing.
 CellResult joined(CellResult first, CellResult second) {
   if (!is_ok(first.record)) std::swap(first, second);
-  first.record.fit_cpu_s += second.record.fit_cpu_s;
-  first.record.fit_wall_s += second.record.fit_wall_s;
-  first.record.evaluations += second.record.evaluations;
-  first.record.fit_instructions += second.record.fit_instructions;
-  first.record.peak_memory_mib =
-      std::max(first.record.peak_memory_mib, second.record.peak_memory_mib);
+  add_costs(first.record, second.record);
   // States have their parameters of one search.
   const bool has_states = declares_states(first.record.formula);
   if (!is_ok(second.record) || has_states) return first;
@@ -142,13 +189,12 @@ void choose_by_weights(const Problem& problem, std::span<const double> weights,
   const Problem& judged = own.over(problem);
   std::vector<Expression> front;
   std::size_t chosen = 0;
-  ConstantFitter fitter;
   const TableInputs inputs(judged.stages.front().train);
+  WeightedConstants constants(judged, inputs.inputs(), weights, task.operators);
   for (const FrontRecord& entry : result.front) {
     if (entry.chosen) chosen = front.size();
     front.push_back(read_problem_formula(entry.formula, problem).formula);
-    fitter.fit(front.back(), inputs.inputs(), table.target, weights,
-               {.exponents = FitExponents::not_simple});
+    constants.fit(front.back());
   }
   // What a program of the user's stands for is its own to say.
   if (!task.method.is_external()) {
@@ -161,13 +207,17 @@ void choose_by_weights(const Problem& problem, std::span<const double> weights,
 }
 
 std::vector<double> choose_by_relative_noise(const Problem& problem, const CellTask& task,
-                                             CellResult& result) {
+                                             CellResult& result,
+                                             std::span<const Expression> further) {
   const Table& table = problem.stages.front().train;
   const TableInputs inputs(table);
   const auto formula_of = [&](const auto& record) {
     return read_problem_formula(record.formula, problem).formula;
   };
   CellResult weighted = result;
+  for (const Expression& formula : further) {
+    weighted.front.emplace_back().formula = formula_text(problem, formula);
+  }
   std::vector<double> weights;
   for (int round = 0; round < kRoundsOfWeights; ++round) {
     std::vector<Expression> front;

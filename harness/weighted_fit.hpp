@@ -31,8 +31,10 @@ void choose_by_weights(const Problem& problem, std::span<const double> weights,
                        const CellTask& task, CellResult& result);
 
 // The same by the weights that noise in proportion with the target asks for, where the rows say so
-// (fitting/relative_noise.hpp); the note tells. Returns the weights; none where nothing was done.
+// (fitting/relative_noise.hpp); the note tells. `further` are beside the front then. Returns the
+// weights; none where nothing was done.
 std::vector<double> choose_by_relative_noise(const Problem& problem, const CellTask& task,
-                                             CellResult& result);
+                                             CellResult& result,
+                                             std::span<const Expression> further = {});
 
 }  // namespace tribench

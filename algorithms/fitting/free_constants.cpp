@@ -31,4 +31,10 @@ std::size_t free_exponents(const Expression& formula) {
   return count;
 }
 
+double nearest_simple_exponent(double exponent) {
+  const double half = std::nearbyint(2 * exponent) / 2;
+  const double third = std::nearbyint(3 * exponent) / 3;
+  return std::abs(half - exponent) <= std::abs(third - exponent) ? half : third;
+}
+
 }  // namespace tribench

@@ -20,4 +20,7 @@ bool is_simple_exponent(double exponent);
 // How many exponents of the formula are not simple: numbers, which evidence_price does not count.
 std::size_t free_exponents(const Expression& formula);
 
+// The nearest of those: 0.5 for 0.49, 2/3 for 0.67.
+double nearest_simple_exponent(double exponent);
+
 }  // namespace tribench

@@ -29,6 +29,7 @@
 #include "harness/cli/fit_output.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/number_options.hpp"
+#include "harness/decades_fit.hpp"
 #include "harness/machine.hpp"
 #include "harness/run_cell.hpp"
 #include "harness/state_refit.hpp"
@@ -251,13 +252,15 @@ CellResult run_method(const FitArguments& arguments, const Problem& problem,
   const Problem declared = has_states ? with_declared_states(problem, arguments.states) : Problem();
   const Problem& seen = has_states ? declared : problem;
   if (!weights.empty()) return fit_weighted(seen, weights, *chosen.method, task, chosen.widened);
+  const bool searches = !has_states && !chosen.fixed_form && !task.method.is_external();
+  if (searches && task.operators.allows(Op::exp) &&
+      lies_over_decades(problem.stages.front().train.target)) {
+    return fit_over_decades(problem, *chosen.method, task, chosen.widened, weights);
+  }
   CellResult result = fit_and_judge(seen, *chosen.method, task, chosen.widened);
   if (!is_ok(result.record)) return result;
-  if (has_states) {
-    refit_states(problem, result);
-  } else if (!chosen.fixed_form && !task.method.is_external()) {
-    weights = choose_by_relative_noise(problem, task, result);
-  }
+  if (has_states) refit_states(problem, result);
+  if (searches) weights = choose_by_relative_noise(problem, task, result);
   return result;
 }
 

@@ -147,6 +147,14 @@ void mark_failed(Record& record, FailureKind kind, std::string detail) {
   record.reason = {kind, std::move(detail)};
 }
 
+void add_costs(Record& record, const Record& further) {
+  record.fit_cpu_s += further.fit_cpu_s;
+  record.fit_wall_s += further.fit_wall_s;
+  record.evaluations += further.evaluations;
+  record.fit_instructions += further.fit_instructions;
+  record.peak_memory_mib = std::max(record.peak_memory_mib, further.peak_memory_mib);
+}
+
 void note_end_by_clock(Record& record) {
   add_to_note(record, fmt::format("{}: not reproducible", kEndedByClock));
 }
