@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/exploration/explanation_search.hpp"
 #include "algorithms/exploration/recorded_movements.hpp"
 #include "algorithms/exploration/second_opinion.hpp"
 #include "foundation/error.hpp"
