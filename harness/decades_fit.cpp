@@ -109,10 +109,9 @@ bool lies_over_decades(std::span<const double> target) {
   const std::vector<double> logs = logarithms_of(target);
   double mean = 0;
   for (const double x : logs) mean += x / static_cast<double>(logs.size());
-  double variance = 0;
-  for (const double x : logs)
-    variance += (x - mean) * (x - mean) / static_cast<double>(logs.size());
-  return variance > kDecades * kDecades;
+  double squares = 0;
+  for (const double x : logs) squares += (x - mean) * (x - mean);
+  return squares > kDecades * kDecades * static_cast<double>(logs.size());
 }
 
 CellResult fit_over_decades(const Problem& problem, const Regressor& method, const CellTask& task,

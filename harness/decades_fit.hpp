@@ -16,7 +16,8 @@
 
 namespace tribench {
 
-// Finite values. By their spread about the median: a factor of 30 holds two thirds of them, say.
+// Finite values of one sign whose logarithms have a standard deviation of 1.7 at least: two thirds
+// of them need a factor of 30.
 bool lies_over_decades(std::span<const double> target);
 
 // The problem has one stage. `weights` are those of choose_by_relative_noise. A law that is exact

@@ -163,13 +163,10 @@ std::vector<Expression> with_their_digits(const std::vector<Expression>& front,
 // One result of two searches; of one of them where the other found nothing.
 CellResult joined(CellResult first, CellResult second) {
   if (!is_ok(first.record)) std::swap(first, second);
+  if (!is_ok(second.record)) return first;
   add_costs(first.record, second.record);
   // States have their parameters of one search.
-  const bool has_states = declares_states(first.record.formula);
-  if (!is_ok(second.record) || has_states) return first;
-  if (was_ended_by_clock(second.record) && !was_ended_by_clock(first.record)) {
-    note_end_by_clock(first.record);
-  }
+  if (declares_states(first.record.formula)) return first;
   for (FrontRecord& entry : second.front) {
     if (std::ranges::count(first.front, entry.formula, &FrontRecord::formula) > 0) continue;
     first.front.push_back(std::move(entry));

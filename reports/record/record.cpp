@@ -153,6 +153,7 @@ void add_costs(Record& record, const Record& further) {
   record.evaluations += further.evaluations;
   record.fit_instructions += further.fit_instructions;
   record.peak_memory_mib = std::max(record.peak_memory_mib, further.peak_memory_mib);
+  if (was_ended_by_clock(further) && !was_ended_by_clock(record)) note_end_by_clock(record);
 }
 
 void note_end_by_clock(Record& record) {

@@ -130,7 +130,8 @@ void mark_failed(Record& record, FailureKind kind, std::string detail = {});
 // A fit that the clock ended cannot be repeated; the record's note says so.
 void note_end_by_clock(Record& record);
 
-// Of a further search for the same record: seconds, evaluations, instructions, the larger memory.
+// Of a further search for the same record: seconds, evaluations, instructions, the larger memory,
+// and that the clock ended it.
 void add_costs(Record& record, const Record& further);
 bool was_ended_by_clock(const Record& record);
 // Where the fit took more than its budget, by more than a tenth (and half a second), the note says

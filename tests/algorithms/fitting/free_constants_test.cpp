@@ -27,5 +27,16 @@ TEST(FreeConstants, AreAllButIntegerExponents) {
   EXPECT_TRUE(free_values("x").empty());
 }
 
+TEST(SimpleExponents, AreTheNearestHalvesAndThirds) {
+  EXPECT_EQ(nearest_simple_exponent(0.49), 0.5);
+  EXPECT_EQ(nearest_simple_exponent(-1.02), -1);
+  EXPECT_EQ(nearest_simple_exponent(0.65), 2.0 / 3);
+  EXPECT_EQ(nearest_simple_exponent(0.1), 0);
+  for (const double found : {0.49, 0.65, -3.3, 7.1}) {
+    EXPECT_TRUE(is_simple_exponent(nearest_simple_exponent(found))) << found;
+    EXPECT_FALSE(is_simple_exponent(found)) << found;
+  }
+}
+
 }  // namespace
 }  // namespace tribench

@@ -134,6 +134,23 @@ TEST(Record, SaysThatTheClockEndedItsFit) {
   EXPECT_TRUE(was_ended_by_clock(record));
 }
 
+TEST(Record, HasTheCostsOfAFurtherSearchAndThatTheClockEndedIt) {
+  Record record;
+  record.fit_cpu_s = 2;
+  record.evaluations = 100;
+  record.peak_memory_mib = 50;
+  Record further = record;
+  further.peak_memory_mib = 40;
+  note_end_by_clock(further);
+  add_costs(record, further);
+  EXPECT_EQ(record.fit_cpu_s, 4);
+  EXPECT_EQ(record.evaluations, 200U);
+  EXPECT_EQ(record.peak_memory_mib, 50);
+  EXPECT_EQ(record.note, "ended by the clock: not reproducible");
+  add_costs(record, further);
+  EXPECT_EQ(record.note, "ended by the clock: not reproducible");
+}
+
 TEST(Record, SaysHowMuchAFitTookBeyondItsBudget) {
   Record record;
   record.note = "first";
