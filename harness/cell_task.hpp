@@ -32,6 +32,7 @@ struct CellResult {
   Record record;
   std::vector<FrontRecord> front;
   std::vector<TraceRecord> trace;
+  bool keeps_form = false;  // as FitResult has it; of this process, not written
 };
 
 CellTask make_task(const Grid& grid, const Cell& cell, const std::string& data);

@@ -121,12 +121,12 @@ CellResult fit_over_decades(const Problem& problem, const Regressor& method, con
   const Table& table = problem.stages.front().train;
   const TableInputs inputs(table);
   if (simplest_exact(formulas_of(result, problem), inputs.inputs(), table.target)) return result;
-  const LogarithmicProblem searched(problem);
-  const CellResult logs =
-      fit_and_judge(searched.problem, method, part_of(task, kOfLogarithms), widened);
   std::vector<Expression> further;
-  if (is_ok(logs.record)) {
-    add_costs(result.record, logs.record);
+  if (!result.keeps_form) {
+    const LogarithmicProblem searched(problem);
+    const CellResult logs =
+        fit_and_judge(searched.problem, method, part_of(task, kOfLogarithms), widened);
+    if (is_ok(logs.record)) add_costs(result.record, logs.record);
     const InputBox box = input_box(problem.inputs);
     const auto admits = [&](const Expression& one) { return task.operators.admits(one); };
     for (const Expression& formula : formulas_of(logs, searched.problem)) {

@@ -21,7 +21,8 @@ namespace tribench {
 bool lies_over_decades(std::span<const double> target);
 
 // The problem has one stage. `weights` are those of choose_by_relative_noise. A law that is exact
-// without noise ends it before the logarithm is looked at.
+// without noise ends it before the logarithm is looked at; a form of the user's (a template) is one
+// of the target, not of its logarithm.
 CellResult fit_over_decades(const Problem& problem, const Regressor& method, const CellTask& task,
                             const WidenedMethod& widened, std::vector<double>& weights);
 

@@ -177,6 +177,7 @@ struct StagesResult {
   std::size_t chosen_place = 0;
   FailureReason failure;  // none where every stage gave a formula
   std::string note;
+  bool keeps_form = false;
   std::optional<Problem> extended;  // by the formulas' states, where they have any
 };
 
@@ -344,6 +345,7 @@ StagesResult fit_stages(const Problem& given, const Regressor& method, const Cel
       result.front.push_back(so_far.empty() ? whole : Expression::binary(Op::add, so_far, whole));
     }
     result.chosen_place = fit.chosen;
+    result.keeps_form = fit.keeps_form;
     so_far = result.front.at(fit.chosen);
     // Last: the view looks at the problem that this takes the place of.
     if (!fit.states.empty()) result.extended = with_states(problem, view.over_problem(fit.states));
@@ -417,6 +419,7 @@ CellResult fit_and_judge(const Problem& problem, const Regressor& method, const 
   const Problem& judged = fit.extended ? *fit.extended : problem;
   judge_formula(judged, fit.chosen, record);
   result.front = judge_front(judged, fit.front, fit.chosen_place, record);
+  result.keeps_form = fit.keeps_form;
   if (budget.was_cut_by_clock()) note_end_by_clock(record);
   return result;
 }
@@ -433,10 +436,6 @@ Problem make_problem(const CellTask& task) {
   }
   return full_catalogue_of(task.data, {&*task.own, 1}).find(task.cell.problem).make(task.cell.seed);
 }
-
-}  // namespace
-
-namespace {
 
 bool has_category(const CellTask& task) { return task.own && !task.own->category.empty(); }
 

@@ -105,17 +105,22 @@ class WeightedRows {
 // The constants fitted to the weighted rows, and with them exponents that a search has found. Such
 // a one is the simple number nearest to it where that costs the rows no more than half of their
 // number's logarithm, the price of a constant (Schwarz 1978): evidence takes exponents for a part
-// of the form, which costs nothing.
+// of the form, which costs nothing. A form of the user's stays as it is.
 class WeightedConstants {
  public:
   WeightedConstants(const Problem& problem, const Inputs& inputs, std::span<const double> weights,
-                    const OperatorSet& operators)
-      : problem_(problem), inputs_(inputs), weights_(weights), operators_(operators) {
+                    const OperatorSet& operators, bool keeps_form)
+      : problem_(problem),
+        inputs_(inputs),
+        weights_(weights),
+        operators_(operators),
+        keeps_form_(keeps_form) {
     for (const double weight : weights) rows_ += weight > 0 ? 1 : 0;
   }
 
   void fit(Expression& formula) {
     double squares = fitted(formula);
+    if (keeps_form_) return;
     bool changed = false;
     for (const std::size_t place : constant_positions(formula)) {
       const double exponent = formula.node(place).value;
@@ -146,6 +151,7 @@ class WeightedConstants {
   Inputs inputs_;
   std::span<const double> weights_;
   const OperatorSet& operators_;
+  bool keeps_form_;
   double rows_ = 0;
   ConstantFitter fitter_;
 };
@@ -187,7 +193,8 @@ void choose_by_weights(const Problem& problem, std::span<const double> weights,
   std::vector<Expression> front;
   std::size_t chosen = 0;
   const TableInputs inputs(judged.stages.front().train);
-  WeightedConstants constants(judged, inputs.inputs(), weights, task.operators);
+  WeightedConstants constants(judged, inputs.inputs(), weights, task.operators,
+                              result.keeps_form || task.method.is_external());
   for (const FrontRecord& entry : result.front) {
     if (entry.chosen) chosen = front.size();
     front.push_back(read_problem_formula(entry.formula, problem).formula);

@@ -22,7 +22,7 @@ std::vector<double> slow_temperature(std::span<const double> values, std::span<c
 
 enum class EarlierMovements : bool { forgotten, remembered };
 
-// Fewer seconds than that: how fast it changes turns as often as the joint starts and rests.
+// Fewer for its rate, which turns wherever the joint starts or rests.
 inline constexpr double kWarmingSeconds = 10;
 
 // How fast the temperature changes at each row [unit/s]: the slope of the straight line through the
