@@ -3,19 +3,36 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace tribench::loop {
 namespace {
 
 // More columns than this are not tried as one block: most would be there for nothing.
 constexpr std::size_t kWholeFamily = 10;
+// So many or fewer are as cheap together as one of them.
+constexpr std::size_t kFewAtoms = 2;
 
 ColumnBlock merged(const ColumnBlock& first, const ColumnBlock& second) {
   ColumnBlock out = first;
   out.insert(out.end(), second.begin(), second.end());
   return out;
+}
+
+void add_single_atoms(const Template& main, const std::vector<Template>& templates,
+                      std::vector<EffectBlock>& blocks) {
+  if (main.atoms.size() <= kFewAtoms) return;
+  for (const Template::OneAtom& atom : main.atoms) {
+    blocks.push_back({atom.columns});
+    for (const Template& other : templates) {
+      if (!other.beside) continue;
+      const auto same = std::ranges::find(other.atoms, atom.shapes, &Template::OneAtom::shapes);
+      if (same != other.atoms.end()) blocks.push_back({merged(atom.columns, same->columns)});
+    }
+  }
 }
 
 }  // namespace
@@ -34,7 +51,10 @@ std::vector<Template> templates_of(const std::vector<Atom>& atoms,
     }
     const auto [found, is_new] = place.try_emplace(key, all.size());
     if (is_new) all.push_back({{}, atom.beside_another});
+    Template::OneAtom one;
+    for (const Shape& shape : atom.shapes) one.shapes.push_back(shape.value);
     for (const Expression& column : atom.columns) {
+      one.columns.push_back(static_cast<Eigen::Index>(formulas.size()));
       all[found->second].columns.push_back(static_cast<Eigen::Index>(formulas.size()));
       if (atom.curve == SpeedCurve::any) {
         all[found->second].any_curve.push_back(static_cast<Eigen::Index>(formulas.size()));
@@ -42,6 +62,7 @@ std::vector<Template> templates_of(const std::vector<Atom>& atoms,
       formulas.push_back(column);
       curves.push_back(atom.curve);
     }
+    all[found->second].atoms.push_back(std::move(one));
   }
   for (std::size_t k = 0, count = all.size(); k < count; ++k) {
     const ColumnBlock& free = all[k].any_curve;
@@ -56,13 +77,14 @@ std::vector<EffectBlock> blocks_of(const std::vector<Template>& templates) {
   ColumnBlock whole;
   for (const Template& main : templates) {
     if (main.beside) continue;
+    add_single_atoms(main, templates, blocks);
     blocks.push_back({main.columns});
     whole = merged(whole, main.columns);
     for (const Template& beside : templates) {
       if (beside.beside) blocks.push_back({merged(main.columns, beside.columns)});
     }
   }
-  const bool several = !blocks.empty() && whole.size() > blocks.front().columns.size();
+  const bool several = std::ranges::count(templates, false, &Template::beside) > 1;
   if (several && whole.size() <= kWholeFamily) blocks.push_back({whole});
   return blocks;
 }

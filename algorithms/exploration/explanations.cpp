@@ -26,7 +26,7 @@ namespace {
 
 // Root mean squares of an effect that one expects, in the smallest of interest: for one of these
 // the prior of the smaller size is likeliest about there (evidence.hpp).
-constexpr std::array<double, 3> kSizes = {11, 3, 0.8};
+constexpr std::array<double, 4> kSizes = {40, 11, 3, 0.8};
 constexpr double kExplainedByBase = 1e-4;  // of a column's squares, on the reference
 constexpr std::size_t kSpeedRows = 16;     // in either direction
 
