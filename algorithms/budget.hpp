@@ -42,6 +42,8 @@ class Budget {
   double remaining_seconds() const;
   // Books what such a program says it has spent, overdrawn or not.
   void book(std::uint64_t node_rows);
+  // Whether the user has asked to stop: such a program is to be told.
+  bool is_stopped() const;
   bool out_of_time() const { return out_of_time_->load(std::memory_order_relaxed); }
   // Whether the clock, rather than the evaluations, ended it or a part of it: such a result is not
   // reproducible.
@@ -56,8 +58,6 @@ class Budget {
   void settle(const Budget& part);
 
  private:
-  bool is_stopped() const;
-
   BudgetLimits limits_;
   std::uint64_t spent_ = 0;
   std::uint64_t spent_at_next_clock_check_ = 0;

@@ -54,6 +54,10 @@ std::vector<Input> make_inputs(const Dataset& data, const std::string& target,
       throw_bad_input(fmt::format("'{}' is the target and an input", name), data.name,
                       "remove it from the inputs");
     }
+    if (name == "sgn_" + target && channels.find(name) == nullptr) {
+      throw_bad_input(fmt::format("'{}' is the sign of the target and an input", name), data.name,
+                      "remove it from the inputs");
+    }
     if (!seen.insert(name).second) {
       throw_bad_input(fmt::format("input '{}' is named twice", name), data.name, "name it once");
     }

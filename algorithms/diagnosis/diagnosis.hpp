@@ -97,6 +97,7 @@ struct CandidateFinding {
   double adjusted_p = 1;
   double score = 0;
   double gain = std::numeric_limits<double>::quiet_NaN();
+  double gain_share = 0;  // of the base's loss on movements left out; 0: no more than its error
   // The root mean square that it would have needed to be found nine times in ten, in the target's
   // unit.
   double detectable = std::numeric_limits<double>::quiet_NaN();

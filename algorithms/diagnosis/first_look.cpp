@@ -159,7 +159,11 @@ std::vector<CandidateFinding> candidate_findings(const Round& round, const Fitte
     finding.atom = campaign.library.atoms[round.family_atom[f]].label;
     if (finding.adjusted_p < kNearAliasP) {
       const std::optional<Candidate> best = best_atom(f, round, base, campaign);
-      if (best) finding.gain = best->gain.nats;
+      if (best) {
+        finding.gain = best->gain.nats;
+        const bool is_seen = best->gain.nats > best->gain.error;
+        if (is_seen) finding.gain_share = best->gain.nats / base.losses.sum();
+      }
     }
     if (!campaign.data.turns_left_out || !shows_in_turns(f, campaign)) {
       finding.detectable = detectable(f, round, critical, campaign);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "algorithms/expression/text.hpp"
@@ -112,6 +113,27 @@ json request_json(const FitContext& context,
           {"parameters", parameters_json(parameters)}};
 }
 
+// Asks the program to end once the budget is stopped, and ends it where it does not.
+class StopOnDemand {
+ public:
+  StopOnDemand(ChildProcess& program, const Budget& budget) : program_(program), budget_(budget) {}
+
+  bool asked() const { return asked_.has_value(); }
+  void look() {
+    const auto now = std::chrono::steady_clock::now();
+    if (!asked_ && budget_.is_stopped()) {
+      asked_ = now;
+      program_.ask_to_end();
+    }
+    if (asked_ && now - *asked_ > std::chrono::duration<double>(kSecondsToEnd)) program_.kill();
+  }
+
+ private:
+  ChildProcess& program_;
+  const Budget& budget_;
+  std::optional<std::chrono::steady_clock::time_point> asked_;
+};
+
 class ExternalMethod : public Regressor {
  public:
   ExternalMethod(std::vector<std::string> command, std::map<std::string, ParameterValue> parameters,
@@ -155,6 +177,7 @@ class ExternalMethod : public Regressor {
     AnswerReader answer(context);
     std::string errors;
     std::size_t bytes = 0;
+    StopOnDemand stop(program, context.budget);
     for (bool ended = false; !ended;) {
       const ChildOutput output = program.read(1.0);
       answer.take(output.output);
@@ -164,10 +187,15 @@ class ExternalMethod : public Regressor {
       if (errors.size() > 65536) errors.erase(0, errors.size() - 4096);
       ended = output.ended;
       require_time_left(program, start);
+      stop.look();
     }
-    while (!program.ends_within(1.0)) require_time_left(program, start);
+    while (!program.ends_within(1.0)) {
+      require_time_left(program, start);
+      stop.look();
+    }
     const ChildExit exit = program.wait();
-    return answer.finish(exit, errors);
+    // How it ended was our doing: what it has answered by then counts.
+    return answer.finish(stop.asked() ? ChildExit() : exit, errors);
   }
 
   void require_time_left(const ChildProcess& program,

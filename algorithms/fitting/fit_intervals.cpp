@@ -192,9 +192,15 @@ bool hold_redundant_numbers(const Expression& formula, Eigen::MatrixXd null_spac
 
 using RowsOfMovements = std::map<int, std::vector<Eigen::Index>>;
 
-RowsOfMovements rows_of_movements(std::span<const int> movement) {
+// A row without weight is none.
+bool counts(std::span<const double> weights, std::size_t row) {
+  return weights.empty() || weights[row] > 0;
+}
+
+RowsOfMovements rows_of_movements(std::span<const int> movement, std::span<const double> weights) {
   RowsOfMovements rows;
   for (std::size_t r = 0; r < movement.size(); ++r) {
+    if (!counts(weights, r)) continue;
     rows[movement[r]].push_back(static_cast<Eigen::Index>(r));
   }
   return rows;
@@ -207,9 +213,11 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
                            std::span<const double> weights, bool known_variance) {
   FitIntervals result;
   result.places = free_constants(formula);
-  const auto n = static_cast<Eigen::Index>(inputs.rows);
+  std::size_t counted = 0;
+  for (std::size_t r = 0; r < inputs.rows; ++r) counted += counts(weights, r) ? 1 : 0;
+  const auto n = static_cast<Eigen::Index>(counted);
   result.unit = "row";
-  result.units = inputs.rows;
+  result.units = counted;
   if (result.places.empty()) return result;
   constexpr std::size_t kMostConstants = 1000;  // a second; the time grows with the cube
   if (result.places.size() > kMostConstants) {
@@ -239,10 +247,15 @@ FitIntervals fit_intervals(const Expression& formula, const Inputs& inputs,
       known_variance ? 1 : rows.residual.squaredNorm() / static_cast<double>(n - rank);
   Eigen::MatrixXd covariance = variance * base.inverse;
   result.quantile = student_point(known_variance ? 1e9 : static_cast<double>(n - rank));
-  const RowsOfMovements movements = rows_of_movements(movement);
-  const bool grouped = movements.size() < inputs.rows && !known_variance &&
-                       movements.size() >= std::max(kLeastMovements, result.places.size() + 3);
-  if (grouped) {
+  const RowsOfMovements movements = rows_of_movements(movement, weights);
+  const bool grouped = movements.size() > 1 && movements.size() < counted && !known_variance;
+  const std::size_t wanted = std::max(kLeastMovements, result.places.size() + 3);
+  if (grouped && movements.size() < wanted) {
+    result.warning = fmt::format(
+        "the rows come in {} movements, and {} are needed to be the units: rows are, as if they "
+        "were independent; where those of a movement are alike the intervals are too narrow",
+        movements.size(), wanted);
+  } else if (grouped) {
     if (const auto robust = jackknife(rows.jacobian, rows.residual, movements, rank)) {
       covariance = *robust;
       result.unit = "movement";

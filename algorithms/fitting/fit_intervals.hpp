@@ -36,7 +36,8 @@ struct FitIntervals {
   std::vector<double> covariance;           // p x p, by rows
   double quantile = 0;                      // of t, by which a standard error is multiplied
   std::string unit;                         // "movement" or "row"
-  std::size_t units = 0;
+  std::size_t units = 0;                    // those of a weight above 0
+  std::string warning;                      // why rows are the units though they come in movements
 };
 
 // weights: of the squared residuals, relative; empty: all 1. known_variance: a weight is one over

@@ -5,14 +5,18 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "foundation/json_text.hpp"
+#include "foundation/standard_streams.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
+#include "harness/journal.hpp"
+#include "harness/run_files.hpp"
 #include "reports/comparison.hpp"
 #include "reports/history.hpp"
 #include "reports/run_folder.hpp"
@@ -55,11 +59,27 @@ ExitStatus status_of(const Comparison& comparison) {
   }
 }
 
+// The journal is the truth where the other files are behind it, as those of a run that was killed.
+RunFolder read_whole_run(const std::filesystem::path& folder) {
+  const std::filesystem::path journal = folder / "cells.jsonl";
+  const std::filesystem::path results = folder / "results.csv";
+  if (std::filesystem::exists(journal) &&
+      (!std::filesystem::exists(results) ||
+       std::filesystem::last_write_time(results) < std::filesystem::last_write_time(journal))) {
+    const JournalContents contents = read_journal(journal);
+    for (const std::string& damage : contents.damage) {
+      print_message(fmt::format("tribench: {}\n", damage));
+    }
+    write_result_files(folder, contents.results);
+  }
+  return read_run_folder(folder);
+}
+
 void compare(const CompareArguments& arguments, ExitStatus& status) {
   std::vector<RunFolder> runs;
-  for (const std::string& folder : arguments.history) runs.push_back(read_run_folder(folder));
-  runs.push_back(read_run_folder(arguments.base));
-  runs.push_back(read_run_folder(arguments.now));
+  for (const std::string& folder : arguments.history) runs.push_back(read_whole_run(folder));
+  runs.push_back(read_whole_run(arguments.base));
+  runs.push_back(read_whole_run(arguments.now));
   const Comparison comparison = compare_runs(runs[runs.size() - 2], runs.back(), arguments.options);
   const bool has_history = !arguments.history.empty();
   const std::vector<SeriesChange> changes =

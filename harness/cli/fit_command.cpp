@@ -397,7 +397,7 @@ void add_judging_options(CLI::App& command, FitArguments& arguments) {
       ->excludes(test);
   command.add_option("--group", arguments.group,
                      "the column whose equal values are one movement: kept whole by --split, the "
-                     "unit of the intervals");
+                     "unit of the intervals where there are eight");
   CLI::Option* weights = command.add_option("--weights", arguments.weights,
                                             "a column: how much each row's squared error counts");
   CLI::Option* sigma = command.add_option("--sigma", arguments.sigma,

@@ -32,13 +32,15 @@ Json intervals_json(const FitIntervals& intervals) {
                          {"high", json_number(one.high)},
                          {"place", intervals.places[k]}});
   }
-  return {{"level", 0.95},
-          {"given", "the form of the formula"},
-          {"unit", intervals.unit},
-          {"units", intervals.units},
-          {"constants", constants},
-          {"quantile", intervals.quantile},
-          {"covariance", intervals.covariance}};
+  Json all = {{"level", 0.95},
+              {"given", "the form of the formula"},
+              {"unit", intervals.unit},
+              {"units", intervals.units},
+              {"constants", constants},
+              {"quantile", intervals.quantile},
+              {"covariance", intervals.covariance}};
+  if (!intervals.warning.empty()) all["warning"] = intervals.warning;
+  return all;
 }
 
 // The keys of a grid's problem (data_options_toml.hpp).
@@ -118,6 +120,7 @@ void print_fit(const FitAnswer& answer) {
   if (answer.intervals) {
     fmt::print("constants, 95 %, given the form ({} {}s as units):\n", answer.intervals->units,
                answer.intervals->unit);
+    if (!answer.intervals->warning.empty()) fmt::print("  ({})\n", answer.intervals->warning);
     for (const ConstantInterval& one : answer.intervals->constants) {
       fmt::print("  {:<14} {}\n", figure(one.value),
                  std::isfinite(one.low) ? fmt::format("{} .. {}", figure(one.low), figure(one.high))

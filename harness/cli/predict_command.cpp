@@ -115,7 +115,7 @@ void add_predict_command(CLI::App& app, ExitStatus& /*status*/) {
       "m.json"
       "\n         tribench predict m.json later.csv --out predicted.csv"
       "\nThe data are read as those that a model was fitted to, its --roles and all, unless "
-      "options here say how. Where the formula has no value the line is nan.");
+      "options here say how. Where the formula has no finite value the line is nan, inf or -inf.");
   auto arguments = std::make_shared<PredictArguments>();
   command
       ->add_option("MODEL", arguments->model, "what `fit --json` printed, in a file; or a formula")

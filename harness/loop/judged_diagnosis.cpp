@@ -24,6 +24,7 @@
 #include "harness/loop/chosen_shares.hpp"
 #include "harness/loop/determined_rows.hpp"
 #include "harness/loop/noise_bounds.hpp"
+#include "harness/loop/nothing_missing.hpp"
 #include "problems/preparation/canonical.hpp"
 #include "problems/preparation/test_movements.hpp"
 #include "reports/record/loop_record.hpp"
@@ -151,33 +152,6 @@ std::string experiments_of(const std::vector<std::string>& rules) {
   std::vector<std::string> texts;
   for (const std::string& rule : rules) texts.push_back(experiment_text(rule));
   return texts.empty() ? std::string() : fmt::format(": {}", fmt::join(texts, ", or "));
-}
-
-// It is not that nothing is missing where no movement can be foretold from the others: a base that
-// they do not determine may hold anything.
-void doubt_undetermined(JudgedDiagnosis& whole) {
-  if (whole.verdict != Verdict::none) return;
-  whole.verdict = Verdict::cannot_tell;
-  whole.needed = {
-      "movements that repeat one another's directions and speeds: without any one of them the "
-      "others do not determine even the base model"};
-}
-
-// Nor where a smooth function of the same inputs, fitted to the same movements, leaves less error
-// on those that it never saw (more than rounding: then there is nothing to be tested either). On
-// data without a cause it leaves none less: no correction at all is one of its choices. needed:
-// what to record of what was found and not named.
-void doubt_nothing_missing(JudgedDiagnosis& whole, std::vector<std::string> needed) {
-  constexpr double kTooMuch = 0.05;  // of the error
-  const double less = 1 - whole.error.attainable / whole.error.mae_after;
-  if (whole.verdict != Verdict::none || whole.candidates.empty() || !(less > kTooMuch)) return;
-  whole.verdict = Verdict::cannot_tell;
-  whole.needed = std::move(needed);
-  if (!whole.needed.empty()) return;
-  whole.needed.push_back(fmt::format(
-      "more movements of every kind: a smooth function of the same inputs leaves {:.0f} % less "
-      "error on those left out, but too few of them tell what it stands for",
-      100 * less));
 }
 
 // One recording, in its canonical order, and what is asked of it.

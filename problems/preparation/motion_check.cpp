@@ -73,7 +73,7 @@ void add_units(std::vector<Suspect>& list, const DataFile& file, Role role,
 // The likelier one first, of those that make the same factor.
 std::vector<Suspect> suspects(const DataFile& file, std::optional<double> gear_ratio) {
   std::vector<Suspect> list;
-  add_units(list, file, Role::time, {"s", "ms", "us", "ns"}, gear_ratio);
+  add_units(list, file, Role::time, {"s", "ms", "us", "ns", "min"}, gear_ratio);
   add_units(list, file, Role::position, {"rad", "deg", "rev", "m", "mm", "cm"}, gear_ratio);
   add_units(list, file, Role::velocity,
             {"rad/s", "deg/s", "rev/s", "rpm", "m/s", "mm/s", "cm/s", "m/min", "mm/min"},

@@ -95,7 +95,10 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
         out.data.name, "name the velocity's column: --roles COLUMN=velocity[UNIT]");
   }
   drop_clipped(out);
-  if (!file.has_movements) settle_effort(out, options.drive);
+  if (!file.has_movements) {
+    settle_effort(out, options.drive);
+    add_undeclared_inertia(out);
+  }
   // Several files with all of their motion are movements as somebody cut them.
   const bool raw = out.derived_velocity || out.data.find("derived_acceleration") != nullptr;
   if (!file.has_movements && (raw || out.data.movement_names.size() == 1)) {

@@ -170,9 +170,13 @@ void settle_acceleration(PreparedRecording& out, const DerivedMotion& derived) {
       fmt::format("acceleration is derived from '{}' ({:.2g} Hz), noise {:.2g} {}/s^2",
                   find_channel(out.data, Role::position)->name, derived.motion.bandwidth,
                   derived.motion.acceleration_noise, unit));
-  // The inertia was not declared: it is no effect that friction lacks.
-  if (out.data.find(Role::friction_torque) == nullptr)
-    out.rigid.emplace_back("derived_acceleration");
+  add_undeclared_inertia(out);
+}
+
+void add_undeclared_inertia(PreparedRecording& out) {
+  const Channel* a = find_channel(out.data, Role::acceleration);
+  if (a == nullptr || out.data.find(Role::friction_torque) != nullptr) return;
+  if (std::ranges::count(out.rigid, a->name) == 0) out.rigid.push_back(a->name);
 }
 
 // Inertia couples joints by their accelerations: without the other's its velocity says little.

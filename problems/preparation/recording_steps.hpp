@@ -59,6 +59,9 @@ std::optional<DerivedMotion> derive_motion(const PreparedRecording& out);
 void settle_velocity(PreparedRecording& out, const DerivedMotion& derived);
 // The derived acceleration where there is none.
 void settle_acceleration(PreparedRecording& out, const DerivedMotion& derived);
+// The inertia of a motor torque was not declared: it is no effect that friction lacks, and stands
+// in the base, whether the acceleration was told or derived.
+void add_undeclared_inertia(PreparedRecording& out);
 // The other joint's acceleration from its velocity, where there is none.
 void settle_other_acceleration(PreparedRecording& out);
 // Where the motion changes faster than the smoother follows, what it lacks would be taken for

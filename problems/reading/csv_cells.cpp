@@ -98,7 +98,7 @@ CsvCells split_csv(std::string_view text, std::string_view file) {
   CsvCells cells;
   cells.delimiter = layout.delimiter;
   CsvScanner scanner(text, file, layout.delimiter, layout.begin, layout.line);
-  while (scanner.find_record(layout.header.size())) {
+  while (scanner.find_record(layout.width_behind_sign())) {
     CsvLine line;
     line.number = scanner.line();
     do {

@@ -46,7 +46,7 @@ class ColumnReader {
   }
 
   CsvColumns read() {
-    const std::size_t width = out_.columns.size();
+    const std::size_t width = layout_.width_behind_sign();
     while (scanner_.find_record(width)) {
       if (begins_anew()) continue;
       const std::size_t line = scanner_.line();

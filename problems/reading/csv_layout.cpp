@@ -230,11 +230,18 @@ Found plain_layout(const std::vector<HeadLine>& lines) {
   return found;
 }
 
+// Between blanks a separator would be a name: it is the file's, with blanks to either side.
+bool has_lone_separator(const Cells& cells) {
+  return std::ranges::any_of(
+      cells, [](const std::string& cell) { return cell == "," || cell == ";" || cell == "|"; });
+}
+
 Found best_layout(const std::vector<HeadLine>& lines) {
   Found best;
   for (const char delimiter : {',', ';', '\t', '|', ' '}) {
     const Found found = try_delimiter(lines, delimiter);
     if (!found.header) continue;
+    if (delimiter == ' ' && has_lone_separator(cells_of(lines[*found.header], delimiter))) continue;
     // As wide, a comment with a comma is no line of names beside one that is none.
     const bool is_plainer = best.header && found.width == best.width &&
                             lines[*best.header].comment && !lines[*found.header].comment;
@@ -394,6 +401,15 @@ std::string without_brackets(std::string_view cell) {
 }
 
 }  // namespace
+
+std::size_t CsvLayout::width_behind_sign() const {
+  const bool begins_with_number =
+      std::ranges::any_of(first_rows, [&](const std::vector<std::string>& row) {
+        double value = 0;
+        return !row.empty() && read_cell(row.front(), decimal_comma, value) == CellKind::number;
+      });
+  return begins_with_number ? 0 : header.size();
+}
 
 CsvLayout find_layout(std::string_view text, std::string_view file, bool nameless) {
   check_bytes(text, file);

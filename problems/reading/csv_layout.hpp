@@ -25,6 +25,10 @@ struct CsvLayout {
   std::size_t line = 1;            // its number in the file, from 1
   std::vector<std::vector<std::string>> first_rows;  // some tens of them
   std::vector<std::string> notes;                    // what was passed over, one sentence each
+
+  // For CsvScanner::find_record: below a first column of numbers no row begins with the sign of a
+  // comment, below one of texts ("#12") it may.
+  std::size_t width_behind_sign() const;
 };
 
 // Throws Error (bad_input) where the text is empty, binary, has no row, or no line that names every

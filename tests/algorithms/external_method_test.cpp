@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -16,13 +18,14 @@ namespace {
 using ::testing::HasSubstr;
 
 // What a program of this shell line answers where nobody else watches it.
-FitResult answer_of(const std::string& line, ProgramLimits limits) {
+FitResult answer_of(const std::string& line, ProgramLimits limits,
+                    const std::atomic<bool>* stop = nullptr) {
   const std::vector<Input> inputs{{.name = "x", .low = 0, .high = 1}};
   const std::vector<double> x{0, 1};
   const std::vector<const double*> columns{x.data()};
   const std::vector<int> movement{0, 1};
   const TrainingData data{inputs, columns, x, movement};
-  Budget budget({});
+  Budget budget({.stop = stop});
   FitContext context{data, find_operator_set("full"), budget, RandomStream(1)};
   return make_external_method({"bash", "-c", line}, {}, limits)->fit(context);
 }
@@ -45,6 +48,15 @@ TEST(ExternalMethod, EndsAProgramBeyondItsLimits) {
   EXPECT_THAT(ended_by("while :; do :; done", {.cpu_s = 0.3}),
               HasSubstr("more than 0.3 s of CPU time"));
   EXPECT_EQ(ended_by("echo '{\"front\": [\"x\"]}'", {.cpu_s = 60, .wall_s = 60}), "itself");
+}
+
+TEST(ExternalMethod, IsAskedToEndWhenTheUserStopsAndWhatItHasAnsweredCounts) {
+  const std::atomic<bool> stop = true;
+  const auto start = std::chrono::steady_clock::now();
+  const FitResult answered = answer_of("echo '{\"front\": [\"x\"]}'; sleep 900", {}, &stop);
+  EXPECT_EQ(answered.front.size(), 1U);
+  EXPECT_THROW(answer_of("trap '' TERM; sleep 900", {}, &stop), Error);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
 }
 
 // A note is shown on a terminal, which obeys control characters.

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -65,6 +67,35 @@ TEST(FitIntervals, AreTheTextbooksForAStraightLine) {
   const std::vector<const double*> columns = {at.data()};
   EXPECT_NEAR(curve_half_widths(line, intervals, {columns, 1})[0],
               2.262157 * 1.2366 / std::sqrt(11.0), 1e-3);
+}
+
+// A row of weight 0 says nothing, and is none of those that the spread is taken over.
+TEST(FitIntervals, RowsWithoutWeightDoNotCount) {
+  const Rows rows = draw(7, 60, 0.1, 0);
+  const Expression line = parse("1 + 1*x", kNames);
+  const auto half_width = [&](std::size_t count, std::span<const double> weights) {
+    const std::vector<const double*> columns = rows.columns();
+    const Inputs inputs{columns, count};
+    Expression fitted_line = line;
+    ConstantFitter().fit(fitted_line, {columns, 12}, std::span(rows.y).first(12));
+    const FitIntervals all = fit_intervals(fitted_line, inputs, std::span(rows.y).first(count),
+                                           std::span(rows.movement).first(count), weights);
+    EXPECT_EQ(all.units, 12U);
+    return all.constants[0].high - all.constants[0].value;
+  };
+  std::vector<double> weights(60, 0.0);
+  std::fill_n(weights.begin(), 12, 1.0);
+  EXPECT_NEAR(half_width(60, weights), half_width(12, {}), 1e-12);
+}
+
+TEST(FitIntervals, SayWhyFewMovementsAreNotTheirUnits) {
+  Expression formula = parse("1 + 1*x", kNames);
+  const FitIntervals few = fitted(draw(3, 60, 0.1, 1), formula);
+  EXPECT_EQ(few.unit, "row");
+  EXPECT_NE(few.warning.find("5 movements, and 8 are needed"), std::string::npos) << few.warning;
+  const FitIntervals enough = fitted(draw(3, 120, 0.1, 1), formula);
+  EXPECT_EQ(enough.unit, "movement");
+  EXPECT_EQ(enough.warning, "");
 }
 
 // In units in which squares of the rows are below any number.

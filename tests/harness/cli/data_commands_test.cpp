@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // generate, data, report and study, as a user calls them.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -154,6 +155,25 @@ TEST(ReportCommand, FindsTheMeasuredRowsWhereItIsTold) {
   const std::string joined = (folder / "joined").string();
   EXPECT_EQ(run_tribench({"merge", run, "--out", joined, "--data", data->string()}).errors, "");
   EXPECT_EQ(read_text(folder / "joined/curves.csv"), drawn);
+}
+
+// Killed before it wrote its tables, a run has what its journal has.
+TEST(CompareCommand, ReadsTheJournalOfARunThatWasKilled) {
+  const TemporaryFolder folder;
+  const std::string data = (folder / "d.csv").string();
+  std::string rows = "x,y\n";
+  for (int k = 0; k < 40; ++k) rows += fmt::format("{},{}\n", k, 2 * k + k % 3);
+  write_text(data, rows);
+  const std::string run = (folder / "run").string();
+  ASSERT_EQ(run_tribench(
+                {"run", "--data-file", data, "--target", "y", "--methods", "linear", "--out", run})
+                .status,
+            0);
+  for (const char* table : {"results.csv", "front.csv"}) {
+    std::filesystem::remove(folder / "run" / table);
+  }
+  const ProgramRun compared = run_tribench({"compare", run, run});
+  EXPECT_EQ(compared.output.find("no cell in common"), std::string::npos) << compared.output;
 }
 
 }  // namespace

@@ -105,6 +105,16 @@ TEST(MotionCheck, AVelocityOfTheOtherSignIsMendedByTurningOneOfTheTwo) {
   }
 }
 
+// 60 is nearer than the 57.3 of degrees.
+TEST(MotionCheck, MinutesAreNotDegrees) {
+  Told told = sine(0);
+  std::vector<double> acceleration;
+  for (const double t : told.time) acceleration.push_back(-2.4 * std::sin(2 * t));
+  for (double& t : told.time) t /= 60;
+  EXPECT_THAT(complaint_about(told.time, told.position, told.velocity, acceleration),
+              HasSubstr("say --roles 't=time[min]'"));
+}
+
 // Noise is not another joint's motion: a joint that rests, and one whose columns are mostly noise.
 TEST(MotionCheck, NoiseIsNotRefused) {
   RandomStream random(3);

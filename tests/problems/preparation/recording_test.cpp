@@ -398,6 +398,26 @@ std::string strokes_to(std::span<const double> ends) {
   return text;
 }
 
+// Told or derived, the inertia of a motor torque is no effect that friction lacks.
+TEST(PreparedRecording, AnInertiaIsInTheBaseWhetherItsAccelerationIsToldOrNot) {
+  const auto swing = [](bool told) {
+    std::string text = told ? "t,q,v,tau,g,a\n" : "t,q,v,tau,g\n";
+    for (int k = 0; k < 4000; ++k) {
+      const double t = 0.005 * k;
+      const double a = -std::sin(t);
+      const double g = 3 * std::sin(std::sin(t));
+      text += fmt::format("{:.3f},{:.7f},{:.7f},{:.6f},{:.6f}", t, std::sin(t), std::cos(t),
+                          (std::cos(t) > 0 ? 1.0 : -1.0) + 0.7 * a + g, g);
+      text += told ? fmt::format(",{:.6f}\n", a) : "\n";
+    }
+    DataOptions options;
+    options.roles = parse_roles("tau=motor_torque[Nm],g=gravity_torque[Nm]", "--roles");
+    return prepared(text, options).rigid;
+  };
+  EXPECT_THAT(swing(false), Contains("derived_acceleration"));
+  EXPECT_THAT(swing(true), Contains("a"));
+}
+
 // Straight ways to and fro: the speed turns within a few rows, which are left out; of what is left
 // the acceleration is the noise of the position.
 TEST(PreparedRecording, AnAccelerationThatIsNoiseTellsNoInertia) {

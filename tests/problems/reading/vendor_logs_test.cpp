@@ -245,6 +245,11 @@ TEST(VendorLogs, WhatARecorderSaysOfItselfIsNoRow) {
   // Between commas such a line is a row: a mark of the recorder's in a column of its own.
   expect_read("mark,t_s,q_rad,tau_Nm\n-,0,0.1,1\n#,0.002,0.2,2\n", told("mark=none"),
               {0.002, 0.2, 2});
+  // Below numbers it is a comment, as wide as it may be.
+  expect_read("t_s,q_rad,tau_Nm\n0,0.1,1\n#0.001,9,9\n0.002,0.2,2\n# end, of, file\n", told(""),
+              {0.002, 0.2, 2});
+  // Separators with blanks to either side.
+  expect_read("t_s , q_rad , tau_Nm\n0 , 0.1 , 1\n0.002 , 0.2 , 2\n", told(""), {0.002, 0.2, 2});
   // A monitor of the bus writes its counters so.
   expect_read("t_s,enc [counts],tau_Nm\n0,0x0A,1\n0.002,0x10,2\n", told("", {}, {16.0, {}}),
               {0.002, 2 * M_PI, 2});
