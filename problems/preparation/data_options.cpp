@@ -130,6 +130,7 @@ DataFile read_named_columns(std::span<const std::filesystem::path> files, DataOp
   options.names_tell = false;
   DataFile file = read_data(files, options, std::move(used));
   check_converted(file);
+  for (std::string& one : what_was_converted(file)) file.warnings.push_back(std::move(one));
   if (std::string made = make_torque(file.data, options); !made.empty()) {
     file.warnings.push_back(std::move(made));
   }
