@@ -373,10 +373,16 @@ std::optional<std::string> remark_on_turns(const DataFile& file) {
   if (turns <= kMostTurns) return std::nullopt;
   const ColumnReading& position = *reading_of(file, Role::position);
   if (position.unit_from == "--roles") return std::nullopt;
+  // The same figures in degrees.
+  const double turns_if_degrees = turns * std::numbers::pi / 180;
+  const bool may_be_degrees = position.unit == "rad" && turns_if_degrees <= kMostTurns;
   return fmt::format(
       "'{0}' ranges over {1:.3g} turns, taken for the joint's: if they are the motor's, say "
-      "--roles '{0}=position[{2}@motor]' with --gear-ratio (and so of the velocity)",
-      position.column, turns, position.unit);
+      "--roles '{0}=position[{2}@motor]' with --gear-ratio{3} (and so of the velocity)",
+      position.column, turns, position.unit,
+      may_be_degrees
+          ? fmt::format("; if its figures are degrees, '{}=position[deg]'", position.column)
+          : "");
 }
 
 std::optional<double> delay_of(std::span<const double> time,

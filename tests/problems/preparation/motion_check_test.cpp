@@ -115,6 +115,16 @@ TEST(MotionCheck, MinutesAreNotDegrees) {
               HasSubstr("say --roles 't=time[min]'"));
 }
 
+TEST(MotionCheck, AJointThatTurnsOftenMayBeToldInDegrees) {
+  const auto remark = [](double swing) {
+    return remark_on_turns(parse_csv(
+        fmt::format("t_s,position_rad,torque_Nm\n0,0,1\n1,{0},1\n2,-{0},1\n", swing), "d.csv"));
+  };
+  EXPECT_EQ(remark(1), std::nullopt);
+  EXPECT_THAT(remark(60).value_or(""), HasSubstr("are degrees, 'position_rad=position[deg]'"));
+  EXPECT_THAT(remark(60000).value_or(""), ::testing::Not(HasSubstr("degrees")));
+}
+
 // Noise is not another joint's motion: a joint that rests, and one whose columns are mostly noise.
 TEST(MotionCheck, NoiseIsNotRefused) {
   RandomStream random(3);
