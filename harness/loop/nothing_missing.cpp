@@ -33,7 +33,7 @@ void doubt_nothing_missing(JudgedDiagnosis& whole, std::vector<std::string> need
   if (!whole.needed.empty()) return;
   whole.needed.push_back(
       by_effect ? fmt::format("more movements, some tens: '{}' would leave {:.0f} % less error on "
-                              "those left out, but too few of them carry it to be sure",
+                              "those left out, and these are too few to say what it is",
                               seen.family, 100 * less_by_effect)
                 : fmt::format("more movements of every kind: a smooth function of the same inputs "
                               "leaves {:.0f} % less error on those left out, but too few of them "
