@@ -177,6 +177,11 @@ UserProblem read_one(const TomlTable& table, const fs::path& folder) {
   }
   table.read("target", own.target);
   table.read("inputs", own.inputs);
+  if (table.has("inputs") && own.inputs.empty()) {
+    throw_bad_input(
+        "the problem has no inputs", table.place("inputs"),
+        "name columns, or leave the key out: then every other column of numbers is one");
+  }
   own.reading = read_data_options(table);
   table.read("group", own.group);
   own.category = read_category(table, own.inputs);

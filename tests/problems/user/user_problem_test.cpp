@@ -333,6 +333,7 @@ TEST_F(UserProblems, AMovedTextNamesTheSameFiles) {
 TEST_F(UserProblems, RefusesWhatCannotBeMeant) {
   EXPECT_THAT(refusal("inputs = [\"w\"]\n"), AllOf(HasSubstr("one.csv"), HasSubstr("'w'")));
   EXPECT_THAT(refusal("inputs = [\"tau\"]\n"), HasSubstr("is the target and an input"));
+  EXPECT_THAT(refusal("inputs = []\n"), AllOf(HasSubstr("g.toml:5"), HasSubstr("has no inputs")));
   EXPECT_THAT(refusal("inputs = [\"sgn_tau\"]\n"), HasSubstr("is the sign of the target"));
   EXPECT_THAT(refusal("fold = \"x\"\n"), AllOf(HasSubstr("g.toml:5"), HasSubstr("'fold'")));
   EXPECT_THAT(refusal("folder = \"logs\"\n"), HasSubstr("both name the data"));
