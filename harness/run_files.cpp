@@ -93,6 +93,12 @@ void write_result_files(const std::filesystem::path& folder, std::vector<CellRes
   write_file(folder / "trace.csv", trace_csv(trace));
 }
 
+JournalContents rewrite_result_files(const std::filesystem::path& folder) {
+  JournalContents journal = read_journal(folder / "cells.jsonl");
+  write_result_files(folder, journal.results);
+  return journal;
+}
+
 bool is_harmful(const Record& record) {
   return is_limit(record.reason.kind) || record.reason.kind == FailureKind::crashed;
 }

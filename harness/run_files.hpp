@@ -21,6 +21,10 @@ void write_plan_files(const std::filesystem::path& folder, const Grid& grid);
 // order the cells ended in.
 void write_result_files(const std::filesystem::path& folder, std::vector<CellResult> results);
 
+// The same from the folder's journal, which is the truth, even of a run that was killed. Returns
+// it, with what was damaged in it.
+JournalContents rewrite_result_files(const std::filesystem::path& folder);
+
 // Whether a cell failed by what it did to its process, so that running it again costs as much
 // again: a crash or a limit.
 bool is_harmful(const Record& record);

@@ -15,7 +15,6 @@
 #include "foundation/standard_streams.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/number_options.hpp"
-#include "harness/journal.hpp"
 #include "harness/run_files.hpp"
 #include "reports/comparison.hpp"
 #include "reports/history.hpp"
@@ -59,18 +58,18 @@ ExitStatus status_of(const Comparison& comparison) {
   }
 }
 
-// The journal is the truth where the other files are behind it, as those of a run that was killed.
+// With its tables as the journal has them where they are behind it, as those of a run that was
+// killed.
 RunFolder read_whole_run(const std::filesystem::path& folder) {
   const std::filesystem::path journal = folder / "cells.jsonl";
   const std::filesystem::path results = folder / "results.csv";
   if (std::filesystem::exists(journal) &&
       (!std::filesystem::exists(results) ||
        std::filesystem::last_write_time(results) < std::filesystem::last_write_time(journal))) {
-    const JournalContents contents = read_journal(journal);
+    const JournalContents contents = rewrite_result_files(folder);
     for (const std::string& damage : contents.damage) {
       print_message(fmt::format("tribench: {}\n", damage));
     }
-    write_result_files(folder, contents.results);
   }
   return read_run_folder(folder);
 }

@@ -35,13 +35,12 @@ struct ReportArguments {
   std::string out;
 };
 
-// The journal is the truth, even of a run that was killed; without one the CSV files are.
+// Without a journal the CSV files are the truth.
 void refresh_files(const std::filesystem::path& folder, const std::string& data) {
   if (!std::filesystem::exists(folder / "cells.jsonl")) return;
-  const JournalContents journal = read_journal(folder / "cells.jsonl");
+  const JournalContents journal = rewrite_result_files(folder);
   for (const std::string& damage : journal.damage)
     print_message(fmt::format("tribench: {}\n", damage));
-  write_result_files(folder, journal.results);
   const Catalogue catalogue = full_catalogue_of_run(folder, data);
   for (const std::string& line : write_curves(folder, journal.results, catalogue)) {
     print_message(fmt::format("tribench: {}\n", line));

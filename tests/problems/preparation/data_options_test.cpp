@@ -48,7 +48,8 @@ TEST(DataOptions, ATableOfTomlSaysWhatTheCommandLineSays) {
   EXPECT_NEAR(read.data.at("i").values[0], 0.1, 1e-15);
   EXPECT_EQ(read.data.at("i").role, Role::motor_torque);
   EXPECT_EQ(read.data.at("i").unit, "N m");
-  EXPECT_THAT(read.warnings, ::testing::Contains(::testing::HasSubstr("in mA (--roles): read as A")));
+  EXPECT_THAT(read.warnings,
+              ::testing::Contains(::testing::HasSubstr("in mA (--roles): read as A")));
 }
 
 TEST(DataOptions, ATableOfTomlMaySayTheRateOfItsRows) {
