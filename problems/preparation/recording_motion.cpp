@@ -373,6 +373,25 @@ bool is_effort(Role role) {
          role == Role::friction_torque || role == Role::external_torque;
 }
 
+// A bus brings a torque late, a filter smears it, too: friction's step where the motion turns would
+// pass for a friction that follows its velocity late. The rows into which a filter of that delay
+// would smear one; of the motion as it was recorded.
+std::vector<char> unsettled_rows(const Dataset& data, double delay) {
+  const std::vector<double>& t = data.find(Role::time)->values;
+  const std::vector<double>& v = data.find(Role::velocity)->values;
+  std::vector<char> rows(data.rows(), 0);
+  double turned = -INFINITY;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (data.movement[i] != data.movement[i - 1]) {
+      turned = -INFINITY;
+    } else if (v[i] * v[i - 1] <= 0) {
+      turned = t[i];
+    }
+    rows[i] = t[i] - turned < kFilterSettles * delay ? 1 : 0;
+  }
+  return rows;
+}
+
 // The mark of a row holds for the instants beside it.
 void round_up(Channel& mark) {
   for (double& one : mark.values) one = std::ceil(one);
@@ -381,7 +400,6 @@ void round_up(Channel& mark) {
 }  // namespace
 
 void settle_effort(PreparedRecording& out, const Drive& drive) {
-  constexpr double kSurelyLate = 5;  // standard errors
   const Channel* time = find_channel(out.data, Role::time);
   if (time == nullptr || !is_regular(time->values, out.data.movement)) return;
   const std::vector<double> t = time->values;
@@ -390,26 +408,34 @@ void settle_effort(PreparedRecording& out, const Drive& drive) {
   const std::optional<EffortDelay> delay =
       effort_delay(out.data, pieces, drive.gear_ratio,
                    change != nullptr ? change->values : std::span<const double>{});
-  // No filter and no bus brings a torque before its motion.
-  if (!delay || delay->value <= kSurelyLate * delay->error) return;
+  if (!delay || !is_surely_late(*delay)) return;
   std::vector<char> lost(out.data.rows(), 0);
+  const std::vector<char> unsettled = unsettled_rows(out.data, delay->value);
   std::string names;
   for (Channel& channel : out.data.channels) {
     if (is_effort(channel.role)) {
       names += (names.empty() ? "'" : " and '") + channel.name + "'";
     } else if (channel.role != Role::time) {
       // The motion is smooth, the torque is not: between its rows nobody knows it.
-      Shifted shifted = shifted_by(t, channel.values, pieces, -delay->value);
+      Shifted shifted = delay->is_filter ? filtered_by(t, channel.values, pieces, delay->value)
+                                         : shifted_by(t, channel.values, pieces, -delay->value);
       channel.values = std::move(shifted.values);
       lost = std::move(shifted.lost);
       if (channel.name == kUnresolvedChannel) round_up(channel);
     }
   }
   out.notes.push_back(fmt::format(
-      "{} comes {:.3g} ms after the motion that it belongs to (+/- {:.2g} ms): beside it stands "
+      "{} comes {:.3g} ms after the motion that it belongs to (+/- {:.2g} ms{}): beside it stands "
       "the motion of then",
-      names, 1e3 * delay->value, 1e3 * delay->error));
-  leave_out(out, lost, "have no motion of their torque's instant");
+      names, 1e3 * delay->value, 1e3 * delay->error,
+      delay->is_filter ? ", as through a first-order filter" : ""));
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    if (unsettled[i] != 0) lost[i] = 1;
+  }
+  leave_out(
+      out, lost,
+      "have no motion of their torque's instant, or follow a reversal so closely that a filter "
+      "as late would smear friction's step over them");
 }
 
 // Rows of no piece have no derived motion, and the ends of a piece a poor one.

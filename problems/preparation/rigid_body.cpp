@@ -19,8 +19,6 @@ constexpr std::size_t kFewestFitRows = 100;
 constexpr double kLeastRange = 0.3;  // rad: less does not tell gravity from an offset
 constexpr int kRounds = 4;
 constexpr double kCreeping = 0.02;  // of the top speed
-// Neighbouring rows repeat one another: of this many only one is new to the standard errors.
-constexpr double kRowsThatAgree = 20;
 
 struct Fit {
   Eigen::VectorXd coefficients;

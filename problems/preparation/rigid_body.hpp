@@ -14,6 +14,9 @@
 
 namespace tribench {
 
+// Neighbouring rows repeat one another: of this many only one is new to the standard errors.
+inline constexpr double kRowsThatAgree = 20;
+
 // A column that the others explain to this share of its size says nothing of its own.
 inline constexpr double kDependent = 1e-6;
 
