@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -21,6 +22,8 @@ namespace {
 // Of a range's ends, so that its width is a number too.
 constexpr double kLargest = 0.25 * std::numeric_limits<double>::max();
 constexpr int kMostRows = 1'000'000;
+constexpr std::array<const char*, 4> kTestKeys = {"test_draw", "test_low", "test_high",
+                                                  "test_step"};
 constexpr double kMostWhole = 0x1p53;  // up to here every whole number is a double
 
 template <typename Value>
@@ -69,6 +72,16 @@ void check_draw(const TomlTable& table, const Draw& draw) {
   }
 }
 
+bool has_lattice(const SuiteProblem& problem, Draw SuiteInput::*draw) {
+  return std::ranges::any_of(problem.inputs, [draw](const SuiteInput& input) {
+    return (input.*draw).kind == Draw::Kind::lattice;
+  });
+}
+
+bool draws_rows(const SuiteProblem& problem, Draw SuiteInput::*draw) {
+  return problem.file.empty() && !has_lattice(problem, draw);
+}
+
 // The rows that the lattices of the inputs make together.
 void check_lattice(const TomlTable& table, const SuiteProblem& problem, Draw SuiteInput::*draw) {
   double rows = 1;
@@ -78,6 +91,75 @@ void check_lattice(const TomlTable& table, const SuiteProblem& problem, Draw Sui
         fmt::format("the lattices of problem '{}' have {:.3g} points", problem.name, rows),
         table.place(), fmt::format("{} at most: give larger steps", kMostRows));
   }
+}
+
+// A number of rows that nothing takes would be read as one that is kept.
+void check_rows(const TomlTable& table, const SuiteProblem& problem, const char* key,
+                std::size_t rows, Draw SuiteInput::*draw) {
+  const bool counts = draws_rows(problem, draw);
+  if (counts && rows == 0) {
+    throw_bad_input(fmt::format("nothing says how many rows of '{}' to draw", problem.name),
+                    table.place(), fmt::format("give '{}', here or in [suite]", key));
+  }
+  if (counts || !table.has(key)) return;
+  const bool is_test = draw == &SuiteInput::test;
+  throw_bad_input(
+      fmt::format("'{}' is {} and a {} has as many rows as it has", key, rows,
+                  problem.file.empty() ? "lattice" : "table"),
+      table.place(key),
+      is_test && problem.file.empty()
+          ? "leave it out; or leave out all that is said of the inputs' test points, and so many "
+            "are drawn"
+          : "leave it out");
+}
+
+// Of a number in [suite], which is for all problems that draw.
+void check_default_rows(const TomlTable& head, const Suite& suite, const char* key,
+                        Draw SuiteInput::*draw) {
+  const bool counts = std::ranges::any_of(
+      suite.problems, [draw](const SuiteProblem& one) { return draws_rows(one, draw); });
+  if (counts || suite.problems.empty() || !head.has(key)) return;
+  throw_bad_input(fmt::format("'{}' is given and no problem of the suite draws {}", key,
+                              draw == &SuiteInput::test ? "test rows" : "rows"),
+                  head.place(key),
+                  "leave it out: lattices and tables have as many rows as they have");
+}
+
+// Where nothing is said of the unseen rows, those of a lattice lie between its points: on them they
+// would have been seen.
+void set_lattice_tests(const TomlTable& table, SuiteProblem& problem, bool says_test) {
+  const bool is_same =
+      has_lattice(problem, &SuiteInput::train) &&
+      std::ranges::all_of(problem.inputs, [](const SuiteInput& input) {
+        return input.test == input.train && input.train.kind == Draw::Kind::lattice;
+      });
+  if (says_test && is_same) {
+    throw_bad_input(
+        fmt::format("the test points of problem '{}' are its training points", problem.name),
+        table.place("inputs"),
+        "give another test_step, or leave test_low, test_high, test_step and test_draw out: then "
+        "'test_rows' points are drawn");
+  }
+  if (says_test) return;
+  for (SuiteInput& input : problem.inputs) {
+    if (input.test.kind == Draw::Kind::lattice) input.test.kind = Draw::Kind::uniform;
+  }
+}
+
+// A step that no lattice takes.
+void check_steps(const TomlTable& table, const SuiteInput& input) {
+  const bool trains = input.train.kind == Draw::Kind::lattice;
+  const bool tests = input.test.kind == Draw::Kind::lattice;
+  for (const char* key : {"step", "test_step"}) {
+    const bool counts = std::string_view(key) == "step" ? trains || tests : tests;
+    if (counts || !table.has(key)) continue;
+    throw_bad_input(fmt::format("'{}' of input '{}' is of no lattice", key, input.name),
+                    table.place(key), "leave it out, or give draw = \"lattice\"");
+  }
+}
+
+bool says_test_points(const TomlTable& input) {
+  return std::ranges::any_of(kTestKeys, [&](const char* key) { return input.has(key); });
 }
 
 SuiteInput read_input(const TomlTable& table) {
@@ -102,6 +184,7 @@ SuiteInput read_input(const TomlTable& table) {
   input.test.kind = choose(table, "test_draw", kinds, input.train.kind);
   read_range(table, "test_low", "test_high", "test_step", input.test);
   check_draw(table, input.test);
+  check_steps(table, input);
   return input;
 }
 
@@ -121,19 +204,23 @@ SuiteProblem read_problem(const TomlTable& table, const SuiteProblem& defaults) 
   table.read("test_rows", test_rows, 1, kMostRows);
   problem.rows = static_cast<std::size_t>(rows);
   problem.test_rows = static_cast<std::size_t>(test_rows);
-  const std::vector<std::string> keys = {"name",      "unit",     "meaning",   "draw",
-                                         "sign",      "low",      "high",      "step",
-                                         "test_draw", "test_low", "test_high", "test_step"};
+  std::vector<std::string> keys = {"name", "unit", "meaning", "draw",
+                                   "sign", "low",  "high",    "step"};
+  keys.insert(keys.end(), kTestKeys.begin(), kTestKeys.end());
+  bool says_test = false;
   for (const TomlTable& input : table.array_of_tables("inputs", keys)) {
     problem.inputs.push_back(read_input(input));
+    says_test = says_test || says_test_points(input);
   }
+  set_lattice_tests(table, problem, says_test);
   check_lattice(table, problem, &SuiteInput::train);
   check_lattice(table, problem, &SuiteInput::test);
-  if (!problem.file.empty()) return problem;
-  if (problem.law.empty() || problem.inputs.empty()) {
+  if (problem.file.empty() && (problem.law.empty() || problem.inputs.empty())) {
     throw_bad_input(fmt::format("problem '{}' has no data", problem.name), table.place(),
                     "give it 'law' and 'inputs', or 'file'");
   }
+  check_rows(table, problem, "rows", problem.rows, &SuiteInput::train);
+  check_rows(table, problem, "test_rows", problem.test_rows, &SuiteInput::test);
   return problem;
 }
 
@@ -229,6 +316,8 @@ Suite read_suite(std::string_view toml, const std::string& file_name) {
                       table.place("name"), "give one of them another name");
     }
   }
+  check_default_rows(head, suite, "rows", &SuiteInput::train);
+  check_default_rows(head, suite, "test_rows", &SuiteInput::test);
   for (const TomlTable& table :
        file.array_of_tables("reference", {"method", "seconds", "recovered", "low", "high"})) {
     suite.references.push_back(read_reference(table));

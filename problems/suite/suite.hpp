@@ -30,6 +30,7 @@ struct Draw {
   double high = 1;
   double step = 0;
   Sign sign = Sign::as_drawn;
+  bool operator==(const Draw&) const = default;
 };
 
 // How many values a lattice has, a whole number; 1 for what is drawn.
@@ -50,7 +51,7 @@ struct SuiteProblem {
   std::string law;
   std::vector<SuiteInput> inputs;  // of a law; a table's are its other columns
   std::string unit = "-";          // of the target
-  std::size_t rows = 0;            // of drawn inputs; lattices have as many as they have
+  std::size_t rows = 0;  // of drawn inputs, 1 at least; lattices have as many as they have
   std::size_t test_rows = 0;
   std::string file;  // of a table: its path in the folder of data; empty: the law is drawn
   std::string target = "target";

@@ -78,10 +78,6 @@ Table lattice_table(const SuiteProblem& wanted, const std::vector<const Draw*>& 
 
 Table drawn_table(const SuiteProblem& wanted, const std::vector<const Draw*>& draws,
                   std::size_t rows, const Law& law, RandomStream& random) {
-  if (rows == 0) {
-    throw_bad_input("nothing says how many rows to draw", wanted.name,
-                    "give 'rows' and 'test_rows'");
-  }
   Table table;
   table.columns.resize(draws.size());
   std::vector<double> point(draws.size());

@@ -51,8 +51,9 @@ std::string complaint(const std::string& toml) {
 }
 
 std::string with_input(const std::string& input) {
-  return "[suite]\nname = \"s\"\n[[problem]]\nname = \"p\"\nlaw = \"x\"\ninputs = [{ " + input +
-         " }]\n";
+  return "[suite]\nname = \"s\"\nrows = 3\ntest_rows = 3\n[[problem]]\nname = \"p\"\nlaw = "
+         "\"x\"\ninputs = [{ " +
+         input + " }]\n";
 }
 
 // A file of results as others publish them, in a folder of its own.
@@ -108,7 +109,7 @@ TEST(Suite, AMistakeInPublishedResultsIsNamedWithItsLine) {
 
 TEST(Suite, AMistakeIsNamedWithItsPlaceAndMend) {
   EXPECT_EQ(complaint(with_input("name = \"x\", low = 1, high = 2")), "accepted");
-  EXPECT_NE(complaint(with_input("name = \"x\", low = 2, high = 1")).find("s.toml:6"),
+  EXPECT_NE(complaint(with_input("name = \"x\", low = 2, high = 1")).find("s.toml:8"),
             std::string::npos);
   EXPECT_NE(complaint(with_input("name = \"x\", low = 0, high = 1, draw = \"log\"")).find("low"),
             std::string::npos);
@@ -171,10 +172,58 @@ TEST(Suite, ALatticeHasEveryPointAndLeavesOutWhereTheLawIsNotFinite) {
 TEST(Suite, ALatticeStaysBelowItsHighEndWhereNoStepMeetsIt) {
   const Suite suite = read_suite(
       "[suite]\nname = \"s\"\n[[problem]]\nname = \"p\"\nlaw = \"x\"\ninputs = [{ name = "
-      "\"x\", low = 0, high = 1, draw = \"lattice\", step = 0.4 }]\n",
+      "\"x\", low = 0, high = 1, draw = \"lattice\", step = 0.4, test_step = 0.3 }]\n",
       "s.toml");
   const Problem problem = make_suite_problem(suite, suite.problems[0], read_product, {}, 1);
   EXPECT_EQ(problem.stages[0].train.columns[0], (std::vector<double>{0, 0.4, 0.8}));
+}
+
+constexpr const char* kLattice = "name = \"x\", low = 0, high = 1, draw = \"lattice\", step = 0.1";
+
+std::string lattice_suite(const std::string& head, const std::string& problem,
+                          const std::string& of_input = {}) {
+  return "[suite]\nname = \"s\"\n" + head + "[[problem]]\nname = \"p\"\nlaw = \"x\"\n" + problem +
+         "inputs = [{ " + kLattice + of_input + " }]\n";
+}
+
+TEST(Suite, UnseenRowsOfALatticeAreDrawnBetweenItsPointsWhereNothingIsSaidOfThem) {
+  const Suite suite = read_suite(lattice_suite("", "test_rows = 50\n"), "s.toml");
+  const Problem problem = make_suite_problem(suite, suite.problems[0], read_product, {}, 1);
+  const std::vector<double>& train = problem.stages[0].train.columns[0];
+  const std::vector<double>& test = problem.test.columns[0];
+  EXPECT_EQ(train.size(), 11U);
+  EXPECT_EQ(test.size(), 50U);
+  for (const double x : test) {
+    EXPECT_TRUE(x >= 0 && x <= 1);
+    EXPECT_EQ(std::ranges::count(train, x), 0);
+  }
+  EXPECT_EQ(make_suite_problem(suite, suite.problems[0], read_product, {}, 1).test.columns[0],
+            test);
+  EXPECT_NE(make_suite_problem(suite, suite.problems[0], read_product, {}, 2).test.columns[0],
+            test);
+}
+
+TEST(Suite, ANumberOfRowsThatALatticeOrATableWouldNotTakeIsRefused) {
+  const auto expect = [](const std::string& toml, const std::string& text) {
+    const std::string said = complaint(toml);
+    EXPECT_NE(said.find(text), std::string::npos) << said;
+  };
+  expect(lattice_suite("", "test_rows = 50\nrows = 20\n"),
+         "s.toml:7:8: 'rows' is 20 and a lattice");
+  expect(lattice_suite("", "test_rows = 50\n", ", test_step = 0.01"), "s.toml:6:13: 'test_rows'");
+  expect(lattice_suite("", ""),
+         "s.toml:3:1: nothing says how many rows of 'p' to draw; give 'test_rows'");
+  expect(lattice_suite("rows = 20\n", "test_rows = 50\n"),
+         "s.toml:3:8: 'rows' is given and no problem");
+  expect(lattice_suite("test_rows = 9\n", "", ", test_step = 0.01"), "s.toml:3:13: 'test_rows'");
+  expect(lattice_suite("", "", ", test_low = 0, test_step = 0.1"),
+         "the test points of problem 'p' are its training points");
+  expect("[suite]\nname = \"s\"\n[[problem]]\nname = \"p\"\nfile = \"a.csv\"\nrows = 9\n",
+         "s.toml:6:8: 'rows' is 9 and a table");
+  expect(with_input("name = \"x\", low = 0, high = 1, step = 0.1"),
+         "'step' of input 'x' is of no lattice");
+  EXPECT_EQ(complaint(lattice_suite("test_rows = 9\n", "")), "accepted");
+  EXPECT_EQ(complaint(lattice_suite("", "", ", test_step = 0.01")), "accepted");
 }
 
 TEST(Suite, ALawThatIsFiniteNowhereIsRefused) {
