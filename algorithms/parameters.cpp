@@ -17,9 +17,8 @@ const ParameterSpec& spec_of(const std::vector<ParameterSpec>& specs, const std:
     if (spec.name == name) return spec;
     names.push_back(spec.name);
   }
-  throw_bad_input(
-      fmt::format("unknown parameter '{}'", name), {},
-      names.empty() ? std::string("this algorithm has no parameters") : did_you_mean(name, names));
+  throw_bad_input(fmt::format("unknown parameter '{}'", name), {},
+                  names.empty() ? std::string("it has no parameters") : did_you_mean(name, names));
 }
 
 const char* kind_name(const ParameterSpec& spec) {

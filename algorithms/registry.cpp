@@ -56,7 +56,8 @@ std::unique_ptr<Regressor> Registry::make(std::string_view name,
   const AlgorithmEntry& entry = find(name);
   std::map<std::string, ParameterValue> parameters = given;
   if (round > 0 && entry.widened != nullptr) parameters.merge(entry.widened(round));
-  return entry.make(Parameters(entry.parameters, parameters),
+  return entry.make(at_place(fmt::format("method '{}'", name),
+                             [&] { return Parameters(entry.parameters, parameters); }),
                     [this](std::string_view other, int its) { return make(other, {}, its); });
 }
 

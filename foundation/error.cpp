@@ -74,7 +74,11 @@ std::string compose(std::string_view what, std::string_view place, std::string_v
 }  // namespace
 
 Error::Error(ErrorKind kind, std::string_view what, std::string_view place, std::string_view mend)
-    : std::runtime_error(compose(what, place, mend)), kind_(kind), place_(place), mend_(mend) {}
+    : std::runtime_error(compose(what, place, mend)),
+      kind_(kind),
+      text_(what),
+      place_(place),
+      mend_(mend) {}
 
 void throw_bad_input(std::string_view what, std::string_view place, std::string_view mend) {
   throw Error(ErrorKind::bad_input, what, place, mend);

@@ -28,11 +28,13 @@ class Error : public std::runtime_error {
         std::string_view mend = {});
 
   ErrorKind kind() const { return kind_; }
+  const std::string& text() const { return text_; }  // `what` alone
   const std::string& place() const { return place_; }
   const std::string& mend() const { return mend_; }
 
  private:
   ErrorKind kind_;
+  std::string text_;
   std::string place_;
   std::string mend_;
 };
@@ -40,5 +42,20 @@ class Error : public std::runtime_error {
 // Throws an Error of kind bad_input.
 [[noreturn]] void throw_bad_input(std::string_view what, std::string_view place = {},
                                   std::string_view mend = {});
+
+// Runs `action`; an Error that leaves it gets the place of the text that `action` was made from,
+// and its own place, if it has one, comes to stand behind that. One that has a place in the same
+// file already keeps it: it is nearer.
+template <typename Action>
+decltype(auto) at_place(std::string_view place, Action action) {
+  try {
+    return action();
+  } catch (const Error& error) {
+    const std::string_view file = place.substr(0, place.find(':'));
+    if (place.empty() || error.place().starts_with(std::string(file) + ":")) throw;
+    const std::string inner = error.place().empty() ? std::string() : error.place() + ": ";
+    throw Error(error.kind(), inner + error.text(), place, error.mend());
+  }
+}
 
 }  // namespace tribench

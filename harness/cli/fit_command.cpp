@@ -149,7 +149,10 @@ ChosenMethod choose_method(const FitArguments& arguments, const Registry& regist
   const AlgorithmEntry& entry = registry.find(arguments.method);
   for (const std::string& text : arguments.parameters) {
     const auto [name, value] = name_and_value(text, "--parameter");
-    parameters[name] = parameter_from_text(entry.parameters, name, value);
+    parameters[name] =
+        at_place(fmt::format("method '{}'", entry.name), [&, &key = name, &given = value] {
+          return parameter_from_text(entry.parameters, key, given);
+        });
   }
   WidenedMethod widened;
   if (entry.widened != nullptr) {
