@@ -9,6 +9,7 @@
 #include "foundation/error.hpp"
 #include "foundation/plain_name.hpp"
 #include "foundation/text.hpp"
+#include "harness/catalogue.hpp"
 
 namespace tribench {
 namespace {
@@ -93,7 +94,11 @@ Grid make_data_grid(const DataGridRequest& request, const Registry& registry) {
 std::vector<std::string> reading_notes(const Grid& grid) {
   std::vector<std::string> notes;
   for (const user::UserProblem& own : grid.own) {
-    const DataFile rows = user::read_user_rows(own);
+    const DataFile rows = at_place(own.place, [&] {
+      DataFile read = user::read_user_rows(own);
+      user::check_user_problem(own, read.data, law_reader());
+      return read;
+    });
     for (const std::string& warning : rows.warnings) {
       notes.push_back(fmt::format("{}: {}", own.name, warning));
     }

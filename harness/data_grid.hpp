@@ -24,7 +24,9 @@ struct DataGridRequest {
 // name.
 Grid make_data_grid(const DataGridRequest& request, const Registry& registry);
 
-// For people, one sentence each: what reading the files of own problems came upon.
+// For people, one sentence each: what reading the files of own problems came upon. Throws Error
+// (bad_input) with the problem's place in the grid file where they cannot be read, or do not bear
+// what is said of them.
 std::vector<std::string> reading_notes(const Grid& grid);
 
 }  // namespace tribench

@@ -73,7 +73,8 @@ struct Method {
 };
 
 // What is held to be known before the data, the same for every method: the highest power of an
-// input, by the input's name. A problem without an input of that name is not concerned.
+// input, by the input's name. A problem without an input of that name is not concerned; one of the
+// grid's problems has it.
 struct Prior {
   std::map<std::string, int> max_degree;
 

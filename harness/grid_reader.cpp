@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 
 #include "foundation/error.hpp"
 #include "foundation/glob.hpp"
@@ -14,6 +13,7 @@
 #include "foundation/text.hpp"
 #include "foundation/toml_table.hpp"
 #include "harness/grid.hpp"
+#include "harness/grid_checks.hpp"
 #include "harness/sweep.hpp"
 #include "problems/user/user_problem_text.hpp"
 #include "problems/variant.hpp"
@@ -25,23 +25,6 @@ namespace {
 constexpr double kMaxSeconds = 30.0 * 24 * 3600;
 constexpr std::int64_t kMaxDegree = 16;
 constexpr std::uint64_t kMaxSeeds = 1'000'000;
-
-// Runs `action`; what it throws gets the place in the file.
-template <typename Action>
-auto at_place(const std::string& place, Action action) {
-  try {
-    return action();
-  } catch (const Error& error) {
-    const std::string inner = error.place().empty() ? std::string() : error.place() + ": ";
-    std::string what = error.what();
-    // what() is composed of place, text and mend; take the text alone.
-    if (!inner.empty() && what.starts_with(inner)) what.erase(0, inner.size());
-    if (!error.mend().empty() && what.ends_with("; " + error.mend())) {
-      what.erase(what.size() - error.mend().size() - 2);
-    }
-    throw Error(error.kind(), what, place, error.mend());
-  }
-}
 
 CellLimits read_limits(const TomlTable& table, CellLimits limits) {
   table.read("evaluations", limits.evaluations);
@@ -85,7 +68,7 @@ Prior read_prior(const TomlTable& table) {
   return prior;
 }
 
-std::vector<OperatorSet> known_operator_sets(const TomlTable& file) {
+std::vector<OperatorSet> known_operator_sets(const TomlTable& file, DeclaredNames& declared) {
   std::vector<OperatorSet> sets = operator_sets();
   for (const TomlTable& table :
        file.array_of_tables("operator_set", {"name", "summary", "operators", "proved_free_only"})) {
@@ -97,6 +80,11 @@ std::vector<OperatorSet> known_operator_sets(const TomlTable& file) {
     bool proved_free_only = false;
     table.read("name", name);
     require_plain_name(name, "an operator set", table.place("name"));
+    if (std::ranges::count(operator_sets(), name, &OperatorSet::name) > 0) {
+      throw_bad_input(fmt::format("'{}' is the name of a set that there is", name),
+                      table.place("name"), "give yours another name");
+    }
+    declared.add(name, table.place("name"), table.place());
     table.read("summary", summary);
     table.read("operators", words);
     table.read("proved_free_only", proved_free_only);
@@ -176,33 +164,28 @@ Method read_external(const TomlTable& table, const Registry& registry,
   return method;
 }
 
-void check_names(const std::vector<Method>& methods, const std::string& file_name) {
-  std::set<std::string> seen;
-  for (const Method& method : methods) {
-    require_plain_name(method.name, "a method", file_name);
-    if (!seen.insert(method.name).second) {
-      throw_bad_input(fmt::format("two methods are called '{}'", method.name), file_name,
-                      "give one of them another name");
-    }
-  }
+void add_method(const TomlTable& table, DeclaredNames& declared, const Method& method) {
+  require_plain_name(method.name, "a method", table.place("name"));
+  declared.add(method.name, table.place("name"), table.place());
 }
 
 // The registry's algorithms under their own names, then what the file declares; a [[method]]
 // with its algorithm's own name replaces it.
 std::vector<Method> known_methods(const TomlTable& file, const Registry& registry,
                                   const std::vector<std::string>& set_names,
-                                  const CellLimits& limits, const std::string& file_name) {
+                                  const CellLimits& limits, DeclaredNames& declared_names) {
   std::vector<Method> declared;
   for (const TomlTable& table :
        file.array_of_tables("method", {"name", "algorithm", "parameters"})) {
     declared.push_back(read_method(table, registry));
+    add_method(table, declared_names, declared.back());
   }
   std::vector<std::string> keys = {"name", "command", "operators", "fixed_form", "parameters"};
   keys.insert(keys.end(), limit_keys().begin(), limit_keys().end());
   for (const TomlTable& table : file.array_of_tables("external", keys)) {
     declared.push_back(read_external(table, registry, set_names, limits));
+    add_method(table, declared_names, declared.back());
   }
-  check_names(declared, file_name);
   std::vector<Method> all;
   for (const AlgorithmEntry& entry : registry.entries()) {
     const bool replaced = std::ranges::any_of(
@@ -260,11 +243,9 @@ std::vector<std::string> pick_problems(const TomlTable& table,
       plain.push_back(base);
       continue;
     }
+    at_place(table.place("problems"), [&suffix = suffix] { check_variant(suffix); });
     for (const std::string& name : pick_names({base}, known, "problem", table.place("problems"))) {
       const std::string whole = name + suffix;
-      at_place(table.place("problems"), [&, &suffix = suffix] {
-        return varied({name, {}, {}, {}}, suffix);
-      });
       if (std::ranges::count(variants, whole) == 0) variants.push_back(whole);
     }
   }
@@ -273,17 +254,26 @@ std::vector<std::string> pick_problems(const TomlTable& table,
   return picked;
 }
 
+// The patterns of one of [grid]'s lists, without what they change in a problem.
+std::vector<std::string> patterns_of(const TomlTable& table, std::string_view key) {
+  std::vector<std::string> globs;
+  table.read(key, globs);
+  for (std::string& glob : globs) glob = split_variant(glob).first;
+  return globs;
+}
+
 // Puts their names before those that are known.
 void read_own_problems(const TomlTable& file, const std::string& file_name,
-                       std::vector<std::string>& names, Grid& grid) {
+                       std::vector<std::string>& names, DeclaredNames& declared, Grid& grid) {
   if (file.has("suite")) return;  // its [[problem]]s are the suite's
   grid.own = user::read_user_problems(file, std::filesystem::path(file_name).parent_path());
   std::vector<std::string> all;
   for (const user::UserProblem& own : grid.own) {
     if (std::ranges::count(names, own.name) > 0) {
-      throw_bad_input(fmt::format("there is another problem '{}'", own.name), file.place("problem"),
+      throw_bad_input(fmt::format("there is another problem '{}'", own.name), own.place,
                       "give yours another name");
     }
+    declared.add(own.name, own.place, own.place);
     all.push_back(own.name);
   }
   all.insert(all.end(), names.begin(), names.end());
@@ -297,11 +287,13 @@ void read_axes(const TomlTable& file, const TomlTable& table, const Registry& re
   if (file.has("suite") && !table.has("problems")) {
     grid.problems = problems_of_suite(read_suite_name(file), names);
   } else {
-    read_own_problems(file, file_name, names, grid);
+    DeclaredNames declared("problem", "problems");
+    read_own_problems(file, file_name, names, declared, grid);
     // A file that brings problems and names none runs those.
     grid.problems = table.has("problems") || grid.own.empty()
                         ? pick_problems(table, names)
                         : names_of(grid.own, [](const auto& own) { return own.name; });
+    if (table.has("problems")) declared.require_named(patterns_of(table, "problems"));
   }
   const Sweep sweep(table, registry);
   grid.problems = sweep.over_problems(grid.problems);
@@ -317,20 +309,24 @@ void read_axes(const TomlTable& file, const TomlTable& table, const Registry& re
       grid.suites.push_back(suite);
     }
   }
-  const std::vector<OperatorSet> sets = known_operator_sets(file);
+  DeclaredNames declared_sets("operator set", "operators");
+  const std::vector<OperatorSet> sets = known_operator_sets(file, declared_sets);
   const std::vector<std::string> set_names =
       names_of(sets, [](const OperatorSet& set) { return set.name(); });
   const std::vector<std::string> chosen_sets =
       table.has("operators") ? pick(table, "operators", set_names, "operator set")
                              : std::vector<std::string>{"paper"};
+  declared_sets.require_named(patterns_of(table, "operators"));
   for (const OperatorSet& set : sets) {
     if (std::ranges::count(chosen_sets, set.name()) > 0) grid.operators.push_back(set);
   }
+  DeclaredNames declared_methods("method", "methods");
   const std::vector<Method> known =
-      known_methods(file, registry, set_names, grid.limits, file_name);
+      known_methods(file, registry, set_names, grid.limits, declared_methods);
   const std::vector<std::string> chosen =
       pick(table, "methods", names_of(known, [](const Method& method) { return method.name; }),
            "method");
+  declared_methods.require_named(patterns_of(table, "methods"));
   sweep.require_methods(chosen);
   for (const Method& method : known) {
     if (std::ranges::count(chosen, method.name) == 0) continue;
@@ -348,10 +344,13 @@ void require_quarantined_cells(const Grid& grid, const std::string& place) {
                               grid.series().front().key()));
 }
 
-}  // namespace
+struct ReadGrid {
+  Grid grid;
+  std::string reference_place;
+};
 
-Grid parse_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
-                const Catalogue& catalogue) {
+ReadGrid read_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
+                   const Catalogue& catalogue) {
   const toml::table root = parse_toml(toml, file_name);
   std::vector<std::string> keys = {"grid",   "budget",   "retry",        "prior",
                                    "method", "external", "operator_set", "problem"};
@@ -383,7 +382,16 @@ Grid parse_grid(std::string_view toml, const std::string& file_name, const Regis
   read_axes(file, table, registry, catalogue, file_name, grid);
   grid.require_runnable(table.place());
   require_quarantined_cells(grid, table.place("quarantine"));
-  return grid;
+  require_readable_laws(grid);
+  require_inputs_of_prior(grid, catalogue, file.table("prior", {"max_degree"}).place("max_degree"));
+  return {std::move(grid), table.place("reference")};
+}
+
+}  // namespace
+
+Grid parse_grid(std::string_view toml, const std::string& file_name, const Registry& registry,
+                const Catalogue& catalogue) {
+  return read_grid(toml, file_name, registry, catalogue).grid;
 }
 
 Grid load_grid(const std::filesystem::path& file, const Registry& registry,
@@ -392,15 +400,15 @@ Grid load_grid(const std::filesystem::path& file, const Registry& registry,
     throw_bad_input("the grid file cannot be read", file.string(),
                     "give the path of a TOML file, or a name from: tribench list grids");
   }
-  Grid grid = parse_grid(read_file(file), file.string(), registry, catalogue);
+  auto [grid, place] = read_grid(read_file(file), file.string(), registry, catalogue);
   if (grid.reference_file.empty()) return grid;
   const std::filesystem::path reference = file.parent_path() / grid.reference_file;
   const auto figures = read_file_if_there(reference);
   if (!figures) {
-    throw_bad_input("the published figures cannot be read", reference.string(),
-                    "'reference' is a path from the grid file's folder");
+    throw_bad_input(fmt::format("the published figures '{}' cannot be read", reference.string()),
+                    place, "'reference' is a path from the grid file's folder");
   }
-  check_published(*figures, reference.string());
+  at_place(place, [&] { check_published(*figures, reference.string()); });
   grid.reference = *figures;
   return grid;
 }

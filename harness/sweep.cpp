@@ -45,6 +45,9 @@ Sweep::Sweep(const TomlTable& grid, const Registry& registry) : registry_(regist
       table.read(key, values);
       if (values.empty()) throw_bad_input(fmt::format("'{}' has no value", key), table.place(key));
       multiply("", values.size(), table.place(key));
+      for (const double value : values) {
+        at_place(table.place(key), [&] { check_variant(variant_suffix(key, value)); });
+      }
       suffixes_ = multiplied(suffixes_, key, values);
       continue;
     }
@@ -63,7 +66,6 @@ std::vector<std::string> Sweep::over_problems(const std::vector<std::string>& pr
   std::vector<std::string> all;
   for (const std::string& problem : problems) {
     for (const std::string& suffix : suffixes_) {
-      if (!suffix.empty()) varied({problem, {}, {}, {}}, suffix);  // refuses what it cannot be
       all.push_back(problem + suffix);
     }
   }
@@ -82,11 +84,8 @@ std::vector<Method> Sweep::over_method(const Method& method) const {
         require_plain_name(changed.name, "a method of a sweep", parameter.place);
         changed.parameters[parameter.name] = value;
         if (!changed.is_external()) {
-          try {
-            registry_.make(changed.algorithm, changed.parameters);
-          } catch (const Error& error) {
-            throw_bad_input(error.what(), parameter.place);
-          }
+          at_place(parameter.place,
+                   [&] { return registry_.make(changed.algorithm, changed.parameters); });
         }
         more.push_back(std::move(changed));
       }

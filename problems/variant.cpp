@@ -34,14 +34,21 @@ Changes parse_changes(const std::string& suffix, const std::string& name) {
     const std::string key = part.substr(0, equals);
     const auto value = equals < part.size() ? read_number<double>(part.substr(equals + 1))
                                             : std::optional<double>();
+    const auto refuse = [&](std::string_view wanted) {
+      throw_bad_input(fmt::format("'~{}' changes nothing in a problem", part), name, wanted);
+    };
     if (key == kNoiseKey && value && *value >= 0 && *value <= kMostNoise) {
       changes.noise = *value;
     } else if (key == kRowsKey && value && *value >= 1 && *value <= kMostRows &&
                *value == std::floor(*value)) {
       changes.rows = static_cast<std::size_t>(*value);
+    } else if (key == kNoiseKey) {
+      refuse(fmt::format("noise is a share of the target's deviation, a number from 0 to {}",
+                         kMostNoise));
+    } else if (key == kRowsKey) {
+      refuse(fmt::format("rows is a whole number from 1 to {}", kMostRows));
     } else {
-      throw_bad_input(fmt::format("'~{}' changes nothing in a problem", part), name,
-                      "write ~noise=0.1 (a share of the target's deviation) or ~rows=50");
+      refuse("write ~noise=0.1 (a share of the target's deviation) or ~rows=50");
     }
   }
   return changes;
@@ -90,6 +97,10 @@ std::pair<std::string, std::string> split_variant(std::string_view name) {
 
 std::string variant_suffix(std::string_view key, double value) {
   return fmt::format("~{}={}", key, value);
+}
+
+void check_variant(const std::string& suffix) {
+  if (!suffix.empty()) parse_changes(suffix, {});
 }
 
 ProblemEntry varied(const ProblemEntry& base, const std::string& suffix) {

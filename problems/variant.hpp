@@ -22,6 +22,9 @@ std::string variant_suffix(std::string_view key, double value);
 inline constexpr std::string_view kNoiseKey = "noise";
 inline constexpr std::string_view kRowsKey = "rows";
 
+// Throws Error (bad_input) for a suffix that says nothing; an empty one is none.
+void check_variant(const std::string& suffix);
+
 // The entry under the whole name. Throws Error (bad_input) for a suffix that says nothing, and,
 // when it is made, where the problem has not as many rows. Noise and rows are drawn with the
 // problem's seed, the same for every method.

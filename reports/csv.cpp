@@ -148,9 +148,9 @@ void CsvReading::complain(std::string text) {
   if (complaints.size() < kComplaintsKept) complaints.push_back(std::move(text));
 }
 
-CsvReading read_csv(std::istream& in,
-                    const std::function<void(const std::vector<std::string_view>&)>& header,
-                    const std::function<void(const std::vector<std::string_view>&)>& row) {
+CsvReading read_csv(
+    std::istream& in, const std::function<void(const std::vector<std::string_view>&)>& header,
+    const std::function<void(const std::vector<std::string_view>&, std::size_t)>& row) {
   CsvReading reading;
   RowReader reader(in);
   std::vector<std::string_view> fields;
@@ -162,7 +162,7 @@ CsvReading read_csv(std::istream& in,
     if (reader.at_blank_line() && width > 1) continue;
     const std::size_t line = reader.line() + (torn ? 1 : 0);
     if (fields.size() == width) {
-      row(fields);
+      row(fields, line);
       ++reading.rows;
     } else if (torn) {
       reading.complain(fmt::format("line {}: torn off in its middle; dropped", line));
@@ -172,6 +172,14 @@ CsvReading read_csv(std::istream& in,
     }
   }
   return reading;
+}
+
+CsvReading read_csv(std::istream& in,
+                    const std::function<void(const std::vector<std::string_view>&)>& header,
+                    const std::function<void(const std::vector<std::string_view>&)>& row) {
+  return read_csv(
+      in, header,
+      [&row](const std::vector<std::string_view>& fields, std::size_t /*line*/) { row(fields); });
 }
 
 }  // namespace tribench

@@ -36,9 +36,14 @@ struct CsvReading {
   void complain(std::string text);      // counts a dropped row
 };
 
-// Calls `row` with the fields of every complete row after the header; the views die with the call.
+// Calls `row` with the fields of every complete row after the header and with the number of the
+// row's last line, from 1; the views die with the call.
 // A last line without its end is taken for torn and dropped unless it has all its fields; a row
 // with another number of fields than the header is dropped. `header` is called once, first.
+CsvReading read_csv(
+    std::istream& in, const std::function<void(const std::vector<std::string_view>&)>& header,
+    const std::function<void(const std::vector<std::string_view>&, std::size_t)>& row);
+// The same for whoever needs no line.
 CsvReading read_csv(std::istream& in,
                     const std::function<void(const std::vector<std::string_view>&)>& header,
                     const std::function<void(const std::vector<std::string_view>&)>& row);

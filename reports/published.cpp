@@ -44,18 +44,20 @@ std::vector<PublishedFigure> parse_published(std::istream& in,
     }
   };
   const CsvReading reading =
-      read_csv(in, keep_names, [&](const std::vector<std::string_view>& fields) {
+      read_csv(in, keep_names, [&](const std::vector<std::string_view>& fields, std::size_t line) {
         std::map<std::string, std::string, std::less<>> row;
         for (std::size_t i = 0; i < fields.size(); ++i) row[names[i]] = fields[i];
         PublishedFigure figure{row["table"], row["problem"], row["published_method"],
                                row["kind"],  row["methods"], kMissing,
                                kMissing,     row["note"]};
-        if (read_csv_number(row["mae"], figure.mae) &&
-            read_csv_number(row["complexity"], figure.complexity)) {
-          figures.push_back(std::move(figure));
-        } else {
+        const auto take = [&](const char* column, double& value) {
+          if (read_csv_number(row[column], value)) return true;
           complaints.push_back(
-              fmt::format("'{}' or '{}' is not a number", row["mae"], row["complexity"]));
+              fmt::format("line {}: '{}' in column {} is no number", line, row[column], column));
+          return false;
+        };
+        if (take("mae", figure.mae) && take("complexity", figure.complexity)) {
+          figures.push_back(std::move(figure));
         }
       });
   complaints.insert(complaints.end(), reading.complaints.begin(), reading.complaints.end());

@@ -30,17 +30,18 @@ struct Condition {
   std::optional<double> value;  // where the text is a number
 };
 
-Condition parse_condition(const std::string& text) {
+Condition parse_condition(const std::string& text, const std::string& place) {
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos || equals == 0) {
-    throw_bad_input(fmt::format("'{}' is no COLUMN=VALUE", text), "--where");
+    throw_bad_input(fmt::format("'{}' is no COLUMN=VALUE", text), place, "as in axis=2");
   }
   std::string wanted = text.substr(equals + 1);
   const std::optional<double> value = number_of(wanted);
   return {text.substr(0, equals), std::move(wanted), value};
 }
 
-std::vector<std::size_t> rows_where(const DataFile& file, const Condition& condition) {
+std::vector<std::size_t> rows_where(const DataFile& file, const Condition& condition,
+                                    const std::string& place) {
   std::vector<std::size_t> rows;
   const auto texts = std::ranges::find(file.texts, condition.column, &TextColumn::name);
   if (texts != file.texts.end()) {
@@ -57,9 +58,10 @@ std::vector<std::size_t> rows_where(const DataFile& file, const Condition& condi
     }
     return rows;
   }
-  const std::vector<double>& column = file.data.at(condition.column).values;
+  const std::vector<double>& column =
+      at_place(place, [&]() -> const Channel& { return file.data.at(condition.column); }).values;
   if (!condition.value) {
-    throw_bad_input(fmt::format("'{}' is no number", condition.text), "--where",
+    throw_bad_input(fmt::format("'{}' is no number", condition.text), place,
                     fmt::format("column '{}' holds numbers", condition.column));
   }
   for (std::size_t i = 0; i < column.size(); ++i) {
@@ -76,11 +78,12 @@ void keep(Values& values, const std::vector<std::size_t>& rows) {
   values.resize(rows.size());
 }
 
-void keep_rows_where(DataFile& file, const Condition& condition) {
-  const std::vector<std::size_t> rows = rows_where(file, condition);
+void keep_rows_where(DataFile& file, const Condition& condition, const std::string& place) {
+  const std::vector<std::size_t> rows = rows_where(file, condition, place);
   if (rows.empty()) {
-    throw_bad_input("no row is left",
-                    fmt::format("--where {}={}", condition.column, condition.text));
+    throw_bad_input(
+        fmt::format("no row has {} = {}: none is left", condition.column, condition.text), place,
+        "give a value that the column has");
   }
   if (file.in_turn.starts_with(condition.column + " = ")) file.in_turn.clear();
   for (Channel& channel : file.data.channels) keep(channel.values, rows);
@@ -112,14 +115,14 @@ TorqueConstant parse_torque_constant(const std::string& text, const std::string&
 DataFile read_data(std::span<const std::filesystem::path> files, const DataOptions& options,
                    std::optional<std::vector<std::string>> used, bool spare) {
   std::optional<Condition> condition;
-  if (!options.where.empty()) condition = parse_condition(options.where);
+  if (!options.where.empty()) condition = parse_condition(options.where, options.where_place);
   if (condition && used) used->push_back(condition->column);
   const bool chain = !options.urdf.empty();
   CsvOptions csv{options.roles,   options.drop_missing, options.names_tell,
                  std::move(used), options.joint,        options.drive,
                  chain,           options.sample_rate,  spare};
   DataFile file = read_csv_files(files, csv);
-  if (condition) keep_rows_where(file, *condition);
+  if (condition) keep_rows_where(file, *condition, options.where_place);
   if (options.flip_sign) flip_torques(file.data);
   if (!options.urdf.empty()) add_chain_gravity(file, options.urdf);
   return file;

@@ -33,7 +33,8 @@ struct DataOptions {
   bool names_tell = true;  // false: a column is what `roles` says, and nothing else
   bool drop_missing = false;
   bool flip_sign = false;
-  std::string where;  // COLUMN=VALUE, a number or a word: only these rows
+  std::string where;                    // COLUMN=VALUE, a number or a word: only these rows
+  std::string where_place = "--where";  // how messages call it: the option, or its place in a file
   std::optional<int> joint;
   std::filesystem::path urdf = {};  // of the arm, for the gravity torque of `joint`
   Drive drive;

@@ -40,6 +40,7 @@ DataOptions read_data_options(const TomlTable& table) {
   DataOptions options;
   options.roles = parse_roles(text(table, "roles"), table.place("roles"));
   options.where = text(table, "where");
+  if (table.has("where")) options.where_place = table.place("where");
   table.read("drop_missing", options.drop_missing);
   table.read("flip_sign", options.flip_sign);
   if (table.has("joint")) {

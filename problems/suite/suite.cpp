@@ -195,6 +195,7 @@ SuiteProblem read_problem(const TomlTable& table, const SuiteProblem& defaults) 
   require_plain_name(problem.name, "a problem", table.place("name"));
   table.read("note", problem.note);
   table.read("law", problem.law);
+  problem.law_place = table.place("law");
   table.read("unit", problem.unit);
   table.read("file", problem.file);
   table.read("target", problem.target);

@@ -49,6 +49,7 @@ struct SuiteProblem {
   std::string note;
   // A law over the inputs, in the project's formulas; of a table it may be unknown (empty).
   std::string law;
+  std::string law_place;           // "mine.toml:9:7"
   std::vector<SuiteInput> inputs;  // of a law; a table's are its other columns
   std::string unit = "-";          // of the target
   std::size_t rows = 0;  // of drawn inputs, 1 at least; lattices have as many as they have

@@ -71,7 +71,8 @@ Table lattice_table(const SuiteProblem& wanted, const std::vector<const Draw*>& 
     }
   }
   if (table.rows() == 0) {
-    throw_bad_input(fmt::format("'{}' is finite nowhere on its lattice", wanted.law), wanted.name);
+    throw_bad_input(fmt::format("'{}' is finite nowhere on its lattice", wanted.law),
+                    wanted.law_place, "check the inputs' ranges");
   }
   return table;
 }
@@ -86,7 +87,7 @@ Table drawn_table(const SuiteProblem& wanted, const std::vector<const Draw*>& dr
     for (int tries = 0; !std::isfinite(value); ++tries) {
       if (tries == kMostDraws) {
         throw_bad_input(fmt::format("'{}' is finite at none of {} points", wanted.law, kMostDraws),
-                        wanted.name, "check its ranges");
+                        wanted.law_place, "check the inputs' ranges");
       }
       for (std::size_t j = 0; j < draws.size(); ++j) point[j] = draw_value(*draws[j], random);
       value = law(point);
@@ -145,12 +146,8 @@ void add_stage(Problem& problem, Table train, std::string law) {
 Problem make_law_problem(const Suite& suite, const SuiteProblem& wanted, const LawReader& laws,
                          RandomStream random) {
   Problem problem = blank_problem(suite, wanted);
-  std::vector<std::string> names;
-  for (const SuiteInput& input : wanted.inputs) {
-    names.push_back(input.name);
-    problem.inputs.push_back(box_of(input));
-  }
-  const Law law = laws(wanted.law, names);
+  for (const SuiteInput& input : wanted.inputs) problem.inputs.push_back(box_of(input));
+  const Law law = read_law_of(wanted, laws);
   add_stage(problem, law_table(wanted, false, law, random.split("train")), wanted.law);
   problem.test = law_table(wanted, true, law, random.split("test"));
   return problem;
@@ -288,6 +285,12 @@ std::vector<std::filesystem::path> suite_files(const std::optional<std::filesyst
 }
 
 }  // namespace
+
+Law read_law_of(const SuiteProblem& wanted, const LawReader& laws) {
+  std::vector<std::string> names;
+  for (const SuiteInput& input : wanted.inputs) names.push_back(input.name);
+  return at_place(wanted.law_place, [&] { return laws(wanted.law, names); });
+}
 
 Problem make_suite_problem(const Suite& suite, const SuiteProblem& wanted, const LawReader& laws,
                            const std::optional<std::filesystem::path>& data, std::uint64_t seed) {

@@ -22,6 +22,9 @@ using Law = std::function<double(std::span<const double> point)>;
 using LawReader =
     std::function<Law(const std::string& formula, std::span<const std::string> names)>;
 
+// The law of a problem that draws its points. Throws Error (bad_input) with its place in the file.
+Law read_law_of(const SuiteProblem& wanted, const LawReader& laws);
+
 // The seed draws the points (of a table: the rows for the test). Points at which the law is not
 // finite are drawn again. The input box is that of the draws, of a table that of the training rows.
 // Throws Error (bad_input) where a table is not in the folder, and where no finite point is found.

@@ -137,18 +137,18 @@ std::vector<std::string> inputs_of(const UserProblem& own, const Dataset& data) 
   return inputs;
 }
 
+suite::Law law_of(const UserProblem& own, const suite::LawReader& laws,
+                  const std::vector<std::string>& inputs) {
+  if (!laws) throw Error(ErrorKind::failed, "no reader of laws was handed in", own.name);
+  return at_place(fmt::format("the law of problem '{}'", own.name),
+                  [&] { return laws(own.law, inputs); });
+}
+
 // The law's value in every row; none where it is not known.
 std::vector<double> truth_of(const UserProblem& own, const suite::LawReader& laws,
                              const std::vector<std::string>& inputs, const Dataset& data) {
   if (own.law.empty()) return {};
-  if (!laws) throw Error(ErrorKind::failed, "no reader of laws was handed in", own.name);
-  const suite::Law law = [&] {
-    try {
-      return laws(own.law, inputs);
-    } catch (const Error& error) {
-      throw_bad_input(error.what(), fmt::format("the law of problem '{}'", own.name));
-    }
-  }();
+  const suite::Law law = law_of(own, laws, inputs);
   std::vector<std::vector<double>> columns;
   const ChannelIndex channels(data);
   for (const std::string& input : inputs) columns.push_back(input_values(channels, input));
@@ -164,25 +164,41 @@ std::vector<double> truth_of(const UserProblem& own, const suite::LawReader& law
   return truth;
 }
 
+void check_units_and_box(const UserProblem& own, const std::vector<std::string>& inputs) {
+  for (const auto& [column, unit] : own.units) {
+    if (column == own.target || std::ranges::count(inputs, column) > 0) continue;
+    throw_bad_input(fmt::format("a unit is given for '{}', which is no input", column), own.name,
+                    did_you_mean(column, inputs));
+  }
+  for (const auto& [column, range] : own.box) {
+    if (std::ranges::count(inputs, column) > 0) continue;
+    throw_bad_input(fmt::format("the box has '{}', which is no input", column), own.name,
+                    did_you_mean(column, inputs));
+  }
+}
+
+void check_gravity(const UserProblem& own, const suite::LawReader& laws) {
+  if (!own.motion || own.motion->gravity.empty() || !laws) return;
+  try {
+    laws(own.motion->gravity, std::vector<std::string>{"q"});
+  } catch (const Error& error) {
+    throw_bad_input(error.what(), fmt::format("the gravity of problem '{}'", own.name),
+                    "write a formula in q, the position");
+  }
+}
+
 void set_units_and_box(const UserProblem& own, Problem& problem) {
-  const std::vector<std::string> names = problem.input_names();
+  check_units_and_box(own, problem.input_names());
   for (const auto& [column, unit] : own.units) {
     const auto input = std::ranges::find(problem.inputs, column, &Input::name);
     if (input != problem.inputs.end()) {
       input->unit = unit;
-    } else if (column == problem.target) {
-      problem.target_unit = unit;
     } else {
-      throw_bad_input(fmt::format("a unit is given for '{}', which is no input", column), own.name,
-                      did_you_mean(column, names));
+      problem.target_unit = unit;
     }
   }
   for (const auto& [column, range] : own.box) {
     const auto input = std::ranges::find(problem.inputs, column, &Input::name);
-    if (input == problem.inputs.end()) {
-      throw_bad_input(fmt::format("the box has '{}', which is no input", column), own.name,
-                      did_you_mean(column, names));
-    }
     if (input->low < range.first || input->high > range.second) {
       throw_bad_input(fmt::format("'{}' is from {} to {} in the rows and from {} to {} in the box",
                                   column, input->low, input->high, range.first, range.second),
@@ -252,14 +268,7 @@ void set_motion(const UserProblem& own, const Dataset& data, const std::vector<c
                 const suite::LawReader& laws, Problem& problem) {
   if (!own.motion) return;
   check_motion_roles(data);
-  if (!own.motion->gravity.empty() && laws) {
-    try {
-      laws(own.motion->gravity, std::vector<std::string>{"q"});
-    } catch (const Error& error) {
-      throw_bad_input(error.what(), fmt::format("the gravity of problem '{}'", own.name),
-                      "write a formula in q, the position");
-    }
-  }
+  check_gravity(own, laws);
   std::vector<std::size_t> kept;
   for (std::size_t r = 0; r < data.rows(); ++r) {
     if (test.empty() || test[static_cast<std::size_t>(data.movement[r])] != 0) kept.push_back(r);
@@ -307,6 +316,14 @@ void require_unchanged(const UserProblem& own) {
 }
 
 DataFile read_user_rows(const UserProblem& own) { return read_rows(own, own.files); }
+
+void check_user_problem(const UserProblem& own, const Dataset& data, const suite::LawReader& laws) {
+  std::vector<std::string> inputs = inputs_of(own, data);
+  if (!own.law.empty()) law_of(own, laws, inputs);
+  check_gravity(own, laws);
+  if (!own.category.empty()) inputs.push_back(own.category);
+  check_units_and_box(own, inputs);
+}
 
 Problem make_user_problem(const UserProblem& own, const suite::LawReader& laws,
                           std::uint64_t seed) {

@@ -49,6 +49,7 @@ struct HeldOut {
 
 struct UserProblem {
   std::string name;
+  std::string place = {};         // of its table in a grid, "mine.toml:9:1"; empty: of options
   std::vector<DataSource> files;  // one campaign, in this order
   std::string target;
   std::vector<std::string> inputs;  // empty: every other column of numbers
@@ -77,6 +78,10 @@ void require_unchanged(const UserProblem& own);
 // The rows as they were read, with roles, groups and warnings of the reader; every column that is
 // a number. Throws Error (bad_input) with file, line and column.
 DataFile read_user_rows(const UserProblem& own);
+
+// Whether its columns bear what is said of them: the law and the gravity can be read, units and
+// ranges are of inputs. Throws Error (bad_input).
+void check_user_problem(const UserProblem& own, const Dataset& data, const suite::LawReader& laws);
 
 // The seed draws the rows that test. Throws Error (bad_input) where a file cannot be read or has
 // changed, a column is not there, nothing or everything is held out, a row lies outside the box.

@@ -167,6 +167,7 @@ std::string read_category(const TomlTable& table, const std::vector<std::string>
 
 UserProblem read_one(const TomlTable& table, const fs::path& folder) {
   UserProblem own;
+  own.place = table.place();
   table.require("target");
   table.read("name", own.name);
   if (table.has("name")) require_plain_name(own.name, "a problem", table.place("name"));

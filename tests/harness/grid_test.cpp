@@ -9,6 +9,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/output_file.hpp"
+#include "harness/data_grid.hpp"
 #include "harness/run_files.hpp"
 #include "tests/support/paths.hpp"
 
@@ -65,15 +66,21 @@ TEST(Grid, TakesPublishedFiguresAlongIntoTheRunsFolder) {
   const Grid again = load_grid(folder / "run/grid.toml", small_registry(), Catalogue());
   EXPECT_EQ(again.reference, figures);
   EXPECT_EQ(print_grid(again), print_grid(grid));
+  const auto said = [&]() -> std::string {
+    try {
+      load_grid(folder / "g.toml", small_registry(), Catalogue());
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
   write_file(folder / "published.csv", "table\n");
-  EXPECT_THROW(load_grid(folder / "g.toml", small_registry(), Catalogue()), Error);
+  EXPECT_THAT(said(), AllOf(HasSubstr("g.toml:4:13: "), HasSubstr("published.csv: column")));
+  write_file(folder / "published.csv",
+             figures + "T1,A/j2/no_load,SR,symbolic,grid_alpha,low,15,\n");
+  EXPECT_THAT(said(), AllOf(HasSubstr("g.toml:4:13: "), HasSubstr("line 3: 'low' in column mae")));
   std::filesystem::remove(folder / "published.csv");
-  try {
-    load_grid(folder / "g.toml", small_registry(), Catalogue());
-    ADD_FAILURE() << "a missing file was accepted";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("published.csv"));
-  }
+  EXPECT_THAT(said(), AllOf(HasSubstr("g.toml:4:13: "), HasSubstr("published.csv")));
   std::filesystem::remove_all(folder);
 }
 
@@ -129,6 +136,94 @@ TEST(Grid, RefusesUnknownNamesAndValuesOfAnotherKind) {
               HasSubstr("'problem' in the file must be written as [[problem]]"));
 }
 
+// What a table declares and no list names would not run, without a word.
+TEST(Grid, RefusesATableThatNoListNames) {
+  const std::string method = "[[method]]\nname = \"many\"\nalgorithm = \"grid_alpha\"\n";
+  EXPECT_THAT(refusal(kAxes + method),
+              AllOf(HasSubstr("g.toml:4:1"), HasSubstr("the method 'many' would not run"),
+                    HasSubstr("add \"many\" to 'methods'")));
+  EXPECT_THAT(refusal(std::string(kAxes) + "[[external]]\nname = \"many\"\ncommand = [\"true\"]\n"),
+              HasSubstr("g.toml:4:1: the method 'many' would not run"));
+  EXPECT_THAT(
+      refusal(std::string(kAxes) + "[[operator_set]]\nname = \"mine\"\noperators = [\"+\"]\n"),
+      HasSubstr("g.toml:4:1: the operator set 'mine' would not run"));
+  EXPECT_EQ(
+      refusal("[grid]\nproblems = [\"A/j2/load\"]\nmethods = [\"grid_*\", \"!many\"]\n" + method),
+      "accepted");
+
+  const std::filesystem::path folder = testing::scratch_folder() / "tribench_grid_unnamed";
+  std::filesystem::create_directories(folder / "logs");
+  for (const char* name : {"a.csv", "b.csv"}) write_file(folder / "logs" / name, "x,y\n1,2\n3,4\n");
+  const std::string problem =
+      fmt::format("[[problem]]\ntarget = \"y\"\nfolder = \"{}\"\n", (folder / "logs").string());
+  EXPECT_THAT(refusal(kAxes + problem),
+              AllOf(HasSubstr("g.toml:4:1"), HasSubstr("the problem 'a' would not run")));
+  // Of a table that is a problem a file, one of them is enough.
+  EXPECT_EQ(refusal("[grid]\nproblems = [\"b~noise=1\"]\nmethods = [\"grid_*\"]\n" + problem),
+            "accepted");
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Grid, RefusesTwoTablesOfOneName) {
+  const std::string method = "[[method]]\nname = \"many\"\nalgorithm = \"grid_alpha\"\n";
+  EXPECT_THAT(refusal(kAxes + method + method),
+              AllOf(HasSubstr("g.toml:8:8"), HasSubstr("two methods are called 'many'")));
+  const std::string set = "[[operator_set]]\nname = \"paper\"\noperators = [\"+\"]\n";
+  EXPECT_THAT(refusal(kAxes + set),
+              AllOf(HasSubstr("g.toml:5:8"), HasSubstr("'paper' is the name of a set")));
+}
+
+TEST(Grid, RefusesALawOfASuiteThatCannotBeRead) {
+  const std::filesystem::path data = testing::scratch_folder() / "tribench_grid_laws";
+  std::filesystem::create_directories(data / "suites");
+  write_file(data / "suites/own.toml",
+             "[suite]\nname = \"own\"\nrows = 9\ntest_rows = 9\n"
+             "[[problem]]\nname = \"good\"\nlaw = \"2*x\"\ninputs = [{ name = \"x\", low = 0, high "
+             "= 1 }]\n"
+             "[[problem]]\nname = \"bad\"\nlaw = \"2*z\"\ninputs = [{ name = \"x\", low = 0, high "
+             "= 1 }]\n");
+  const auto said = [&](const std::string& problem) -> std::string {
+    try {
+      parse_grid("[grid]\nproblems = [\"own/" + problem + "\"]\nmethods = [\"grid_alpha\"]\n",
+                 "g.toml", small_registry(), Catalogue(data));
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(said("good"), "accepted");
+  EXPECT_THAT(said("bad~noise=1"),
+              AllOf(HasSubstr("own.toml:11:7"), HasSubstr("'z' is not an input")));
+  std::filesystem::remove_all(data);
+}
+
+// Before anything runs: a cell would say it, when it is too late.
+TEST(Grid, AProblemsTableIsHeldAgainstItsColumns) {
+  const std::filesystem::path folder = testing::scratch_folder() / "tribench_grid_columns";
+  std::filesystem::create_directories(folder);
+  write_file(folder / "a.csv", "x,z,y\n1,2,3\n3,4,5\n");
+  const auto said = [&](const std::string& more) -> std::string {
+    const Grid grid = parse_text(
+        fmt::format(
+            "[grid]\nmethods = [\"grid_alpha\"]\n[[problem]]\ntarget = \"y\"\nfile = \"{}\"\n",
+            (folder / "a.csv").string()) +
+        more);
+    try {
+      reading_notes(grid);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(said("law = \"2*x + z\"\nunits = { x = \"m\", y = \"N\" }\n"), "accepted");
+  EXPECT_THAT(said("law = \"2*w\"\n"),
+              AllOf(HasSubstr("g.toml:3:1: "), HasSubstr("'w' is not an input")));
+  EXPECT_THAT(said("units = { w = \"m\" }\n"), AllOf(HasSubstr("g.toml:3:1: "), HasSubstr("'w'")));
+  EXPECT_THAT(said("box = { w = [0, 9] }\n"), AllOf(HasSubstr("g.toml:3:1: "), HasSubstr("'w'")));
+  EXPECT_THAT(said("inputs = [\"w\"]\n"), AllOf(HasSubstr("g.toml:3:1: "), HasSubstr("'w'")));
+  std::filesystem::remove_all(folder);
+}
+
 TEST(Grid, RefusesToRunNothing) {
   EXPECT_THAT(refusal("[grid]\nproblems = []\nmethods = [\"*\"]\n"), HasSubstr("no cell"));
   EXPECT_THAT(refusal("[grid]\nproblems = [\"A/*\"]\nmethods = []\n"), HasSubstr("no cell"));
@@ -182,7 +277,8 @@ TEST(Grid, AQuarantineNeedNotKnowWhatFilesHashTo) {
 TEST(Grid, ChecksParametersAgainstTheAlgorithm) {
   EXPECT_THAT(refusal(std::string(kAxes) + "[[method]]\nname = \"a2\"\nalgorithm = \"grid_alpha\"\n"
                                            "parameters = { island = 3 }\n"),
-              AllOf(HasSubstr("g.toml:7"), HasSubstr("did you mean islands?")));
+              AllOf(HasSubstr("g.toml:7"), HasSubstr("method 'grid_alpha'"),
+                    HasSubstr("did you mean islands?")));
   EXPECT_THAT(refusal(std::string(kAxes) + "[[method]]\nname = \"a2\"\nalgorithm = \"grid_alpha\"\n"
                                            "parameters = { islands = 300 }\n"),
               HasSubstr("out of range"));
@@ -209,7 +305,9 @@ TEST(Grid, RefusesMoreCellsThanARunCanHold) {
 }
 
 TEST(Grid, ReadsAPriorAndHandsItToTheProblemsInputs) {
-  const Grid grid = parse_text(std::string(kAxes) + "[prior]\nmax_degree = { g = 1 }\n");
+  const std::string axes =
+      "[grid]\nproblems = [\"A/j2/*load\"]\nmethods = [\"grid_alpha\"]\n[prior]\nmax_degree = ";
+  const Grid grid = parse_text(axes + "{ g = 1 }\n");
   EXPECT_EQ(grid.prior.max_degree.at("g"), 1);
   EXPECT_EQ(parse_text(print_grid(grid)).prior, grid.prior);
   Problem problem = Catalogue().find("A/j2/load").make(1);
@@ -217,8 +315,10 @@ TEST(Grid, ReadsAPriorAndHandsItToTheProblemsInputs) {
   for (const Input& input : problem.inputs) {
     EXPECT_EQ(input.max_degree, input.name == "g" ? 1 : 0) << input.name;
   }
-  EXPECT_THAT(refusal(std::string(kAxes) + "[prior]\nmax_degree = { g = 0 }\n"),
-              HasSubstr("no whole number from 1 to 16"));
+  EXPECT_THAT(refusal(axes + "{ g = 0 }\n"), HasSubstr("no whole number from 1 to 16"));
+  EXPECT_THAT(refusal(axes + "{ g = 1, sgn_qdd = 2 }\n"),
+              AllOf(HasSubstr("g.toml:5:14"), HasSubstr("'sgn_qdd' is an input of no problem"),
+                    HasSubstr("did you mean sgn_qd?")));
 }
 
 TEST(Grid, AnExclamationMarkLeavesOutOfWhatStandsBefore) {
@@ -318,7 +418,9 @@ TEST(Grid, RefusesASweepOfWhatIsNotThere) {
   };
   EXPECT_THAT(swept("nosie = [1]"), AllOf(HasSubstr("g.toml:4"), HasSubstr("METHOD.PARAMETER")));
   EXPECT_THAT(swept("noise = []"), HasSubstr("g.toml:4"));
-  EXPECT_THAT(swept("noise = [-1]"), HasSubstr("~noise=-1"));
+  EXPECT_THAT(swept("noise = [0, -1]"),
+              AllOf(HasSubstr("g.toml:4:19: '~noise=-1'"), HasSubstr("from 0 to 1000")));
+  EXPECT_THAT(swept("rows = [0]"), AllOf(HasSubstr("g.toml:4:18"), HasSubstr("from 1 to")));
   EXPECT_THAT(swept("\"grid_alpha.island\" = [1]"), HasSubstr("islands"));
   EXPECT_THAT(swept("\"grid_alpha.islands\" = [1000]"), HasSubstr("g.toml:4"));
   EXPECT_THAT(swept("\"pysr.populations\" = [8]"), HasSubstr("does not run it"));

@@ -73,6 +73,15 @@ std::set<int> movements_of(const Table& table) {
   return {table.movement.begin(), table.movement.end()};
 }
 
+TEST_F(UserProblems, AConditionThatPicksNoRowIsNamedWithItsPlace) {
+  EXPECT_THAT(refusal("where = \"fold\"\n"),
+              AllOf(HasSubstr("g.toml:5:9: 'fold' is no COLUMN=VALUE"), HasSubstr("axis=2")));
+  EXPECT_THAT(refusal("where = \"folt=1\"\n"),
+              AllOf(HasSubstr("g.toml:5:9: "), HasSubstr("did you mean fold?")));
+  EXPECT_THAT(refusal("where = \"fold=7\"\n"), HasSubstr("g.toml:5:9: no row has fold = 7"));
+  EXPECT_THAT(refusal("where = \"fold=x\"\n"), HasSubstr("g.toml:5:9: 'x' is no number"));
+}
+
 TEST_F(UserProblems, AGroupIsKeptWholeHoweverItsRowsAreScattered) {
   const Problem problem = make(
       "inputs = [\"v\", \"load\"]\ngroup = \"subject\"\n"
