@@ -57,9 +57,14 @@ Grid make_data_grid(const DataGridRequest& request, const Registry& registry) {
   Grid grid;
   std::vector<user::DataSource> sources = sources_of(request.files, "--data-file");
   user::UserProblem problem = request.problem;
+  problem.passed_over = user::take_out_notes(sources, problem.target);
   if (!request.test.empty()) {
     problem.held_out.kind = user::HeldOut::Kind::files;
     problem.held_out.files = sources_of(request.test, "--test");
+    for (std::filesystem::path& note :
+         user::take_out_notes(problem.held_out.files, problem.target)) {
+      problem.passed_over.push_back(std::move(note));
+    }
     user::leave_out_tests(sources, problem.held_out.files, "--test");
   }
   if (!request.together.empty()) {
@@ -93,7 +98,13 @@ Grid make_data_grid(const DataGridRequest& request, const Registry& registry) {
 
 std::vector<std::string> reading_notes(const Grid& grid) {
   std::vector<std::string> notes;
+  std::set<std::filesystem::path> passed_over;  // each is told once
   for (const user::UserProblem& own : grid.own) {
+    for (const std::filesystem::path& file : own.passed_over) {
+      if (!passed_over.insert(file).second) continue;
+      notes.push_back(
+          fmt::format("{} is left out: it has no column '{}'", file.string(), own.target));
+    }
     const DataFile rows = at_place(own.place, [&] {
       DataFile read = user::read_user_rows(own);
       user::check_user_problem(own, read.data, law_reader());

@@ -12,6 +12,9 @@
 #include "foundation/error.hpp"
 #include "foundation/number_text.hpp"
 #include "problems/file_hash.hpp"
+#include "problems/reading/channel_names.hpp"
+#include "problems/reading/csv_layout.hpp"
+#include "problems/reading/file_text.hpp"
 #include "problems/user/user_problem.hpp"
 
 namespace tribench::user {
@@ -69,6 +72,22 @@ bool is_among(const DataSource& one, std::span<const DataSource> others) {
                              [&](const DataSource& other) { return is_same_data(one, other); });
 }
 
+bool is_text(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name.ends_with(".txt") || name.ends_with(".txt.gz");
+}
+
+bool has_column(const fs::path& file, const std::string& column) {
+  try {
+    const std::vector<std::string> header = find_layout(read_file_text(file), file.string()).header;
+    return std::ranges::any_of(header, [&](const std::string& name) {
+      return name == column || without_unit(name) == column;
+    });
+  } catch (const Error&) {
+    return false;  // no table at all
+  }
+}
+
 }  // namespace
 
 std::vector<fs::path> find_data_files(const fs::path& named, const std::string& place) {
@@ -123,6 +142,21 @@ void leave_out_tests(std::vector<DataSource>& train, std::span<const DataSource>
   }
   if (!kept.empty()) train = std::move(kept);
   require_apart(train, test, place);
+}
+
+std::vector<fs::path> take_out_notes(std::vector<DataSource>& sources, const std::string& target) {
+  std::vector<DataSource> kept;
+  std::vector<fs::path> notes;
+  for (const DataSource& source : sources) {
+    if (source.is_found && is_text(source.file) && !has_column(source.file, target)) {
+      notes.push_back(source.file);
+    } else {
+      kept.push_back(source);
+    }
+  }
+  if (kept.empty()) return {};
+  sources = std::move(kept);
+  return notes;
 }
 
 std::string name_of_file(const fs::path& file) {

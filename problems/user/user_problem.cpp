@@ -318,6 +318,7 @@ void require_unchanged(const UserProblem& own) {
 DataFile read_user_rows(const UserProblem& own) { return read_rows(own, own.files); }
 
 void check_user_problem(const UserProblem& own, const Dataset& data, const suite::LawReader& laws) {
+  data.at(own.target);
   std::vector<std::string> inputs = inputs_of(own, data);
   if (!own.law.empty()) law_of(own, laws, inputs);
   check_gravity(own, laws);

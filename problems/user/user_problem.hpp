@@ -61,7 +61,8 @@ struct UserProblem {
   // constants of each one's own.
   std::string category;
   HeldOut held_out;
-  std::string law;                           // over the inputs, where it is known
+  std::vector<std::filesystem::path> passed_over = {};  // notes that lie among its files
+  std::string law;                                      // over the inputs, where it is known
   std::map<std::string, std::string> units;  // what figures are labelled with; converts nothing
   std::map<std::string, std::pair<double, double>> box;  // else the rows' ranges
   // What a formula's motion is judged by on the rows that test; their roles say which columns are
@@ -79,8 +80,8 @@ void require_unchanged(const UserProblem& own);
 // a number. Throws Error (bad_input) with file, line and column.
 DataFile read_user_rows(const UserProblem& own);
 
-// Whether its columns bear what is said of them: the law and the gravity can be read, units and
-// ranges are of inputs. Throws Error (bad_input).
+// Whether its columns bear what is said of them: the target is one, the law and the gravity can be
+// read, units and ranges are of inputs. Throws Error (bad_input).
 void check_user_problem(const UserProblem& own, const Dataset& data, const suite::LawReader& laws);
 
 // The seed draws the rows that test. Throws Error (bad_input) where a file cannot be read or has
@@ -114,6 +115,12 @@ void require_apart(std::span<const std::filesystem::path> train, const std::file
 // means. Throws Error (bad_input) where none is left.
 void leave_out_tests(std::vector<DataSource>& train, std::span<const DataSource> test,
                      const std::string& place);
+
+// Notes that lie among data: texts (.txt) that were only found in a folder or by a pattern and have
+// no column `target`. They are taken out and returned, for whoever says so; none where no data
+// would be left.
+std::vector<std::filesystem::path> take_out_notes(std::vector<DataSource>& sources,
+                                                  const std::string& target);
 
 // A file's name as a problem's: "joint 1 (up).csv" -> "joint_1_up".
 std::string name_of_file(const std::filesystem::path& file);

@@ -189,7 +189,11 @@ UserProblem read_one(const TomlTable& table, const fs::path& folder) {
   own.held_out = read_held_out(table.table("split", {"share", "seeds", "column", "values", "file",
                                                      "files", "folder", "glob", "sha256"}),
                                folder);
+  own.passed_over = take_out_notes(own.files, own.target);
   if (own.held_out.kind == HeldOut::Kind::files) {
+    for (fs::path& note : take_out_notes(own.held_out.files, own.target)) {
+      own.passed_over.push_back(std::move(note));
+    }
     leave_out_tests(own.files, own.held_out.files, table.place("split"));
   }
   table.read("law", own.law);

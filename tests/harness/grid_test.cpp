@@ -215,6 +215,9 @@ TEST(Grid, AProblemsTableIsHeldAgainstItsColumns) {
     }
     return "accepted";
   };
+  EXPECT_THAT(said("units = {}\n[[problem]]\ntarget = \"w\"\nname = \"other\"\nfile = \"" +
+                   (folder / "a.csv").string() + "\"\n"),
+              AllOf(HasSubstr("g.toml:7:1: "), HasSubstr("there is no column 'w'")));
   EXPECT_EQ(said("law = \"2*x + z\"\nunits = { x = \"m\", y = \"N\" }\n"), "accepted");
   EXPECT_THAT(said("law = \"2*w\"\n"),
               AllOf(HasSubstr("g.toml:3:1: "), HasSubstr("'w' is not an input")));

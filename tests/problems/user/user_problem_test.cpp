@@ -73,6 +73,27 @@ std::set<int> movements_of(const Table& table) {
   return {table.movement.begin(), table.movement.end()};
 }
 
+TEST_F(UserProblems, ANoteAmongTheDataIsNoData) {
+  write("logs/README.txt", "Logs of the elbow, by tau and v.\nRecorded in May, at 20 C.\n");
+  write("logs/empty.txt", "");
+  write("logs/two.txt", "v,load,tau [Nm]\n1,2,3\n2,3,4\n");
+  const auto files = [](const UserProblem& own) {
+    std::vector<std::string> names;
+    for (const DataSource& source : own.files) names.push_back(source.file.filename().string());
+    return names;
+  };
+  const std::string table = "[[problem]]\nname = \"mine\"\ntarget = \"tau\"\n";
+  const UserProblem own = parse(table + "folder = \"logs\"\n").front();
+  EXPECT_THAT(files(own), ElementsAre("one.csv", "two.txt"));
+  EXPECT_EQ(own.passed_over,
+            (std::vector<fs::path>{folder_ / "logs/README.txt", folder_ / "logs/empty.txt"}));
+  // One that is named is data, and reading it says what it lacks; so where nothing else is there.
+  EXPECT_THAT(files(parse(table + "file = \"logs/README.txt\"\n").front()),
+              ElementsAre("README.txt"));
+  EXPECT_THAT(files(parse(table + "glob = \"logs/[Re]*.txt\"\n").front()),
+              ElementsAre("README.txt", "empty.txt"));
+}
+
 TEST_F(UserProblems, AConditionThatPicksNoRowIsNamedWithItsPlace) {
   EXPECT_THAT(refusal("where = \"fold\"\n"),
               AllOf(HasSubstr("g.toml:5:9: 'fold' is no COLUMN=VALUE"), HasSubstr("axis=2")));
