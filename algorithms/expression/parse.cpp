@@ -32,7 +32,7 @@ struct Shorthand {
 };
 constexpr std::array<Shorthand, 7> kShorthands = {
     {{"tan", "sin(x)/cos(x)"},
-     {"sinh", "(exp(x) - exp(-x))/2"},
+     {"sinh", "tanh(x)*((exp(x) + exp(-x))/2)"},  // a difference would lose the digits near 0
      {"cosh", "(exp(x) + exp(-x))/2"},
      {"log2", "log(x)/0.6931471805599453"},
      {"log10", "log(x)/2.302585092994046"},
