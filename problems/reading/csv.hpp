@@ -34,6 +34,13 @@
 
 namespace tribench {
 
+// What the numbers of a column have to be.
+struct LeastValue {
+  std::string column;
+  bool zero_too = true;  // false: above 0
+  std::string rule;      // for people: "weights are 0 or more"
+};
+
 struct CsvOptions {
   GivenRoles roles;  // by column; wins over the name
   bool drop_missing = false;
@@ -48,6 +55,7 @@ struct CsvOptions {
   // What is not used is read where it holds a number in every row of every file (and --roles do not
   // say that it is nothing), and becomes a channel without a role.
   bool spare = false;
+  std::optional<LeastValue> least = {};  // a row below it is refused with its line
 };
 
 struct TextColumn {

@@ -214,8 +214,11 @@ TEST_F(UnequalRowsTest, WeightsAndStandardDeviationsSayWhichRowsCount) {
         << method;
   }
   EXPECT_THAT(refusal({"--method", "linear", "--weights", "bad"}),
-              AllOf(HasSubstr("row 1"), HasSubstr("0 or more")));
-  EXPECT_THAT(refusal({"--method", "linear", "--sigma", "weight"}), HasSubstr("above 0"));
+              AllOf(HasSubstr("train.csv:2:bad: '-1'"), HasSubstr("0 or more")));
+  EXPECT_THAT(refusal({"--method", "linear", "--sigma", "weight", "--where", "weight=0"}),
+              AllOf(HasSubstr("train.csv:2:weight: '0'"), HasSubstr("above 0")));
+  EXPECT_THAT(refusal({"--method", "linear", "--weights", "weight", "--where", "weight=0"}),
+              AllOf(HasSubstr("train.csv: 'weight' is 0 in all rows"), HasSubstr("a weight")));
   EXPECT_THAT(refusal({"--method", "linear", "--sigma", "sgima"}), HasSubstr("sigma"));
 }
 

@@ -469,5 +469,23 @@ TEST(Csv, FilesThatAreNotThereAreNamed) {
   EXPECT_THROW(read_csv_files({}), Error);
 }
 
+TEST(Csv, AValueBelowTheLeastIsRefusedWithItsLine) {
+  const auto refusal = [](const std::string& text, bool zero_too) -> std::string {
+    CsvOptions options;
+    options.drop_missing = true;
+    options.least = LeastValue{"w", zero_too, "weights are so"};
+    try {
+      parse_csv(text, "f.csv", options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal("# a note\nx,w\n1,1\n2,\n3,-2\n", true),
+            "f.csv:5:w: '-2' cannot be used; weights are so");
+  EXPECT_EQ(refusal("x,w\n1,1\n-2,0\n", true), "accepted");
+  EXPECT_EQ(refusal("x,w\n1,1\n-2,0\n", false), "f.csv:3:w: '0' cannot be used; weights are so");
+}
+
 }  // namespace
 }  // namespace tribench
