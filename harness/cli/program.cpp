@@ -66,12 +66,22 @@ std::vector<std::string> names_like(const CLI::App& command, const std::string& 
 // there is no such word.
 std::string unknown_word(const CLI::App& app) {
   const CLI::App& command = innermost(app);
-  const std::vector<std::string> left = command.remaining();
+  std::vector<std::string> left = command.remaining();
+  const bool is_behind_mark = std::erase(left, "--") > 0;  // what CLI11 leaves there, too
   if (left.empty()) return {};
   const std::string word = left.front().substr(0, left.front().find('='));
   const std::vector<std::string> names = names_like(command, word);
   const bool is_option = word.starts_with("-");
-  const std::string help = fmt::format("see: {} --help", command_path(command));
+  std::string help = fmt::format("see: {} --help", command_path(command));
+  if (is_behind_mark && is_option) {
+    return fmt::format(
+        "tribench: '{}' stands behind '--', where nothing is an option; put options in front of "
+        "it; {}\n",
+        word, help);
+  }
+  if (is_option && !word.starts_with("--")) {
+    help = "a formula that begins with a minus stands behind '--', the last of all; " + help;
+  }
   const std::string mend =
       names.empty() ? help : did_you_mean(word, names, is_option ? help : std::string());
   return fmt::format("tribench: there is no {} '{}'; {}\n",

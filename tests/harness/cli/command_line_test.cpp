@@ -155,6 +155,12 @@ TEST(CommandLine, UnknownWordsAreAnsweredWithTheNearest) {
   expect({"run", "qiuck"}, "there is no grid 'qiuck'; did you mean quick?");
   expect({"run", "--vers"}, "there is no option '--vers'; see: tribench run --help");
   expect({"--vers"}, "did you mean --version?");
+  // A formula may begin with a minus.
+  expect({"export", "-x^2", "--as", "c"},
+         "there is no option '-x^2'; a formula that begins with a minus stands behind '--'");
+  expect({"export", "--", "-x^2"}, "--as is required");
+  expect({"check", "--", "-x^2", "--box", "x=1:2"},
+         "'--box' stands behind '--', where nothing is an option; put options in front of it");
   expect({"describ"}, "there is no subcommand 'describ'; known: run, fit");  // not for users
   expect({}, "A subcommand is required");
 }
