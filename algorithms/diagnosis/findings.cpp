@@ -225,9 +225,8 @@ void veto(Diagnosis& out, EffectFinding& finding, std::size_t family, const Camp
   if (out.leftover.inputs.empty()) out.leftover.inputs = {"velocity"};
 }
 
-// A random intercept is noise, whatever its size. But nobody expects it to be most of what is left.
 void tell_offsets(Diagnosis& out, const std::string& unit) {
-  if (!(out.noise.between_sd > out.noise.within_sd)) return;
+  if (!out.noise.is_mostly_between()) return;
   out.notes.push_back(
       fmt::format("the offsets of the movements differ by {:.2g} {} (standard deviation), rows "
                   "of one movement by {:.2g}: a load, a temperature or a sensor's zero that no "

@@ -32,6 +32,9 @@ struct Noise {
   // where that cannot be trusted (fit_in_its_noise).
   bool whitened = false;
 
+  // A random intercept is noise, whatever its size. But nobody expects it to be most of what is
+  // left.
+  bool is_mostly_between() const { return between_sd > within_sd; }
   // Correlation of neighbouring rows within a movement.
   double rho() const { return slow_share * slow_rho; }
   // By how much less rows tell of a mean than independent ones.

@@ -425,6 +425,7 @@ JudgedDiagnosis judge_canonical(const Observations& data, const BaseMaker& base,
         fmt::format("there are {} movements: what differs between movements (temperature, drift, "
                     "repeatability) can hardly be tested; {} are wanted",
                     movements, kWantedMovements));
+    doubt_few_movements(out, movements);
   }
   return out;
 }

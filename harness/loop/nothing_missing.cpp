@@ -19,6 +19,15 @@ void doubt_undetermined(JudgedDiagnosis& whole) {
       "others do not determine even the base model"};
 }
 
+void doubt_few_movements(JudgedDiagnosis& whole, std::size_t movements) {
+  if (whole.verdict != Verdict::none || !whole.noise.is_mostly_between()) return;
+  whole.verdict = Verdict::cannot_tell;
+  whole.needed = {fmt::format(
+      "more movements, some tens: {} that differ from one another by more than the noise of their "
+      "rows do not tell with what",
+      movements)};
+}
+
 void doubt_nothing_missing(JudgedDiagnosis& whole, std::vector<std::string> needed) {
   constexpr double kTooMuch = 0.05;  // of the error
   if (whole.verdict != Verdict::none || whole.candidates.empty()) return;

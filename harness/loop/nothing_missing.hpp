@@ -15,6 +15,11 @@ namespace tribench::loop {
 // anything.
 void doubt_undetermined(JudgedDiagnosis& whole);
 
+// Where so few movements differ from one another by more than the noise of their rows, and nothing
+// says why: a cause that acts on whole movements, as one of the speed does where each is at its own
+// constant speed, cannot be told from offsets that just are there.
+void doubt_few_movements(JudgedDiagnosis& whole, std::size_t movements);
+
 // Where a smooth function of the same inputs, fitted to the same movements, leaves less error on
 // those that it never saw (more than rounding: then there is nothing to be tested either), or an
 // effect that too few movements carry for its test. On data without a cause they leave none less:
