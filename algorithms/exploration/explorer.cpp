@@ -191,6 +191,11 @@ class Explorer {
   }
 
   Exploration run() {
+    if (candidates_.empty()) {
+      throw_bad_input("no movement keeps the limits", "the limits",
+                      "gravity alone may take more than torque_Nm allows, or the range is too "
+                      "short for the speed");
+    }
     while (true) {
       if (options_.stop != nullptr && *options_.stop) {
         out_.end = ExplorationEnd::stopped;

@@ -30,7 +30,8 @@ NamedFamilies diagnosed_families(const Observations& rows, const DiagnosisOption
   const Diagnosis found = diagnose(rows, coulomb_viscous_base, effects_alone);
   NamedFamilies out;
   for (const EffectFinding& effect : found.effects) out.names.push_back(effect.family);
-  out.unknown = found.verdict == Verdict::unknown;
+  out.unknown = found.verdict == Verdict::unknown ||
+                (found.verdict == Verdict::none && found.noise.is_mostly_between());
   return out;
 }
 

@@ -18,7 +18,8 @@ struct NamedFamilies {
   bool unknown = false;            // and something that no library has
 };
 
-// Throws what a diagnosis throws.
+// Movements that differ by more than the noise of their rows hold something that is not named, as a
+// sensor's zero that wanders. Throws what a diagnosis throws.
 NamedFamilies diagnosed_families(const Observations& rows, const DiagnosisOptions& options);
 
 // It names as many families as `said`, and the same, and something of no library just where that

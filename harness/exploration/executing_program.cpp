@@ -34,7 +34,11 @@ class Program {
           const std::atomic<bool>* end)
       : command_(std::move(command)), limits_(limits), limit_s_(limit_s), end_(end) {}
 
+  // A program need not know the limits: it is not asked for what breaks one.
   Dataset execute(const PlannedMovement& movement) const {
+    if (const BrokenLimit limit = broken_limit(movement, limits_); limit.broken()) {
+      throw_bad_input(limit.what, "the limits", limit.mend);
+    }
     const std::string output = run(movement);
     CsvOptions options;
     options.drop_missing = true;  // a cell without a value costs its row, not the exploration

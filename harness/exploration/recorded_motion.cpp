@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 namespace tribench {
@@ -37,6 +38,19 @@ double way_by_velocity(const Dataset& rows, std::size_t from, std::size_t to) {
   return from < to ? way : -way;
 }
 
+Misfit torque_misfit(const Dataset& rows, const MotionLimits& limits) {
+  const bool has_motor = rows.find(Role::motor_torque) != nullptr;
+  double largest = 0;
+  for (const double torque :
+       values_of(rows, has_motor ? Role::motor_torque : Role::friction_torque)) {
+    largest = std::max(largest, std::abs(torque));
+  }
+  if (!(largest > kSameRate * limits.torque_nm)) return {};
+  return {fmt::format("the recording's torque reaches {:.4g} N m, and the limit is {:g}", largest,
+                      limits.torque_nm),
+          "is it in N m, and on the joint's side of the gear?"};
+}
+
 }  // namespace
 
 Misfit misfit_of(const Dataset& rows, const PlannedMovement& asked, const MotionLimits& limits) {
@@ -49,6 +63,7 @@ Misfit misfit_of(const Dataset& rows, const PlannedMovement& asked, const Motion
                         *lowest, *highest, limits.lowest_rad, limits.highest_rad),
             kUnits};
   }
+  if (Misfit torque = torque_misfit(rows, limits); torque.is_one()) return torque;
   const std::span<const double> t = values_of(rows, Role::time);
   if (t.back() - t.front() < kLongEnough_s) return {};
   const auto [low, high] = std::minmax(asked.from, asked.to);

@@ -21,7 +21,8 @@ struct Misfit {
 
 // The position stays within the limits, widened by a fifth of their range; and where the recording
 // lasts a second, it covers a quarter of the way that was asked for, and the velocity is its rate,
-// within a factor of 2.5. The way to the start may be in the recording. rows: at least one, with
+// within a factor of 2.5; the torque, the motor's where it is there, is not more than so many times
+// the limit. The way to the start may be in the recording. rows: at least one, with
 // time, position and velocity in SI units.
 Misfit misfit_of(const Dataset& rows, const PlannedMovement& asked, const MotionLimits& limits);
 

@@ -52,5 +52,20 @@ TEST(RecordedMotion, AShortOneThatStartsGentlyIsNoOther) {
               HasSubstr("where the velocity says"));
 }
 
+TEST(RecordedMotion, ATorqueFarOverTheLimitIsInAnotherUnit) {
+  MotionLimits limits = usual_limits();
+  limits.torque_nm = 60;
+  PlannedMovement asked = two_tone_movement(limits.speed_rad_s, -0.1, 0.1, 1);
+  asked.duration = 2;
+  const auto with_torque = [&](double torque) {
+    Dataset rows = swelling(asked, 50, 1);
+    rows.channels.push_back(
+        {"motor_torque_Nm", "N m", Role::motor_torque, std::vector(rows.rows(), torque)});
+    return misfit_of(rows, asked, limits).what;
+  };
+  EXPECT_EQ(with_torque(-65), "");
+  EXPECT_THAT(with_torque(-6500), HasSubstr("torque reaches 6500 N m, and the limit is 60"));
+}
+
 }  // namespace
 }  // namespace tribench

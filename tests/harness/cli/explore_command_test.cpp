@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "problems/experiment/planned_movement.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
 
@@ -169,6 +171,44 @@ TEST_F(ExploreByProgram, LimitsThatNobodyHasSetMoveNoJoint) {
   EXPECT_EQ(run.status, 2);
   EXPECT_THAT(run.errors,
               HasSubstr("the limits lack speed_rad_s, acceleration_rad_s2, rate_Hz, gear_ratio"));
+}
+
+// A joint whose gravity takes more than its motor gives away from the middle.
+TEST_F(ExploreByProgram, IsNotAskedForWhatGravityAloneForbids) {
+  const std::string asked = (folder_ / "asked").string();
+  const std::string robot = make_robot("a", "cat \"$1\" >> " + asked);
+  json limits = json::parse(read_text(folder_ / "limits.json"))["limits"];
+  limits["lowest_rad"] = -1;
+  limits["highest_rad"] = 1;
+  limits["gravity_Nm"] = 12;
+  limits["gravity_phase_rad"] = 0;
+  limits["least_load_factor"] = limits["greatest_load_factor"] = 1;
+  limits["torque_Nm"] = 8;
+  write_text(folder_ / "limits.json", limits.dump());
+  explore(robot, "x");
+  std::istringstream lines(read_text(asked));
+  std::string names;
+  std::string values;
+  std::size_t count = 0;
+  for (; std::getline(lines, names) && std::getline(lines, values); ++count) {
+    const PlannedMovement movement = read_movements(names + "\n" + values + "\n", "asked").front();
+    const double farthest = std::max(std::abs(movement.from), std::abs(movement.to));
+    EXPECT_LE(12 * std::sin(farthest), 8) << values;
+  }
+  EXPECT_GT(count, 3U);
+}
+
+TEST_F(ExploreByProgram, LimitsThatNoMovementKeepsMoveNoJoint) {
+  const std::string asked = (folder_ / "asked").string();
+  const std::string robot = make_robot("a", "touch " + asked);
+  json limits = json::parse(read_text(folder_ / "limits.json"))["limits"];
+  limits["gravity_Nm"] = 12;
+  limits["torque_Nm"] = 0.01;
+  write_text(folder_ / "limits.json", limits.dump());
+  const ProgramRun run = explore(robot, "x");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("no movement keeps the limits"));
+  EXPECT_FALSE(std::filesystem::exists(asked));
 }
 
 TEST_F(ExploreByProgram, AProgramAndItsWordsMayComeInQuotes) {
