@@ -145,8 +145,17 @@ Json rows_of(const Dataset& data) {
 }
 
 void take_verdict(const Json& verdict, const simulation::World& world, ChallengeResult& result) {
-  const auto families = verdict.value("families", std::vector<std::string>());
   // A slip of the pen is no wrong verdict.
+  for (const auto& [key, value] : verdict.items()) {
+    if (key == "families" || key == "unknown") continue;
+    throw_bad_input(fmt::format("a verdict has no '{}'", key), "verdict",
+                    did_you_mean(key, {"families", "unknown"}));
+  }
+  if (!verdict.is_object() || !verdict.contains("families") || !verdict["families"].is_array()) {
+    throw_bad_input("a verdict names its families", "verdict",
+                    R"(write {"families": [], "unknown": false}, or null to abstain)");
+  }
+  const auto families = verdict.value("families", std::vector<std::string>());
   const std::vector<std::string> known = loop::builtin_effect_names();
   for (const std::string& family : families) {
     if (std::ranges::count(known, family) > 0) continue;
@@ -169,6 +178,10 @@ void converse(Talk& talk, simulation::World& world, ChallengeResult& result) {
             {"limits", Json::parse(limits_json(world.limits()))}});
   for (std::size_t k = 0; k < kMostRequests; ++k) {
     const Json heard = talk.hear();
+    if (!heard.is_object() || heard.contains("verdict") == heard.contains("movement")) {
+      throw_bad_input("it has to be a 'movement' or a 'verdict'", write_json(heard),
+                      "one of the two on a line");
+    }
     if (heard.contains("verdict")) {
       if (heard.at("verdict").is_null()) {
         result.verdict = "abstained";

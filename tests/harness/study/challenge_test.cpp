@@ -48,5 +48,17 @@ TEST(ChallengeWorld, TheLastLineNeedsNoEnd) {
   EXPECT_EQ(result.verdict, "abstained") << result.reason;
 }
 
+TEST(ChallengeWorld, AMisspeltVerdictIsNoVerdict) {
+  const auto reason = [](const char* verdict) {
+    return result_of("read hello; echo '" + std::string(verdict) + "'").reason;
+  };
+  EXPECT_THAT(reason(R"({"verdict": {"familes": ["stribeck"]}})"),
+              HasSubstr("a verdict has no 'familes'"));
+  EXPECT_THAT(reason(R"({"verdict": {}})"), HasSubstr("names its families"));
+  EXPECT_THAT(reason(R"({"verdict": {"families": "stribeck"}})"), HasSubstr("names its families"));
+  EXPECT_THAT(reason(R"({"verdct": {"families": []}})"), HasSubstr("'movement' or a 'verdict'"));
+  EXPECT_EQ(reason(R"({"verdict": {"families": []}})"), "");
+}
+
 }  // namespace
 }  // namespace tribench
