@@ -18,7 +18,9 @@
 #include "algorithms/fitting/evidence.hpp"
 #include "algorithms/fitting/exact_choice.hpp"
 #include "algorithms/fitting/finish.hpp"
+#include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/held_out_choice.hpp"
+#include "algorithms/fitting/shape_dimension.hpp"
 
 namespace tribench {
 namespace {
@@ -110,6 +112,28 @@ void drop_strays(const FiniteRows& rows, const InputBox& box, FitResult& fit) {
                                    "the search is ten times the target's range away");
 }
 
+// A form that has a number for every other row meets the rows whatever the law, and their number is
+// too small for rows left out to show it: the likeliest of those with fewer numbers takes its
+// place.
+void leave_saturated(const FiniteRows& rows, FitResult& fit) {
+  constexpr std::size_t kRowsANumber = 2;
+  const auto is_saturated = [&](const Expression& formula) {
+    return kRowsANumber * (shape_dimension(formula) + free_exponents(formula)) > rows.rows();
+  };
+  if (!is_saturated(fit.front[fit.chosen])) return;
+  std::vector<Expression> rest;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < fit.front.size(); ++i) {
+    if (is_saturated(fit.front[i])) continue;
+    rest.push_back(fit.front[i]);
+    places.push_back(i);
+  }
+  if (rest.empty()) return;
+  fit.chosen = places[likeliest(rest, rows)];
+  fit.note += fmt::format("{}another choice: that of the search has a number for every other row",
+                          fit.note.empty() ? "" : "; ");
+}
+
 }  // namespace
 
 void finish_front(const TrainingData& data, const OperatorSet& operators, Budget& budget,
@@ -138,6 +162,7 @@ void finish_front(const TrainingData& data, const OperatorSet& operators, Budget
     return;
   }
   drop_strays(rows, box, fit);
+  leave_saturated(rows, fit);
   const auto in_time = [&budget] { return budget.in_time(); };
   fit.chosen =
       held_out_choice(fit.front, fit.chosen, rows.table(), rows.target, rows.movement, in_time);

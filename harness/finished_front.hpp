@@ -3,11 +3,12 @@
 // A method's front as it is judged: every formula in its shortest form (fitting/finish.hpp), each
 // once, and the exact one chosen where the rows have no noise (fitting/exact_choice.hpp). Else
 // those that are far away between the rows are left out where a simpler one is as good on them
-// (fitting/crossed_rows.hpp), and another is chosen where few rows speak plainly against the choice
-// (fitting/held_out_choice.hpp). A plain sum takes its place only in a method that says so
-// (FitResult::yields_to_plain_sum). The one place between methods and judge where formulas are
-// rewritten and a choice is looked at again; a method that was given a form by the user keeps it
-// (FitResult::keeps_form), and a program of the user's its choice (keeps_choice).
+// (fitting/crossed_rows.hpp), and another is chosen where the rows are fewer than two for each of
+// the choice's numbers, or few and speak plainly against it (fitting/held_out_choice.hpp). A plain
+// sum takes its place only in a method that says so (FitResult::yields_to_plain_sum). The one place
+// between methods and judge where formulas are rewritten and a choice is looked at again; a method
+// that was given a form by the user keeps it (FitResult::keeps_form), and a program of the user's
+// its choice (keeps_choice).
 #pragma once
 
 #include "algorithms/regressor.hpp"

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "harness/finished_front.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -43,6 +46,40 @@ TEST(FinishedFront, TakesAPlainSumOnFewRowsWhereTheMethodYieldsToIt) {
   ASSERT_EQ(fit.front.size(), 2U);
   EXPECT_EQ(fit.chosen, 0U);
   EXPECT_LT(fit.front[0].size(), 8U) << print(fit.front[0], std::vector<std::string>{"v"});
+}
+
+// Through ten rows of a line with noise a wave of ten numbers goes exactly.
+TEST(FinishedFront, ChoosesNoFormulaThatHasANumberForEveryOtherRow) {
+  constexpr Eigen::Index kRows = 10;
+  const std::vector<std::string> names = {"x"};
+  std::vector<double> x;
+  std::vector<double> target;
+  RandomStream random(3);
+  for (Eigen::Index r = 0; r < kRows; ++r) {
+    x.push_back(0.3 * static_cast<double>(r));
+    target.push_back(2 * x.back() + 0.01 * random.normal());
+  }
+  // Waves of 1.5 a unit and less, and a line.
+  Eigen::MatrixXd waves(kRows, kRows);
+  const auto wave = [](Eigen::Index k, double at) {
+    return k == 0 ? at : k == 1 ? 1.0 : std::sin(static_cast<double>(k) * at);
+  };
+  for (Eigen::Index r = 0; r < kRows; ++r) {
+    for (Eigen::Index k = 0; k < kRows; ++k) waves(r, k) = wave(k, x[static_cast<std::size_t>(r)]);
+  }
+  const Eigen::VectorXd size =
+      waves.fullPivLu().solve(Eigen::Map<const Eigen::VectorXd>(target.data(), kRows));
+  std::string exact = fmt::format("{}*x + {}", size(0), size(1));
+  for (Eigen::Index k = 2; k < kRows; ++k) exact += fmt::format(" + {}*sin({}*x)", size(k), k);
+  const std::vector<Input> inputs = {{"x", "-", Role::none, 0, 3, std::nullopt}};
+  const std::vector<const double*> columns = {x.data()};
+  FitResult fit;
+  fit.front = {parse("3", names), parse("2*x", names), parse(exact, names)};
+  fit.chosen = 2;
+  Budget budget({1'000'000, 1e6});
+  finish_front({inputs, columns, target, {}}, find_operator_set("full"), budget, fit);
+  EXPECT_EQ(fit.chosen, 1U) << print(fit.front[fit.chosen], names);
+  EXPECT_NE(fit.note.find("a number for every other row"), std::string::npos) << fit.note;
 }
 
 // y falls with x; a power of both is large where one is and the other is not, which is in no row.
