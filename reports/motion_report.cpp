@@ -35,12 +35,15 @@ Json figures_json(const MotionFigures& figures) {
 
 std::string summary_line(const char* which, const MotionFigures& figures, const std::string& unit) {
   if (figures.movements == 0) return {};
+  // Of a joint that did not move there is nothing to be a share of.
+  const std::string share = std::isfinite(figures.percent_position)
+                                ? fmt::format(" ({} %)", figure(figures.percent_position, 3))
+                                : "";
   return fmt::format(
-      "{} ({} movement{}): position {} {} on average, {} rms, {} at most ({} %); velocity {} "
-      "{}/s\n",
+      "{} ({} movement{}): position {} {} on average, {} rms, {} at most{}; velocity {} {}/s\n",
       which, figures.movements, figures.movements == 1 ? "" : "s", figure(figures.mean_position, 4),
-      unit, figure(figures.rms_position, 4), figure(figures.largest_position, 4),
-      figure(figures.percent_position, 3), figure(figures.mean_velocity, 4), unit);
+      unit, figure(figures.rms_position, 4), figure(figures.largest_position, 4), share,
+      figure(figures.mean_velocity, 4), unit);
 }
 
 std::string model_lines(const MotionRecord& record) {

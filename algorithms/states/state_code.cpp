@@ -151,7 +151,7 @@ static inline int $Nparts($R v0, $R v1, $R dt, $R *speed, $R *travel, $R *second
 
 constexpr std::array<Piece, 12> kPython = {{
     {"sign", "", R"(def _sign(x):
-    return (x > 0) - (x < 0)
+    return float(x > 0) - float(x < 0)
 
 
 )"},

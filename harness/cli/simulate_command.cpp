@@ -145,6 +145,18 @@ void read_control(const SimulateArguments& arguments, MotionSetup& setup) {
                               print_number(arguments.kd));
 }
 
+// The position's name stands for the simulated one: a law that follows it does nothing.
+void require_own_reference(const SimulateArguments& arguments, const Dataset& data) {
+  const Channel* position = data.find(Role::position);
+  const bool is_position =
+      arguments.reference == "q" || (position != nullptr && position->name == arguments.reference);
+  if (arguments.reference.empty() || !is_position) return;
+  throw_bad_input(
+      fmt::format("'{}' is the simulated position here, which the law would follow to itself",
+                  arguments.reference),
+      "--reference", "copy the recorded one to a column of another name, such as 'reference_rad'");
+}
+
 void read_refined(const SimulateArguments& arguments, MotionSetup& setup) {
   for (const std::string& what : arguments.refine) {
     const bool all = what == "all";
@@ -253,6 +265,7 @@ void simulate(const SimulateArguments& arguments) {
   read_control(arguments, setup);
   read_refined(arguments, setup);
   const DataFile train = read_recording(arguments, setup, arguments.files);
+  require_own_reference(arguments, train.data);
   std::optional<DataFile> test;
   if (!arguments.test.empty()) {
     const std::vector<std::filesystem::path> trains(arguments.files.begin(), arguments.files.end());

@@ -22,7 +22,7 @@ namespace tribench {
 namespace {
 
 constexpr std::size_t kSpeeds = 200;  // each way, alike for both
-constexpr std::size_t kPlaces = 64;   // of the other inputs
+constexpr std::size_t kPlaces = 65;   // of the other inputs: the centre and pairs
 constexpr double kBarely = 1e-6;      // of the top speed: motion begins
 constexpr double kSettled_s = 1e9;    // a state at a constant velocity has settled
 constexpr double kSine_s = 2;         // period of the motion by which parameters are compared
@@ -85,15 +85,31 @@ class BoxFormula {
     }
     return point;
   }
-  // Other inputs at place k of the sequence; the first is the centre.
+  // Other inputs at place k of the sequence; the first is the centre, of the others each even one
+  // mirrors the one before: what is odd about the centre has no mean.
   std::vector<double> place(std::size_t k) const {
     std::vector<double> point = centre();
     if (k == 0) return point;
     for (std::size_t f = 0; f < free_.size(); ++f) {
       const InputRange& range = ranges_[free_[f]];
-      point[free_[f]] = range.low + (range.high - range.low) * radical_inverse(k, prime(f));
+      const double share = radical_inverse((k + 1) / 2, prime(f));
+      point[free_[f]] = range.low + (range.high - range.low) * (k % 2 == 1 ? share : 1 - share);
     }
     return point;
+  }
+  // All corners of the other inputs' box; of many inputs the last ones stay at their centre.
+  std::vector<std::vector<double>> corners() const {
+    constexpr std::size_t kMost = 8;  // inputs
+    const std::size_t inputs = std::min(kMost, free_.size());
+    std::vector<std::vector<double>> all;
+    for (std::size_t mask = 0; mask < (std::size_t{1} << inputs); ++mask) {
+      all.push_back(centre());
+      for (std::size_t f = 0; f < inputs; ++f) {
+        const InputRange& range = ranges_[free_[f]];
+        all.back()[free_[f]] = (mask >> f & 1) != 0 ? range.high : range.low;
+      }
+    }
+    return all;
   }
 
   double at(std::vector<double> point, double v) {
@@ -217,14 +233,18 @@ void measure_errors(BoxFormula& formula, const Samples& all, SimulatorFriction& 
   for (const std::size_t j : formula.free()) {
     if (formula.is_acceleration(j)) a_place = j;
   }
-  const auto add = [&](double v, const std::vector<double>& place, double value) {
+  const auto look = [&](double v, const std::vector<double>& place, double value) {
     const double inertial = to.armature > 0 ? to.armature * place[a_place] : 0;
     const double error = std::abs(value - representable(to, v) - inertial);
-    sum += error;
+    if (error > to.worst_error) {
+      to.worst_error = error;
+      to.worst_at = formula.words(place, v);
+    }
+    return error;
+  };
+  const auto add = [&](double v, const std::vector<double>& place, double value) {
+    sum += look(v, place, value);
     ++count;
-    if (error <= to.worst_error) return;
-    to.worst_error = error;
-    to.worst_at = formula.words(place, v);
   };
   for (std::size_t i = 0; i < all.speeds.size(); ++i) {
     for (std::size_t k = 0; k < all.places.size(); ++k) {
@@ -233,6 +253,12 @@ void measure_errors(BoxFormula& formula, const Samples& all, SimulatorFriction& 
     }
   }
   to.mean_error = sum / count;
+  // The worst is often at the edge, which no sample of the inside reaches.
+  for (const std::vector<double>& corner : formula.corners()) {
+    for (const double speed : {kBarely * formula.top_speed(), formula.top_speed()}) {
+      for (const double v : {speed, -speed}) look(v, corner, formula.at(corner, v));
+    }
+  }
   double starting = 0;
   for (const std::vector<double>& place : all.places) {
     const double v = kBarely * formula.top_speed();

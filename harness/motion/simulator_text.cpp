@@ -44,10 +44,14 @@ std::vector<std::string> explanation_of(const SimulatorFriction& f, Simulator si
                                 f.breakaway, torque));
   }
   if (f.inertia) {
+    const bool has_others = std::ranges::any_of(f.lost, [&](const LostFriction& lost) {
+      return lost.what.starts_with("the dependence on") && lost.rms >= 1e-3 * f.rms;
+    });
     lines.push_back(fmt::format(
-        "motion: with an inertia of {:.4g}, under the torque by which the formula follows a sine "
+        "motion{}: with an inertia of {:.4g}, under the torque by which the formula follows a sine "
         "of {:.4g} {} and 2 s: {:.4g} {} off on average over a period, {:.4g} {} at most",
-        *f.inertia, f.amplitude, length, f.mean_motion, length, f.largest_motion, length));
+        has_others ? ", all other inputs at the middle of the box" : "", *f.inertia, f.amplitude,
+        length, f.mean_motion, length, f.largest_motion, length));
   }
   lines.push_back(
       fmt::format("the same friction on your data: tribench simulate '{}' DATA.csv", f.formula));

@@ -105,10 +105,16 @@ TEST_F(SimulateCommand, FollowsAReferenceUnderAController) {
   std::string text = "time_s,q_rad,dq_rad_s,goal\n";
   for (int i = 0; i <= 400; ++i) text += fmt::format("{},0.2,0,0.5\n", 0.005 * i);
   testing::write_text(folder_ / "hold.csv", text);
-  const auto json = simulate_json(
+  const std::string follow =
       "'0.1*sgn_v' " + (folder_ / "hold.csv").string() +
-      " --roles q_rad=position,dq_rad_s=velocity --inertia 0.1 --reference goal --kp 100 --kd 6");
+      " --roles q_rad=position,dq_rad_s=velocity --inertia 0.1 --kp 100 --kd 6 --reference ";
+  const auto json = simulate_json(follow + "goal");
   EXPECT_NEAR(json["movements"][0]["largest_position"].get<double>(), 0.3, 0.02);
+  for (const char* position : {"q_rad", "q"}) {
+    const ProgramRun itself = run_simulate(follow + position);
+    EXPECT_EQ(itself.status, 2);
+    EXPECT_THAT(itself.output, HasSubstr("is the simulated position here"));
+  }
 }
 
 TEST_F(SimulateCommand, WritesAPageWithAPictureAMovement) {

@@ -13,6 +13,7 @@ namespace tribench {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::ProgramRun;
 
 ProgramRun run_export(const std::string& arguments) {
@@ -62,6 +63,14 @@ TEST(SimulatorExport, SaysWhatIsLostInTorque) {
       run_export("'8*sgn_v + 0.1*abs(g)*sgn_v + 14*v' --as mujoco --box 'v=-2:2,g=-60:60'");
   EXPECT_NEAR(after(load.output, "the dependence on g: "), 6 / std::sqrt(3.0), 0.15);
   EXPECT_NEAR(std::stod(attribute(load.output, "default/default/joint", "frictionloss")), 11, 0.1);
+  // The box's corner is no sample.
+  EXPECT_NEAR(after(load.output, "on average, "), 3, 0.1);
+  const ProgramRun place = run_export(
+      "'sin(q)*9.81 + 2*sgn_v' --as mujoco --box 'v=-2:2,g=-10:10,q=-1:1,a=-5:5' "
+      "--inertia 1");
+  EXPECT_NEAR(after(place.output, "on average, "), 9.81 * std::sin(1.0), 1e-3);
+  EXPECT_THAT(place.output, Not(HasSubstr("the difference between the directions")));
+  EXPECT_THAT(place.output, HasSubstr("motion, all other inputs at the middle of the box: with"));
   const ProgramRun level =
       run_export("'sgn_v*(8 + 2*exp(-(v/0.05)^2)) + 14*v' --as urdf --box v=-2:2");
   EXPECT_NEAR(after(level.output, "in place of "), 10, 1e-3);
