@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -112,9 +113,8 @@ void drop_strays(const FiniteRows& rows, const InputBox& box, FitResult& fit) {
                                    "the search is ten times the target's range away");
 }
 
-// A form that has a number for every other row meets the rows whatever the law, and their number is
-// too small for rows left out to show it: the likeliest of those with fewer numbers takes its
-// place.
+}  // namespace
+
 void leave_saturated(const FiniteRows& rows, FitResult& fit) {
   constexpr std::size_t kRowsANumber = 2;
   const auto is_saturated = [&](const Expression& formula) {
@@ -130,11 +130,11 @@ void leave_saturated(const FiniteRows& rows, FitResult& fit) {
   }
   if (rest.empty()) return;
   fit.chosen = places[likeliest(rest, rows)];
-  fit.note += fmt::format("{}another choice: that of the search has a number for every other row",
-                          fit.note.empty() ? "" : "; ");
+  constexpr std::string_view kWhy =
+      "another choice: that of the search has a number for every other row";
+  if (fit.note.find(kWhy) != std::string::npos) return;
+  fit.note += fmt::format("{}{}", fit.note.empty() ? "" : "; ", kWhy);
 }
-
-}  // namespace
 
 void finish_front(const TrainingData& data, const OperatorSet& operators, Budget& budget,
                   FitResult& fit) {
@@ -162,10 +162,10 @@ void finish_front(const TrainingData& data, const OperatorSet& operators, Budget
     return;
   }
   drop_strays(rows, box, fit);
-  leave_saturated(rows, fit);
   const auto in_time = [&budget] { return budget.in_time(); };
   fit.chosen =
       held_out_choice(fit.front, fit.chosen, rows.table(), rows.target, rows.movement, in_time);
+  leave_saturated(rows, fit);
   if (!fit.yields_to_plain_sum) return;
   if (auto sum = plain_sum_instead(fit.front[fit.chosen], rows.table(), rows.target, rows.movement,
                                    in_time);

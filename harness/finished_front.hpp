@@ -11,6 +11,7 @@
 // its choice (keeps_choice).
 #pragma once
 
+#include "algorithms/finite_rows.hpp"
 #include "algorithms/regressor.hpp"
 
 namespace tribench {
@@ -18,6 +19,11 @@ namespace tribench {
 // Of the seconds of a fit on few rows, what its search may take; the rest is for the look at its
 // choice, which leaves the choice as it is once the seconds have run out.
 inline constexpr double kSearchShareOfFewRows = 0.9;
+
+// A form that has a number for every other row meets the rows whatever the law, and their number is
+// too small for rows left out to show it: where that is the choice, the likeliest of those with
+// fewer numbers takes its place.
+void leave_saturated(const FiniteRows& rows, FitResult& fit);
 
 // Changes `fit.front` and `fit.chosen`. Formulas are finished on the finite rows of `data`.
 void finish_front(const TrainingData& data, const OperatorSet& operators, Budget& budget,

@@ -10,6 +10,7 @@
 #include "algorithms/admission.hpp"
 #include "algorithms/finite_rows.hpp"
 #include "algorithms/fitting/joint_front.hpp"
+#include "harness/finished_front.hpp"
 
 namespace tribench {
 
@@ -39,6 +40,7 @@ FitResult fit_until_spent(FitResult first, const FitRound& round, bool widens,
   FitResult result = std::move(first);
   result.front = joint.formulas();
   result.chosen = joint.chosen();
+  if (!joint.is_explained()) leave_saturated(rows, result);
   if (count > 0) {
     result.reason = budget.exhausted() ? StopReason::budget : StopReason::converged;
     result.note += fmt::format("{}{} restart{}", result.note.empty() ? "" : "; ", count,
