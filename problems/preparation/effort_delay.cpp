@@ -182,7 +182,8 @@ class LateTerms {
     }
   }
 
-  // The terms of so many rows before.
+  // The terms of so many rows before, which are neighbours of the steady rows: late and around
+  // together are not more than their reach.
   const Squares& left_by_shift(std::ptrdiff_t late) {
     const auto known = by_shift_.find(late);
     if (known != by_shift_.end()) return known->second;
@@ -373,11 +374,11 @@ std::optional<Estimate> filter_of(LateTerms& terms, const Estimate& late, double
 std::optional<Estimate> estimate(LateTerms& terms, double step, std::ptrdiff_t longest,
                                  std::span<const RowRange> pieces) {
   const std::optional<Place> place = place_of_least(terms, longest);
-  if (!place) return {};
+  if (!place || !(std::abs(place->value) < static_cast<double>(longest))) return {};
   const auto rows = static_cast<std::ptrdiff_t>(std::lround(place->value));
   Estimate late{{step * place->value, step * std::sqrt(place->variance)}, 0};
   if (!is_surely_late(late.delay)) return late;
-  late.left = terms.left_by_shift(rows, rows / 2);
+  late.left = terms.left_by_shift(rows, std::min(rows / 2, longest - std::abs(rows)));
   return filter_of(terms, late, step, pieces).value_or(late);
 }
 
@@ -416,7 +417,9 @@ std::optional<EffortDelay> effort_delay(const Dataset& data, std::span<const Row
     const double changing =
         late && is_surely_late(late->delay)
             ? late->left
-            : beside_all.left_by_shift(0, std::lround(0.5 * alone->delay.value / step));
+            : beside_all.left_by_shift(
+                  0,
+                  std::min<std::ptrdiff_t>(longest, std::lround(0.5 * alone->delay.value / step)));
     const double rows = beside_all.independent_rows();
     const double terms = Terms::kSlowTerms * elementary::log(rows) / rows;
     if (elementary::log(alone->left / changing) <= terms) return alone->delay;
