@@ -146,14 +146,20 @@ Json rows_of(const Dataset& data) {
 
 void take_verdict(const Json& verdict, const simulation::World& world, ChallengeResult& result) {
   // A slip of the pen is no wrong verdict.
+  constexpr const char* kMend = R"(write {"families": [], "unknown": false}, or null to abstain)";
+  if (!verdict.is_object()) throw_bad_input("it is no object", "verdict", kMend);
   for (const auto& [key, value] : verdict.items()) {
     if (key == "families" || key == "unknown") continue;
     throw_bad_input(fmt::format("a verdict has no '{}'", key), "verdict",
                     did_you_mean(key, {"families", "unknown"}));
   }
-  if (!verdict.is_object() || !verdict.contains("families") || !verdict["families"].is_array()) {
-    throw_bad_input("a verdict names its families", "verdict",
-                    R"(write {"families": [], "unknown": false}, or null to abstain)");
+  const Json named = verdict.value("families", Json());
+  const bool is_list = named.is_array() && std::ranges::all_of(named, [](const Json& family) {
+                         return family.is_string();
+                       });
+  if (!is_list) throw_bad_input("a verdict lists its families by name", "verdict", kMend);
+  if (!verdict.value("unknown", Json(false)).is_boolean()) {
+    throw_bad_input("'unknown' is true or false", "verdict", kMend);
   }
   const auto families = verdict.value("families", std::vector<std::string>());
   const std::vector<std::string> known = loop::builtin_effect_names();

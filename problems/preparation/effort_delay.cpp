@@ -194,7 +194,7 @@ class LateTerms {
   }
 
   // The same, as means over so many rows around.
-  double left_by_shift(std::ptrdiff_t late, std::ptrdiff_t around) {
+  double left_by_means(std::ptrdiff_t late, std::ptrdiff_t around) {
     std::vector<double> sum;
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       sum.assign(static_cast<std::size_t>(x_.cols()) - 1, 0);
@@ -378,7 +378,7 @@ std::optional<Estimate> estimate(LateTerms& terms, double step, std::ptrdiff_t l
   const auto rows = static_cast<std::ptrdiff_t>(std::lround(place->value));
   Estimate late{{step * place->value, step * std::sqrt(place->variance)}, 0};
   if (!is_surely_late(late.delay)) return late;
-  late.left = terms.left_by_shift(rows, std::min(rows / 2, longest - std::abs(rows)));
+  late.left = terms.left_by_means(rows, std::min(rows / 2, longest - std::abs(rows)));
   return filter_of(terms, late, step, pieces).value_or(late);
 }
 
@@ -417,7 +417,7 @@ std::optional<EffortDelay> effort_delay(const Dataset& data, std::span<const Row
     const double changing =
         late && is_surely_late(late->delay)
             ? late->left
-            : beside_all.left_by_shift(
+            : beside_all.left_by_means(
                   0,
                   std::min<std::ptrdiff_t>(longest, std::lround(0.5 * alone->delay.value / step)));
     const double rows = beside_all.independent_rows();

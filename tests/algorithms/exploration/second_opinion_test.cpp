@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "foundation/random.hpp"
 #include "problems/dataset.hpp"
 #include "problems/preparation/observations.hpp"
+#include "tests/support/movements_with_offsets.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -50,31 +50,13 @@ TEST(SecondOpinion, FindsSomethingElseWhereTheOtherDoes) {
   EXPECT_FALSE(bears_out({{"lag"}, false}, {{"lag"}, true}, families()));
 }
 
-// A sensor whose zero jumps from movement to movement: no friction, but not nothing.
+// No friction, but not nothing.
 TEST(SecondOpinion, MovementsThatDifferBeyondTheirNoiseHoldSomethingElse) {
-  const auto diagnosed = [](double jump) {
-    RandomStream random(5);
-    Dataset data;
-    data.channels = {{"time", "s", Role::time, {}},
-                     {"v", "rad/s", Role::velocity, {}},
-                     {"tau_f", "N m", Role::friction_torque, {}}};
-    for (int m = 0; m < 16; ++m) {
-      data.movement_names.push_back(std::to_string(m));
-      const double way = m % 2 == 0 ? 1 : -1;
-      const double zero = jump * random.normal();
-      for (int i = 0; i < 300; ++i) {
-        const double v = way * (0.1 + 0.7 * (i % 150) / 150.0);
-        data.movement.push_back(m);
-        data.channels[0].values.push_back(10 * m + 0.01 * i);
-        data.channels[1].values.push_back(v);
-        data.channels[2].values.push_back(3 * way + 4 * v + zero + 0.15 * random.normal());
-      }
-    }
-    return diagnosed_families(observe(data), {});
-  };
-  for (const double jump : {0.0, 0.5}) {
-    EXPECT_TRUE(diagnosed(jump).names.empty()) << jump;
-    EXPECT_EQ(diagnosed(jump).unknown, jump > 0) << jump;
+  for (const double offset : {0.0, 0.7}) {
+    const NamedFamilies found =
+        diagnosed_families(observe(testing::movements_with_offsets(16, offset, 5)), {});
+    EXPECT_TRUE(found.names.empty()) << offset;
+    EXPECT_EQ(found.unknown, offset > 0) << offset;
   }
 }
 

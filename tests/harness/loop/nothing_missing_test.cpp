@@ -4,10 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <string>
-
-#include "foundation/random.hpp"
 #include "reports/record/loop_record.hpp"
+#include "tests/support/movements_with_offsets.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -49,24 +47,8 @@ TEST(NothingMissing, IsSaidWhereNeitherDoes) {
 // A dozen movements with offsets that no signal tells.
 TEST(NothingMissing, IsNotSaidOfAFewMovementsThatDifferFromOneAnother) {
   const auto judged = [](double offset) {
-    RandomStream random(7);
-    Dataset data;
-    data.channels = {{"time", "s", Role::time, {}},
-                     {"v", "rad/s", Role::velocity, {}},
-                     {"tau_f", "N m", Role::friction_torque, {}}};
-    for (int m = 0; m < 12; ++m) {
-      data.movement_names.push_back(std::to_string(m));
-      const double way = m % 2 == 0 ? 1 : -1;
-      const double own = offset * random.normal();
-      for (int i = 0; i < 700; ++i) {
-        const double v = way * (0.2 + 0.8 * (i % 350) / 350.0);
-        data.movement.push_back(m);
-        data.channels[0].values.push_back(100 * m + 0.01 * i);
-        data.channels[1].values.push_back(v);
-        data.channels[2].values.push_back(8 * way + 14 * v + own + 0.15 * random.normal());
-      }
-    }
-    return diagnose_and_judge(observe(data), coulomb_viscous_base, {});
+    return diagnose_and_judge(observe(testing::movements_with_offsets(12, offset, 7)),
+                              coulomb_viscous_base, {});
   };
   const JudgedDiagnosis differ = judged(0.7);
   EXPECT_EQ(differ.verdict, Verdict::cannot_tell);

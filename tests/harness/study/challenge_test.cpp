@@ -54,8 +54,12 @@ TEST(ChallengeWorld, AMisspeltVerdictIsNoVerdict) {
   };
   EXPECT_THAT(reason(R"({"verdict": {"familes": ["stribeck"]}})"),
               HasSubstr("a verdict has no 'familes'"));
-  EXPECT_THAT(reason(R"({"verdict": {}})"), HasSubstr("names its families"));
-  EXPECT_THAT(reason(R"({"verdict": {"families": "stribeck"}})"), HasSubstr("names its families"));
+  EXPECT_THAT(reason(R"({"verdict": {}})"), HasSubstr("lists its families"));
+  EXPECT_THAT(reason(R"({"verdict": {"families": "stribeck"}})"), HasSubstr("lists its families"));
+  EXPECT_THAT(reason(R"({"verdict": {"families": [3]}})"), HasSubstr("lists its families"));
+  EXPECT_THAT(reason(R"({"verdict": {"families": [], "unknown": "no"}})"),
+              HasSubstr("'unknown' is true or false"));
+  EXPECT_THAT(reason(R"({"verdict": "NONE"})"), HasSubstr("it is no object"));
   EXPECT_THAT(reason(R"({"verdct": {"families": []}})"), HasSubstr("'movement' or a 'verdict'"));
   EXPECT_EQ(reason(R"({"verdict": {"families": []}})"), "");
 }
