@@ -40,13 +40,6 @@ std::optional<SumTerm> root_of(const SumTerm& term) {
   return root;
 }
 
-SumTerm product_of(const SumTerm& a, const SumTerm& b) {
-  SumTerm product = a;
-  product.coefficient *= b.coefficient;
-  for (const TermFactor& factor : b.factors) multiply_by(product, factor);
-  return product;
-}
-
 // The power of a base above the bar less that below it.
 int net_power(const SumTerm& term, const Expression& base) {
   int power = 0;
@@ -223,30 +216,45 @@ void complete_squares(const SumOfProducts& sum, std::vector<Expression>& out) {
 }
 
 void merge_powers(const SumTerm& term, const RangeOf& range, std::vector<Expression>& out) {
+  const auto base_of = [](const TermFactor& factor) {
+    return subtree(factor.base, factor.base.left_child(factor.base.root()));
+  };
   const auto is_power = [](const TermFactor& factor) {
     return op_of(factor.base) == Op::pow && std::abs(factor.power) == 1;
   };
   for (std::size_t i = 0; i < term.factors.size(); ++i) {
     if (!is_power(term.factors[i])) continue;
-    const Expression exponent = inside_of(term.factors[i].base);
-    const auto belongs = [&](const TermFactor& factor) {
-      return is_power(factor) && inside_of(factor.base) == exponent &&
-             range(subtree(factor.base, factor.base.left_child(factor.base.root()))).low > 0;
+    Expression exponent = inside_of(term.factors[i].base);
+    // 1 with this exponent, -1 with that of the other sign, 0 where it is another power or none.
+    const auto side_of = [&](const TermFactor& factor) {
+      if (!is_power(factor) || !(range(base_of(factor)).low > 0)) return 0;
+      const Expression other = inside_of(factor.base);
+      if (other == exponent) return 1;
+      const Node& a = exponent.node(exponent.root());
+      const Node& b = other.node(other.root());
+      return a.is_constant() && b.is_constant() && a.value == -b.value ? -1 : 0;
     };
+    const auto belongs = [&](const TermFactor& factor) { return side_of(factor) != 0; };
     // Once for every exponent: by its first.
     const auto first = std::ranges::find_if(term.factors, belongs);
     if (first != term.factors.begin() + index_of(i)) continue;
     if (std::ranges::count_if(term.factors, belongs) < 2) continue;
+    // Of the two ways to write a ratio the one with the positive exponent.
+    const bool has_both_signs =
+        std::ranges::any_of(term.factors, [&](const auto& factor) { return side_of(factor) < 0; });
+    const double c = exponent.node(exponent.root()).value;
+    const int turn = has_both_signs && c < 0 ? -1 : 1;
     SumTerm base;
     SumTerm result{term.coefficient, {}};
     for (const TermFactor& factor : term.factors) {
-      if (belongs(factor)) {
-        const Expression of = subtree(factor.base, factor.base.left_child(factor.base.root()));
-        multiply_by(base, {of, factor.power});
+      const int side = side_of(factor);
+      if (side != 0) {
+        multiply_by(base, {base_of(factor), turn * side * factor.power});
       } else {
         result.factors.push_back(factor);
       }
     }
+    if (turn < 0) exponent = build::constant(-c);
     multiply_by(result, {Expression::binary(Op::pow, formula_of(base), exponent), 1});
     out.push_back(formula_of(result));
   }

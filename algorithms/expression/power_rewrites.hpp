@@ -3,10 +3,9 @@
 // Rewrites with powers, of rewrite.hpp's kind: one step, each equal to what it is made of.
 //
 //   sums       a^2 + 2ab + b^2 as (a + b)^2, whatever number stands before it
-//   products   a^c b^c = (ab)^c, a^n / b^n = (a/b)^n; 1 / (a/b + c) = b / (a + b c); (a + k b) / b
-//   =
-//              k + a / b; e^x (e^y + b)^n = (e^(y + x/n) + b e^(x/n))^n; fractions within a
-//              fraction cleared
+//   products   a^c b^c = (ab)^c, a^c b^-c = (a/b)^c, a^n / b^n = (a/b)^n; 1 / (a/b + c) = b / (a +
+//              b c); (a + k b) / b = k + a / b; e^x (e^y + b)^n = (e^(y + x/n) + b e^(x/n))^n;
+//              fractions within a fraction cleared
 //   functions  sqrt(c/x) = sqrt(c)/sqrt(x), (c/x)^k = c^k x^-k; x^k = 1 where k log x is next to
 //              nothing
 #pragma once

@@ -153,10 +153,7 @@ SumOfProducts with_sign_once(const SumOfProducts& sum, const Expression& s) {
       SumTerm rest = term;
       rest.factors.erase(rest.factors.begin() + (open - term.factors.begin()));
       SumOfProducts inside = sum_of_products(open->base, open->base.root());
-      for (SumTerm& each : inside) {
-        each.coefficient *= rest.coefficient;
-        for (const TermFactor& other : rest.factors) multiply_by(each, other);
-      }
+      for (SumTerm& each : inside) each = product_of(each, rest);
       for (SumTerm& each : with_sign_once(inside, s)) out.push_back(std::move(each));
     } else {
       SumTerm once = term;
@@ -165,6 +162,31 @@ SumOfProducts with_sign_once(const SumOfProducts& sum, const Expression& s) {
       if (is_odd) multiply_by(once, {s, 1});
       out.push_back(std::move(once));
     }
+  }
+  return out;
+}
+
+// A product with a sum that has a logarithm in it is multiplied out: what stands beside the
+// logarithm is its power.
+SumOfProducts with_logarithms_apart(const SumOfProducts& sum) {
+  const auto is_log = [](const TermFactor& factor) { return is_function(factor.base, Op::log); };
+  SumOfProducts out;
+  for (const SumTerm& term : sum) {
+    SumOfProducts parts = {term};
+    for (std::size_t i = 0; i < term.factors.size(); ++i) {
+      const TermFactor& factor = term.factors[i];
+      if (factor.power != 1 || !is_sum(factor.base.node(factor.base.root()).op)) continue;
+      const SumOfProducts inside = sum_of_products(factor.base, factor.base.root());
+      const bool has_log = std::ranges::any_of(
+          inside, [&](const SumTerm& each) { return std::ranges::any_of(each.factors, is_log); });
+      if (!has_log) continue;
+      SumTerm rest = term;
+      rest.factors.erase(rest.factors.begin() + static_cast<std::ptrdiff_t>(i));
+      parts.clear();
+      for (const SumTerm& each : inside) parts.push_back(product_of(rest, each));
+      break;
+    }
+    out.insert(out.end(), parts.begin(), parts.end());
   }
   return out;
 }
@@ -316,9 +338,9 @@ void Rewriter::rewrite_product(const SumTerm& term, std::vector<Expression>& out
 
 // ---- functions
 
-// exp(a + c) = e^c exp(a), exp(log x) = x, exp(a log x) = x^a.
+// exp(a + c) = e^c exp(a), exp(log x) = x, exp(a log x) = x^a, exp(a (log x + b)) = e^(a b) x^a.
 void Rewriter::rewrite_exp(const Expression& argument, std::vector<Expression>& out) const {
-  const SumOfProducts sum = sum_of_products(argument, argument.root());
+  const SumOfProducts sum = with_logarithms_apart(sum_of_products(argument, argument.root()));
   for (std::size_t i = 0; i < sum.size(); ++i) {
     SumOfProducts rest = sum;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));

@@ -69,6 +69,13 @@ void multiply_by(SumTerm& term, TermFactor factor) {
   term.factors.push_back(std::move(factor));
 }
 
+SumTerm product_of(const SumTerm& a, const SumTerm& b) {
+  SumTerm product = a;
+  product.coefficient *= b.coefficient;
+  for (const TermFactor& factor : b.factors) multiply_by(product, factor);
+  return product;
+}
+
 SumOfProducts sum_of_products(const Expression& formula, std::size_t i) {
   SumOfProducts sum;
   add_terms(formula, i, 1, sum);

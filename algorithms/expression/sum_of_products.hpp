@@ -34,6 +34,7 @@ Expression formula_of(const SumOfProducts& sum);
 
 // Numbers go to the coefficient where that stays finite, equal bases become one power.
 void multiply_by(SumTerm& term, TermFactor factor);
+SumTerm product_of(const SumTerm& a, const SumTerm& b);
 
 // base^power, without a power of 1; power >= 1.
 Expression power_of(const Expression& base, int power);

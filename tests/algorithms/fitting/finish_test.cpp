@@ -102,6 +102,9 @@ TEST(Finish, NamesTogetherWhatOneByOneCannotMove) {
 TEST(Finish, WritesPowersAsPowersAndClearsFractionsWithinFractions) {
   EXPECT_EQ(Rows("v*g^(1/t)").text("v*exp(2*log(sqrt(g))/t)"), "v*g^(1/t)");
   EXPECT_EQ(Rows("v^g").text("exp(log(v)*g)"), "v^g");
+  EXPECT_EQ(Rows("sqrt(v)*exp(0.15*t)").text("exp(0.5*(log(v) + 0.3*t))"), "sqrt(v)*exp(0.15*t)");
+  EXPECT_EQ(Rows("3*t*v^-1.5").text("t*exp(1.5*(0.7324081924454065 - log(v)))"), "3*t*v^-1.5");
+  EXPECT_EQ(Rows("(v/g)^2.3").text("exp(2.3*(log(v) - log(g)))"), "(v/g)^2.3");
   EXPECT_EQ(paper_complexity(Rows("v*(1 + g)/(t - g)").finish("v*(1/g + 1)/(t/g - 1)")),
             paper_complexity(parse("v*(1 + g)/(t - g)", kNames)));
 }
