@@ -71,4 +71,16 @@ Dataset read_columns(const std::string& file, const DataOptions& options,
   return std::move(reading.data);
 }
 
+void require_rule(const std::string& file, const DataOptions& told, const ColumnRule& rule) {
+  CsvOptions options{told.roles};
+  options.joint = told.joint;
+  options.drive = told.drive;
+  options.sample_rate = told.sample_rate;
+  options.names_tell = false;
+  options.drop_missing = true;
+  options.used = std::vector<std::string>{rule.column};
+  options.rule = rule;
+  read_csv(file, options);
+}
+
 }  // namespace tribench

@@ -23,4 +23,8 @@ CLI::Option* add_data_options(CLI::App& command, std::shared_ptr<DataOptions> op
 Dataset read_columns(const std::string& file, const DataOptions& options,
                      std::vector<std::string> used);
 
+// Reads the file once more and throws Error (bad_input) with the line of the first row that breaks
+// the rule; returns where none does.
+void require_rule(const std::string& file, const DataOptions& told, const ColumnRule& rule);
+
 }  // namespace tribench

@@ -199,39 +199,28 @@ Problem make_problem(const FitArguments& arguments, const std::vector<std::strin
   return user::make_user_problem(own, {}, arguments.seed);
 }
 
-// The file is read once more, for the line: rows that train may be some of them, in another order.
-[[noreturn]] void refuse_weight(const FitArguments& arguments, const LeastValue& least,
+// Rows that train may be some of the file's, in another order: it is asked for the line.
+[[noreturn]] void refuse_weight(const FitArguments& arguments, const ColumnRule& rule,
                                 double value) {
-  const DataOptions& told = *arguments.reading;
-  CsvOptions options{told.roles};
-  options.joint = told.joint;
-  options.drive = told.drive;
-  options.sample_rate = told.sample_rate;
-  options.names_tell = false;
-  options.drop_missing = true;
-  options.used = std::vector<std::string>{least.column};
-  options.least = least;
-  read_csv(arguments.data, options);
-  throw_bad_input(fmt::format("'{}' is {} in a row", least.column, value), arguments.data,
-                  least.rule);
+  require_rule(arguments.data, *arguments.reading, rule);
+  throw_bad_input(fmt::format("'{}' is {} in a row", rule.column, value), arguments.data,
+                  rule.words);
 }
 
 std::vector<double> take_weights(const FitArguments& arguments, Problem& problem) {
   if (arguments.weights.empty() && arguments.sigma.empty()) return {};
   std::vector<double> values = take_last_input(problem).train;
   const bool is_sigma = !arguments.sigma.empty();
-  const LeastValue least =
-      is_sigma ? LeastValue{arguments.sigma, false, "a standard deviation is above 0"}
-               : LeastValue{arguments.weights, true,
+  const ColumnRule rule =
+      is_sigma ? ColumnRule{arguments.sigma, [](double value) { return value > 0; },
+                            "a standard deviation is above 0"}
+               : ColumnRule{arguments.weights, [](double value) { return value >= 0; },
                             "weights are 0 or more; of --sigma, which is above 0, they are "
                             "1/sigma^2"};
-  const auto is_wrong = [&least](double value) {
-    return !(value > 0 || (value == 0 && least.zero_too));
-  };
-  const auto wrong = std::ranges::find_if(values, is_wrong);
-  if (wrong != values.end()) refuse_weight(arguments, least, *wrong);
+  const auto wrong = std::ranges::find_if_not(values, rule.holds);
+  if (wrong != values.end()) refuse_weight(arguments, rule, *wrong);
   if (!is_sigma && std::ranges::none_of(values, [](double value) { return value > 0; })) {
-    throw_bad_input(fmt::format("'{}' is 0 in all rows", least.column), arguments.data,
+    throw_bad_input(fmt::format("'{}' is 0 in all rows", rule.column), arguments.data,
                     "give some rows a weight");
   }
   if (!is_sigma) return values;

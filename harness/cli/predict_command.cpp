@@ -11,6 +11,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "algorithms/expression/evaluate.hpp"
@@ -28,6 +29,8 @@
 
 namespace tribench {
 namespace {
+
+constexpr std::string_view kSign = "sgn_";
 
 // Behind the inputs' columns.
 void add_state_columns(const StatefulFormula& formula, const Dataset& data,
@@ -47,6 +50,47 @@ void add_state_columns(const StatefulFormula& formula, const Dataset& data,
     state_column(state, {inputs, time->values, starts}, states.back());
   }
   std::ranges::move(states, std::back_inserter(columns));
+}
+
+// A formula's sgn_X is the sign of X, as in proofs and exported code. A model may have been fitted
+// to a column of that name without X, which may hold anything.
+std::vector<std::string> names_of_signs(const std::vector<std::string>& names,
+                                        const nlohmann::json& model) {
+  const nlohmann::json inputs = model.value("inputs", nlohmann::json());
+  const auto is_input = [&](std::string_view name) {
+    return std::ranges::any_of(inputs, [name](const nlohmann::json& input) {
+      return input.is_string() && input.get_ref<const std::string&>() == name;
+    });
+  };
+  std::vector<std::string> signs;
+  for (const std::string& name : names) {
+    if (!name.starts_with(kSign)) continue;
+    const bool is_by_itself =
+        is_input(name) && !is_input(std::string_view(name).substr(kSign.size()));
+    if (!is_by_itself) signs.push_back(name);
+  }
+  return signs;
+}
+
+// Beside X in the file it has to be its sign, alone in it -1, 0 or 1.
+void require_signs_in(const Dataset& data, const std::vector<std::string>& signs,
+                      const std::string& file, const DataOptions& options) {
+  const ChannelIndex channels(data);
+  for (const std::string& name : signs) {
+    const Channel* given = channels.find(name);
+    if (given == nullptr) continue;  // derived
+    const std::string of = name.substr(kSign.size());
+    if (channels.find(of) != nullptr) {
+      require_signs(data, std::vector<std::string>{of, name});
+      continue;
+    }
+    const auto is_sign = [](double value) { return value == 0 || std::abs(value) == 1; };
+    const auto wrong = std::ranges::find_if_not(given->values, is_sign);
+    if (wrong == given->values.end()) continue;
+    const std::string words = fmt::format("{} stands for the sign of {}: -1, 0 or 1", name, of);
+    require_rule(file, options, {name, is_sign, words});
+    throw_bad_input(fmt::format("'{}' is {} in a row", name, *wrong), file, words);
+  }
 }
 
 struct PredictArguments {
@@ -77,11 +121,12 @@ std::string predictions(const PredictArguments& arguments) {
   for (const auto& [column, given] : options.roles) {
     if (given.role == Role::time) used.push_back(column);
   }
-  const Dataset data = read_columns(arguments.data, options, std::move(used));
+  Dataset data = read_columns(arguments.data, options, std::move(used));
+  data.name = arguments.data;  // in messages
   const Expression& formula = read.formula;
   std::vector<std::vector<double>> columns;
   std::vector<const double*> pointers;
-  require_signs(data, names);
+  require_signs_in(data, names_of_signs(names, model), arguments.data, options);
   const ChannelIndex channels(data);
   for (const std::string& name : names) columns.push_back(input_values(channels, name));
   add_state_columns(read, data, columns);

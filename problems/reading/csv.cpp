@@ -151,19 +151,18 @@ void choose_rows(Reading& in, DataFile& out) {
   if (in.rows.empty()) refuse_gaps(in, looked_at);
 }
 
-void check_least(const Reading& in) {
-  if (!in.options.least) return;
-  const LeastValue& least = *in.options.least;
-  const auto column = std::ranges::find(in.layout.header, least.column) - in.layout.header.begin();
+void check_rule(const Reading& in) {
+  if (!in.options.rule) return;
+  const ColumnRule& rule = *in.options.rule;
+  const auto column = std::ranges::find(in.layout.header, rule.column) - in.layout.header.begin();
   if (column == std::ssize(in.layout.header)) return;
   const auto j = static_cast<std::size_t>(column);
   if (in.columns.columns[j].kind != ColumnKind::number) return;
   for (const std::size_t row : in.rows) {
-    const double value = in.columns.columns[j].numbers[row];
-    if (value > 0 || (value == 0 && least.zero_too)) continue;
+    if (rule.holds(in.columns.columns[j].numbers[row])) continue;
     const std::size_t place = in.columns.places[row];
     throw_bad_input(fmt::format("'{}' cannot be used", cell_at(in.text, in.layout, place, j)),
-                    csv_place(in.file, line_of(in.text, place), least.column), least.rule);
+                    csv_place(in.file, line_of(in.text, place), rule.column), rule.words);
   }
 }
 
@@ -345,7 +344,7 @@ DataFile parse_csv(std::string_view text, std::string_view file, const CsvOption
   }
   out.data.name = stem_of(file);
   choose_rows(in, out);
-  check_least(in);
+  check_rule(in);
   fill_movements(in, out);
   fill_channels(in, out);
   order_by_time(

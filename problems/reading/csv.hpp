@@ -20,6 +20,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <iosfwd>
 #include <map>
 #include <optional>
@@ -35,10 +36,10 @@
 namespace tribench {
 
 // What the numbers of a column have to be.
-struct LeastValue {
+struct ColumnRule {
   std::string column;
-  bool zero_too = true;  // false: above 0
-  std::string rule;      // for people: "weights are 0 or more"
+  std::function<bool(double)> holds;
+  std::string words;  // for people: "weights are 0 or more"
 };
 
 struct CsvOptions {
@@ -55,7 +56,7 @@ struct CsvOptions {
   // What is not used is read where it holds a number in every row of every file (and --roles do not
   // say that it is nothing), and becomes a channel without a role.
   bool spare = false;
-  std::optional<LeastValue> least = {};  // a row below it is refused with its line
+  std::optional<ColumnRule> rule = {};  // a row that breaks it is refused with its line
 };
 
 struct TextColumn {

@@ -233,6 +233,31 @@ TEST(CommandLine, APredictionWithoutAValueKeepsItsRow) {
   EXPECT_EQ(run_tribench({"predict", "sqrt(v)", data}).output, "prediction\nnan\n2\nnan\n3\n");
 }
 
+// 3*sgn_v is proved and exported with the sign of v, whatever the file holds.
+TEST(CommandLine, APredictionTakesNoOtherColumnForASign) {
+  const TemporaryFolder folder;
+  const std::string data = (folder / "rows.csv").string();
+  const auto predicted = [&](const std::string& rows, const std::string& model = "3*sgn_v") {
+    write_text(data, rows);
+    return run_tribench({"predict", model, data});
+  };
+  EXPECT_EQ(predicted("sgn_v\n-1\n0\n1\n").output, "prediction\n-3\n0\n3\n");
+  EXPECT_EQ(predicted("v\n-0.5\n2\n").output, "prediction\n-3\n3\n");
+  const ProgramRun half = predicted("sgn_v\n-1\n0.5\n1\n");
+  EXPECT_EQ(half.status, 2);
+  EXPECT_THAT(half.errors, HasSubstr(data + ":3:sgn_v: '0.5' cannot be used; sgn_v stands for the "
+                                            "sign of v: -1, 0 or 1"));
+  const ProgramRun other = predicted("v,sgn_v\n-0.5,-1\n2,-1\n");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.errors, HasSubstr(data + ": 'sgn_v' is -1 where 'v' is 2"));
+  // A model of its own knows what it was fitted to.
+  const std::string model = (folder / "m.json").string();
+  write_text(model, R"({"formula": "3*sgn_v", "inputs": ["sgn_v"]})");
+  EXPECT_EQ(predicted("sgn_v\n0.5\n", model).output, "prediction\n1.5\n");
+  write_text(model, R"({"formula": "3*sgn_v", "inputs": ["v", "sgn_v"]})");
+  EXPECT_EQ(predicted("sgn_v\n0.5\n", model).status, 2);
+}
+
 TEST(CommandLine, WhatIsReadIsNotWrittenOver) {
   const TemporaryFolder folder;
   const std::string data = (folder / "joint.csv").string();

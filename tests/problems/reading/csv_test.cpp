@@ -469,11 +469,12 @@ TEST(Csv, FilesThatAreNotThereAreNamed) {
   EXPECT_THROW(read_csv_files({}), Error);
 }
 
-TEST(Csv, AValueBelowTheLeastIsRefusedWithItsLine) {
+TEST(Csv, AValueThatBreaksTheRuleIsRefusedWithItsLine) {
   const auto refusal = [](const std::string& text, bool zero_too) -> std::string {
     CsvOptions options;
     options.drop_missing = true;
-    options.least = LeastValue{"w", zero_too, "weights are so"};
+    const auto holds = [=](double w) { return w > 0 || (w == 0 && zero_too); };
+    options.rule = ColumnRule{"w", holds, "weights are so"};
     try {
       parse_csv(text, "f.csv", options);
     } catch (const Error& error) {
