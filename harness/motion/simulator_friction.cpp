@@ -23,6 +23,7 @@ namespace {
 
 constexpr std::size_t kSpeeds = 200;  // each way, alike for both
 constexpr std::size_t kPlaces = 65;   // of the other inputs: the centre and pairs
+constexpr std::size_t kAlong = 16;    // of one input over its range, where the others stay
 constexpr double kBarely = 1e-6;      // of the top speed: motion begins
 constexpr double kSettled_s = 1e9;    // a state at a constant velocity has settled
 constexpr double kSine_s = 2;         // period of the motion by which parameters are compared
@@ -132,6 +133,22 @@ class BoxFormula {
                       "narrow the box; see: tribench check");
     }
     return value;
+  }
+
+  // Of the values over input j's range, the other inputs as they are: what is lost by who knows all
+  // but that input, and gives their mean.
+  double variance_along(std::size_t j, std::vector<double> point, double v) {
+    std::array<double, kAlong> values{};
+    double mean = 0;
+    for (std::size_t k = 0; k < kAlong; ++k) {
+      const double share = (static_cast<double>(k) + 0.5) / kAlong;
+      point[j] = ranges_[j].low + (ranges_[j].high - ranges_[j].low) * share;
+      values[k] = at(point, v);
+      mean += values[k] / kAlong;
+    }
+    double squares = 0;
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    return squares / kAlong;
   }
 
   std::string words(const std::vector<double>& point) const {
@@ -267,7 +284,9 @@ void measure_errors(BoxFormula& formula, const Samples& all, SimulatorFriction& 
   to.breakaway = std::max(0.0, starting / static_cast<double>(all.places.size()));
 }
 
-// What a symmetric straight line cannot say, cause by cause.
+// What a symmetric straight line cannot say, cause by cause. Of an input: the part of the variance
+// over the box that is its own or goes with others (the total effect of Homma & Saltelli 1996), and
+// not how far the values are from those at the middle, which the fitted numbers may not be.
 void measure_losses(BoxFormula& formula, const Samples& all, SimulatorFriction& to) {
   double directions = 0;
   double shape = 0;
@@ -288,18 +307,14 @@ void measure_losses(BoxFormula& formula, const Samples& all, SimulatorFriction& 
   to.lost.push_back(
       {"the difference between the directions, and any offset", std::sqrt(directions / speeds)});
   to.lost.push_back({"the curve over the speed (Stribeck, saturation)", std::sqrt(shape / speeds)});
-  const std::vector<double> centre = formula.centre();
   for (const std::size_t j : formula.free()) {
     if (formula.is_acceleration(j) && to.armature > 0) continue;
     double squares = 0;
     double count = 0;
     for (std::size_t i = 0; i < all.speeds.size(); i += 4) {
-      for (std::size_t k = 0; k < all.places.size(); ++k) {
-        std::vector<double> moved = all.places[k];
-        moved[j] = centre[j];
-        const double ahead = all.forwards[i][k] - formula.at(moved, all.speeds[i]);
-        const double back = all.backwards[i][k] - formula.at(moved, -all.speeds[i]);
-        squares += ahead * ahead + back * back;
+      for (const std::vector<double>& place : all.places) {
+        squares += formula.variance_along(j, place, all.speeds[i]) +
+                   formula.variance_along(j, place, -all.speeds[i]);
         count += 2;
       }
     }

@@ -27,7 +27,7 @@ std::optional<Simulator> find_simulator(std::string_view name);
 
 struct LostFriction {
   std::string what;  // "the difference between the directions"
-  double rms = 0;    // torque
+  double rms = 0;    // torque; of an input, about the mean over its range
 };
 
 struct SimulatorFriction {
