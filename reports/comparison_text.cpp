@@ -41,7 +41,7 @@ std::string table_of(const std::vector<ComparisonRow>& rows) {
                        {"new / base", Align::right},
                        {"95 % interval", Align::right},
                        {"effect", Align::right},
-                       {"p", Align::right},
+                       {"p (ranks, Holm)", Align::right},
                        {"pairs (equal)", Align::right},
                        {"verdict"}});
   for (const ComparisonRow& row : rows) {
@@ -53,6 +53,12 @@ std::string table_of(const std::vector<ComparisonRow>& rows) {
   }
   return table.text();
 }
+
+// An interval on one side of 1 beside a large p looks like a contradiction.
+constexpr const char* kTwoQuestions =
+    "\nThe interval is of a row's own median ratio; p asks whether its pairs lean to one side "
+    "(signed ranks), adjusted over all verdicts (Holm). These are two questions and need not "
+    "agree; better or worse needs p and the ratio.\n";
 
 // JSON knows no infinity and no NaN.
 ordered_json rows_json(const std::vector<ComparisonRow>& rows) {
@@ -115,7 +121,7 @@ std::string comparison_head(const Comparison& comparison) {
         row.verdict == ComparisonVerdict::worse || row.verdict == ComparisonVerdict::better;
     if (decided || (row.problem.empty() && row.equal < row.pairs)) told.push_back(row);
   }
-  if (!told.empty()) text += fmt::format("\n{}", table_of(told));
+  if (!told.empty()) text += fmt::format("\n{}{}", table_of(told), kTwoQuestions);
   return text;
 }
 
@@ -132,7 +138,8 @@ std::string comparison_markdown(const Comparison& comparison) {
                             : "");
   }
   if (!comparison.cost.empty()) text += table_of(comparison.cost);
-  return text;
+  const bool has_rows = !comparison.cost.empty() || comparison.identical < comparison.common;
+  return has_rows ? text + kTwoQuestions : text;
 }
 
 ordered_json comparison_json(const Comparison& comparison) {

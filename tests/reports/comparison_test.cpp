@@ -250,6 +250,9 @@ TEST(Comparison, ALargeLossThatIsNotSignificantIsUndecided) {
   EXPECT_FALSE(comparison.has_regression());
   EXPECT_EQ(comparison.outcome(), ComparisonOutcome::undecided);
   EXPECT_THAT(comparison_markdown(comparison), HasSubstr("b (paper) on p0: 16"));
+  // Its interval is all above 1 and its p is not small: what each of them asks is said.
+  EXPECT_THAT(comparison_markdown(comparison), HasSubstr("two questions"));
+  EXPECT_THAT(comparison_head(comparison), HasSubstr("two questions"));
   ComparisonOptions tolerant;
   tolerant.tolerance = 4;
   EXPECT_EQ(compare_runs(base, now, tolerant).outcome(), ComparisonOutcome::fine);
