@@ -41,6 +41,7 @@ struct JournalContents {
   RunIdentity identity;
   std::vector<CellResult> results;  // the last one of each cell, in order of first appearance
   std::vector<std::string> damage;  // what was left out, for people
+  std::size_t repeated = 0;         // of merged ones: results that an earlier folder had as well
   std::uintmax_t good_bytes = 0;    // up to the end of the last good line
   std::uintmax_t bytes = 0;         // of the whole file when it was read
 };

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <string_view>
+#include <unordered_set>
 
 #include "algorithms/expression/text.hpp"
 #include "foundation/error.hpp"
@@ -130,10 +133,18 @@ std::vector<std::string> read_quarantine_file(const std::filesystem::path& file)
 
 JournalContents merge_journals(const std::vector<std::filesystem::path>& folders,
                                const std::filesystem::path& out) {
+  if (std::filesystem::exists(out / "cells.jsonl")) {
+    throw_bad_input("there is a run in this folder already", (out / "cells.jsonl").string(),
+                    "give another --out, or remove this run first");
+  }
   JournalContents merged;
+  std::set<std::filesystem::path> named;
   std::map<std::string, std::string> seen;  // cell -> fingerprint
   for (const std::filesystem::path& folder : folders) {
     JournalContents part = read_journal(folder / "cells.jsonl");
+    if (!named.insert(std::filesystem::weakly_canonical(folder / "cells.jsonl")).second) {
+      throw_bad_input("this folder is named twice", folder.string(), "name each shard once");
+    }
     if (folder == folders.front()) merged.identity = part.identity;
     const std::string difference = merged.identity.difference(part.identity);
     if (!difference.empty()) {
@@ -151,6 +162,8 @@ JournalContents merge_journals(const std::vector<std::filesystem::path>& folders
         throw_bad_input(
             fmt::format("the cell {} has another result in an earlier folder", result.record.cell),
             folder.string(), "one of the two runs is not reproducible: see its note");
+      } else {
+        ++merged.repeated;
       }
     }
   }
@@ -161,6 +174,18 @@ JournalContents merge_journals(const std::vector<std::filesystem::path>& folders
   Journal journal = Journal::create(out / "cells.jsonl", merged.identity);
   for (const CellResult& result : merged.results) journal.append(result);
   return merged;
+}
+
+PlannedAndMissing missing_cells(const std::filesystem::path& folder,
+                                const std::vector<CellResult>& results) {
+  std::unordered_set<std::string_view> done;
+  for (const CellResult& result : results) done.insert(result.record.cell);
+  PlannedAndMissing cells;
+  read_planned(folder / "planned.csv", [&](PlannedCell&& planned) {
+    ++cells.planned;
+    if (!done.contains(planned.cell)) cells.missing.push_back(std::move(planned.cell));
+  });
+  return cells;
 }
 
 }  // namespace tribench

@@ -38,10 +38,18 @@ void write_quarantine_file(const std::filesystem::path& folder,
 // (bad_input) where it cannot be read.
 std::vector<std::string> read_quarantine_file(const std::filesystem::path& file);
 
-// Joins the journals of runs of the same grid, code and data into `out`, where no run may be yet.
-// Throws Error (bad_input) where they differ, with the difference, or where a cell has two
-// different results.
+// Joins the journals of runs of the same grid, code and data into `out`. Throws Error (bad_input)
+// where they differ, with the difference, where a cell has two different results, a folder stands
+// twice among them or `out` has a run already.
 JournalContents merge_journals(const std::vector<std::filesystem::path>& folders,
                                const std::filesystem::path& out);
+
+// The cells of the folder's plan that are not among the results, in its order.
+struct PlannedAndMissing {
+  std::size_t planned = 0;
+  std::vector<std::string> missing;
+};
+PlannedAndMissing missing_cells(const std::filesystem::path& folder,
+                                const std::vector<CellResult>& results);
 
 }  // namespace tribench

@@ -34,9 +34,23 @@ struct MergeArguments {
 void print_damage(const JournalContents& journal) {
   for (const std::string& damage : journal.damage)
     print_message(fmt::format("tribench: {}\n", damage));
+  if (journal.repeated == 0) return;
+  print_message(fmt::format(
+      "tribench: {} results are in more than one folder, the same in each: they count once\n",
+      journal.repeated));
 }
 
-void merge(const MergeArguments& arguments) {
+// A leaderboard of what is there is of use, but it is not that of the grid.
+ExitStatus tell_missing(const PlannedAndMissing& cells) {
+  if (cells.missing.empty()) return ExitStatus::done;
+  print_message(fmt::format(
+      "tribench: {} of {} planned cells are missing, the first {}: run the shards that are left "
+      "(run --shard K/N --resume) and merge again, into another folder\n",
+      cells.missing.size(), cells.planned, cells.missing.front()));
+  return ExitStatus::undecided;
+}
+
+ExitStatus merge(const MergeArguments& arguments) {
   const std::vector<std::filesystem::path> folders(arguments.folders.begin(),
                                                    arguments.folders.end());
   const JournalContents merged = merge_journals(folders, arguments.out);
@@ -61,19 +75,22 @@ void merge(const MergeArguments& arguments) {
   write_merged_provenance(out, folders, merged);
   fmt::print("{}\n{} cells from {} folders; see {}\n", write_run_reports(out),
              merged.results.size(), folders.size(), (out / "leaderboard.md").string());
+  return tell_missing(missing_cells(out, merged.results));
 }
 
 }  // namespace
 
-void add_merge_command(CLI::App& app, ExitStatus& /*status*/) {
+void add_merge_command(CLI::App& app, ExitStatus& status) {
   CLI::App* command = app.add_subcommand("merge", "Joins the shards of a run");
-  command->footer("Example: tribench merge shard-1 shard-2 --out run-paper");
+  command->footer(
+      "Example: tribench merge shard-1 shard-2 --out run-paper\n"
+      "Exit status 4 where planned cells are in none of the folders: what is there is merged.");
   auto arguments = std::make_shared<MergeArguments>();
   command->add_option("folders", arguments->folders, "folders of the shards, in any order")
       ->required();
   command->add_option("--out", arguments->out, "the joined run's folder")->required();
   command->add_option("--data", arguments->data, "folder of the measured sets, for the pictures");
-  command->callback([arguments] { merge(*arguments); });
+  command->callback([arguments, &status] { status = merge(*arguments); });
 }
 
 }  // namespace tribench

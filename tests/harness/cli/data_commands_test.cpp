@@ -18,7 +18,9 @@
 namespace tribench::testing {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(GenerateCommand, WritesWhatReadsBackAndTheSameForTheSameSeed) {
   const TemporaryFolder folder;
@@ -67,6 +69,32 @@ TEST(MergeCommand, KeepsWhatTheSuitesSay) {
   ASSERT_EQ(run_tribench({"merge", path("first"), path("second"), "--out", path("all")}).status, 0);
   EXPECT_EQ(read_text(folder / "all/suites.json"), read_text(folder / "whole/suites.json"));
   EXPECT_THAT(read_text(folder / "all/leaderboard.md"), HasSubstr("## Suites"));
+}
+
+TEST(MergeCommand, SaysWhatIsMissingAndWhatIsThereTwice) {
+  const TemporaryFolder folder;
+  const auto path = [&](const char* name) { return (folder / name).string(); };
+  write_text(folder / "grid.toml",
+             "[grid]\nproblems = [\"nguyen/1\", \"nguyen/2\"]\nmethods = [\"linear\"]\n"
+             "operators = [\"paper\"]\nseeds = { first = 1, count = 2 }\n");
+  ASSERT_EQ(
+      run_tribench({"run", path("grid.toml"), "--shard", "1/2", "--out", path("first")}).status, 0);
+  const ProgramRun part = run_tribench({"merge", path("first"), "--out", path("part")});
+  EXPECT_EQ(part.status, 4);
+  EXPECT_THAT(part.errors, HasSubstr("2 of 4 planned cells are missing, the first "));
+  const ProgramRun again = run_tribench({"merge", path("first"), "--out", path("part")});
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.errors, AllOf(HasSubstr("there is a run in this folder already"),
+                                  HasSubstr("give another --out"), Not(HasSubstr("--resume"))));
+  const std::string same = path("first") + "/../first";
+  const ProgramRun twice = run_tribench({"merge", path("first"), same, "--out", path("twice")});
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_THAT(twice.errors, HasSubstr(same + ": this folder is named twice"));
+  ASSERT_EQ(run_tribench({"run", path("grid.toml"), "--out", path("whole")}).status, 0);
+  const ProgramRun both =
+      run_tribench({"merge", path("first"), path("whole"), "--out", path("both")});
+  EXPECT_EQ(both.status, 0);
+  EXPECT_THAT(both.errors, HasSubstr("2 results are in more than one folder"));
 }
 
 TEST(DataCommand, ListsWithoutDataAndFindsAChangedFile) {
