@@ -304,7 +304,24 @@ ExitStatus status_of_end() {
   return stop_requested_by_signal() ? ExitStatus::undecided : ExitStatus::done;
 }
 
+// A column has one place in a fit.
+void require_own_columns(const FitArguments& arguments) {
+  const auto require = [&](const char* option, const std::string& column, const char* mend) {
+    if (column.empty()) return;
+    const bool is_input = std::ranges::count(arguments.inputs, column) > 0;
+    if (!is_input && column != arguments.target) return;
+    throw_bad_input(
+        fmt::format("'{}' is {} too", column, is_input ? "one of the --inputs" : "the --target"),
+        option, mend);
+  };
+  constexpr const char* kCopy = "give the column a second time in the file, under another name";
+  require("--weights", arguments.weights, kCopy);
+  require("--sigma", arguments.sigma, kCopy);
+  require("--category", arguments.category, "name it once: each category has constants of its own");
+}
+
 ExitStatus fit(const FitArguments& arguments, const Registry& registry) {
+  require_own_columns(arguments);
   if (!arguments.save.empty()) try_output_file(arguments.save);
   const ChosenMethod chosen = choose_method(arguments, registry);
   std::vector<std::string> inputs = arguments.inputs;

@@ -217,6 +217,11 @@ TEST_F(UnequalRowsTest, WeightsAndStandardDeviationsSayWhichRowsCount) {
               AllOf(HasSubstr("train.csv:2:bad: '-1'"), HasSubstr("0 or more")));
   EXPECT_THAT(refusal({"--method", "linear", "--sigma", "weight", "--where", "weight=0"}),
               AllOf(HasSubstr("train.csv:2:weight: '0'"), HasSubstr("above 0")));
+  EXPECT_THAT(
+      refusal({"--method", "linear", "--weights", "v"}),
+      HasSubstr("--weights: 'v' is one of the --inputs too; give the column a second time"));
+  EXPECT_THAT(refusal({"--method", "linear", "--sigma", "y"}),
+              HasSubstr("--sigma: 'y' is the --target too"));
   EXPECT_THAT(refusal({"--method", "linear", "--weights", "weight", "--where", "weight=0"}),
               AllOf(HasSubstr("train.csv: 'weight' is 0 in all rows"), HasSubstr("a weight")));
   EXPECT_THAT(refusal({"--method", "linear", "--sigma", "sgima"}), HasSubstr("sigma"));
