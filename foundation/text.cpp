@@ -93,6 +93,16 @@ std::string lines_without_control_characters(std::string_view text) {
   return shown + without_control_characters(text);
 }
 
+std::string clipped(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return std::string(text);
+  const auto goes_on = [&](std::size_t at) {
+    return (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U;
+  };
+  std::size_t end = most;
+  while (end > 0 && goes_on(end)) --end;
+  return std::string(text.substr(0, end)) + "...";
+}
+
 std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> pieces;
   if (trimmed(text).empty()) return pieces;

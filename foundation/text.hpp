@@ -30,6 +30,10 @@ std::string without_control_characters(std::string_view text);
 // The same of several lines, whose ends stay.
 std::string lines_without_control_characters(std::string_view text);
 
+// What a message shows of a text that may have any length: its first `most` bytes in whole
+// characters, and "..." where there is more.
+std::string clipped(std::string_view text, std::size_t most = 60);
+
 // The pieces between separators, trimmed: "a, b" at ',' gives "a" and "b"; "a,,b" has an empty
 // piece; an empty or blank text has none.
 std::vector<std::string> split(std::string_view text, char separator);

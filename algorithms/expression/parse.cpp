@@ -14,6 +14,7 @@
 #include "foundation/error.hpp"
 #include "foundation/formula_name.hpp"
 #include "foundation/suggestion.hpp"
+#include "foundation/text.hpp"
 
 namespace tribench {
 namespace {
@@ -96,7 +97,7 @@ class Cursor {
     const char* first = text_.data() + at_;
     const auto [end, error] = std::from_chars(first, text_.data() + text_.size(), value);
     if (error == std::errc::result_out_of_range) {
-      fail(fmt::format("the number {} is out of range", std::string_view(first, end)),
+      fail(fmt::format("the number {} is out of range", clipped(std::string_view(first, end))),
            "use a double-precision number");
     }
     at_ += static_cast<std::size_t>(end - first);

@@ -12,6 +12,7 @@
 #include "algorithms/effects/effect_library.hpp"
 #include "foundation/child_process.hpp"
 #include "foundation/error.hpp"
+#include "foundation/formula_name.hpp"
 #include "foundation/json_text.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/output_folder.hpp"
@@ -31,6 +32,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kChallengeProtocol = 1;
 constexpr std::size_t kLongestLine = 1U << 20;
+constexpr std::size_t kShownOfLine = 100;  // bytes
 constexpr std::size_t kMostRequests = 5000;
 constexpr const char* kVerdictLine =
     "print {\"verdict\": ...} on a line at the end, null where there is none (docs/challenge.md)";
@@ -93,11 +95,9 @@ class Talk {
   }
 
   [[noreturn]] void refuse_silence() {
-    constexpr std::size_t kMost = 100;  // bytes of a line
-    const std::string printed =
-        last_line_.empty() ? "it printed no line"
-                           : fmt::format("the last line it printed is '{}'",
-                                         last_line_.substr(0, std::min(last_line_.size(), kMost)));
+    const std::string printed = last_line_.empty() ? "it printed no line"
+                                                   : fmt::format("the last line it printed is '{}'",
+                                                                 clipped(last_line_, kShownOfLine));
     const std::string how = child_.ends_within(1)
                                 ? fmt::format("ended with {}", told_of_end(child_.wait(), errors_))
                                 : "closed its output and still runs";
@@ -111,8 +111,8 @@ class Talk {
     std::string reason;
     Json said = read_json<Json>(line, &reason);
     if (said.is_discarded() && find_json_object(line, 0) == 0) {
-      throw Error(ErrorKind::failed, fmt::format("{}: '{}'", reason, line), "the program's line",
-                  "print an object on one line, every number finite");
+      throw Error(ErrorKind::failed, fmt::format("{}: '{}'", reason, clipped(line, kShownOfLine)),
+                  "the program's line", "print an object on one line, every number finite");
     }
     return said;
   }
@@ -126,16 +126,41 @@ class Talk {
   std::string last_line_;  // of chatter
 };
 
+// Whatever stands in it is one cell.
+std::string quoted_cell(const std::string& text) {
+  std::string cell = "\"";
+  for (const char c : text) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return cell + "\"";
+}
+
 // The same reader as for files: a line under the columns' names.
 PlannedMovement movement_in(const Json& wanted) {
+  constexpr const char* kMend =
+      R"(write {"kind": "constant", "velocity_rad_s": 0.3, "from_rad": -1, "to_rad": 1})";
+  if (!wanted.is_object() || wanted.empty()) {
+    throw_bad_input(fmt::format("{} is no movement", clipped(write_json(wanted), kShownOfLine)),
+                    "movement", kMend);
+  }
   std::string names;
   std::string values;
   for (const auto& [name, value] : wanted.items()) {
+    if (!is_identifier(name)) {
+      throw_bad_input(fmt::format("there is no column '{}'", clipped(name)), "movement", kMend);
+    }
+    if (!value.is_number() && !value.is_string()) {
+      throw_bad_input(fmt::format("'{}' is {}, which is no number and no word", clipped(name),
+                                  clipped(write_json(value))),
+                      "movement", kMend);
+    }
     names += (names.empty() ? "" : ",") + name;
     values += (values.empty() ? "" : ",") +
-              (value.is_string() ? value.get<std::string>() : write_json(value));
+              (value.is_string() ? quoted_cell(value.get<std::string>()) : write_json(value));
   }
-  return read_movements(names + "\n" + values + "\n", "movement").front();
+  try {
+    return read_movements(names + "\n" + values + "\n", "movement").front();
+  } catch (const Error& error) {  // there is no line that it could be in
+    throw Error(error.kind(), error.text(), "movement", error.mend());
+  }
 }
 
 Json rows_of(const Dataset& data) {
@@ -150,7 +175,7 @@ void take_verdict(const Json& verdict, const simulation::World& world, Challenge
   if (!verdict.is_object()) throw_bad_input("it is no object", "verdict", kMend);
   for (const auto& [key, value] : verdict.items()) {
     if (key == "families" || key == "unknown") continue;
-    throw_bad_input(fmt::format("a verdict has no '{}'", key), "verdict",
+    throw_bad_input(fmt::format("a verdict has no '{}'", clipped(key)), "verdict",
                     did_you_mean(key, {"families", "unknown"}));
   }
   const Json named = verdict.value("families", Json());
@@ -165,7 +190,7 @@ void take_verdict(const Json& verdict, const simulation::World& world, Challenge
   const std::vector<std::string> known = loop::builtin_effect_names();
   for (const std::string& family : families) {
     if (std::ranges::count(known, family) > 0) continue;
-    throw_bad_input(fmt::format("there is no family '{}'", family), "verdict",
+    throw_bad_input(fmt::format("there is no family '{}'", clipped(family)), "verdict",
                     did_you_mean(family, known));
   }
   const bool unknown = verdict.value("unknown", false);
@@ -185,8 +210,8 @@ void converse(Talk& talk, simulation::World& world, ChallengeResult& result) {
   for (std::size_t k = 0; k < kMostRequests; ++k) {
     const Json heard = talk.hear();
     if (!heard.is_object() || heard.contains("verdict") == heard.contains("movement")) {
-      throw_bad_input("it has to be a 'movement' or a 'verdict'", write_json(heard),
-                      "one of the two on a line");
+      throw_bad_input("it has to be a 'movement' or a 'verdict'",
+                      clipped(write_json(heard), kShownOfLine), "one of the two on a line");
     }
     if (heard.contains("verdict")) {
       if (heard.at("verdict").is_null()) {

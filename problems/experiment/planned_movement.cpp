@@ -10,6 +10,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/suggestion.hpp"
+#include "foundation/text.hpp"
 #include "problems/reading/csv_cells.hpp"
 #include "problems/reading/csv_checks.hpp"
 
@@ -60,7 +61,7 @@ class MovementLine {
     double value = 0;
     const std::string_view cell = text(column);
     if (read_cell(cell, false, value) != CellKind::number || !(value >= low && value <= high)) {
-      throw_bad_input(fmt::format("'{}' is no {}", cell, column), place(),
+      throw_bad_input(fmt::format("'{}' is no {}", clipped(cell), column), place(),
                       fmt::format("a number from {:g} to {:g}", low, high));
     }
     return value;
@@ -82,10 +83,10 @@ void check_header(const CsvCells& cells, std::string_view file) {
     if (std::ranges::count(known_columns(), name) > 0) continue;
     if (name.ends_with("_deg") || name.ends_with("_deg_s") || name.ends_with("_m") ||
         name.ends_with("_m_s")) {
-      throw_bad_input(fmt::format("'{}' is in another unit", name), file,
+      throw_bad_input(fmt::format("'{}' is in another unit", clipped(name)), file,
                       "positions of movements are in rad and velocities in rad/s");
     }
-    throw_bad_input(fmt::format("there is no column '{}'", name), file,
+    throw_bad_input(fmt::format("there is no column '{}'", clipped(name)), file,
                     did_you_mean(name, known_columns()));
   }
   for (const char* needed : {"kind", "velocity_rad_s", "from_rad", "to_rad"}) {
@@ -134,8 +135,8 @@ PlannedMovement read_movement(const MovementLine& line) {
   } else if (movement.is_two_tone()) {
     read_tones(line, movement);
   } else {
-    throw_bad_input(fmt::format("there is no kind '{}' of movement", movement.kind), line.place(),
-                    did_you_mean(movement.kind, {"constant", "two_tone"}));
+    throw_bad_input(fmt::format("there is no kind '{}' of movement", clipped(movement.kind)),
+                    line.place(), did_you_mean(movement.kind, {"constant", "two_tone"}));
   }
   return movement;
 }

@@ -28,6 +28,13 @@ TEST(Text, SplitsAtSeparatorsAndTrimsThePieces) {
   EXPECT_EQ(trimmed("\r\n x y \t"), "x y");
 }
 
+TEST(Text, IsClippedBetweenCharacters) {
+  EXPECT_EQ(clipped("abc", 3), "abc");
+  EXPECT_EQ(clipped("abcd", 3), "abc...");
+  EXPECT_EQ(clipped("ab\xe2\x82\xac!", 4), "ab...");
+  EXPECT_EQ(clipped("ab\xe2\x82\xac!", 5), "ab\xe2\x82\xac...");
+}
+
 TEST(Text, IsUtf8OrNot) {
   EXPECT_TRUE(is_utf8(""));
   EXPECT_TRUE(is_utf8("a \xc2\xb5m \xe2\x82\xac \xf0\x9f\x98\x80"));

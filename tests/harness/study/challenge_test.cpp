@@ -12,6 +12,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 ChallengeResult result_of(const std::string& script, double wall_s = 20) {
   return run_challenge_world({"bash", "-c", script}, {}, wall_s).value();
@@ -46,6 +47,32 @@ TEST(ChallengeWorld, AProgramThatDoesNotReadHasNoMoreTimeThanAnyOther) {
 TEST(ChallengeWorld, TheLastLineNeedsNoEnd) {
   const ChallengeResult result = result_of("read hello; printf '{\"verdict\": null}'");
   EXPECT_EQ(result.verdict, "abstained") << result.reason;
+}
+
+// A value that is no cell would be taken for several, and the message be about lines of a file.
+TEST(ChallengeWorld, AMovementThatIsNoneIsRefusedInItsOwnWords) {
+  const auto refusal = [](const std::string& movement) {
+    return result_of("read hello; echo '{\"movement\": " + movement +
+                     "}'; read answer; echo \"$answer\" >&2; exit 3")
+        .reason;
+  };
+  EXPECT_THAT(refusal("5"), HasSubstr("movement: 5 is no movement; write {"));
+  EXPECT_THAT(refusal("[1, 2]"), HasSubstr("[1,2] is no movement"));
+  EXPECT_THAT(refusal("{}"), HasSubstr("{} is no movement"));
+  EXPECT_THAT(refusal(R"({"kind": "constant", "velocity_rad_s": [0.1, 2]})"),
+              HasSubstr("'velocity_rad_s' is [0.1,2], which is no number and no word"));
+  EXPECT_THAT(refusal(R"({"kind": "constant", "velocity_rad_s": null})"),
+              HasSubstr("'velocity_rad_s' is null"));
+  EXPECT_THAT(refusal(R"({"kind": "con,stant", "velocity_rad_s": 1, "from_rad": 0, "to_rad": 1})"),
+              HasSubstr("\"movement: there is no kind 'con,stant'"));
+  const std::string digits(300, '7');
+  const std::string shown = std::string(60, '7') + "...'";
+  EXPECT_THAT(refusal(R"({"kind": "constant", "from_rad": 0, "to_rad": 1, "velocity_rad_s": ")" +
+                      digits + "\"}"),
+              HasSubstr("'" + shown + " is no velocity_rad_s"));
+  EXPECT_THAT(refusal("{\"" + digits + "\": 1}"), HasSubstr("there is no column '" + shown));
+  EXPECT_THAT(refusal(digits + digits), AllOf(HasSubstr("a number out of range in JSON"),
+                                              HasSubstr("777...'"), Not(HasSubstr(digits))));
 }
 
 TEST(ChallengeWorld, AMisspeltVerdictIsNoVerdict) {
