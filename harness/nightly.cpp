@@ -133,7 +133,8 @@ VerifyResult verify_sample(const Grid& grid, const WholeRun& run, const NightlyO
   return verify_run(grid, run.journal, options.sample, again, stop);
 }
 
-// The nights after the base, the newest last, as many as are looked at.
+// The nights after the base, the newest last, as many as are looked at. A damaged one tells
+// nothing: read_history says which, and the others go on.
 std::vector<Night> nights_since(const NightStore& store, const Night& base, const Night& now) {
   std::vector<Night> nights;
   const std::vector<std::string> names = store.names();
@@ -141,7 +142,11 @@ std::vector<Night> nights_since(const NightStore& store, const Night& base, cons
        ++name) {
     if (*name >= now.name) continue;
     if (*name <= base.name) break;
-    nights.push_back(store.read(*name));
+    try {
+      nights.push_back(store.read(*name));
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::bad_input) throw;
+    }
   }
   std::ranges::reverse(nights);
   nights.push_back(now);
@@ -246,6 +251,11 @@ std::string summary_of(const Verdict& verdict, const Grid& grid, const WholeRun&
   return text + fmt::format("{}\n", (folder / "report.html").string());
 }
 
+std::string damage_line(const std::vector<std::string>& damaged) {
+  return fmt::format("left out: {}{}\n", damaged.front(),
+                     damaged.size() > 1 ? fmt::format("; and {} more", damaged.size() - 1) : "");
+}
+
 }  // namespace
 
 ComparisonOptions nightly_comparison() {
@@ -312,7 +322,7 @@ NightlyResult run_night(const Grid& grid, const NightlyOptions& options,
     settle_by_nights(*verdict.comparison, *base, since);
   }
   night.outcome = name_of(verdict.end());
-  const std::string summary = summary_of(verdict, grid, run, night, base, folder);
+  std::string summary = summary_of(verdict, grid, run, night, base, folder);
   if (verdict.comparison) {
     write_file(running.out / "comparison.md", comparison_markdown(*verdict.comparison) + "\n" +
                                                   losses_text(verdict.losses) +
@@ -325,6 +335,10 @@ NightlyResult run_night(const Grid& grid, const NightlyOptions& options,
     store.bless({night.name, "the first night", utc_now()});
   fs::rename(running.out, folder);
   const StoreHistory history = read_history(store);
+  if (!history.damaged.empty()) {
+    summary += damage_line(history.damaged);
+    write_file(folder / "summary.txt", summary);
+  }
   write_file(options.store / "nights.html", history_page(history));
   write_file(options.store / "nights.atom", history_feed(history));
   keep_last_runs(store, base ? base->name : night.name, options.keep_runs);

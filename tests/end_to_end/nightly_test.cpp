@@ -164,6 +164,23 @@ TEST_F(NightlyTest, AMissingOrDamagedBaseIsRefusedAndNeverReplaced) {
   EXPECT_THAT(gone.errors, HasSubstr("the base's run is missing"));
 }
 
+// Of hundreds of records one is no reason to lose a night.
+TEST_F(NightlyTest, ADamagedNightThatIsNotTheBaseIsNamedAndLeftOut) {
+  write_grid("2_000_000");
+  ASSERT_EQ(night().status, 0);
+  next_second();
+  ASSERT_EQ(night().status, 0);
+  std::filesystem::path record;  // the second: names begin with the time
+  for (const auto& entry : std::filesystem::directory_iterator(store() / "nights")) {
+    record = std::max(record, entry.path());
+  }
+  write_text(record, read_text(record) + "x");
+  next_second();
+  const ProgramRun third = night();
+  EXPECT_EQ(third.status, 0) << third.errors;
+  EXPECT_THAT(third.output, HasSubstr("left out: " + record.string() + ": this is no night's"));
+}
+
 TEST_F(NightlyTest, ASecondOneAtATimeAndAFullDiskAreRefused) {
   write_grid("2_000_000");
   const ProgramRun full = run_tribench({"nightly", "--store", store().string(), "--grid",
