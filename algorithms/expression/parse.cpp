@@ -37,8 +37,10 @@ constexpr std::array<Shorthand, 7> kShorthands = {
      {"cosh", "(exp(x) + exp(-x))/2"},
      {"log2", "log(x)/0.6931471805599453"},
      {"log10", "log(x)/2.302585092994046"},
-     {"asin", "2*atan(x/(1 + sqrt(1 - x*x)))"},
-     {"acos", "1.5707963267948966 - 2*atan(x/(1 + sqrt(1 - x*x)))"}}};
+     // Finite to both ends of -1 .. 1, and no difference near them is of rounded numbers: by the
+     // half of the angle, and for acos, which goes to 0 there, by the quarter.
+     {"asin", "2*atan(x/(1 + sqrt((1 - x)*(1 + x))))"},
+     {"acos", "4*atan(sqrt(1 - x)/(1.4142135623730951 + sqrt(1 + x)))"}}};
 constexpr std::size_t kMostWrittenOut = 100'000;  // nodes: each may hold its argument twice
 
 const Shorthand* shorthand_of(std::string_view name) {

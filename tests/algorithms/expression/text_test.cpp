@@ -142,8 +142,8 @@ TEST(Parse, WritesOutWhatOperationsSay) {
       {"2*sinh(v)", "2*(tanh(v)*((exp(v) + exp(-v))/2))"},
       {"cosh(v)^2", "((exp(v) + exp(-v))/2)^2"},
       {"g - log2(v)", "g - log(v)/0.6931471805599453"},
-      {"asin(v)", "2*atan(v/(1 + sqrt(1 - v*v)))"},
-      {"acos(v)", "1.5707963267948966 - 2*atan(v/(1 + sqrt(1 - v*v)))"},
+      {"asin(v)", "2*atan(v/(1 + sqrt((1 - v)*(1 + v))))"},
+      {"acos(v)", "4*atan(sqrt(1 - v)/(1.4142135623730951 + sqrt(1 + v)))"},
       {"1/log10(tan(v))", "1/(log(sin(v)/cos(v))/2.302585092994046)"},
   };
   for (const auto& [text, written_out] : forms) {
@@ -160,6 +160,29 @@ TEST(Parse, WritesOutWhatOperationsSay) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("'tan' is sin(x)/cos(x) here"));
     EXPECT_EQ(error.kind(), ErrorKind::bad_input);
+  }
+}
+
+// 1 - x*x has lost half of its digits where 1 - x is 1e-8, and pi/2 - asin(x) with it.
+TEST(Parse, TheArcsAreExactToTheLastDigitsUpToTheirEnds) {
+  const Expression asin = parse("asin(v)", kNames);
+  const Expression acos = parse("acos(v)", kNames);
+  Evaluator evaluator;
+  const auto expect_at = [&](double x) {
+    const std::vector<double> at = {x, 0, 0};
+    constexpr double kUlps = 6 * std::numeric_limits<double>::epsilon();
+    const double arc_sine = evaluator.evaluate_at(asin, at);
+    EXPECT_LE(std::abs(arc_sine - std::asin(x)), kUlps * std::abs(std::asin(x))) << x;
+    const double arc_cosine = evaluator.evaluate_at(acos, at);
+    EXPECT_LE(std::abs(arc_cosine - std::acos(x)), kUlps * std::acos(x)) << x;
+  };
+  RandomStream random(2);
+  for (const double x : {-1.0, -0.0, 0.0, 1e-300, 0.5, 1.0}) expect_at(x);
+  for (int i = 0; i < 2000; ++i) {
+    expect_at(random.uniform(-1, 1));
+    const double near = 1 - std::pow(10.0, random.uniform(-16, 0));
+    expect_at(near);
+    expect_at(-near);
   }
 }
 
