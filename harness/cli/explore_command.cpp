@@ -14,6 +14,7 @@
 
 #include "algorithms/exploration/fixed_plans.hpp"
 #include "foundation/error.hpp"
+#include "foundation/number_text.hpp"
 #include "foundation/output_file.hpp"
 #include "foundation/standard_streams.hpp"
 #include "foundation/text.hpp"
@@ -46,12 +47,23 @@ struct ExploreArguments {
   bool json = false;
 };
 
-// "600s" is 600.
+// "600s" and "10m" are 600, "1h" is 3600.
 CLI::Validator seconds_of_text() {
   return CLI::Validator(
-      [](std::string& text) {
-        if (text.size() > 1 && text.back() == 's') text.pop_back();
-        return std::string();
+      [](std::string& text) -> std::string {
+        if (read_number<double>(text)) return {};
+        const char unit = text.empty() ? ' ' : text.back();
+        const double unit_s = unit == 's' ? 1 : unit == 'm' ? 60 : unit == 'h' ? 3600 : 0;
+        const std::optional<double> number =
+            unit_s > 0 ? read_number<double>(text.substr(0, text.size() - 1)) : std::nullopt;
+        if (!number) {
+          return fmt::format(
+              "'{}' cannot be used; use a number of seconds (600, 600s), minutes "
+              "(10m) or hours (1h)",
+              text);
+        }
+        text = fmt::format("{}", unit_s * *number);
+        return {};
       },
       "");
 }
@@ -191,7 +203,9 @@ void add_explore_command(CLI::App& app, ExitStatus& status) {
                    "wall time that the program may take for a movement")
       ->transform(real_number(0.01, 1e6))
       ->capture_default_str();
-  command->add_option("--budget", arguments->budget_s, "seconds of motion at most: 600 or 600s")
+  command
+      ->add_option("--budget", arguments->budget_s,
+                   "seconds of motion at most: 600, 600s, 10m or 1h")
       ->transform(real_number(0.1, 1e9))
       ->transform(seconds_of_text())  // before the number is read
       ->capture_default_str();

@@ -164,6 +164,16 @@ TEST_F(ExploreByProgram, RefusesARecordingThatIsNotTheMovement) {
   EXPECT_THAT(says("still", "$3 = 0.1"), HasSubstr("was asked for"));
 }
 
+TEST_F(ExploreByProgram, TheBudgetMayBeInMinutesAndHours) {
+  const std::string robot = make_robot("a");
+  EXPECT_EQ(explore(robot, "x", "15").status, 4);
+  EXPECT_EQ(explore(robot, "x", "0.25m").status, 4) << "the same exploration";
+  EXPECT_EQ(explore(robot, "x", "15s").status, 4);
+  EXPECT_EQ(explore(robot, "x", "0.25h").status, 2) << "its end would be another";
+  EXPECT_THAT(explore(robot, "x", "10min").errors,
+              HasSubstr("'10min' cannot be used; use a number of seconds (600, 600s), minutes"));
+}
+
 TEST_F(ExploreByProgram, LimitsThatNobodyHasSetMoveNoJoint) {
   const std::string robot = make_robot("a");
   write_text(folder_ / "limits.json", R"({"lowest_rad": -1, "highest_rad": 1, "torque_Nm": 9})");
