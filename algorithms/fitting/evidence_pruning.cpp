@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "algorithms/expression/simplify.hpp"
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/fitting/evidence.hpp"
+#include "algorithms/fitting/formula_jacobian.hpp"
+#include "algorithms/fitting/symmetric_system.hpp"
 #include "foundation/elementary.hpp"
 
 namespace tribench {
@@ -21,6 +24,34 @@ constexpr double kFarOff = 0.3;  // of an exponent from the value it may be
 constexpr int kIterations = 8;   // of the others' fit
 constexpr std::size_t kMostConstants = 14;
 constexpr double kNodesSaved = 2;  // that a 0 or a 1 takes with it: itself and its operation
+constexpr std::size_t kForecastRows = 5000;
+constexpr double kLoaded = 1e-10;  // of J^T J's scaled diagonal: constants may stand for each other
+
+// Some of the rows, spread evenly.
+class SpreadRows {
+ public:
+  SpreadRows(const Inputs& inputs, std::size_t most) : rows_(std::min(inputs.rows, most)) {
+    for (const double* column : inputs.columns) {
+      std::vector<double>& values = columns_.emplace_back(rows_);
+      for (std::size_t k = 0; k < rows_; ++k) values[k] = column[k * inputs.rows / rows_];
+    }
+    for (const std::vector<double>& column : columns_) pointers_.push_back(column.data());
+  }
+  Inputs table() const { return {pointers_, rows_}; }
+
+ private:
+  std::size_t rows_;
+  std::vector<std::vector<double>> columns_;
+  std::vector<const double*> pointers_;
+};
+
+// A value for the constant at a place of the tape.
+struct ValueOf {
+  std::size_t place = 0;
+  double value = 0;
+  double saved = 0;     // nats, by the number that is no longer free and what goes with it
+  double forecast = 0;  // nats: that less what the rows are expected to mind
+};
 
 class Pruning {
  public:
@@ -39,7 +70,7 @@ class Pruning {
     square_ = refitted(formula_, held_);
     if (!(square_ > 0) || !std::isfinite(square_)) return false;
     bool any = false;
-    while (step()) any = true;
+    while (!is_spent_ && step()) any = true;
     return any;
   }
 
@@ -103,34 +134,72 @@ class Pruning {
     return fit.sum_squares / static_cast<double>(target_.size());
   }
 
-  // The one value that is worth most.
+  // The likeliest first, by what the rows mind where the formula is linear in its constants and
+  // the others move along: (c - value)^2 over what J^T J's inverse has there.
+  std::vector<ValueOf> values_by_forecast() const {
+    std::vector<std::size_t> places;
+    for (const std::size_t p : constant_positions(formula_)) {
+      if (!held_.contains(p)) places.push_back(p);
+    }
+    if (places.empty()) return {};
+    const double number = 0.5 * elementary::log(static_cast<double>(target_.size()));
+    const Eigen::VectorXd minded = minded_by_rows(places);
+    std::vector<ValueOf> all;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      for (const double value : values_for(places[k])) {
+        const double saved =
+            number + (is_exponent(formula_, places[k]) ? -oddity(value) : kNodesSaved * kNodePrice);
+        const double off = value - formula_.node(places[k]).value;
+        all.push_back({places[k], value, saved,
+                       saved - nats_of(1 + off * off * minded[static_cast<Eigen::Index>(k)])});
+      }
+    }
+    std::ranges::stable_sort(all, std::greater{}, &ValueOf::forecast);
+    return all;
+  }
+
+  // Of each constant: what a unit of it adds to the mean square, over the mean square, the others
+  // moved along. 0 where that is not known.
+  Eigen::VectorXd minded_by_rows(const std::vector<std::size_t>& places) const {
+    const auto count = static_cast<Eigen::Index>(places.size());
+    const SpreadRows some(inputs_, kForecastRows);
+    std::vector<double> values(some.table().rows);
+    Eigen::MatrixXd jacobian = jacobian_of(formula_, places, some.table(), values);
+    const Eigen::VectorXd length = jacobian.colwise().stableNorm();
+    if (!jacobian.allFinite() || !(length.minCoeff() > 0)) return Eigen::VectorXd::Zero(count);
+    jacobian *= length.cwiseInverse().asDiagonal();
+    Eigen::MatrixXd product = jacobian.transpose() * jacobian;
+    product.diagonal().array() += kLoaded;
+    const Eigen::VectorXd free = inverse_symmetric(product).diagonal();
+    const double squares = square_ * static_cast<double>(values.size());
+    return length.cwiseAbs2().cwiseQuotient(free) / squares;
+  }
+
+  double nats_of(double ratio_of_squares) const {
+    return 0.5 * static_cast<double>(target_.size()) *
+           elementary::log(std::max(ratio_of_squares, 1e-300));
+  }
+
+  // The value that is worth most, as far as forecasts go; all are tried where none is worth it.
   bool step() {
-    const auto n = static_cast<double>(target_.size());
-    const double number = 0.5 * elementary::log(n);
     double most = 0;
     Expression best;
     std::size_t best_place = 0;
     double best_square = 0;
-    for (const std::size_t p : constant_positions(formula_)) {
-      if (held_.contains(p)) continue;
-      for (const double value : values_for(p)) {
-        if (is_spent_) return false;
-        Expression candidate = formula_;
-        set_constant(candidate, p, value);
-        std::set<std::size_t> held = held_;
-        held.insert(p);
-        const double square = refitted(candidate, held);
-        if (!std::isfinite(square)) continue;
-        const bool is_exponent_here = is_exponent(formula_, p);
-        const double saved =
-            number + (is_exponent_here ? -oddity(value) : kNodesSaved * kNodePrice);
-        const double gain = saved - 0.5 * n * elementary::log(std::max(square, 1e-300) / square_);
-        if (!(gain > most)) continue;
-        most = gain;
-        best = std::move(candidate);
-        best_place = p;
-        best_square = square;
-      }
+    for (const ValueOf& one : values_by_forecast()) {
+      if (is_spent_ || (most > 0 && most >= one.forecast)) break;
+      Expression candidate = formula_;
+      set_constant(candidate, one.place, one.value);
+      std::set<std::size_t> held = held_;
+      held.insert(one.place);
+      const double square = refitted(candidate, held);
+      if (!std::isfinite(square)) continue;
+      const double gain = one.saved - nats_of(square / square_);
+      if (!(gain > most)) continue;
+      most = gain;
+      best = std::move(candidate);
+      best_place = one.place;
+      best_square = square;
     }
     if (best.empty()) return false;
     formula_ = std::move(best);

@@ -12,7 +12,7 @@
 #include <optional>
 #include <utility>
 
-#include "algorithms/expression/differentiate.hpp"
+#include "algorithms/fitting/formula_jacobian.hpp"
 #include "algorithms/fitting/free_constants.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "foundation/error.hpp"
@@ -25,17 +25,6 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kLeastMovements = 8;
 // Of the largest eigenvalue of the scaled J^T J: below it a direction is not determined.
 constexpr double kEigenTolerance = 1e-11;
-
-Eigen::MatrixXd jacobian_of(const Expression& formula, std::span<const std::size_t> places,
-                            const Inputs& inputs, std::span<double> values) {
-  Differentiator differentiator;
-  differentiator.prepare(formula, places);
-  const auto rows = static_cast<Eigen::Index>(inputs.rows);
-  Eigen::MatrixXd jacobian(rows, static_cast<Eigen::Index>(places.size()));
-  differentiator.jacobian(inputs, values,
-                          {jacobian.data(), static_cast<std::size_t>(jacobian.size())});
-  return jacobian;
-}
 
 // A symmetric matrix's inverse on the directions that are determined.
 struct PseudoInverse {

@@ -33,8 +33,9 @@ struct Rows {
     pointers = {x.data(), z.data()};
     return {pointers, x.size()};
   }
-  std::string pruned(const std::string& formula, bool may_go_on = true) const {
-    const auto spend = [may_go_on](std::uint64_t) { return may_go_on; };
+  // most: fits that are paid for.
+  std::string pruned(const std::string& formula, int most = 1'000'000) const {
+    const auto spend = [&most](std::uint64_t) { return --most > 0; };
     return print(pruned_by_evidence(parse(formula, kNames), table(), y, kBox, spend), kNames);
   }
   std::vector<double> x, z, y;
@@ -58,7 +59,20 @@ TEST(EvidencePruning, LeavesWhatTheRowsSay) {
 
 TEST(EvidencePruning, DoesNothingWithoutABudget) {
   const Rows rows("3*x^2/z", 0.1);
-  EXPECT_EQ(rows.pruned("2.9*x^2.02*z", false), "2.9*x^2.02*z");
+  EXPECT_EQ(rows.pruned("2.9*x^2.02*z", 1), "2.9*x^2.02*z");
+}
+
+TEST(EvidencePruning, EndsWhereNoNumberIsLeft) {
+  EXPECT_EQ(Rows("x^2/z", 0.1).pruned("1.01*x^2/z"), "x^2/z");
+}
+
+// On many rows there is time for few fits: what goes most likely is tried first, and kept.
+TEST(EvidencePruning, LeavesOutWhatItCanWhereTheBudgetIsShort) {
+  const Rows rows("3*x^2/z", 0.1);
+  const std::string formula = "2.9*x^2*z^-1 + 0.3 - 0.1*x - 0.03*z";
+  EXPECT_EQ(rows.pruned(formula, 5), rows.pruned(formula));
+  EXPECT_EQ(paper_complexity(parse(rows.pruned(formula, 5), kNames)),
+            paper_complexity(parse("3*x^2/z", kNames)));
 }
 
 TEST(EvidencePruning, CountsExponentsThatWereFitted) {
