@@ -27,8 +27,7 @@ constexpr std::size_t kLikelyFitted = 25;  // of those that structure proposes u
 constexpr std::size_t kLikelyTaken = 5;    // of these
 constexpr std::size_t kAskedAgainstRival = 3;
 constexpr std::string_view kByLikely = "what is likely under noise";
-constexpr double kLate = 0.1;       // of all seconds
-constexpr double kOfPruning = 0.5;  // of the seconds that are left
+constexpr double kLate = 0.1;  // of all seconds
 
 // Inserts a formula where it belongs; its place.
 std::size_t place_by_complexity(const Expression& formula, std::vector<Expression>& front) {
@@ -122,9 +121,9 @@ void Answer::add(const FitResult& result, std::string_view found_by) {
   add_explaining(result.front, result.chosen, found_by);
 }
 
-void Answer::prune(const Expression& formula) {
+void Answer::prune(const Expression& formula, double of_seconds) {
   if (joint_.is_explained()) return;
-  Budget part = context_.budget.share(context_.budget.remaining() / 4, kOfPruning);
+  Budget part = context_.budget.share(context_.budget.remaining() / 4, of_seconds);
   Expression pruned = pruned_by_evidence(
       formula, rows_.table(), rows_.target, input_box(context_.data.inputs),
       [&part](std::uint64_t node_rows) { return part.spend(node_rows) && part.in_time(); });
@@ -133,8 +132,8 @@ void Answer::prune(const Expression& formula) {
   joint_.add(std::array{std::move(pruned)}, 0);
 }
 
-void Answer::prune_likeliest() {
-  if (has_formula()) prune(joint_.likeliest(1)[0]);
+void Answer::prune_likeliest(double of_seconds) {
+  if (has_formula()) prune(joint_.likeliest(1)[0], of_seconds);
 }
 
 FitResult Answer::result() && {

@@ -58,9 +58,9 @@ class Answer {
   // What another method found, or in the note why it found nothing.
   void add(const FitResult& result, std::string_view found_by);
   // The same formula with fewer numbers, where the rows do not mind; nothing once they are
-  // explained.
-  void prune(const Expression& formula);
-  void prune_likeliest();
+  // explained. of_seconds: at most so much of the seconds that are left.
+  void prune(const Expression& formula, double of_seconds);
+  void prune_likeliest(double of_seconds);
 
   FitResult result() &&;
 

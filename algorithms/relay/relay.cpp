@@ -23,6 +23,10 @@ using relay::StructureSearch;
 constexpr std::array kMembers = {"pysr", "udsr", "parfam"};
 constexpr double kOfAMember = 0.9;  // of the seconds; the rest is for what is done with its choice
 constexpr double kOfShortening = 0.25;  // of the seconds, for a shorter form of what is exact
+// Fewer numbers: of the seconds that are left, after the searches for structure (of 100 000 rows a
+// member leaves next to none) and after a member.
+constexpr double kOfPruningStructure = 0.1;
+constexpr double kOfPruning = 0.5;
 
 // What can be left out besides the searches for structure and the members, by their names.
 constexpr std::string_view kNothing = "nothing";
@@ -44,6 +48,7 @@ class Relay : public Regressor {
     }
     StructureSearch structure(context, answer, *solver_, round_, without_);
     structure.search();
+    if (prunes()) answer.prune_likeliest(kOfPruningStructure);
     structure.search_long_sum();
     if (answer.is_explained() && !answer.is_short()) structure.search_guesses();
     for (std::size_t k = 0; k < members_.size(); ++k) {
@@ -56,10 +61,11 @@ class Relay : public Regressor {
       run(members_[k], context.budget.remaining() / (members_.size() - k), kOfAMember, context,
           answer);
       if (k > 0 || answer.is_done()) continue;
+      structure.search_enclosed();
       structure.search_wide_sums();
       structure.search_guesses();
     }
-    if (prunes()) answer.prune_likeliest();
+    if (prunes()) answer.prune_likeliest(kOfPruning);
     return std::move(answer).result();
   }
 
@@ -85,7 +91,7 @@ class Relay : public Regressor {
     const FitResult result = member.method->fit(turn);
     context.budget.settle(part);
     answer.add(result, member.name);
-    if (prunes() && !result.front.empty()) answer.prune(result.front[result.chosen]);
+    if (prunes() && !result.front.empty()) answer.prune(result.front[result.chosen], kOfPruning);
   }
 
   int round_;

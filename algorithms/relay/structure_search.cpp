@@ -12,6 +12,7 @@
 
 #include "algorithms/expression/build.hpp"
 #include "algorithms/fitting/cross_validation.hpp"
+#include "algorithms/relay/enclosed_inputs.hpp"
 #include "algorithms/relay/function_sum.hpp"
 #include "algorithms/relay/index_fit.hpp"
 #include "algorithms/relay/long_sum.hpp"
@@ -191,6 +192,25 @@ void StructureSearch::search_guesses() {
   if (!has(kGuesses)) return;
   const auto simpler = reduce(Guesses::yes);
   if (simpler && !is_over()) search_by_solver(*simpler);
+}
+
+void StructureSearch::search_enclosed() {
+  // A prior, a sign or a state is said of an input, and not of what is made of it.
+  const bool is_plain = std::ranges::all_of(context_.data.inputs, [](const Input& input) {
+    return !input.sign_of && input.max_degree == 0 && input.law.empty();
+  });
+  if (is_over() || !is_plain || !has(kEnclosed) || !answer_.has_formula()) return;
+  auto reduction = enclosed_inputs(answer_.likeliest(), context_.data.inputs.size());
+  if (!reduction) return;
+  const ReducedProblem problem(whole(), std::move(*reduction));
+  const TrainingData data = problem.data();
+  Budget part = context_.budget.share(context_.budget.remaining() / 4, kHalf);
+  FitContext turn{
+      data, context_.operators, part, context_.random.split("enclosed"), context_.threads, nullptr};
+  std::vector<Expression> found;
+  for (const Expression& g : solver_.fit(turn).front) found.push_back(problem.restored(g));
+  context_.budget.settle(part);
+  answer_.offer_likeliest(found, context_.budget);
 }
 
 void StructureSearch::search_wide_sums() {

@@ -36,9 +36,10 @@ inline constexpr std::string_view kGuesses = "guesses";
 inline constexpr std::string_view kWideSums = "wide_sums";
 inline constexpr std::string_view kLikely = "likely";
 inline constexpr std::string_view kLongSums = "long_sums";
-inline constexpr std::array kSearches = {kProducts,   kSums,    kFunctionSums, kCollapses,
-                                         kReductions, kParts,   kGuesses,      kWideSums,
-                                         kLikely,     kLongSums};
+inline constexpr std::string_view kEnclosed = "enclosed";
+inline constexpr std::array kSearches = {kProducts,   kSums,     kFunctionSums, kCollapses,
+                                         kReductions, kParts,    kGuesses,      kWideSums,
+                                         kLikely,     kLongSums, kEnclosed};
 
 class StructureSearch {
  public:
@@ -55,6 +56,8 @@ class StructureSearch {
   void search_long_sum();
   // Fewer variables where no slope says so, by trial: expensive, and seldom needed.
   void search_guesses();
+  // The likeliest formula's inner quantities as inputs (enclosed_inputs.hpp), under noise.
+  void search_enclosed();
   // Sums of products with waves and differences: many, and seldom what a law is.
   void search_wide_sums();
 

@@ -232,7 +232,6 @@ Response notch(RandomStream random) {
              const Instant& now, double) { return bump(now.joint.position_rad - centre, width); };
 }
 
-// A tool that every second to fifth movement carries, and nobody wrote it down.
 // A balancing spring, a cable or a hose: slack at one position, stiffer away from it.
 Response spring(RandomStream random) {
   return [slack = random.uniform(-0.5, 0.5), stiffening = random.uniform(0, 0.5)](
@@ -241,6 +240,8 @@ Response spring(RandomStream random) {
     return way + stiffening * way * way * way;
   };
 }
+
+// A tool that every second to fifth movement carries, and nobody wrote it down.
 Response load_by_movement(RandomStream random) {
   const double share = random.uniform(0.2, 0.6);
   return [share, first = random.uniform()](const Instant& now, double) {
