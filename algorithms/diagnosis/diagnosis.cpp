@@ -47,11 +47,12 @@ std::vector<EffectFamily> chosen_families(const DiagnosisOptions& options) {
 
 void check_enough(const Observations& train, const BaseModel& base) {
   if (train.rows() == 0) {
-    throw_bad_input(fmt::format("no movement has the {} rows it takes to tell noise from effects",
-                                kFewestRowsOfMovement),
-                    train.target_name,
-                    "give the recorded rows, not a mean a movement; without a 'movement' column a "
-                    "file is one movement");
+    throw_bad_input(
+        fmt::format("no movement has the {} rows it takes to tell noise from effects",
+                    kFewestRowsOfMovement),
+        train.target_name,
+        "give the recorded rows, not a mean a movement, and keep enough of them (--rows); "
+        "without a 'movement' column a file is one movement");
   }
   const std::size_t parameters = base.linear_terms.size() + fitted_constants(base).size();
   if (train.rows() >= 3 * parameters + 10) return;

@@ -43,6 +43,10 @@
 namespace tribench {
 namespace {
 
+// Fewer of a movement hardly tell its noise from what makes it another one.
+constexpr std::size_t kUsualRows = 6000;
+constexpr std::size_t kRowsOfMovement = 10;
+
 struct LoopArguments {
   std::vector<std::string> files;
   std::string model = "coulomb_viscous";
@@ -52,7 +56,7 @@ struct LoopArguments {
   double alpha_library = 0.003;
   double alpha_leftover = 0.002;
   int flips = 1999;
-  int rows = 6000;
+  std::optional<int> rows;
   std::uint64_t seed = 1;
   std::uint64_t evaluations = 200'000'000;
   std::shared_ptr<DataOptions> reading = std::make_shared<DataOptions>();
@@ -280,7 +284,9 @@ loop::Observations read_observations(const LoopArguments& arguments,
   whole.data = std::move(recording.data);
   const std::size_t all_rows = data.rows();
   steps.push_back({"rows that count for friction", all_rows, {}});
-  const loop::Shortened shortened = data.averaged(static_cast<std::size_t>(arguments.rows));
+  const std::size_t usual = std::max(kUsualRows, kRowsOfMovement * data.movements().size());
+  const loop::Shortened shortened =
+      data.averaged(arguments.rows ? static_cast<std::size_t>(*arguments.rows) : usual);
   data = shortened.data;
   if (data.rows() < all_rows)
     steps.push_back({"neighbouring rows averaged or thinned", data.rows(), {}});
@@ -424,9 +430,9 @@ void add_row_options(CLI::App& command, LoopArguments& arguments) {
       "each movement holds one speed: average it, its velocity's noise is not friction");
   command
       .add_option("--rows", arguments.rows,
-                  "average neighbours of a longer recording, to about so many")
-      ->transform(whole_number(100, 10'000'000))
-      ->capture_default_str();
+                  "average neighbours of a longer recording, to about so many; default: 6000, or "
+                  "ten a movement where that is more")
+      ->transform(whole_number(100, 10'000'000));
 }
 
 // What is searched for beyond the library, and what it may spend.

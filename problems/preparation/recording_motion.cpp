@@ -344,7 +344,7 @@ void drop_unresolved(PreparedRecording& out) {
   const std::vector<char> rows(mark->values.begin(), mark->values.end());
   erase_channel(out.data, kUnresolvedChannel);
   const auto count = static_cast<std::size_t>(std::ranges::count(rows, 1));
-  if (2 * count > rows.size()) return;
+  if (3 * count > 2 * rows.size()) return;  // too little would be left to ask
   out.unresolved = count;
   leave_out(out, rows, "change their motion faster than the position's noise lets be seen");
 }

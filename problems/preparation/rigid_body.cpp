@@ -14,7 +14,7 @@
 namespace tribench {
 namespace {
 
-constexpr std::size_t kRows = 20'000;  // that take part, evenly spaced
+constexpr std::size_t kRows = 20'000;  // that take part in a fit
 constexpr std::size_t kFewestFitRows = 100;
 constexpr double kLeastRange = 0.3;  // rad: less does not tell gravity from an offset
 constexpr int kRounds = 4;
@@ -69,12 +69,13 @@ std::vector<char> settled_rows(const Dataset& data) {
   return settled;
 }
 
-// Rows slower than `slowest` take no part, nor do those that are not in `only`, if it is not empty.
+// Rows slower than `slowest` take no part, nor do those that are not in `only`, if it is not empty;
+// at most so many, evenly spaced.
 Rows rows_of(const Dataset& data, const Channel& torque, Eigen::Index more, double slowest = 0,
-             const std::vector<char>& only = {}) {
+             const std::vector<char>& only = {}, std::size_t most = kRows) {
   const std::vector<double>& v = data.find(Role::velocity)->values;
   const Channel* a = data.find(Role::acceleration);
-  const std::size_t step = std::max<std::size_t>(1, data.rows() / kRows);
+  const std::size_t step = std::max<std::size_t>(1, data.rows() / most);
   Rows rows;
   for (std::size_t i = 0; i < data.rows(); i += step) {
     if (std::abs(v[i]) > slowest && (only.empty() || only[i] != 0)) rows.places.push_back(i);
@@ -185,14 +186,12 @@ std::optional<Blunting> acceleration_blunting(const Dataset& data, std::span<con
 
 namespace {
 
-// The torque's noise in means of so many rows: from their second differences, which what the motion
-// does to it hardly enters.
-double torque_noise(const std::vector<double>& torque, std::size_t rows_each) {
+// The noise in means of so many rows, from their second differences, which slow motion hardly
+// enters.
+double noise_of_means(const Eigen::Ref<const Eigen::VectorXd>& torque, Eigen::Index rows_each) {
   std::vector<double> means;
-  for (std::size_t i = 0; i + rows_each <= torque.size(); i += rows_each) {
-    double sum = 0;
-    for (std::size_t k = i; k < i + rows_each; ++k) sum += torque[k];
-    means.push_back(sum / static_cast<double>(rows_each));
+  for (Eigen::Index i = 0; i + rows_each <= torque.size(); i += rows_each) {
+    means.push_back(torque.segment(i, rows_each).mean());
   }
   std::vector<double> bends;
   for (std::size_t i = 2; i < means.size(); ++i) {
@@ -201,20 +200,12 @@ double torque_noise(const std::vector<double>& torque, std::size_t rows_each) {
   return kMadToSd * upper_median_magnitude(std::move(bends)) / std::sqrt(6.0);
 }
 
-struct Coefficient {
-  double value = 0;
-  double error = 0;
-};
-
-// A column's, told by the rows (of `only`, if it is not empty).
-std::optional<Coefficient> coefficient_of(const Dataset& data, const Channel& torque,
-                                          Eigen::Index column, const std::vector<char>& only) {
-  const std::vector<double>& v = data.find(Role::velocity)->values;
-  Rows rows = rows_of(data, torque, load_columns(data), kCreeping * top_speed(v), only);
-  if (rows.places.size() < kFewestFitRows) return {};
+Rows moving_rows(const Dataset& data, const Channel& torque, const std::vector<char>& only,
+                 std::size_t most) {
+  const double slowest = kCreeping * top_speed(data.find(Role::velocity)->values);
+  Rows rows = rows_of(data, torque, load_columns(data), slowest, only, most);
   fill_load_columns(data, rows, rows.base);
-  const Fit fit = least_squares(rows.x, rows.y);
-  return Coefficient{fit.coefficients(column), fit.errors(column)};
+  return rows;
 }
 
 // The change of a column that the torque would show: its noise over the column's coefficient.
@@ -225,13 +216,27 @@ std::optional<double> visible_change(const Dataset& data, const Channel* torque,
   constexpr double kSurely = 5;         // standard errors
   constexpr std::size_t kMeans = 6000;  // that a diagnosis averages a recording to
   if (torque == nullptr || !data.find(Role::velocity)) return {};
-  std::optional<Coefficient> size = coefficient_of(data, *torque, column, {});
-  if (size && size->value < 0 && data.find(Role::time)) {
-    size = coefficient_of(data, *torque, column, settled_rows(data));
+  Rows rows = moving_rows(data, *torque, {}, kRows);
+  if (rows.places.size() < kFewestFitRows) return {};
+  Fit fit = least_squares(rows.x, rows.y);
+  if (fit.coefficients(column) < 0 && data.find(Role::time)) {
+    rows = moving_rows(data, *torque, settled_rows(data), kRows);
+    if (rows.places.size() < kFewestFitRows) return {};
+    fit = least_squares(rows.x, rows.y);
   }
-  if (!size || !(size->value > kSurely * size->error)) return {};
-  const std::size_t rows_each = std::max<std::size_t>(1, data.rows() / kMeans);
-  return torque_noise(torque->values, rows_each) / size->value;
+  if (!(fit.coefficients(column) > kSurely * fit.errors(column))) return {};
+  const auto rows_each = static_cast<Eigen::Index>(std::max<std::size_t>(1, data.rows() / kMeans));
+  const Eigen::Map<const Eigen::VectorXd> whole(torque->values.data(),
+                                                static_cast<Eigen::Index>(torque->values.size()));
+  double noise = noise_of_means(whole, rows_each);
+  if (rows_each > 1) {
+    // From one mean to the next the motion changes the torque, too: where the joint never rests,
+    // by more than the noise does. What the fit leaves has less of it.
+    const Rows all = moving_rows(data, *torque, {}, data.rows());
+    const Eigen::VectorXd left = all.y - all.x * fit.coefficients;
+    noise = std::min(noise, noise_of_means(left, rows_each));
+  }
+  return noise / fit.coefficients(column);
 }
 
 }  // namespace

@@ -66,7 +66,8 @@ void expect_same_motion(const PreparedRecording& recording, const char* note, do
   EXPECT_THAT(recording.notes, Contains(HasSubstr(note)));
   const std::vector<double>& t = recording.data.find(Role::time)->values;
   const std::vector<double>& v = recording.data.find(Role::velocity)->values;
-  EXPECT_GT(t.size(), 5000U);
+  EXPECT_GT(t.size(),
+            4000U);  // of 10 000: it swings too fast for a jittering clock in half of them
   double worst = 0;
   for (std::size_t i = 0; i < t.size(); ++i) {
     worst = std::max(worst, std::abs(v[i] - speed_at(t[i] - late)));
