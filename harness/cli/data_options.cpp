@@ -15,7 +15,7 @@
 
 namespace tribench {
 
-CLI::Option* add_data_options(CLI::App& command, std::shared_ptr<DataOptions> options) {
+CLI::Option* add_data_options(CLI::App& command, const std::shared_ptr<DataOptions>& options) {
   command.add_option_function<std::vector<std::string>>(
       "--roles",
       [options](const std::vector<std::string>& texts) {

@@ -15,7 +15,7 @@ namespace tribench {
 // Adds --roles, --joint, --where, --drop-missing, --flip-sign, --counts-per-turn, --sample-rate,
 // --gear-ratio and --torque-constant; what is given is in the options when the command's callback
 // runs. The options must live as long as the command. Returns the option --gear-ratio.
-CLI::Option* add_data_options(CLI::App& command, std::shared_ptr<DataOptions> options);
+CLI::Option* add_data_options(CLI::App& command, const std::shared_ptr<DataOptions>& options);
 
 // A file's columns where their names mean nothing (problems/preparation/data_options.hpp), all
 // where none is named; what was dropped or converted is told on standard error. Throws Error
