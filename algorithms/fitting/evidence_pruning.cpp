@@ -14,6 +14,7 @@
 #include "algorithms/fitting/constant_fit.hpp"
 #include "algorithms/fitting/evidence.hpp"
 #include "algorithms/fitting/formula_jacobian.hpp"
+#include "algorithms/fitting/spread_rows.hpp"
 #include "algorithms/fitting/symmetric_system.hpp"
 #include "foundation/elementary.hpp"
 
@@ -26,24 +27,6 @@ constexpr std::size_t kMostConstants = 14;
 constexpr double kNodesSaved = 2;  // that a 0 or a 1 takes with it: itself and its operation
 constexpr std::size_t kForecastRows = 5000;
 constexpr double kLoaded = 1e-10;  // of J^T J's scaled diagonal: constants may stand for each other
-
-// Some of the rows, spread evenly.
-class SpreadRows {
- public:
-  SpreadRows(const Inputs& inputs, std::size_t most) : rows_(std::min(inputs.rows, most)) {
-    for (const double* column : inputs.columns) {
-      std::vector<double>& values = columns_.emplace_back(rows_);
-      for (std::size_t k = 0; k < rows_; ++k) values[k] = column[k * inputs.rows / rows_];
-    }
-    for (const std::vector<double>& column : columns_) pointers_.push_back(column.data());
-  }
-  Inputs table() const { return {pointers_, rows_}; }
-
- private:
-  std::size_t rows_;
-  std::vector<std::vector<double>> columns_;
-  std::vector<const double*> pointers_;
-};
 
 // A value for the constant at a place of the tape.
 struct ValueOf {

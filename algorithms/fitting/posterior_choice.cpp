@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "algorithms/fitting/spread_rows.hpp"
 #include "foundation/elementary.hpp"
 
 namespace tribench {
@@ -23,30 +24,19 @@ double mean_square_between(std::span<const double> a, std::span<const double> b)
 // Evaluates formulas on some of the rows, and counts.
 class Sampler {
  public:
-  explicit Sampler(const Inputs& inputs) {
-    const std::size_t kept = std::min(inputs.rows, kMostRows);
-    for (const double* column : inputs.columns) {
-      std::vector<double> values(kept);
-      for (std::size_t k = 0; k < kept; ++k) values[k] = column[k * inputs.rows / kept];
-      columns_.push_back(std::move(values));
-    }
-    for (const std::vector<double>& column : columns_) pointers_.push_back(column.data());
-    rows_ = kept;
-  }
+  explicit Sampler(const Inputs& inputs) : some_(inputs, kMostRows) {}
 
   std::vector<double> values_of(const Expression& formula) {
-    std::vector<double> values(rows_);
-    evaluator_.evaluate(formula, {pointers_, rows_}, values);
-    node_rows_ += node_rows(formula, rows_);
+    const Inputs table = some_.table();
+    std::vector<double> values(table.rows);
+    evaluator_.evaluate(formula, table, values);
+    node_rows_ += node_rows(formula, table.rows);
     return values;
   }
   std::uint64_t spent() const { return node_rows_; }
-  std::size_t rows() const { return rows_; }
 
  private:
-  std::vector<std::vector<double>> columns_;
-  std::vector<const double*> pointers_;
-  std::size_t rows_ = 0;
+  SpreadRows some_;
   Evaluator evaluator_;
   std::uint64_t node_rows_ = 0;
 };

@@ -14,6 +14,7 @@
 #include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
 #include "reports/record/loop_record.hpp"
+#include "tests/support/movements_with_offsets.hpp"
 #include "tests/support/paths.hpp"
 
 namespace tribench::loop {
@@ -192,23 +193,7 @@ TEST(JudgedDiagnosis, NothingIsMissingOnlyWhereASmoothModelDoesNoBetter) {
 // is, it was not looked at.
 TEST(JudgedDiagnosis, NothingIsMissingOnlyWhereTheOthersForetellAMovement) {
   const auto verdict = [](int movements) {
-    RandomStream random(3);
-    Dataset data;
-    data.channels = {{"time", "s", Role::time, {}},
-                     {"v", "rad/s", Role::velocity, {}},
-                     {"tau_f", "N m", Role::friction_torque, {}}};
-    for (int m = 0; m < movements; ++m) {
-      data.movement_names.push_back(std::to_string(m));
-      const double way = m % 2 == 0 ? 1 : -1;
-      for (int i = 0; i < 700; ++i) {
-        const double v = way * (0.2 + 0.8 * (i % 350) / 350.0);
-        const double friction = 8 * way + 14 * v + 0.3 * random.normal();
-        data.movement.push_back(m);
-        data.channels[0].values.push_back(100 * m + 0.01 * i);
-        data.channels[1].values.push_back(v);
-        data.channels[2].values.push_back(friction);
-      }
-    }
+    const Dataset data = testing::movements_with_offsets(movements, 0, 3);
     return diagnose_and_judge(observe(data), coulomb_viscous_base, {}).verdict;
   };
   EXPECT_EQ(verdict(2), Verdict::cannot_tell);
