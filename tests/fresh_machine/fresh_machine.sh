@@ -98,7 +98,9 @@ stage() {
     cpu=$(cpu_seconds)
     shift
     "$@" >"$logs/$name.log" 2>&1 || {
-        tail -n 80 "$logs/$name.log"
+        # The assertions first: a test's own words stand far above the log's end.
+        grep -A 9 ': Failure$' "$logs/$name.log" | head -n 60 || true
+        tail -n 40 "$logs/$name.log"
         fail "$name, after $((SECONDS - start)) s; the whole log is $logs/$name.log"
     }
     say "$name: $((SECONDS - start)) s, $(($(cpu_seconds) - cpu)) s of processor"
