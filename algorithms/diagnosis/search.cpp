@@ -37,9 +37,6 @@ bool add(SearchState& state, const Candidate& winner, const Round& round,
   const std::size_t known = state.model.model.atoms_of(winner.family);
   if (known >= kMostAtoms && campaign.options.has("most_columns")) {
     state.asked_more.push_back(winner.family);
-    state.note(fmt::format(
-        "more than {} columns of '{}' are asked for: a sign of something that only looks like it",
-        kMostAtoms, campaign.families[winner.family].name));
     return false;
   }
   if (was_given_up(campaign.library.atoms[winner.atom], state)) return false;

@@ -75,6 +75,7 @@ class LeftoverSearch {
   void look_for_defect();
   void look_for_serial_offsets();
   void name_shapes();
+  void name_what_asks_for_more();
 
  private:
   std::vector<Place> places() const;
@@ -435,6 +436,22 @@ void LeftoverSearch::name_shapes() {
   leftover_.inputs.clear();
 }
 
+// A family that was asked for more columns than an effect has is that cause in another shape, or
+// something else that these columns can tell piece by piece.
+void LeftoverSearch::name_what_asks_for_more() {
+  for (Found& one : state_.found) {
+    if (std::ranges::count(state_.asked_more, one.family) == 0) continue;
+    if (absorbs_a_defect(one.family)) {
+      state_.note(fmt::format(
+          "more columns of '{}' are asked for than an effect has: a sign of something that only "
+          "looks like it",
+          campaign_.families[one.family].name));
+    } else {
+      one.another_shape = true;
+    }
+  }
+}
+
 }  // namespace
 
 LeftoverFinding find_leftover(SearchState& state, const Campaign& campaign, RandomStream random) {
@@ -444,6 +461,7 @@ LeftoverFinding find_leftover(SearchState& state, const Campaign& campaign, Rand
   search.look_for_waves();
   search.look_for_serial_offsets();
   search.name_shapes();
+  search.name_what_asks_for_more();
   return search.finding();
 }
 

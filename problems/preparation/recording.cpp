@@ -66,6 +66,7 @@ PreparedRecording prepare(DataFile file, const DataOptions& options, Gravity gra
   spread_coarse_stamps(out);
   drop_repeated_stamps(out);
   drop_repeated_messages(out);
+  drop_stuck_efforts(out);
   unwrap(out, file.readings, options.drive);
   if (!file.has_movements) {
     drop_wrong_readings(out);

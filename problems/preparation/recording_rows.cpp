@@ -449,6 +449,18 @@ void drop_repeated_messages(PreparedRecording& out) {
             "repeat the row before in position and torque, as a bus does that lost its messages");
 }
 
+void drop_stuck_efforts(PreparedRecording& out) {
+  for (const Role role : {Role::motor_torque, Role::motor_current}) {
+    const Channel* q = find_channel(out.data, Role::position);
+    const Channel* effort = find_channel(out.data, role);
+    if (q == nullptr || effort == nullptr) continue;
+    leave_out(out, stuck_rows(q->values, effort->values, out.data.movement),
+              fmt::format("stand in a stretch of more than {} over which '{}' keeps its value while "
+                          "the joint moves, as of a sensor that has stopped or a drive that is off",
+                          kStuckRows, effort->name));
+  }
+}
+
 void drop_clipped(PreparedRecording& out) {
   for (const Role role : {Role::motor_torque, Role::motor_current}) {
     const Channel* torque = find_channel(out.data, role);

@@ -31,6 +31,8 @@ void spread_coarse_stamps(PreparedRecording& out);
 // Stamps that do not move on: the later row of two is left out.
 void drop_repeated_stamps(PreparedRecording& out);
 void drop_repeated_messages(PreparedRecording& out);
+// Torques and currents that keep a value for long while the joint moves.
+void drop_stuck_efforts(PreparedRecording& out);
 // A position that starts again after a turn, or where its counter is full, is laid end to end.
 void unwrap(PreparedRecording& out, const std::vector<ColumnReading>& readings, const Drive& drive);
 // Rows whose position, velocity or torque is far off the rows before and after: wrong readings.

@@ -14,6 +14,7 @@ constexpr double kLongestStep = 0.1;  // s: slower rows do not follow a motion
 constexpr double kUneven = 3.5;       // usual steps: two rows in a row are lost at most
 constexpr double kJump = 2.5;         // usual steps of the position
 constexpr std::size_t kRepeats = 5;   // rows
+constexpr double kStuckWay = 0.25;  // usual steps of the position a row: less is its noise
 constexpr std::size_t kFewestAtLimit = 5;
 constexpr std::size_t kMoreThanNext = 3;  // times the rows on the value beside it
 constexpr double kRestWindow = 0.05;      // s over which a speed is averaged
@@ -151,13 +152,21 @@ std::vector<RowRange> pieces_of(std::span<const double> time, std::span<const in
   return pieces;
 }
 
+namespace {
+
+// A channel that often repeats itself is coarse: its repeats say nothing.
+bool is_coarse(std::span<const double> values) {
+  std::size_t same = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) same += values[i] == values[i - 1] ? 1 : 0;
+  return same * 4 > values.size();
+}
+
+}  // namespace
+
 std::vector<char> repeated_rows(std::span<const double> position, std::span<const double> noisy,
                                 std::span<const int> movement) {
   std::vector<char> repeated(position.size(), 0);
-  // A channel that often repeats itself is coarse: its repeats say nothing.
-  std::size_t same = 0;
-  for (std::size_t i = 1; i < noisy.size(); ++i) same += noisy[i] == noisy[i - 1] ? 1 : 0;
-  if (same * 4 > noisy.size()) return repeated;
+  if (is_coarse(noisy)) return repeated;
   // What comes after the repeats has gone on in the meantime; an axis at rest has not, though its
   // last count may flicker.
   const double jump = kJump * usual_change(position, movement);
@@ -182,6 +191,27 @@ std::vector<char> repeated_rows(std::span<const double> position, std::span<cons
     begin = end;
   }
   return repeated;
+}
+
+std::vector<char> stuck_rows(std::span<const double> position, std::span<const double> noisy,
+                             std::span<const int> movement) {
+  std::vector<char> stuck(position.size(), 0);
+  if (is_coarse(noisy)) return stuck;
+  const double usual = usual_change(position, movement);
+  for (std::size_t begin = 0; begin < noisy.size();) {
+    std::size_t end = begin + 1;
+    while (end < noisy.size() && movement[end] == movement[begin] && noisy[end] == noisy[begin]) {
+      ++end;
+    }
+    const auto [low, high] = std::ranges::minmax(position.subspan(begin, end - begin));
+    const bool moves = high - low > kStuckWay * usual * static_cast<double>(end - begin);
+    if (end - begin > kStuckRows && moves) {
+      std::fill(stuck.begin() + static_cast<std::ptrdiff_t>(begin + 1),
+                stuck.begin() + static_cast<std::ptrdiff_t>(end), 1);
+    }
+    begin = end;
+  }
+  return stuck;
 }
 
 std::vector<char> clipped_rows(std::span<const double> values) {

@@ -38,6 +38,12 @@ std::vector<RowRange> pieces_of(std::span<const double> time, std::span<const in
 std::vector<char> repeated_rows(std::span<const double> position, std::span<const double> noisy,
                                 std::span<const int> movement);
 
+// Rows in which a channel that is noisy keeps its value for more than kStuckRows while `position`
+// moves on: the sensor, or what reads it, has stopped.
+inline constexpr std::size_t kStuckRows = 50;
+std::vector<char> stuck_rows(std::span<const double> position, std::span<const double> noisy,
+                             std::span<const int> movement);
+
 // Rows at the largest or the smallest value, where far more rows stand on it than on the value next
 // to it: the amplifier's limit. All 0 where there is none.
 std::vector<char> clipped_rows(std::span<const double> values);

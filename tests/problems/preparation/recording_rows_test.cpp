@@ -136,6 +136,14 @@ TEST(RecordingRows, WrongReadingsAreLeftOutAndCounted) {
   }
 }
 
+TEST(RecordingRows, ATorqueThatStoodStillIsLeftOutAndSaid) {
+  std::vector<Row> rows = swings();
+  for (std::size_t i = 5001; i < 5500; ++i) rows[i].torque = rows[5000].torque;
+  expect_same_motion(prepared(rows),
+                     "499 of 10000 rows stand in a stretch of more than 50 over which 'tau' keeps "
+                     "its value while the joint moves");
+}
+
 TEST(RecordingRows, APositionThatIsSetAnewHasNotMoved) {
   std::vector<Row> rows = swings();
   for (std::size_t i = 5000; i < rows.size(); ++i) rows[i].position += 3.3;

@@ -84,6 +84,24 @@ TEST(Segments, ARepeatedMessageIsToldFromACoarseEncoder) {
   EXPECT_EQ(found, 20U);
 }
 
+// A sensor that has stopped; an axis at rest, whose drive is off, has not, nor has a coarse one.
+TEST(Segments, AChannelThatKeepsItsValueWhileTheAxisMovesIsStuck) {
+  std::vector<double> position;
+  std::vector<double> torque;
+  for (int i = 0; i < 2000; ++i) {
+    position.push_back(std::min(i, 1500) + i % 2);
+    torque.push_back(i < 1800 ? std::sin(12.3 * i) : 0);
+  }
+  for (const char one : stuck_rows(position, torque, one_movement(position))) ASSERT_EQ(one, 0);
+  for (std::size_t i = 401; i < 600; ++i) torque[i] = torque[400];
+  const std::vector<char> stuck = stuck_rows(position, torque, one_movement(position));
+  for (std::size_t i = 0; i < stuck.size(); ++i) {
+    ASSERT_EQ(stuck[i], i > 400 && i < 600 ? 1 : 0) << i;
+  }
+  for (double& one : torque) one = std::round(one);
+  for (const char one : stuck_rows(position, torque, one_movement(position))) ASSERT_EQ(one, 0);
+}
+
 // At a count every 20 rows a lost message of 30 hides a count or two: no jump, and yet the motion
 // has gone on. An axis at rest whose drive is off repeats its current as well, and its last count
 // flickers.
