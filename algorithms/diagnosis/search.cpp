@@ -299,9 +299,11 @@ bool has_last_resort(const SearchResult& one, const Campaign& campaign) {
   const std::vector<double> ratios = gear_ratios_for(campaign.data, campaign.options.gear_ratios);
   for (std::size_t f = 0; f < campaign.families.size(); ++f) {
     if (std::ranges::none_of(campaign.families[f].atoms, &AtomTemplate::last_resort)) continue;
+    const bool is_found = std::ranges::count(one.state.families(), f) > 0;
     std::vector<std::string> missing;
     for (const Atom& atom : instantiate(campaign.families[f], f, campaign.data, ratios, missing)) {
-      if (atom.last_resort && tells_the_leftover(atom, one, campaign)) return true;
+      if (!atom.last_resort || (atom.beside_another && !is_found)) continue;
+      if (tells_the_leftover(atom, one, campaign)) return true;
     }
   }
   return false;

@@ -213,6 +213,21 @@ AtomTemplate drifting(const std::string& angle, std::vector<ShapeTemplate> shape
   return atom;
 }
 
+// The wave with this angle behind a lag of the first order: a controller that moves the joint
+// steadily follows the wave up to the speed vr, beyond it the joint's inertia takes it.
+AtomTemplate of_slow_motion(const std::string& angle, std::vector<ShapeTemplate> shapes) {
+  shapes.push_back({"vr", "v", {0.15, 0.5}, 0.03, 3});
+  const std::string cosine = "cos(" + angle + ")";
+  const std::string sine = "sin(" + angle + ")";
+  const std::string share = "/(1 + (v/vr)^2)";
+  return {.columns = {"(" + cosine + " + v/vr*" + sine + ")" + share,
+                      "(" + sine + " - v/vr*" + cosine + ")" + share},
+          .coefficients = {"cosine", "sine"},
+          .shapes = std::move(shapes),
+          .beside_another = true,
+          .last_resort = true};
+}
+
 EffectFamily output_ripple() {
   EffectFamily f{"output_ripple",
                  "E8",
@@ -257,6 +272,7 @@ EffectFamily gear_ripple() {
     f.atoms.push_back({{"cos(" + angle, "sin(" + angle}, {"cosine", "sine"}, {ratio}});
     f.atoms.push_back({{"sgn_v*cos(" + angle, "sgn_v*sin(" + angle}, {"cosine", "sine"}, {ratio}});
     f.atoms.push_back(drifting(std::string(k) + "*N*q", {ratio}));
+    f.atoms.push_back(of_slow_motion(std::string(k) + "*N*q", {ratio}));
   }
   f.atoms.push_back(harmonics_of("N*q", {ratio}));
   f.separate_by = {"R6"};

@@ -51,6 +51,26 @@ TEST(LastResort, FrictionThatJumpsAtAPlaceIsAnotherShapeOfIt) {
   EXPECT_TRUE(diagnosis.effects[0].another_shape);
 }
 
+// The gear's ripple as a controlled joint shows it: beyond some speed its inertia takes it.
+TEST(LastResort, ARippleThatFallsWithTheSpeedIsTheRipple) {
+  Observations data = observe(kuka::make_planted({}, 5).data);
+  const std::vector<double>& q = data.find("q")->values;
+  const std::vector<double>& v = data.find("v")->values;
+  const double turn = 200;
+  const double knee = 0.4 * *std::ranges::max_element(v);
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    const double x = v[i] / knee;
+    data.target[i] += 3 * (std::cos(turn * q[i]) + x * std::sin(turn * q[i])) / (1 + x * x);
+  }
+  DiagnosisOptions options = options_of_planted();
+  options.gear_ratios = {100};
+  const Diagnosis with = diagnose_most(data, options);
+  EXPECT_EQ(with.verdict, Verdict::effects);
+  EXPECT_EQ(families(with), std::vector<std::string>{"gear_ripple"});
+  options.without = {"last_resort"};
+  EXPECT_EQ(diagnose_most(data, options).verdict, Verdict::unknown);
+}
+
 // Gravity is a function of the place, and may be what a smoother of it is made of.
 TEST(LastResort, IsAskedWhereGravityStandsForThePlace) {
   for (const std::uint64_t seed : {39U, 136U}) {
