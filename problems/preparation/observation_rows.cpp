@@ -12,6 +12,7 @@
 #include "foundation/pivoted_qr.hpp"
 #include "foundation/sign.hpp"
 #include "problems/friction_sign.hpp"
+#include "problems/preparation/derived_channels.hpp"
 
 namespace tribench::loop {
 namespace {
@@ -172,7 +173,7 @@ Observations steady_means(const Observations& data) {
   for (std::size_t j = 0; j < data.signals.size(); ++j) {
     average(data.signals[j].values, out.signals[j].values);
     const std::string& name = out.signals[j].name;
-    if (!name.starts_with("sgn_")) continue;
+    if (!name.starts_with("sgn_") || LateChannel::of(name)) continue;
     average(data.find(name.substr(4))->values, out.signals[j].values);
     for (double& x : out.signals[j].values) x = sign(x);
   }

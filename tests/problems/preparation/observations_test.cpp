@@ -90,6 +90,24 @@ TEST(Observations, SteadyMovementsAreAveragedInEqualPartsOfWholeMovements) {
   }
 }
 
+// The sign that settles is that of no signal: it is averaged as it is.
+TEST(Observations, SteadyMovementsAverageTheSignThatSettles) {
+  Dataset data = movements_of(6, 500, steady_speed);
+  data.channels.push_back(channel("a", "rad/s^2", Role::acceleration));
+  for (std::size_t i = 0; i < data.rows(); ++i) {
+    data.channels.back().values.push_back(std::cos(static_cast<double>(i)));
+  }
+  const Observations means = observe(data, {.steady = true});
+  std::size_t settling = 0;
+  for (const Signal& one : means.signals) {
+    if (!one.name.starts_with("sgn_v_lag")) continue;
+    ++settling;
+    EXPECT_EQ(one.values, means.find("sgn_v")->values)
+        << "in a movement of one speed it has settled";
+  }
+  EXPECT_GT(settling, 0U);
+}
+
 TEST(Observations, AMovementThatTurnsIsNotTakenForSteady) {
   const Dataset data = movements_of(6, 50, [](int, int i) { return i < 25 ? 1.0 : -1.0; });
   try {
