@@ -50,7 +50,7 @@ std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share);
 
 std::string where_judged(const LoopError& error) {
   switch (error.judged_on) {
-    case LoopJudgedOn::pieces_of_one_movement:
+    case LoopJudgedOn::pieces_of_movements:
       return "on pieces of the recording that it never saw";
     case LoopJudgedOn::rows_of_the_fit:
       return "on the rows that it was fitted to";

@@ -34,7 +34,8 @@ namespace {
 
 constexpr std::size_t kFewMovements = 40;     // a fifth of them is too few to judge by
 constexpr std::size_t kWantedMovements = 30;  // R9
-constexpr std::size_t kPiecesOfOneMovement = 5;
+constexpr std::size_t kFewestToLeaveOut = 3;  // movements: of fewer, pieces are left out
+constexpr std::size_t kPiecesOfFewMovements = 5;
 // Movements are left out in at least so many turns; in more, one movement each, where the rows of
 // all turns together stay below the second figure.
 constexpr std::size_t kFewestTurns = 10;
@@ -74,20 +75,45 @@ std::vector<std::vector<int>> left_out_together(const Observations& data) {
   return all;
 }
 
-// One recording: five pieces of it stand for movements.
+// "there is one movement"
+std::string few_movements(const Observations& data) {
+  const std::size_t count = data.movements().size();
+  return count == 1 ? "there is one movement" : fmt::format("there are {} movements", count);
+}
+
+// Too few movements to leave one out: five pieces of all of them, or a few more, stand for
+// movements. None holds rows of two.
 Observations cut_in_pieces(const Observations& data) {
   Observations out = data;
   out.movement_names.clear();
   out.group.clear();
-  for (std::size_t i = 0; i < data.rows(); ++i) {
-    out.movement[i] = static_cast<int>(i * kPiecesOfOneMovement / data.rows());
+  for (const RowRange& movement : make_clusters(data.movement, 1).movements) {
+    const std::size_t share =
+        (movement.size() * kPiecesOfFewMovements + data.rows() - 1) / data.rows();
+    const std::size_t first = out.movement_names.size();
+    for (std::size_t i = movement.begin; i < movement.end; ++i) {
+      out.movement[i] = static_cast<int>(first + (i - movement.begin) * share / movement.size());
+    }
+    for (std::size_t k = 0; k < share; ++k) {
+      out.movement_names.push_back(fmt::format("piece {}", first + k + 1));
+    }
   }
-  for (std::size_t k = 0; k < kPiecesOfOneMovement; ++k) {
-    out.movement_names.push_back(fmt::format("piece {}", k + 1));
-  }
-  // Within one movement everything that grows with it passes for the campaign's time.
-  for (const char* name : {"t", "T"}) out.withheld.push_back({name, "there is one movement"});
+  // Within a movement everything that grows with it passes for the campaign's time.
+  for (const char* name : {"t", "T"}) out.withheld.push_back({name, few_movements(data)});
   return out;
+}
+
+// Whether without one of them the others determine the base in any of its rows.
+bool foretell_one_another(const Observations& data, const Diagnosis& diagnosis) {
+  return std::ranges::any_of(data.movements(), [&](int movement) {
+    const std::vector<char> others = usable_rows(data, {movement}, false, diagnosis.masked);
+    const std::vector<char> determined =
+        determined_rows(diagnosis.before, data, others, diagnosis.correlation_rows);
+    for (std::size_t i = 0; i < data.rows(); ++i) {
+      if (data.movement[i] == movement && determined[i] != 0) return true;
+    }
+    return false;
+  });
 }
 
 std::vector<std::size_t> numbers(std::size_t from, std::size_t to) {
@@ -409,14 +435,15 @@ JudgedDiagnosis judge_canonical(const Observations& data, const BaseMaker& base,
     return LoopJudge(data, base, options, judging)
         .with_held_out(held_out_movements(data, judging.test_share));
   }
-  if (movements == 1) {
+  if (movements == 1 || (movements < kFewestToLeaveOut && data.group.empty())) {
     const Observations pieces = cut_in_pieces(data);
     JudgedDiagnosis out = LoopJudge(pieces, base, options, judging).in_turn();
-    out.error.judged_on = JudgedOn::pieces_of_one_movement;
-    out.error.how = "pieces of the one movement left out in turn";
-    out.notes.push_back(
-        "there is one movement: nothing that differs between movements (temperature, drift, "
-        "repeatability) can be tested");
+    out.error.judged_on = JudgedOn::pieces_of_movements;
+    out.error.how = "pieces of the movements left out in turn";
+    if (movements > 1 && !foretell_one_another(data, out)) doubt_undetermined(out);
+    out.notes.push_back(few_movements(data) +
+                        ": nothing that differs between movements (temperature, drift, "
+                        "repeatability) can be tested");
     return out;
   }
   JudgedDiagnosis out = LoopJudge(data, base, options, judging).in_turn();

@@ -26,7 +26,7 @@ struct MovementError {
   double mean_after = 0;
 };
 
-enum class JudgedOn { other_movements, pieces_of_one_movement, rows_of_the_fit };
+enum class JudgedOn { other_movements, pieces_of_movements, rows_of_the_fit };
 
 struct ErrorFinding {
   std::size_t test_movements = 0;

@@ -60,8 +60,8 @@ LoopEffect effect_of(const EffectFinding& from) {
 
 LoopJudgedOn judged_on(JudgedOn from) {
   switch (from) {
-    case JudgedOn::pieces_of_one_movement:
-      return LoopJudgedOn::pieces_of_one_movement;
+    case JudgedOn::pieces_of_movements:
+      return LoopJudgedOn::pieces_of_movements;
     case JudgedOn::rows_of_the_fit:
       return LoopJudgedOn::rows_of_the_fit;
     case JudgedOn::other_movements:

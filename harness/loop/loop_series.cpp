@@ -65,13 +65,13 @@ LoopResidualRows residual_rows(const LoopRows& all) {
   return out;
 }
 
-// Where every movement (or piece of the one movement) was left out in turn, its error then; else
+// Where every movement (or piece of one) was left out in turn, its error then; else
 // the errors of the models as they stand.
 std::vector<LoopMovementPoint> movement_points(const LoopRows& all) {
   const JudgedDiagnosis& diagnosis = all.diagnosis;
   std::vector<LoopMovementPoint> points;
   if (diagnosis.held_out.empty() && !diagnosis.error.movements.empty()) {
-    const bool pieces = all.data.movements().size() == 1;
+    const bool pieces = diagnosis.error.judged_on == JudgedOn::pieces_of_movements;
     for (const MovementError& one : diagnosis.error.movements) {
       const auto m = static_cast<std::size_t>(one.movement);
       points.push_back({pieces ? "piece " + std::to_string(m + 1) : all.data.movement_names[m],

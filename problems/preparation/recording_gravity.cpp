@@ -59,18 +59,23 @@ void check_gravity_factor(const PreparedRecording& out, const DataOptions& optio
   };
   const std::string what = fmt::format("'{}' goes into '{}' with the factor {:.3g}, not 1",
                                        gravity->name, torque->name, value);
-  if (value < 0 && is(1)) {
+  const double size = std::abs(value);
+  const bool is_of_its_size = size < kNoPayload && size > 1 / kNoPayload;
+  if (value < 0 && is_of_its_size) {
     throw_bad_input(what, out.data.name,
                     "one of the two has its sign turned: gravity is the torque that the motor has "
                     "to hold; turn it in the file, or let it be fitted: --gravity fit");
   }
-  const double size = std::abs(value);
   const std::optional<double> ratio = options.drive.gear_ratio;
   const bool is_ratio = ratio && !is(1) && (is(*ratio) || is(1 / *ratio));
-  if (!is_ratio && size < kNoPayload && size > 1 / kNoPayload) return;
-  throw_bad_input(what, out.data.name,
-                  "check their units (--roles COLUMN=ROLE[UNIT]), --torque-constant and the side "
-                  "of the gear (@motor); a torque without gravity is a friction_torque");
+  if (!is_ratio && is_of_its_size) return;
+  throw_bad_input(
+      what, out.data.name,
+      fmt::format("check their units (--roles COLUMN=ROLE[UNIT]), --torque-constant and "
+                  "the side of the gear (@motor); a torque without gravity is a "
+                  "friction_torque; gravity that is next to nothing may be left out: "
+                  "--roles '{}=none'",
+                  gravity->name));
 }
 
 namespace {

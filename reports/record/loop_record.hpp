@@ -172,7 +172,7 @@ struct LoopMotion {
 };
 
 // Mean absolute errors on what took no part in the fit, before and after.
-enum class LoopJudgedOn { other_movements, pieces_of_one_movement, rows_of_the_fit };
+enum class LoopJudgedOn { other_movements, pieces_of_movements, rows_of_the_fit };
 
 struct LoopError {
   std::size_t test_movements = 0;

@@ -329,14 +329,23 @@ TEST(JudgedDiagnosis, JudgesFewMovementsInTurnAndSaysWhereTheyAreTooFew) {
 
 TEST(JudgedDiagnosis, JudgesOneMovementByFivePiecesOfIt) {
   const JudgedDiagnosis one = diagnose_strokes(1);
-  EXPECT_EQ(one.error.judged_on, JudgedOn::pieces_of_one_movement);
-  EXPECT_EQ(one.error.how, "pieces of the one movement left out in turn");
+  EXPECT_EQ(one.error.judged_on, JudgedOn::pieces_of_movements);
+  EXPECT_EQ(one.error.how, "pieces of the movements left out in turn");
   ASSERT_THAT(one.error.movements, ::testing::SizeIs(5));
   for (int k = 0; k < 5; ++k) {
     EXPECT_EQ(one.error.movements[static_cast<std::size_t>(k)].movement, k);
     EXPECT_EQ(one.error.movements[static_cast<std::size_t>(k)].rows, 8U);
   }
   EXPECT_THAT(one.notes, ::testing::Contains(::testing::HasSubstr("there is one movement")));
+}
+
+// Without one of two the other alone would tell effects from time, of which it says nothing.
+TEST(JudgedDiagnosis, JudgesTwoMovementsByPiecesThatHoldRowsOfOne) {
+  const JudgedDiagnosis two = diagnose_strokes(2);
+  EXPECT_EQ(two.error.judged_on, JudgedOn::pieces_of_movements);
+  EXPECT_THAT(two.error.movements, ::testing::SizeIs(6));
+  EXPECT_THAT(two.notes, ::testing::Contains(::testing::HasSubstr("there are 2 movements")));
+  EXPECT_EQ(diagnose_strokes(3).error.how, "each movement left out in turn");
 }
 
 TEST(JudgedDiagnosis, TellsItsProgressSearchBySearch) {
