@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "foundation/order_statistics.hpp"
 #include "problems/reading/csv_scanner.hpp"
 
 namespace tribench {
@@ -90,6 +92,53 @@ TimeBreaks find_breaks(const std::vector<double>& time, const std::vector<int>& 
   return breaks;
 }
 
+// What a counter of milli-, micro- or nanoseconds holds that was full between two rows: the first
+// has one of its last counts and the second one of its first. 0: there is none.
+double full_counter(double before, double now, double usual_step) {
+  constexpr double kNear = 2.5;  // usual steps
+  for (const int bits : {16, 31, 32}) {
+    for (const double count : {1e-3, 1e-6, 1e-9}) {
+      const double span = std::ldexp(count, bits);
+      const double step = now - before + span;
+      if (now >= 0 && before < span && step < kNear * usual_step) return span;
+    }
+  }
+  return 0;
+}
+
+// A clock that starts again where its counter is full goes on.
+void unwrap_clock(DataFile& reading) {
+  const auto clock = std::ranges::find(reading.data.channels, Role::time, &Channel::role);
+  std::vector<double>& time = clock->values;
+  const std::vector<int>& movement = reading.data.movement;
+  std::vector<double> steps;
+  for (std::size_t r = 1; r < time.size(); ++r) {
+    if (movement[r] == movement[r - 1]) steps.push_back(std::abs(time[r] - time[r - 1]));
+  }
+  if (steps.empty()) return;
+  const double usual = upper_median(std::move(steps));
+  std::size_t times = 0;
+  double span = 0;
+  double offset = 0;
+  double before = time.front();  // as it was told
+  for (std::size_t r = 1; r < time.size(); ++r) {
+    if (movement[r] != movement[r - 1]) offset = 0;
+    const double told = time[r];
+    if (told < before && movement[r] == movement[r - 1]) {
+      const double full = full_counter(before, told, usual);
+      times += full > 0 ? 1 : 0;
+      if (full > 0) span = full;
+      offset += full;
+    }
+    before = told;
+    time[r] += offset;
+  }
+  if (times == 0) return;
+  reading.warnings.push_back(fmt::format(
+      "'{}' starts again {} times after {:.4f} s, as a full counter does: the clock goes on",
+      clock->name, times, span));
+}
+
 bool are_long_enough(const std::vector<std::size_t>& restarts, std::size_t rows) {
   std::size_t begin = 0;
   for (const std::size_t r : restarts) {
@@ -144,6 +193,7 @@ void order_by_time(DataFile& reading, const std::function<std::size_t(std::size_
     reading.warnings.emplace_back("the newest row stands first: the rows are turned round");
     return;
   }
+  unwrap_clock(reading);
   const TimeBreaks breaks = find_breaks(time, data.movement);
   if (breaks.first_back == 0) return;
   const bool few =

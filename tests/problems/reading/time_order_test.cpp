@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,6 +67,19 @@ TEST(TimeOrder, AClockThatIsSetBackOrBeginsAnewMakesAnotherRecording) {
     EXPECT_FALSE(file.has_movements);
     EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("another recording begins there")));
     EXPECT_TRUE(std::ranges::is_sorted(in_order(file)));
+  }
+}
+
+TEST(TimeOrder, AClockWhoseCounterIsFullGoesOn) {
+  for (const double full : {65.536, 4294.967296, 4.294967296}) {
+    std::vector<std::pair<double, int>> rows = even_rows(1200);
+    for (auto& [time, y] : rows) time = std::fmod(time + full - 2, full);
+    const DataFile file = parse_csv(table_of(rows), "log.csv");
+    EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("as a full counter does: the clock goes on")));
+    const std::vector<double>& time = file.data.find(Role::time)->values;
+    for (std::size_t i = 0; i < time.size(); ++i) {
+      ASSERT_NEAR(time[i], full - 2 + 0.01 * static_cast<double>(i), 2e-3) << full;
+    }
   }
 }
 
