@@ -11,6 +11,7 @@
 #include "foundation/order_statistics.hpp"
 #include "foundation/suggestion.hpp"
 #include "problems/reading/channel_names.hpp"
+#include "problems/reading/joint_columns.hpp"
 #include "problems/reading/time_columns.hpp"
 
 namespace tribench {
@@ -142,83 +143,6 @@ ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions&
   return plan;
 }
 
-void lose_role(ColumnPlan& plan, std::string remark) {
-  plan.reading.role = Role::none;
-  plan.reading.role_from.clear();
-  plan.reading.unit_asked = false;
-  plan.reading.remark = std::move(remark);
-}
-
-// The positions of all joints, for who needs the whole arm's posture.
-void keep_positions(const std::map<int, std::vector<std::size_t>>& joints,
-                    std::vector<ColumnPlan>& plans, DataFile& out) {
-  for (const auto& [joint, columns] : joints) {
-    for (const std::size_t j : columns) {
-      if (plans[j].reading.role != Role::position || out.joint_positions.contains(joint)) continue;
-      plans[j].in_chain = true;
-      out.joint_positions[joint] = plans[j].reading.column;
-    }
-  }
-}
-
-// Of columns with numbers in their names those of one joint count. The velocity of the joint
-// beside it is the other velocity.
-void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, DataFile& out) {
-  std::map<int, std::vector<std::size_t>> joints;
-  for (std::size_t j = 0; j < plans.size(); ++j) {
-    const Role role = plans[j].reading.role;
-    if (plans[j].role_given || role == Role::none || role == Role::movement) continue;
-    const NameReading name = read_channel_name(plans[j].reading.column);
-    if (name.joint) joints[*name.joint].push_back(j);
-  }
-  // "v2" is the other joint's velocity, unless --joint makes it the second's.
-  if (options.joint) {
-    for (std::size_t j = 0; j < plans.size(); ++j) {
-      if (plans[j].reading.column != "v2" && plans[j].reading.column != "a2") continue;
-      plans[j].reading.role = plans[j].reading.column == "v2" ? Role::velocity : Role::acceleration;
-      joints[2].push_back(j);
-    }
-  }
-  if (options.joint && !joints.contains(*options.joint)) {
-    std::vector<int> known;
-    for (const auto& [joint, columns] : joints) known.push_back(joint);
-    throw_bad_input(fmt::format("no column is of joint {}", *options.joint), "--joint",
-                    known.empty() ? "leave it out: no name holds a joint's number"
-                                  : fmt::format("joints: {}", fmt::join(known, ", ")));
-  }
-  out.joint = options.joint;
-  if (joints.size() < 2) return;
-  if (!options.joint) {
-    // Where the motion is told without a number, or by hand, the numbers are of others.
-    const bool is_told = std::ranges::any_of(plans, [](const ColumnPlan& plan) {
-      const Role role = plan.reading.role;
-      return (role == Role::velocity && plan.doubt == 0) ||
-             (plan.role_given && (role == Role::velocity || role == Role::position));
-    });
-    for (const auto& [joint, columns] : joints) {
-      if (!is_told) out.joints.push_back(joint);
-      for (const std::size_t j : columns) lose_role(plans[j], "of one of several joints");
-    }
-    return;
-  }
-  if (options.all_positions) keep_positions(joints, plans, out);
-  int neighbour = *options.joint - 1;
-  if (!joints.contains(neighbour)) neighbour = *options.joint + 1;
-  for (const auto& [joint, columns] : joints) {
-    if (joint == *options.joint) continue;
-    for (const std::size_t j : columns) {
-      ColumnReading& reading = plans[j].reading;
-      if (joint == neighbour && reading.role == Role::velocity) {
-        reading.role = Role::other_velocity;
-      } else if (joint == neighbour && reading.role == Role::acceleration) {
-        reading.role = Role::other_acceleration;
-      } else {
-        lose_role(plans[j], fmt::format("of joint {}", joint));
-      }
-    }
-  }
-}
-
 // A role given by hand takes it away from columns that only sound like it; of several that sound
 // alike the one whose name is closest keeps it, then the first.
 void settle_roles(const CsvLayout& layout, std::vector<ColumnPlan>& plans, DataFile& out) {
@@ -330,6 +254,13 @@ bool is_spare(const CsvOptions& options, const ColumnPlan& plan) {
 
 }  // namespace
 
+void lose_role(ColumnPlan& plan, std::string remark) {
+  plan.reading.role = Role::none;
+  plan.reading.role_from.clear();
+  plan.reading.unit_asked = false;
+  plan.reading.remark = std::move(remark);
+}
+
 std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& options,
                                      std::string_view file, DataFile& out) {
   for (const auto& [column, role] : options.roles) {
@@ -347,7 +278,10 @@ std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& 
   for (std::size_t j = 0; j < layout.header.size(); ++j) {
     plans.push_back(plan_column(layout, j, options, file));
   }
-  if (options.names_tell) choose_joint(options, plans, out);
+  if (options.names_tell) {
+    refuse_joints_told_by_words(plans, file);
+    choose_joint(options, plans, out);
+  }
   settle_roles(layout, plans, out);
   if (options.names_tell && out.joints.empty()) take_roles_by_unit(layout, plans, out);
   for (ColumnPlan& plan : plans) {

@@ -4,6 +4,7 @@
 // against the names. Internal to the room.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct ColumnPlan {
   bool adds_to_time = false;  // nanoseconds beside a column of seconds
   bool in_chain = false;      // the position of another joint that is asked for
 };
+
+// The column is read as one without a role; why, in words.
+void lose_role(ColumnPlan& plan, std::string remark);
 
 // Fills the file's warnings and joints too. Throws Error (bad_input) for a role or a use of a
 // column that is not there, and for a unit that does not go with its role.

@@ -351,19 +351,6 @@ TEST(Csv, ARowOfUnitsCountsMoreThanWhatASourceUsuallyMeans) {
   EXPECT_NEAR(file.data.at("position").values[0], 1.5 * M_PI / 180, 1e-15);
 }
 
-TEST(Csv, OfSeveralJointsOneIsAskedFor) {
-  const std::string_view text = "t,q1,dq1,q2,dq2,tau_J_1,tau_J_2\n0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n";
-  EXPECT_EQ(parse_csv(text, "arm.csv").joints, (std::vector<int>{1, 2}));
-  CsvOptions options;
-  options.joint = 2;
-  const Dataset data = parse_csv(text, "arm.csv", options).data;
-  EXPECT_EQ(data.find(Role::position)->name, "q2");
-  EXPECT_EQ(data.find(Role::motor_torque)->name, "tau_J_2");
-  EXPECT_EQ(data.find(Role::other_velocity)->name, "dq1");
-  options.joint = 5;
-  EXPECT_THAT(complaint(text, options), HasSubstr("joints: 1, 2"));
-}
-
 TEST(Csv, NamesTellNothingWhereTheyAreNotAsked) {
   CsvOptions options;
   options.names_tell = false;

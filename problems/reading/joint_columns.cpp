@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "problems/reading/joint_columns.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "foundation/error.hpp"
+#include "problems/reading/channel_names.hpp"
+
+namespace tribench {
+namespace {
+
+bool is_of_one_joint(Role role) {
+  constexpr std::array kRoles = {Role::position, Role::velocity, Role::acceleration,
+                                 Role::motor_torque, Role::motor_current};
+  return std::ranges::count(kRoles, role) > 0;
+}
+
+// The positions of all joints, for who needs the whole arm's posture.
+void keep_positions(const std::map<int, std::vector<std::size_t>>& joints,
+                    std::vector<ColumnPlan>& plans, DataFile& out) {
+  for (const auto& [joint, columns] : joints) {
+    for (const std::size_t j : columns) {
+      if (plans[j].reading.role != Role::position || out.joint_positions.contains(joint)) continue;
+      plans[j].in_chain = true;
+      out.joint_positions[joint] = plans[j].reading.column;
+    }
+  }
+}
+
+// What differs between names, from the first that differs to the last: "shoulder" and "elbow" of
+// "/shoulder_joint/position" and "/elbow_joint/position". Empty unless all end alike after it.
+std::vector<std::string> differences(const std::vector<std::string>& names) {
+  std::size_t shortest = names[0].size();
+  for (const std::string& name : names) shortest = std::min(shortest, name.size());
+  const auto alike = [&](auto character) {
+    std::size_t count = 0;
+    while (count < shortest && std::ranges::all_of(names, [&](const std::string& name) {
+             return character(name, count) == character(names[0], count);
+           })) {
+      ++count;
+    }
+    return count;
+  };
+  const std::size_t begin = alike([](const std::string& name, std::size_t k) { return name[k]; });
+  const std::size_t end =
+      alike([](const std::string& name, std::size_t k) { return name[name.size() - 1 - k]; });
+  std::vector<std::string> parts;
+  for (const std::string& name : names) {
+    if (end == 0 || begin + end >= name.size()) return {};
+    parts.push_back(name.substr(begin, name.size() - end - begin));
+  }
+  return parts;
+}
+
+// "filtered_velocity" and "raw_velocity" are of one joint.
+bool names_processing(const std::string& part) {
+  constexpr std::array kWords = {"raw", "filt",  "smooth", "meas",   "actual", "act",    "estim",
+                                 "est", "motor", "link",   "output", "load",   "encoder"};
+  return std::ranges::any_of(
+      kWords, [&](const char* word) { return part.find(word) != std::string::npos; });
+}
+
+}  // namespace
+
+void refuse_joints_told_by_words(const std::vector<ColumnPlan>& plans, std::string_view file) {
+  std::map<Role, std::vector<std::string>> names;
+  for (const ColumnPlan& plan : plans) {
+    const Role role = plan.reading.role;
+    if (plan.role_given && is_of_one_joint(role)) return;  // which one was said
+    if (!is_of_one_joint(role) || read_channel_name(plan.reading.column).joint) continue;
+    names[role].push_back(plan.reading.column);
+  }
+  std::map<std::vector<std::string>, std::vector<std::string>> seen;  // roles of one joint
+  for (const auto& [role, alike] : names) {
+    if (alike.size() < 2) continue;
+    const std::vector<std::string> parts = differences(alike);
+    if (parts.empty() || std::ranges::any_of(parts, names_processing)) continue;
+    seen[parts].push_back(fmt::format("{}={}", alike.front(), role_name(role)));
+  }
+  for (const auto& [parts, roles] : seen) {
+    if (roles.size() < 2) continue;
+    throw_bad_input(
+        fmt::format("columns of several joints stand here, told apart by '{}'",
+                    fmt::join(parts, "', '")),
+        file, fmt::format("say which are those of one joint: --roles '{}'", fmt::join(roles, ",")));
+  }
+}
+
+void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, DataFile& out) {
+  std::map<int, std::vector<std::size_t>> joints;
+  std::set<int> given;  // of whose motion or torque a column was given its role by hand
+  for (std::size_t j = 0; j < plans.size(); ++j) {
+    const Role role = plans[j].reading.role;
+    if (role == Role::none || role == Role::movement) continue;
+    const NameReading name = read_channel_name(plans[j].reading.column);
+    if (!name.joint) continue;
+    if (!plans[j].role_given) joints[*name.joint].push_back(j);
+    if (plans[j].role_given && is_of_one_joint(role)) given.insert(*name.joint);
+  }
+  const std::optional<int> chosen =
+      options.joint || given.size() != 1 ? options.joint : std::optional(*given.begin());
+  if (chosen && given.contains(*chosen)) joints[*chosen];
+  // "v2" is the other joint's velocity, unless --joint makes it the second's.
+  if (options.joint) {
+    for (std::size_t j = 0; j < plans.size(); ++j) {
+      if (plans[j].reading.column != "v2" && plans[j].reading.column != "a2") continue;
+      plans[j].reading.role = plans[j].reading.column == "v2" ? Role::velocity : Role::acceleration;
+      joints[2].push_back(j);
+    }
+  }
+  if (chosen && !joints.contains(*chosen)) {
+    std::vector<int> known;
+    for (const auto& [joint, columns] : joints) known.push_back(joint);
+    throw_bad_input(fmt::format("no column is of joint {}", *chosen), "--joint",
+                    known.empty() ? "leave it out: no name holds a joint's number"
+                                  : fmt::format("joints: {}", fmt::join(known, ", ")));
+  }
+  out.joint = chosen;
+  if (joints.size() < 2) return;
+  if (!chosen) {
+    // Where the motion is told without a number, or by hand, the numbers are of others.
+    const bool is_told = std::ranges::any_of(plans, [](const ColumnPlan& plan) {
+      const Role role = plan.reading.role;
+      return (role == Role::velocity && plan.doubt == 0) ||
+             (plan.role_given && (role == Role::velocity || role == Role::position));
+    });
+    for (const auto& [joint, columns] : joints) {
+      if (!is_told) out.joints.push_back(joint);
+      for (const std::size_t j : columns) lose_role(plans[j], "of one of several joints");
+    }
+    return;
+  }
+  if (options.all_positions) keep_positions(joints, plans, out);
+  int neighbour = *chosen - 1;
+  if (!joints.contains(neighbour)) neighbour = *chosen + 1;
+  for (const auto& [joint, columns] : joints) {
+    if (joint == *chosen) continue;
+    for (const std::size_t j : columns) {
+      ColumnReading& reading = plans[j].reading;
+      if (joint == neighbour && reading.role == Role::velocity) {
+        reading.role = Role::other_velocity;
+      } else if (joint == neighbour && reading.role == Role::acceleration) {
+        reading.role = Role::other_acceleration;
+      } else {
+        lose_role(plans[j], fmt::format("of joint {}", joint));
+      }
+    }
+  }
+}
+
+}  // namespace tribench

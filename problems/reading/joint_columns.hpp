@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+//
+// Which columns of a file are those of the one joint that is looked at. Internal to the room.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "problems/reading/column_plan.hpp"
+
+namespace tribench {
+
+// Throws Error (bad_input) where two roles have several columns whose names differ by the same
+// words before they end alike ("/shoulder/position", "/elbow/position"), unless --roles says whose
+// are meant.
+void refuse_joints_told_by_words(const std::vector<ColumnPlan>& plans, std::string_view file);
+
+// Of columns with numbers in their names those of one joint count: the one that is asked for, else
+// the one whose motion or torque was given its role by hand; where there is neither, none, and
+// `out` says which there are. The velocity of the joint beside it is the other velocity. Throws
+// Error (bad_input) where no column is of the joint.
+void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, DataFile& out);
+
+}  // namespace tribench
