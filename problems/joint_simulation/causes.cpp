@@ -17,7 +17,7 @@
 namespace tribench::simulation {
 namespace {
 
-constexpr double kTwoPi = 2 * std::numbers::pi;
+constexpr double kWholeTurn = 2 * std::numbers::pi;
 
 double velocity(const Instant& now) { return now.joint.velocity_rad_s; }
 
@@ -179,7 +179,7 @@ Response logarithmic_run_in(RandomStream random) {
 // campaign lasts.
 Response ripple(double first, double drift, bool harmonics, RandomStream random) {
   std::array<double, 3> phases{};
-  for (double& phase : phases) phase = random.uniform(0, kTwoPi);
+  for (double& phase : phases) phase = random.uniform(0, kWholeTurn);
   const double second = harmonics ? random.uniform(0.3, 0.7) : 0;
   const double third = harmonics ? random.uniform(0.2, 0.4) : 0;
   return [=](const Instant& now, double) {
@@ -200,7 +200,7 @@ Response output_drifting(RandomStream random) {
 // A bearing or a seal that runs out.
 Response friction_ripple(RandomStream random) {
   const auto waves = static_cast<double>(1 + random.below(6));
-  return [waves, phase = random.uniform(0, kTwoPi)](const Instant& now, double) {
+  return [waves, phase = random.uniform(0, kWholeTurn)](const Instant& now, double) {
     return now.sign() * elementary::cos(waves * now.joint.position_rad + phase);
   };
 }

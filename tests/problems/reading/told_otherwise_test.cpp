@@ -6,11 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "foundation/error.hpp"
 #include "problems/reading/csv.hpp"
 #include "problems/reading/explanation.hpp"
 #include "problems/reading/time_text.hpp"
+#include "tests/support/paths.hpp"
 
 namespace tribench {
 namespace {
@@ -136,6 +139,50 @@ TEST(ToldOtherwise, WhatNothingReadsMayHaveGaps) {
   EXPECT_EQ(file.data.find(Role::motor_current), nullptr);
   EXPECT_THAT(file.warnings,
               ::testing::Contains(HasSubstr("'motor_current_A' is read without a role")));
+}
+
+std::string what_is_wrong_with_bytes(const std::string& name, const std::string& bytes) {
+  const std::filesystem::path folder = testing::scratch_folder() / "foreign";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / name, std::ios::binary) << bytes;
+  try {
+    read_csv(folder / name, of_loop());
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "read";
+}
+
+TEST(ToldOtherwise, WhatIsNoTextIsSaidToBeWhatItIs) {
+  const std::string zero(30, '\0');
+  const std::string zip = "PK\x03\x04" + zero.substr(4);
+  EXPECT_THAT(what_is_wrong_with_bytes("a.zip", zip + "log.csv"),
+              AllOf(HasSubstr("zip archive"), HasSubstr("unzip '")));
+  EXPECT_THAT(
+      what_is_wrong_with_bytes("a.xlsx", zip + "[Content_Types].xml" + zero + "xl/workbook.xml"),
+      AllOf(HasSubstr("workbook"), HasSubstr("as CSV")));
+  EXPECT_THAT(what_is_wrong_with_bytes("a.npz", zip + "t.npy"), HasSubstr("numpy.load"));
+  EXPECT_THAT(what_is_wrong_with_bytes("a.bz2", "BZh91AY" + zero), HasSubstr("bunzip2 -k '"));
+  EXPECT_THAT(what_is_wrong_with_bytes("a.mat", "MATLAB 5.0 MAT-file, " + zero),
+              HasSubstr("MATLAB"));
+  EXPECT_THAT(what_is_wrong_with_bytes("a.db3", "SQLite format 3" + zero),
+              HasSubstr("adapters/ros_to_csv.py"));
+  EXPECT_THAT(what_is_wrong_with_bytes("a.json", "[{\"q\": 1}]"),
+              AllOf(HasSubstr("a.json:1: this is a JSON array"), HasSubstr("read_json")));
+  EXPECT_THAT(what_is_wrong_with_bytes("a.html", "<table><tr>"), HasSubstr("read_html"));
+  EXPECT_EQ(what_is_wrong_with_bytes("b.csv", "PAR1,tau_Nm\n1,2\n"), "read");
+}
+
+TEST(ToldOtherwise, AFolderIsNamedByItsFiles) {
+  const std::filesystem::path folder = testing::scratch_folder() / "runs";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "a.csv") << "q\n1\n";
+  try {
+    read_csv(folder, of_loop());
+    ADD_FAILURE() << "it was read";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("runs/*.csv"));
+  }
 }
 
 TEST(ToldOtherwise, AUnitThatIsNotKnownIsNamed) {
