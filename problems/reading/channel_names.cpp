@@ -228,9 +228,9 @@ void read_unit_alone(std::string_view name, NameReading& reading) {
   for (std::size_t at = name.find('_'); at != std::string_view::npos; at = name.find('_', at + 1)) {
     const std::string_view last = name.substr(at + 1);
     const Unit* unit = find_unit(last);
-    if (unit == nullptr || (last.size() == 1 && is_lower(last.front()) && unit->si != last)) {
-      continue;
-    }
+    if (unit == nullptr) continue;
+    const bool is_any_letter = is_lower(last.front()) || unit->dimension == Dimension::time;
+    if (last.size() == 1 && is_any_letter && unit->si != last) continue;
     reading = {};
     reading.known.unit = unit;
     reading.unit_written = true;

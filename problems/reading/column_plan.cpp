@@ -8,9 +8,9 @@
 #include <set>
 
 #include "foundation/error.hpp"
-#include "foundation/order_statistics.hpp"
 #include "foundation/suggestion.hpp"
 #include "problems/reading/channel_names.hpp"
+#include "problems/reading/csv_checks.hpp"
 #include "problems/reading/joint_columns.hpp"
 #include "problems/reading/time_columns.hpp"
 
@@ -75,12 +75,6 @@ std::string unknown_unit(const CsvLayout& layout, std::size_t column, const Name
                       !heard.unit_written &&
                       find_written_unit(layout.units[column]).unit == nullptr;
   return in_row ? layout.units[column] : heard.unknown_unit;
-}
-
-void take_unit(ColumnPlan& plan, const WrittenUnit& unit, std::string_view from) {
-  plan.unit = unit;
-  plan.reading.unit = unit.symbol();
-  plan.reading.unit_from = std::string(from);
 }
 
 ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions& options,
@@ -284,6 +278,7 @@ std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& 
   }
   settle_roles(layout, plans, out);
   if (options.names_tell && out.joints.empty()) take_roles_by_unit(layout, plans, out);
+  demote_current(options, plans, out);
   for (ColumnPlan& plan : plans) {
     const Role role = plan.reading.role;
     plan.used =
@@ -298,77 +293,10 @@ std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& 
   return plans;
 }
 
-namespace {
-
-// The usual step forward; 0: there is none.
-double step_of(const std::vector<double>& time) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < time.size(); ++i) {
-    if (time[i] > time[i - 1]) steps.push_back(time[i] - time[i - 1]);
-  }
-  return steps.empty() ? 0 : upper_median(std::move(steps));
-}
-
-// Of stamps of unknown unit: steps of 0.1 to 20 ms, if they are seconds, are nothing else (a
-// fiftieth of a millisecond at most, if they are milliseconds).
-bool steps_in_seconds(double step) { return step >= 1e-4 && step < 0.02; }
-
-// Counts from the first stamp on. Stamps since 1970 are so large that a double holds them to a
-// fraction of a microsecond: what is left of that is taken off, so that steps are as they were
-// written.
-void start_at_zero(std::vector<double>& stamps) {
-  const double first = stamps.front();
-  const double spacing = std::nextafter(first, 2 * first) - first;
-  double per_unit = 1;  // steps that are told apart
-  while (per_unit * 20 * spacing <= 1) per_unit *= 10;
-  double unit = 1;
-  while (unit < 2 * spacing) unit *= 10;
-  for (double& stamp : stamps)
-    stamp = std::round((stamp - first) / unit * per_unit) / per_unit * unit;
-}
-
-// Settles the unit of time by what the values say; time since 1970 starts at 0.
-void settle_time(ColumnPlan& plan, std::vector<double>& values, std::string_view place) {
-  ColumnReading& reading = plan.reading;
-  const double step = step_of(values);
-  const Unit* epoch = unit_of_epoch(values.front(), step);
-  const auto settle = [&](const Unit* unit, std::string_view from) {
-    take_unit(plan, {unit}, from);
-    reading.unit_assumed = false;
-    reading.unit_asked = false;
-  };
-  if (epoch != nullptr && (plan.unit.unit == nullptr || reading.unit_assumed)) {
-    settle(epoch, "size");
-  } else if (plan.unit.unit == nullptr && steps_in_seconds(step)) {
-    settle(find_unit("s"), "size of the steps");
-  }
-  if (plan.unit.unit == nullptr) return;
-  if (values.front() * plan.unit.unit->factor * plan.unit.scale > 1e10) {
-    throw_bad_input(
-        fmt::format("{} {} are more than 300 years", values.front(), plan.unit.symbol()), place,
-        epoch == nullptr ? "check the unit of time"
-                         : fmt::format("it looks like {} since 1970: --roles '{}=time[{}]'",
-                                       epoch->symbol, reading.column, epoch->symbol));
-  }
-  if (epoch != nullptr && plan.unit.unit == epoch && plan.unit.scale == 1) {
-    start_at_zero(values);
-    reading.remark = "since 1970; starts at 0 here";
-  }
-}
-
-}  // namespace
-
-const Unit* unit_of_epoch(double time, double step) {
-  // From 2001 to 2096; rows further apart than minutes are no recording of a motion.
-  constexpr double kFirst = 1e9;
-  constexpr double kLast = 4e9;
-  constexpr double kLongestStep = 1000;
-  for (const std::string_view symbol : {"s", "ms", "us", "ns"}) {
-    const Unit* unit = find_unit(symbol);
-    if (time * unit->factor < kFirst || time * unit->factor > kLast) continue;
-    return step * unit->factor <= kLongestStep ? unit : nullptr;
-  }
-  return nullptr;
+void take_unit(ColumnPlan& plan, const WrittenUnit& unit, std::string_view from) {
+  plan.unit = unit;
+  plan.reading.unit = unit.symbol();
+  plan.reading.unit_from = std::string(from);
 }
 
 void take_time_text(ColumnPlan& plan) {

@@ -32,13 +32,13 @@ void lose_role(ColumnPlan& plan, std::string remark);
 std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& options,
                                      std::string_view file, DataFile& out);
 
-// The unit of a time by its size, where it counts since 1970 by steps of `step`; null: it does not.
-const Unit* unit_of_epoch(double time, double step);
+void take_unit(ColumnPlan& plan, const WrittenUnit& unit, std::string_view from);
 
 // The column's times are written as text: they are in seconds.
 void take_time_text(ColumnPlan& plan);
 
-// Converts a channel to SI and says so in the reading. Time that counts since 1970 starts at 0.
+// Converts a channel to SI and says so in the reading. Time that counts since 1970 (or another
+// year) starts at 0.
 void convert(ColumnPlan& plan, std::vector<double>& values, const Drive& drive,
              std::string_view file);
 

@@ -52,13 +52,16 @@ double largest_of(const ColumnPlan& plan) {
                            : kind == CellKind::number
                                ? fmt::format("'{}' is too large for what is measured", cell)
                                : fmt::format("'{}' is not a finite number", cell);
-  const bool mixed = cell.find(',') != std::string::npos &&
-                     (cell.find('.') != std::string::npos || !in.layout.decimal_comma);
-  std::string mend = mend_for_list(in.layout.header[column], cell);
-  if (mend.empty()) {
-    mend = mixed ? "write numbers in one way, and without signs for thousands"
-                 : "mend the value, or drop such rows with --drop-missing";
-  }
+  const std::vector<double>& values = in.columns.columns[column].numbers;
+  const bool is_read =
+      std::ranges::any_of(values, [](double number) { return std::isfinite(number); });
+  const std::string mend = mend_for_cell({.column = in.layout.header[column],
+                                          .cell = cell,
+                                          .kind = kind,
+                                          .decimal_comma = in.layout.decimal_comma,
+                                          .is_time = in.plans[column].reading.role == Role::time,
+                                          .others_are_read = is_read,
+                                          .drops_missing = in.options.drop_missing});
   throw_bad_input(what, csv_place(in.file, line_of(in.text, place), in.layout.header[column]),
                   mend);
 }
@@ -349,7 +352,6 @@ DataFile parse_csv(std::string_view text, std::string_view file, const CsvOption
   fill_channels(in, out);
   order_by_time(
       out, [&](std::size_t row) { return line_of(text, in.columns.places[in.rows[row]]); }, file);
-  demote_current(options, out);
   if (options.names_tell) find_joints_in_turn(in.layout, out);
   check_torque_units(out.data, file);
   return out;

@@ -20,6 +20,7 @@ namespace {
 bool is_missing(std::string_view cell) {
   if (cell.find_first_not_of('-') == std::string_view::npos) return true;  // empty, or a dash
   if (cell.front() == '+' || cell.front() == '-') cell.remove_prefix(1);
+  if (cell.starts_with("1.#")) return true;  // "-1.#IND", as older libraries of C write it
   if (cell.empty() || cell.size() > 9) return false;
   std::string word;
   for (const char c : cell) word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -45,6 +46,14 @@ bool is_hexadecimal(std::string_view cell) {
 }
 
 CellKind read_cell(std::string_view cell, bool decimal_comma, double& value) {
+  constexpr std::string_view kMinus = "\xE2\x88\x92";  // as a printed text has it
+  if (cell.find(kMinus) != std::string_view::npos) {
+    std::string plain(cell);
+    for (std::size_t at = plain.find(kMinus); at != std::string::npos; at = plain.find(kMinus)) {
+      plain.replace(at, kMinus.size(), "-");
+    }
+    return read_cell(plain, decimal_comma, value);
+  }
   std::string_view digits = cell;
   // from_chars takes no plus sign and would take a second minus after one.
   if (!digits.empty() && digits.front() == '+') {

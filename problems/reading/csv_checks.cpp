@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 #include "problems/reading/channel_names.hpp"
 #include "problems/reading/csv_cells.hpp"
+#include "problems/reading/time_text.hpp"
 
 namespace tribench {
 namespace {
@@ -38,6 +41,31 @@ std::size_t taking_turns(const std::vector<std::vector<std::string>>& rows, std:
   return joints;
 }
 
+// "11'622.300", "11 622,300", "1.234,5".
+bool has_thousands(const BadCell& bad) {
+  const bool both = bad.cell.find('.') != std::string::npos || !bad.decimal_comma;
+  if (bad.cell.find(',') != std::string::npos && both) return true;
+  constexpr std::array<std::string_view, 5> kSigns = {"'", " ", "\xE2\x80\x99", "\xC2\xA0",
+                                                      "\xE2\x80\xAF"};
+  std::string plain(bad.cell);
+  for (const std::string_view sign : kSigns) {
+    for (std::size_t at = plain.find(sign); at != std::string::npos; at = plain.find(sign)) {
+      plain.erase(at, sign.size());
+    }
+  }
+  double value = 0;
+  return plain != bad.cell && read_cell(plain, true, value) == CellKind::number;
+}
+
+// "Nm" of "11.6 Nm".
+std::string_view unit_behind_number(const BadCell& bad) {
+  std::string_view rest = bad.cell;
+  rest.remove_prefix(std::min(rest.find_first_not_of("+-0123456789.,"), rest.size()));
+  if (bad.kind != CellKind::text || rest.size() == bad.cell.size()) return {};
+  rest = trimmed(rest);
+  return find_unit(rest) != nullptr ? rest : std::string_view();
+}
+
 }  // namespace
 
 void find_joints_in_turn(const CsvLayout& layout, DataFile& out) {
@@ -53,22 +81,52 @@ void find_joints_in_turn(const CsvLayout& layout, DataFile& out) {
   }
 }
 
-void demote_current(const CsvOptions& options, DataFile& reading) {
-  for (Channel& current : reading.data.channels) {
-    if (current.role != Role::motor_current || options.roles.contains(current.name)) continue;
-    for (const Channel& other : reading.data.channels) {
-      const bool torque = other.role == Role::motor_torque || other.role == Role::friction_torque;
-      if (!torque || other.unit == "-" || other.unit == current.unit) continue;
-      current.role = Role::none;
-      const auto said = std::ranges::find(reading.readings, current.name, &ColumnReading::column);
-      said->role = Role::none;
-      said->unit_asked = false;
-      said->remark = fmt::format("'{}' is the torque", other.name);
-      reading.warnings.push_back(fmt::format("column '{}' is read without a role: '{}' is in {}",
-                                             current.name, other.name, other.unit));
+void demote_current(const CsvOptions& options, std::vector<ColumnPlan>& plans, DataFile& out) {
+  for (ColumnPlan& current : plans) {
+    ColumnReading& reading = current.reading;
+    if (reading.role != Role::motor_current || options.roles.contains(reading.column)) continue;
+    for (const ColumnPlan& other : plans) {
+      const bool torque =
+          other.reading.role == Role::motor_torque || other.reading.role == Role::friction_torque;
+      if (!torque || other.unit.unit == nullptr) continue;
+      if (current.unit.unit != nullptr && other.unit.unit->si == current.unit.unit->si) continue;
+      reading.role = Role::none;
+      reading.unit_asked = false;
+      reading.remark = fmt::format("'{}' is the torque", other.reading.column);
+      out.warnings.push_back(fmt::format("column '{}' is read without a role: '{}' is in {}",
+                                         reading.column, other.reading.column,
+                                         other.unit.unit->si));
       break;
     }
   }
+}
+
+std::string mend_for_cell(const BadCell& bad) {
+  std::string list = mend_for_list(bad.column, bad.cell);
+  if (!list.empty()) return list;
+  if (bad.kind == CellKind::text && bad.is_time && bad.cell.find(':') != std::string::npos) {
+    return fmt::format("times that are read: {}", forms_of_time());
+  }
+  if (bad.kind == CellKind::text && has_thousands(bad)) {
+    return "write numbers in one way, and without signs for thousands";
+  }
+  if (const std::string_view unit = unit_behind_number(bad); !unit.empty()) {
+    return read_channel_name(bad.column).unit_written
+               ? std::string("write numbers alone: the column's name says the unit")
+               : fmt::format("write numbers alone, and the unit into the column's name: '{} [{}]'",
+                             bad.column, unit);
+  }
+  if (bad.kind == CellKind::text && bad.is_time) {
+    return fmt::format("times that are read: {}", forms_of_time());
+  }
+  if (!bad.others_are_read) {
+    return fmt::format(
+        "no value of the column can be read: write numbers, or say --roles '{}=none'", bad.column);
+  }
+  if (bad.kind != CellKind::text) return "mend the value, or drop such rows with --drop-missing";
+  return bad.drops_missing ? "mend the value, or leave the cell empty: then the row is dropped"
+                           : "mend the value, or leave the cell empty and drop such rows with "
+                             "--drop-missing";
 }
 
 void check_torque_units(const Dataset& data, std::string_view file) {

@@ -14,6 +14,7 @@
 #include "foundation/text.hpp"
 #include "problems/reading/csv_cells.hpp"
 #include "problems/reading/csv_scanner.hpp"
+#include "problems/reading/foreign_formats.hpp"
 #include "problems/reading/units.hpp"
 
 namespace tribench {
@@ -417,11 +418,7 @@ CsvLayout find_layout(std::string_view text, std::string_view file, bool nameles
   if (lines.empty()) {
     throw_bad_input("the file is empty", std::string(file), "give a header line and rows");
   }
-  if (lines.front().text.starts_with('{')) {
-    throw_bad_input("these are JSON objects, no table", csv_place(file, lines.front().number),
-                    "write a line of names and then the numbers (in pandas: "
-                    "read_json(FILE, lines=True).to_csv(OTHER))");
-  }
+  refuse_foreign_text(lines.front().text, file, lines.front().number);
   if (nameless) {
     if (const std::optional<Found> found = nameless_layout(lines)) {
       return layout_without_names(lines, *found);

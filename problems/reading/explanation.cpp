@@ -138,6 +138,11 @@ std::vector<std::string> what_was_converted(const DataFile& file) {
   std::vector<std::string> lines;
   for (const ColumnReading& reading : file.readings) {
     if (reading.role == Role::none || (reading.factor == 1 && reading.remark.empty())) continue;
+    if (reading.unit.empty()) {
+      lines.push_back(fmt::format("'{}' is the {}: {}", reading.column, role_name(reading.role),
+                                  reading.remark));
+      continue;
+    }
     lines.push_back(fmt::format("'{}' is the {}, in {} ({}): read as {}{}{}", reading.column,
                                 role_name(reading.role), reading.unit, reading.unit_from,
                                 reading.si, reading.remark.empty() ? "" : "; ", reading.remark));

@@ -10,6 +10,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/text.hpp"
+#include "problems/reading/foreign_formats.hpp"
 
 namespace tribench {
 namespace {
@@ -138,8 +139,10 @@ std::string as_utf8(std::string text) {
 }  // namespace
 
 std::string read_file_text(const std::filesystem::path& file, std::size_t opens_always) {
+  refuse_folder(file);
   std::string text = read_bytes(file);
   if (text.starts_with("\x1F\x8B")) text = unpacked(text, file.string(), opens_always);
+  refuse_foreign_bytes(text, file.string());
   text = as_utf8(std::move(text));
   // Lines that end with a carriage return alone.
   if (text.find('\n') == std::string::npos) std::ranges::replace(text, '\r', '\n');

@@ -14,8 +14,9 @@ namespace tribench {
 // recording packs to a tenth or a thirtieth, what was made to fill the memory to a thousandth.
 inline constexpr std::size_t kOpensAlways = std::size_t{1} << 30;
 
-// Throws Error: bad_input where the file cannot be read, is a folder or its packing is damaged or
-// opens to more than that; failed where reading stops half way. `opens_always` for tests.
+// Throws Error: bad_input where the file cannot be read, is no text (foreign_formats.hpp) or its
+// packing is damaged or opens to more than that; failed where reading stops half way.
+// `opens_always` for tests.
 std::string read_file_text(const std::filesystem::path& file,
                            std::size_t opens_always = kOpensAlways);
 
