@@ -182,6 +182,10 @@ Role role_of(Dimension dimension) {
       return Role::time;
     case Dimension::angle:
       return Role::position;
+    case Dimension::angular_velocity:
+      return Role::velocity;
+    case Dimension::angular_acceleration:
+      return Role::acceleration;
     case Dimension::current:
       return Role::motor_current;
     case Dimension::torque:
@@ -207,7 +211,7 @@ bool is_plainly_written(const ColumnPlan& plan) {
   return !plan.reading.unit_assumed && (!letter || plan.reading.unit_from == "row of units");
 }
 
-// The one column in a unit of time, angle, current, torque or temperature ("tick_ms",
+// The one column in a unit of time, angle, its rates, current, torque or temperature ("tick_ms",
 // "shoulder [deg]") is what its unit says, where no name says what is.
 void take_roles_by_unit(const CsvLayout& layout, std::vector<ColumnPlan>& plans, DataFile& out) {
   std::map<Role, std::vector<std::size_t>> candidates;

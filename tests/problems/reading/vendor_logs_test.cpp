@@ -359,6 +359,8 @@ TEST(VendorLogs, WhatIsNoTableOrCannotBeToldIsRefused) {
 }
 
 TEST(VendorLogs, AColumnAloneInItsUnitIsWhatTheUnitSays) {
+  EXPECT_EQ(roles_line(parse_csv("t [s],tempo [rad/s],i [A]\n0,1,2\n1,2,3\n", "log.csv", told(""))),
+            "\"t [s]\"=time[s],\"tempo [rad/s]\"=velocity[rad/s],\"i [A]\"=motor_current[A]");
   const DataFile file = parse_csv(
       "tick_ms,shoulder [deg],J_A [A],housing (degC),set_deg,phase_ms\n0,90,1,30,1,2\n"
       "2,91,2,31,1,2\n",
