@@ -10,11 +10,11 @@
 //   RTDE       Universal Robots' Real-Time Data Exchange (actual_q, actual_qd, actual_current)
 //   FRI, RSI   KUKA's Fast Research Interface (measured position, torque: rad, N m) and Robot
 //              Sensor Interface (AIPos: deg; MACur)
-//   KRL        KUKA's language: $AXIS_ACT is in degrees, $TORQUE_AXIS_ACT in N m (of linear axes:
-//   mm, N) CiA 402    drives' objects 0x6064, 0x606C, 0x6077, 0x6078: in units that each drive sets
-//   itself usual      what people write; says what the channel is and not in which unit. Accents
-//   are off: in
-//              English, German, French, Spanish, Italian, Portuguese, Dutch and Polish
+//   KRL        KUKA's language ($AXIS_ACT: deg, $TORQUE_AXIS_ACT: N m)
+//   LabVIEW    its measurement files (.lvm)
+//   CiA 402    drives' objects 0x6064, 0x606C, 0x6077, 0x6078: in units that each drive sets itself
+//   usual      what people write; says what the channel is and not in which unit; without accents,
+//              in English, German, French, Spanish, Italian, Portuguese, Dutch and Polish
 #include <array>
 
 #include "problems/reading/channel_names.hpp"
@@ -29,6 +29,7 @@ constexpr std::string_view kRtde = "RTDE";
 constexpr std::string_view kFri = "KUKA FRI";
 constexpr std::string_view kRsi = "KUKA RSI";
 constexpr std::string_view kKrl = "KUKA KRL";
+constexpr std::string_view kLabview = "LabVIEW";
 constexpr std::string_view kCia402 = "CiA 402";
 constexpr std::string_view kUsual = "usual";
 
@@ -64,7 +65,7 @@ constexpr std::array kAliases = {
     ChannelAlias{"tijd", time, "", kUsual},
     ChannelAlias{"czas", time, "", kUsual},
     ChannelAlias{"gps_time", time, "", kUsual},
-    ChannelAlias{"x_value", time, "", kUsual, true},
+    ChannelAlias{"x_value", time, "s", kLabview},
     ChannelAlias{"movement", movement, "", kOwn},
     ChannelAlias{"position", position, "rad", kRos},
     ChannelAlias{"q", position, "rad", kFranka},

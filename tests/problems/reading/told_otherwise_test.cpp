@@ -242,6 +242,37 @@ TEST(ToldOtherwise, NamesInOtherLanguages) {
             "temperature time position motor_torque");
 }
 
+TEST(ToldOtherwise, LabviewsHeader) {
+  const DataFile file = parse_csv(
+      "LabVIEW Measurement\t\nSeparator\tTab\nDate\t2024/05/14\n***End_of_Header***\t\n\t\n"
+      "Channels\t2\t\t\nSamples\t3\t3\nY_Unit_Label\tdeg\tmN m\nX0\t0.0E+0\t0.0E+0\n"
+      "Delta_X\t0.001\t0.001\n***End_of_Header***\t\t\nX_Value\tposition\tmotor_torque\tComment\r\n"
+      "0\t0\t1\t\r\n0.001\t90\t2\t\r\n0.002\t180\t3\t\r\n",
+      "log.lvm", of_loop());
+  EXPECT_EQ(file.data.rows(), 3U);
+  EXPECT_EQ(file.data.find(Role::time)->values[1], 0.001);
+  EXPECT_NEAR(file.data.find(Role::position)->values[1], M_PI / 2, 1e-12);
+  EXPECT_NEAR(file.data.find(Role::motor_torque)->values[1], 2e-3, 1e-12);
+  EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("11 lines before the columns' names")));
+}
+
+TEST(ToldOtherwise, TwincatsLabels) {
+  std::string text =
+      "Name;YT "
+      "Chart\nFile;C:\\a.svdx\n\nName;Position;Name;MotorTorque\nSymbolComment;;SymbolComment;\n"
+      "Data-Type;REAL64;Data-Type;REAL64\nUnit;deg;Unit;Nm\nSampleTime[ms];1;SampleTime[ms];1\n\n";
+  const DataFile file = parse_csv(text + "0;0;0;1\n1;90;1;2\n2;180;2;3\n", "log.csv", of_loop());
+  EXPECT_EQ(file.data.rows(), 3U);
+  EXPECT_EQ(file.data.find(Role::time)->values[1], 0.001);
+  EXPECT_NEAR(file.data.find(Role::position)->values[1], M_PI / 2, 1e-12);
+  EXPECT_EQ(file.data.find(Role::motor_torque)->values[1], 2);
+}
+
+TEST(ToldOtherwise, ABlockBeforeRowsWithoutNames) {
+  EXPECT_THAT(what_is_wrong("Recorder 7\nserial;4711\nby;lab\n0;1;2\n1;2;3\n2;3;4\n3;4;5\n"),
+              AllOf(HasSubstr("begins with a block of 3 lines"), HasSubstr("tail -n +4 FILE")));
+}
+
 TEST(ToldOtherwise, UnitsInsideOfNames) {
   const auto unit_of_position = [](const std::string& name) {
     const DataFile file = parse_csv("t;" + name + ";tau_Nm\n0;1;1\n1;2;1\n", "log.csv", of_loop());
