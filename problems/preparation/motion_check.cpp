@@ -22,7 +22,6 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 
 constexpr double kGood = 0.15;         // of the slope's logarithm: the same motion
-constexpr double kSameFactor = 0.08;   // a known factor explains the slope
 constexpr double kAsNear = 0.02;       // two factors are one
 constexpr double kTellsMotion = 0.9;   // correlation from which the slope says something
 constexpr double kTellsNothing = 0.5;  // correlation of a rate that is another quantity's

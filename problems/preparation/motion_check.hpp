@@ -14,6 +14,9 @@
 
 namespace tribench {
 
+// Of a factor's logarithm: as near as that, a known factor explains it.
+inline constexpr double kSameFactor = 0.08;
+
 // How a quantity's change over some `window` (s; shorter in short pieces) goes with its rate's
 // integral: 1 where both tell the same motion. `agreement` is their correlation; `change` and
 // `integral` are their root mean squares.

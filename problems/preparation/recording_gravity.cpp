@@ -11,6 +11,7 @@
 #include "foundation/elementary.hpp"
 #include "foundation/error.hpp"
 #include "problems/friction_sign.hpp"
+#include "problems/preparation/motion_check.hpp"
 #include "problems/preparation/rigid_body.hpp"
 
 namespace tribench {
@@ -19,7 +20,6 @@ namespace {
 constexpr double kMuchExplained = 0.3;
 constexpr double kSure = 10;    // standard errors, from which a story is refused
 constexpr double kCertain = 5;  // standard errors of a gravity that explains much
-constexpr double kSameFactor = 0.08;
 constexpr double kNoPayload = 5;  // a factor beyond that, or below its inverse, is none's
 
 }  // namespace

@@ -23,6 +23,34 @@ std::string lower(std::string_view text) {
   return result;
 }
 
+// Letters of other alphabets as those that names are listed in: accents off, Greek ones by name;
+// and LaTeX's signs off.
+std::string in_plain_letters(std::string_view text) {
+  struct Letter {
+    std::string_view written;
+    std::string_view plain;
+  };
+  static constexpr std::array kLetters = {
+      Letter{"\xC3\xA0", "a"},     Letter{"\xC3\xA1", "a"},     Letter{"\xC3\xA3", "a"},
+      Letter{"\xC3\xA7", "c"},     Letter{"\xC3\xA8", "e"},     Letter{"\xC3\xA9", "e"},
+      Letter{"\xC3\x89", "E"},     Letter{"\xC3\xAA", "e"},     Letter{"\xC3\xAD", "i"},
+      Letter{"\xC3\xB3", "o"},     Letter{"\xC3\xB4", "o"},     Letter{"\xC3\xBA", "u"},
+      Letter{"\xC3\x81", "A"},     Letter{"\xC4\x85", "a"},     Letter{"\xC4\x87", "c"},
+      Letter{"\xC4\x99", "e"},     Letter{"\xC5\x9B", "s"},     Letter{"\xC5\x82", "l"},
+      Letter{"\xCE\xB8", "theta"}, Letter{"\xCF\x89", "omega"}, Letter{"\xCF\x84", "tau"},
+      Letter{"\xCF\x86", "phi"},   Letter{"\xCF\x95", "phi"},   Letter{"$", ""},
+  };
+  std::string plain;
+  while (!text.empty()) {
+    const auto* const letter = std::ranges::find_if(
+        kLetters, [&](const Letter& one) { return text.starts_with(one.written); });
+    const bool is_listed = letter != kLetters.end();
+    plain += is_listed ? letter->plain : text.substr(0, 1);
+    text.remove_prefix(is_listed ? letter->written.size() : 1);
+  }
+  return plain;
+}
+
 // Words that name the setting and not the measurement.
 constexpr std::array<std::string_view, 22> kSetPoints = {
     "desired",   "des",    "commanded", "command", "cmd",   "target",  "goal", "ref",
@@ -100,11 +128,15 @@ void take_alias(NameReading& reading, const ChannelAlias& alias) {
 
 // A name that is in the list as it stands.
 bool read_whole_name(std::string_view text, NameReading& reading) {
-  // Time and temperature differ by case alone; a torque is told by its unit.
-  if (text == "T" && reading.known.unit != nullptr &&
-      reading.known.unit->dimension == Dimension::torque) {
-    reading.role = Role::motor_torque;
-    reading.doubt = 3;
+  // Time and temperature differ by case alone where no unit tells; so does a torque.
+  const bool is_t = text == "T" || text == "t";
+  for (const Role role : {Role::motor_torque, Role::temperature, Role::time}) {
+    if (!is_t || reading.known.unit == nullptr || !reading.unit_written) break;
+    if (reading.known.unit->dimension == Dimension::current || !suits(*reading.known.unit, role)) {
+      continue;
+    }
+    reading.role = role;
+    if (role == Role::motor_torque) reading.doubt = 3;
     return true;
   }
   if (text == "T") {
@@ -127,6 +159,7 @@ bool read_whole_name(std::string_view text, NameReading& reading) {
 bool read_stem(std::string_view text, NameReading& reading) {
   if (read_whole_name(text, reading)) return true;
   Words all;
+  Words without_letter;  // "AXIS_ACT" of "AXIS_ACT_A4"
   Words kept;
   bool motor = false;
   for (std::string word : split_words(text, true)) {
@@ -141,9 +174,11 @@ bool read_stem(std::string_view text, NameReading& reading) {
     motor = motor || lower(word) == "motor" || lower(word) == "mot";
     const bool letter = numbered && (lower(word) == "j" || lower(word) == "a");  // "A2", "j2"
     if (!letter && !is_among(kFillers, lower(word))) kept.push_back(word);
+    if (!letter) without_letter.push_back(word);
     all.push_back(std::move(word));
   }
   const ChannelAlias* alias = find_alias(joined(all, 0, all.size()));
+  if (alias == nullptr) alias = find_alias(joined(without_letter, 0, without_letter.size()));
   if (alias == nullptr) alias = find_alias(joined(kept, 0, kept.size()));
   reading.doubt = 1;
   // "Current position" is the one of now.
@@ -182,6 +217,26 @@ std::string take_brackets(std::string_view& name) {
   return {};
 }
 
+// "deg" of "position in deg" and "angle_in_degrees".
+std::string take_unit_behind_in(std::string_view& name) {
+  const std::string small = lower(name);
+  for (const std::string_view word : {" in ", "_in_"}) {
+    const std::size_t at = small.rfind(word);
+    if (at == std::string::npos || at == 0) continue;
+    const std::string_view unit = name.substr(at + word.size());
+    if (find_written_unit(unit).unit == nullptr) continue;
+    name = name.substr(0, at);
+    return std::string(unit);
+  }
+  return {};
+}
+
+// Words that are units in brackets alone: "position_in" is where something goes in.
+const Unit* find_unit_in_words(std::string_view word) {
+  constexpr std::array<std::string_view, 4> kOtherWords = {"in", "u", "tr", "d"};
+  return is_among(kOtherWords, lower(word)) ? nullptr : find_unit(word);
+}
+
 // Behind the last line "angle_0.01deg", what one count is (a larger number, "load_cell_10Nm", is a
 // range), or "speed_1/min", whose stroke is no path's.
 std::string take_last_word(std::string_view& name) {
@@ -197,7 +252,7 @@ std::string take_last_word(std::string_view& name) {
 // What the end of a name may say, the usual first: a unit; one that has lost its stroke, "rads" of
 // a velocity and "rads2"; several, "rads" of a position.
 std::vector<const Unit*> units_at_the_end(const std::string& word) {
-  std::vector<const Unit*> units = {find_unit(word)};
+  std::vector<const Unit*> units = {find_unit_in_words(word)};
   for (const std::string_view second : {"s", "s2"}) {
     if (!word.ends_with(second)) continue;
     const std::string first = word.substr(0, word.size() - second.size());
@@ -223,11 +278,26 @@ bool read_written_unit(const Words& words, NameReading& reading) {
   return false;
 }
 
+// "deg_position": a unit as the first word, where it is no letter.
+bool read_unit_first(std::string_view name, NameReading& reading) {
+  const Words words = split_words(name, false);
+  if (words.size() < 2 || words.front().size() < 3) return false;
+  NameReading stem;
+  stem.known.unit = find_unit_in_words(words.front());
+  stem.unit_written = stem.known.unit != nullptr;
+  if (!stem.unit_written || !read_stem(joined(words, 1, words.size()), stem) ||
+      !suits(*stem.known.unit, stem.role)) {
+    return false;
+  }
+  reading = stem;
+  return true;
+}
+
 // The unit of a channel without a role, for show: only as it is usually written.
 void read_unit_alone(std::string_view name, NameReading& reading) {
   for (std::size_t at = name.find('_'); at != std::string_view::npos; at = name.find('_', at + 1)) {
     const std::string_view last = name.substr(at + 1);
-    const Unit* unit = find_unit(last);
+    const Unit* unit = find_unit_in_words(last);
     if (unit == nullptr) continue;
     const bool is_any_letter = is_lower(last.front()) || unit->dimension == Dimension::time;
     if (last.size() == 1 && is_any_letter && unit->si != last) continue;
@@ -260,6 +330,7 @@ bool read_unit_twice(std::string_view name, const NameReading& reading, NameRead
 NameReading read_last(std::string_view whole) {
   std::string_view name = whole;
   std::string inside = take_brackets(name);
+  if (inside.empty()) inside = take_unit_behind_in(name);
   if (inside.empty()) inside = take_last_word(name);
   NameReading reading;
   reading.known = find_written_unit(inside);
@@ -277,6 +348,8 @@ NameReading read_last(std::string_view whole) {
     reading = plain;
   } else if (reading.unit_written && read_unit_twice(name, reading, written)) {
     reading = written;
+  } else if (!reading.unit_written && read_unit_first(name, written)) {
+    reading = written;
   } else if (!reading.unit_written) {
     read_unit_alone(name, reading);
   }
@@ -292,6 +365,8 @@ NameReading read_last(std::string_view whole) {
 // A name without a sign prefix. Where it tells nothing as a whole the last part of a path does:
 // "/js/position_deg", "MAIN.fbAxis.ActPos [deg]".
 NameReading read_plain(std::string_view name) {
+  constexpr std::string_view kData = ".Data";  // of a signal of Simulink's
+  if (name.ends_with(kData)) name.remove_suffix(kData.size());
   NameReading whole = read_last(name);
   const std::size_t cut = name.substr(0, name.find_first_of("[({")).find_last_of("./:");
   if (whole.role != Role::none || cut == std::string_view::npos || cut + 1 == name.size()) {
@@ -319,7 +394,9 @@ std::string_view without_unit(std::string_view name) {
   return name;
 }
 
-NameReading read_channel_name(std::string_view name) {
+NameReading read_channel_name(std::string_view written) {
+  const std::string plain = in_plain_letters(written);
+  const std::string_view name = plain;
   constexpr std::string_view kSign = "sgn_";
   NameReading reading;
   if (!name.starts_with(kSign)) {

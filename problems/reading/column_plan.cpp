@@ -77,6 +77,16 @@ std::string unknown_unit(const CsvLayout& layout, std::size_t column, const Name
   return in_row ? layout.units[column] : heard.unknown_unit;
 }
 
+std::string or_nearest(const std::string& unit, Role role) {
+  const std::string nearest = nearest_unit(unit, role);
+  return nearest.empty() ? std::string() : fmt::format(" (is {} meant?)", nearest);
+}
+
+std::string mend_for_unit(const std::string& column, Role role) {
+  return fmt::format("say it with --roles '{}={}[UNIT]'; known: {}", column, role_name(role),
+                     units_of(role));
+}
+
 ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions& options,
                        std::string_view file) {
   const std::string& name = layout.header[j];
@@ -116,10 +126,9 @@ ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions&
   } else if (heard.unit_written) {
     take_unit(plan, on_side(heard.known), "name");
   } else if (!unknown.empty() && needs_unit(role)) {
-    throw_bad_input(fmt::format("'{}' is no unit of a {}", unknown, role_name(role)),
-                    fmt::format("{}, column '{}'", file, name),
-                    fmt::format("say it with --roles '{}={}[UNIT]'; known: {}", name,
-                                role_name(role), units_of(role)));
+    throw_bad_input(fmt::format("'{}' is no unit of a {}{}", unknown, role_name(role),
+                                or_nearest(unknown, role)),
+                    fmt::format("{}, column '{}'", file, name), mend_for_unit(name, role));
   } else if (heard.known.unit != nullptr && unknown.empty() && role != Role::none &&
              !plan.role_given) {
     take_unit(plan, on_side(heard.known), heard.source);
@@ -130,11 +139,30 @@ ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions&
   } else {
     plan.reading.unit_asked = needs_unit(role);
     if (!unknown.empty() && role != Role::none && role != Role::movement) {
-      plan.reading.remark =
-          fmt::format("'{}' is no unit that is known: read as it stands", unknown);
+      plan.reading.remark = fmt::format("'{}' is no unit that is known{}: read as it stands",
+                                        unknown, or_nearest(unknown, role));
+      plan.unknown_unit = unknown;
     }
   }
   return plan;
+}
+
+// A torque in a unit that is not known beside another in one that is: their numbers cannot be held
+// against each other.
+void check_known_units(const std::vector<ColumnPlan>& plans, std::string_view file) {
+  const auto known = std::ranges::find_if(plans, [](const ColumnPlan& plan) {
+    return is_torque_like(plan.reading.role) && plan.unit.unit != nullptr;
+  });
+  if (known == plans.end()) return;
+  for (const ColumnPlan& plan : plans) {
+    const Role role = plan.reading.role;
+    if (!is_torque_like(role) || plan.unknown_unit.empty() || plan.role_given) continue;
+    throw_bad_input(fmt::format("'{}' is no unit of a {}{}, and '{}' is in {}", plan.unknown_unit,
+                                role_name(role), or_nearest(plan.unknown_unit, role),
+                                known->reading.column, known->unit.symbol()),
+                    fmt::format("{}, column '{}'", file, plan.reading.column),
+                    mend_for_unit(plan.reading.column, role));
+  }
 }
 
 // A role given by hand takes it away from columns that only sound like it; of several that sound
@@ -282,6 +310,7 @@ std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& 
   }
   settle_roles(layout, plans, out);
   if (options.names_tell && out.joints.empty()) take_roles_by_unit(layout, plans, out);
+  check_known_units(plans, file);
   demote_current(options, plans, out);
   for (ColumnPlan& plan : plans) {
     const Role role = plan.reading.role;

@@ -16,8 +16,9 @@ namespace tribench {
 struct ColumnPlan {
   ColumnReading reading;
   ColumnKind kind = ColumnKind::found;
-  bool used = true;       // a missing value in it is an error
-  WrittenUnit unit = {};  // none: not known, or not needed
+  bool used = true;          // a missing value in it is an error
+  WrittenUnit unit = {};     // none: not known, or not needed
+  std::string unknown_unit;  // written, and no unit that is known
   bool role_given = false;
   int doubt = 0;
   bool adds_to_time = false;  // nanoseconds beside a column of seconds

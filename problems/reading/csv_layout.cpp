@@ -13,91 +13,13 @@
 #include "foundation/error.hpp"
 #include "foundation/text.hpp"
 #include "problems/reading/csv_cells.hpp"
+#include "problems/reading/csv_head.hpp"
 #include "problems/reading/csv_scanner.hpp"
 #include "problems/reading/foreign_formats.hpp"
 #include "problems/reading/units.hpp"
 
 namespace tribench {
 namespace {
-
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-constexpr std::size_t kHeadLines = 60;  // the header stands among these
-
-struct HeadLine {
-  std::size_t begin = 0;
-  std::size_t number = 1;
-  bool comment = false;
-  std::string_view text;  // without the comment's sign
-};
-
-using Cells = std::vector<std::string>;
-
-std::size_t comment_sign(std::string_view line) {
-  const std::size_t first = line.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return 0;
-  if (line[first] == '#' || line[first] == '%') return line.find_first_not_of("#%", first);
-  if (line.substr(first).starts_with("//")) return first + 2;
-  return 0;
-}
-
-// Whether a quote that opens a cell is not closed within the text: the cell goes on behind the
-// line's end, as spreadsheets write a heading of two lines.
-bool has_open_cell(std::string_view text) {
-  bool open = false;
-  bool at_start = true;  // of a cell
-  for (const char c : text) {
-    if (c == '"' && (open || at_start)) open = !open;
-    at_start = !open && (c == ',' || c == ';' || c == '\t' || c == '|' || (at_start && c == ' '));
-  }
-  return open;
-}
-
-// Of the line that begins there, with those that a quoted cell of it goes on in.
-std::size_t end_of_head_line(std::string_view text, std::size_t begin) {
-  constexpr int kMostLinesOfCell = 5;
-  const auto line_end = [&](std::size_t from) {
-    return std::min(text.find('\n', from), text.size());
-  };
-  const std::size_t first = line_end(begin);
-  std::size_t end = first;
-  for (int lines = 1; lines < kMostLinesOfCell; ++lines) {
-    if (!has_open_cell(text.substr(begin, end - begin))) return end;
-    if (end == text.size()) break;
-    end = line_end(end + 1);
-  }
-  return first;  // a mark of inches, or a quote that nothing closes
-}
-
-std::vector<HeadLine> head_of(std::string_view text) {
-  std::vector<HeadLine> lines;
-  std::size_t number = 1;
-  std::size_t begin = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
-  while (begin < text.size() && lines.size() < kHeadLines) {
-    const std::size_t end = end_of_head_line(text, begin);
-    const std::string_view line = text.substr(begin, end - begin);
-    if (line.find_first_not_of(" \t\r") != std::string_view::npos) {
-      const std::size_t sign = comment_sign(line);
-      const bool comment = sign != 0;
-      lines.push_back(
-          {begin, number, comment, comment ? line.substr(std::min(sign, line.size())) : line});
-    }
-    number += 1 + static_cast<std::size_t>(std::ranges::count(line, '\n'));
-    begin = end + 1;
-  }
-  return lines;
-}
-
-Cells cells_of(const HeadLine& line, char delimiter) {
-  Cells cells;
-  CsvScanner scanner(line.text, "", delimiter, 0, line.number);
-  try {
-    do {
-      cells.emplace_back(trimmed(without_control_characters(scanner.next_cell())));
-    } while (scanner.goes_on());
-  } catch (const Error&) {  // a quote is open here: the rows will say so with the file's name
-  }
-  return cells;
-}
 
 bool is_number(std::string_view cell) {
   double value = 0;
@@ -157,6 +79,8 @@ struct Found {
   std::optional<std::size_t> units;
   std::size_t row = 0;
   std::size_t width = 0;
+  bool labelled = false;  // from the header to the row each cell stands behind a label
+  bool guessed = false;   // no layout fits
 };
 
 // The first row: from it on at least half of the lines are as wide. What a recorder says of itself
@@ -228,7 +152,51 @@ Found plain_layout(const std::vector<HeadLine>& lines) {
   }
   found.header = first;
   found.row = first + 1;
+  found.guessed = true;
   return found;
+}
+
+// "Name;Position;Name;Velocity": each value behind the same label.
+bool is_labelled(const Cells& cells) {
+  if (cells.size() < 4 || cells.front().empty() || is_number(cells.front())) return false;
+  for (std::size_t j = 0; j < cells.size(); j += 2) {
+    if (cells[j] != cells.front() && (j + 1 < cells.size() || !cells[j].empty())) return false;
+  }
+  return true;
+}
+
+// As TwinCAT's scope writes it: a block of such lines, that of the names first, then rows in which
+// each channel stands behind its own time.
+std::optional<Found> labelled_layout(const std::vector<HeadLine>& lines) {
+  for (const char delimiter : {';', '\t', ','}) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const Cells names = cells_of(lines[i], delimiter);
+      if (!is_labelled(names) || names.front() != "Name") continue;
+      std::size_t row = i + 1;
+      while (row < lines.size() && is_labelled(cells_of(lines[row], delimiter))) ++row;
+      if (row < i + 2 || row == lines.size()) continue;
+      const Cells first = cells_of(lines[row], delimiter);
+      if (!is_row(first) || !same_width(names, first)) continue;
+      return Found{delimiter, i, {}, row, first.size(), true};
+    }
+  }
+  return {};
+}
+
+// The names and the units of such a block.
+void read_labels(const std::vector<HeadLine>& lines, const Found& found, CsvLayout& layout) {
+  std::string time = "time";
+  layout.units.assign(layout.header.size(), "");
+  for (std::size_t i = *found.header; i < found.row; ++i) {
+    const Cells cells = cells_of(lines[i], found.delimiter);
+    const std::string& label = cells.front();
+    if (label.starts_with("SampleTime"))
+      time += " " + label.substr(std::min(label.find('['), label.size()));
+    for (std::size_t j = 1; label == "Unit" && j < cells.size(); j += 2) {
+      layout.units[j] = cells[j] == "1" ? "" : cells[j];
+    }
+  }
+  for (std::size_t j = 0; j < layout.header.size(); j += 2) layout.header[j] = trimmed(time);
 }
 
 // Between blanks a separator would be a name: it is the file's, with blanks to either side.
@@ -238,6 +206,7 @@ bool has_lone_separator(const Cells& cells) {
 }
 
 Found best_layout(const std::vector<HeadLine>& lines) {
+  if (const std::optional<Found> found = labelled_layout(lines)) return *found;
   Found best;
   for (const char delimiter : {',', ';', '\t', '|', ' '}) {
     const Found found = try_delimiter(lines, delimiter);
@@ -294,6 +263,26 @@ std::optional<Found> nameless_layout(const std::vector<HeadLine>& lines) {
     }
   }
   return best;
+}
+
+// Where no line names the columns, and rows begin further down: what is before them is no table.
+void check_begin(const std::vector<HeadLine>& lines, std::string_view file) {
+  constexpr std::size_t kFewestRows = 3;
+  for (const char delimiter : {',', ';', '\t', '|', ' '}) {
+    std::vector<Cells> cells;
+    for (const HeadLine& line : lines) cells.push_back(cells_of(line, delimiter));
+    const std::size_t row = first_row(lines, cells);
+    if (row < 2 || row + kFewestRows > lines.size() || cells[row].size() < 2) continue;
+    if (same_width(cells.front(), cells[row])) continue;
+    throw_bad_input(
+        fmt::format("the file begins with a block of {} lines, and none of them names the {} "
+                    "columns of the rows from line {} on",
+                    lines[row].number - 1, cells[row].size(), lines[row].number),
+        csv_place(file, lines[row].number),
+        fmt::format("leave the block out (tail -n +{} FILE > OTHER) and write a line of names "
+                    "before the rows",
+                    lines[row].number));
+  }
 }
 
 void check_header(std::vector<std::string>& header, std::string_view file, std::size_t line) {
@@ -414,7 +403,8 @@ std::size_t CsvLayout::width_behind_sign() const {
 
 CsvLayout find_layout(std::string_view text, std::string_view file, bool nameless) {
   check_bytes(text, file);
-  const std::vector<HeadLine> lines = head_of(text);
+  std::vector<HeadLine> lines = head_of(text);
+  const LabviewHeader labview = take_labview_header(lines);
   if (lines.empty()) {
     throw_bad_input("the file is empty", std::string(file), "give a header line and rows");
   }
@@ -425,6 +415,7 @@ CsvLayout find_layout(std::string_view text, std::string_view file, bool nameles
     }
   }
   const Found found = best_layout(lines);
+  if (found.guessed) check_begin(lines, file);
   const HeadLine& header = lines[*found.header];
   CsvLayout layout;
   layout.delimiter = found.delimiter;
@@ -437,6 +428,7 @@ CsvLayout find_layout(std::string_view text, std::string_view file, bool nameles
     layout.header.pop_back();
   }
   take_off_single_quotes(layout.header);
+  if (found.labelled) read_labels(lines, found, layout);
   layout.first_rows = rows_of(lines, found);
   name_repeated(layout.header, layout.first_rows, layout.notes);
   check_header(layout.header, file, header.number);
@@ -451,7 +443,12 @@ CsvLayout find_layout(std::string_view text, std::string_view file, bool nameles
     }
     layout.units.resize(layout.header.size());
   }
-  std::size_t titles = 0;
+  if (!labview.units.empty()) {
+    layout.units.clear();
+    for (const std::string& cell : labview.units) layout.units.push_back(without_brackets(cell));
+    layout.units.resize(layout.header.size());
+  }
+  std::size_t titles = labview.lines;
   for (std::size_t i = 0; i < *found.header; ++i) titles += lines[i].comment ? 0 : 1;
   if (titles > 0) {
     layout.notes.push_back(

@@ -95,7 +95,7 @@ TimeBreaks find_breaks(const std::vector<double>& time, const std::vector<int>& 
 // What a counter of milli-, micro- or nanoseconds holds that was full between two rows: the first
 // has one of its last counts and the second one of its first. 0: there is none.
 double full_counter(double before, double now, double usual_step) {
-  constexpr double kNear = 2.5;         // usual steps
+  constexpr double kNear = 2.5;        // usual steps
   constexpr double kFewestRows = 100;  // of a counter: a shorter one would be full all the time
   for (const int bits : {16, 31, 32}) {
     for (const double count : {1e-3, 1e-6, 1e-9}) {

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "foundation/suggestion.hpp"
+
 namespace tribench {
 namespace {
 
@@ -29,10 +31,17 @@ struct Known {
 constexpr std::array kKnown = {
     Known{{"rad", "rad", angle, 1}, "rad|radian|radians"},
     Known{{"deg", "rad", angle, kDegree},
-          "deg|degree|degrees|Grad|grado|grados|gradi|degr\xC3\xA9|degr\xC3\xA9s"},
+          "deg|degree|degrees|Grad|grado|grados|gradi|grau|graus|graden|degr\xC3\xA9|degr\xC3\xA9s|"
+          "degre|degres"},
     Known{{"mrad", "rad", angle, 1e-3}, "mrad"},
+    Known{{"urad", "rad", angle, 1e-6}, "urad"},
+    Known{{"gon", "rad", angle, kTurn / 400}, "gon|gons"},
+    Known{{"arcmin", "rad", angle, kDegree / 60}, "arcmin|arcmins|arcminutes"},
+    Known{{"arcsec", "rad", angle, kDegree / 3600}, "arcsec|arcsecs|arcseconds"},
     Known{{"mdeg", "rad", angle, 1e-3 * kDegree}, "mdeg"},
-    Known{{"rev", "rad", angle, kTurn}, "rev|revs|revolution|revolutions|turn|turns|Umdr"},
+    Known{{"rev", "rad", angle, kTurn},
+          "rev|revs|revolution|revolutions|turn|turns|rotation|rotations|Umdr|Umdrehungen|U|tr|"
+          "tours|giri|vueltas"},
     Known{{"counts", "rad", angle, kTurn, 0, true},
           "counts|count|cnt|cnts|tick|ticks|inc|incs|increments|pulses|qc"},
     Known{{"rad/s", "rad/s", angular_velocity, 1},
@@ -57,13 +66,16 @@ constexpr std::array kKnown = {
     Known{{"mm", "m", length, 1e-3}, "mm|millimeter|millimeters"},
     Known{{"cm", "m", length, 1e-2}, "cm"},
     Known{{"um", "m", length, 1e-6}, "um"},
+    Known{{"in", "m", length, 0.0254}, "in|inch|inches"},
     Known{{"m/s", "m/s", speed, 1}, "m/s|m_s|m/sec|mps|m_per_s|ms-1"},
     Known{{"mm/s", "m/s", speed, 1e-3}, "mm/s|mm_s|mm/sec|mmps|mm_per_s|mms-1"},
     Known{{"cm/s", "m/s", speed, 1e-2}, "cm/s|cm_s"},
     Known{{"m/min", "m/s", speed, 1.0 / 60}, "m/min"},
     Known{{"mm/min", "m/s", speed, 1e-3 / 60}, "mm/min"},
+    Known{{"in/s", "m/s", speed, 0.0254}, "in/s|in/sec|inch/s|ips"},
     Known{{"m/s^2", "m/s^2", linear_acceleration, 1}, "m/s2|m_s2|m/s/s|m/sec2|mps2|ms-2"},
     Known{{"mm/s^2", "m/s^2", linear_acceleration, 1e-3}, "mm/s2|mm_s2|mm/s/s|mms-2"},
+    Known{{"in/s^2", "m/s^2", linear_acceleration, 0.0254}, "in/s2|in/sec2|inch/s2"},
     Known{{"s", "s", time, 1}, "s|sec|secs|second|seconds|Sek|Sekunden"},
     Known{{"ms", "s", time, 1e-3}, "ms|msec|msecs|millis|millisecond|milliseconds"},
     Known{{"us", "s", time, 1e-6}, "us|usec|usecs|micros|microsecond|microseconds"},
@@ -71,23 +83,29 @@ constexpr std::array kKnown = {
     Known{{"min", "s", time, 60}, "min|mins|minute|minutes|Minuten"},
     Known{{"h", "s", time, 3600}, "h|hr|hrs|hour|hours|Stunden"},
     Known{{"d", "s", time, 86400}, "d|day|days|Tage"},
-    Known{{"N m", "N m", torque, 1},
-          "Nm|N-m|N_m|newtonmeter|newtonmeters|newtonmetre|newton-meter|newton-meters"},
+    Known{
+        {"N m", "N m", torque, 1},
+        "Nm|N-m|N_m|newtonmeter|newtonmeters|newtonmetre|newtonmetres|newton-meter|newton-meters"},
     Known{{"mN m", "N m", torque, 1e-3}, "mNm|mN-m|mN_m"},
+    Known{{"cN m", "N m", torque, 1e-2}, "cNm|cN-m|cN_m"},
     Known{{"N cm", "N m", torque, 1e-2}, "Ncm|N-cm|N_cm"},
     Known{{"N mm", "N m", torque, 1e-3}, "Nmm|N-mm|N_mm"},
     Known{{"kN m", "N m", torque, 1e3}, "kNm|kN-m|kN_m"},
-    Known{{"kgf m", "N m", torque, 9.80665}, "kgfm|kgf-m|kgf_m"},
+    Known{{"kgf m", "N m", torque, 9.80665}, "kgfm|kgf-m|kgf_m|kgm|kg-m"},
     Known{{"kgf cm", "N m", torque, 0.0980665}, "kgfcm|kgf-cm|kgf_cm|kgcm|kg-cm"},
     Known{{"lbf ft", "N m", torque, 1.3558179483314004},
-          "lbfft|lbf-ft|lbf_ft|lbft|lb-ft|lb_ft|ftlb|ft-lb|ft_lb|ftlbf|ft-lbf|ft_lbf"},
+          "lbfft|lbf-ft|lbf_ft|lbft|lb-ft|lb_ft|ftlb|ft-lb|ft_lb|ftlbf|ft-lbf|ft_lbf|"
+          "ftlbs|ft-lbs|ft_lbs|lbsft|lbs-ft|footpounds|foot-pounds"},
     Known{{"lbf in", "N m", torque, 0.1129848290276167},
-          "lbfin|lbf-in|lbf_in|lbin|lb-in|lb_in|inlb|in-lb|in_lb|inlbf|in-lbf|in_lbf"},
+          "lbfin|lbf-in|lbf_in|lbin|lb-in|lb_in|inlb|in-lb|in_lb|inlbf|in-lbf|in_lbf|"
+          "inlbs|in-lbs|in_lbs|lbsin|lbs-in|inchpounds|inch-pounds"},
     Known{{"ozf in", "N m", torque, 0.00706155181422604},
           "ozfin|ozf-in|ozf_in|ozin|oz-in|oz_in|inoz|in-oz|in_oz|inozf|in-ozf|in_ozf"},
     Known{{"N", "N", force, 1}, "N|newton|newtons"},
     Known{{"mN", "N", force, 1e-3}, "mN"},
     Known{{"kN", "N", force, 1e3}, "kN"},
+    Known{{"lbf", "N", force, 4.4482216152605}, "lbf"},
+    Known{{"kgf", "N", force, 9.80665}, "kgf"},
     Known{{"A", "A", current, 1}, "A|amp|amps|ampere|amperes|Arms|A_rms|Aeff|A_eff|Apk|A_pk"},
     Known{{"mA", "A", current, 1e-3}, "mA|milliamp|milliamps|milliampere|mArms|mA_rms|mAeff"},
     Known{{"V", "V", voltage, 1}, "V|volt|volts"},
@@ -97,6 +115,7 @@ constexpr std::array kKnown = {
     Known{{"degF", "degC", temperature, 5.0 / 9, -32}, "degF|F|fahrenheit|deg_F"},
     Known{{"kg", "kg", mass, 1}, "kg"},
     Known{{"%", "%", share, 1}, "%|percent|pct"},
+    Known{{"permille", "%", share, 0.1}, "permille|promille"},
 };
 
 void replace_all(std::string& text, std::string_view what, std::string_view with) {
@@ -108,8 +127,13 @@ void replace_all(std::string& text, std::string_view what, std::string_view with
 
 std::string plain_unit(std::string_view text) {
   std::string plain(text);
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kSigns = {{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kSigns = {{
+      {"\xE2\x80\xB0", "permille"},
       {"\xC2\xB0", "deg"},    // degree sign
+      {"\xC2\xBA", "deg"},    // the ordinal's sign, which looks like it
+      {"\xCB\x9A", "deg"},    // a ring
+      {"\\circ", "deg"},      // LaTeX
+      {"\xC2\xA0", ""},       // a blank that does not break
       {"\xC2\xB5", "u"},      // micro sign
       {"\xCE\xBC", "u"},      // mu
       {"\xC2\xB2", "2"},      // superscript 2
@@ -120,8 +144,8 @@ std::string plain_unit(std::string_view text) {
       {"\xB0", "deg"},        // degree sign in Latin-1
   }};
   for (const auto& [sign, word] : kSigns) replace_all(plain, sign, word);
-  std::erase_if(plain,
-                [](char c) { return c == ' ' || c == '\t' || c == '.' || c == '*' || c == '^'; });
+  std::erase_if(
+      plain, [](char c) { return std::string_view(" \t.*^$").find(c) != std::string_view::npos; });
   return plain;
 }
 
@@ -227,6 +251,16 @@ std::string units_of(Role role) {
     }
   }
   return fmt::format("{}", fmt::join(symbols, ", "));
+}
+
+std::string nearest_unit(std::string_view text, Role role) {
+  std::vector<std::string> spellings;
+  for (const Known& known : kKnown) {
+    if (std::ranges::count(dimensions_of(role), known.unit.dimension) == 0) continue;
+    spellings.emplace_back(known.spellings.substr(0, known.spellings.find('|')));
+  }
+  const Unit* unit = find_unit(nearest_name(plain_unit(text), spellings));
+  return unit != nullptr ? std::string(unit->symbol) : std::string();
 }
 
 Converted conversion_of(const WrittenUnit& written, const Drive& drive) {

@@ -66,6 +66,9 @@ bool measures_effort(const Unit& unit);
 // "rad, deg, rev, counts, m, mm": what `suits` takes, for messages.
 std::string units_of(Role role);
 
+// The unit of such a role whose usual spelling is closest to a word that is none; empty: none is.
+std::string nearest_unit(std::string_view text, Role role);
+
 // What the user knows of the drive, as far as units need it.
 struct Drive {
   std::optional<double> counts_per_turn;

@@ -185,6 +185,142 @@ TEST(ToldOtherwise, AFolderIsNamedByItsFiles) {
   }
 }
 
+// The roles of the columns but those without one: "time position ...".
+std::string roles_of(const std::string& header) {
+  const auto columns = std::ranges::count(header, ';');
+  std::string text = header + "\n";
+  for (int row = 0; row < 2; ++row) {
+    for (auto j = columns; j >= 0; --j) text += std::to_string(row) + (j > 0 ? ";" : "\n");
+  }
+  std::string roles;
+  for (const ColumnReading& reading : parse_csv(text, "log.csv", of_loop()).readings) {
+    if (reading.role == Role::none) continue;
+    roles += (roles.empty() ? "" : " ") + std::string(role_name(reading.role));
+  }
+  return roles;
+}
+
+TEST(ToldOtherwise, NamesInOtherLanguages) {
+  constexpr const char* kAll = "time position velocity motor_torque gravity_torque temperature";
+  for (const char* header :
+       {"Temps (s);Position (rad);Vitesse (rad/s);Courant (A);Couple moteur (N.m);Couple de "
+        "gravit\xC3\xA9 (N.m);Temp\xC3\xA9rature (\xC2\xB0"
+        "C)",
+        "Tiempo (s);Posici\xC3\xB3n (rad);Velocidad (rad/s);Corriente (A);Par motor (Nm);Par de "
+        "gravedad (Nm);Temperatura (\xC2\xB0"
+        "C)",
+        "Tempo [s];Posizione [rad];Velocit\xC3\xA0 [rad/s];Corrente [A];Coppia motore [Nm];Coppia "
+        "di "
+        "gravit\xC3\xA0 [Nm];Temperatura [\xC2\xB0"
+        "C]",
+        "Tempo (s);Posi\xC3\xA7\xC3\xA3o (rad);Velocidade (rad/s);Corrente (A);Torque do motor "
+        "(Nm);Torque gravitacional (Nm);Temperatura (\xC2\xBA"
+        "C)",
+        "Tijd [s];Positie [rad];Snelheid [rad/s];Stroom [A];Koppel [Nm];Zwaartekrachtkoppel "
+        "[Nm];Temperatuur [C]",
+        "Czas [s];Pozycja [rad];Pr\xC4\x99"
+        "dko\xC5\x9B\xC4\x87 [rad/s];Moment [Nm];Moment grawitacji "
+        "[Nm];Temperatura [C]",
+        "Zeit in s;Winkel in Grad;Winkelgeschwindigkeit in Grad/s;Motorstrom in A;Antriebsmoment "
+        "in "
+        "Nm;Gravitationsmoment in Nm;Temperatur in \xC2\xB0"
+        "C",
+        "Zeit (s);Gelenkwinkel (\xC2\xB0);Drehgeschwindigkeit (\xC2\xB0/s);Motormoment (Nm);"
+        "Schweremoment (Nm);Motortemperatur (C)",
+        "elapsed time [s];joint angle [rad];rate [rad/s];measured torque [Nm];gravity compensation "
+        "torque [Nm];temperature [C]",
+        "t [s];\xCE\xB8 [rad];\xCF\x89 [rad/s];\xCF\x84 [Nm];\xCF\x84_g [Nm];T [\xC2\xB0"
+        "C]",
+        "$t$ [s];$q$ [rad];$\\dot{q}$ [rad/s];$\\tau$ [Nm];$\\tau_g$ [Nm];$T$ [$^\\circ$C]",
+        "time;out.q.Data;out.dq.Data;out.tau.Data;out.tau_g.Data;out.T.Data"}) {
+    EXPECT_EQ(roles_of(header), kAll) << header;
+  }
+  // What means several things is what its unit says, or nothing.
+  EXPECT_EQ(roles_of("t [s];rate [Hz];par;couple;tempo [rad/s];q [rad];tau [Nm]"),
+            "time velocity position motor_torque");
+  EXPECT_EQ(roles_of("t [degC];time [s];q [rad];tau [Nm]"),
+            "temperature time position motor_torque");
+}
+
+TEST(ToldOtherwise, LabviewsHeader) {
+  const DataFile file = parse_csv(
+      "LabVIEW Measurement\t\nSeparator\tTab\nDate\t2024/05/14\n***End_of_Header***\t\n\t\n"
+      "Channels\t2\t\t\nSamples\t3\t3\nY_Unit_Label\tdeg\tmN m\nX0\t0.0E+0\t0.0E+0\n"
+      "Delta_X\t0.001\t0.001\n***End_of_Header***\t\t\nX_Value\tposition\tmotor_torque\tComment\r\n"
+      "0\t0\t1\t\r\n0.001\t90\t2\t\r\n0.002\t180\t3\t\r\n",
+      "log.lvm", of_loop());
+  EXPECT_EQ(file.data.rows(), 3U);
+  EXPECT_EQ(file.data.find(Role::time)->values[1], 0.001);
+  EXPECT_NEAR(file.data.find(Role::position)->values[1], M_PI / 2, 1e-12);
+  EXPECT_NEAR(file.data.find(Role::motor_torque)->values[1], 2e-3, 1e-12);
+  EXPECT_THAT(file.warnings, ::testing::Contains(HasSubstr("11 lines before the columns' names")));
+}
+
+TEST(ToldOtherwise, TwincatsLabels) {
+  std::string text =
+      "Name;YT "
+      "Chart\nFile;C:\\a.svdx\n\nName;Position;Name;MotorTorque\nSymbolComment;;SymbolComment;\n"
+      "Data-Type;REAL64;Data-Type;REAL64\nUnit;deg;Unit;Nm\nSampleTime[ms];1;SampleTime[ms];1\n\n";
+  const DataFile file = parse_csv(text + "0;0;0;1\n1;90;1;2\n2;180;2;3\n", "log.csv", of_loop());
+  EXPECT_EQ(file.data.rows(), 3U);
+  EXPECT_EQ(file.data.find(Role::time)->values[1], 0.001);
+  EXPECT_NEAR(file.data.find(Role::position)->values[1], M_PI / 2, 1e-12);
+  EXPECT_EQ(file.data.find(Role::motor_torque)->values[1], 2);
+}
+
+TEST(ToldOtherwise, ABlockBeforeRowsWithoutNames) {
+  EXPECT_THAT(what_is_wrong("Recorder 7\nserial;4711\nby;lab\n0;1;2\n1;2;3\n2;3;4\n3;4;5\n"),
+              AllOf(HasSubstr("begins with a block of 3 lines"), HasSubstr("tail -n +4 FILE")));
+}
+
+TEST(ToldOtherwise, UnitsInsideOfNames) {
+  const auto unit_of_position = [](const std::string& name) {
+    const DataFile file = parse_csv("t;" + name + ";tau_Nm\n0;1;1\n1;2;1\n", "log.csv", of_loop());
+    return file.readings[1].role == Role::position ? file.readings[1].unit : "none";
+  };
+  EXPECT_EQ(unit_of_position("position in deg"), "deg");
+  EXPECT_EQ(unit_of_position("angle_in_degrees"), "deg");
+  EXPECT_EQ(unit_of_position("deg_position"), "deg");
+  EXPECT_EQ(unit_of_position("$AXIS_ACT[4]"), "deg");
+  EXPECT_EQ(unit_of_position("AXIS_ACT_A4"), "deg");
+  EXPECT_EQ(unit_of_position("position [in]"), "in");
+  EXPECT_EQ(unit_of_position("position_in"), "none");
+}
+
+TEST(ToldOtherwise, UnitsAsPeopleWriteThem) {
+  struct Case {
+    const char* unit;
+    double factor;
+  };
+  for (const auto& [unit, factor] :
+       {Case{"cNm", 0.01}, Case{"kgm", 9.80665}, Case{"kgf\xC2\xB7m", 9.80665},
+        Case{"ft-lbs", 1.3558179483314004}, Case{"in-lbs", 0.1129848290276167},
+        Case{"lbf", 4.4482216152605}, Case{"Newton metres", 1}, Case{"\xE2\x80\xB0", 0.1}}) {
+    const DataFile file = parse_csv(
+        std::string("t;q_rad;motor torque [") + unit + "]\n0;1;1\n1;2;1\n", "log.csv", of_loop());
+    EXPECT_NEAR(file.data.find(Role::motor_torque)->values[1], factor, 1e-12) << unit;
+    EXPECT_NE(file.data.find(Role::motor_torque)->unit, "-") << unit;
+  }
+  for (const auto& [unit, factor] :
+       {Case{"in", 0.0254}, Case{"gon", M_PI / 200}, Case{"arcmin", M_PI / 10800},
+        Case{"tr", 2 * M_PI}, Case{"U", 2 * M_PI}, Case{"rotations", 2 * M_PI},
+        Case{"\xC2\xB5rad", 1e-6}, Case{"urad", 1e-6}, Case{"\xC2\xBA", M_PI / 180}}) {
+    const DataFile file = parse_csv(std::string("t;position [") + unit + "];tau_Nm\n0;0;1\n1;1;1\n",
+                                    "log.csv", of_loop());
+    EXPECT_NEAR(file.data.find(Role::position)->values[1], factor, 1e-12) << unit;
+  }
+  EXPECT_THAT(what_is_wrong("t;position [degs];tau_Nm\n0;0;1\n1;1;1\n"),
+              AllOf(HasSubstr("column 'position [degs]': 'degs' is no unit of a position (is deg "
+                              "meant?)")));
+}
+
+TEST(ToldOtherwise, ATorqueInAnUnknownUnitIsNotHeldAgainstAnother) {
+  EXPECT_THAT(what_is_wrong("t;q_rad;torque [smoots];gravity_torque [Nm]\n0;0;1;1\n1;1;1;1\n"),
+              AllOf(HasSubstr("column 'torque [smoots]': 'smoots' is no unit of a motor_torque"),
+                    HasSubstr("'gravity_torque [Nm]' is in N m"),
+                    HasSubstr("--roles 'torque [smoots]=motor_torque[UNIT]'")));
+}
+
 TEST(ToldOtherwise, AUnitThatIsNotKnownIsNamed) {
   const DataFile file = parse_csv("t,q_rad,torque [smoots]\n0,1,2\n1,2,3\n", "log.csv", of_loop());
   EXPECT_THAT(what_was_converted(file),
