@@ -231,9 +231,11 @@ std::string take_unit_behind_in(std::string_view& name) {
   return {};
 }
 
-// Words that are units in brackets alone: "position_in" is where something goes in.
+// Words that are units in brackets alone: "position_in" is where something goes in,
+// "joint_rotation" is no number of turns.
 const Unit* find_unit_in_words(std::string_view word) {
-  constexpr std::array<std::string_view, 4> kOtherWords = {"in", "u", "tr", "d"};
+  constexpr std::array<std::string_view, 7> kOtherWords = {"in",       "u",         "tr",   "d",
+                                                           "rotation", "rotations", "tours"};
   return is_among(kOtherWords, lower(word)) ? nullptr : find_unit(word);
 }
 
@@ -278,15 +280,16 @@ bool read_written_unit(const Words& words, NameReading& reading) {
   return false;
 }
 
-// "deg_position": a unit as the first word, where it is no letter.
+// "deg_position": a unit as the first word, where that means nothing else ("turn_angle" may).
 bool read_unit_first(std::string_view name, NameReading& reading) {
+  constexpr std::array<std::string_view, 6> kPlainUnits = {"deg",  "degrees", "rad",
+                                                           "mrad", "radians", "rpm"};
   const Words words = split_words(name, false);
-  if (words.size() < 2 || words.front().size() < 3) return false;
+  if (words.size() < 2 || !is_among(kPlainUnits, lower(words.front()))) return false;
   NameReading stem;
-  stem.known.unit = find_unit_in_words(words.front());
-  stem.unit_written = stem.known.unit != nullptr;
-  if (!stem.unit_written || !read_stem(joined(words, 1, words.size()), stem) ||
-      !suits(*stem.known.unit, stem.role)) {
+  stem.known.unit = find_unit(words.front());
+  stem.unit_written = true;
+  if (!read_stem(joined(words, 1, words.size()), stem) || !suits(*stem.known.unit, stem.role)) {
     return false;
   }
   reading = stem;
@@ -298,7 +301,7 @@ void read_unit_alone(std::string_view name, NameReading& reading) {
   for (std::size_t at = name.find('_'); at != std::string_view::npos; at = name.find('_', at + 1)) {
     const std::string_view last = name.substr(at + 1);
     const Unit* unit = find_unit_in_words(last);
-    if (unit == nullptr) continue;
+    if (unit == nullptr || unit->symbol == "h" || unit->symbol == "d") continue;  // "start_hour"
     const bool is_any_letter = is_lower(last.front()) || unit->dimension == Dimension::time;
     if (last.size() == 1 && is_any_letter && unit->si != last) continue;
     reading = {};
@@ -394,9 +397,9 @@ std::string_view without_unit(std::string_view name) {
   return name;
 }
 
-NameReading read_channel_name(std::string_view written) {
-  const std::string plain = in_plain_letters(written);
-  const std::string_view name = plain;
+NameReading read_channel_name(std::string_view name) {
+  const std::string plain = in_plain_letters(name);
+  name = plain;
   constexpr std::string_view kSign = "sgn_";
   NameReading reading;
   if (!name.starts_with(kSign)) {

@@ -3,7 +3,8 @@
 // What a column's name says about it: `velocity_rad_s` is a velocity in rad/s, `q [deg]` a
 // position in degrees, `tau_J_2` the torque of joint 2, `sgn_qd` the sign of a velocity. The names
 // themselves, with where each comes from, stand in channel_aliases.cpp. Set points (desired,
-// commanded, target ...) and names that say nothing have the role `none`.
+// commanded, target ...) and names that say nothing have the role `none`. Accents, Greek
+// letters and LaTeX's signs are read as plain letters.
 #pragma once
 
 #include <optional>
@@ -29,8 +30,9 @@ struct NameReading {
   int doubt = 0;              // of two columns with one role the lower one has it
 };
 
-// A unit stands in brackets ("q [deg]", "q (deg)") or last ("q_deg", "qDeg"); a number is the
-// joint's. Letters' case decides between t and T alone.
+// A unit stands in brackets ("q [deg]", "q (deg)"), last ("q_deg", "qDeg", "q in deg") or first
+// ("deg_q"); a number is the joint's. Letters' case decides between t and T alone, and only where
+// no unit does.
 NameReading read_channel_name(std::string_view name);
 
 // "Strom" of "Strom [A]": what stands before the brackets.

@@ -5,7 +5,8 @@
 //
 // Understood: comma, semicolon, tab, bar or blanks; a byte order mark; lines of comment (# % //)
 // anywhere, with the header in the last of them where no other line names the columns; title lines
-// before the header; a row of units; a separator at the end of the lines; decimal commas.
+// before the header; a row of units; the blocks of LabVIEW and of TwinCAT's scope; a separator at
+// the end of the lines; decimal commas.
 #pragma once
 
 #include <cstddef>

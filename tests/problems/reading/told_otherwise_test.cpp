@@ -284,7 +284,12 @@ TEST(ToldOtherwise, UnitsInsideOfNames) {
   EXPECT_EQ(unit_of_position("$AXIS_ACT[4]"), "deg");
   EXPECT_EQ(unit_of_position("AXIS_ACT_A4"), "deg");
   EXPECT_EQ(unit_of_position("position [in]"), "in");
-  EXPECT_EQ(unit_of_position("position_in"), "none");
+  EXPECT_EQ(unit_of_position("rad_angle"), "rad");
+  for (const char* other :
+       {"position_in", "turn_angle", "joint_rotation", "min_position", "pos_u"}) {
+    EXPECT_EQ(unit_of_position(other), "none") << other;
+  }
+  EXPECT_EQ(roles_of("start_hour;q_rad;tau_Nm"), "position motor_torque");
 }
 
 TEST(ToldOtherwise, UnitsAsPeopleWriteThem) {
