@@ -18,8 +18,8 @@ namespace tribench {
 namespace {
 
 constexpr double kMuchExplained = 0.3;
-constexpr double kSure = 10;    // standard errors, from which a story is refused
-constexpr double kCertain = 5;  // standard errors of a gravity that explains much
+constexpr double kSure = 10;      // standard errors, from which a story is refused
+constexpr double kCertain = 5;    // standard errors of a gravity that explains much
 constexpr double kNoPayload = 5;  // a factor beyond that, or below its inverse, is none's
 
 }  // namespace

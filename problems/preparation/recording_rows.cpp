@@ -454,10 +454,11 @@ void drop_stuck_efforts(PreparedRecording& out) {
     const Channel* q = find_channel(out.data, Role::position);
     const Channel* effort = find_channel(out.data, role);
     if (q == nullptr || effort == nullptr) continue;
-    leave_out(out, stuck_rows(q->values, effort->values, out.data.movement),
-              fmt::format("stand in a stretch of more than {} over which '{}' keeps its value while "
-                          "the joint moves, as of a sensor that has stopped or a drive that is off",
-                          kStuckRows, effort->name));
+    leave_out(
+        out, stuck_rows(q->values, effort->values, out.data.movement),
+        fmt::format("stand in a stretch of more than {} over which '{}' keeps its value while "
+                    "the joint moves, as of a sensor that has stopped or a drive that is off",
+                    kStuckRows, effort->name));
   }
 }
 
