@@ -38,13 +38,15 @@ void scale_to_unit_rms(Eigen::MatrixXd& columns) {
 }  // namespace
 
 Library make_library(const Observations& data, const std::vector<EffectFamily>& families,
-                     const std::vector<double>& gear_ratios, bool last_resort) {
+                     const std::vector<double>& gear_ratios,
+                     std::span<const std::size_t> last_resort) {
   Library out;
   std::vector<Expression> formulas;
   for (std::size_t f = 0; f < families.size(); ++f) {
+    const bool is_asked = std::ranges::count(last_resort, f) > 0;
     std::vector<std::string> missing;
     for (Atom& atom : instantiate(families[f], f, data, gear_ratios, missing)) {
-      if (atom.last_resort && !last_resort) continue;
+      if (atom.last_resort && !is_asked) continue;
       out.blocks.push_back({formulas.size(), atom.columns.size()});
       formulas.insert(formulas.end(), atom.columns.begin(), atom.columns.end());
       out.atoms.push_back(std::move(atom));
@@ -77,9 +79,9 @@ Campaign::Campaign(const Observations& train, const std::vector<EffectFamily>& a
       library(make_library(train, all_families, gear_ratios_for(train, how.gear_ratios))),
       flips(how.flips, all_clusters.stretches.size(), random) {}
 
-Campaign Campaign::with_last_resort() const {
+Campaign Campaign::with_last_resort(std::span<const std::size_t> of) const {
   Campaign out = *this;
-  out.library = make_library(data, families, gear_ratios_for(data, options.gear_ratios), true);
+  out.library = make_library(data, families, gear_ratios_for(data, options.gear_ratios), of);
   return out;
 }
 

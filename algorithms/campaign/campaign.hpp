@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "algorithms/campaign/findings.hpp"
@@ -33,14 +34,15 @@ struct Library {
 };
 
 Library make_library(const Observations& data, const std::vector<EffectFamily>& families,
-                     const std::vector<double>& gear_ratios, bool last_resort = false);
+                     const std::vector<double>& gear_ratios,
+                     std::span<const std::size_t> last_resort = {});
 
 // The references outlive the campaign.
 struct Campaign {
   Campaign(const Observations& train, const std::vector<EffectFamily>& all_families,
            const DiagnosisOptions& how, const Clusters& all_clusters, RandomStream random);
-  // The same with the atoms of last resort in the library.
-  [[nodiscard]] Campaign with_last_resort() const;
+  // The same with these families' atoms of last resort in the library.
+  [[nodiscard]] Campaign with_last_resort(std::span<const std::size_t> of) const;
 
   const Observations& data;
   const std::vector<EffectFamily>& families;

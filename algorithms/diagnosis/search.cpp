@@ -128,6 +128,16 @@ bool leave_out_slight(SearchState& state, const Campaign& campaign) {
   return false;
 }
 
+// What they told they can tell anew.
+void take_out(SearchState& state, const std::vector<std::size_t>& families,
+              const Campaign& campaign) {
+  LoopModel model = state.model.model;
+  for (const std::size_t family : families) model = model.without(family);
+  std::erase_if(state.found,
+                [&](const Found& one) { return std::ranges::count(families, one.family) > 0; });
+  state.model = fit_in_its_noise(std::move(model), campaign, FitScope::everything);
+}
+
 // What is not to be named takes part in the search, where others stand beside it, and goes then.
 void take_out_unnamed(SearchState& state, const Campaign& campaign) {
   LoopModel model = state.model.model;
@@ -196,9 +206,13 @@ SearchResult Searches::end_of(const SearchStart& how) {
   auto known = known_.ends.find(how);
   if (known == known_.ends.end()) {
     SearchResult end = start();
+    if (how.goes_on) {
+      end = known_.ends.at({});
+      take_out(end.state, how.last_resort, campaign_);
+    }
     end.state.left_out = how.left_out;
-    if (how.last_resort) {
-      const Campaign further = campaign_.with_last_resort();
+    if (!how.last_resort.empty()) {
+      const Campaign further = campaign_.with_last_resort(how.last_resort);
       take_effects(end.state, test_library(end.state.model, further), further);
     } else {
       take_effects(end.state, round_at_base(), campaign_);
@@ -295,18 +309,32 @@ bool tells_the_leftover(const Atom& atom, const SearchResult& one, const Campaig
   return gain.nats > gain.error && gain.nats > kMostOfIt * one.leftover.gain;
 }
 
-bool has_last_resort(const SearchResult& one, const Campaign& campaign) {
+// With the families of which an atom of last resort tells what is left over. Atoms that stand
+// beside others of their family have had nothing but that family stand in for them: the search goes
+// on with those where no other tells it.
+SearchStart with_last_resorts(const SearchResult& one, const Campaign& campaign) {
   const std::vector<double> ratios = gear_ratios_for(campaign.data, campaign.options.gear_ratios);
+  const std::vector<std::size_t> found = one.state.families();
+  SearchStart alone;
+  SearchStart beside_found = {.left_out = {}, .last_resort = {}, .goes_on = true};
   for (std::size_t f = 0; f < campaign.families.size(); ++f) {
     if (std::ranges::none_of(campaign.families[f].atoms, &AtomTemplate::last_resort)) continue;
-    const bool is_found = std::ranges::count(one.state.families(), f) > 0;
     std::vector<std::string> missing;
-    for (const Atom& atom : instantiate(campaign.families[f], f, campaign.data, ratios, missing)) {
-      if (!atom.last_resort || (atom.beside_another && !is_found)) continue;
-      if (tells_the_leftover(atom, one, campaign)) return true;
+    const std::vector<Atom> atoms =
+        instantiate(campaign.families[f], f, campaign.data, ratios, missing);
+    const auto tells = [&](bool beside_another) {
+      return std::ranges::any_of(atoms, [&](const Atom& atom) {
+        return atom.last_resort && atom.beside_another == beside_another &&
+               tells_the_leftover(atom, one, campaign);
+      });
+    };
+    if (tells(false)) {
+      alone.last_resort.push_back(f);
+    } else if (std::ranges::count(found, f) > 0 && tells(true)) {
+      beside_found.last_resort.push_back(f);
     }
   }
-  return false;
+  return alone.last_resort.empty() ? beside_found : alone;
 }
 
 // Rare effects are looked for where one of them tells what the usual ones leave over, from the
@@ -314,8 +342,9 @@ bool has_last_resort(const SearchResult& one, const Campaign& campaign) {
 // something over in fewer inputs is taken.
 SearchResult go_further(SearchResult one, Searches& searches, const Campaign& campaign) {
   if (!campaign.options.has("last_resort")) return one;
-  if (one.leftover.inputs.empty() || !has_last_resort(one, campaign)) return one;
-  const SearchStart how = {.left_out = {}, .last_resort = true};
+  if (one.leftover.inputs.empty()) return one;
+  const SearchStart how = with_last_resorts(one, campaign);
+  if (how.last_resort.empty()) return one;
   SearchResult other = searches.end_of(how);
   one.tried.insert(other.tried.begin(), other.tried.end());
   const bool is_other = std::ranges::any_of(other.state.model.model.atoms, &Atom::last_resort);

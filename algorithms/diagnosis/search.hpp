@@ -39,8 +39,10 @@ struct FirstNoise {
 
 // How a search begins.
 struct SearchStart {
-  std::vector<std::size_t> left_out;  // families
-  bool last_resort = false;           // with the atoms of last resort
+  std::vector<std::size_t> left_out;          // families
+  std::vector<std::size_t> last_resort = {};  // families with their atoms of last resort
+  // From the end of the search that left nothing out, without these families, not from the base.
+  bool goes_on = false;
 
   // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes what <=> compares with for a pointer
   auto operator<=>(const SearchStart&) const = default;

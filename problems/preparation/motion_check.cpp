@@ -72,7 +72,7 @@ void add_units(std::vector<Suspect>& list, const DataFile& file, Role role,
 // The likelier one first, of those that make the same factor.
 std::vector<Suspect> suspects(const DataFile& file, std::optional<double> gear_ratio) {
   std::vector<Suspect> list;
-  add_units(list, file, Role::time, {"s", "ms", "us", "ns", "min"}, gear_ratio);
+  add_units(list, file, Role::time, {"s", "ms", "us", "ns", "min", "h", "d"}, gear_ratio);
   add_units(list, file, Role::position, {"rad", "deg", "rev", "m", "mm", "cm"}, gear_ratio);
   add_units(list, file, Role::velocity,
             {"rad/s", "deg/s", "rev/s", "rpm", "m/s", "mm/s", "cm/s", "m/min", "mm/min"},
@@ -252,7 +252,7 @@ std::string_view likely_unit_of(double step) {
   constexpr double kClosest = 1e-4;  // s
   constexpr double kFarthest = 0.02;
   constexpr std::pair<double, std::string_view> kUnits[] = {
-      {1e-3, "ms"}, {1e-6, "us"}, {1e-9, "ns"}, {86400, "86400 s"}, {3600, "3600 s"}};
+      {1e-3, "ms"}, {1e-6, "us"}, {1e-9, "ns"}, {86400, "d"}, {3600, "h"}};
   for (const auto& [factor, unit] : kUnits) {
     if (step * factor >= kClosest && step * factor <= kFarthest) return unit;
   }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "foundation/error.hpp"
 #include "foundation/text.hpp"
@@ -440,13 +442,39 @@ void append(DataFile& all, DataFile next, std::string_view file) {
   }
 }
 
+// Whether a file's rows stand in `all` from row `first` on, whatever their time.
+bool stands_from(std::size_t first, const DataFile& all, const DataFile& next) {
+  constexpr std::size_t kFewestRows = 100;  // fewer may be alike by chance
+  const std::size_t rows = next.data.rows();
+  if (rows < kFewestRows || first + rows > all.data.rows()) return false;
+  return std::ranges::equal(
+      all.data.channels, next.data.channels, [&](const Channel& one, const Channel& other) {
+        const auto begin = one.values.begin() + static_cast<std::ptrdiff_t>(first);
+        return one.name == other.name &&
+               (one.role == Role::time ||
+                std::equal(other.values.begin(), other.values.end(), begin));
+      });
+}
+
 }  // namespace
 
 DataFile read_csv_files(std::span<const std::filesystem::path> files, const CsvOptions& options) {
   if (files.empty()) throw_bad_input("no data file is given", {}, "name one CSV file or more");
   DataFile all = read_csv(files.front(), options);
+  std::vector<std::pair<std::size_t, std::filesystem::path>> taken = {{0, files.front()}};
   for (const std::filesystem::path& file : files.subspan(1)) {
-    append(all, read_csv(file, options), file.string());
+    DataFile next = read_csv(file, options);
+    const auto same = std::ranges::find_if(
+        taken, [&](const auto& one) { return stands_from(one.first, all, next); });
+    if (same != taken.end()) {
+      all.warnings.push_back(
+          fmt::format("{} has the very rows of {}: left out, a recording counts "
+                      "once",
+                      file.string(), same->second.string()));
+      continue;
+    }
+    taken.emplace_back(all.data.rows(), file);
+    append(all, std::move(next), file.string());
   }
   return all;
 }

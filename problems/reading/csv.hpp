@@ -102,7 +102,8 @@ DataFile read_csv(const std::filesystem::path& file, const CsvOptions& options =
 DataFile parse_csv(std::string_view text, std::string_view file, const CsvOptions& options = {});
 
 // Several files as one campaign, in the order given; all must have the same channels. Movements
-// that share a name in different files are told apart by the file's name.
+// that share a name in different files are told apart by the file's name. A file with the very
+// rows of one before it, whatever their time, is left out, and that is said.
 DataFile read_csv_files(std::span<const std::filesystem::path> files,
                         const CsvOptions& options = {});
 

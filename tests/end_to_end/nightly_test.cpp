@@ -107,7 +107,8 @@ TEST_F(NightlyTest, TheFirstIsTheBaseTheSecondIsComparedAndAWorseOneIsFound) {
   EXPECT_EQ(night().status, 1);
   ASSERT_EQ(history("bless", {"the new level is meant"}).status, 0);
   next_second();
-  EXPECT_EQ(night().status, 0);
+  const ProgramRun blessed = night();
+  EXPECT_EQ(blessed.status, 0) << blessed.output << blessed.errors;
   EXPECT_THAT(history("show").output, HasSubstr("5 nights, 2 series; base"));
   EXPECT_TRUE(std::filesystem::exists(store() / "nights.html"));
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "foundation/error.hpp"
@@ -113,6 +114,16 @@ TEST(MotionCheck, MinutesAreNotDegrees) {
   for (double& t : told.time) t /= 60;
   EXPECT_THAT(complaint_about(told.time, told.position, told.velocity, acceleration),
               HasSubstr("say --roles 't=time[min]'"));
+}
+
+TEST(MotionCheck, ASpreadsheetCountsInDays) {
+  for (const auto& [seconds, unit] : {std::pair(3600.0, "'t=time[h]'"), {86400.0, "'t=time[d]'"}}) {
+    Told told = sine(0);
+    for (double& t : told.time) t /= seconds;
+    const std::vector<double> acceleration(told.time.size(), 0.0);
+    EXPECT_THAT(complaint_about(told.time, told.position, told.velocity, acceleration),
+                HasSubstr(unit));
+  }
 }
 
 TEST(MotionCheck, AJointThatTurnsOftenMayBeToldInDegrees) {

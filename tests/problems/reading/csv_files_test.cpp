@@ -40,6 +40,23 @@ TEST(CsvFiles, SpareColumnsThatNotAllFilesHaveAreLeftOut) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(CsvFiles, ARecordingThatIsGivenTwiceCountsOnce) {
+  const std::filesystem::path folder = testing::scratch_folder() / "csv_twice";
+  std::filesystem::create_directories(folder);
+  std::vector<std::filesystem::path> files;
+  for (const int start : {0, 500, 1}) {  // the third is another recording
+    std::string text = "time_s,y\n";
+    for (int i = 0; i < 100; ++i) text += fmt::format("{},{}\n", start + i, i * i + start % 500);
+    files.push_back(folder / fmt::format("{}.csv", start));
+    std::ofstream(files.back()) << text;
+  }
+  const DataFile all = read_csv_files(files);
+  EXPECT_EQ(all.data.rows(), 200U);
+  EXPECT_THAT(all.warnings, ::testing::ElementsAre(AllOf(HasSubstr("500.csv has the very rows of"),
+                                                         HasSubstr("left out"))));
+  std::filesystem::remove_all(folder);
+}
+
 TEST(CsvFiles, FilesThatDoNotNameTheSameUnitsAreNotJoined) {
   const std::filesystem::path folder = testing::scratch_folder() / "csv_units";
   std::filesystem::create_directories(folder);
