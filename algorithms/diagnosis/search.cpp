@@ -128,7 +128,7 @@ bool leave_out_slight(SearchState& state, const Campaign& campaign) {
   return false;
 }
 
-// What they told they can tell anew.
+// The rest is fitted anew.
 void take_out(SearchState& state, const std::vector<std::size_t>& families,
               const Campaign& campaign) {
   LoopModel model = state.model.model;
@@ -140,16 +140,11 @@ void take_out(SearchState& state, const std::vector<std::size_t>& families,
 
 // What is not to be named takes part in the search, where others stand beside it, and goes then.
 void take_out_unnamed(SearchState& state, const Campaign& campaign) {
-  LoopModel model = state.model.model;
-  const auto is_unnamed = [&](const Found& one) {
-    const std::string& name = campaign.families[one.family].name;
-    return std::ranges::count(campaign.options.unnamed, name) > 0;
-  };
-  for (const Found& one : state.found) {
-    if (is_unnamed(one)) model = model.without(one.family);
-  }
-  if (std::erase_if(state.found, is_unnamed) == 0) return;
-  state.model = fit_in_its_noise(std::move(model), campaign, FitScope::everything);
+  std::vector<std::size_t> unnamed = state.families();
+  std::erase_if(unnamed, [&](std::size_t family) {
+    return std::ranges::count(campaign.options.unnamed, campaign.families[family].name) == 0;
+  });
+  if (!unnamed.empty()) take_out(state, unnamed, campaign);
 }
 
 // The searches that begin with the base.

@@ -15,10 +15,10 @@
 namespace tribench {
 namespace {
 
-constexpr std::size_t kFewestRowsOfPiece = 50;  // of a piece
-constexpr double kEven = 0.005;                 // of a step: so little jitter matters nowhere
-constexpr double kFar = 0.5;                    // of a step, root mean square: no steady clock
-constexpr double kBend = 1;                     // s over which a clock is straight
+constexpr std::size_t kFewestRowsOfPiece = 50;
+constexpr double kEven = 0.005;  // of a step: so little jitter matters nowhere
+constexpr double kFar = 0.5;     // of a step, root mean square: no steady clock
+constexpr double kBend = 1;      // s over which a clock is straight
 
 // The beat: the mean of the steps about the usual one, those over lost rows left out.
 double beat_of(std::span<const double> time, std::span<const RowRange> pieces) {

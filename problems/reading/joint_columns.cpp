@@ -61,10 +61,10 @@ std::vector<std::string> differences(const std::vector<std::string>& names) {
   return parts;
 }
 
-// "filtered_velocity" and "raw_velocity" are of one joint.
+// "filtered_velocity" and "raw_velocity" are of one joint: parts of such words.
 bool names_processing(const std::string& part) {
-  constexpr std::array kWords = {"raw", "filt",  "smooth", "meas",   "actual", "act",    "estim",
-                                 "est", "motor", "link",   "output", "load",   "encoder"};
+  constexpr std::array kWords = {"raw",   "filt", "smooth", "meas", "act",    "est",
+                                 "motor", "link", "output", "load", "encoder"};
   return std::ranges::any_of(
       kWords, [&](const char* word) { return part.find(word) != std::string::npos; });
 }
