@@ -215,7 +215,7 @@ bool shares_a_signal(std::size_t family, const LoopModel& model, const LeftoverF
 
 // A finding that is not physical is no finding: the verdict becomes UNKNOWN in its inputs.
 void veto(Diagnosis& out, EffectFinding& finding, std::size_t family, const Campaign& campaign) {
-  finding.objection = physical_objection(finding, out.after, family, campaign.families[family]);
+  finding.objection = physical_objection(finding, campaign.families[family]);
   if (finding.objection.empty()) return;
   finding.provisional = true;
   out.notes.push_back(fmt::format("'{}' fits but is not physical ({}): something else is missing",

@@ -42,37 +42,27 @@ Eigen::VectorXd friction_of_speed(const LoopModel& model, std::size_t family,
                                            static_cast<Eigen::Index>(coefficients.size()));
 }
 
-// Whether this coefficient's sign says what the family does: its columns share one name. Beside a
-// column of another kind (the other direction, a square) none of them has a sign of its own.
-bool is_alone(const std::string& coefficient, const LoopModel& model, std::size_t family) {
-  return std::ranges::all_of(model.atoms, [&](const Atom& atom) {
-    return atom.family != family || std::ranges::all_of(atom.coefficients, [&](const auto& name) {
-             return name == coefficient;
-           });
-  });
-}
-
-// Of the family's columns together.
-double sum_of(const std::string& coefficient, const LoopModel& model, std::size_t family) {
-  double sum = 0;
-  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
-    if (model.atoms[k].family != family) continue;
-    for (std::size_t j = 0; j < model.atoms[k].coefficients.size(); ++j) {
-      if (model.atoms[k].coefficients[j] != coefficient) continue;
-      sum += model.coefficients[static_cast<Eigen::Index>(model.first_column(k) + j)];
-    }
+// Whether a column of the atom that its family's rule speaks of has the other sign. Two columns
+// whose signs differ do not tell the cause by their sum: they cancel each other.
+bool has_impossible_sign(const LoopModel& model, std::size_t atom, const Sanity& sanity) {
+  const std::vector<std::string>& names = model.atoms[atom].coefficients;
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(model.first_column(atom) + j);
+    if (names[j] == sanity.coefficient && sanity.sign * model.coefficients[column] < 0) return true;
   }
-  return sum;
+  return false;
 }
 
 // Whether a family has the sign that its cause cannot have.
 bool has_impossible_sign(const LoopModel& model, const std::vector<EffectFamily>& families) {
-  return std::ranges::any_of(model.atoms, [&](const Atom& atom) {
-    return std::ranges::any_of(families[atom.family].sanity, [&](const Sanity& sanity) {
-      return is_alone(sanity.coefficient, model, atom.family) &&
-             sanity.sign * sum_of(sanity.coefficient, model, atom.family) < 0;
-    });
-  });
+  for (std::size_t k = 0; k < model.atoms.size(); ++k) {
+    const std::size_t family = model.atoms[k].family;
+    const bool is_impossible = std::ranges::any_of(
+        families[family].sanity,
+        [&](const Sanity& sanity) { return has_impossible_sign(model, k, sanity); });
+    if (is_impossible) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -91,8 +81,7 @@ bool stands_for_another_cause(const LoopModel& model, const Campaign& campaign) 
   });
 }
 
-std::string physical_objection(const EffectFinding& finding, const LoopModel& model,
-                               std::size_t family, const EffectFamily& known) {
+std::string physical_objection(const EffectFinding& finding, const EffectFamily& known) {
   for (const Sanity& sanity : known.sanity) {
     // Against the whole interval: a value that is only perhaps unphysical stands.
     double low = 0;
@@ -102,8 +91,7 @@ std::string physical_objection(const EffectFinding& finding, const LoopModel& mo
       low += p.low;
       high += p.high;
     }
-    const bool wrong_sign = sanity.sign * low < 0 && sanity.sign * high < 0 &&
-                            is_alone(sanity.coefficient, model, family);
+    const bool wrong_sign = sanity.sign * low < 0 && sanity.sign * high < 0;
     const bool too_large = sanity.largest > 0 &&
                            std::min(std::abs(low), std::abs(high)) > sanity.largest &&
                            low * high > 0;

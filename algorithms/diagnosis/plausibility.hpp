@@ -20,9 +20,7 @@ inline constexpr double kLargeVif = 10;
 // effects: the variance inflation of the effect as a whole.
 bool is_told_by_others(std::size_t family, const FittedModel& fit, const Campaign& campaign);
 
-// What an effect's parameters say against its being physical; empty where nothing. model: in which
-// the effect is that of `family`, whose description is `known`.
-std::string physical_objection(const EffectFinding& finding, const LoopModel& model,
-                               std::size_t family, const EffectFamily& known);
+// What an effect's parameters say against its being physical; empty where nothing.
+std::string physical_objection(const EffectFinding& finding, const EffectFamily& known);
 
 }  // namespace tribench::loop

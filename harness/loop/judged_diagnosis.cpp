@@ -35,7 +35,6 @@ namespace {
 constexpr std::size_t kFewMovements = 40;     // a fifth of them is too few to judge by
 constexpr std::size_t kWantedMovements = 30;  // R9
 constexpr std::size_t kFewestToLeaveOut = 3;  // movements: of fewer, pieces are left out
-constexpr std::size_t kPiecesOfFewMovements = 5;
 // Movements are left out in at least so many turns; in more, one movement each, where the rows of
 // all turns together stay below the second figure.
 constexpr std::size_t kFewestTurns = 10;
@@ -81,15 +80,17 @@ std::string few_movements(const Observations& data) {
   return count == 1 ? "there is one movement" : fmt::format("there are {} movements", count);
 }
 
-// Too few movements to leave one out: five pieces of all of them, or a few more, stand for
-// movements. None holds rows of two.
+// Too few movements to leave one out: as many pieces of all of them as there are turns at least, or
+// one more, stand for movements; fewer where they would be too short for one. None holds rows of
+// two.
 Observations cut_in_pieces(const Observations& data) {
   Observations out = data;
   out.movement_names.clear();
   out.group.clear();
+  const std::size_t wanted =
+      std::clamp(data.rows() / kFewestRowsOfMovement, std::size_t{1}, kFewestTurns);
   for (const RowRange& movement : make_clusters(data.movement, 1).movements) {
-    const std::size_t share =
-        (movement.size() * kPiecesOfFewMovements + data.rows() - 1) / data.rows();
+    const std::size_t share = (movement.size() * wanted + data.rows() - 1) / data.rows();
     const std::size_t first = out.movement_names.size();
     for (std::size_t i = movement.begin; i < movement.end; ++i) {
       out.movement[i] = static_cast<int>(first + (i - movement.begin) * share / movement.size());

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <numeric>
 #include <string>
@@ -169,16 +170,35 @@ void expect_one_story_of_planted_campaigns(Told how) {
   }
 }
 
+Dataset kinova(const std::filesystem::path& folder, const std::string& joint) {
+  CsvOptions options;
+  options.roles = {{"model_torque_Nm", Role::gravity_torque}};
+  return read_csv(folder / "kinova-gen3" / (joint + ".csv"), options).data;
+}
+
 void expect_one_story_of_a_measured_set(Told how) {
   const auto folder = tribench::testing::shared_data();
   if (!folder) GTEST_SKIP() << tribench::testing::kNoSharedData;
   for (const char* joint : {"joint2", "joint6"}) {
-    CsvOptions options;
-    options.roles = {{"model_torque_Nm", Role::gravity_torque}};
-    const Dataset data =
-        read_csv(*folder / "kinova-gen3" / (std::string(joint) + ".csv"), options).data;
-    expect_one_story(data, {}, how, joint);
+    expect_one_story(kinova(*folder, joint), {}, how, joint);
   }
+}
+
+// One movement, of which pieces are left out: none of them may decide.
+TEST(Retelling, WithoutOneRowOfAPassNamesTheSame) {
+  const auto folder = tribench::testing::shared_data();
+  if (!folder) GTEST_SKIP() << tribench::testing::kNoSharedData;
+  const Observations data = observe(kinova(*folder, "joint4"));
+  const DiagnosisOptions options = {.gear_ratios = {100}};
+  const auto story_without = [&](std::size_t row) {
+    std::vector<char> kept(data.rows(), 1);
+    if (row < kept.size()) kept[row] = 0;
+    return story(
+        diagnose_and_judge(data.select(kept), coulomb_viscous_base, options, {.threads = 2}));
+  };
+  const std::vector<std::string> whole = story_without(data.rows());
+  EXPECT_EQ(whole.front(), "EFFECTS");
+  for (const std::size_t row : {1100U, 1950U, 3156U}) EXPECT_EQ(story_without(row), whole) << row;
 }
 
 TEST(Retelling, OfAPlantedCampaignChangesNothing) {
