@@ -65,6 +65,13 @@ bool has_impossible_sign(const LoopModel& model, const std::vector<EffectFamily>
   return false;
 }
 
+// How many times more of a torque there is beside the base than beside the rest of the model.
+double inflation(const Eigen::MatrixXd& torque, const Eigen::MatrixXd& rest_basis,
+                 const Eigen::MatrixXd& base_basis) {
+  return project_off(torque, base_basis).squaredNorm() /
+         project_off(torque, rest_basis).squaredNorm();
+}
+
 }  // namespace
 
 bool stands_for_another_cause(const LoopModel& model, const Campaign& campaign) {
@@ -114,9 +121,15 @@ bool is_told_by_others(std::size_t family, const FittedModel& fit, const Campaig
   if (rest.cols() == base) return false;
   const Eigen::MatrixXd torque =
       whitened(contribution(model, family, campaign.data), campaign.clusters, fit.noise);
-  const double own = project_off(torque, orthonormal_basis(rest)).squaredNorm();
-  const double all = project_off(torque, base_basis).squaredNorm();
-  return own * kLargeVif < all;
+  return inflation(torque, orthonormal_basis(rest), base_basis) > kLargeVif;
+}
+
+bool is_told_already(std::size_t family, const LoopModel& other, const FittedModel& fit,
+                     const Campaign& campaign) {
+  const Eigen::MatrixXd torque =
+      whitened(contribution(other, family, campaign.data), campaign.clusters, fit.noise);
+  const Eigen::MatrixXd base = fit.x.leftCols(static_cast<Eigen::Index>(fit.model.first_column(0)));
+  return inflation(torque, fit.basis, orthonormal_basis(base)) > kLargeVif;
 }
 
 }  // namespace tribench::loop

@@ -334,7 +334,8 @@ SearchStart with_last_resorts(const SearchResult& one, const Campaign& campaign)
 
 // Rare effects are looked for where one of them tells what the usual ones leave over, from the
 // start: what stood in for them leaves them too little. What then predicts better and leaves
-// something over in fewer inputs is taken.
+// something over in fewer inputs is taken, but for a torque that the usual ones tell as well: load
+// friction whose curve is not quite the library's is no rare effect.
 SearchResult go_further(SearchResult one, Searches& searches, const Campaign& campaign) {
   if (!campaign.options.has("last_resort")) return one;
   if (one.leftover.inputs.empty()) return one;
@@ -342,7 +343,10 @@ SearchResult go_further(SearchResult one, Searches& searches, const Campaign& ca
   if (how.last_resort.empty()) return one;
   SearchResult other = searches.end_of(how);
   one.tried.insert(other.tried.begin(), other.tried.end());
-  const bool is_other = std::ranges::any_of(other.state.model.model.atoms, &Atom::last_resort);
+  const LoopModel& model = other.state.model.model;
+  const bool is_other = std::ranges::any_of(model.atoms, [&](const Atom& atom) {
+    return atom.last_resort && !is_told_already(atom.family, model, one.state.model, campaign);
+  });
   if (!is_other) return one;
   searches.look_for_leftover(other, how);
   const std::vector<std::string>& inputs = other.leftover.inputs;
