@@ -14,6 +14,7 @@
 #include "foundation/order_statistics.hpp"
 #include "problems/reading/channel_names.hpp"
 #include "problems/reading/csv_cells.hpp"
+#include "problems/reading/name_words.hpp"
 
 namespace tribench {
 namespace {
