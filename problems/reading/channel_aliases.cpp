@@ -9,7 +9,7 @@
 //   libfranka  franka::RobotState (q, dq, tau_J, tau_ext_hat_filtered): rad, rad/s, N m
 //   RTDE       Universal Robots' Real-Time Data Exchange (actual_q, actual_qd, actual_current)
 //   FRI, RSI   KUKA's Fast Research Interface (measured position, torque: rad, N m) and Robot
-//              Sensor Interface (AIPos: deg; MACur)
+//              Sensor Interface (AIPos: deg; MACur; IPOC: ms)
 //   KRL        KUKA's language ($AXIS_ACT: deg, $TORQUE_AXIS_ACT: N m, $VEL_AXIS_ACT: per cent of
 //   the
 //              axis's top speed)
@@ -68,6 +68,7 @@ constexpr std::array kAliases = {
     ChannelAlias{"tijd", time, "", kUsual},
     ChannelAlias{"czas", time, "", kUsual},
     ChannelAlias{"gps_time", time, "", kUsual},
+    ChannelAlias{"ipoc", time, "ms", kRsi},
     ChannelAlias{"x_value", time, "s", kLabview},
     ChannelAlias{"时间", time, "", kUsual},
     ChannelAlias{"时间戳", time, "", kUsual},

@@ -18,6 +18,7 @@
 #include "problems/reading/csv_checks.hpp"
 #include "problems/reading/csv_columns.hpp"
 #include "problems/reading/csv_scanner.hpp"
+#include "problems/reading/joint_columns.hpp"
 #include "problems/reading/thousands.hpp"
 #include "problems/reading/time_order.hpp"
 
@@ -253,7 +254,10 @@ void count_time(const Reading& in, double rate, DataFile& out) {
 }
 
 // Columns that no name tells may well hold numbers.
-[[noreturn]] void refuse_no_channel(const Reading& in) {
+[[noreturn]] void refuse_no_channel(const Reading& in, const DataFile& out) {
+  if (!out.joints.empty()) {
+    throw_bad_input(joints_that_stand_here(out), in.file, "choose one with --joint N");
+  }
   if (std::ranges::all_of(in.plans, &ColumnPlan::used)) {
     throw_bad_input("no column holds numbers", in.file, "give at least one column of numbers");
   }
@@ -308,7 +312,7 @@ void fill_channels(Reading& in, DataFile& out) {
     }
     out.readings.push_back(plan.reading);
   }
-  if (out.data.channels.size() == out.spare.size()) refuse_no_channel(in);
+  if (out.data.channels.size() == out.spare.size()) refuse_no_channel(in, out);
   add_to_time(in, out);
   if (in.options.sample_rate) count_time(in, *in.options.sample_rate, out);
 }

@@ -25,6 +25,7 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 void pass_full_clock(std::vector<double>& times, bool in_minutes) {
   const double full = in_minutes ? 3600 : 86400;
   const double longest_pause = in_minutes ? 300 : full / 2;  // else another recording begins
+  constexpr double kLongestDelay = 60;                       // of a row that others overtook
   const auto is_clock = [&](double time) { return std::isnan(time) || time < full + 1; };
   if (!std::ranges::all_of(times, is_clock)) return;
   double passed = 0;
@@ -33,7 +34,7 @@ void pass_full_clock(std::vector<double>& times, bool in_minutes) {
     if (std::isnan(time)) continue;
     if (before - time > full - longest_pause) {
       passed += full;
-    } else if (time - before > full - longest_pause && passed > 0) {
+    } else if (time - before > full - kLongestDelay && passed > 0) {
       passed -= full;
     }
     before = time;

@@ -133,7 +133,7 @@ DataFile read_csv_files(std::span<const std::filesystem::path> files, const CsvO
     scales.push_back(scale_of(next.data, file.string()));
     append(all, std::move(next), file.string());
   }
-  check_scales(scales);
+  for (std::string& warning : check_scales(scales)) all.warnings.push_back(std::move(warning));
   return all;
 }
 

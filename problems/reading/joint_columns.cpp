@@ -213,4 +213,8 @@ void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, Dat
   }
 }
 
+std::string joints_that_stand_here(const DataFile& file) {
+  return fmt::format("columns of the joints {} stand here", fmt::join(file.joints, ", "));
+}
+
 }  // namespace tribench

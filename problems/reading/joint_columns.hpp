@@ -3,6 +3,7 @@
 // Which columns of a file are those of the one joint that is looked at. Internal to the room.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -27,5 +28,8 @@ void choose_joint_by_word(const CsvOptions& options, std::vector<ColumnPlan>& pl
 // `out` says which there are. The velocity of the joint beside it is the other velocity. Throws
 // Error (bad_input) where no column is of the joint.
 void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, DataFile& out);
+
+// "columns of the joints 1, 2 stand here", of a file of which one has to be chosen.
+std::string joints_that_stand_here(const DataFile& file);
 
 }  // namespace tribench

@@ -30,6 +30,13 @@ bool begins_word(std::string_view text, std::size_t at) {
          (is(at - 1, std::isalnum) == 0 || (is(at, std::isupper) && is(at - 1, std::isupper) == 0));
 }
 
+// "base" is a joint's name beside others, but a place by itself.
+bool names_another_place(const std::string& owner) {
+  return std::ranges::any_of(split_words(owner, true), [](const std::string& word) {
+    return names_something_else(word) && in_small_letters(word) != "base";
+  });
+}
+
 OwnedName owned_name(const std::string& name) {
   const std::size_t end = std::min(name.find_first_of("[({"), name.size());
   const std::size_t cut = name.substr(0, end).find_last_of("./:");
@@ -40,7 +47,7 @@ OwnedName owned_name(const std::string& name) {
     OwnedName owned{name.substr(0, at), name.substr(at), Role::none, at == begin};
     const NameReading reading = read_channel_name(owned.quantity);
     if (!is_of_one_joint(reading.role) || reading.joint) continue;
-    if (names_something_else(owned.owner)) return {};
+    if (names_another_place(owned.owner)) return {};
     owned.role = reading.role;
     return owned;
   }
@@ -129,6 +136,7 @@ std::vector<JointWord> joint_words_of(const std::vector<std::string>& header) {
   if (owners.empty()) return told;
   if (owners.size() == 1) {
     const bool is_told =
+        names_something_else(owners.front()) ||
         std::ranges::any_of(header, tells_motion_or_torque) ||
         std::ranges::any_of(names, [](const OwnedName& name) { return name.in_path; });
     if (is_told) return told;

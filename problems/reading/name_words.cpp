@@ -44,7 +44,11 @@ bool is_in(const std::array<std::string_view, N>& list, std::string_view word) {
   return std::ranges::find(list, in_small_letters(word)) != list.end();
 }
 
-// Of another alphabet than ASCII's.
+// The first byte (in UTF-8) of a sign of China's or Japan's; any byte of no letter of ASCII's.
+bool begins_sign(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte >= 0xE3 && byte <= 0xE9;
+}
 bool is_foreign(char c) { return static_cast<unsigned char>(c) >= 128; }
 
 }  // namespace
@@ -100,7 +104,7 @@ Words split_words(std::string_view text, bool humps) {
       end_word();
       continue;
     }
-    const bool begins = std::isupper(static_cast<unsigned char>(c)) != 0 || is_foreign(c);
+    const bool begins = std::isupper(static_cast<unsigned char>(c)) != 0 || begins_sign(c);
     const bool ends = i > 0 && !is_foreign(text[i - 1]) &&
                       std::isupper(static_cast<unsigned char>(text[i - 1])) == 0;
     if (humps && begins && ends) end_word();

@@ -65,7 +65,8 @@ std::vector<double> sizes_of_others(std::span<const RecordingScale> recordings, 
   return sizes;
 }
 
-void check_efforts(std::span<const RecordingScale> recordings, std::size_t odd) {
+void check_efforts(std::span<const RecordingScale> recordings, std::size_t odd,
+                   std::vector<std::string>& warnings) {
   const RecordingScale& one = recordings[odd];
   const std::vector<double> motions =
       sizes_of_others(recordings, odd, [](const RecordingScale& other) { return other.motion; });
@@ -87,14 +88,19 @@ void check_efforts(std::span<const RecordingScale> recordings, std::size_t odd) 
     };
     const bool is_larger = is_thousand_of(kThousand);
     if (!is_larger && !is_thousand_of(1 / kThousand)) continue;
-    throw_bad_input(
-        fmt::format("'{}' is about 1000 times as {} here ({:.3g}, which nine rows of ten stay "
-                    "below) as in every other file ({:.3g} to {:.3g}), as mA beside A is",
-                    column, is_larger ? "large" : "small", size, least, most),
-        one.file,
-        fmt::format("write its unit into this file's header ('{} [{}]') and theirs into the "
-                    "others', or bring its numbers to the unit of the others",
-                    column, is_larger ? "mA" : "A"));
+    const std::string what = fmt::format(
+        "'{}' is about 1000 times as {} here ({:.3g}, which nine rows of ten stay "
+        "below) as in every other file ({:.3g} to {:.3g}), as mA beside A is",
+        column, is_larger ? "large" : "small", size, least, most);
+    const std::string mend = fmt::format(
+        "write its unit into this file's header ('{} [{}]') and theirs into the "
+        "others', or bring its numbers to the unit of the others",
+        column, is_larger ? "mA" : "A");
+    if (is_larger && in_others.size() > 1) throw_bad_input(what, one.file, mend);
+    // Of two the larger one tells it.
+    if (is_larger || in_others.size() > 1) {
+      warnings.push_back(fmt::format("{}: {}; {}", one.file, what, mend));
+    }
   }
 }
 
@@ -144,12 +150,13 @@ RecordingScale scale_of(const Dataset& data, std::string_view file) {
   return scale;
 }
 
-void check_scales(std::span<const RecordingScale> recordings) {
-  if (recordings.size() < 2) return;
-  for (std::size_t odd = 0; odd < recordings.size(); ++odd) {
-    check_efforts(recordings, odd);
+std::vector<std::string> check_scales(std::span<const RecordingScale> recordings) {
+  std::vector<std::string> warnings;
+  for (std::size_t odd = 0; odd < recordings.size() && recordings.size() > 1; ++odd) {
+    check_efforts(recordings, odd, warnings);
     check_pace(recordings, odd);
   }
+  return warnings;
 }
 
 }  // namespace tribench

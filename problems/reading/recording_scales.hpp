@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "problems/dataset.hpp"
 
@@ -27,9 +28,11 @@ struct RecordingScale {
 RecordingScale scale_of(const Dataset& data, std::string_view file);
 
 // Throws Error (bad_input) with the file and the column where one recording's torque or current is
-// about a thousand times as large or as small as in each other, all of which agree and moved as
-// much, or where its position goes with its velocity by another factor, 1000 or 180/pi. Motion that
-// is twenty times as fast in one, or a joint that rests in one, is no such case.
-void check_scales(std::span<const RecordingScale> recordings);
+// about a thousand times as large as in two others or more, all of which agree and moved as much,
+// or where its position goes with its velocity by another factor, 1000 or 180/pi. Where two
+// recordings alone differ so, or one is as much smaller (a drive that was off is, too), it is said:
+// one sentence each. Motion that is twenty times as fast in one, or a joint that rests in one, is
+// no such case.
+std::vector<std::string> check_scales(std::span<const RecordingScale> recordings);
 
 }  // namespace tribench

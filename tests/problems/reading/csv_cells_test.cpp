@@ -107,6 +107,15 @@ TEST(Csv, ThousandsThatMayBeReadInTwoWaysAreRefused) {
   }
 }
 
+TEST(Csv, AnIndexWithoutANameMayBeTheTime) {
+  const DataFile dates =
+      parse_csv(",q [deg]\n2024-05-14 09:12:33.50,1\n2024-05-14 09:12:33.75,2\n", "log.csv");
+  ASSERT_NE(dates.data.find(Role::time), nullptr);
+  EXPECT_NEAR(dates.data.find(Role::time)->values[1] - dates.data.find(Role::time)->values[0], 0.25,
+              1e-6);
+  EXPECT_EQ(parse_csv(",q [deg]\n0,1\n1,2\n", "log.csv").data.find(Role::time), nullptr) << "rows";
+}
+
 TEST(Csv, AColumnThatIsSaidToBeNothingIsNotTakenByItsUnit) {
   CsvOptions options;
   options.roles = parse_roles("\"shoulder [deg]\"=none", "--roles");

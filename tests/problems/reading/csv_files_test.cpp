@@ -110,7 +110,8 @@ std::string joined_recordings(const std::vector<Recording>& recordings) {
   options.roles = parse_roles("current=motor_current[A],q=position[rad]", "--roles");
   std::string said = "read";
   try {
-    read_csv_files(files, options);
+    for (const std::string& warning : read_csv_files(files, options).warnings)
+      said += "; " + warning;
   } catch (const Error& error) {
     said = error.what();
   }
@@ -122,14 +123,18 @@ TEST(CsvFiles, AFileWhoseUnitIsAnotherIsNamed) {
   EXPECT_THAT(joined_recordings({{1}, {0.7}, {1.5, 1000}}),
               AllOf(HasSubstr("2.csv: 'current' is about 1000 times as large here"),
                     HasSubstr("'current [mA]'")));
-  EXPECT_THAT(joined_recordings({{1, 0.001}, {0.7}, {1.5}}),
-              HasSubstr("0.csv: 'current' is about 1000 times as small here"));
+  EXPECT_THAT(
+      joined_recordings({{1, 0.001}, {0.7}, {1.5}}),
+      AllOf(HasSubstr("read;"), HasSubstr("0.csv: 'current' is about 1000 times as small here")));
+  EXPECT_THAT(
+      joined_recordings({{1}, {0.7, 1000}}),
+      AllOf(HasSubstr("read;"), HasSubstr("1.csv: 'current' is about 1000 times as large here")));
   EXPECT_THAT(joined_recordings({{1}, {0.7, 1, 57.29578}, {1.5}}),
               HasSubstr("1.csv: 'q' changes 57.3 times as much with 'dq' here"));
 }
 
 TEST(CsvFiles, OrdinaryMotionsAreNoOtherUnits) {
-  EXPECT_EQ(joined_recordings({{1}, {0.05}, {1}}), "read") << "twenty times as slow";
+  EXPECT_EQ(joined_recordings({{1}, {0.05}, {1.1}}), "read") << "twenty times as slow";
   EXPECT_EQ(joined_recordings({{0.05}, {1}}), "read");
   EXPECT_EQ(joined_recordings({{1}, {0.05}, {20}}), "read");
   EXPECT_EQ(joined_recordings({{1}, {0}}), "read") << "the joint rests in the second";

@@ -117,6 +117,27 @@ TEST(JointColumns, TheOnlyJointsWordIsNotAskedFor) {
   }
 }
 
+TEST(JointColumns, ABaseIsAJointBesideOthers) {
+  CsvOptions options;
+  options.joint_word = "base";
+  EXPECT_EQ(
+      parse_csv("t,base_position,base_effort,elbow_position,elbow_effort\n0,1,2,3,4\n1,1,2,3,4\n",
+                "ur.csv", options)
+          .data.find(Role::motor_torque)
+          ->values[0],
+      2);
+}
+
+// Where nothing but the joints' columns is known, they are what is said.
+TEST(JointColumns, JointsAreAskedForWhereNoOtherColumnIsKnown) {
+  CsvOptions options;
+  options.used = std::vector<std::string>();
+  EXPECT_THAT(joint_complaint("Tick,J1 Pos(deg),J2 Pos(deg),J1 Current(%),J2 Current(%)\n"
+                              "0,1,2,3,4\n1,1,2,3,4\n",
+                              options),
+              AllOf(HasSubstr("columns of the joints 1, 2 stand here"), HasSubstr("--joint N")));
+}
+
 // KRL's $VEL_AXIS_ACT counts per cent of the axis's fastest: a velocity, and in no unit.
 TEST(JointColumns, AVelocityInPerCentIsAskedFor) {
   const std::string_view kuka =
