@@ -38,7 +38,8 @@ constexpr std::string_view kUsual = "usual";
 
 using enum Role;
 
-constexpr std::array kAliases = {
+// Not by deduction: clang counts no more than 256 arguments.
+constexpr auto kAliases = std::to_array<ChannelAlias>({
     ChannelAlias{"time", time, "s", kOwn},
     ChannelAlias{"t", time, "s", kOwn},
     ChannelAlias{"stamp", time, "", kRos},
@@ -311,7 +312,7 @@ constexpr std::array kAliases = {
     ChannelAlias{"v2", other_velocity, "rad/s", kOwn},
     ChannelAlias{"other_acceleration", other_acceleration, "rad/s^2", kOwn},
     ChannelAlias{"a2", other_acceleration, "rad/s^2", kOwn},
-};
+});
 
 }  // namespace
 

@@ -10,6 +10,7 @@
 
 #include "foundation/error.hpp"
 #include "foundation/order_statistics.hpp"
+#include "problems/reading/channel_names.hpp"
 
 namespace tribench {
 namespace {
@@ -90,12 +91,12 @@ void check_efforts(std::span<const RecordingScale> recordings, std::size_t odd,
     if (!is_larger && !is_thousand_of(1 / kThousand)) continue;
     const std::string what = fmt::format(
         "'{}' is about 1000 times as {} here ({:.3g}, which nine rows of ten stay "
-        "below) as in every other file ({:.3g} to {:.3g}), as mA beside A is",
+        "below) as in every other file ({:.3g} to {:.3g}), as mA beside A and N mm beside N m are",
         column, is_larger ? "large" : "small", size, least, most);
     const std::string mend = fmt::format(
-        "write its unit into this file's header ('{} [{}]') and theirs into the "
-        "others', or bring its numbers to the unit of the others",
-        column, is_larger ? "mA" : "A");
+        "write each file's unit into its header ('{} [UNIT]'), or bring this one's numbers to the "
+        "unit of the others",
+        without_unit(column));
     if (is_larger && in_others.size() > 1) throw_bad_input(what, one.file, mend);
     // Of two the larger one tells it.
     if (is_larger || in_others.size() > 1) {
