@@ -121,6 +121,7 @@ DataFile read_data(std::span<const std::filesystem::path> files, const DataOptio
   CsvOptions csv{options.roles,   options.drop_missing, options.names_tell,
                  std::move(used), options.joint,        options.drive,
                  chain,           options.sample_rate,  spare};
+  csv.joint_word = options.joint_word;
   DataFile file = read_csv_files(files, csv);
   if (condition) keep_rows_where(file, *condition, options.where_place);
   if (options.flip_sign) flip_torques(file.data);

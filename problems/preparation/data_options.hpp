@@ -36,6 +36,7 @@ struct DataOptions {
   std::string where;                    // COLUMN=VALUE, a number or a word: only these rows
   std::string where_place = "--where";  // how messages call it: the option, or its place in a file
   std::optional<int> joint;
+  std::string joint_word;           // or what the columns' names call it: "elbow"
   std::filesystem::path urdf = {};  // of the arm, for the gravity torque of `joint`
   Drive drive;
   std::optional<TorqueConstant> torque_constant;

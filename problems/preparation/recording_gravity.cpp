@@ -69,6 +69,8 @@ void check_gravity_factor(const PreparedRecording& out, const DataOptions& optio
   const std::optional<double> ratio = options.drive.gear_ratio;
   const bool is_ratio = ratio && !is(1) && (is(*ratio) || is(1 / *ratio));
   if (!is_ratio && is_of_its_size) return;
+  // Of a gravity that is next to nothing it is the rest of the model that the factor tells.
+  if (factor->explained < kMuchExplained) return;
   throw_bad_input(
       what, out.data.name,
       fmt::format("check their units (--roles COLUMN=ROLE[UNIT]), --torque-constant and "

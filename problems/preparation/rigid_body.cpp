@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "foundation/elementary.hpp"
 #include "foundation/order_statistics.hpp"
@@ -250,17 +251,49 @@ std::optional<double> visible_velocity(const Dataset& data) {
   return visible_change(data, data.find(Role::friction_torque), kVelocityColumn);
 }
 
+namespace {
+
+// The standard error of a column's coefficient as the parts of the rows agree on it. Infinite where
+// a part alone tells it.
+double jackknife_error(const Rows& rows, Eigen::Index column) {
+  constexpr Eigen::Index kParts = 8;
+  const Eigen::Index n = rows.x.rows();
+  Eigen::VectorXd without(kParts);
+  for (Eigen::Index part = 0; part < kParts; ++part) {
+    const Eigen::Index begin = part * n / kParts;
+    const Eigen::Index behind = n - (part + 1) * n / kParts;
+    Eigen::MatrixXd x(begin + behind, rows.x.cols());
+    Eigen::VectorXd y(begin + behind);
+    x << rows.x.topRows(begin), rows.x.bottomRows(behind);
+    y << rows.y.head(begin), rows.y.tail(behind);
+    const Fit fit = least_squares(x, y);
+    if (!fit.determined) return std::numeric_limits<double>::infinity();
+    without(part) = fit.coefficients(column);
+  }
+  const double squares = (without.array() - without.mean()).square().sum();
+  return std::sqrt(squares * (kParts - 1) / kParts);
+}
+
+}  // namespace
+
 std::optional<GravityFactor> gravity_factor(const Dataset& data) {
   const Channel* torque = effort_of(data);
   const Channel* gravity = data.find(Role::gravity_torque);
-  if (torque == nullptr || gravity == nullptr || !data.find(Role::velocity)) return {};
-  Rows rows = rows_of(data, *torque, 1);
+  const Channel* v = data.find(Role::velocity);
+  if (torque == nullptr || gravity == nullptr || v == nullptr) return {};
+  constexpr double kMoving = 0.1;  // of the top speed: beyond the noise of a joint that rests
+  Rows rows = rows_of(data, *torque, 1, kMoving * top_speed(v->values));
   if (rows.places.size() < kFewestFitRows) return {};
   for (Eigen::Index r = 0; r < rows.x.rows(); ++r) {
     rows.x(r, rows.base) = gravity->values[rows.places[static_cast<std::size_t>(r)]];
   }
   const Fit fit = least_squares(rows.x, rows.y);
-  return GravityFactor{fit.coefficients(rows.base), fit.errors(rows.base)};
+  const Fit without = least_squares(rows.x.leftCols(rows.base), rows.y);
+  GravityFactor factor;
+  factor.value = fit.coefficients(rows.base);
+  factor.error = std::max(fit.errors(rows.base), jackknife_error(rows, rows.base));
+  factor.explained = without.squares > 0 ? 1 - fit.squares / without.squares : 0;
+  return factor;
 }
 
 std::optional<double> torque_prefers(const Dataset& data, std::span<const double> velocity,

@@ -36,11 +36,14 @@ struct RigidBody {
 // is one. Nothing where one of them is missing or rows are too few to tell.
 std::optional<RigidBody> fit_rigid_body(const Dataset& data);
 
-// The factor by which a declared gravity torque goes into the motor torque: 1 where both have one
-// unit and one sign; its standard error. Nothing where gravity hardly varies.
+// The factor by which a declared gravity torque goes into the motor torque while the joint moves:
+// 1 where both have one unit and one sign. The standard error is at least what the estimate changes
+// by where an eighth of the rows is left out (jackknife): a gravity that varies in one stretch
+// alone, or that is too small to be seen, tells no factor. Nothing where it hardly varies.
 struct GravityFactor {
   double value = 1;
   double error = 0;
+  double explained = 0;  // share of what friction and inertia leave that gravity takes
 };
 std::optional<GravityFactor> gravity_factor(const Dataset& data);
 

@@ -9,12 +9,15 @@
 //   libfranka  franka::RobotState (q, dq, tau_J, tau_ext_hat_filtered): rad, rad/s, N m
 //   RTDE       Universal Robots' Real-Time Data Exchange (actual_q, actual_qd, actual_current)
 //   FRI, RSI   KUKA's Fast Research Interface (measured position, torque: rad, N m) and Robot
-//              Sensor Interface (AIPos: deg; MACur)
-//   KRL        KUKA's language ($AXIS_ACT: deg, $TORQUE_AXIS_ACT: N m)
+//              Sensor Interface (AIPos: deg; MACur; IPOC: ms)
+//   KRL        KUKA's language ($AXIS_ACT: deg, $TORQUE_AXIS_ACT: N m, $VEL_AXIS_ACT: per cent of
+//   the
+//              axis's top speed)
 //   LabVIEW    its measurement files (.lvm)
 //   CiA 402    drives' objects 0x6064, 0x606C, 0x6077, 0x6078: in units that each drive sets itself
 //   usual      what people write; says what the channel is and not in which unit; without accents,
-//              in English, German, French, Spanish, Italian, Portuguese, Dutch and Polish
+//              in English, German, French, Spanish, Italian, Portuguese, Dutch, Polish, Chinese and
+//              Japanese
 #include <array>
 
 #include "problems/reading/channel_names.hpp"
@@ -35,7 +38,8 @@ constexpr std::string_view kUsual = "usual";
 
 using enum Role;
 
-constexpr std::array kAliases = {
+// Not by deduction: clang counts no more than 256 arguments.
+constexpr auto kAliases = std::to_array<ChannelAlias>({
     ChannelAlias{"time", time, "s", kOwn},
     ChannelAlias{"t", time, "s", kOwn},
     ChannelAlias{"stamp", time, "", kRos},
@@ -65,9 +69,17 @@ constexpr std::array kAliases = {
     ChannelAlias{"tijd", time, "", kUsual},
     ChannelAlias{"czas", time, "", kUsual},
     ChannelAlias{"gps_time", time, "", kUsual},
+    ChannelAlias{"ipoc", time, "ms", kRsi},
     ChannelAlias{"x_value", time, "s", kLabview},
+    ChannelAlias{"时间", time, "", kUsual},
+    ChannelAlias{"时间戳", time, "", kUsual},
+    ChannelAlias{"時間", time, "", kUsual},
+    ChannelAlias{"時刻", time, "", kUsual},
     ChannelAlias{"movement", movement, "", kOwn},
     ChannelAlias{"position", position, "rad", kRos},
+    ChannelAlias{"positions", position, "rad", kRos},
+    ChannelAlias{"位置", position, "", kUsual},
+    ChannelAlias{"角度", position, "", kUsual},
     ChannelAlias{"q", position, "rad", kFranka},
     ChannelAlias{"actual_q", position, "rad", kRtde},
     ChannelAlias{"q_actual", position, "rad", kRtde},
@@ -145,7 +157,15 @@ constexpr std::array kAliases = {
     ChannelAlias{"hoeksnelheid", velocity, "", kUsual},
     ChannelAlias{"toerental", velocity, "", kUsual},
     ChannelAlias{"predkosc", velocity, "", kUsual},
+    ChannelAlias{"velocities", velocity, "rad/s", kRos},
+    ChannelAlias{"vel_axis_act", velocity, "%", kKrl},
+    ChannelAlias{"速度", velocity, "", kUsual},
+    ChannelAlias{"角速度", velocity, "", kUsual},
+    ChannelAlias{"转速", velocity, "", kUsual},
+    ChannelAlias{"回転速度", velocity, "", kUsual},
     ChannelAlias{"acceleration", acceleration, "rad/s^2", kRos},
+    ChannelAlias{"加速度", acceleration, "", kUsual},
+    ChannelAlias{"角加速度", acceleration, "", kUsual},
     ChannelAlias{"a", acceleration, "rad/s^2", kOwn},
     ChannelAlias{"qdd", acceleration, "rad/s^2", kOwn},
     ChannelAlias{"ddq", acceleration, "rad/s^2", kFranka},
@@ -193,6 +213,12 @@ constexpr std::array kAliases = {
     ChannelAlias{"motor_force", motor_torque, "", kOwn},
     ChannelAlias{"tau_m", motor_torque, "N m", kOwn},
     ChannelAlias{"effort", motor_torque, "N m", kRos},
+    ChannelAlias{"efforts", motor_torque, "N m", kRos},
+    ChannelAlias{"torques", motor_torque, "", kUsual},
+    ChannelAlias{"力矩", motor_torque, "", kUsual},
+    ChannelAlias{"扭矩", motor_torque, "", kUsual},
+    ChannelAlias{"转矩", motor_torque, "", kUsual},
+    ChannelAlias{"トルク", motor_torque, "", kUsual},
     ChannelAlias{"tau_j", motor_torque, "N m", kFranka},
     ChannelAlias{"measured_joint_torque", motor_torque, "N m", kFri},
     ChannelAlias{"torque_actual_value", motor_torque, "", kCia402},
@@ -233,6 +259,7 @@ constexpr std::array kAliases = {
     ChannelAlias{"tau_ext", external_torque, "N m", kOwn},
     ChannelAlias{"tau_ext_hat_filtered", external_torque, "N m", kFranka},
     ChannelAlias{"temperature", temperature, "", kOwn},
+    ChannelAlias{"温度", temperature, "", kUsual},
     ChannelAlias{"temperatur", temperature, "", kUsual},
     ChannelAlias{"motortemperatur", temperature, "", kUsual},
     ChannelAlias{"temperatura", temperature, "", kUsual},
@@ -245,6 +272,9 @@ constexpr std::array kAliases = {
     ChannelAlias{"joint_temperatures", temperature, "degC", kRtde},
     ChannelAlias{"motor_current", motor_current, "", kOwn},
     ChannelAlias{"current", motor_current, "", kOwn},
+    ChannelAlias{"currents", motor_current, "", kUsual},
+    ChannelAlias{"电流", motor_current, "", kUsual},
+    ChannelAlias{"電流", motor_current, "", kUsual},
     ChannelAlias{"actual_current", motor_current, "A", kRtde},
     ChannelAlias{"current_actual_value", motor_current, "", kCia402},
     ChannelAlias{"current_motor", motor_current, "", kUsual},
@@ -282,7 +312,7 @@ constexpr std::array kAliases = {
     ChannelAlias{"v2", other_velocity, "rad/s", kOwn},
     ChannelAlias{"other_acceleration", other_acceleration, "rad/s^2", kOwn},
     ChannelAlias{"a2", other_acceleration, "rad/s^2", kOwn},
-};
+});
 
 }  // namespace
 

@@ -6,112 +6,21 @@
 #include <cctype>
 #include <vector>
 
+#include "problems/reading/name_words.hpp"
+
 namespace tribench {
 namespace {
 
-using Words = std::vector<std::string>;
-
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool is_lower(char c) { return std::islower(static_cast<unsigned char>(c)) != 0; }
-bool is_upper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
-
-std::string lower(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return result;
-}
-
-// Letters of other alphabets as those that names are listed in: accents off, Greek ones by name;
-// and LaTeX's signs off.
-std::string in_plain_letters(std::string_view text) {
-  struct Letter {
-    std::string_view written;
-    std::string_view plain;
-  };
-  static constexpr std::array kLetters = {
-      Letter{"\xC3\xA0", "a"},     Letter{"\xC3\xA1", "a"},     Letter{"\xC3\xA3", "a"},
-      Letter{"\xC3\xA7", "c"},     Letter{"\xC3\xA8", "e"},     Letter{"\xC3\xA9", "e"},
-      Letter{"\xC3\x89", "E"},     Letter{"\xC3\xAA", "e"},     Letter{"\xC3\xAD", "i"},
-      Letter{"\xC3\xB3", "o"},     Letter{"\xC3\xB4", "o"},     Letter{"\xC3\xBA", "u"},
-      Letter{"\xC3\x81", "A"},     Letter{"\xC4\x85", "a"},     Letter{"\xC4\x87", "c"},
-      Letter{"\xC4\x99", "e"},     Letter{"\xC5\x9B", "s"},     Letter{"\xC5\x82", "l"},
-      Letter{"\xCE\xB8", "theta"}, Letter{"\xCF\x89", "omega"}, Letter{"\xCF\x84", "tau"},
-      Letter{"\xCF\x86", "phi"},   Letter{"\xCF\x95", "phi"},   Letter{"$", ""},
-  };
-  std::string plain;
-  while (!text.empty()) {
-    const auto* const letter = std::ranges::find_if(
-        kLetters, [&](const Letter& one) { return text.starts_with(one.written); });
-    const bool is_listed = letter != kLetters.end();
-    plain += is_listed ? letter->plain : text.substr(0, 1);
-    text.remove_prefix(is_listed ? letter->written.size() : 1);
-  }
-  return plain;
-}
-
-// Words that name the setting and not the measurement.
-constexpr std::array<std::string_view, 22> kSetPoints = {
-    "desired",   "des",    "commanded", "command", "cmd",   "target",  "goal", "ref",
-    "reference", "set",    "setpoint",  "demand",  "error", "err",     "min",  "max",
-    "limit",     "offset", "bias",      "std",     "soll",  "sollwert"};
-
-// Words that add nothing to what a channel is.
-constexpr std::array<std::string_view, 36> kFillers = {
-    "joint",    "joints",    "state", "states",  "actual", "act",   "measured", "meas",     "msr",
-    "axis",     "robot",     "arm",   "link",    "value",  "val",   "feedback", "fb",       "raw",
-    "filtered", "filt",      "data",  "msg",     "output", "jnt",   "ax",       "actuator", "drive",
-    "estimate", "estimated", "est",   "present", "active", "field", "sensor",   "fbk",      "ist"};
-
-// In a path before the last name ("/dc_bus/current"): what is measured there is not the joint.
-constexpr std::array<std::string_view, 18> kElsewhere = {
-    "bus", "dc",  "supply", "battery", "tcp",     "tool",   "tool0", "cartesian", "ee",
-    "fan", "imu", "brake",  "base",    "gripper", "wrench", "ft",    "gps",       "odom"};
-
-// In a name that would be known by its unit alone: what is no measurement of the joint.
-constexpr std::array<std::string_view, 40> kNoMeasurement = {
-    "phase",   "electrical", "elec",   "el",           "cycle",      "period",      "duration",
-    "delay",   "latency",    "jitter", "dt",           "delta",      "diff",        "lag",
-    "age",     "timeout",    "exec",   "step",         "ambient",    "room",        "ground",
-    "support", "peak",       "rated",  "deadband",     "slip",       "gravity",     "grav",
-    "rigid",   "model",      "comp",   "compensation", "ff",         "feedforward", "coriolis",
-    "inertia", "friction",   "ext",    "external",     "disturbance"};
 
 template <std::size_t N>
 bool is_among(const std::array<std::string_view, N>& list, std::string_view word) {
   return std::ranges::find(list, word) != list.end();
 }
 
-// "jointPos.velDeg[2]" as joint, Pos, vel, Deg, 2; without `humps` as jointPos, velDeg, 2.
-Words split_words(std::string_view text, bool humps) {
-  Words words;
-  std::string word;
-  const auto end_word = [&] {
-    if (!word.empty()) words.push_back(std::move(word));
-    word.clear();
-  };
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && static_cast<unsigned char>(c) < 128) {
-      end_word();
-      continue;
-    }
-    if (humps && is_upper(c) && i > 0 && is_lower(text[i - 1])) end_word();
-    word += c;
-  }
-  end_word();
-  return words;
-}
-
-std::string joined(const Words& words, std::size_t begin, std::size_t end) {
-  std::string text;
-  for (std::size_t i = begin; i < end; ++i) text += (i > begin ? "_" : "") + words[i];
-  return text;
-}
-
 const ChannelAlias* find_alias(std::string_view name) {
-  const std::string wanted = lower(name);
+  const std::string wanted = in_small_letters(name);
   for (const ChannelAlias& alias : channel_aliases()) {
     if (alias.name == wanted) return &alias;
   }
@@ -162,18 +71,24 @@ bool read_stem(std::string_view text, NameReading& reading) {
   Words without_letter;  // "AXIS_ACT" of "AXIS_ACT_A4"
   Words kept;
   bool motor = false;
+  std::optional<std::size_t> behind_joint;  // words that are kept before the joint's number
+  bool numbers_joint = false;               // the word before a number
   for (std::string word : split_words(text, true)) {
-    if (is_among(kSetPoints, lower(word))) return false;
+    if (is_set_point(word)) return false;
     const std::size_t letters = word.find_last_not_of("0123456789") + 1;
     const bool numbered = letters < word.size() && word.size() - letters < 4;
     if (numbered) {
       reading.joint = std::stoi(word.substr(letters));
       word.resize(letters);
     }
+    if (numbered && (word.empty() ? numbers_joint : is_joint_word(word)))
+      behind_joint = kept.size();
+    numbers_joint = is_joint_word(word);
     if (word.empty()) continue;
-    motor = motor || lower(word) == "motor" || lower(word) == "mot";
-    const bool letter = numbered && (lower(word) == "j" || lower(word) == "a");  // "A2", "j2"
-    if (!letter && !is_among(kFillers, lower(word))) kept.push_back(word);
+    motor = motor || in_small_letters(word) == "motor" || in_small_letters(word) == "mot";
+    const bool letter =
+        numbered && (in_small_letters(word) == "j" || in_small_letters(word) == "a");  // "A2", "j2"
+    if (!letter && !is_filler(word)) kept.push_back(word);
     if (!letter) without_letter.push_back(word);
     all.push_back(std::move(word));
   }
@@ -182,12 +97,26 @@ bool read_stem(std::string_view text, NameReading& reading) {
   if (alias == nullptr) alias = find_alias(joined(kept, 0, kept.size()));
   reading.doubt = 1;
   // "Current position" is the one of now.
-  if (alias == nullptr && kept.size() > 1 && lower(kept.front()) == "current") {
+  if (alias == nullptr && kept.size() > 1 && in_small_letters(kept.front()) == "current") {
     alias = find_alias(joined(kept, 1, kept.size()));
+  }
+  // "panda_joint4_position": what stands before the joint is whose it is.
+  if (alias == nullptr && behind_joint) {
+    const auto end = kept.begin() + static_cast<std::ptrdiff_t>(*behind_joint);
+    const bool is_joints = std::none_of(kept.begin(), end, [](const std::string& word) {
+      return is_elsewhere(word) || is_no_measurement(word);
+    });
+    if (is_joints) alias = find_alias(joined(kept, *behind_joint, kept.size()));
+    if (alias != nullptr) reading.doubt = 2;
+  }
+  // "JSPEED" is a joint's.
+  if (alias == nullptr && kept.size() == 1 && kept[0].size() > 3 &&
+      in_small_letters(kept[0])[0] == 'j') {
+    alias = find_alias(kept[0].substr(1));
   }
   if (alias == nullptr && motor) {
     std::erase_if(kept, [](const std::string& word) {
-      return lower(word) == "motor" || lower(word) == "mot";
+      return in_small_letters(word) == "motor" || in_small_letters(word) == "mot";
     });
     alias = find_alias(joined(kept, 0, kept.size()));
     if (alias == nullptr) return false;
@@ -219,7 +148,7 @@ std::string take_brackets(std::string_view& name) {
 
 // "deg" of "position in deg" and "angle_in_degrees".
 std::string take_unit_behind_in(std::string_view& name) {
-  const std::string small = lower(name);
+  const std::string small = in_small_letters(name);
   for (const std::string_view word : {" in ", "_in_"}) {
     const std::size_t at = small.rfind(word);
     if (at == std::string::npos || at == 0) continue;
@@ -236,7 +165,7 @@ std::string take_unit_behind_in(std::string_view& name) {
 const Unit* find_unit_in_words(std::string_view word) {
   constexpr std::array<std::string_view, 7> kOtherWords = {"in",       "u",         "tr",   "d",
                                                            "rotation", "rotations", "tours"};
-  return is_among(kOtherWords, lower(word)) ? nullptr : find_unit(word);
+  return is_among(kOtherWords, in_small_letters(word)) ? nullptr : find_unit(word);
 }
 
 // Behind the last line "angle_0.01deg", what one count is (a larger number, "load_cell_10Nm", is a
@@ -285,7 +214,7 @@ bool read_unit_first(std::string_view name, NameReading& reading) {
   constexpr std::array<std::string_view, 6> kPlainUnits = {"deg",  "degrees", "rad",
                                                            "mrad", "radians", "rpm"};
   const Words words = split_words(name, false);
-  if (words.size() < 2 || !is_among(kPlainUnits, lower(words.front()))) return false;
+  if (words.size() < 2 || !is_among(kPlainUnits, in_small_letters(words.front()))) return false;
   NameReading stem;
   stem.known.unit = find_unit(words.front());
   stem.unit_written = true;
@@ -356,7 +285,8 @@ NameReading read_last(std::string_view whole) {
   } else if (!reading.unit_written) {
     read_unit_alone(name, reading);
   }
-  if (reading.known.unit != nullptr && reading.role != Role::none &&
+  // A unit that suits no such role is none, unless the name's source has it so.
+  if (reading.known.unit != nullptr && reading.role != Role::none && reading.unit_written &&
       !suits(*reading.known.unit, reading.role)) {
     reading.unknown_unit = std::string(reading.known.unit->symbol);
     reading.known = {};
@@ -377,8 +307,8 @@ NameReading read_plain(std::string_view name) {
   }
   std::optional<int> joint;
   for (const std::string& word : split_words(name.substr(0, cut), true)) {
-    const std::string plain = lower(word);
-    if (is_among(kSetPoints, plain) || is_among(kElsewhere, plain)) return whole;
+    const std::string plain = in_small_letters(word);
+    if (is_set_point(plain) || is_elsewhere(plain)) return whole;
     const std::size_t letters = plain.find_last_not_of("0123456789") + 1;
     if (letters < plain.size() && plain.size() - letters < 4)
       joint = std::stoi(plain.substr(letters));
@@ -411,34 +341,6 @@ NameReading read_channel_name(std::string_view name) {
   }
   reading.unit = reading.known.unit != nullptr ? reading.known.symbol() : "-";
   return reading;
-}
-
-bool names_something_else(std::string_view name) {
-  return std::ranges::any_of(split_words(name, true), [](const std::string& word) {
-    const std::string plain = lower(word);
-    return is_among(kSetPoints, plain) || is_among(kElsewhere, plain) ||
-           is_among(kNoMeasurement, plain);
-  });
-}
-
-bool names_motor(std::string_view name) {
-  return std::ranges::any_of(split_words(name, true), [](const std::string& word) {
-    return lower(word) == "motor" || lower(word) == "mot";
-  });
-}
-
-bool names_joint(std::string_view name) {
-  constexpr std::array<std::string_view, 11> kWords = {"joint", "axis", "achse", "motor",
-                                                       "drive", "dof",  "name",  "actuator",
-                                                       "id",    "node", "gelenk"};
-  return std::ranges::any_of(split_words(name, true), [&](const std::string& word) {
-    return is_among(kWords, lower(word));
-  });
-}
-
-bool names_date(std::string_view name) {
-  const std::string plain = lower(name);
-  return plain == "date" || plain == "datum";
 }
 
 bool is_torque_like(Role role) {

@@ -21,6 +21,7 @@ struct NameReading {
   Role role = Role::none;
   std::string unit;  // symbol; "-" where the name has none
   // The unit that is written in the name, else the one that its source always uses; or neither.
+  // A source's own may be none of the role (KRL's velocity, in per cent of the fastest).
   WrittenUnit known = {};
   bool unit_written = false;  // in the name itself
   std::string unknown_unit;   // in brackets, and unknown
@@ -37,19 +38,6 @@ NameReading read_channel_name(std::string_view name);
 
 // "Strom" of "Strom [A]": what stands before the brackets.
 std::string_view without_unit(std::string_view name);
-
-// Whether a word of the name says that it is no measurement of the joint: a set point, an error, a
-// limit; a bus, a tool; a phase; how long something took.
-bool names_something_else(std::string_view name);
-
-// Whether a word of the name says the motor.
-bool names_motor(std::string_view name);
-
-// Whether a word of the name says that it tells joints apart.
-bool names_joint(std::string_view name);
-
-// Whether the name is no more than a date's.
-bool names_date(std::string_view name);
 
 // Torques and what stands for them (a force, a current, a voltage).
 bool is_torque_like(Role role);

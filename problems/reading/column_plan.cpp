@@ -12,6 +12,8 @@
 #include "problems/reading/channel_names.hpp"
 #include "problems/reading/csv_checks.hpp"
 #include "problems/reading/joint_columns.hpp"
+#include "problems/reading/joint_words.hpp"
+#include "problems/reading/name_words.hpp"
 #include "problems/reading/time_columns.hpp"
 
 namespace tribench {
@@ -74,7 +76,11 @@ std::string unknown_unit(const CsvLayout& layout, std::size_t column, const Name
   const bool in_row = !layout.units.empty() && !layout.units[column].empty() &&
                       !heard.unit_written &&
                       find_written_unit(layout.units[column]).unit == nullptr;
-  return in_row ? layout.units[column] : heard.unknown_unit;
+  if (in_row) return layout.units[column];
+  // What the name's source always has in one that is none of the role.
+  const bool is_strange =
+      !heard.unit_written && heard.known.unit != nullptr && !suits(*heard.known.unit, heard.role);
+  return is_strange ? std::string(heard.known.unit->symbol) : heard.unknown_unit;
 }
 
 std::string or_nearest(const std::string& unit, Role role) {
@@ -82,18 +88,26 @@ std::string or_nearest(const std::string& unit, Role role) {
   return nearest.empty() ? std::string() : fmt::format(" (is {} meant?)", nearest);
 }
 
-std::string mend_for_unit(const std::string& column, Role role) {
+std::string mend_for_unit(const std::string& column, Role role, std::string_view unit) {
+  if (unit == "%" && (role == Role::velocity || role == Role::other_velocity)) {
+    return fmt::format(
+        "say how fast one per cent is, as in --roles '{}={}[1.8 deg/s]', or leave it "
+        "out: --roles '{}=none'",
+        column, role_name(role), column);
+  }
   return fmt::format("say it with --roles '{}={}[UNIT]'; known: {}", column, role_name(role),
                      units_of(role));
 }
 
-ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions& options,
-                       std::string_view file) {
+ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const JointWord& owner,
+                       const CsvOptions& options, std::string_view file) {
   const std::string& name = layout.header[j];
   ColumnPlan plan;
   plan.reading.column = name;
   NameReading heard;
-  if (options.names_tell) heard = read_channel_name(name);
+  if (options.names_tell) heard = read_channel_name(owner.word.empty() ? name : owner.quantity);
+  plan.joint_word = owner.word;
+  if (owner.word.empty()) plan.joint = heard.joint;
   plan.reading.role = heard.role;
   plan.doubt = heard.doubt;
   bool at_motor = heard.at_motor;
@@ -110,7 +124,9 @@ ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions&
     plan.doubt = 0;
     // What is written in the name counts whatever else the name says.
     if (!options.names_tell) heard = read_channel_name(name);
-    if (heard.known.unit != nullptr && !suits(*heard.known.unit, plan.reading.role)) heard = {};
+    const bool is_strange =
+        heard.known.unit != nullptr && !suits(*heard.known.unit, plan.reading.role);
+    if (is_strange && (heard.unit_written || heard.role != plan.reading.role)) heard = {};
     at_motor = at_motor || (heard.unit_written && heard.known.at_motor);
   }
   const Role role = plan.reading.role;
@@ -128,7 +144,7 @@ ColumnPlan plan_column(const CsvLayout& layout, std::size_t j, const CsvOptions&
   } else if (!unknown.empty() && needs_unit(role)) {
     throw_bad_input(fmt::format("'{}' is no unit of a {}{}", unknown, role_name(role),
                                 or_nearest(unknown, role)),
-                    fmt::format("{}, column '{}'", file, name), mend_for_unit(name, role));
+                    fmt::format("{}, column '{}'", file, name), mend_for_unit(name, role, unknown));
   } else if (heard.known.unit != nullptr && unknown.empty() && role != Role::none &&
              !plan.role_given) {
     take_unit(plan, on_side(heard.known), heard.source);
@@ -161,7 +177,7 @@ void check_known_units(const std::vector<ColumnPlan>& plans, std::string_view fi
                                 role_name(role), or_nearest(plan.unknown_unit, role),
                                 known->reading.column, known->unit.symbol()),
                     fmt::format("{}, column '{}'", file, plan.reading.column),
-                    mend_for_unit(plan.reading.column, role));
+                    mend_for_unit(plan.reading.column, role, plan.unknown_unit));
   }
 }
 
@@ -248,7 +264,8 @@ void take_roles_by_unit(const CsvLayout& layout, std::vector<ColumnPlan>& plans,
     const ColumnPlan& plan = plans[j];
     const Role role = plan.reading.role;
     if (role != Role::none) owned.insert(kind_of(role));
-    if (role != Role::none || !plan.reading.remark.empty() || plan.unit.unit == nullptr) continue;
+    if (role != Role::none || plan.role_given || !plan.reading.remark.empty()) continue;
+    if (plan.unit.unit == nullptr) continue;
     const Role may_be = role_of(plan.unit.unit->dimension);
     if (may_be == Role::none || plan.unit.unit->counts || !is_plainly_written(plan)) continue;
     if (names_something_else(plan.reading.column)) continue;
@@ -300,11 +317,14 @@ std::vector<ColumnPlan> plan_columns(const CsvLayout& layout, const CsvOptions& 
       if (column.starts_with("sgn_")) used.insert(column.substr(4));
     }
   }
+  std::vector<JointWord> words(layout.header.size());
+  if (options.names_tell) words = joint_words_of(layout.header);
   std::vector<ColumnPlan> plans;
   for (std::size_t j = 0; j < layout.header.size(); ++j) {
-    plans.push_back(plan_column(layout, j, options, file));
+    plans.push_back(plan_column(layout, j, words[j], options, file));
   }
   if (options.names_tell) {
+    choose_joint_by_word(options, plans, file, out);
     refuse_joints_told_by_words(plans, file);
     choose_joint(options, plans, out);
   }

@@ -4,6 +4,7 @@
 // against the names. Internal to the room.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,8 +22,10 @@ struct ColumnPlan {
   std::string unknown_unit;  // written, and no unit that is known
   bool role_given = false;
   int doubt = 0;
-  bool adds_to_time = false;  // nanoseconds beside a column of seconds
-  bool in_chain = false;      // the position of another joint that is asked for
+  std::optional<int> joint = {};  // the number in the name
+  std::string joint_word;         // or what tells the joint otherwise
+  bool adds_to_time = false;      // nanoseconds beside a column of seconds
+  bool in_chain = false;          // the position of another joint that is asked for
 };
 
 // The column is read as one without a role; why, in words.

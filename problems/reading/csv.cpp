@@ -18,7 +18,8 @@
 #include "problems/reading/csv_checks.hpp"
 #include "problems/reading/csv_columns.hpp"
 #include "problems/reading/csv_scanner.hpp"
-#include "problems/reading/file_text.hpp"
+#include "problems/reading/joint_columns.hpp"
+#include "problems/reading/thousands.hpp"
 #include "problems/reading/time_order.hpp"
 
 namespace tribench {
@@ -253,7 +254,10 @@ void count_time(const Reading& in, double rate, DataFile& out) {
 }
 
 // Columns that no name tells may well hold numbers.
-[[noreturn]] void refuse_no_channel(const Reading& in) {
+[[noreturn]] void refuse_no_channel(const Reading& in, const DataFile& out) {
+  if (!out.joints.empty()) {
+    throw_bad_input(joints_that_stand_here(out), in.file, "choose one with --joint N");
+  }
   if (std::ranges::all_of(in.plans, &ColumnPlan::used)) {
     throw_bad_input("no column holds numbers", in.file, "give at least one column of numbers");
   }
@@ -308,9 +312,38 @@ void fill_channels(Reading& in, DataFile& out) {
     }
     out.readings.push_back(plan.reading);
   }
-  if (out.data.channels.size() == out.spare.size()) refuse_no_channel(in);
+  if (out.data.channels.size() == out.spare.size()) refuse_no_channel(in, out);
   add_to_time(in, out);
   if (in.options.sample_rate) count_time(in, *in.options.sample_rate, out);
+}
+
+// Whether numbers whose thousands are parted stand in the columns that are used, and the whole file
+// tells by which sign.
+bool take_thousands(Reading& in, DataFile& out) {
+  std::vector<bool> looked_at(in.plans.size(), false);
+  std::string example;
+  for (std::size_t j = 0; j < in.plans.size(); ++j) {
+    const CsvColumn& column = in.columns.columns[j];
+    if (!in.plans[j].used || in.plans[j].kind == ColumnKind::text || column.told_in_text) continue;
+    const bool is_number = column.kind == ColumnKind::number;
+    const std::size_t row = is_number ? column.first_text : 0;
+    const std::string cell = row == kNoRow || in.columns.rows() == 0
+                                 ? std::string()
+                                 : cell_at(in.text, in.layout, in.columns.places[row], j);
+    const bool is_parted = may_hold_thousands(cell);
+    looked_at[j] = is_number || is_parted;
+    if (is_parted && example.empty()) example = cell;
+  }
+  if (example.empty()) return false;
+  const auto signs = find_thousands(in.text, in.file, in.layout, looked_at);
+  if (!signs) return false;
+  in.layout.thousands = signs->thousands;
+  in.layout.decimal_comma = signs->decimal == ',';
+  double value = 0;
+  read_cell(without_thousands(example, signs->thousands), in.layout.decimal_comma, value);
+  out.warnings.push_back(fmt::format("'{}' parts the thousands: '{}' is read as {}",
+                                     signs->thousands, example, value));
+  return true;
 }
 
 // A role may name its column without the unit that the header writes behind it, where no other
@@ -343,6 +376,7 @@ DataFile parse_csv(std::string_view text, std::string_view file, const CsvOption
   std::vector<ColumnKind> kinds;
   for (const ColumnPlan& plan : in.plans) kinds.push_back(plan.kind);
   in.columns = read_columns(text, file, in.layout, kinds);
+  if (take_thousands(in, out)) in.columns = read_columns(text, file, in.layout, kinds);
   if (in.columns.rows() == 0) throw_bad_input("there is a header and no row", file, "add rows");
   for (const auto* notes : {&in.layout.notes, &in.columns.notes}) {
     out.warnings.insert(out.warnings.end(), notes->begin(), notes->end());
@@ -357,126 +391,6 @@ DataFile parse_csv(std::string_view text, std::string_view file, const CsvOption
   if (options.names_tell) find_joints_in_turn(in.layout, out);
   check_torque_units(out.data, file);
   return out;
-}
-
-DataFile read_csv(const std::filesystem::path& file, const CsvOptions& options) {
-  const std::string text = read_file_text(file);
-  return parse_csv(text, file.string(), options);
-}
-
-namespace {
-
-void check_same_channels(const DataFile& all, const DataFile& next, std::string_view file) {
-  const auto names = [](const DataFile& reading) {
-    std::vector<std::string> list;
-    for (const Channel& channel : reading.data.channels) list.push_back(channel.name);
-    for (const TextColumn& column : reading.texts) list.push_back(column.name + " (text)");
-    return list;
-  };
-  if (names(all) == names(next)) return;
-  throw_bad_input(fmt::format("its columns ({}) are not those of the first file ({})",
-                              fmt::join(names(next), ", "), fmt::join(names(all), ", ")),
-                  file, "give files with the same columns in the same order");
-}
-
-bool knows_unit(const DataFile& file, const std::string& column) {
-  return std::ranges::any_of(file.readings, [&](const ColumnReading& reading) {
-    return reading.column == column && !reading.unit.empty() && !reading.unit_asked;
-  });
-}
-
-// Numbers of which one file knows the unit and the other does not may be 57.3 times too large.
-void check_same_units(const DataFile& all, const DataFile& next, std::string_view file) {
-  for (std::size_t j = 0; j < all.data.channels.size(); ++j) {
-    const Channel& first = all.data.channels[j];
-    const Channel& other = next.data.channels[j];
-    const bool is_same = first.unit == other.unit && first.role == other.role &&
-                         knows_unit(all, first.name) == knows_unit(next, other.name);
-    if (is_same) continue;
-    const auto meaning = [](const DataFile& of, const Channel& channel) {
-      return fmt::format("{} in {}", role_name(channel.role),
-                         knows_unit(of, channel.name) ? "'" + channel.unit + "'"
-                                                      : std::string("a unit that is not named"));
-    };
-    throw_bad_input(fmt::format("'{}' is {}, and in the first file {}", other.name,
-                                meaning(next, other), meaning(all, first)),
-                    file,
-                    fmt::format("say what it is in both: --roles '{}=ROLE[UNIT]'", other.name));
-  }
-}
-
-void drop_spare_channels(DataFile& file) {
-  std::erase_if(file.data.channels, [&](const Channel& channel) {
-    return std::ranges::count(file.spare, channel.name) > 0;
-  });
-  file.spare.clear();
-}
-
-void append(DataFile& all, DataFile next, std::string_view file) {
-  if (all.spare != next.spare) {
-    drop_spare_channels(all);
-    drop_spare_channels(next);
-  }
-  check_same_channels(all, next, file);
-  check_same_units(all, next, file);
-  const auto first = static_cast<int>(all.data.movement_names.size());
-  for (std::string& name : next.data.movement_names) {
-    auto& names = all.data.movement_names;
-    const bool taken = std::find(names.begin(), names.end(), name) != names.end();
-    names.push_back(taken ? fmt::format("{} ({})", name, file) : std::move(name));
-  }
-  for (const int movement : next.data.movement) all.data.movement.push_back(first + movement);
-  for (std::size_t j = 0; j < all.data.channels.size(); ++j) {
-    auto& values = all.data.channels[j].values;
-    const auto& more = next.data.channels[j].values;
-    values.insert(values.end(), more.begin(), more.end());
-  }
-  for (std::size_t j = 0; j < all.texts.size(); ++j) {
-    auto& values = all.texts[j].values;
-    const auto& more = next.texts[j].values;
-    values.insert(values.end(), more.begin(), more.end());
-  }
-  all.dropped_rows += next.dropped_rows;
-  for (std::string& warning : next.warnings) {
-    all.warnings.push_back(fmt::format("{}: {}", file, warning));
-  }
-}
-
-// Whether a file's rows stand in `all` from row `first` on, whatever their time.
-bool stands_from(std::size_t first, const DataFile& all, const DataFile& next) {
-  constexpr std::size_t kFewestRows = 100;  // fewer may be alike by chance
-  const std::size_t rows = next.data.rows();
-  if (rows < kFewestRows || first + rows > all.data.rows()) return false;
-  return std::ranges::equal(
-      all.data.channels, next.data.channels, [&](const Channel& one, const Channel& other) {
-        const auto begin = one.values.begin() + static_cast<std::ptrdiff_t>(first);
-        return one.name == other.name &&
-               (one.role == Role::time ||
-                std::equal(other.values.begin(), other.values.end(), begin));
-      });
-}
-
-}  // namespace
-
-DataFile read_csv_files(std::span<const std::filesystem::path> files, const CsvOptions& options) {
-  if (files.empty()) throw_bad_input("no data file is given", {}, "name one CSV file or more");
-  DataFile all = read_csv(files.front(), options);
-  std::vector<std::pair<std::size_t, std::filesystem::path>> taken = {{0, files.front()}};
-  for (const std::filesystem::path& file : files.subspan(1)) {
-    DataFile next = read_csv(file, options);
-    const auto same = std::ranges::find_if(
-        taken, [&](const auto& one) { return stands_from(one.first, all, next); });
-    if (same != taken.end()) {
-      all.warnings.push_back(
-          fmt::format("{} has the very rows of {}: left out, a recording counts "
-                      "once",
-                      file.string(), same->second.string()));
-      continue;
-    }
-    taken.emplace_back(all.data.rows(), file);
-    append(all, std::move(next), file.string());
-  }
-  return all;
 }
 
 }  // namespace tribench

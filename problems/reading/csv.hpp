@@ -56,6 +56,7 @@ struct CsvOptions {
   // What is not used is read where it holds a number in every row of every file (and --roles do not
   // say that it is nothing), and becomes a channel without a role.
   bool spare = false;
+  std::string joint_word = {};          // or the word that the names have for it: "elbow"
   std::optional<ColumnRule> rule = {};  // a row that breaks it is refused with its line
 };
 

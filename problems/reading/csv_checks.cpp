@@ -12,6 +12,7 @@
 #include "foundation/text.hpp"
 #include "problems/reading/channel_names.hpp"
 #include "problems/reading/csv_cells.hpp"
+#include "problems/reading/name_words.hpp"
 #include "problems/reading/time_text.hpp"
 
 namespace tribench {

@@ -12,6 +12,7 @@
 #include "foundation/text.hpp"
 #include "problems/reading/csv_cells.hpp"
 #include "problems/reading/csv_scanner.hpp"
+#include "problems/reading/thousands.hpp"
 #include "problems/reading/time_text.hpp"
 
 namespace tribench {
@@ -19,18 +20,25 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// A clock without a date starts again at midnight.
-void pass_midnight(std::vector<double>& times) {
-  constexpr double kDay = 86400;
-  const auto is_clock = [](double time) { return std::isnan(time) || time < kDay + 1; };
+// A clock without a date starts again at midnight, one of minutes at the full hour; rows that were
+// overtaken may still be from before.
+void pass_full_clock(std::vector<double>& times, bool in_minutes) {
+  const double full = in_minutes ? 3600 : 86400;
+  const double longest_pause = in_minutes ? 300 : full / 2;  // else another recording begins
+  constexpr double kLongestDelay = 60;                       // of a row that others overtook
+  const auto is_clock = [&](double time) { return std::isnan(time) || time < full + 1; };
   if (!std::ranges::all_of(times, is_clock)) return;
-  double days = 0;
+  double passed = 0;
   double before = 0;  // as the clock told it
   for (double& time : times) {
     if (std::isnan(time)) continue;
-    if (before - time > kDay / 2) days += kDay;
+    if (before - time > full - longest_pause) {
+      passed += full;
+    } else if (time - before > full - kLongestDelay && passed > 0) {
+      passed -= full;
+    }
     before = time;
-    time += days;
+    time += passed;
   }
 }
 
@@ -56,7 +64,7 @@ class ColumnReader {
       if (out_.places.size() == 100) reserve(place);
     }
     for (CsvColumn& column : out_.columns) {
-      if (column.told_in_text) pass_midnight(column.numbers);
+      if (column.told_in_text) pass_full_clock(column.numbers, column.told_in_minutes);
       if (column.kind == ColumnKind::found || column.kind == ColumnKind::time) {
         column.kind = ColumnKind::number;
       }
@@ -86,7 +94,7 @@ class ColumnReader {
       std::size_t cells = 0;
       do {
         double value = 0;
-        if (read_cell(probe.next_cell(), layout_.decimal_comma, value) == CellKind::number) {
+        if (read(probe.next_cell(), value) == CellKind::number) {
           return false;
         }
         ++cells;
@@ -146,7 +154,8 @@ class ColumnReader {
   }
 
   void read_next(CsvColumn& column) {
-    if (holds_numbers(column.kind) && read_number_in_place(column)) return;
+    const bool is_plain = layout_.thousands.empty() && holds_numbers(column.kind);
+    if (is_plain && read_number_in_place(column)) return;
     const std::string_view cell = scanner_.next_cell();
     switch (column.kind) {
       case ColumnKind::unused:
@@ -169,6 +178,11 @@ class ColumnReader {
     }
   }
 
+  CellKind read(std::string_view cell, double& value) const {
+    if (layout_.thousands.empty()) return read_cell(cell, layout_.decimal_comma, value);
+    return read_cell(without_thousands(cell, layout_.thousands), layout_.decimal_comma, value);
+  }
+
   // The usual cell: digits up to the delimiter or the line's end.
   bool read_number_in_place(CsvColumn& column) {
     std::size_t place = scanner_.place();
@@ -187,7 +201,7 @@ class ColumnReader {
 
   void settle(CsvColumn& column, std::string_view cell) {
     double value = 0;
-    const CellKind kind = read_cell(cell, layout_.decimal_comma, value);
+    const CellKind kind = read(cell, value);
     if (kind == CellKind::missing) {
       column.numbers.push_back(kMissing);
     } else if (kind == CellKind::number) {
@@ -204,7 +218,7 @@ class ColumnReader {
 
   void add_number(CsvColumn& column, std::string_view cell) {
     double value = kMissing;
-    const CellKind kind = read_cell(cell, layout_.decimal_comma, value);
+    const CellKind kind = read(cell, value);
     if (kind == CellKind::text && column.first_text == kNoRow) column.first_text = out_.rows();
     column.hexadecimal = column.hexadecimal || is_hexadecimal(cell);
     column.numbers.push_back(kind == CellKind::number ? value : kMissing);
@@ -216,7 +230,7 @@ class ColumnReader {
 
   void add_spare(CsvColumn& column, std::string_view cell) {
     double value = 0;
-    if (read_cell(cell, layout_.decimal_comma, value) == CellKind::number) {
+    if (read(cell, value) == CellKind::number) {
       column.numbers.push_back(value);
       return;
     }
@@ -232,6 +246,9 @@ class ColumnReader {
       add_number(column, cell);
       return;
     }
+    const bool in_minutes = std::ranges::count(cell, ':') == 1;
+    if (!column.told_in_text) column.told_in_minutes = in_minutes;
+    if (time && !in_minutes) column.told_in_minutes = false;
     column.told_in_text = true;
     if (time) {
       column.numbers.push_back(*time);

@@ -33,6 +33,7 @@ struct CsvColumn {
   std::vector<std::string> texts;   // of a column of text
   std::size_t first_text = kNoRow;  // row of a cell that is no number, in a column of numbers
   bool told_in_text = false;        // times, in seconds
+  bool told_in_minutes = false;     // the same, by a clock without hours throughout
   bool hexadecimal = false;         // a cell is (0x1F)
 };
 

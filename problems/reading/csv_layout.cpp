@@ -15,6 +15,7 @@
 #include "problems/reading/csv_head.hpp"
 #include "problems/reading/csv_scanner.hpp"
 #include "problems/reading/foreign_formats.hpp"
+#include "problems/reading/thousands.hpp"
 #include "problems/reading/units.hpp"
 
 namespace tribench {
@@ -22,7 +23,7 @@ namespace {
 
 bool is_number(std::string_view cell) {
   double value = 0;
-  return read_cell(cell, true, value) == CellKind::number;
+  return read_cell(cell, true, value) == CellKind::number || may_hold_thousands(cell);
 }
 
 // A line of data: numbers, or at least one among gaps and texts.

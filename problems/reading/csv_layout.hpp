@@ -19,6 +19,7 @@ namespace tribench {
 struct CsvLayout {
   char delimiter = ',';  // ' ' stands for runs of blanks
   bool decimal_comma = false;
+  std::string thousands = {};  // the sign that parts them (thousands.hpp); empty: none does
   std::vector<std::string> header;
   std::vector<std::string> units;  // per column where there is such a row, else empty
   std::string head;                // the bytes from the line of names up to the rows

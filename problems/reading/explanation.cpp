@@ -7,6 +7,7 @@
 #include <initializer_list>
 
 #include "foundation/error.hpp"
+#include "problems/reading/joint_columns.hpp"
 
 namespace tribench {
 namespace {
@@ -24,8 +25,7 @@ bool is_plain_name(std::string_view name) {
 std::vector<std::string> what_is_missing(const DataFile& file) {
   std::vector<std::string> missing;
   if (!file.joints.empty()) {
-    missing.push_back(fmt::format("columns of the joints {} stand here: choose one with --joint N",
-                                  fmt::join(file.joints, ", ")));
+    missing.push_back(joints_that_stand_here(file) + ": choose one with --joint N");
     return missing;
   }
   if (!file.in_turn.empty()) {

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <optional>
 #include <set>
@@ -13,16 +12,11 @@
 #include <vector>
 
 #include "foundation/error.hpp"
-#include "problems/reading/channel_names.hpp"
+#include "problems/reading/joint_words.hpp"
+#include "problems/reading/name_words.hpp"
 
 namespace tribench {
 namespace {
-
-bool is_of_one_joint(Role role) {
-  constexpr std::array kRoles = {Role::position, Role::velocity, Role::acceleration,
-                                 Role::motor_torque, Role::motor_current};
-  return std::ranges::count(kRoles, role) > 0;
-}
 
 // The positions of all joints, for who needs the whole arm's posture.
 void keep_positions(const std::map<int, std::vector<std::size_t>>& joints,
@@ -61,14 +55,6 @@ std::vector<std::string> differences(const std::vector<std::string>& names) {
   return parts;
 }
 
-// "filtered_velocity" and "raw_velocity" are of one joint: parts of such words.
-bool names_processing(const std::string& part) {
-  constexpr std::array kWords = {"raw",   "filt", "smooth", "meas", "act",    "est",
-                                 "motor", "link", "output", "load", "encoder"};
-  return std::ranges::any_of(
-      kWords, [&](const char* word) { return part.find(word) != std::string::npos; });
-}
-
 }  // namespace
 
 void refuse_joints_told_by_words(const std::vector<ColumnPlan>& plans, std::string_view file) {
@@ -76,7 +62,7 @@ void refuse_joints_told_by_words(const std::vector<ColumnPlan>& plans, std::stri
   for (const ColumnPlan& plan : plans) {
     const Role role = plan.reading.role;
     if (plan.role_given && is_of_one_joint(role)) return;  // which one was said
-    if (!is_of_one_joint(role) || read_channel_name(plan.reading.column).joint) continue;
+    if (!is_of_one_joint(role) || plan.joint || !plan.joint_word.empty()) continue;
     names[role].push_back(plan.reading.column);
   }
   std::map<std::vector<std::string>, std::vector<std::string>> seen;  // roles of one joint
@@ -95,16 +81,86 @@ void refuse_joints_told_by_words(const std::vector<ColumnPlan>& plans, std::stri
   }
 }
 
+namespace {
+
+// The joint that is asked for, else the one of the columns whose roles are given, else the only
+// one; empty: none is told.
+std::string chosen_word(const CsvOptions& options, const std::vector<ColumnPlan>& plans,
+                        const Words& words) {
+  if (!options.joint_word.empty() || options.joint) {
+    const std::string asked =
+        options.joint ? fmt::format("{}", *options.joint) : options.joint_word;
+    for (const std::string& word : words) {
+      if (in_small_letters(word) == in_small_letters(asked)) return word;
+    }
+    throw_bad_input(fmt::format("no column is of joint '{}'", asked), "--joint",
+                    fmt::format("joints: {}", fmt::join(words, ", ")));
+  }
+  std::set<std::string> given;
+  for (const ColumnPlan& plan : plans) {
+    if (plan.role_given && is_of_one_joint(plan.reading.role)) given.insert(plan.joint_word);
+  }
+  if (given.size() == 1) return *given.begin();
+  return words.size() == 1 ? words.front() : std::string();
+}
+
+// As --roles takes it, of the first joint's columns.
+std::string roles_of_first(const std::vector<ColumnPlan>& plans, const std::string& word) {
+  std::string roles;
+  for (const ColumnPlan& plan : plans) {
+    if (plan.joint_word != word || !is_of_one_joint(plan.reading.role)) continue;
+    roles += fmt::format("{}{}={}", roles.empty() ? "" : ",", plan.reading.column,
+                         role_name(plan.reading.role));
+  }
+  return roles;
+}
+
+}  // namespace
+
+void choose_joint_by_word(const CsvOptions& options, std::vector<ColumnPlan>& plans,
+                          std::string_view file, DataFile& out) {
+  Words words;
+  for (const ColumnPlan& plan : plans) {
+    const bool is_known = std::ranges::count(words, plan.joint_word) > 0;
+    if (!plan.joint_word.empty() && !is_known) words.push_back(plan.joint_word);
+  }
+  if (words.empty()) {
+    if (options.joint_word.empty()) return;
+    throw_bad_input(fmt::format("no column is of joint '{}'", options.joint_word), "--joint",
+                    "leave it out, or give a number: no words in the names tell joints apart");
+  }
+  const bool is_given = std::ranges::any_of(plans, [](const ColumnPlan& plan) {
+    return plan.role_given && is_of_one_joint(plan.reading.role);
+  });
+  const std::string chosen = chosen_word(options, plans, words);
+  if (chosen.empty() && is_given) return;  // which one was said
+  if (chosen.empty()) {
+    throw_bad_input(
+        fmt::format("columns of several joints stand here, told apart by '{}'",
+                    fmt::join(words, "', '")),
+        file,
+        fmt::format("choose one (--joint {}), or say which are those of one joint: --roles '{}'",
+                    words.front(), roles_of_first(plans, words.front())));
+  }
+  if (words.size() == 1) {
+    out.warnings.push_back(
+        fmt::format("the columns of '{}' are taken for the joint's: there are no others", chosen));
+  }
+  for (ColumnPlan& plan : plans) {
+    if (plan.joint_word.empty() || plan.joint_word == chosen || plan.role_given) continue;
+    lose_role(plan, fmt::format("of joint '{}'", plan.joint_word));
+  }
+}
+
 void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, DataFile& out) {
   std::map<int, std::vector<std::size_t>> joints;
   std::set<int> given;  // of whose motion or torque a column was given its role by hand
   for (std::size_t j = 0; j < plans.size(); ++j) {
     const Role role = plans[j].reading.role;
     if (role == Role::none || role == Role::movement) continue;
-    const NameReading name = read_channel_name(plans[j].reading.column);
-    if (!name.joint) continue;
-    if (!plans[j].role_given) joints[*name.joint].push_back(j);
-    if (plans[j].role_given && is_of_one_joint(role)) given.insert(*name.joint);
+    if (!plans[j].joint) continue;
+    if (!plans[j].role_given) joints[*plans[j].joint].push_back(j);
+    if (plans[j].role_given && is_of_one_joint(role)) given.insert(*plans[j].joint);
   }
   const std::optional<int> chosen =
       options.joint || given.size() != 1 ? options.joint : std::optional(*given.begin());
@@ -155,6 +211,10 @@ void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, Dat
       }
     }
   }
+}
+
+std::string joints_that_stand_here(const DataFile& file) {
+  return fmt::format("columns of the joints {} stand here", fmt::join(file.joints, ", "));
 }
 
 }  // namespace tribench

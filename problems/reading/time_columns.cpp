@@ -14,6 +14,7 @@
 #include "foundation/order_statistics.hpp"
 #include "problems/reading/channel_names.hpp"
 #include "problems/reading/csv_cells.hpp"
+#include "problems/reading/name_words.hpp"
 
 namespace tribench {
 namespace {
@@ -152,7 +153,9 @@ bool is_split_stamp(const CsvLayout& layout, const ColumnPlan& plan,
 void take_date(const CsvLayout& layout, std::vector<ColumnPlan>& plans, bool has_time) {
   for (std::size_t j = 0; j < plans.size() && !has_time; ++j) {
     ColumnReading& reading = plans[j].reading;
-    if (reading.role != Role::none || plans[j].role_given || !names_date(reading.column)) continue;
+    // A table's index that has no name is often its time.
+    const bool may_be_time = names_date(reading.column) || (j == 0 && reading.column == "index");
+    if (reading.role != Role::none || plans[j].role_given || !may_be_time) continue;
     const std::vector<std::string>& row = layout.first_rows.front();
     if (j >= row.size() || !holds_clock(row[j], layout.decimal_comma)) continue;
     reading.role = Role::time;

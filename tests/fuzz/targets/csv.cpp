@@ -2,9 +2,12 @@
 //
 // A data file either is refused with a place, or is read whole; what is written of it is read again
 // to the same numbers.
+#include <optional>
 #include <sstream>
+#include <string>
 
 #include "problems/reading/csv.hpp"
+#include "problems/reading/explanation.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace {
@@ -59,10 +62,32 @@ void try_spare_columns(std::string_view text) {
   }
 }
 
+// Of an arm's columns those of one joint: other roles, the same rows.
+void try_joint(std::string_view text, std::optional<int> number, const std::string& word) {
+  CsvOptions options;
+  options.used = std::vector<std::string>();
+  options.joint = number;
+  options.joint_word = word;
+  options.all_positions = true;
+  options.drop_missing = true;
+  options.sample_rate = 500;
+  DataFile file;
+  if (!fuzz::reads([&] { file = parse_csv(text, "arm.csv", options); })) return;
+  for (const Channel& channel : file.data.channels) {
+    fuzz::expect(channel.values.size() == file.data.rows(), "a channel has other rows");
+  }
+  for (const auto& [joint, column] : file.joint_positions) {
+    fuzz::expect(file.data.find(column) != nullptr, "a joint's position is no channel");
+  }
+  explanation(file);
+}
+
 }  // namespace
 
 TRIBENCH_FUZZ_TARGET(csv) {
   try_data(input, false);
   try_data(input, true);
   try_spare_columns(input);
+  try_joint(input, 2, {});
+  try_joint(input, {}, "elbow");
 }

@@ -102,6 +102,28 @@ TEST(ChannelNames, SayRoleAndUnit) {
       {"dc_bus.current", Role::none, "-"},
       {"tcp.position", Role::none, "-"},
       {"target.position", Role::none, "-"},
+      {"panda_joint4_position", Role::position, "rad"},
+      {"left_arm_joint_3_vel", Role::velocity, "-"},
+      {"lbr_A4_torque", Role::motor_torque, "-"},
+      {"joint4_gripper_joint2_position", Role::none, "-"},
+      {"gripper_joint1_position", Role::none, "-"},
+      {"panda_joint4_position_cmd", Role::none, "-"},
+      {"model_joint4_torque", Role::none, "-"},
+      {"Joint4Position", Role::position, "rad"},
+      {"J4Pos", Role::position, "-"},
+      {"$JSPEED[4]", Role::velocity, "-"},
+      {"positions[3]", Role::position, "rad"},
+      {"时间(s)", Role::time, "s"},
+      {"位置 [deg]", Role::position, "deg"},
+      {"速度[rpm]", Role::velocity, "rpm"},
+      {"力矩（Nm）", Role::motor_torque, "N m"},
+      {"扭矩", Role::motor_torque, "-"},
+      {"电流_mA", Role::motor_current, "mA"},
+      {"关节位置", Role::position, "-"},
+      {"温度", Role::temperature, "-"},
+      {"時間", Role::time, "-"},
+      {"トルク [Nm]", Role::motor_torque, "N m"},
+      {"電流", Role::motor_current, "-"},
   };
   for (const Case& c : cases) {
     const NameReading reading = read_channel_name(c.name);
@@ -114,6 +136,10 @@ TEST(ChannelNames, SayTheJointAndTheSideOfTheGear) {
   EXPECT_EQ(read_channel_name("q3").joint, 3);
   EXPECT_EQ(read_channel_name("position[0]").joint, 0);
   EXPECT_EQ(read_channel_name("joint_2_current_A").joint, 2);
+  for (const char* name : {"panda_joint4_position", "Joint4Position", "J4Pos", "iiwa_joint_4_vel",
+                           "fr3_joint4_effort", "$JSPEED[4]", "关节4位置"}) {
+    EXPECT_EQ(read_channel_name(name).joint, 4) << name;
+  }
   EXPECT_FALSE(read_channel_name("v2").joint);  // the other joint's velocity
   EXPECT_TRUE(read_channel_name("motor_speed_rpm").at_motor);
   EXPECT_FALSE(read_channel_name("velocity_rad_s").at_motor);

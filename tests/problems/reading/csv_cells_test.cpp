@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: MIT
 //
 // What stands in a cell or a heading and could be taken for something else.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
+#include "foundation/error.hpp"
 #include "problems/reading/csv.hpp"
 
 namespace tribench {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 // The nanoseconds of a whole stamp are no rest of the seconds beside them.
@@ -41,6 +46,81 @@ TEST(Csv, HexadecimalNumbersAreReadAndSaid) {
   EXPECT_EQ(file.data.at("count").values, (std::vector<double>{15, 16}));
   ASSERT_EQ(file.warnings.size(), 1U);
   EXPECT_THAT(file.warnings[0], HasSubstr("'count' holds hexadecimal numbers"));
+}
+
+// As a spreadsheet shows a time: it starts again at the full hour, and counts on where it has room.
+TEST(Csv, AClockOfMinutesGoesPastTheHour) {
+  const auto times_of = [](const std::string& cells) {
+    return parse_csv("time;q [deg]\n" + cells, "log.csv").data.find(Role::time)->values;
+  };
+  const std::vector<double> expected = {3599.8, 3599.9, 3600.1, 3600.2};
+  EXPECT_THAT(times_of("59:59.8;1\n59:59.9;2\n00:00.1;3\n00:00.2;4\n"),
+              ::testing::Pointwise(::testing::DoubleNear(1e-9), expected));
+  EXPECT_THAT(times_of("59:59.8;1\n59:59.9;2\n60:00.1;3\n60:00.2;4\n"),
+              ::testing::Pointwise(::testing::DoubleNear(1e-9), expected));
+  std::string rows;  // one of them overtaken
+  for (int i = 0; i < 60; ++i) {
+    const int tenth = i == 30 ? 31 : i == 31 ? 30 : i;
+    rows += tenth < 31 ? fmt::format("59:5{:.1f};1\n", 5 + 0.1 * tenth)
+                       : fmt::format("00:0{:.1f};1\n", 0.1 * (tenth - 31));
+  }
+  const std::vector<double> sorted = times_of(rows);
+  EXPECT_NEAR(sorted.back() - sorted.front(), 3602.8 - 3595, 1e-9);
+  EXPECT_TRUE(std::ranges::is_sorted(sorted));
+}
+
+TEST(Csv, ThousandsAreReadWhereTheWholeFileTellsTheirSign) {
+  const auto first_of = [](const std::string& rows) {
+    return parse_csv("v\ty\n" + rows, "log.csv", {.names_tell = false}).data.at("v").values;
+  };
+  using Values = std::vector<double>;
+  EXPECT_EQ(first_of("1,234.5\t1\n-0.5\t2\n"), (Values{1234.5, -0.5}));
+  EXPECT_EQ(first_of("1.234,5\t1\n1.234\t2\n0,5\t3\n"), (Values{1234.5, 1234, 0.5}));
+  EXPECT_EQ(first_of("1'234.5\t1\n999\t2\n"), (Values{1234.5, 999}));
+  EXPECT_EQ(first_of("1\xE2\x80\x99"
+                     "234.5\t1\n0\t2\n"),
+            (Values{1234.5, 0}));
+  EXPECT_EQ(first_of("-1 234 567,5\t1\n2\t2,5\n"), (Values{-1234567.5, 2}));
+  EXPECT_EQ(first_of("1\xC2\xA0"
+                     "234.5\t1\n3\t4\n"),
+            (Values{1234.5, 3}));
+  EXPECT_EQ(first_of("1,234,567\t1\n1,234\t2\n"), (Values{1234567, 1234}));
+  const DataFile said = parse_csv("v;y\n1.234,5;1\n2,5;2\n", "log.csv", {.names_tell = false});
+  EXPECT_THAT(
+      said.warnings,
+      ::testing::ElementsAre(HasSubstr("'.' parts the thousands: '1.234,5' is read as 1234.5")));
+}
+
+TEST(Csv, ThousandsThatMayBeReadInTwoWaysAreRefused) {
+  const auto wrong = [](const std::string& rows) -> std::string {
+    try {
+      parse_csv("t\tv\n" + rows, "log.csv",
+                {.roles = parse_roles("v=motor_torque[N m]", "--roles")});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  for (const char* rows : {"0\t1,234.5\n1\t1.234,5\n", "0\t0.5\n0\t1'234.5\n1\t1,234.5\n",
+                           "0\t0.5\n1\t12 34.5\n", "0\t0.5\n0\t0'234.5\n"}) {
+    EXPECT_THAT(wrong(rows), AllOf(HasSubstr("log.csv:"), HasSubstr(":v: '"))) << rows;
+  }
+}
+
+TEST(Csv, AnIndexWithoutANameMayBeTheTime) {
+  const DataFile dates =
+      parse_csv(",q [deg]\n2024-05-14 09:12:33.50,1\n2024-05-14 09:12:33.75,2\n", "log.csv");
+  ASSERT_NE(dates.data.find(Role::time), nullptr);
+  EXPECT_NEAR(dates.data.find(Role::time)->values[1] - dates.data.find(Role::time)->values[0], 0.25,
+              1e-6);
+  EXPECT_EQ(parse_csv(",q [deg]\n0,1\n1,2\n", "log.csv").data.find(Role::time), nullptr) << "rows";
+}
+
+TEST(Csv, AColumnThatIsSaidToBeNothingIsNotTakenByItsUnit) {
+  CsvOptions options;
+  options.roles = parse_roles("\"shoulder [deg]\"=none", "--roles");
+  const DataFile file = parse_csv("t [s],shoulder [deg],i [A]\n0,1,2\n1,2,2\n", "log.csv", options);
+  EXPECT_EQ(file.data.find(Role::position), nullptr);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -80,6 +81,64 @@ TEST(CsvFiles, FilesThatDoNotNameTheSameUnitsAreNotJoined) {
             HasSubstr("--roles 'tau=ROLE[UNIT]'")));
   EXPECT_THAT(joined("q,tau\ndeg,N m", "q,tau\ndeg,A"), HasSubstr("'tau'"));
   std::filesystem::remove_all(folder);
+}
+
+struct Recording {
+  double speed = 1;     // of its motion
+  double current = 1;   // how its unit counts
+  double position = 1;  // the same
+};
+
+std::string joined_recordings(const std::vector<Recording>& recordings) {
+  const std::filesystem::path folder = testing::scratch_folder() / "csv_scales";
+  std::filesystem::create_directories(folder);
+  std::vector<std::filesystem::path> files;
+  for (const Recording& one : recordings) {
+    std::string text = "t,q,dq,current\n";
+    for (int i = 0; i < 400; ++i) {
+      const double t = 0.01 * i;
+      const double v = one.speed * std::sin(2 * t);
+      const double friction = (v > 0 ? 1 : -1) * (one.speed > 0 ? 1 : 0) + 0.8 * v;
+      text += fmt::format("{:.2f},{:.6f},{:.6f},{:.6f}\n", t,
+                          one.position * one.speed * (1 - std::cos(2 * t)) / 2, v,
+                          one.current * (friction + 0.001 * std::sin(30.0 * i)));
+    }
+    files.push_back(folder / fmt::format("{}.csv", files.size()));
+    std::ofstream(files.back()) << text;
+  }
+  CsvOptions options;
+  options.roles = parse_roles("current=motor_current[A],q=position[rad]", "--roles");
+  std::string said = "read";
+  try {
+    for (const std::string& warning : read_csv_files(files, options).warnings)
+      said += "; " + warning;
+  } catch (const Error& error) {
+    said = error.what();
+  }
+  std::filesystem::remove_all(folder);
+  return said;
+}
+
+TEST(CsvFiles, AFileWhoseUnitIsAnotherIsNamed) {
+  EXPECT_THAT(joined_recordings({{1}, {0.7}, {1.5, 1000}}),
+              AllOf(HasSubstr("2.csv: 'current' is about 1000 times as large here"),
+                    HasSubstr("'current [UNIT]'")));
+  EXPECT_THAT(
+      joined_recordings({{1, 0.001}, {0.7}, {1.5}}),
+      AllOf(HasSubstr("read;"), HasSubstr("0.csv: 'current' is about 1000 times as small here")));
+  EXPECT_THAT(
+      joined_recordings({{1}, {0.7, 1000}}),
+      AllOf(HasSubstr("read;"), HasSubstr("1.csv: 'current' is about 1000 times as large here")));
+  EXPECT_THAT(joined_recordings({{1}, {0.7, 1, 57.29578}, {1.5}}),
+              HasSubstr("1.csv: 'q' changes 57.3 times as much with 'dq' here"));
+}
+
+TEST(CsvFiles, OrdinaryMotionsAreNoOtherUnits) {
+  EXPECT_EQ(joined_recordings({{1}, {0.05}, {1.1}}), "read") << "twenty times as slow";
+  EXPECT_EQ(joined_recordings({{0.05}, {1}}), "read");
+  EXPECT_EQ(joined_recordings({{1}, {0.05}, {20}}), "read");
+  EXPECT_EQ(joined_recordings({{1}, {0}}), "read") << "the joint rests in the second";
+  EXPECT_EQ(joined_recordings({{0}, {1}, {2}}), "read");
 }
 
 }  // namespace

@@ -104,8 +104,9 @@ TEST(ToldOtherwise, AMendMends) {
   CsvOptions drops = of_loop();
   drops.drop_missing = true;
   const std::string names = "t,q_rad,tau_Nm\n0,1,1\n";
-  EXPECT_THAT(what_is_wrong(names + "1,2,11'622.300\n"), HasSubstr("signs for thousands"));
-  EXPECT_THAT(what_is_wrong(names + "1,2,11 622.3\n"), HasSubstr("signs for thousands"));
+  EXPECT_THAT(what_is_wrong(names + "1,2,11'622.300\n2,3,11 622.3\n"),
+              AllOf(HasSubstr("log.csv:3"), HasSubstr("signs for thousands")));
+  EXPECT_THAT(what_is_wrong(names + "1,2,\"11,622\"\n"), HasSubstr("signs for thousands"));
   EXPECT_THAT(what_is_wrong(names + "1,2,11.6 Nm\n"), HasSubstr("the column's name says the unit"));
   EXPECT_THAT(what_is_wrong("t,q_rad,tau\n0,1,11.6 Nm\n"), HasSubstr("'tau [Nm]'"));
   EXPECT_THAT(what_is_wrong(names + "1,2,x\n"),

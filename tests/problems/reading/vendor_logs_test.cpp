@@ -343,8 +343,8 @@ TEST(VendorLogs, RecordingsOneAfterTheOtherAndWordsAtTheEnd) {
 TEST(VendorLogs, WhatIsNoTableOrCannotBeToldIsRefused) {
   EXPECT_THAT(complaint_of_log("{\"t\": 0.1, \"pos\": 2}\n{\"t\": 0.2, \"pos\": 2}\n", told("")),
               HasSubstr("log.csv:1: these are JSON objects"));
-  EXPECT_THAT(complaint_of_log("time [ms],pos [mdeg]\n\"1.0\",\"19,607.5\"\n", told("")),
-              HasSubstr("signs for thousands"));
+  EXPECT_THAT(complaint_of_log("time [ms],pos [mdeg]\n\"1.0\",\"19,607,5\"\n", told("")),
+              HasSubstr("log.csv:2:pos [mdeg]: '19,607,5'"));
   const DataFile bare = parse_csv("t,pos,cur\n0,1,2\n0.002,3,4\n", "log.csv", told(""));
   EXPECT_EQ(roles_line(bare), "t=time[s],pos=position[?],cur=motor_current[?]");
   EXPECT_EQ(what_is_missing(bare).size(), 2U);
