@@ -196,7 +196,9 @@ std::vector<const Unit*> units_at_the_end(const std::string& word) {
 
 // A unit as the last words: the longest that leaves a name that goes with it.
 bool read_written_unit(const Words& words, NameReading& reading) {
-  for (std::size_t cut = 1; cut < words.size(); ++cut) {
+  constexpr std::size_t kMostWords = 5;  // of a unit
+  const std::size_t first = words.size() > kMostWords ? words.size() - kMostWords : 1;
+  for (std::size_t cut = first; cut < words.size(); ++cut) {
     for (const Unit* unit : units_at_the_end(joined(words, cut, words.size()))) {
       NameReading stem;
       stem.known.unit = unit;

@@ -42,8 +42,14 @@ OwnedName owned_name(const std::string& name) {
   const std::size_t cut = name.substr(0, end).find_last_of("./:");
   const std::size_t begin = cut == std::string::npos ? 0 : cut + 1;
   if (begin == 0 && read_channel_name(name).role != Role::none) return {};
-  for (std::size_t at = begin; at < end; ++at) {
-    if (at == 0 || (at != begin && !begins_word(name, at))) continue;
+  constexpr std::size_t kMostWords = 6;  // of a quantity and its unit
+  std::vector<std::size_t> begins;
+  for (std::size_t at = end; at-- > begin + 1 && begins.size() < kMostWords;) {
+    if (begins_word(name, at)) begins.push_back(at);
+  }
+  if (begin > 0) begins.push_back(begin);
+  std::ranges::reverse(begins);
+  for (const std::size_t at : begins) {
     OwnedName owned{name.substr(0, at), name.substr(at), Role::none, at == begin};
     const NameReading reading = read_channel_name(owned.quantity);
     if (!is_of_one_joint(reading.role) || reading.joint) continue;
