@@ -151,6 +151,7 @@ bool is_split_stamp(const CsvLayout& layout, const ColumnPlan& plan,
 }
 
 void take_date(const CsvLayout& layout, std::vector<ColumnPlan>& plans, bool has_time) {
+  if (layout.first_rows.empty()) return;  // comments are all that follows the header
   for (std::size_t j = 0; j < plans.size() && !has_time; ++j) {
     ColumnReading& reading = plans[j].reading;
     // A table's index that has no name is often its time.

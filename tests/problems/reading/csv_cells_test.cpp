@@ -116,6 +116,12 @@ TEST(Csv, AnIndexWithoutANameMayBeTheTime) {
   EXPECT_EQ(parse_csv(",q [deg]\n0,1\n1,2\n", "log.csv").data.find(Role::time), nullptr) << "rows";
 }
 
+// What looks like the first row may be a comment, and no row follows.
+TEST(Csv, ADateWithoutARowIsNoTime) {
+  EXPECT_THROW(parse_csv("date,v,w,x\n//a,0,1,2,3\n", "log.csv"), Error);
+  EXPECT_THROW(parse_csv(",v,w,x\n//a,0,1,2,3\n", "log.csv"), Error);
+}
+
 TEST(Csv, AColumnThatIsSaidToBeNothingIsNotTakenByItsUnit) {
   CsvOptions options;
   options.roles = parse_roles("\"shoulder [deg]\"=none", "--roles");
