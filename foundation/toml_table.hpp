@@ -31,6 +31,7 @@ class TomlTable {
             const std::vector<std::string>& known_keys);
 
   bool has(std::string_view key) const { return table_->contains(key); }
+  bool has_text(std::string_view key) const { return (*table_)[key].is_string(); }
   // Each throws Error (bad_input) for a value of another kind; the reference holds the default.
   // A text, true or false, a whole number that is not negative (1e8 is one too), or an array of
   // texts, of such whole numbers or of finite numbers.

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -32,21 +31,7 @@ CLI::Option* add_data_options(CLI::App& command, const std::shared_ptr<DataOptio
       "COLUMN=ROLE[UNIT],... what a column is: q=position[deg], w=velocity[rpm@motor], "
       "i=motor_current[mA], stamp=time[ns]; without [UNIT] as the header says, else SI");
   command.add_option_function<std::string>(
-      "--joint",
-      [options](const std::string& text) {
-        const bool is_number = text.find_first_not_of("0123456789") == std::string::npos;
-        if (!is_number) {
-          options->joint_word = text;
-          return;
-        }
-        options->joint = kMostJoints + 1;
-        std::from_chars(text.data(), text.data() + text.size(), *options->joint);
-        if (text.empty() || *options->joint > kMostJoints) {
-          throw_bad_input(
-              fmt::format("'{}' is no joint", text), "--joint",
-              fmt::format("a number from 0 to {}, or a word of the columns' names", kMostJoints));
-        }
-      },
+      "--joint", [options](const std::string& text) { options->choose_joint(text, "--joint"); },
       "of several joints in the columns' names: its number (q1 ... q7) or word (elbow_position)");
   command.add_option("--where", options->where, "COLUMN=VALUE: use these rows only");
   command.add_flag("--drop-missing", options->drop_missing, "drop and count incomplete rows");

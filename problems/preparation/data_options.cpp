@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "foundation/error.hpp"
@@ -92,6 +93,21 @@ void keep_rows_where(DataFile& file, const Condition& condition, const std::stri
 }
 
 }  // namespace
+
+void DataOptions::choose_joint(const std::string& text, const std::string& place) {
+  if (text.find_first_not_of("0123456789") != std::string::npos) {
+    joint_word = text;
+    return;
+  }
+  int number = kMostJoints + 1;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || number > kMostJoints) {
+    throw_bad_input(
+        fmt::format("'{}' is no joint", text), place,
+        fmt::format("a number from 0 to {}, or a word of the columns' names", kMostJoints));
+  }
+  joint = number;
+}
 
 TorqueConstant parse_torque_constant(const std::string& text, const std::string& place) {
   TorqueConstant constant;

@@ -29,6 +29,10 @@ struct TorqueConstant {
 TorqueConstant parse_torque_constant(const std::string& text, const std::string& place);
 
 struct DataOptions {
+  // By its number ("4") or by what the columns' names call it ("elbow"). Throws Error (bad_input)
+  // with `place`.
+  void choose_joint(const std::string& text, const std::string& place);
+
   GivenRoles roles;
   bool names_tell = true;  // false: a column is what `roles` says, and nothing else
   bool drop_missing = false;

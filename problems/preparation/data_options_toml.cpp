@@ -43,7 +43,9 @@ DataOptions read_data_options(const TomlTable& table) {
   if (table.has("where")) options.where_place = table.place("where");
   table.read("drop_missing", options.drop_missing);
   table.read("flip_sign", options.flip_sign);
-  if (table.has("joint")) {
+  if (table.has_text("joint")) {
+    options.choose_joint(text(table, "joint"), table.place("joint"));
+  } else if (table.has("joint")) {
     int joint = 0;
     table.read("joint", joint, 0, kMostJoints);
     options.joint = joint;
@@ -68,6 +70,7 @@ void insert_data_options(toml::table& table, const DataOptions& options) {
   if (!roles.empty()) table.insert("roles", roles);
   if (!options.where.empty()) table.insert("where", options.where);
   if (options.joint) table.insert("joint", *options.joint);
+  if (!options.joint_word.empty()) table.insert("joint", options.joint_word);
   if (options.drop_missing) table.insert("drop_missing", true);
   if (options.flip_sign) table.insert("flip_sign", true);
   if (options.drive.gear_ratio) table.insert("gear_ratio", *options.drive.gear_ratio);

@@ -64,6 +64,19 @@ TEST(DataOptions, ATableOfTomlMaySayTheRateOfItsRows) {
   EXPECT_THAT(refusal("sample_rate = 0.0"), HasSubstr("sample_rate"));
 }
 
+// A number or a word, and what is written is read again.
+TEST(DataOptions, AJointMayBeAWord) {
+  for (const char* joint : {"4", "'elbow'"}) {
+    toml::table written;
+    insert_data_options(written, options_of(std::string("joint = ") + joint));
+    const DataOptions again =
+        read_data_options(TomlTable(written, "again.toml", "", data_option_keys()));
+    EXPECT_EQ(again.joint.value_or(-1), *joint == '4' ? 4 : -1);
+    EXPECT_EQ(again.joint_word, *joint == '4' ? "" : "elbow");
+  }
+  EXPECT_THAT(refusal("joint = '1000'"), HasSubstr("grid.toml:1"));
+}
+
 TEST(DataOptions, AnEmptyTableLeavesTheColumnsAsTheyAre) {
   const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "log.csv";
