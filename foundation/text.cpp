@@ -23,6 +23,14 @@ std::string capitalised(std::string text) {
   return text;
 }
 
+std::string in_small_letters(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return result;
+}
+
 namespace {
 
 // Of the control character at the start of a text; 0: there is none. U+0080 to U+009F are two

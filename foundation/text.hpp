@@ -19,6 +19,9 @@ std::string_view trimmed(std::string_view text);
 // As a sentence begins: the first letter large, where it is one of ASCII's.
 std::string capitalised(std::string text);
 
+// ASCII's letters made small.
+std::string in_small_letters(std::string_view text);
+
 // As RFC 3629 has it: no overlong forms, no halves of a pair.
 bool is_utf8(std::string_view text);
 

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <vector>
 
+#include "foundation/text.hpp"
 #include "problems/reading/name_words.hpp"
 
 namespace tribench {
@@ -85,7 +86,7 @@ bool read_stem(std::string_view text, NameReading& reading) {
       behind_joint = kept.size();
     numbers_joint = is_joint_word(word);
     if (word.empty()) continue;
-    motor = motor || in_small_letters(word) == "motor" || in_small_letters(word) == "mot";
+    motor = motor || is_motor_word(word);
     const bool letter =
         numbered && (in_small_letters(word) == "j" || in_small_letters(word) == "a");  // "A2", "j2"
     if (!letter && !is_filler(word)) kept.push_back(word);
@@ -115,9 +116,7 @@ bool read_stem(std::string_view text, NameReading& reading) {
     alias = find_alias(kept[0].substr(1));
   }
   if (alias == nullptr && motor) {
-    std::erase_if(kept, [](const std::string& word) {
-      return in_small_letters(word) == "motor" || in_small_letters(word) == "mot";
-    });
+    std::erase_if(kept, is_motor_word);
     alias = find_alias(joined(kept, 0, kept.size()));
     if (alias == nullptr) return false;
     reading.at_motor = true;

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 #include "problems/reading/csv_scanner.hpp"
 
 namespace tribench {
@@ -22,11 +22,9 @@ bool is_missing(std::string_view cell) {
   if (cell.front() == '+' || cell.front() == '-') cell.remove_prefix(1);
   if (cell.starts_with("1.#")) return true;  // "-1.#IND", as older libraries of C write it
   if (cell.empty() || cell.size() > 9) return false;
-  std::string word;
-  for (const char c : cell) word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   constexpr std::array kMissing = {"nan",  "inf",  "infinity", "na",     "n/a", "n.a.",  "#n/a",
                                    "null", "none", "nil",      "<null>", "\\n", "nan()", "?"};
-  return std::find(kMissing.begin(), kMissing.end(), word) != kMissing.end();
+  return std::find(kMissing.begin(), kMissing.end(), in_small_letters(cell)) != kMissing.end();
 }
 
 CellKind read_hexadecimal(std::string_view digits, double& value) {

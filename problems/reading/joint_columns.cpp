@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "foundation/error.hpp"
+#include "foundation/text.hpp"
 #include "problems/reading/joint_words.hpp"
 #include "problems/reading/name_words.hpp"
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <string_view>
 
+#include "foundation/text.hpp"
 #include "problems/reading/channel_names.hpp"
 #include "problems/reading/name_words.hpp"
 

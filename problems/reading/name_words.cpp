@@ -5,6 +5,8 @@
 #include <array>
 #include <cctype>
 
+#include "foundation/text.hpp"
+
 namespace tribench {
 namespace {
 
@@ -83,14 +85,6 @@ std::string in_plain_letters(std::string_view text) {
   return plain;
 }
 
-std::string in_small_letters(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return result;
-}
-
 Words split_words(std::string_view text, bool humps) {
   Words words;
   std::string word;
@@ -132,10 +126,13 @@ bool names_something_else(std::string_view name) {
   });
 }
 
+bool is_motor_word(std::string_view word) {
+  const std::string small = in_small_letters(word);
+  return small == "motor" || small == "mot";
+}
+
 bool names_motor(std::string_view name) {
-  return std::ranges::any_of(split_words(name, true), [](const std::string& word) {
-    return in_small_letters(word) == "motor" || in_small_letters(word) == "mot";
-  });
+  return std::ranges::any_of(split_words(name, true), is_motor_word);
 }
 
 bool names_joint(std::string_view name) {

@@ -16,9 +16,6 @@ using Words = std::vector<std::string>;
 // and LaTeX's signs off.
 std::string in_plain_letters(std::string_view text);
 
-// ASCII's letters made small.
-std::string in_small_letters(std::string_view text);
-
 // "jointPos.velDeg[2]" as joint, Pos, vel, Deg, 2; without `humps` as jointPos, velDeg, 2.
 Words split_words(std::string_view text, bool humps);
 
@@ -39,7 +36,8 @@ bool is_joint_word(std::string_view word);
 // limit; a bus, a tool; a phase; how long something took.
 bool names_something_else(std::string_view name);
 
-// Whether a word of the name says the motor.
+// Whether a word, or one of the name, says the motor.
+bool is_motor_word(std::string_view word);
 bool names_motor(std::string_view name);
 
 // Whether a word of the name says that it tells joints apart.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "foundation/suggestion.hpp"
+#include "foundation/text.hpp"
 
 namespace tribench {
 namespace {
@@ -149,14 +149,6 @@ std::string plain_unit(std::string_view text) {
   return plain;
 }
 
-std::string lower(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return result;
-}
-
 template <typename Same>
 const Unit* find_spelling(Same same) {
   for (const Known& known : kKnown) {
@@ -205,8 +197,8 @@ const Unit* find_unit(std::string_view text) {
   const std::string plain = plain_unit(text);
   if (plain.empty()) return nullptr;
   if (const Unit* unit = find_spelling([&](std::string_view s) { return s == plain; })) return unit;
-  const std::string small = lower(plain);
-  return find_spelling([&](std::string_view s) { return lower(s) == small; });
+  const std::string small = in_small_letters(plain);
+  return find_spelling([&](std::string_view s) { return in_small_letters(s) == small; });
 }
 
 std::string WrittenUnit::symbol() const {
