@@ -124,8 +124,9 @@ bool is_told_by_others(std::size_t family, const FittedModel& fit, const Campaig
   return inflation(torque, orthonormal_basis(rest), base_basis) > kLargeVif;
 }
 
-bool is_told_already(std::size_t family, const LoopModel& other, const FittedModel& fit,
-                     const Campaign& campaign) {
+bool is_told_by_another_name(std::size_t family, const LoopModel& other, const FittedModel& fit,
+                             const Campaign& campaign) {
+  if (fit.model.atoms_of(family) > 0) return false;
   const Eigen::MatrixXd torque =
       whitened(contribution(other, family, campaign.data), campaign.clusters, fit.noise);
   const Eigen::MatrixXd base = fit.x.leftCols(static_cast<Eigen::Index>(fit.model.first_column(0)));

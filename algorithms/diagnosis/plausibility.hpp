@@ -20,9 +20,9 @@ inline constexpr double kLargeVif = 10;
 // effects: the variance inflation of the effect as a whole.
 bool is_told_by_others(std::size_t family, const FittedModel& fit, const Campaign& campaign);
 
-// Whether a model without it tells the torque that the effect has in another model.
-bool is_told_already(std::size_t family, const LoopModel& other, const FittedModel& fit,
-                     const Campaign& campaign);
+// Whether a model that has not the effect tells the torque that it has in another model.
+bool is_told_by_another_name(std::size_t family, const LoopModel& other, const FittedModel& fit,
+                             const Campaign& campaign);
 
 // What an effect's parameters say against its being physical; empty where nothing.
 std::string physical_objection(const EffectFinding& finding, const EffectFamily& known);

@@ -345,7 +345,8 @@ SearchResult go_further(SearchResult one, Searches& searches, const Campaign& ca
   one.tried.insert(other.tried.begin(), other.tried.end());
   const LoopModel& model = other.state.model.model;
   const bool is_other = std::ranges::any_of(model.atoms, [&](const Atom& atom) {
-    return atom.last_resort && !is_told_already(atom.family, model, one.state.model, campaign);
+    return atom.last_resort &&
+           !is_told_by_another_name(atom.family, model, one.state.model, campaign);
   });
   if (!is_other) return one;
   searches.look_for_leftover(other, how);
