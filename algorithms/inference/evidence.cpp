@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "algorithms/fitting/symmetric_system.hpp"
+#include "algorithms/inference/column_products.hpp"
 #include "foundation/elementary.hpp"
 
 namespace tribench::loop {
@@ -38,20 +39,42 @@ struct NormalGamma {
   double precision;
 };
 
+using Traces = std::array<double, kMomentOrder + 1>;  // of a matrix' powers, from the first on
+
+// The trace of a product is the sum of the products of the elements: half of the powers will do.
+Traces traces_of_powers(const Eigen::MatrixXd& matrix) {
+  Traces traces{};
+  traces[1] = matrix.trace();
+  Eigen::MatrixXd power = matrix;
+  for (std::size_t half = 1; 2 * half <= kMomentOrder; ++half) {
+    traces[2 * half] = power.cwiseProduct(power.transpose()).sum();
+    if (2 * half == kMomentOrder) break;
+    const Eigen::MatrixXd next = matrix * power;
+    traces[2 * half + 1] = next.cwiseProduct(power.transpose()).sum();
+    power = next;
+  }
+  return traces;
+}
+
+// Of the unit matrix shared out to its rows, which is the metric of coefficients that are all
+// alike.
+Traces traces_of_powers_alike(Eigen::Index size) {
+  Traces traces{};
+  double trace = 1;
+  for (std::size_t s = 1; s <= kMomentOrder; ++s, trace /= static_cast<double>(size)) {
+    traces[s] = trace;
+  }
+  return traces;
+}
+
 // Cumulants of an effect's square, a quadratic form of normal variables, from the first on: each is
 // one number and another times the precision. Source: Mathai and Provost 1992, theorem 3.2b.2.
 using Cumulants = std::array<std::array<double, 2>, kMomentOrder + 1>;
-Cumulants cumulants_of(const Eigen::MatrixXd& metric, const Eigen::VectorXd& mean,
-                       const Eigen::MatrixXd& covariance) {
-  const Eigen::MatrixXd spread = metric * covariance;
-  Eigen::MatrixXd power = spread;
-  Eigen::VectorXd weighed = metric * mean;
+Cumulants cumulants_of(const Traces& traces, const Traces& of_mean) {
   Cumulants cumulants{};
   double factor = 1;  // 2^(s - 1) (s - 1)!
   for (std::size_t s = 1; s <= kMomentOrder; ++s) {
-    cumulants[s] = {factor * power.trace(), factor * static_cast<double>(s) * mean.dot(weighed)};
-    weighed = spread * weighed;
-    power = spread * power;
+    cumulants[s] = {factor * traces[s], factor * static_cast<double>(s) * of_mean[s]};
     factor *= 2 * static_cast<double>(s);
   }
   return cumulants;
@@ -79,16 +102,26 @@ Polynomial moment_of(const Cumulants& cumulants) {
 // prior's unit covariance.
 double prior_moment(const Eigen::MatrixXd& metric, const NormalGamma& over) {
   const Eigen::Index size = over.mean.size();
-  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(size, size);
-  const Eigen::MatrixXd own = metric.size() > 0 ? metric : unit / static_cast<double>(size);
-  const Polynomial moment = moment_of(cumulants_of(own, over.mean, over.covariance));
+  const bool all_alike = metric.size() == 0;
+  const auto measured = [&](const Eigen::MatrixXd& of) -> Eigen::MatrixXd {
+    if (all_alike) return of / static_cast<double>(size);
+    return metric * of;
+  };
+  const Eigen::MatrixXd spread = measured(over.covariance);
+  Traces of_mean{};
+  Eigen::VectorXd weighed = measured(over.mean);
+  for (std::size_t s = 1; s <= kMomentOrder; ++s, weighed = spread * weighed) {
+    of_mean[s] = over.mean.dot(weighed);
+  }
+  const Polynomial moment = moment_of(cumulants_of(traces_of_powers(spread), of_mean));
+  const Traces before = all_alike ? traces_of_powers_alike(size) : traces_of_powers(metric);
   double expected = 0;
   double power = 1;  // expectation of the precision's
   for (std::size_t d = 0; d <= kMomentOrder; ++d) {
     expected += power * moment[d];
     power *= over.precision * (1 + 2 * static_cast<double>(d) / over.degrees_of_freedom);
   }
-  return expected / moment_of(cumulants_of(own, Eigen::VectorXd::Zero(size), unit))[0];
+  return expected / moment_of(cumulants_of(before, Traces{}))[0];
 }
 
 }  // namespace
@@ -112,7 +145,7 @@ void EvidenceSums::add(const Eigen::MatrixXd& base, const Eigen::MatrixXd& colum
   Eigen::MatrixXd all(base.rows(), base.cols() + columns.cols() + 1);
   all << base, columns, target;
   if (products_.size() == 0) products_.setZero(all.cols(), all.cols());
-  products_.selfadjointView<Eigen::Lower>().rankUpdate(all.transpose());
+  products_ += gram_of(all);
   rows_ += base.rows();
   base_ = base.cols();
 }

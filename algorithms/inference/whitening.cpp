@@ -52,13 +52,22 @@ RowFilter::RowFilter(const Noise& noise, std::size_t longest) {
 }
 
 Whitening::Whitening(const Clusters& clusters, const Noise& noise)
-    : clusters_(clusters), noise_(noise), filter_(noise, longest_movement(clusters)) {}
+    : clusters_(clusters), noise_(noise), filter_(noise, longest_movement(clusters)) {
+  direction_.resize(static_cast<Eigen::Index>(longest_movement(clusters)));
+  for (Eigen::Index k = 0; k < direction_.size(); ++k) {
+    direction_[k] = filter_.offset(static_cast<std::size_t>(k));
+  }
+  squares_until_ = {0};
+  for (std::size_t k = 0; k < filter_.steady_from(); ++k) {
+    squares_until_.push_back(squares_until_.back() + filter_.offset(k) * filter_.offset(k));
+  }
+}
 
 OffsetShrinkage Whitening::offset_of(std::size_t movement) const {
   const std::size_t rows = clusters_.movements[movement].size();
   OffsetShrinkage u{};
   const std::size_t changing = std::min(rows, filter_.steady_from());
-  for (std::size_t k = 0; k < changing; ++k) u.length += filter_.offset(k) * filter_.offset(k);
+  u.length = squares_until_[changing];
   const double last = filter_.offset(filter_.steady_from());
   u.length += static_cast<double>(rows - changing) * last * last;
   u.noise = noise_.row_variance() * std::min(noise_.row_inflation(), static_cast<double>(rows));
@@ -106,19 +115,11 @@ void Whitening::filter_rows(Eigen::Ref<Eigen::MatrixXd> rows) const {
   for (; j < rows.cols(); ++j) filter_columns<1>(rows.col(j).data(), rows.outerStride(), count);
 }
 
-Eigen::VectorXd Whitening::offset_direction(std::size_t rows) const {
-  Eigen::VectorXd direction(static_cast<Eigen::Index>(rows));
-  for (std::size_t k = 0; k < rows; ++k) {
-    direction[static_cast<Eigen::Index>(k)] = filter_.offset(k);
-  }
-  return direction;
-}
-
 // Of filtered rows of a movement, its weight too.
 void Whitening::shrink_offset(std::size_t movement, Eigen::Ref<Eigen::MatrixXd> rows) const {
-  const Eigen::VectorXd direction = offset_direction(static_cast<std::size_t>(rows.rows()));
   const OffsetShrinkage u = offset_of(movement);
-  for (Eigen::Index j = 0; j < rows.cols(); ++j) {
+  const auto direction = direction_.head(rows.rows());
+  for (Eigen::Index j = 0; j < rows.cols() && u.kept != 1; ++j) {
     const double shift = (1 - u.kept) * direction.dot(rows.col(j)) / u.length;
     rows.col(j) -= shift * direction;
   }

@@ -81,12 +81,15 @@ class Whitening {
   // Of one movement.
   void filter_rows(Eigen::Ref<Eigen::MatrixXd> rows) const;
   void filter_backwards(Eigen::Ref<Eigen::VectorXd> rows) const;
-  Eigen::VectorXd offset_direction(std::size_t rows) const;
   void shrink_offset(std::size_t movement, Eigen::Ref<Eigen::MatrixXd> rows) const;
 
   const Clusters& clusters_;
   const Noise& noise_;
   RowFilter filter_;
+  // The offset's direction in the filtered rows of the longest movement: a shorter one has its
+  // first rows. And the square of its length up to each row, to where the filter is steady.
+  Eigen::VectorXd direction_;
+  std::vector<double> squares_until_;
 };
 
 // The same in one call.

@@ -7,7 +7,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -149,16 +152,17 @@ std::string plain_unit(std::string_view text) {
   return plain;
 }
 
-template <typename Same>
-const Unit* find_spelling(Same same) {
+using Spellings = std::map<std::string, const Unit*, std::less<>>;
+
+// Of all units, as they are or in small letters; of two alike the first one's.
+Spellings all_spellings(bool small) {
+  Spellings all;
   for (const Known& known : kKnown) {
-    for (std::size_t begin = 0; begin <= known.spellings.size();) {
-      const std::size_t end = std::min(known.spellings.find('|', begin), known.spellings.size());
-      if (same(known.spellings.substr(begin, end - begin))) return &known.unit;
-      begin = end + 1;
+    for (const std::string_view spelling : split(known.spellings, '|')) {
+      all.try_emplace(small ? in_small_letters(spelling) : std::string(spelling), &known.unit);
     }
   }
-  return nullptr;
+  return all;
 }
 
 std::vector<Dimension> dimensions_of(Role role) {
@@ -194,11 +198,13 @@ bool is_motion(Dimension dimension) {
 }  // namespace
 
 const Unit* find_unit(std::string_view text) {
+  static const Spellings kAsTheyAre = all_spellings(false);
+  static const Spellings kSmall = all_spellings(true);
   const std::string plain = plain_unit(text);
   if (plain.empty()) return nullptr;
-  if (const Unit* unit = find_spelling([&](std::string_view s) { return s == plain; })) return unit;
-  const std::string small = in_small_letters(plain);
-  return find_spelling([&](std::string_view s) { return in_small_letters(s) == small; });
+  if (const auto found = kAsTheyAre.find(plain); found != kAsTheyAre.end()) return found->second;
+  const auto found = kSmall.find(in_small_letters(plain));
+  return found != kSmall.end() ? found->second : nullptr;
 }
 
 std::string WrittenUnit::symbol() const {

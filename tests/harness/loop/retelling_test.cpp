@@ -179,7 +179,8 @@ Dataset kinova(const std::filesystem::path& folder, const std::string& joint) {
 void expect_one_story_of_a_measured_set(Told how) {
   const auto folder = tribench::testing::shared_data();
   if (!folder) GTEST_SKIP() << tribench::testing::kNoSharedData;
-  for (const char* joint : {"joint2", "joint6"}) {
+  // Joint 6 asks all of its searches anew: it is for the night.
+  for (const char* joint : {"joint2", how == Told::at_once ? "joint3" : "joint6"}) {
     expect_one_story(kinova(*folder, joint), {}, how, joint);
   }
 }
