@@ -389,7 +389,7 @@ void add_base_options(CLI::App& command, LoopArguments& arguments) {
       {{"auto", Gravity::automatic}, {"fit", Gravity::fit}, {"none", Gravity::none}});
   command
       .add_option("--urdf", arguments.reading->urdf,
-                  "URDF of the arm, beside --joint N and columns of all joints: gravity from it")
+                  "URDF of the arm, beside --joint and positions of all joints: gravity from it")
       ->check(CLI::ExistingFile);
   command.add_flag("--explain", arguments.explain,
                    "say what each column was taken for and what would be done, and stop");

@@ -102,13 +102,60 @@ Arm read_arm(const std::filesystem::path& file) {
   return arm;
 }
 
+bool holds(const std::string& name, const std::string& word) {
+  return in_small_letters(name).find(in_small_letters(word)) != std::string::npos;
+}
+
+// Of the arm's joint of this name.
+const JointPosition& position_of(const std::string& name, const DataFile& file, const Arm& arm) {
+  std::vector<const JointPosition*> all;
+  std::vector<std::string> words;
+  for (const JointPosition& one : file.joint_positions) {
+    if (in_small_letters(one.joint) == in_small_letters(name)) return one;
+    words.push_back(one.joint);
+    if (holds(name, one.joint) || holds(one.joint, name)) all.push_back(&one);
+  }
+  if (all.size() == 1) return *all.front();
+  throw_bad_input(
+      fmt::format("{} '{}' is the position of its joint '{}'",
+                  all.empty() ? "none of" : "more than one of", fmt::join(words, "', '"), name),
+      arm.place, "name the columns after the joints of that file");
+}
+
+// In the order of the arm's joints.
+std::vector<const JointPosition*> positions_of(const DataFile& file, const Arm& arm) {
+  std::vector<const JointPosition*> positions;
+  if (file.joints_have_words) {
+    for (const std::string& name : arm.joints) {
+      const JointPosition& one = position_of(name, file, arm);
+      if (std::ranges::count(positions, &one) > 0) {
+        throw_bad_input(
+            fmt::format("'{}' would be the position of two of its joints, '{}' one of them",
+                        one.joint, name),
+            arm.place, "name the columns after the joints of that file");
+      }
+      positions.push_back(&one);
+    }
+    return positions;
+  }
+  if (file.joint_positions.size() != arm.joints.size()) {
+    throw_bad_input(
+        fmt::format("{} joints move there ({}), and the data have positions of {}",
+                    arm.joints.size(), fmt::join(arm.joints, ", "), file.joint_positions.size()),
+        arm.place, "give columns q1, q2, ... of all of them, in the file's order");
+  }
+  for (const JointPosition& one : file.joint_positions) positions.push_back(&one);
+  return positions;
+}
+
 }  // namespace
 
 bool has_chain_gravity() { return true; }
 
 void add_chain_gravity(DataFile& file, const std::filesystem::path& urdf) {
-  if (!file.joint) {
-    throw_bad_input("no joint is chosen", "--urdf", "give --joint N beside columns of all joints");
+  if (file.joint.empty()) {
+    throw_bad_input("no joint is chosen", "--urdf",
+                    "give --joint N, or its name, beside columns of all joints");
   }
   if (const Channel* gravity = file.data.find(Role::gravity_torque)) {
     throw_bad_input(fmt::format("'{}' declares the gravity torque already", gravity->name),
@@ -116,17 +163,19 @@ void add_chain_gravity(DataFile& file, const std::filesystem::path& urdf) {
                     fmt::format("leave one of them out: --roles '{}=none'", gravity->name));
   }
   const Arm arm = read_arm(urdf);
-  const auto joints = file.joint_positions.size();
-  if (joints != arm.joints.size()) {
-    throw_bad_input(fmt::format("{} joints move there ({}), and the data have positions of {}",
-                                arm.joints.size(), fmt::join(arm.joints, ", "), joints),
-                    urdf.string(), "give columns q1, q2, ... of all of them, in the file's order");
+  const std::vector<const JointPosition*> of_joints = positions_of(file, arm);
+  const auto chosen = std::ranges::find(of_joints, file.joint, &JointPosition::joint);
+  if (chosen == of_joints.end()) {
+    throw_bad_input(
+        fmt::format("joint '{}' is none of {}", file.joint, fmt::join(arm.joints, ", ")),
+        urdf.string(), "it has to move there");
   }
+  const auto which = static_cast<std::size_t>(chosen - of_joints.begin());
+  const std::string& held = arm.joints[which];
+  const std::size_t joints = of_joints.size();
   std::vector<const std::vector<double>*> positions;
-  std::string held;  // the chosen joint
-  for (const auto& [joint, column] : file.joint_positions) {
-    if (joint == *file.joint) held = arm.joints[positions.size()];
-    positions.push_back(&file.data.at(column).values);
+  for (const JointPosition* one : of_joints) {
+    positions.push_back(&file.data.at(one->channel).values);
   }
   const auto n = static_cast<unsigned>(joints);
   std::vector<unsigned> place(joints);  // of each joint among the solver's
@@ -136,8 +185,6 @@ void add_chain_gravity(DataFile& file, const std::filesystem::path& urdf) {
       place[static_cast<std::size_t>(at - arm.joints.begin())] = element.q_nr;
     }
   }
-  const auto which =
-      static_cast<std::size_t>(std::ranges::find(arm.joints, held) - arm.joints.begin());
   KDL::TreeIdSolver_RNE solver(arm.tree, KDL::Vector(0, 0, -kGravity));
   KDL::JntArray q(n);
   const KDL::JntArray rest(n);

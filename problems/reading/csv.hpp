@@ -80,14 +80,22 @@ struct ColumnReading {
   std::string remark;
 };
 
+// The position of one of a file's several joints.
+struct JointPosition {
+  std::string joint;  // "3", or the word that the columns' names have for it: "elbow"
+  std::string channel;
+};
+
 struct DataFile {
   Dataset data;
   std::vector<TextColumn> texts;
   std::vector<ColumnReading> readings;  // every column of the file, in its order
   std::vector<int> joints;   // numbers in the names of which one has to be chosen; else empty
-  std::optional<int> joint;  // that was chosen
-  // Number and channel of each joint whose position was asked for, in the order of the numbers.
-  std::map<int, std::string> joint_positions;
+  std::string joint;         // that was chosen, by its number or its word; empty: none was
+  bool joints_have_words = false;
+  // Of the joints whose positions were asked for, in the order of their numbers, of words in that
+  // of the columns.
+  std::vector<JointPosition> joint_positions;
   // "joint = 1, 2": a column in which several joints take turns, and what it calls them; else
   // empty.
   std::string in_turn;

@@ -11,6 +11,7 @@
 #include "foundation/error.hpp"
 #include "foundation/text.hpp"
 #include "problems/reading/foreign_formats.hpp"
+#include "problems/reading/text_encoding.hpp"
 
 namespace tribench {
 namespace {
@@ -84,56 +85,6 @@ std::string unpacked(const std::string& packed, const std::string& file, std::si
   text.reserve(size);
   inflate_in_pieces(packed, file, most, [&](std::string_view piece) { text += piece; });
   return text;
-}
-
-void append_utf8(std::string& out, std::uint32_t code) {
-  const auto byte = [&](std::uint32_t value) { out += static_cast<char>(value); };
-  if (code < 0x80) {
-    byte(code);
-  } else if (code < 0x800) {
-    byte(0xC0 | (code >> 6));
-    byte(0x80 | (code & 0x3F));
-  } else if (code < 0x10000) {
-    byte(0xE0 | (code >> 12));
-    byte(0x80 | ((code >> 6) & 0x3F));
-    byte(0x80 | (code & 0x3F));
-  } else {
-    byte(0xF0 | (code >> 18));
-    byte(0x80 | ((code >> 12) & 0x3F));
-    byte(0x80 | ((code >> 6) & 0x3F));
-    byte(0x80 | (code & 0x3F));
-  }
-}
-
-// Spreadsheets' "Unicode text". A lone half of a pair becomes the sign of replacement.
-std::string from_utf16(std::string_view bytes, bool high_first) {
-  std::string out;
-  out.reserve(bytes.size() / 2);
-  const auto unit = [&](std::size_t at) -> std::uint32_t {
-    const auto first = static_cast<unsigned char>(bytes[at]);
-    const auto second = static_cast<unsigned char>(bytes[at + 1]);
-    return high_first ? first << 8U | second : second << 8U | first;
-  };
-  for (std::size_t at = 2; at + 1 < bytes.size(); at += 2) {  // behind the mark
-    std::uint32_t code = unit(at);
-    const bool leads = code >= 0xD800 && code < 0xDC00 && at + 3 < bytes.size();
-    if (leads && unit(at + 2) >= 0xDC00 && unit(at + 2) < 0xE000) {
-      code = 0x10000 + ((code - 0xD800) << 10) + (unit(at + 2) - 0xDC00);
-      at += 2;
-    }
-    append_utf8(out, code >= 0xD800 && code < 0xE000 ? 0xFFFD : code);
-  }
-  return out;
-}
-
-// A text that is no UTF-8 is taken for Latin-1, as Windows' spreadsheets write it.
-std::string as_utf8(std::string text) {
-  if (text.starts_with("\xFF\xFE")) return from_utf16(text, false);
-  if (text.starts_with("\xFE\xFF")) return from_utf16(text, true);
-  if (is_utf8(text)) return text;
-  std::string out;
-  for (const char c : text) append_utf8(out, static_cast<unsigned char>(c));
-  return out;
 }
 
 }  // namespace

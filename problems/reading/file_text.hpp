@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A data file's text in UTF-8: unpacked where it is gzip (told by its first bytes, not by its
-// name), from UTF-16 where it has that mark, from Latin-1 where it is no UTF-8.
+// A data file's text in UTF-8 (text_encoding.hpp): unpacked where it is gzip, told by its first
+// bytes, not by its name.
 #pragma once
 
 #include <cstddef>

@@ -19,16 +19,12 @@
 namespace tribench {
 namespace {
 
-// The positions of all joints, for who needs the whole arm's posture.
-void keep_positions(const std::map<int, std::vector<std::size_t>>& joints,
-                    std::vector<ColumnPlan>& plans, DataFile& out) {
-  for (const auto& [joint, columns] : joints) {
-    for (const std::size_t j : columns) {
-      if (plans[j].reading.role != Role::position || out.joint_positions.contains(joint)) continue;
-      plans[j].in_chain = true;
-      out.joint_positions[joint] = plans[j].reading.column;
-    }
-  }
+// The position of a joint, for who needs the whole arm's posture: of several the first one's.
+void keep_position(const std::string& joint, ColumnPlan& plan, DataFile& out) {
+  const bool is_known = std::ranges::count(out.joint_positions, joint, &JointPosition::joint) > 0;
+  if (plan.reading.role != Role::position || is_known) return;
+  plan.in_chain = true;
+  out.joint_positions.push_back({joint, plan.reading.column});
 }
 
 // What differs between names, from the first that differs to the last: "shoulder" and "elbow" of
@@ -84,6 +80,14 @@ void refuse_joints_told_by_words(const std::vector<ColumnPlan>& plans, std::stri
 
 namespace {
 
+// "Elbow_joint" and "elbow" are one.
+std::string plain_word(std::string_view joint) {
+  std::string plain = in_small_letters(joint);
+  constexpr std::string_view kJoint = "_joint";
+  if (plain.ends_with(kJoint)) plain.resize(plain.size() - kJoint.size());
+  return plain;
+}
+
 // The joint that is asked for, else the one of the columns whose roles are given, else the only
 // one; empty: none is told.
 std::string chosen_word(const CsvOptions& options, const std::vector<ColumnPlan>& plans,
@@ -92,7 +96,7 @@ std::string chosen_word(const CsvOptions& options, const std::vector<ColumnPlan>
     const std::string asked =
         options.joint ? fmt::format("{}", *options.joint) : options.joint_word;
     for (const std::string& word : words) {
-      if (in_small_letters(word) == in_small_letters(asked)) return word;
+      if (plain_word(word) == plain_word(asked)) return word;
     }
     throw_bad_input(fmt::format("no column is of joint '{}'", asked), "--joint",
                     fmt::format("joints: {}", fmt::join(words, ", ")));
@@ -147,8 +151,12 @@ void choose_joint_by_word(const CsvOptions& options, std::vector<ColumnPlan>& pl
     out.warnings.push_back(
         fmt::format("the columns of '{}' are taken for the joint's: there are no others", chosen));
   }
+  out.joint = chosen;
+  out.joints_have_words = true;
   for (ColumnPlan& plan : plans) {
-    if (plan.joint_word.empty() || plan.joint_word == chosen || plan.role_given) continue;
+    if (plan.joint_word.empty()) continue;
+    if (options.all_positions) keep_position(plan.joint_word, plan, out);
+    if (plan.joint_word == chosen || plan.role_given) continue;
     lose_role(plan, fmt::format("of joint '{}'", plan.joint_word));
   }
 }
@@ -181,7 +189,7 @@ void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, Dat
                     known.empty() ? "leave it out: no name holds a joint's number"
                                   : fmt::format("joints: {}", fmt::join(known, ", ")));
   }
-  out.joint = chosen;
+  if (chosen) out.joint = fmt::format("{}", *chosen);
   if (joints.size() < 2) return;
   if (!chosen) {
     // Where the motion is told without a number, or by hand, the numbers are of others.
@@ -196,7 +204,11 @@ void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, Dat
     }
     return;
   }
-  if (options.all_positions) keep_positions(joints, plans, out);
+  for (const auto& [joint, columns] : joints) {
+    for (const std::size_t j : columns) {
+      if (options.all_positions) keep_position(fmt::format("{}", joint), plans[j], out);
+    }
+  }
   int neighbour = *chosen - 1;
   if (!joints.contains(neighbour)) neighbour = *chosen + 1;
   for (const auto& [joint, columns] : joints) {

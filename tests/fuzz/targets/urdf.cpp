@@ -15,13 +15,14 @@ TRIBENCH_FUZZ_TARGET(urdf) {
   using namespace tribench;
   if (!has_chain_gravity()) return;
   const fuzz::MemoryFile file(input);
-  for (const std::size_t joints : {1, 2}) {
+  const std::vector<std::string> names[] = {{"1"}, {"1", "2"}, {"elbow", "shoulder"}};
+  for (const std::vector<std::string>& joints : names) {
     DataFile data;
-    data.joint = 1;
-    for (std::size_t j = 1; j <= joints; ++j) {
-      const std::string name = "q" + std::to_string(j);
-      data.data.channels.push_back({name, "rad", Role::position, {-1, 0, 0.5}});
-      data.joint_positions[static_cast<int>(j)] = name;
+    data.joint = joints.front();
+    data.joints_have_words = joints.front() == "elbow";
+    for (const std::string& joint : joints) {
+      data.data.channels.push_back({"q " + joint, "rad", Role::position, {-1, 0, 0.5}});
+      data.joint_positions.push_back({joint, "q " + joint});
     }
     data.data.movement = {0, 0, 0};
     data.data.movement_names = {"a"};
