@@ -9,6 +9,7 @@
 
 #include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/sanitized.hpp"
 
 namespace tribench::testing {
 namespace {
@@ -214,6 +215,7 @@ TEST_F(ExternalTest, AnAnswerSaysOneThingInKnownWords) {
 }
 
 TEST_F(ExternalTest, AProgramsMemoryIsItsCells) {
+  if (kIsSanitized) GTEST_SKIP() << kNothingToMeasure;
   run("\"large\", \"small\"", shell_method("large",
                                            "x=$(head -c 60000000 /dev/zero | tr \"\\0\" x); "
                                            "echo '{\"front\": [\"3\"]}'") +

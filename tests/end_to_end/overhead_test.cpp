@@ -9,6 +9,7 @@
 
 #include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/sanitized.hpp"
 
 namespace tribench::testing {
 namespace {
@@ -23,6 +24,7 @@ double children_cpu_s() {
 }
 
 TEST(Overhead, IsBelowEightMillisecondsOfCpuACell) {
+  if (kIsSanitized) GTEST_SKIP() << kNothingToMeasure;
   const TemporaryFolder folder;
   // Fits of microseconds on one problem, made once: all that is left is the harness.
   constexpr int kCells = 400;

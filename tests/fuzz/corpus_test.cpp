@@ -20,6 +20,7 @@ namespace tribench::fuzz {
 namespace {
 
 namespace fs = std::filesystem;
+using std::string_view_literals::operator""sv;
 
 std::string contents_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -63,7 +64,7 @@ TEST_P(Corpus, CutShortBreaksNothingEither) {
 
 // An input of the corpus with a few of its bytes changed, left out or taken from another one.
 std::string mutated(const std::vector<std::string>& corpus, RandomStream& random) {
-  constexpr std::string_view kBytes = std::string_view("\0\xff\x80\n\"\\{}[],:;-+.e09 ", 22);
+  constexpr std::string_view kBytes = "\0\xff\x80\n\"\\{}[],:;-+.e09 "sv;
   std::string text = corpus[random.below(corpus.size())];
   for (std::uint64_t changes = 1 + random.below(6); changes > 0; --changes) {
     const std::size_t at = random.below(text.size() + 1);

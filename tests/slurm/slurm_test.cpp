@@ -15,6 +15,7 @@
 
 #include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/sanitized.hpp"
 
 namespace tribench::testing {
 namespace {
@@ -80,6 +81,7 @@ class SlurmTest : public ::testing::Test {
         GTEST_SKIP() << program << " is not installed (./tribench test installs it)";
       }
     }
+    if (kIsSanitized) GTEST_SKIP() << "its limits of memory are a plain build's";
     if (::geteuid() != 0) GTEST_SKIP() << "a Slurm of the test's own needs root";
     if (!has_control_groups()) GTEST_SKIP() << "slurmd needs /sys/fs/cgroup, which is not mounted";
     if (!cluster_) cluster_ = std::make_unique<Cluster>();

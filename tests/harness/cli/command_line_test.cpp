@@ -16,6 +16,7 @@
 #include "harness/cli/program.hpp"
 #include "tests/support/paths.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/sanitized.hpp"
 
 namespace tribench::testing {
 namespace {
@@ -175,6 +176,7 @@ TEST(CommandLine, MoreCellsThanARunCanHoldAreRefusedBeforeTheyAreMade) {
 
 // Each as a list of words took 0.7 kB.
 TEST(CommandLine, ADryRunOfAMillionCellsTakesLittleMemory) {
+  if (kIsSanitized) GTEST_SKIP() << kNothingToMeasure;
   const TemporaryFolder folder;
   write_text(folder / "grid.toml",
              "[grid]\nproblems = [\"A/j2/no_load\"]\nmethods = [\"linear\"]\n"
