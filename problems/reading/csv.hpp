@@ -90,8 +90,8 @@ struct DataFile {
   Dataset data;
   std::vector<TextColumn> texts;
   std::vector<ColumnReading> readings;  // every column of the file, in its order
-  std::vector<int> joints;   // numbers in the names of which one has to be chosen; else empty
-  std::string joint;         // that was chosen, by its number or its word; empty: none was
+  std::vector<int> joints;  // numbers in the names of which one has to be chosen; else empty
+  std::string joint;        // that was chosen, by its number or its word; empty: none was
   bool joints_have_words = false;
   // Of the joints whose positions were asked for, in the order of their numbers, of words in that
   // of the columns.

@@ -106,7 +106,7 @@ bool is_written_in(const PairCode& code, std::string_view text) {
 // Empty where this machine does not know the code, or the text is none.
 std::string converted(std::string text, const char* code) {
   const iconv_t conversion = iconv_open("UTF-8", code);
-  if (conversion == reinterpret_cast<iconv_t>(-1)) return {};
+  if (reinterpret_cast<std::intptr_t>(conversion) == -1) return {};
   std::string out(2 * text.size(), '\0');  // pairs become three bytes
   char* from = text.data();
   char* to = out.data();
