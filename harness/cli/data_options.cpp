@@ -2,6 +2,7 @@
 #include "harness/cli/data_options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "foundation/error.hpp"
 #include "foundation/standard_streams.hpp"
 #include "harness/cli/number_options.hpp"
+#include "problems/user/user_problem.hpp"
 
 namespace tribench {
 
@@ -69,6 +71,25 @@ Dataset read_columns(const std::string& file, const DataOptions& options,
                               reading.dropped_rows));
   }
   return std::move(reading.data);
+}
+
+std::vector<std::string> every_other_column(const std::string& file, const DataOptions& options,
+                                            const std::string& target,
+                                            std::set<std::string> taken) {
+  const std::vector<std::filesystem::path> files = {file};
+  if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
+    throw_bad_input("what is no file can be read once only", file, "give --inputs");
+  }
+  const Dataset data = read_named_columns(files, options, std::nullopt).data;
+  data.at(target);
+  taken.insert(target);
+  std::vector<std::string> columns = user::other_columns(data, std::move(taken), options.where);
+  if (columns.empty()) {
+    throw_bad_input("no other column holds numbers", file, "there has to be an input");
+  }
+  print_message(fmt::format("tribench: explained by every other column of numbers: {}\n",
+                            fmt::join(columns, ", ")));
+  return columns;
 }
 
 void require_rule(const std::string& file, const DataOptions& told, const ColumnRule& rule) {

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,12 @@ CLI::Option* add_data_options(CLI::App& command, const std::shared_ptr<DataOptio
 // (bad_input).
 Dataset read_columns(const std::string& file, const DataOptions& options,
                      std::vector<std::string> used);
+
+// What explains the target where nobody names the inputs, as in a grid (problems/user); said on
+// standard error. Throws Error (bad_input): the file cannot be read twice, the target is no column,
+// there is no other column.
+std::vector<std::string> every_other_column(const std::string& file, const DataOptions& options,
+                                            const std::string& target, std::set<std::string> taken);
 
 // Reads the file once more and throws Error (bad_input) with the line of the first row that breaks
 // the rule; returns where none does.

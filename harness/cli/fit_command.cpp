@@ -320,7 +320,16 @@ void require_own_columns(const FitArguments& arguments) {
   require("--category", arguments.category, "name it once: each category has constants of its own");
 }
 
-ExitStatus fit(const FitArguments& arguments, const Registry& registry) {
+void name_inputs(FitArguments& arguments) {
+  if (!arguments.inputs.empty()) return;
+  arguments.inputs =
+      every_other_column(arguments.data, *arguments.reading, arguments.target,
+                         {arguments.weights, arguments.sigma, arguments.category, arguments.group,
+                          arguments.held_out ? arguments.held_out->column : ""});
+}
+
+ExitStatus fit(FitArguments arguments, const Registry& registry) {
+  name_inputs(arguments);
   require_own_columns(arguments);
   if (!arguments.save.empty()) try_output_file(arguments.save);
   const ChosenMethod chosen = choose_method(arguments, registry);
@@ -387,8 +396,9 @@ void add_method_options(CLI::App& command, FitArguments& arguments) {
   command.add_option("DATA", arguments.data, "the data file (CSV)")->required();
   command.add_option("--target", arguments.target, "the column to explain")->required();
   command
-      .add_option("--inputs", arguments.inputs, "the columns to explain it by; sgn_X is derived")
-      ->required()
+      .add_option("--inputs", arguments.inputs,
+                  "the columns to explain it by; sgn_X is derived; default: every other column of "
+                  "numbers")
       ->delimiter(',');
   CLI::Option* method = command.add_option("--method", arguments.method,
                                            "a name of `tribench list methods`; default: relay");

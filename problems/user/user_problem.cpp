@@ -125,16 +125,8 @@ DataFile read_rows(const UserProblem& own, std::span<const DataSource> sources) 
 
 std::vector<std::string> inputs_of(const UserProblem& own, const Dataset& data) {
   if (!own.inputs.empty()) return own.inputs;
-  std::set<std::string> others = {own.target, own.group, own.category, own.held_out.column};
-  const std::string& where = own.reading.where;
-  others.insert(where.substr(0, where.rfind('=')));
-  std::vector<std::string> inputs;
-  for (const Channel& channel : data.channels) {
-    if (channel.role != Role::time && !others.contains(channel.name)) {
-      inputs.push_back(channel.name);
-    }
-  }
-  return inputs;
+  return other_columns(data, {own.target, own.group, own.category, own.held_out.column},
+                       own.reading.where);
 }
 
 suite::Law law_of(const UserProblem& own, const suite::LawReader& laws,
@@ -313,6 +305,18 @@ std::string UserProblem::hash() const {
 void require_unchanged(const UserProblem& own) {
   require_unchanged(own.files);
   require_unchanged(own.held_out.files);
+}
+
+std::vector<std::string> other_columns(const Dataset& data, std::set<std::string> taken,
+                                       const std::string& where) {
+  taken.insert(where.substr(0, where.rfind('=')));
+  std::vector<std::string> columns;
+  for (const Channel& channel : data.channels) {
+    if (channel.role != Role::time && !taken.contains(channel.name)) {
+      columns.push_back(channel.name);
+    }
+  }
+  return columns;
 }
 
 DataFile read_user_rows(const UserProblem& own) { return read_rows(own, own.files); }

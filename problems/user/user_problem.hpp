@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -75,6 +76,11 @@ struct UserProblem {
 
 // Throws Error (bad_input) where a file is missing or has changed.
 void require_unchanged(const UserProblem& own);
+
+// The inputs where nobody names them: every column of numbers that is not the time, not taken
+// and not what `where` (COLUMN=VALUE, or empty) chooses rows by.
+std::vector<std::string> other_columns(const Dataset& data, std::set<std::string> taken,
+                                       const std::string& where);
 
 // The rows as they were read, with roles, groups and warnings of the reader; every column that is
 // a number. Throws Error (bad_input) with file, line and column.

@@ -44,6 +44,25 @@ class FitTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+// As in a grid: words, what the rows are weighed by and what chooses them are no inputs.
+TEST_F(FitTest, WithoutInputsTakesEveryOtherColumnOfNumbers) {
+  std::string text = "who,a,b,w,kind,y\n";
+  for (int i = 1; i <= 40; ++i) {
+    text += fmt::format("x{},{},{},1,{},{}\n", i, i, i % 7, i % 2, 2 * i - 3 * (i % 7));
+  }
+  write_text(folder_ / "train.csv", text);
+  const ProgramRun run =
+      fit({"--target", "y", "--weights", "w", "--where", "kind=1", "--method", "linear", "--json"});
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_EQ(json::parse(run.output).at("inputs"), json({"a", "b"}));
+  EXPECT_LT(json::parse(run.output).at("mae_train").get<double>(), 1e-9);
+  EXPECT_THAT(run.errors, HasSubstr("every other column of numbers: a, b\n"));
+  EXPECT_THAT(fit({"--target", "z"}).errors, HasSubstr("'z'"));
+  const ProgramRun pipe = run_tribench({"fit", "/dev/stdin", "--target", "y"});
+  EXPECT_EQ(pipe.status, 2);
+  EXPECT_THAT(pipe.errors, HasSubstr("give --inputs"));
+}
+
 TEST_F(FitTest, FindsAPlantedLineAndJudgesItOnOtherData) {
   const ProgramRun run =
       fit({"--target", "friction_torque_Nm", "--inputs", "velocity_rad_s,sgn_velocity_rad_s",
