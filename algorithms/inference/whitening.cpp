@@ -118,10 +118,12 @@ void Whitening::filter_rows(Eigen::Ref<Eigen::MatrixXd> rows) const {
 // Of filtered rows of a movement, its weight too.
 void Whitening::shrink_offset(std::size_t movement, Eigen::Ref<Eigen::MatrixXd> rows) const {
   const OffsetShrinkage u = offset_of(movement);
-  const auto direction = direction_.head(rows.rows());
-  for (Eigen::Index j = 0; j < rows.cols() && u.kept != 1; ++j) {
-    const double shift = (1 - u.kept) * direction.dot(rows.col(j)) / u.length;
-    rows.col(j) -= shift * direction;
+  if (u.kept != 1) {  // of noise without offsets nothing is taken
+    const auto direction = direction_.head(rows.rows());
+    for (Eigen::Index j = 0; j < rows.cols(); ++j) {
+      const double shift = (1 - u.kept) * direction.dot(rows.col(j)) / u.length;
+      rows.col(j) -= shift * direction;
+    }
   }
   const double weight = clusters_.weight_of(movement);
   if (weight != 1) rows *= weight;

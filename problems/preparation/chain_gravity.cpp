@@ -36,6 +36,7 @@ namespace {
 
 constexpr double kGravity = 9.81;          // m/s^2
 constexpr std::size_t kMostLinks = 1'000;  // walking a chain takes stack
+constexpr const char* kNamedAlike = "name the columns after the joints of that file";
 
 KDL::Vector vector_of(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
@@ -119,7 +120,7 @@ const JointPosition& position_of(const std::string& name, const DataFile& file, 
   throw_bad_input(
       fmt::format("{} '{}' is the position of its joint '{}'",
                   all.empty() ? "none of" : "more than one of", fmt::join(words, "', '"), name),
-      arm.place, "name the columns after the joints of that file");
+      arm.place, kNamedAlike);
 }
 
 // In the order of the arm's joints.
@@ -132,7 +133,7 @@ std::vector<const JointPosition*> positions_of(const DataFile& file, const Arm& 
         throw_bad_input(
             fmt::format("'{}' would be the position of two of its joints, '{}' one of them",
                         one.joint, name),
-            arm.place, "name the columns after the joints of that file");
+            arm.place, kNamedAlike);
       }
       positions.push_back(&one);
     }

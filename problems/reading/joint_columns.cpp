@@ -204,9 +204,9 @@ void choose_joint(const CsvOptions& options, std::vector<ColumnPlan>& plans, Dat
     }
     return;
   }
-  for (const auto& [joint, columns] : joints) {
-    for (const std::size_t j : columns) {
-      if (options.all_positions) keep_position(fmt::format("{}", joint), plans[j], out);
+  if (options.all_positions) {
+    for (const auto& [joint, columns] : joints) {
+      for (const std::size_t j : columns) keep_position(fmt::format("{}", joint), plans[j], out);
     }
   }
   int neighbour = *chosen - 1;

@@ -11,6 +11,7 @@
 
 namespace tribench {
 
+// Any bytes become valid UTF-8. Reads the text once, where it is none some times more.
 std::string as_utf8(std::string text);
 
 }  // namespace tribench

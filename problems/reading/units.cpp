@@ -158,8 +158,8 @@ using Spellings = std::map<std::string, const Unit*, std::less<>>;
 Spellings all_spellings(bool small) {
   Spellings all;
   for (const Known& known : kKnown) {
-    for (const std::string_view spelling : split(known.spellings, '|')) {
-      all.try_emplace(small ? in_small_letters(spelling) : std::string(spelling), &known.unit);
+    for (const std::string& spelling : split(known.spellings, '|')) {
+      all.try_emplace(small ? in_small_letters(spelling) : spelling, &known.unit);
     }
   }
   return all;

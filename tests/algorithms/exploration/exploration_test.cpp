@@ -139,7 +139,7 @@ TEST(Explorer, ForeseesNoMoreRowsOfAFasterRecording) {
     MotionLimits limits = world.limits();
     limits.rate_hz = rate_hz;
     ExplorerOptions options;
-    options.budget_s = 22;
+    options.budget_s = 30;
     std::pair<double, double> rows{0, 0};  // foreseen, and that they stand for
     const MovementPlan plan = informative_movements();
     explore(

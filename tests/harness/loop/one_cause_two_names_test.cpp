@@ -46,7 +46,7 @@ Observations running_in(std::uint64_t seed, double warming) {
 }
 
 TEST(OneCauseOfTwoNames, IsNamedWithTheOtherAsItsAlias) {
-  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     for (const double warming : {50.0, 70.0}) {
       const JudgedDiagnosis diagnosis =
           diagnose_and_judge(running_in(seed, warming), coulomb_viscous_base, {});

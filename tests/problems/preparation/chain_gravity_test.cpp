@@ -117,6 +117,10 @@ TEST_F(ChainGravity, AWordThatTellsNoJointOfTheArmIsRefused) {
         "t [s],e_position [deg],o_position [deg],e_effort [Nm],o_effort [Nm]\n"
         "0,0,0,1,1\n0.01,30,20,2,1\n");
   EXPECT_THAT(refusal("e"), HasSubstr("more than one of 'e', 'o' is the position of"));
+  write("log.csv",
+        "t [s],e_position [deg],finger_position [deg],e_effort [Nm],finger_effort [Nm]\n"
+        "0,0,0,1,1\n0.01,30,20,2,1\n");
+  EXPECT_THAT(refusal("e"), HasSubstr("'e' would be the position of two of its joints"));
 }
 
 TEST_F(ChainGravity, SaysWhatIsWrongWithTheFileOrTheData) {
