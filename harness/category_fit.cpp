@@ -27,7 +27,7 @@
 namespace tribench {
 namespace {
 
-constexpr std::size_t kFewestRows = 10;
+constexpr std::size_t kFewestRowsOfCategory = 10;
 // Each category's search brings shapes of its own, and each shape is fitted to each category: of
 // more categories than this some are asked first, and the best shapes there go on to all.
 constexpr std::size_t kAskedFirst = 32;
@@ -260,9 +260,9 @@ std::vector<double> distinct(const CategoryColumn& column) {
   }
   for (const double value : values) {
     const std::size_t rows = rows_in(column.train, value).size();
-    if (rows >= kFewestRows) continue;
+    if (rows >= kFewestRowsOfCategory) continue;
     throw_bad_input(fmt::format("category {} has {} training rows", value, rows), column.name,
-                    fmt::format("give each at least {}, or leave it out", kFewestRows));
+                    fmt::format("give each at least {}, or leave it out", kFewestRowsOfCategory));
   }
   for (const double value : column.test) {
     if (values.contains(value)) continue;

@@ -109,6 +109,10 @@ bool is_very_sure(const LoopEffect& effect) {
   return known(effect.chosen_share) && effect.chosen_share >= kVerySure;
 }
 
+std::string found_again(double share) {
+  return fmt::format("Found again in {} of the repeats.", percent(share));
+}
+
 std::string grade_of(const LoopEffect& effect) {
   if (!effect.objection.empty()) return "not physical";
   if (effect.provisional) return "provisional";
@@ -204,9 +208,8 @@ LoopCard card_of(const LoopRecord& record, const LoopEffect& effect) {
     }
   }
   card.grade = grade_of(effect);
-  card.sure = known(effect.chosen_share)
-                  ? fmt::format("Found again in {} of the repeats.", percent(effect.chosen_share))
-                  : "It passes the test against chance.";
+  card.sure = known(effect.chosen_share) ? found_again(effect.chosen_share)
+                                         : "It passes the test against chance.";
   card.bristles = bristles_of(record, effect);
   card.doubts = doubts_of(record, effect);
   add_rivals(card, record, effect);
@@ -299,7 +302,9 @@ std::string leftover_of(const LoopRecord& record) {
         "be physical.",
         inputs);
   }
-  return fmt::format("Still unexplained: something that depends on {}.", inputs);
+  std::string text = fmt::format("Still unexplained: something that depends on {}.", inputs);
+  const double share = record.leftover.chosen_share;
+  return known(share) ? fmt::format("{} {}", text, found_again(share)) : text;
 }
 
 std::string next_movement_words(const LoopRecord& record) {

@@ -3,6 +3,7 @@
 // What no family explains: where it lives and what it looks like.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +48,9 @@ struct LeftoverFinding {
   bool is_in_doubt() const { return varying && inputs.empty(); }
   std::optional<RepeatingFinding> repeating;
   std::vector<std::string> proxies_removed;
+  // Share of the searches with some movements left out that leave something over, too; NaN where
+  // there are none.
+  double chosen_share = std::numeric_limits<double>::quiet_NaN();
   std::vector<CurvePoint> curve;  // over the one input
 };
 

@@ -4,12 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <limits>
 #include <map>
-#include <mutex>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -21,10 +17,10 @@
 #include "algorithms/loop_model/model_fit.hpp"
 #include "foundation/parallel_for.hpp"
 #include "harness/loop/bristles_of.hpp"
-#include "harness/loop/chosen_shares.hpp"
 #include "harness/loop/determined_rows.hpp"
 #include "harness/loop/noise_bounds.hpp"
 #include "harness/loop/nothing_missing.hpp"
+#include "harness/loop/searches_on_parts.hpp"
 #include "problems/preparation/canonical.hpp"
 #include "problems/preparation/test_movements.hpp"
 #include "reports/record/loop_record.hpp"
@@ -117,12 +113,6 @@ bool foretell_one_another(const Observations& data, const Diagnosis& diagnosis) 
   });
 }
 
-std::vector<std::size_t> numbers(std::size_t from, std::size_t to) {
-  std::vector<std::size_t> all(to - from);
-  std::iota(all.begin(), all.end(), from);
-  return all;
-}
-
 // What the models fitted without them make of the movements left out, in rows of all data.
 struct LeftOut {
   Eigen::VectorXd before;
@@ -174,13 +164,6 @@ std::vector<char> judged_rows(std::vector<char> rows, const LeftOut& models,
   return kept;
 }
 
-// ": how", or nothing where no rule of experiment is known.
-std::string experiments_of(const std::vector<std::string>& rules) {
-  std::vector<std::string> texts;
-  for (const std::string& rule : rules) texts.push_back(experiment_text(rule));
-  return texts.empty() ? std::string() : fmt::format(": {}", fmt::join(texts, ", or "));
-}
-
 // One recording, in its canonical order, and what is asked of it.
 class LoopJudge {
  public:
@@ -192,19 +175,6 @@ class LoopJudge {
   JudgedDiagnosis in_turn();
 
  private:
-  // Searches without some movements, the first of them the one that is reported.
-  struct Searches {
-    std::vector<std::vector<int>> without;
-    std::vector<Diagnosis> found;
-    std::vector<SearchMemory> memories;
-    Diagnosis& whole() { return found.front(); }
-  };
-  // while_named: those without some movements are asked for where the whole names an effect alone.
-  // They begin before that is known, and where it names none what has become of them is forgotten.
-  enum class Asked { always, while_named };
-  void search(Searches& all, const std::vector<std::size_t>& which, const DiagnosisOptions& options,
-              Asked asked = Asked::always);
-  [[nodiscard]] std::vector<std::string> name_the_stable(Searches& all);
   // bristles: of `fitted`. Writes to the rows alone that it has not seen.
   void add_predictions(LeftOut& all, const Diagnosis& fitted,
                        const std::optional<Bristles>& bristles, const RandomStream& random) const;
@@ -218,90 +188,7 @@ class LoopJudge {
   const DiagnosisOptions& options_;
   const JudgingOptions& judging_;
   RandomStream random_{key_of("judge")};
-  std::size_t ended_ = 0;  // searches, of those asked for
-  std::size_t asked_ = 0;
 };
-
-void LoopJudge::search(Searches& all, const std::vector<std::size_t>& which,
-                       const DiagnosisOptions& options, Asked asked) {
-  DiagnosisOptions effects_alone = options;  // of all but the reported one
-  effects_alone.compares_families = false;
-  std::mutex mutex;
-  std::atomic<bool> names_nothing = false;
-  std::vector<std::exception_ptr> failures(which.size());
-  all.found.resize(all.without.size());
-  all.memories.resize(all.without.size());
-  asked_ += which.size();
-  parallel_for(which.size(), judging_.threads, [&](std::size_t k) {
-    if (names_nothing) return;
-    const std::size_t one = which[k];
-    try {
-      all.found[one] = diagnose(data_, base_, one == 0 ? options : effects_alone, all.without[one],
-                                &all.memories[one]);
-    } catch (...) {
-      failures[k] = std::current_exception();
-      return;
-    }
-    if (one == 0 && asked == Asked::while_named) names_nothing = all.whole().effects.empty();
-    const std::lock_guard lock(mutex);
-    if (judging_.progress) judging_.progress(++ended_, asked_);
-  });
-  for (std::size_t k = 0; k < which.size(); ++k) {
-    if (failures[k] && (which[k] == 0 || !names_nothing)) std::rethrow_exception(failures[k]);
-  }
-}
-
-// Stability selection (Meinshausen and Buehlmann 2010): what too few of the searches on parts
-// choose, by whatever name the data allow, hangs on a movement or two. Where the whole names such
-// an effect, all are asked anew for what most of them choose, but those that had nothing else; and
-// again where the answer names one that stood for a stable alias before and now stands beside it.
-// Returns what to record to be sure of what is not named.
-std::vector<std::string> LoopJudge::name_the_stable(Searches& all) {
-  const ChosenShares shares(std::span(all.found).subspan(1));
-  DiagnosisOptions options = options_;
-  const auto is_unnamed = [&](const std::string& family) {
-    return std::ranges::count(options.unnamed, family) > 0;
-  };
-  std::vector<std::string> notes;
-  std::vector<std::string> needed;
-  // Each turn adds to what is unnamed, which no answer names: it ends.
-  while (true) {
-    std::set<std::string> stable;
-    std::vector<EffectFinding> rare;
-    for (const EffectFinding& effect : all.whole().effects) {
-      const std::set<std::string> names = names_of(effect);
-      if (shares.of_any(names) < kStableShare) {
-        rare.push_back(effect);
-      } else {
-        stable.insert(names.begin(), names.end());
-      }
-    }
-    if (rare.empty()) break;
-    for (const EffectFinding& effect : rare) stable.erase(effect.family);
-    for (const EffectFamily& family : all.whole().families) {
-      const bool is_rare = shares.of(family.name) < kStableShare;
-      if (is_rare && !stable.contains(family.name) && !is_unnamed(family.name)) {
-        options.unnamed.push_back(family.name);
-      }
-    }
-    for (const EffectFinding& effect : rare) {
-      notes.push_back(fmt::format(
-          "'{}' is chosen by {:.0f} % of the searches without some of the movements: not named",
-          effect.family, 100 * shares.of(effect.family)));
-      needed.push_back(fmt::format("more movements that show '{}'{}", effect.family,
-                                   experiments_of(effect.separate_by)));
-    }
-    std::vector<std::size_t> again;
-    for (std::size_t k = 0; k < all.found.size(); ++k) {
-      if (std::ranges::any_of(all.found[k].tried, is_unnamed)) again.push_back(k);
-    }
-    search(all, again, options);
-  }
-  Diagnosis& whole = all.whole();
-  whole.notes.insert(whole.notes.end(), notes.begin(), notes.end());
-  write_shares(whole, shares);
-  return needed;
-}
 
 // Of the rows that a diagnosis has not seen.
 void LoopJudge::add_predictions(LeftOut& all, const Diagnosis& fitted,
@@ -370,15 +257,14 @@ void LoopJudge::point_at_unused_columns(JudgedDiagnosis& whole) const {
 // Few movements: the whole procedure again for each, without it, and all of them judged together.
 // Says of each effect how many of them choose it too.
 JudgedDiagnosis LoopJudge::in_turn() {
-  Searches searches{left_out_together(data_), {}, {}};
-  const std::size_t turns = searches.without.size();
-  searches.without.insert(searches.without.begin(), std::vector<int>());
-  search(searches, numbers(0, turns + 1), options_);
-  std::vector<std::string> needed = name_the_stable(searches);
+  SearchesOnParts searches(data_, base_, options_, judging_, {}, left_out_together(data_));
+  searches.search_all();
+  std::vector<std::string> needed = searches.name_the_stable();
+  const std::size_t turns = searches.parts().size();
   // The error is that of what is named: where nothing is, a part's own effects are none.
   LeftOut all(data_.rows());
   parallel_for(turns, judging_.threads, [&](std::size_t k) {
-    Diagnosis& part = searches.found[k + 1];
+    Diagnosis& part = searches.parts()[k];
     if (searches.whole().effects.empty()) part.after = part.before;
     add_predictions(all, part, bristles_of(part, data_), random_.split(k));
   });
@@ -398,20 +284,13 @@ JudgedDiagnosis LoopJudge::in_turn() {
 }
 
 JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
-  Searches searches{{test}, {}, {}};
+  std::vector<std::vector<int>> parts;
   if (judging_.resample) {
-    for (std::vector<int>& left :
-         left_out_together(data_.select(usable_rows(data_, test, false, {})))) {
-      left.insert(left.end(), test.begin(), test.end());
-      std::ranges::sort(left);
-      searches.without.push_back(std::move(left));
-    }
+    parts = left_out_together(data_.select(usable_rows(data_, test, false, {})));
   }
-  search(searches, numbers(0, searches.without.size()), options_, Asked::while_named);
-  std::vector<std::string> needed;
-  if (judging_.resample && !searches.whole().effects.empty()) {
-    needed = name_the_stable(searches);
-  }
+  SearchesOnParts searches(data_, base_, options_, judging_, test, std::move(parts));
+  searches.search_until_none();
+  std::vector<std::string> needed = searches.name_the_stable();
   JudgedDiagnosis whole{std::move(searches.whole()), {}, {}, {}};
   whole.bristles = bristles_of(whole, data_);
   whole.error.judged_on = JudgedOn::rows_of_the_fit;

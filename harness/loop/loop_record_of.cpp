@@ -110,7 +110,7 @@ LoopVarying varying_of(const VaryingFinding& from) {
 void add_lists(LoopRecord& record, const JudgedDiagnosis& diagnosis) {
   for (const EffectFinding& one : diagnosis.effects) record.effects.push_back(effect_of(one));
   const LeftoverFinding& left = diagnosis.leftover;
-  record.leftover = {left.p, left.inputs, left.proxies_removed, {}, {}};
+  record.leftover = {left.p, left.inputs, left.proxies_removed, left.chosen_share, {}, {}};
   if (left.varying) record.leftover.varying = varying_of(*left.varying);
   for (const CurvePoint& p : left.curve) record.leftover.curve.push_back({p.x, p.y, p.error});
   for (const UntestableFinding& one : diagnosis.untestable) {

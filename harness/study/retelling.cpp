@@ -225,6 +225,8 @@ std::optional<RecordingToTell> with_another_seed(const RecordingToTell& recordin
   return told;
 }
 
+// Of each movement, from its row `first` on.
+template <std::size_t first>
 std::optional<RecordingToTell> every_second_row(const RecordingToTell& recording,
                                                 RandomStream /*random*/) {
   RecordingToTell told = recording;
@@ -232,7 +234,7 @@ std::optional<RecordingToTell> every_second_row(const RecordingToTell& recording
     std::vector<Movement> movements = movements_of(recording, file.cells);
     for (Movement& movement : movements) {
       Movement kept;
-      for (std::size_t i = 0; i < movement.size(); i += 2) kept.push_back(movement[i]);
+      for (std::size_t i = first; i < movement.size(); i += 2) kept.push_back(movement[i]);
       movement = std::move(kept);
     }
     put_movements(file.cells, movements);
@@ -294,7 +296,8 @@ const std::vector<Retelling>& retellings() {
       {"epoch", "time since 1970", 1, kOfTheClock, false, shift_time},
       {"renamed", "movements under other names", 1, 0, false, rename_movements},
       {"seed", "another --seed", 0.97, kAny, false, with_another_seed},
-      {"second_rows", "every second row", 0.95, kAny, false, every_second_row},
+      {"second_rows", "every second row", 0.95, kAny, false, every_second_row<0>},
+      {"other_rows", "the rows between those", 0.95, kAny, false, every_second_row<1>},
       {"last_tenth", "without the last tenth of the movements", 0.95, kAny, false,
        without_the_last_tenth},
       {"any_tenth", "without a tenth of the movements, drawn", 0.95, kAny, false,

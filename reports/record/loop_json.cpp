@@ -80,6 +80,7 @@ Json leftover_json(const LoopLeftover& leftover) {
   return {{"p", json_number(leftover.p)},
           {"inputs", leftover.inputs},
           {"proxies_removed", leftover.proxies_removed},
+          {"chosen_share", json_number(leftover.chosen_share)},
           {"curve", curve},
           {"varying", varying_json(leftover.varying)}};
 }

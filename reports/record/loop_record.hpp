@@ -114,6 +114,7 @@ struct LoopLeftover {
   // Role names, or "movement" (varying); empty where nothing is left.
   std::vector<std::string> inputs;
   std::vector<std::string> proxies_removed;
+  double chosen_share = kNoFigure;  // of the searches with movements left out
   struct Point {
     double x = 0;
     double y = 0;

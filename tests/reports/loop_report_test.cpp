@@ -103,7 +103,10 @@ TEST(LoopWords, HaveAFaceForEveryVerdict) {
   linear.shortest_wave = 0.0005;
   linear.shortest_wave_unit = "m";
   EXPECT_THAT(loop_words(linear).detectable, HasSubstr("ripples of less than 0.5000 mm, unless"));
-  EXPECT_THAT(loop_words(with(LoopVerdict::unknown)).leftover, HasSubstr("depends on position"));
+  LoopRecord unknown = with(LoopVerdict::unknown);
+  EXPECT_EQ(loop_words(unknown).leftover, "Still unexplained: something that depends on position.");
+  unknown.leftover.chosen_share = 0.7;
+  EXPECT_THAT(loop_words(unknown).leftover, HasSubstr(". Found again in 70 % of the repeats."));
   EXPECT_EQ(loop_words(with(LoopVerdict::cannot_tell)).next, "Record 20 stretches of movement.");
   LoopRecord nothing_to_test = with(LoopVerdict::none);
   nothing_to_test.candidates.clear();

@@ -16,19 +16,12 @@
 #include "reports/record/loop_record.hpp"
 #include "tests/support/movements_with_offsets.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/planted_diagnosis.hpp"
 
 namespace tribench::loop {
 namespace {
 
-// Signs of planted effects are random: the vetoes, which know which sign is physical, stay out.
-JudgedDiagnosis diagnose_planted(const kuka::PlantedCase& planted, std::uint64_t seed,
-                                 const JudgingOptions& judging = {}) {
-  DiagnosisOptions options;
-  options.physical_vetoes = false;
-  options.gear_ratios = {160};
-  return diagnose_and_judge(observe(kuka::make_planted(planted, seed).data), coulomb_viscous_base,
-                            options, judging);
-}
+using testing::diagnose_planted;
 
 std::vector<std::string> families(const Diagnosis& diagnosis) {
   std::vector<std::string> names;

@@ -96,6 +96,7 @@ TEST(Retelling, OrderAndNamesChangeWithoutTheRows) {
 
 TEST(Retelling, LessOfARecordingIsWholeMovementsOrEverySecondRowOfEach) {
   EXPECT_THAT(column(told("second_rows"), "note"), ElementsAre("a", "c", "d"));
+  EXPECT_THAT(column(told("other_rows"), "note"), ElementsAre("b", "e"));
   EXPECT_FALSE(find_retelling("last_tenth").tell(small_recording(), RandomStream(1)).has_value());
   std::string text = "movement,v,tau_f\n";
   for (int m = 0; m < 20; ++m) text += fmt::format("{0},1,2\n{0},1,3\n", m);
