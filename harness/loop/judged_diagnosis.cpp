@@ -288,7 +288,7 @@ JudgedDiagnosis LoopJudge::with_held_out(const std::vector<int>& test) {
   if (judging_.resample) {
     parts = left_out_together(data_.select(usable_rows(data_, test, false, {})));
   }
-  SearchesOnParts searches(data_, base_, options_, judging_, test, std::move(parts));
+  SearchesOnParts searches(data_, base_, options_, judging_, test, parts);
   searches.search_until_none();
   std::vector<std::string> needed = searches.name_the_stable();
   JudgedDiagnosis whole{std::move(searches.whole()), {}, {}, {}};
