@@ -381,13 +381,18 @@ std::string detectable_of(const LoopRecord& record) {
   if (record.verdict != LoopVerdict::none) return {};
   const LoopUnit unit = torque_unit(record);
   std::vector<std::string> sizes;
+  std::vector<std::string> without;  // the stretches that hold it are too few for one
   for (const LoopCandidate& one : record.candidates) {
+    if (std::isinf(one.detectable)) without.push_back(family_title(record, one.family));
     if (!known(one.detectable) || sizes.size() == kNamedSizes) continue;
     sizes.push_back(fmt::format("{} above {} {}", family_title(record, one.family),
                                 figure(unit.factor * one.detectable, 2), unit.name));
   }
   std::vector<std::string> sentences;
-  if (!sizes.empty()) sentences.push_back(fmt::format("Would have been seen: {}.", listed(sizes)));
+  if (!sizes.empty()) sentences.push_back("Would have been seen: " + listed(sizes) + '.');
+  if (sizes.empty() && !without.empty()) {
+    sentences.push_back("No size is sure to be seen: " + listed(without) + '.');
+  }
   if (const std::string ripples = ripples_not_looked_at(record); !ripples.empty()) {
     sentences.push_back(fmt::format("Not looked at: {}.", ripples));
   }

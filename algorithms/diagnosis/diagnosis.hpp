@@ -98,8 +98,8 @@ struct CandidateFinding {
   double score = 0;
   double gain = std::numeric_limits<double>::quiet_NaN();
   double gain_share = 0;  // of the base's loss on movements left out; 0: no more than its error
-  // The root mean square that it would have needed to be found nine times in ten, in the target's
-  // unit.
+  // The root mean square that the median of its curves would have needed to be found nine times in
+  // ten, in the target's unit; infinity where too few clusters hold it to be found at any size.
   double detectable = std::numeric_limits<double>::quiet_NaN();
 };
 

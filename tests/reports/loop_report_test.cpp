@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -93,6 +94,11 @@ TEST(LoopWords, HaveAFaceForEveryVerdict) {
             "Nothing is missing that these data can show.");
   EXPECT_THAT(loop_words(with(LoopVerdict::none)).detectable,
               HasSubstr("Stribeck effect above 0.050 N m"));
+  LoopRecord sizeless = with(LoopVerdict::none);
+  for (LoopCandidate& one : sizeless.candidates) {
+    one.detectable = std::numeric_limits<double>::infinity();
+  }
+  EXPECT_THAT(loop_words(sizeless).detectable, HasSubstr("No size is sure to be seen: Stribeck"));
   LoopRecord in_part = with(LoopVerdict::none);
   in_part.steps.push_back({"acceleration resolved", 5000, "in 760 of 5760 rows it is not"});
   EXPECT_THAT(loop_words(in_part).detectable,

@@ -14,25 +14,17 @@
 #include "problems/reading/csv.hpp"
 #include "problems/table.hpp"
 #include "reports/record/loop_record.hpp"
+#include "tests/harness/loop/judged_planted.hpp"
 #include "tests/support/movements_with_offsets.hpp"
 #include "tests/support/paths.hpp"
-#include "tests/support/planted_diagnosis.hpp"
 
 namespace tribench::loop {
 namespace {
 
-using testing::diagnose_planted;
-
-std::vector<std::string> families(const Diagnosis& diagnosis) {
-  std::vector<std::string> names;
-  for (const EffectFinding& effect : diagnosis.effects) names.push_back(effect.family);
-  return names;
-}
-
 class PlantedEffect : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(PlantedEffect, IsNamedAndClosesTheLoopOnMovementsNobodyTouched) {
-  const JudgedDiagnosis diagnosis = diagnose_planted({.effects = {{GetParam(), 1.0}}}, 2);
+  const JudgedDiagnosis diagnosis = judge_planted({.effects = {{GetParam(), 1.0}}}, 2);
   EXPECT_EQ(diagnosis.verdict, Verdict::effects);
   EXPECT_EQ(families(diagnosis), std::vector<std::string>{GetParam()});
   EXPECT_LT(diagnosis.error.mae_after, diagnosis.error.mae_before);
@@ -102,7 +94,7 @@ double noise_held_out(const std::vector<kuka::Plant>& effects, const Diagnosis& 
 // whole movements speaks for itself.
 TEST(JudgedDiagnosis, AnEffectInAFewStretchesIsRescuedByItsGain) {
   for (const std::uint64_t seed : {954432U, 954494U}) {
-    const JudgedDiagnosis diagnosis = diagnose_planted({.effects = {{"coupling", 2.0}}}, seed);
+    const JudgedDiagnosis diagnosis = judge_planted({.effects = {{"coupling", 2.0}}}, seed);
     EXPECT_EQ(families(diagnosis), std::vector<std::string>{"coupling"});
     EXPECT_TRUE(diagnosis.effects.at(0).few_movements);
     EXPECT_EQ(std::ranges::count(diagnosis.untestable, "coupling", &UntestableFinding::family), 0);
@@ -142,8 +134,8 @@ TEST(JudgedDiagnosis, ReportsNoTwoColumnsThatOnlyCancelEachOther) {
 
 TEST(JudgedDiagnosis, IsTheSameAgain) {
   const kuka::PlantedCase planted{.effects = {{"load_coulomb", 0.5}}};
-  const JudgedDiagnosis one = diagnose_planted(planted, 8);
-  const JudgedDiagnosis two = diagnose_planted(planted, 8);
+  const JudgedDiagnosis one = judge_planted(planted, 8);
+  const JudgedDiagnosis two = judge_planted(planted, 8);
   EXPECT_EQ(one.error.mae_after, two.error.mae_after);
   EXPECT_EQ(one.leftover.p, two.leftover.p);
   EXPECT_EQ(families(one), families(two));
@@ -197,8 +189,8 @@ TEST(JudgedDiagnosis, NothingIsMissingOnlyWhereTheOthersForetellAMovement) {
 TEST(JudgedDiagnosis, WhatTheSearchesOnPartsDoNotFindAgainIsNotNamed) {
   const kuka::PlantedCase planted{.effects = {{"stribeck", 0.08}}};
   for (const std::uint64_t seed : {4U, 11U}) {
-    EXPECT_EQ(families(diagnose_planted(planted, seed)), std::vector<std::string>{"stribeck"});
-    const JudgedDiagnosis again = diagnose_planted(planted, seed, {.resample = true});
+    EXPECT_EQ(families(judge_planted(planted, seed)), std::vector<std::string>{"stribeck"});
+    const JudgedDiagnosis again = judge_planted(planted, seed, {.resample = true});
     EXPECT_EQ(families(again), std::vector<std::string>{}) << seed;
     EXPECT_THAT(again.notes, ::testing::Contains(::testing::HasSubstr("not named"))) << seed;
   }
@@ -214,9 +206,8 @@ TEST(JudgedDiagnosis, OnlySearchesThatHadWhatIsNotNamedAreRunAgain) {
     asked = searches;
   };
   const kuka::PlantedCase planted{.effects = {{"stribeck", 0.08}}};
-  const JudgedDiagnosis once = diagnose_planted(planted, 4);
-  const JudgedDiagnosis again =
-      diagnose_planted(planted, 4, {.resample = true, .progress = progress});
+  const JudgedDiagnosis once = judge_planted(planted, 4);
+  const JudgedDiagnosis again = judge_planted(planted, 4, {.resample = true, .progress = progress});
   EXPECT_EQ(once.tried, std::vector<std::string>{"stribeck"});
   EXPECT_EQ(families(again), std::vector<std::string>{});
   EXPECT_EQ(ended, asked);
@@ -253,8 +244,8 @@ TEST(JudgedDiagnosis, AWaveThatSeemedToDriftGivesWayToTheHarmonicsOfTheFirst) {
 // Searches side by side and one after the other: the same, bit for bit.
 TEST(JudgedDiagnosis, IsTheSameOnAnyNumberOfThreads) {
   const kuka::PlantedCase planted{.effects = {{"stribeck", 1.0}}};
-  const JudgedDiagnosis one = diagnose_planted(planted, 8, {.resample = true, .threads = 1});
-  const JudgedDiagnosis two = diagnose_planted(planted, 8, {.resample = true, .threads = 2});
+  const JudgedDiagnosis one = judge_planted(planted, 8, {.resample = true, .threads = 1});
+  const JudgedDiagnosis two = judge_planted(planted, 8, {.resample = true, .threads = 2});
   ASSERT_EQ(one.effects.size(), 1U);
   EXPECT_GT(one.effects[0].chosen_share, 0.5);
   EXPECT_EQ(one.effects[0].chosen_share, two.effects.at(0).chosen_share);
@@ -268,7 +259,7 @@ TEST(JudgedDiagnosis, WhereNothingIsNamedWhatBeganBesideItIsForgotten) {
     std::size_t ended = 0;
     const auto progress = [&](std::size_t now, std::size_t) { ended = now; };
     const JudgedDiagnosis nothing =
-        diagnose_planted({}, 8, {.resample = true, .threads = threads, .progress = progress});
+        judge_planted({}, 8, {.resample = true, .threads = threads, .progress = progress});
     EXPECT_EQ(nothing.verdict, Verdict::none);
     EXPECT_LT(ended, threads == 1 ? 2U : 11U) << "of eleven";
     EXPECT_EQ(nothing.error.mae_after, nothing.error.mae_before);
