@@ -391,7 +391,7 @@ std::string detectable_of(const LoopRecord& record) {
   std::vector<std::string> sentences;
   if (!sizes.empty()) sentences.push_back("Would have been seen: " + listed(sizes) + '.');
   if (sizes.empty() && !without.empty()) {
-    sentences.push_back("No size is sure to be seen: " + listed(without) + '.');
+    sentences.push_back("Not known from which size on they would show: " + listed(without) + '.');
   }
   if (const std::string ripples = ripples_not_looked_at(record); !ripples.empty()) {
     sentences.push_back(fmt::format("Not looked at: {}.", ripples));

@@ -98,7 +98,8 @@ TEST(LoopWords, HaveAFaceForEveryVerdict) {
   for (LoopCandidate& one : sizeless.candidates) {
     one.detectable = std::numeric_limits<double>::infinity();
   }
-  EXPECT_THAT(loop_words(sizeless).detectable, HasSubstr("No size is sure to be seen: Stribeck"));
+  EXPECT_THAT(loop_words(sizeless).detectable,
+              HasSubstr("from which size on they would show: Stribeck"));
   LoopRecord in_part = with(LoopVerdict::none);
   in_part.steps.push_back({"acceleration resolved", 5000, "in 760 of 5760 rows it is not"});
   EXPECT_THAT(loop_words(in_part).detectable,
